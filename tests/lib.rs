@@ -7,6 +7,7 @@
 pub mod bench;
 pub mod compare;
 pub mod golden;
+pub mod tables;
 pub mod trace;
 
 use std::{

@@ -8,6 +8,8 @@ use std::{
 
 use whole_system_tests::root;
 
+mod columns;
+
 /// Where pages are.
 const PLACES: [&str; 9] = [".", "docs", "docs/design", "data", "crates", "bins", "benches", "fuzz", "tests"];
 

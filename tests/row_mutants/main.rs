@@ -80,7 +80,7 @@ impl Copied {
     fn write(&self, switched: &Switched) -> io::Result<()> {
         let mut earlier = Vec::new();
         if self.source.is_dir() {
-            mutate::files(&self.source, &mut earlier)?;
+            whole_system_tests::tables::files(&self.source, "rs", &mut earlier)?;
         }
         for path in earlier {
             let name = path.strip_prefix(&self.source).unwrap_or(&path);

@@ -1,10 +1,12 @@
-//! The text of a decision table, and what can be changed in a row of it.
+//! What can be changed in a row of a decision table.
 
 use std::{
     fmt, fs, io,
     ops::Range,
     path::{Path, PathBuf},
 };
+
+use whole_system_tests::tables::{Row, Table, files};
 
 /// A row that is changed.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -16,12 +18,12 @@ pub struct Mutant {
     /// Number of the row.
     pub row: String,
     what: What,
-    /// Line of the file, from 0, and its text before and after.
-    pub line: usize,
+    /// Lines of the file, from 0, and the text of the row before and after.
+    pub lines: Range<usize>,
     pub before: String,
     pub after: String,
-    /// Another line that changes with it: an alternative that goes from one row to another.
-    pub other: Option<(usize, String)>,
+    /// Another row that changes with it: an alternative that goes from one row to another.
+    pub other: Option<(Range<usize>, String)>,
 }
 
 /// What is changed in a row.
@@ -69,196 +71,76 @@ impl Mutant {
     /// The text of the file with the change.
     pub fn apply(&self, text: &str) -> String {
         let mut lines: Vec<&str> = text.lines().collect();
-        lines[self.line] = &self.after;
-        if let Some((line, after)) = &self.other {
-            lines[*line] = after;
+        let other = self.other.iter().map(|(lines, after)| (lines, after));
+        for (of_row, after) in [(&self.lines, &self.after)].into_iter().chain(other) {
+            // The number of lines stays.
+            lines[of_row.clone()].fill("");
+            lines[of_row.start] = after;
         }
         lines.join("\n") + "\n"
     }
 }
 
-/// A row that stands in one line: `4: held: Right | Wrong, work: Over => Release -> Releasing;`.
-#[derive(Clone, Debug)]
-struct Row {
-    line: usize,
-    text: String,
-    /// Rows between the same braces.
-    group: usize,
-    /// The step that these rows are for, if it is one.
-    only_step: Option<String>,
-    number: String,
-    /// Of each state variable the alternatives.
-    conditions: Vec<(String, Vec<String>)>,
-    action: String,
-    next: Option<String>,
-}
-
-impl Row {
-    fn read(line: usize, text: &str, group: usize, only_step: Option<&String>) -> Option<Self> {
-        let (number, rest) = text.trim().split_once(':')?;
-        if number.is_empty() || !number.bytes().all(|byte| byte.is_ascii_digit()) {
-            return None;
-        }
-        let (conditions, result) = rest.strip_suffix(';')?.split_once("=>")?;
-        let (action, next) = match result.split_once("->") {
-            Some((action, next)) => (action, Some(next.trim().to_owned())),
-            None => (result, None),
-        };
-        let read = |condition: &str| {
-            let (name, values) = condition.split_once(':')?;
-            let values = values.split('|').map(|value| value.trim().to_owned()).collect();
-            Some((name.trim().to_owned(), values))
-        };
-        let named = conditions.split(',').map(str::trim).filter(|condition| !condition.is_empty());
-        Some(Self {
-            line,
-            text: text.to_owned(),
-            group,
-            only_step: only_step.cloned(),
-            number: number.to_owned(),
-            conditions: named.map(read).collect::<Option<_>>()?,
-            action: action.trim().to_owned(),
-            next,
-        })
-    }
-
-    /// The line that says it.
-    fn write(&self) -> String {
-        let indent = &self.text[..self.text.len() - self.text.trim_start().len()];
-        let conditions: Vec<String> =
-            self.conditions.iter().map(|(name, values)| format!("{name}: {}", values.join(" | "))).collect();
-        let next = self.next.as_ref().map_or_else(String::new, |next| format!(" -> {next}"));
-        format!("{indent}{}: {} => {}{next};", self.number, conditions.join(", "), self.action)
+fn mutant(table: &Table, row: &Row, what: What, changed: &Row, other: Option<&Row>) -> Mutant {
+    Mutant {
+        file: table.file.clone(),
+        table: table.name.clone(),
+        row: row.number.clone(),
+        what,
+        lines: row.lines.clone(),
+        before: row.text.clone(),
+        after: changed.write(),
+        other: other.map(|other| (other.lines.clone(), other.write())),
     }
 }
 
-/// A table in a file.
-#[derive(Debug)]
-pub struct Table {
-    file: PathBuf,
-    name: String,
-    /// Its lines, from 0, from `decision_table! {` to the closing brace.
-    pub lines: Range<usize>,
-    /// The line of its head.
-    pub head: usize,
-    rows: Vec<Row>,
-    /// Its steps, as groups of rows name them.
-    steps: Vec<String>,
+/// Every change of one row: its action becomes one of the table's others, its next step another one or
+/// none, an alternative of a condition goes to another row of the same group or is exchanged with one of it.
+pub fn mutants(table: &Table) -> Vec<Mutant> {
+    let mut mutants = Vec::new();
+    for row in &table.rows {
+        let mut actions: Vec<&String> =
+            table.rows.iter().map(|other| &other.action).filter(|action| **action != row.action).collect();
+        actions.sort_unstable();
+        actions.dedup();
+        for action in actions {
+            let changed = Row { action: action.clone(), ..row.clone() };
+            mutants.push(mutant(table, row, What::Action, &changed, None));
+        }
+        let steps = table.steps.iter().cloned().map(Some).chain([None]).filter(|next| {
+            // To stay in the only step says the same with and without its name.
+            let stay = |next: &Option<String>| next.is_none() || *next == row.only_step;
+            *next != row.next && !(stay(next) && stay(&row.next))
+        });
+        for next in steps {
+            mutants.push(mutant(table, row, What::NextStep, &Row { next, ..row.clone() }, None));
+        }
+        let others = table.rows.iter().filter(|other| other.group == row.group && other.lines != row.lines);
+        for other in others {
+            exchange(table, row, other, &mut mutants);
+        }
+    }
+    mutants
 }
 
-impl Table {
-    /// All tables of a file.
-    pub fn read(file: &Path, text: &str) -> Vec<Self> {
-        let (mut tables, mut began, mut group, mut of_group) = (Vec::<Self>::new(), None, 0, Vec::new());
-        for (line, text) in text.lines().enumerate() {
-            let trimmed = text.trim();
-            if trimmed == "decision_table! {" {
-                began = Some(line);
-            } else if text == "}" {
-                if let (Some(_), Some(table)) = (began.take(), tables.last_mut()) {
-                    table.lines.end = line + 1;
-                }
-            } else if let (Some(first), Some(head)) = (began, trimmed.strip_prefix("pub ")) {
-                let name = head.split(':').next().unwrap_or_default().to_owned();
-                let (file, lines) = (file.to_owned(), first..line);
-                tables.push(Self { file, name, lines, head: line, rows: Vec::new(), steps: Vec::new() });
-            } else if let (Some(_), Some(table)) = (began, tables.last_mut()) {
-                if let Some(steps) = trimmed.strip_suffix(" {").filter(|_| !trimmed.starts_with("//")) {
-                    group += 1;
-                    of_group = steps.split('|').map(|step| step.trim().to_owned()).collect();
-                    for step in of_group.iter().filter(|step| *step != "any") {
-                        if !table.steps.contains(step) {
-                            table.steps.push(step.clone());
-                        }
-                    }
-                } else if let Some(row) = Row::read(line, text, group, only(&of_group)) {
-                    table.rows.push(row);
-                }
+/// What can be exchanged between the conditions of two rows.
+fn exchange(table: &Table, row: &Row, other: &Row, mutants: &mut Vec<Mutant>) {
+    for (at, (name, values)) in row.conditions.iter().enumerate() {
+        let Some(there) = other.conditions.iter().position(|(known, _)| known == name) else { continue };
+        for (which, value) in values.iter().enumerate() {
+            if other.conditions[there].1.contains(value) {
+                continue;
             }
-        }
-        tables
-    }
-
-    fn mutant(&self, row: &Row, what: What, changed: &Row, other: Option<&Row>) -> Mutant {
-        Mutant {
-            file: self.file.clone(),
-            table: self.name.clone(),
-            row: row.number.clone(),
-            what,
-            line: row.line,
-            before: row.text.clone(),
-            after: changed.write(),
-            other: other.map(|other| (other.line, other.write())),
+            let (mut mine, mut theirs) = (row.clone(), other.clone());
+            if values.len() > 1 {
+                mine.conditions[at].1.remove(which);
+            } else {
+                mine.conditions[at].1 = vec![theirs.conditions[there].1.remove(0)];
+            }
+            theirs.conditions[there].1.push(value.clone());
+            mutants.push(mutant(table, row, What::Condition, &mine, Some(&theirs)));
         }
     }
-
-    /// Every change of one row: its action becomes one of the table's others, its next step another one or
-    /// none, an alternative of a condition goes to another row of the same group or is exchanged with one of it.
-    pub fn mutants(&self) -> Vec<Mutant> {
-        let mut mutants = Vec::new();
-        for row in &self.rows {
-            let mut actions: Vec<&String> =
-                self.rows.iter().map(|other| &other.action).filter(|action| **action != row.action).collect();
-            actions.sort_unstable();
-            actions.dedup();
-            for action in actions {
-                let changed = Row { action: action.clone(), ..row.clone() };
-                mutants.push(self.mutant(row, What::Action, &changed, None));
-            }
-            let steps = self.steps.iter().cloned().map(Some).chain([None]).filter(|next| {
-                // To stay in the only step says the same with and without its name.
-                let stay = |next: &Option<String>| next.is_none() || *next == row.only_step;
-                *next != row.next && !(stay(next) && stay(&row.next))
-            });
-            for next in steps {
-                mutants.push(self.mutant(row, What::NextStep, &Row { next, ..row.clone() }, None));
-            }
-            let others = self.rows.iter().filter(|other| other.group == row.group && other.line != row.line);
-            for other in others {
-                self.conditions(row, other, &mut mutants);
-            }
-        }
-        mutants
-    }
-
-    /// What can be exchanged between the conditions of two rows.
-    fn conditions(&self, row: &Row, other: &Row, mutants: &mut Vec<Mutant>) {
-        for (at, (name, values)) in row.conditions.iter().enumerate() {
-            let Some(there) = other.conditions.iter().position(|(known, _)| known == name) else { continue };
-            for (which, value) in values.iter().enumerate() {
-                if other.conditions[there].1.contains(value) {
-                    continue;
-                }
-                let (mut mine, mut theirs) = (row.clone(), other.clone());
-                if values.len() > 1 {
-                    mine.conditions[at].1.remove(which);
-                } else {
-                    mine.conditions[at].1 = vec![theirs.conditions[there].1.remove(0)];
-                }
-                theirs.conditions[there].1.push(value.clone());
-                mutants.push(self.mutant(row, What::Condition, &mine, Some(&theirs)));
-            }
-        }
-    }
-}
-
-/// The step of a group of rows that has one.
-fn only(steps: &[String]) -> Option<&String> {
-    let [step] = steps else { return None };
-    Some(step).filter(|step| *step != "any")
-}
-
-/// All Rust sources under a directory.
-pub fn files(directory: &Path, found: &mut Vec<PathBuf>) -> io::Result<()> {
-    for entry in fs::read_dir(directory)? {
-        let path = entry?.path();
-        if path.is_dir() {
-            files(&path, found)?;
-        } else if path.extension().is_some_and(|extension| extension == "rs") {
-            found.push(path);
-        }
-    }
-    Ok(())
 }
 
 /// SplitMix64: a random number, and the next state.
@@ -274,7 +156,7 @@ fn random(state: &mut u64) -> u64 {
 /// as any other, then what is changed in it, then how; a row comes again after all others have come.
 pub fn drawn(root: &Path, seed: u64, only: &str) -> io::Result<Vec<Mutant>> {
     let mut paths = Vec::new();
-    files(&root.join("crates/levels/src"), &mut paths)?;
+    files(&root.join("crates/levels/src"), "rs", &mut paths)?;
     paths.sort_unstable();
     let mut state = seed;
     let mut drawn = Vec::new();
@@ -284,10 +166,12 @@ pub fn drawn(root: &Path, seed: u64, only: &str) -> io::Result<Vec<Mutant>> {
             continue;
         }
         for table in Table::read(&name, &fs::read_to_string(&path)?) {
-            let mutants = table.mutants();
+            let mutants = mutants(&table);
             for row in &table.rows {
                 let mut kinds: Vec<Vec<&Mutant>> = [What::Action, What::NextStep, What::Condition]
-                    .map(|what| mutants.iter().filter(|it| it.line == row.line && it.what == what).collect())
+                    .map(|what| {
+                        mutants.iter().filter(|it| it.lines == row.lines && it.what == what).collect()
+                    })
                     .into();
                 let mut turn = 0_u64;
                 loop {
@@ -330,7 +214,7 @@ decision_table! {
         }
         /// The gripper opens.
         Releasing {
-            4:                          => Finish;
+            4: otherwise                => Finish;
         }
     }
 }
@@ -346,7 +230,7 @@ decision_table! {
         );
         let lines = |number: &str, what| {
             let mutants =
-                table.mutants().into_iter().filter(|mutant| mutant.row == number && mutant.what == what);
+                mutants(&table).into_iter().filter(|mutant| mutant.row == number && mutant.what == what);
             mutants.map(|mutant| mutant.apply(TEXT)).collect::<Vec<_>>()
         };
         let changed = |texts: &[String]| {
@@ -360,7 +244,7 @@ decision_table! {
             changed(&lines("1", What::Action)),
             ["1: work: Busy => Finish;", "1: work: Busy => Release;"]
         );
-        assert_eq!(changed(&lines("4", What::NextStep)), ["4:  => Finish -> Start;"]);
+        assert_eq!(changed(&lines("4", What::NextStep)), ["4: otherwise => Finish -> Start;"]);
         assert_eq!(
             changed(&lines("2", What::Condition)),
             [

@@ -14,7 +14,9 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use crate::mutate::{Mutant, Table};
+use whole_system_tests::tables::Table;
+
+use crate::mutate::Mutant;
 
 /// The variable of the environment that gives the number of the change that is switched on.
 pub const CHANGED: &str = "RCS_CHANGED_ROW";
@@ -204,7 +206,8 @@ fn switch(file: &Path, text: &str, mutants: &BTreeMap<usize, &Mutant>) -> Option
     let before: Vec<&str> = text.lines().collect();
     let mut copied = 0;
     for table in Table::read(file, text) {
-        let mine: Vec<_> = mutants.iter().filter(|(_, mutant)| table.lines.contains(&mutant.line)).collect();
+        let mine: Vec<_> =
+            mutants.iter().filter(|(_, mutant)| table.lines.contains(&mutant.lines.start)).collect();
         if mine.is_empty() {
             continue;
         }
@@ -251,7 +254,7 @@ fn other() {}
     #[test]
     fn a_changed_table_stands_beside_the_table_and_is_switched_on_by_its_number() {
         let table = &Table::read(Path::new("release.rs"), TEXT)[0];
-        let mutants = table.mutants();
+        let mutants = crate::mutate::mutants(table);
         let finish = mutants.iter().find(|mutant| mutant.after.contains("Busy => Finish")).unwrap();
         let (text, places) = switch(Path::new("release.rs"), TEXT, &BTreeMap::from([(17, finish)])).unwrap();
         assert_eq!(

@@ -27,8 +27,8 @@ const HEAD: &str = "\
 
 Once a tick a process looks its state variables up in its tables (II.2.2.2). Rows are read from the top: the
 first one that fits decides. A row fits if the command is in one of the row's steps (`any`: in whatever step),
-and if each variable that the row names has one of the values behind it. It names one action, and the next
-step where the step changes.
+and if each variable that the row names has one of the values behind it; `otherwise` fits always. It names one
+action, and the next step where the step changes.
 
 `consult` is no decision: the process goes on to another table, with the value in brackets, until a row
 decides. First come the tables that all commands have in common, then those of the command: at most three, for
@@ -165,7 +165,7 @@ fn append_table(text: &mut String, table: &'static Table, own: &[&'static Table]
 fn conditions(row: &Row) -> String {
     let asked = row.when.iter().map(|asked| format!("{}: {}", asked.variable, asked.values.join(" or ")));
     let asked: Vec<String> = asked.collect();
-    if asked.is_empty() { "always".to_owned() } else { asked.join(", ") }
+    if asked.is_empty() { "otherwise".to_owned() } else { asked.join(", ") }
 }
 
 /// Groups of tables with the same state variables, and of tables with the same actions.

@@ -202,15 +202,15 @@ mod tests {
         /// CLOSE-GRIP for the test.
         CLOSE_GRIP: fn close_grip(enum CloseGripStep, Situation) -> Action {
             any {
-                1: fingers: Apart   => Close                -> Wait;
+                1: fingers: Apart  => Close              -> Wait;
             }
             /// Nothing done yet.
             Start {
-                2: fingers: Shut    => Close                -> Wait;
+                2: fingers: Shut   => Close              -> Wait;
             }
             /// The fingers close.
             Wait {
-                3: fingers: Shut    => Fail(GraspMissed)    -> Start;
+                3: fingers: Shut   => Fail(GraspMissed)  -> Start;
             }
         }
     }

@@ -82,15 +82,15 @@ decision_table! {
     /// Upper state table: are the tables of the current command consulted?
     pub EXECUTE: fn execute(Outcome, Buffer) -> Course {
         any {
-            1: arrival: Nothing     => Rest      -> Idle;
-            2: arrival: Restarted   => Refuse    -> Error;
-            3: arrival: New         => Begin     -> Executing;
+            1: arrival: Nothing    => Rest    -> Idle;
+            2: arrival: Restarted  => Refuse  -> Error;
+            3: arrival: New        => Begin   -> Executing;
         }
         Executing {
-            4: arrival: Same        => Continue;
+            4: arrival: Same       => Continue;
         }
         Idle | Done | Error | Joystick {
-            5: arrival: Same        => Rest;
+            5: arrival: Same       => Rest;
         }
     }
 }

@@ -134,23 +134,23 @@ decision_table! {
     /// it has under way when the process above is lost.
     pub HALT: fn halt(enum Halt, Replaced) -> Halting or () {
         any {
-            1:  joystick: On                                                    => consult;
-            2:  joystick: Off, intake: Taken, above: Live                       => consult;
-            3:  joystick: Off, intake: Taken, above: Lost, below: AtRest | Pausing => consult;
-            4:  joystick: Off, intake: Taken, above: Lost, below: UnderWay      => Abandon(NeighbourLost);
+            1:  joystick: On                                                        => consult;
+            2:  joystick: Off, intake: Taken, above: Live                           => consult;
+            3:  joystick: Off, intake: Taken, above: Lost, below: AtRest | Pausing  => consult;
+            4:  joystick: Off, intake: Taken, above: Lost, below: UnderWay          => Abandon(NeighbourLost);
         }
         /// Nothing was told to stop for the sake of a new command.
         Clear {
-            5:  joystick: Off, intake: Asked, kind: Pause                       => consult;
-            6:  joystick: Off, intake: Asked | Adopted, below: AtRest           => consult;
-            7:  joystick: Off, intake: Adopted, below: Pausing                  => Wait -> Stopping;
-            8:  joystick: Off, intake: Asked, kind: Other, below: Pausing       => Wait -> Stopping;
-            9:  joystick: Off, intake: Asked | Adopted, below: UnderWay         => Stop -> Stopping;
+            5:  joystick: Off, intake: Asked, kind: Pause                           => consult;
+            6:  joystick: Off, intake: Asked | Adopted, below: AtRest               => consult;
+            7:  joystick: Off, intake: Adopted, below: Pausing                      => Wait  -> Stopping;
+            8:  joystick: Off, intake: Asked, kind: Other, below: Pausing           => Wait  -> Stopping;
+            9:  joystick: Off, intake: Asked | Adopted, below: UnderWay             => Stop  -> Stopping;
         }
         /// What is below is coming to rest.
         Stopping {
-            10: joystick: Off, intake: Asked | Adopted, below: Pausing | UnderWay => Wait;
-            11: joystick: Off, intake: Asked | Adopted, below: AtRest           => Wait -> Clear;
+            10: joystick: Off, intake: Asked | Adopted, below: Pausing | UnderWay   => Wait;
+            11: joystick: Off, intake: Asked | Adopted, below: AtRest               => Wait  -> Clear;
         }
     }
 }
@@ -184,8 +184,8 @@ decision_table! {
     /// EFFECT: an order that has changed no state variable is not given again by the same row. The command
     /// fails.
     pub EFFECT: fn effect(Fired) -> Futile or () {
-        1: order: None | New    => consult;
-        2: order: Repeated      => Fail(NoEffect);
+        1: order: None | New  => consult;
+        2: order: Repeated    => Fail(NoEffect);
     }
 }
 

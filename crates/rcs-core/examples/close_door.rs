@@ -51,15 +51,15 @@ mod door {
         /// CLOSE-DOOR.
         pub CLOSE_DOOR: fn close_door(enum CloseDoorStep, Situation) -> Action {
             any {
-                1: door: Shut => Finish;
+                1: door: Shut  => Finish;
             }
             /// Nothing done yet.
             Start {
-                2: door: Open => Close -> Closing;
+                2: door: Open  => Close  -> Closing;
             }
             /// The door is driven.
             Closing {
-                3: door: Open => Wait;
+                3: door: Open  => Wait;
             }
         }
     }

@@ -6,7 +6,7 @@
 //! source gives the table as text, for logs, for `rcs-run tables` and for the documentation.
 //!
 //! Rows are read from the top: the first one that fits decides. A row names only the variables that it asks
-//! for, and the next step only where it changes. A group of rows belongs to one step, to several, or to
+//! for, or `otherwise`, and the next step only where it changes. A group of rows belongs to one step, to several, or to
 //! `any`. A group with a doc comment declares its step; the first step that is declared is the one in which a
 //! command begins.
 //!
@@ -56,16 +56,16 @@
 //!     /// CLOSE-DOOR: for the example.
 //!     pub CLOSE_DOOR: fn close_door(enum CloseDoorStep, Situation) -> Action {
 //!         any {
-//!             1: door: Shut           => Finish;
+//!             1: door: Shut          => Finish;
 //!         }
 //!         /// Nothing done yet.
 //!         Start {
-//!             2: door: Open | Stuck   => Close            -> Closing;
+//!             2: door: Open | Stuck  => Close  -> Closing;
 //!         }
 //!         /// The door is driven.
 //!         Closing {
-//!             3: door: Open           => Wait;
-//!             4: door: Stuck          => Fail(DoorStuck);
+//!             3: door: Open          => Wait;
+//!             4: door: Stuck         => Fail(DoorStuck);
 //!         }
 //!     }
 //! }
@@ -265,7 +265,7 @@ impl Table {
 }
 
 impl Row {
-    /// The step and the conditions as text: `Closing, door Stuck`, or `always`.
+    /// The step and the conditions as text: `Closing, door Stuck`, or `otherwise`.
     pub fn conditions(&self) -> impl fmt::Display {
         fmt::from_fn(move |f| conditions(f, self.steps, self.when.iter().copied()))
     }
@@ -300,7 +300,7 @@ fn conditions(
         write!(f, "{condition}")?;
         is_first = false;
     }
-    if is_first { f.write_str("always") } else { Ok(()) }
+    if is_first { f.write_str("otherwise") } else { Ok(()) }
 }
 
 /// Names with a word between them.

@@ -68,8 +68,8 @@ pub enum Action {
 decision_table! {
     /// ACCEPT: it must not be dark.
     pub ACCEPT: fn accept(Request) -> Action or () {
-        1: lamp: Off            => Fail(Dark);
-        2: lamp: On             => consult;
+        1: lamp: Off  => Fail(Dark);
+        2: lamp: On   => consult;
     }
 }
 
@@ -77,17 +77,17 @@ decision_table! {
     /// CLOSE-DOOR: shut it.
     pub CLOSE_DOOR: fn close_door(enum CloseDoorStep, Situation) -> Action {
         any {
-            1: door: Shut       => Finish;
-            2: lamp: Off        => Fail(Dark);
+            1: door: Shut          => Finish;
+            2: lamp: Off           => Fail(Dark);
         }
         /// Nothing done yet.
         Start {
-            3: door: Open | Stuck => Drive(Creep)   -> Closing;
+            3: door: Open | Stuck  => Drive(Creep)  -> Closing;
         }
         /// The door is driven.
         Closing {
-            4: door: Open       => Wait;
-            5: door: Stuck      => Fail(DoorStuck);
+            4: door: Open          => Wait;
+            5: door: Stuck         => Fail(DoorStuck);
         }
     }
 }
@@ -95,7 +95,7 @@ decision_table! {
 decision_table! {
     /// PAUSE: do nothing.
     pub PAUSE: fn pause(Situation) -> Action {
-        1:                      => Finish;
+        1: otherwise  => Finish;
     }
 }
 

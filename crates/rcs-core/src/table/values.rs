@@ -230,18 +230,18 @@ mod tests {
         /// CLOSE-DOOR: for the test.
         CLOSE_DOOR: fn close_door(enum CloseDoorStep, Situation) -> Action or () {
             any {
-                1: lamp: Lit            => consult;
+                1: lamp: Lit                       => consult;
             }
             /// Nothing done yet.
             Start {
-                2: door: Open | Stuck, lamp: Dark => Close -> Closing;
-                3: door: Shut, lamp: Dark => Finish;
+                2: door: Open | Stuck, lamp: Dark  => Close  -> Closing;
+                3: door: Shut,         lamp: Dark  => Finish;
             }
             /// The door is driven.
             Closing {
-                4: door: Shut, lamp: Dark => Finish;
-                5: door: Open, lamp: Dark => Wait;
-                6: door: Stuck, lamp: Dark => Close;
+                4: door: Shut,  lamp: Dark         => Finish;
+                5: door: Open,  lamp: Dark         => Wait;
+                6: door: Stuck, lamp: Dark         => Close;
             }
         }
     }

@@ -57,6 +57,7 @@ mod word {
     syn::custom_keyword!(or);
     syn::custom_keyword!(any);
     syn::custom_keyword!(consult);
+    syn::custom_keyword!(otherwise);
 }
 
 impl Parse for Table {
@@ -140,19 +141,31 @@ impl Parse for StepGroup {
     }
 }
 
+/// `variable: A | B, other: C`, or `otherwise`.
+fn conditions(input: ParseStream<'_>) -> Result<Vec<Condition>> {
+    let mut conditions = Vec::new();
+    if input.parse::<Option<word::otherwise>>()?.is_some() {
+        return Ok(conditions);
+    }
+    if input.peek(Token![=>]) {
+        return Err(input.error("a row without conditions says `otherwise`"));
+    }
+    while !input.peek(Token![=>]) {
+        let variable = input.parse()?;
+        input.parse::<Token![:]>()?;
+        conditions.push(Condition { variable, values: alternatives(input)? });
+        if !input.peek(Token![=>]) {
+            input.parse::<Token![,]>()?;
+        }
+    }
+    Ok(conditions)
+}
+
 impl Parse for Row {
     fn parse(input: ParseStream<'_>) -> Result<Self> {
         let number = input.parse()?;
         input.parse::<Token![:]>()?;
-        let mut conditions = Vec::new();
-        while !input.peek(Token![=>]) {
-            let variable = input.parse()?;
-            input.parse::<Token![:]>()?;
-            conditions.push(Condition { variable, values: alternatives(input)? });
-            if !input.peek(Token![=>]) {
-                input.parse::<Token![,]>()?;
-            }
-        }
+        let conditions = conditions(input)?;
         input.parse::<Token![=>]>()?;
         let action = input.parse()?;
         let argument = if input.peek(token::Paren) {
@@ -211,5 +224,29 @@ impl Table {
             }
         }
         Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A table with one row.
+    fn table(row: &str) -> Result<Table> {
+        syn::parse_str(&format!("pub PAUSE: fn pause(Situation) -> Action {{ {row} }}"))
+    }
+
+    #[test]
+    fn row_without_conditions_says_otherwise() {
+        let table = table("1: otherwise => Finish;").expect("the row is right");
+        let (_, row) = table.rows().next().expect("a row");
+        assert!(row.conditions.is_empty());
+        for (row, expected) in [
+            ("1: => Finish;", "a row without conditions says `otherwise`"),
+            ("1: otherwise, door: Shut => Finish;", "expected `=>`"),
+        ] {
+            let error = self::table(row).err().expect(row).to_string();
+            assert_eq!(error, expected);
+        }
     }
 }

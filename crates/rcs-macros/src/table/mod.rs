@@ -129,7 +129,9 @@ impl Table {
                 row.conditions.iter().map(|c| format!("{}: {}", c.variable, names(&c.values))).collect();
             let argument = row.argument.as_ref().map(|argument| format!("({argument})")).unwrap_or_default();
             let next = row.next.as_ref().map(ToString::to_string).unwrap_or_default();
-            let (number, conditions, action) = (&row.number, conditions.join(", "), &row.action);
+            let (number, action) = (&row.number, &row.action);
+            let conditions =
+                if conditions.is_empty() { "otherwise".to_owned() } else { conditions.join(", ") };
             text += &format!("| {number} | {step} | {conditions} | {action}{argument} | {next} |\n");
         }
         text
@@ -218,4 +220,29 @@ pub fn expand(input: TokenStream) -> Result<TokenStream> {
             #decided
         }
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The block of code of a page that begins with a text.
+    fn block(page: &str, begin: &str) -> TokenStream {
+        let mut blocks = page.split("```rust\n").skip(1).filter_map(|rest| rest.split_once("```"));
+        let (code, _) = blocks.find(|(code, _)| code.starts_with(begin)).expect("the page has the block");
+        code.parse().expect("the block is code")
+    }
+
+    #[test]
+    fn page_shows_the_expansion_of_its_table() {
+        let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/design/tables.md");
+        let page = std::fs::read_to_string(path).expect("the page can be read");
+        let call = block(&page, "decision_table! {").into_iter().last();
+        let Some(TokenTree::Group(table)) = call else { panic!("the table is between braces") };
+        let expanded = expand(table.stream()).expect("the table is right").to_string();
+        let shown = block(&page, "pub fn release(").to_string();
+        // A comma before the end makes no difference to the compiler.
+        let plain = |code: &str| code.replace(", }", " }").replace(", )", " )");
+        assert!(plain(&expanded).contains(&plain(&shown)), "{expanded}");
+    }
 }

@@ -7,15 +7,15 @@ decision_table! {
     /// without the gripper the valves are off.
     pub PAUSE: fn pause(super::Step, super::Situation) -> super::Action {
         any {
-            1:  gripper: Detached                       => Finish;
-            2:  motion: Still                           => Pause;
+            1: gripper: Detached  => Finish;
+            2: motion: Still      => Pause;
         }
         Start {
-            3:                                          => Keep             -> Move;
+            3: otherwise          => Keep  -> Move;
         }
         Move | Settle {
-            4:  clock: Running                          => Keep;
-            5:  clock: Expired                          => Pause;
+            4: clock: Running     => Keep;
+            5: clock: Expired     => Pause;
         }
     }
 }

@@ -7,15 +7,15 @@ decision_table! {
     /// off, the readings settle before they count.
     pub SERVO: fn servo(super::Step, super::Situation) -> super::Action or () {
         any {
-            1:  gripper: Detached       => Fail(WrongGripper);
-            2:  clock: Expired          => Fail(GripTimeout);
+            1: gripper: Detached  => Fail(WrongGripper);
+            2: clock: Expired     => Fail(GripTimeout);
         }
         Settle {
-            3:  rest: Waiting           => Stop;
-            4:  rest: Rested            => consult;
+            3: rest: Waiting      => Stop;
+            4: rest: Rested       => consult;
         }
         Start | Move {
-            5:                          => consult;
+            5: otherwise          => consult;
         }
     }
 }

@@ -7,15 +7,15 @@ decision_table! {
     /// there is no air.
     pub AIR: fn air(super::Step, super::Situation) -> super::Action or () {
         any {
-            1:  gripper: Detached       => Fail(WrongGripper);
+            1: gripper: Detached  => Fail(WrongGripper);
         }
         Start {
-            2:                          => consult;
+            2: otherwise          => consult;
         }
         Move {
-            3:  motion: Moving          => Wait;
-            4:  motion: Endless         => Fail(JawsStuck);
-            5:  motion: Stopped         => consult;
+            3: motion: Moving     => Wait;
+            4: motion: Endless    => Fail(JawsStuck);
+            5: motion: Stopped    => consult;
         }
     }
 }

@@ -7,13 +7,13 @@ decision_table! {
     /// closed.
     pub GRASP: fn grasp(super::Step, super::Situation) -> super::Action {
         Start {
-            1:                          => Close            -> Move;
+            1: otherwise        => Close  -> Move;
         }
         Move {
-            2:  stop: Closed            => Report(Closed);
-            3:  size: Commanded         => Report(Closed);
-            4:  stop: Between           => Wrong(Stuck);
-            5:  stop: Opened            => Wrong(Opened);
+            2: stop: Closed     => Report(Closed);
+            3: size: Commanded  => Report(Closed);
+            4: stop: Between    => Wrong(Stuck);
+            5: stop: Opened     => Wrong(Opened);
         }
     }
 }

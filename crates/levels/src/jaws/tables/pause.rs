@@ -6,11 +6,11 @@ decision_table! {
     /// VG-PAUSE, TG-PAUSE (VI.4.1): the valves stay as they are; the potentiometer is read for the status.
     /// Without the gripper there is nothing to read.
     pub PAUSE: fn pause(super::Situation) -> super::Action {
-        1:  gripper: Detached       => Report(Idle);
-        2:  motion: Moving          => Wait;
-        3:  stop: Closed            => Report(Closed);
-        4:  stop: Opened            => Report(Opened);
-        5:  size: Commanded         => Report(AtPosition);
-        6:  size: Other             => Wrong(Stuck);
+        1: gripper: Detached  => Report(Idle);
+        2: motion: Moving     => Wait;
+        3: stop: Closed       => Report(Closed);
+        4: stop: Opened       => Report(Opened);
+        5: size: Commanded    => Report(AtPosition);
+        6: size: Other        => Wrong(Stuck);
     }
 }

@@ -7,13 +7,13 @@ decision_table! {
     /// `commanded-size` counts as opened.
     pub RELEASE: fn release(super::Step, super::Situation) -> super::Action {
         Start {
-            1:                          => Open             -> Move;
+            1: otherwise        => Open  -> Move;
         }
         Move {
-            2:  stop: Opened            => Report(Opened);
-            3:  size: Commanded         => Report(Opened);
-            4:  stop: Between           => Wrong(Stuck);
-            5:  stop: Closed            => Wrong(Closed);
+            2: stop: Opened     => Report(Opened);
+            3: size: Commanded  => Report(Opened);
+            4: stop: Between    => Wrong(Stuck);
+            5: stop: Closed     => Wrong(Closed);
         }
     }
 }

@@ -24,22 +24,22 @@ decision_table! {
     /// motion that is done: the operator can stop it, and E-move must learn of it.
     pub ATTEND: fn attend(crate::execution::Outcome, super::Attendance) -> Attention {
         any {
-            1:  course: Begin                                       => Begin;
-            2:  course: Continue                                    => Continue;
-            3:  course: Refuse                                      => Halt;
+            1:  course: Begin                                => Begin;
+            2:  course: Continue                             => Continue;
+            3:  course: Refuse                               => Halt;
         }
         Done {
-            4:  course: Rest, kind: Lasting                         => Resume   -> Executing;
-            5:  course: Rest, kind: Motion, operator: Moves         => Resume   -> Executing;
-            6:  course: Rest, kind: Motion, operator: Idle          => Leave;
-            7:  course: Rest, kind: Single                          => Leave;
+            4:  course: Rest, kind: Lasting                  => Resume  -> Executing;
+            5:  course: Rest, kind: Motion, operator: Moves  => Resume  -> Executing;
+            6:  course: Rest, kind: Motion, operator: Idle   => Leave;
+            7:  course: Rest, kind: Single                   => Leave;
         }
         Joystick {
-            8:  course: Rest, kind: Lasting                         => Resume   -> Executing;
-            9:  course: Rest, kind: Motion | Single                 => Leave;
+            8:  course: Rest, kind: Lasting                  => Resume  -> Executing;
+            9:  course: Rest, kind: Motion | Single          => Leave;
         }
         Idle | Executing | Error {
-            10: course: Rest                                        => Leave;
+            10: course: Rest                                 => Leave;
         }
     }
 }

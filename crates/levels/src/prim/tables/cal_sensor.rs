@@ -8,12 +8,12 @@ decision_table! {
     pub CAL_SENSOR: fn cal_sensor(enum CalSensorStep, super::Situation) -> super::Action {
         /// The robot comes to rest, and the sensor is read while it rests.
         Reading {
-            1: rest: UnderWay                               => Halt;
-            2: rest: Settling                               => Wait;
-            3: rest: Late                                   => Fail(NotAtGoal);
-            4: rest: Arrived, samples: Faulty               => Fail(SensorError);
-            5: rest: Arrived, samples: Wanted               => Sample;
-            6: rest: Arrived, samples: Complete             => Calibrate;
+            1: rest: UnderWay                    => Halt;
+            2: rest: Settling                    => Wait;
+            3: rest: Late                        => Fail(NotAtGoal);
+            4: rest: Arrived, samples: Faulty    => Fail(SensorError);
+            5: rest: Arrived, samples: Wanted    => Sample;
+            6: rest: Arrived, samples: Complete  => Calibrate;
         }
     }
 }

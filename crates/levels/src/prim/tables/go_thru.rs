@@ -8,13 +8,13 @@ decision_table! {
     pub GO_THRU: fn go_thru(enum GoThruStep, super::Situation) -> super::Action {
         /// Nothing done yet.
         Start {
-            1:                                              => Go               -> Going;
+            1: otherwise                     => Go  -> Going;
         }
         /// The robot is on its way.
         Going {
-            2: way: Lost                                    => Go;
-            3: way: Kept, passage: UnderWay                 => Wait;
-            4: way: Kept, passage: Passing                  => Finish;
+            2: way: Lost                     => Go;
+            3: way: Kept, passage: UnderWay  => Wait;
+            4: way: Kept, passage: Passing   => Finish;
         }
     }
 }

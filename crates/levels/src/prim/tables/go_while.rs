@@ -7,8 +7,8 @@ decision_table! {
     /// comes, or the sensor cannot tell, the robot ramps down and the move has failed; so it has if it came
     /// while the link was restarted.
     pub GO_WHILE: fn go_while(super::Situation) -> super::Action or () {
-        1: guard: Faulty                                    => Fail(SensorError);
-        2: guard: Met                                       => Fail(Detected);
-        3: guard: Clear                                     => consult;
+        1: guard: Faulty  => Fail(SensorError);
+        2: guard: Met     => Fail(Detected);
+        3: guard: Clear   => consult;
     }
 }

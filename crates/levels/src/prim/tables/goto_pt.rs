@@ -8,14 +8,14 @@ decision_table! {
     pub GOTO_PT: fn goto_pt(enum GotoPtStep, super::Situation) -> super::Action {
         /// Nothing done yet.
         Start {
-            1:                                              => Go               -> Going;
+            1: otherwise                             => Go  -> Going;
         }
         /// The robot is on its way.
         Going {
-            2: way: Lost                                    => Go;
-            3: way: Kept, goal: UnderWay | Settling         => Wait;
-            4: way: Kept, goal: Arrived                     => Finish;
-            5: way: Kept, goal: Late                        => Fail(NotAtGoal);
+            2: way: Lost                             => Go;
+            3: way: Kept, goal: UnderWay | Settling  => Wait;
+            4: way: Kept, goal: Arrived              => Finish;
+            5: way: Kept, goal: Late                 => Fail(NotAtGoal);
         }
     }
 }

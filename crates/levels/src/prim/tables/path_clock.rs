@@ -20,11 +20,11 @@ decision_table! {
     /// PATH-CLOCK (docs/design/link.md "Path clock"): is the next point sent? A robot that does not follow
     /// must not be asked to jump, so that a lost link and a robot off its path leave no motion behind.
     pub PATH_CLOCK: fn path_clock(super::Path) -> Flow {
-        1: first_pause: Due                                 => Abandon;
-        2: posture: Unpositioned                            => Repeat;
-        3: t3i: Silent | LinkOff | LinkSilent | LinkError | OffPath | Refused => Abandon;
-        4: posture: Moving, t3i: Ready | Finished           => Advance;
-        5: posture: Moving, t3i: Busy                       => Repeat;
-        6: posture: Ending | Standing                       => Repeat;
+        1: first_pause: Due                                                    => Abandon;
+        2: posture: Unpositioned                                               => Repeat;
+        3: t3i: Silent | LinkOff | LinkSilent | LinkError | OffPath | Refused  => Abandon;
+        4: posture: Moving, t3i: Ready | Finished                              => Advance;
+        5: posture: Moving, t3i: Busy                                          => Repeat;
+        6: posture: Ending | Standing                                          => Repeat;
     }
 }

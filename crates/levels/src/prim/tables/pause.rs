@@ -9,15 +9,15 @@ decision_table! {
     /// motion restarts the link.
     pub PAUSE: fn pause(enum PauseStep, super::Situation) -> super::Action {
         any {
-            1:  t3i: Silent                                         => Fail(InterfaceSilent);
-            2:  t3i: LinkOff | LinkSilent                           => Fail(LinkOff);
-            3:  t3i: LinkError                                      => Fail(LinkError);
-            4:  t3i: Refused                                        => Fail(InterfaceRefused);
-            5:  t3i: OffPath                                        => Fail(OffPath);
-            6:  posture: Unpositioned, switches: Off                => Finish   -> Resting;
-            7:  posture: Unpositioned | Standing, switches: Several => Yield    -> Start;
-            8:  posture: Unpositioned, switches: One                => Yield    -> Start;
-            9:  posture: Standing, switches: One                    => Drive    -> Driving;
+            1:  t3i: Silent                                                  => Fail(InterfaceSilent);
+            2:  t3i: LinkOff | LinkSilent                                    => Fail(LinkOff);
+            3:  t3i: LinkError                                               => Fail(LinkError);
+            4:  t3i: Refused                                                 => Fail(InterfaceRefused);
+            5:  t3i: OffPath                                                 => Fail(OffPath);
+            6:  posture: Unpositioned,            switches: Off              => Finish  -> Resting;
+            7:  posture: Unpositioned | Standing, switches: Several          => Yield   -> Start;
+            8:  posture: Unpositioned,            switches: One              => Yield   -> Start;
+            9:  posture: Standing,                switches: One              => Drive   -> Driving;
         }
         /// Nothing done yet, or nothing to do.
         Start {}
@@ -26,27 +26,27 @@ decision_table! {
         /// The box moves the robot.
         Driving {}
         Start | Stopping | Driving {
-            10: posture: Standing, switches: Off, rest: UnderWay | Settling => Wait;
-            11: posture: Standing, switches: Off, rest: Arrived     => Finish   -> Resting;
-            12: posture: Standing, switches: Off, rest: Late        => Fail(NotAtGoal);
+            10: posture: Standing, switches: Off, rest: UnderWay | Settling  => Wait;
+            11: posture: Standing, switches: Off, rest: Arrived              => Finish  -> Resting;
+            12: posture: Standing, switches: Off, rest: Late                 => Fail(NotAtGoal);
         }
         /// The robot has come to rest.
         Resting {
-            13: posture: Standing, switches: Off                    => Finish;
+            13: posture: Standing, switches: Off                             => Finish;
         }
         Start | Resting {
-            14: switches: Off                                       => Halt     -> Stopping;
+            14: switches: Off                                                => Halt    -> Stopping;
         }
         Stopping {
-            15: switches: Off                                       => Wait;
+            15: switches: Off                                                => Wait;
         }
         Start | Stopping | Resting {
-            16: switches: One | Several                             => Yield    -> Stopping;
+            16: switches: One | Several                                      => Yield   -> Stopping;
         }
         Driving {
-            17: switches: One                                       => Drive;
-            18: switches: Several                                   => Yield;
-            19: switches: Off                                       => Wait;
+            17: switches: One                                                => Drive;
+            18: switches: Several                                            => Yield;
+            19: switches: Off                                                => Wait;
         }
     }
 }

@@ -15,8 +15,8 @@ decision_table! {
     /// RECORD-POSE (III.3.3): is the commanded pose recorded? A Prim that is stepped is not suspended any
     /// more.
     pub RECORD_POSE: fn record_pose(super::Path) -> Recording {
-        1: button: Idle                                     => Keep;
-        2: button: Pressed, posture: Unpositioned           => Keep;
-        3: button: Pressed, posture: Moving | Ending | Standing => Record;
+        1: button: Idle                                          => Keep;
+        2: button: Pressed, posture: Unpositioned                => Keep;
+        3: button: Pressed, posture: Moving | Ending | Standing  => Record;
     }
 }

@@ -10,27 +10,27 @@ decision_table! {
     pub ROBOT_INIT: fn robot_init(enum RobotInitStep, super::Situation) -> super::Action {
         /// Nothing sent yet.
         Start {
-            1:  t3i: LinkOff | LinkSilent | LinkError | OffPath | Refused => Restart -> Restarting;
+            1:  t3i: LinkOff | LinkSilent | LinkError | OffPath | Refused  => Restart  -> Restarting;
         }
         any {
-            2:  t3i: Silent                                 => Fail(InterfaceSilent);
-            3:  t3i: LinkOff                                => Fail(LinkOff);
-            4:  t3i: LinkSilent, report: NoReport           => Fail(LinkOff);
-            5:  t3i: LinkError, report: NoReport            => Fail(LinkError);
-            6:  t3i: LinkSilent | LinkError, restarts: Many => Fail(LinkError);
-            7:  t3i: LinkSilent | LinkError, restarts: Few  => Recover;
-            8:  t3i: Refused                                => Fail(InterfaceRefused);
-            9:  t3i: OffPath                                => Fail(OffPath);
-            10: emove: Lost                                 => Fail(NeighbourLost);
+            2:  t3i: Silent                                                => Fail(InterfaceSilent);
+            3:  t3i: LinkOff                                               => Fail(LinkOff);
+            4:  t3i: LinkSilent,             report: NoReport              => Fail(LinkOff);
+            5:  t3i: LinkError,              report: NoReport              => Fail(LinkError);
+            6:  t3i: LinkSilent | LinkError, restarts: Many                => Fail(LinkError);
+            7:  t3i: LinkSilent | LinkError, restarts: Few                 => Recover;
+            8:  t3i: Refused                                               => Fail(InterfaceRefused);
+            9:  t3i: OffPath                                               => Fail(OffPath);
+            10: emove: Lost                                                => Fail(NeighbourLost);
         }
         Start {
-            11: posture: Unpositioned | Standing            => Restart          -> Restarting;
-            12: posture: Moving | Ending                    => Halt;
+            11: posture: Unpositioned | Standing                           => Restart  -> Restarting;
+            12: posture: Moving | Ending                                   => Halt;
         }
         /// RESTART is sent. A link that fails again after its report is restarted again.
         Restarting {
-            13: link: Down                                  => Wait;
-            14: link: Running                               => TakePosition;
+            13: link: Down                                                 => Wait;
+            14: link: Running                                              => TakePosition;
         }
     }
 }

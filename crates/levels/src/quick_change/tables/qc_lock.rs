@@ -7,15 +7,15 @@ decision_table! {
     /// if it is locked.
     pub QC_LOCK: fn qc_lock(super::Step, super::Situation) -> super::Action or () {
         Start {
-            1:  ring: Unread                                => Wait;
-            2:  ring: Implausible                                  => Fail(SensorMalfunction)  -> Faulty;
-            3:  ring: Locked, id: Illegal                   => Fail(SensorMalfunction)  -> Faulty;
-            4:  ring: Locked, id: Legal                     => Report(Locked)           -> Watch;
-            5:  ring: Unlocked | Between, clock: Running    => Lock;
-            6:  ring: Unlocked | Between, clock: Expired    => Fail(Stuck)              -> Stuck;
+            1: ring: Unread                              => Wait;
+            2: ring: Implausible                         => Fail(SensorMalfunction)  -> Faulty;
+            3: ring: Locked,             id: Illegal     => Fail(SensorMalfunction)  -> Faulty;
+            4: ring: Locked,             id: Legal       => Report(Locked)           -> Watch;
+            5: ring: Unlocked | Between, clock: Running  => Lock;
+            6: ring: Unlocked | Between, clock: Expired  => Fail(Stuck)              -> Stuck;
         }
         Watch | Stuck | Faulty {
-            7:                                              => consult;
+            7: otherwise                                 => consult;
         }
     }
 }

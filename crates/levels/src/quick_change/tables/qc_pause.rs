@@ -7,18 +7,18 @@ decision_table! {
     /// after the end of the other commands too: a failure of theirs is reported until the next command.
     pub QC_PAUSE: fn qc_pause(super::Step, super::Situation) -> super::Action {
         Stuck {
-            1:                          => Report(Stuck);
+            1: otherwise          => Report(Stuck);
         }
         Faulty {
-            2:                          => Report(SensorMalfunction);
+            2: otherwise          => Report(SensorMalfunction);
         }
         Start | Watch {
-            3:  ring: Unread            => Wait;
-            4:  ring: Implausible              => Report(SensorMalfunction);
-            5:  id: Illegal             => Report(SensorMalfunction);
-            6:  ring: Locked            => Report(Locked);
-            7:  ring: Unlocked          => Report(Unlocked);
-            8:  ring: Between           => Report(Stuck);
+            3: ring: Unread       => Wait;
+            4: ring: Implausible  => Report(SensorMalfunction);
+            5: id: Illegal        => Report(SensorMalfunction);
+            6: ring: Locked       => Report(Locked);
+            7: ring: Unlocked     => Report(Unlocked);
+            8: ring: Between      => Report(Stuck);
         }
     }
 }

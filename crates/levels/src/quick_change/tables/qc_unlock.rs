@@ -7,14 +7,14 @@ decision_table! {
     /// unlocked. The id does not count: its contacts part while the gripper drops.
     pub QC_UNLOCK: fn qc_unlock(super::Step, super::Situation) -> super::Action or () {
         Start {
-            1:  ring: Unread                                => Wait;
-            2:  ring: Implausible                                  => Fail(SensorMalfunction)  -> Faulty;
-            3:  ring: Unlocked                              => Report(Unlocked)         -> Watch;
-            4:  ring: Locked | Between, clock: Running      => Unlock;
-            5:  ring: Locked | Between, clock: Expired      => Fail(Stuck)              -> Stuck;
+            1: ring: Unread                            => Wait;
+            2: ring: Implausible                       => Fail(SensorMalfunction)  -> Faulty;
+            3: ring: Unlocked                          => Report(Unlocked)         -> Watch;
+            4: ring: Locked | Between, clock: Running  => Unlock;
+            5: ring: Locked | Between, clock: Expired  => Fail(Stuck)              -> Stuck;
         }
         Watch | Stuck | Faulty {
-            6:                                              => consult;
+            6: otherwise                               => consult;
         }
     }
 }

@@ -8,22 +8,22 @@ decision_table! {
     /// grasp has closed on: the grasp is made again.
     pub ACQUIRE_TOOL: fn acquire_tool(enum AcquireToolStep, super::Situation) -> super::Action {
         any {
-            1: work: Busy                               => Wait;
+            1: work: Busy                     => Wait;
         }
         /// Nothing done yet.
         Start {
-            2: held: Other                                 => Fail(AlreadyHolding);
-            3: held: Nothing | Right                       => AcquireTool      -> Acquiring;
-            4: held: Something, drum: Inside               => AcquireTool      -> Acquiring;
+            2: held: Other                    => Fail(AlreadyHolding);
+            3: held: Nothing | Right          => AcquireTool  -> Acquiring;
+            4: held: Something, drum: Inside  => AcquireTool  -> Acquiring;
         }
         /// E-move is going to the tool and grasping it.
         Acquiring {
-            5: held: Right                                 => Finish;
-            6: held: Nothing | Other                       => Fail(GraspMissed);
+            5: held: Right                    => Finish;
+            6: held: Nothing | Other          => Fail(GraspMissed);
         }
         any {
-            7: held: Something                             => Fail(UnknownHeld);
-            8: held: NotKnown                              => Fail(HeldNotKnown);
+            7: held: Something                => Fail(UnknownHeld);
+            8: held: NotKnown                 => Fail(HeldNotKnown);
         }
     }
 }

@@ -87,18 +87,18 @@ decision_table! {
     /// order is sent only while Subtask does not use the pedestal. The hand opens on a part only if the robot
     /// or the person holds it, and the table turns only if the robot is clear.
     pub BY_HAND: fn by_hand(Manual) -> Manually or () {
-        1:  order: None                                             => consult;
-        2:  regripping: Yes                                         => Refuse(Regripping);
-        3:  pedestal: Silent                                        => Refuse(Silent);
-        4:  order: Pause                                            => Send;
-        5:  pedestal: Moving                                        => Refuse(Moving);
-        6:  order: PreGrip | Grip, data: Missing                    => Refuse(NoData);
-        7:  order: PreGrip, part: HoldsPart | Unsure                => Refuse(HoldsPart);
-        8:  order: PreGrip | Flip, robot: Near | Grips              => Refuse(RobotNear);
-        9:  order: PreGrip | Grip | Flip                            => Send;
-        10: order: Release, part: Free                              => Send;
-        11: order: Release, robot: Grips                            => Send;
-        12: order: Release, by_hand: Yes                            => Send;
-        13: order: Release                                          => Refuse(WouldFall);
+        1:  order: None                                      => consult;
+        2:  regripping: Yes                                  => Refuse(Regripping);
+        3:  pedestal: Silent                                 => Refuse(Silent);
+        4:  order: Pause                                     => Send;
+        5:  pedestal: Moving                                 => Refuse(Moving);
+        6:  order: PreGrip | Grip, data: Missing             => Refuse(NoData);
+        7:  order: PreGrip,        part: HoldsPart | Unsure  => Refuse(HoldsPart);
+        8:  order: PreGrip | Flip, robot: Near | Grips       => Refuse(RobotNear);
+        9:  order: PreGrip | Grip | Flip                     => Send;
+        10: order: Release,        part: Free                => Send;
+        11: order: Release,        robot: Grips              => Send;
+        12: order: Release,        by_hand: Yes              => Send;
+        13: order: Release                                   => Refuse(WouldFall);
     }
 }

@@ -11,46 +11,45 @@ decision_table! {
     /// is released there and looked for again.
     pub GET_OBJECT: fn get_object(enum GetObjectStep, super::Situation) -> super::Action {
         Start | Releasing | Viewing | Locating | Grasping {
-            1:  work: Busy                              => Wait;
+            1:  work: Busy                                             => Wait;
         }
         /// Nothing done yet.
         Start {
-            2:  held: Right | Something, seat: NotKnown, station: There, vision: Needed | Done
-                                                        => Release          -> Releasing;
-            3:  held: Right, grip: Source | Destination => GraspAgain       -> Grasping;
-            4:  held: Right, grip: Neither               => Fail(RegripNeeded);
-            5:  held: Other                             => Fail(AlreadyHolding);
-            6:  held: Something, station: There         => GraspObj         -> Grasping;
-            7:  held: Something, station: Elsewhere     => Fail(UnknownHeld);
-            8:  held: NotKnown                          => Fail(HeldNotKnown);
-            9:  held: Nothing, vision: Needed           => MovToVu          -> Viewing;
-            10: held: Nothing, vision: NotNeeded | Done => MovToObj         -> Moving;
+            2:  held: Other                                            => Fail(AlreadyHolding);
+            3:  held: NotKnown                                         => Fail(HeldNotKnown);
+            4:  held: Nothing, vision: Needed                          => MovToVu     -> Viewing;
+            5:  held: Nothing, vision: NotNeeded | Done                => MovToObj    -> Moving;
+            6:  seat: NotKnown, station: There, vision: Needed | Done  => Release     -> Releasing;
+            7:  held: Right,     grip: Source | Destination            => GraspAgain  -> Grasping;
+            8:  held: Right,     grip: Neither                         => Fail(RegripNeeded);
+            9:  held: Something, station: There                        => GraspObj    -> Grasping;
+            10: held: Something, station: Elsewhere                    => Fail(UnknownHeld);
         }
         /// The gripper is opening, to let the object be looked for again.
         Releasing {
-            11: work: Over                              => MovToVu          -> Viewing;
+            11: otherwise                                              => MovToVu     -> Viewing;
         }
         /// The robot is on its way to where the picture is taken.
         Viewing {
-            12: work: Over                              => LocateObj        -> Locating;
+            12: otherwise                                              => LocateObj   -> Locating;
         }
         /// Vision is looking for the object.
         Locating {
-            13: work: Over                              => MovToObj         -> Moving;
+            13: otherwise                                              => MovToObj    -> Moving;
         }
         /// The robot is on its way to the object. A link to the robot that fails drops the pictures: E-move would
         /// go to where the task data have the object.
         Moving {
-            14: vision: Needed                          => MovToVu          -> Viewing;
-            15: vision: NotNeeded | Done, work: Busy    => Wait;
-            16: vision: NotNeeded | Done, work: Over    => GraspObj         -> Grasping;
+            14: vision: Needed                                         => MovToVu     -> Viewing;
+            15: work: Busy                                             => Wait;
+            16: otherwise                                              => GraspObj    -> Grasping;
         }
         /// The gripper is closing.
         Grasping {
-            17: held: Right                             => Finish;
-            18: held: Nothing | Other                   => Fail(GraspMissed);
-            19: held: Something                         => Fail(UnknownHeld);
-            20: held: NotKnown                          => Fail(HeldNotKnown);
+            17: held: Right                                            => Finish;
+            18: held: Nothing | Other                                  => Fail(GraspMissed);
+            19: held: Something                                        => Fail(UnknownHeld);
+            20: held: NotKnown                                         => Fail(HeldNotKnown);
         }
     }
 }

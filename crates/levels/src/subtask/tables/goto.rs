@@ -6,15 +6,15 @@ decision_table! {
     /// GOTO-ENDPT, GOTO-DEST (V.3.1): move to the end-at location, or to the destination.
     pub GOTO: fn goto(enum GotoStep, super::Situation) -> super::Action {
         any {
-            1: work: Busy                               => Wait;
+            1: work: Busy  => Wait;
         }
         /// Nothing done yet.
         Start {
-            2: work: Over                                  => MovToLoc         -> Moving;
+            2: otherwise   => MovToLoc  -> Moving;
         }
         /// The robot is on its way.
         Moving {
-            3: work: Over                                  => Finish;
+            3: otherwise   => Finish;
         }
     }
 }

@@ -7,13 +7,13 @@ decision_table! {
     /// finishes or undoes the regrip is done: a robot that leaves with it would tear it out. A robot that holds
     /// nothing and is clear of the pedestal may leave.
     pub HINDRANCE: fn hindrance(super::Hindrance) -> super::Action or () {
-        1: asked: Before                                                    => consult;
-        2: pedestal: Free                                                   => consult;
-        3: verb: None | Pause | FixGrip | Release                           => consult;
-        4: verb: GetEndeff, gripper: Right                                  => consult;
-        5: verb: GotoEndpt | GotoDest | Position, robot: Empty              => consult;
-        6: verb: GetEndeff | GetObject | PlaceObj | MoveObjToDest           => Fail(PartInPedestal);
-        7: verb: GotoEndpt | GotoDest | Position                            => Fail(PartInPedestal);
-        8: verb: InsertTool | ReleaseTool | AcquireTool | RemoveTool        => Fail(PartInPedestal);
+        1: asked: Before                                              => consult;
+        2: pedestal: Free                                             => consult;
+        3: verb: None | Pause | FixGrip | Release                     => consult;
+        4: verb: GetEndeff,                       gripper: Right      => consult;
+        5: verb: GotoEndpt | GotoDest | Position, robot: Empty        => consult;
+        6: verb: GetEndeff | GetObject | PlaceObj | MoveObjToDest     => Fail(PartInPedestal);
+        7: verb: GotoEndpt | GotoDest | Position                      => Fail(PartInPedestal);
+        8: verb: InsertTool | ReleaseTool | AcquireTool | RemoveTool  => Fail(PartInPedestal);
     }
 }

@@ -6,21 +6,21 @@ decision_table! {
     /// ORDERED: E-move or the pedestal is busy with the last order, or it is done. A failure ends the
     /// command. A pause of both waits for a pedestal that moves; one that is silent cannot be waited for.
     pub ORDERED: fn ordered(super::Subordinates) -> super::Action or crate::execution::Work {
-        1:  ordered: Nothing                                => consult(Over);
-        2:  ordered: Emove, emove: Pending | Executing      => consult(Busy);
-        3:  ordered: Emove, emove: Done                     => consult(Over);
-        4:  ordered: Emove, emove: Error | Joystick | Lost  => PassUp;
-        5:  ordered: Pedestal, pedestal: Moving             => consult(Busy);
-        6:  ordered: Pedestal, pedestal: Done               => consult(Over);
-        7:  ordered: Pedestal, pedestal: Cannot             => PassUpPedestal(PedestalCannot);
-        8:  ordered: Pedestal, pedestal: Faulty             => PassUpPedestal(PedestalError);
-        9:  ordered: Pedestal, pedestal: Silent             => PassUpPedestal(PedestalSilent);
-        10: ordered: Both, emove: Error | Joystick | Lost   => PassUp;
-        11: ordered: Both, emove: Pending | Executing       => consult(Busy);
-        12: ordered: Both, emove: Done, pedestal: Moving    => consult(Busy);
-        13: ordered: Both, emove: Done, pedestal: Done      => consult(Over);
-        14: ordered: Both, emove: Done, pedestal: Cannot    => consult(Over);
-        15: ordered: Both, emove: Done, pedestal: Faulty    => consult(Over);
-        16: ordered: Both, emove: Done, pedestal: Silent    => consult(Over);
+        1:  ordered: Nothing                                   => consult(Over);
+        2:  ordered: Emove,    emove: Pending | Executing      => consult(Busy);
+        3:  ordered: Emove,    emove: Done                     => consult(Over);
+        4:  ordered: Emove,    emove: Error | Joystick | Lost  => PassUp;
+        5:  ordered: Pedestal, pedestal: Moving                => consult(Busy);
+        6:  ordered: Pedestal, pedestal: Done                  => consult(Over);
+        7:  ordered: Pedestal, pedestal: Cannot                => PassUpPedestal(PedestalCannot);
+        8:  ordered: Pedestal, pedestal: Faulty                => PassUpPedestal(PedestalError);
+        9:  ordered: Pedestal, pedestal: Silent                => PassUpPedestal(PedestalSilent);
+        10: ordered: Both,     emove: Error | Joystick | Lost  => PassUp;
+        11: ordered: Both,     emove: Pending | Executing      => consult(Busy);
+        12: ordered: Both,     emove: Done, pedestal: Moving   => consult(Busy);
+        13: ordered: Both,     emove: Done, pedestal: Done     => consult(Over);
+        14: ordered: Both,     emove: Done, pedestal: Cannot   => consult(Over);
+        15: ordered: Both,     emove: Done, pedestal: Faulty   => consult(Over);
+        16: ordered: Both,     emove: Done, pedestal: Silent   => consult(Over);
     }
 }

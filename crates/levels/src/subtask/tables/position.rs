@@ -6,16 +6,16 @@ decision_table! {
     /// >POSITION (V.3.1): move to a position with the parameters of an object, which may be a virtual one.
     pub POSITION: fn position(enum PositionStep, super::Situation) -> super::Action {
         any {
-            1: work: Busy                               => Wait;
+            1: work: Busy       => Wait;
         }
         /// Nothing done yet.
         Start {
-            2: named: Object                               => MovToObj         -> Moving;
-            3: named: Location                             => MovToLoc         -> Moving;
+            2: named: Object    => MovToObj  -> Moving;
+            3: named: Location  => MovToLoc  -> Moving;
         }
         /// The robot is on its way.
         Moving {
-            4: work: Over                                  => Finish;
+            4: otherwise        => Finish;
         }
     }
 }

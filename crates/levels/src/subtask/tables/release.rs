@@ -6,15 +6,15 @@ decision_table! {
     /// RELEASE (V.3.1): open the gripper and release what it holds.
     pub RELEASE: fn release(enum ReleaseStep, super::Situation) -> super::Action {
         any {
-            1: work: Busy                               => Wait;
+            1: work: Busy  => Wait;
         }
         /// Nothing done yet.
         Start {
-            2: work: Over                                  => Release          -> Releasing;
+            2: otherwise   => Release  -> Releasing;
         }
         /// The gripper is opening.
         Releasing {
-            3: work: Over                                  => Finish;
+            3: otherwise   => Finish;
         }
     }
 }

@@ -7,22 +7,22 @@ decision_table! {
     /// still around the tool, or on their way out, are led out: E-move knows where they are.
     pub RELEASE_TOOL: fn release_tool(enum ReleaseToolStep, super::Situation) -> super::Action {
         any {
-            1: work: Busy                               => Wait;
+            1:  work: Busy                                 => Wait;
         }
         /// Nothing done yet.
         Start {
-            2: held: Right                                 => ReleaseTool      -> Releasing;
-            3: drum: Inside, held: Nothing | Something     => ReleaseTool      -> Releasing;
-            4: drum: Inside, held: NotKnown                => ReleaseTool      -> Releasing;
-            5: drum: Unplaced, held: Nothing               => ReleaseTool      -> Releasing;
-            6: drum: Outside, held: Nothing                => Fail(NothingHeld);
-            7: held: Other                                 => Fail(NothingHeld);
-            8: held: Something                             => Fail(UnknownHeld);
-            9: held: NotKnown                              => Fail(HeldNotKnown);
+            2:  held: Right                                => ReleaseTool  -> Releasing;
+            3:  drum: Inside,   held: Nothing | Something  => ReleaseTool  -> Releasing;
+            4:  drum: Inside,   held: NotKnown             => ReleaseTool  -> Releasing;
+            5:  drum: Unplaced, held: Nothing              => ReleaseTool  -> Releasing;
+            6:  drum: Outside,  held: Nothing              => Fail(NothingHeld);
+            7:  held: Other                                => Fail(NothingHeld);
+            8:  held: Something                            => Fail(UnknownHeld);
+            9:  held: NotKnown                             => Fail(HeldNotKnown);
         }
         /// E-move is letting go and leaving the drum.
         Releasing {
-            10: work: Over                                 => Finish;
+            10: otherwise                                  => Finish;
         }
     }
 }

@@ -6,21 +6,21 @@ decision_table! {
     /// REMOVE-TOOL (V.3.1): pull a tool that has been acquired out of the tool drum.
     pub REMOVE_TOOL: fn remove_tool(enum RemoveToolStep, super::Situation) -> super::Action {
         any {
-            1: work: Busy                               => Wait;
+            1: work: Busy             => Wait;
         }
         /// Nothing done yet.
         Start {
-            2: held: Right                                 => RemoveTool       -> Removing;
-            3: held: Nothing | Other                       => Fail(NothingHeld);
+            2: held: Right            => RemoveTool  -> Removing;
+            3: held: Nothing | Other  => Fail(NothingHeld);
         }
         /// E-move is pulling the tool out.
         Removing {
-            4: held: Right                                 => Finish;
-            5: held: Nothing | Other                       => Fail(ObjectLost);
+            4: held: Right            => Finish;
+            5: held: Nothing | Other  => Fail(ObjectLost);
         }
         any {
-            6: held: Something                             => Fail(UnknownHeld);
-            7: held: NotKnown                              => Fail(HeldNotKnown);
+            6: held: Something        => Fail(UnknownHeld);
+            7: held: NotKnown         => Fail(HeldNotKnown);
         }
     }
 }

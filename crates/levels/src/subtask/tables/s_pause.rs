@@ -6,15 +6,15 @@ decision_table! {
     /// S-PAUSE (V.3.1): do nothing; the pause goes down the ladder.
     pub S_PAUSE: fn s_pause(enum SPauseStep, super::Situation) -> super::Action {
         any {
-            1: work: Busy                               => Wait;
+            1: work: Busy  => Wait;
         }
         /// Nothing done yet.
         Start {
-            2: work: Over                                  => Pause            -> Pausing;
+            2: otherwise   => Pause  -> Pausing;
         }
         /// E-move is pausing.
         Pausing {
-            3: work: Over                                  => Finish;
+            3: otherwise   => Finish;
         }
     }
 }

@@ -18,20 +18,20 @@ decision_table! {
     /// a serial port, and see it for the first time then.
     pub FOLLOW: fn follow(interfaces::t3i::Following, super::Feedback) -> Supervision {
         any {
-            1: restart: Asked                                       => Continue -> Joining;
+            1: restart: Asked                               => Continue  -> Joining;
         }
         Joining {
-            2: restart: Before, place: Unknown                      => Continue;
-            3: restart: Before, place: Near                         => Continue -> OnPath;
-            4: restart: Before, place: Far, grace: Running          => Continue;
-            5: restart: Before, place: Far, grace: Over             => Stop     -> OffPath;
+            2: restart: Before, place: Unknown              => Continue;
+            3: restart: Before, place: Near                 => Continue  -> OnPath;
+            4: restart: Before, place: Far, grace: Running  => Continue;
+            5: restart: Before, place: Far, grace: Over     => Stop      -> OffPath;
         }
         OnPath {
-            6: restart: Before, place: Unknown | Near               => Continue;
-            7: restart: Before, place: Far                          => Stop     -> OffPath;
+            6: restart: Before, place: Unknown | Near       => Continue;
+            7: restart: Before, place: Far                  => Stop      -> OffPath;
         }
         OffPath {
-            8: restart: Before                                      => Continue;
+            8: restart: Before                              => Continue;
         }
     }
 }

@@ -7,8 +7,8 @@ decision_table! {
     pub PAUSE: fn pause(enum PauseStep, super::Situation) -> super::Action {
         /// The position stands.
         Holding {
-            1: line: Busy | Down                            => Nothing(Executing);
-            2: line: Free                                   => Repeat(Finished);
+            1: line: Busy | Down  => Nothing(Executing);
+            2: line: Free         => Repeat(Finished);
         }
     }
 }

@@ -9,17 +9,17 @@ decision_table! {
     pub POINT: fn point(enum PointStep, super::Situation) -> super::Action {
         /// The points of the queue are sent.
         Sending {
-            1:  line: Down                                              => Nothing(Error);
-            2:  line: Busy, prim: Still                                 => Nothing(Executing);
-            3:  line: Busy, prim: Live, queue: Empty | One              => Nothing(Ready);
-            4:  line: Busy, prim: Live, queue: More                     => Nothing(Executing);
-            5:  line: Free, queue: Empty                                => Repeat(Finished);
-            6:  line: Free, prim: Still, queue: One                     => Repeat(Ready);
-            7:  line: Free, prim: Still, queue: More                    => Repeat(Executing);
-            8:  line: Free, prim: Live, queue: One, way: Sendable       => Advance(Ready);
-            9:  line: Free, prim: Live, queue: More, way: Sendable      => Advance(Executing);
-            10: line: Free, prim: Live, queue: One, way: Unsendable     => Refuse(Ready);
-            11: line: Free, prim: Live, queue: More, way: Unsendable    => Refuse(Executing);
+            1:  line: Down                                             => Nothing(Error);
+            2:  line: Busy, prim: Still                                => Nothing(Executing);
+            3:  line: Busy, prim: Live, queue: Empty | One             => Nothing(Ready);
+            4:  line: Busy, prim: Live, queue: More                    => Nothing(Executing);
+            5:  line: Free, queue: Empty                               => Repeat(Finished);
+            6:  line: Free, prim: Still, queue: One                    => Repeat(Ready);
+            7:  line: Free, prim: Still, queue: More                   => Repeat(Executing);
+            8:  line: Free, prim: Live,  queue: One,  way: Sendable    => Advance(Ready);
+            9:  line: Free, prim: Live,  queue: More, way: Sendable    => Advance(Executing);
+            10: line: Free, prim: Live,  queue: One,  way: Unsendable  => Refuse(Ready);
+            11: line: Free, prim: Live,  queue: More, way: Unsendable  => Refuse(Executing);
         }
     }
 }

@@ -24,22 +24,22 @@ decision_table! {
     /// point is already on its way when Prim reads of it; a failed link until RESTART.
     pub RECEIVE: fn receive(enum ReceiveStep, super::Request) -> Intake {
         any {
-            1:  arrival: Nothing | Same                             => Keep;
-            2:  arrival: Restarted                                  => Keep     -> Refusing;
-            3:  arrival: New, command: Restart                      => Restart  -> Accepting;
-            4:  arrival: New, command: Pause                        => Pause    -> Accepting;
-            5:  arrival: New, command: None                         => Refuse   -> Refusing;
+            1:  arrival: Nothing | Same                                      => Keep;
+            2:  arrival: Restarted                                           => Keep     -> Refusing;
+            3:  arrival: New, command: Restart                               => Restart  -> Accepting;
+            4:  arrival: New, command: Pause                                 => Pause    -> Accepting;
+            5:  arrival: New, command: None                                  => Refuse   -> Refusing;
         }
         /// No command was refused since the last RESTART or PAUSE.
         Accepting {
-            6:  arrival: New, link: Failed                          => Ignore;
-            7:  arrival: New, link: Starting                        => Refuse   -> Refusing;
-            8:  arrival: New, link: Running, point: Gap | Unsendable | Full => Refuse -> Refusing;
-            9:  arrival: New, link: Running, point: Next            => Append;
+            6:  arrival: New, link: Failed                                   => Ignore;
+            7:  arrival: New, link: Starting                                 => Refuse   -> Refusing;
+            8:  arrival: New, link: Running, point: Gap | Unsendable | Full  => Refuse   -> Refusing;
+            9:  arrival: New, link: Running, point: Next                     => Append;
         }
         /// A command was refused: `status-arg-out` 5.
         Refusing {
-            10: arrival: New                                        => Ignore;
+            10: arrival: New                                                 => Ignore;
         }
     }
 }

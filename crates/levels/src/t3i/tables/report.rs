@@ -18,25 +18,25 @@ decision_table! {
     /// after ROBOT-INIT, ends the doubt.
     pub REPORT: fn report(interfaces::t3i::ReportCheck, super::Answer) -> Comparison {
         any {
-            1: dtr: Off, words: Sent                            => Keep            -> Elsewhere;
+            1:  dtr: Off, words: Sent                      => Keep  -> Elsewhere;
         }
         NoReport | AsSent {
-            2: dtr: Off, words: Nothing                         => Keep            -> NoReport;
-            3: start: Begun                                     => Keep            -> NoReport;
-            4: start: Reported, words: Nothing                  => Keep            -> AsSent;
-            5: start: Reported, words: Sent, place: Near        => Keep            -> AsSent;
-            6: start: Reported, words: Sent, place: Far         => Keep            -> Elsewhere;
+            2:  dtr: Off, words: Nothing                   => Keep  -> NoReport;
+            3:  start: Begun                               => Keep  -> NoReport;
+            4:  start: Reported, words: Nothing            => Keep  -> AsSent;
+            5:  start: Reported, words: Sent, place: Near  => Keep  -> AsSent;
+            6:  start: Reported, words: Sent, place: Far   => Keep  -> Elsewhere;
         }
         NoReport {
-            7: start: Over                                      => Keep;
+            7:  start: Over                                => Keep;
         }
         AsSent {
-            8: start: Over, before: Nothing | Point             => Keep;
-            9: start: Over, before: Repeated                    => TakeRepeated;
+            8:  start: Over, before: Nothing | Point       => Keep;
+            9:  start: Over, before: Repeated              => TakeRepeated;
         }
         Elsewhere {
-            10: before: Nothing | Repeated                      => Keep;
-            11: before: Point                                   => Keep            -> AsSent;
+            10: before: Nothing | Repeated                 => Keep;
+            11: before: Point                              => Keep  -> AsSent;
         }
     }
 }

@@ -7,13 +7,13 @@ decision_table! {
     pub RESTART: fn restart(enum RestartStep, super::Situation) -> super::Action {
         /// Nothing sent yet.
         Start {
-            1:                                              => Restart(Executing) -> Restarting;
+            1: otherwise   => Restart(Executing)  -> Restarting;
         }
         /// The restart is sent.
         Restarting {
-            2: line: Down                                   => Nothing(Executing);
-            3: line: Busy                                   => Nothing(Finished);
-            4: line: Free                                   => Repeat(Finished);
+            2: line: Down  => Nothing(Executing);
+            3: line: Busy  => Nothing(Finished);
+            4: line: Free  => Repeat(Finished);
         }
     }
 }

@@ -6,9 +6,9 @@ decision_table! {
     /// TROUBLE: after a refusal or a failure of the link the last position is repeated, whatever the command. A robot
     /// that has left its path gets no position: it would move there on a way of its own.
     pub TROUBLE: fn trouble(super::Situation) -> super::Action or () {
-        1: trouble: Refusal | Fault, line: Free             => Repeat(Error);
-        2: trouble: Refusal | Fault, line: Busy | Down      => Nothing(Error);
-        3: trouble: OffPath                                 => Nothing(Error);
-        4: trouble: None                                    => consult;
+        1: trouble: Refusal | Fault, line: Free         => Repeat(Error);
+        2: trouble: Refusal | Fault, line: Busy | Down  => Nothing(Error);
+        3: trouble: OffPath                             => Nothing(Error);
+        4: trouble: None                                => consult;
     }
 }

@@ -18,11 +18,11 @@ decision_table! {
             3: update: Owed         => TellOwed;
         }
         Start | Settling {
-            4: work: Over           => GetEndeff  -> Gripper;
+            4: otherwise            => GetEndeff  -> Gripper;
         }
         /// The gripper is being fetched.
         Gripper {
-            5: work: Over           => GetObject  -> Object;
+            5: otherwise            => GetObject  -> Object;
         }
         /// The object is being fetched.
         Object {
@@ -31,7 +31,7 @@ decision_table! {
         }
         /// The data base is being told that the robot has the object.
         Telling {
-            8: work: Over           => Finish;
+            8: otherwise            => Finish;
         }
     }
 }

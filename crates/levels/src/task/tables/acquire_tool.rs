@@ -8,29 +8,29 @@ decision_table! {
     /// it goes on from there.
     pub ACQUIRE_TOOL: fn acquire_tool(enum AcquireToolStep, super::Situation) -> super::Action {
         any {
-            1:  work: Busy                                                  => Wait;
+            1:  work: Busy                                      => Wait;
         }
         /// Nothing done yet.
         Start {
-            2:  held: Right, drum: Inside                                   => Finish;
-            3:  held: Right | Other                                         => Fail(AlreadyHolding);
-            4:  drum: Inside                                                => AcquireTool  -> Acquiring;
-            5:  held: Something                                             => Fail(UnknownHeld);
-            6:  held: NotKnown                                              => Fail(HeldNotKnown);
-            7:  tool: Free, station: Unplaced, resumed: AtTool              => AcquireTool  -> Acquiring;
-            8:  held: Nothing                                               => GetEndeff    -> Gripper;
+            2:  held: Right, drum: Inside                       => Finish;
+            3:  held: Right | Other                             => Fail(AlreadyHolding);
+            4:  drum: Inside                                    => AcquireTool  -> Acquiring;
+            5:  held: Something                                 => Fail(UnknownHeld);
+            6:  held: NotKnown                                  => Fail(HeldNotKnown);
+            7:  tool: Free, station: Unplaced, resumed: AtTool  => AcquireTool  -> Acquiring;
+            8:  held: Nothing                                   => GetEndeff    -> Gripper;
         }
         /// The tool gripper is being fetched.
         Gripper {
-            9:  work: Over                                                  => GotoDest     -> Approaching;
+            9:  otherwise                                       => GotoDest     -> Approaching;
         }
         /// The robot is on its way to the destination, near the drum.
         Approaching {
-            10: work: Over                                                  => AcquireTool  -> Acquiring;
+            10: otherwise                                       => AcquireTool  -> Acquiring;
         }
         /// The tool is being grasped.
         Acquiring {
-            11: work: Over                                                  => Finish;
+            11: otherwise                                       => Finish;
         }
     }
 }

@@ -7,19 +7,19 @@ decision_table! {
     /// at once if it is there. Whether a robot at no known place is on its way into the drum, E-move knows.
     pub INSERT_TOOL: fn insert_tool(enum InsertToolStep, super::Situation) -> super::Action {
         any {
-            1: work: Busy                                     => Wait;
+            1: work: Busy                                       => Wait;
         }
         /// Nothing done yet.
         Start {
-            2: tool: Held, drum: Inside                       => Finish;
-            3: tool: Held, station: Safe | Transfer | Unplaced => InsertTool  -> Inserting;
-            4: tool: Held, station: Elsewhere                 => Fail(NotPrepared);
-            5: tool: Free | None                              => Fail(NotPrepared);
-            6: tool: Unsure                                   => Fail(UnknownHeld);
+            2: tool: Held, drum: Inside                         => Finish;
+            3: tool: Held, station: Safe | Transfer | Unplaced  => InsertTool  -> Inserting;
+            4: tool: Held, station: Elsewhere                   => Fail(NotPrepared);
+            5: tool: Free | None                                => Fail(NotPrepared);
+            6: tool: Unsure                                     => Fail(UnknownHeld);
         }
         /// The tool is being inserted.
         Inserting {
-            7: work: Over                                     => Finish;
+            7: otherwise                                        => Finish;
         }
     }
 }

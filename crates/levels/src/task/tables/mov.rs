@@ -7,42 +7,42 @@ decision_table! {
     /// is ignored. Sent again after an interruption it goes on with the part in the pedestal's hand.
     pub MOVE: fn r#move(enum MoveStep, super::Situation) -> super::Action {
         any {
-            1:  work: Busy                            => Wait;
+            1:  work: Busy                          => Wait;
         }
         /// Nothing done yet.
         Start {
-            2:  handling: NoObject                    => GotoDest       -> Moving;
-            3:  handling: Object, update: Owed        => TellOwed       -> Settling;
+            2:  handling: NoObject                  => GotoDest       -> Moving;
+            3:  handling: Object, update: Owed      => TellOwed       -> Settling;
         }
         /// The data base is told an earlier update again.
         Settling {
-            4:  update: Owed                          => TellOwed;
+            4:  update: Owed                        => TellOwed;
         }
         Start | Settling {
-            5:  part: InPedestal, grips: Different    => FixGrip        -> Regripping;
-            6:  work: Over                            => GetEndeff      -> Gripper;
+            5:  part: InPedestal, grips: Different  => FixGrip        -> Regripping;
+            6:  otherwise                           => GetEndeff      -> Gripper;
         }
         /// The gripper is being fetched.
         Gripper {
-            7:  work: Over                            => GetObject      -> Object;
+            7:  otherwise                           => GetObject      -> Object;
         }
         /// The object is being fetched.
         Object {
-            8:  grips: Same                           => MoveObjToDest  -> Moving;
-            9:  grips: Different                      => FixGrip        -> Regripping;
+            8:  grips: Same                         => MoveObjToDest  -> Moving;
+            9:  grips: Different                    => FixGrip        -> Regripping;
         }
         /// The object is being regripped on the pedestal.
         Regripping {
-            10: work: Over                            => MoveObjToDest  -> Moving;
+            10: otherwise                           => MoveObjToDest  -> Moving;
         }
         /// The object, or the robot alone, is on its way.
         Moving {
-            11: update: Due                           => Update         -> Telling;
-            12: update: None | Owed                   => Finish;
+            11: update: Due                         => Update         -> Telling;
+            12: update: None | Owed                 => Finish;
         }
         /// The data base is being told where the object is.
         Telling {
-            13: work: Over                            => Finish;
+            13: otherwise                           => Finish;
         }
     }
 }

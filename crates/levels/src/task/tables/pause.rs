@@ -10,11 +10,11 @@ decision_table! {
         }
         /// Nothing done yet.
         Start {
-            2: work: Over  => Pause  -> Pausing;
+            2: otherwise   => Pause  -> Pausing;
         }
         /// Subtask is pausing.
         Pausing {
-            3: work: Over  => Finish;
+            3: otherwise   => Finish;
         }
     }
 }

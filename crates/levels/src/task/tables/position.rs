@@ -31,8 +31,8 @@ decision_table! {
         Releasing {
             12: update: None | Due, source: Named           => Position(Source)                  -> Moving;
             13: update: None | Due, source: Null            => Position(Destination)             -> Moving;
-            14: update: Owed, source: Named                 => TellOwedAndPosition(Source)       -> Leaving;
-            15: update: Owed, source: Null                  => TellOwedAndPosition(Destination)  -> Leaving;
+            14: update: Owed,       source: Named           => TellOwedAndPosition(Source)       -> Leaving;
+            15: update: Owed,       source: Null            => TellOwedAndPosition(Destination)  -> Leaving;
         }
         /// The robot is on its way.
         Moving {

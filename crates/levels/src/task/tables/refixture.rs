@@ -9,37 +9,37 @@ decision_table! {
     /// it is told first, as by the other commands that take an object.
     pub REFIXTURE: fn refixture(enum RefixtureStep, super::Situation) -> super::Action {
         any {
-            1:  work: Busy                                  => Wait;
+            1:  work: Busy                  => Wait;
         }
         /// Nothing done yet.
         Start {
-            2:  update: Owed                                => TellOwed       -> Settling;
+            2:  update: Owed                => TellOwed       -> Settling;
         }
         /// The data base is told an earlier update again.
         Settling {
-            3:  update: Owed                                => TellOwed;
+            3:  update: Owed                => TellOwed;
         }
         Start | Settling {
-            4:  part: InPedestal                            => FixGrip        -> Regripping;
-            5:  held: Right                                 => GetObject      -> Object;
-            6:  held: Nothing | Other                       => GetEndeff      -> Gripper;
-            7:  held: Something | NotKnown                  => GetEndeff      -> Gripper;
+            4:  part: InPedestal            => FixGrip        -> Regripping;
+            5:  held: Right                 => GetObject      -> Object;
+            6:  held: Nothing | Other       => GetEndeff      -> Gripper;
+            7:  held: Something | NotKnown  => GetEndeff      -> Gripper;
         }
         /// The gripper is being fetched.
         Gripper {
-            8:  work: Over                                  => GetObject      -> Object;
+            8:  otherwise                   => GetObject      -> Object;
         }
         /// The object is being fetched.
         Object {
-            9:  work: Over                                  => FixGrip        -> Regripping;
+            9:  otherwise                   => FixGrip        -> Regripping;
         }
         /// The object is being regripped on the pedestal.
         Regripping {
-            10: work: Over                                  => MoveObjToDest  -> Moving;
+            10: otherwise                   => MoveObjToDest  -> Moving;
         }
         /// The object is on its way to the destination.
         Moving {
-            11: work: Over                                  => Finish;
+            11: otherwise                   => Finish;
         }
     }
 }

@@ -11,39 +11,39 @@ decision_table! {
     /// extension: SPECNOTES.md).
     pub RELEASE_TOOL: fn release_tool(enum ReleaseToolStep, super::Situation) -> super::Action {
         any {
-            1:  work: Busy                                                => Wait;
+            1:  work: Busy                                                     => Wait;
         }
         /// Nothing done yet.
         Start {
-            2:  tool: None                                                => Fail(NotPrepared);
-            3:  drum: Inside                                              => ReleaseTool  -> Releasing;
-            4:  tool: Held, station: Transfer | Unplaced                  => ReleaseTool  -> Releasing;
-            5:  tool: Held, station: Safe | Elsewhere                     => Fail(NotPrepared);
-            6:  tool: Unsure                                              => Fail(UnknownHeld);
-            7:  tool: Free, station: Unplaced, resumed: AtTool            => ReleaseTool  -> Releasing;
-            8:  tool: Free, ends: There                                   => Wait         -> Leaving;
-            9:  tool: Free, station: Transfer, ends: Here                 => Wait         -> Leaving;
-            10: tool: Free, station: Transfer, ends: Elsewhere            => GotoEndpt    -> Leaving;
-            11: tool: Free, resumed: AtTool | Leaving, ends: Elsewhere    => GotoEndpt    -> Leaving;
-            12: tool: Free, resumed: AtTool | Leaving, ends: Here         => Fail(SentAway);
-            13: tool: Free, resumed: Not | Begun, ends: Here | Elsewhere  => Fail(NotPrepared);
+            2:  tool: None                                                     => Fail(NotPrepared);
+            3:  drum: Inside                                                   => ReleaseTool  -> Releasing;
+            4:  tool: Held, station: Transfer | Unplaced                       => ReleaseTool  -> Releasing;
+            5:  tool: Held, station: Safe | Elsewhere                          => Fail(NotPrepared);
+            6:  tool: Unsure                                                   => Fail(UnknownHeld);
+            7:  tool: Free, station: Unplaced, resumed: AtTool                 => ReleaseTool  -> Releasing;
+            8:  tool: Free, ends: There                                        => Wait         -> Leaving;
+            9:  tool: Free, station: Transfer, ends: Here                      => Wait         -> Leaving;
+            10: tool: Free, station: Transfer, ends: Elsewhere                 => GotoEndpt    -> Leaving;
+            11: tool: Free, resumed: AtTool | Leaving, ends: Elsewhere         => GotoEndpt    -> Leaving;
+            12: tool: Free, resumed: AtTool | Leaving, ends: Here              => Fail(SentAway);
+            13: tool: Free, resumed: Not | Begun,      ends: Here | Elsewhere  => Fail(NotPrepared);
         }
         /// The tool is being let go.
         Releasing {
-            14: ends: There | Elsewhere                                   => GotoEndpt    -> Leaving;
-            15: ends: Here, update: None | Due                            => Finish;
+            14: ends: There | Elsewhere                                        => GotoEndpt    -> Leaving;
+            15: ends: Here, update: None | Due                                 => Finish;
         }
         /// The robot is on its way to the end-at location, or where it is to stay.
         Leaving {
-            16: update: None | Due                                        => Finish;
+            16: update: None | Due                                             => Finish;
         }
         Releasing | Leaving {
-            17: update: Owed                                              => TellOwed     -> Telling;
+            17: update: Owed                                                   => TellOwed     -> Telling;
         }
         /// The data base is being told where the tool is.
         Telling {
-            18: update: Owed                                              => TellOwed;
-            19: update: None | Due                                        => Finish;
+            18: update: Owed                                                   => TellOwed;
+            19: update: None | Due                                             => Finish;
         }
     }
 }

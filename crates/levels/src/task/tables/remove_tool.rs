@@ -8,27 +8,27 @@ decision_table! {
     /// end-at location the robot stays at the drum, and one that has been sent away since cannot be finished.
     pub REMOVE_TOOL: fn remove_tool(enum RemoveToolStep, super::Situation) -> super::Action {
         any {
-            1:  work: Busy                                                => Wait;
+            1:  work: Busy                                                        => Wait;
         }
         /// Nothing done yet.
         Start {
-            2:  tool: Free | None                                         => Fail(NotPrepared);
-            3:  tool: Unsure                                              => Fail(UnknownHeld);
-            4:  station: Unplaced, resumed: Leaving                       => GotoEndpt   -> Leaving;
-            5:  station: Transfer | Unplaced                              => RemoveTool  -> Removing;
-            6:  ends: There                                               => Finish;
-            7:  station: Safe | Elsewhere, resumed: AtTool | Leaving, ends: Here => Fail(SentAway);
-            8:  resumed: AtTool | Leaving, ends: Elsewhere                => GotoEndpt   -> Leaving;
-            9:  resumed: Not | Begun, ends: Here | Elsewhere              => Fail(NotPrepared);
+            2:  tool: Free | None                                                 => Fail(NotPrepared);
+            3:  tool: Unsure                                                      => Fail(UnknownHeld);
+            4:  station: Unplaced, resumed: Leaving                               => GotoEndpt   -> Leaving;
+            5:  station: Transfer | Unplaced                                      => RemoveTool  -> Removing;
+            6:  ends: There                                                       => Finish;
+            7:  station: Safe | Elsewhere, resumed: AtTool | Leaving, ends: Here  => Fail(SentAway);
+            8:  resumed: AtTool | Leaving, ends: Elsewhere                        => GotoEndpt   -> Leaving;
+            9:  resumed: Not | Begun,      ends: Here | Elsewhere                 => Fail(NotPrepared);
         }
         /// The tool is being pulled out.
         Removing {
-            10: ends: There | Elsewhere                                   => GotoEndpt   -> Leaving;
-            11: ends: Here                                                => Finish;
+            10: ends: There | Elsewhere                                           => GotoEndpt   -> Leaving;
+            11: ends: Here                                                        => Finish;
         }
         /// The robot is on its way to the end-at location.
         Leaving {
-            12: work: Over                                                => Finish;
+            12: otherwise                                                         => Finish;
         }
     }
 }

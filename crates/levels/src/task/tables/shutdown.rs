@@ -11,11 +11,11 @@ decision_table! {
         }
         /// Nothing done yet.
         Start {
-            2: work: Over  => Disconnect  -> Aborting;
+            2: otherwise   => Disconnect  -> Aborting;
         }
         /// Abort was sent.
         Aborting {
-            3: work: Over  => Finish;
+            3: otherwise   => Finish;
         }
     }
 }

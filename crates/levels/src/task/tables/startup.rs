@@ -11,15 +11,15 @@ decision_table! {
         }
         /// Nothing done yet.
         Start {
-            2: work: Over          => Abort           -> Aborting;
+            2: otherwise           => Abort           -> Aborting;
         }
         /// Abort was sent.
         Aborting {
-            3: work: Over          => Initiate        -> Initiating;
+            3: otherwise           => Initiate        -> Initiating;
         }
         /// Initiate was sent.
         Initiating {
-            4: work: Over          => Startup         -> Connecting;
+            4: otherwise           => Startup         -> Connecting;
         }
         /// Startup was sent.
         Connecting {

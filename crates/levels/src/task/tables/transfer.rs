@@ -25,11 +25,11 @@ decision_table! {
             5:  placed: Left, ends: There | Elsewhere         => Wait                -> Placing;
             6:  placed: Left, ends: Here                      => Return              -> Placing;
             7:  part: InPedestal, grips: Different            => FixGrip             -> Regripping;
-            8:  work: Over                                    => GetEndeff           -> Gripper;
+            8:  otherwise                                     => GetEndeff           -> Gripper;
         }
         /// The gripper is being fetched.
         Gripper {
-            9:  work: Over                                    => GetObject           -> Object;
+            9:  otherwise                                     => GetObject           -> Object;
         }
         /// The object is being fetched.
         Object {
@@ -38,12 +38,12 @@ decision_table! {
         }
         /// The object is being regripped on the pedestal.
         Regripping {
-            12: work: Over                                    => PlaceObj            -> Placing;
+            12: otherwise                                     => PlaceObj            -> Placing;
         }
         /// The object is being placed.
         Placing {
-            13: ends: Here, update: Due                       => Update              -> Telling;
-            14: ends: Here, update: None | Owed               => Finish;
+            13: ends: Here,              update: Due          => Update              -> Telling;
+            14: ends: Here,              update: None | Owed  => Finish;
             15: ends: There | Elsewhere, update: Due          => UpdateAndGotoEndpt  -> Leaving;
             16: ends: There | Elsewhere, update: None | Owed  => GotoEndpt           -> Leaving;
         }
@@ -54,7 +54,7 @@ decision_table! {
         }
         /// The data base is being told where the object is.
         Telling {
-            19: work: Over                                    => Finish;
+            19: otherwise                                     => Finish;
         }
     }
 }

@@ -7,11 +7,11 @@ decision_table! {
     pub FLIP: fn flip(enum FlipStep, super::Situation) -> super::Action {
         /// Nothing sent yet.
         Start {
-            1:                          => Turn             -> Turning;
+            1: otherwise  => Turn  -> Turning;
         }
         /// The table turns.
         Turning {
-            2:                          => Finish;
+            2: otherwise  => Finish;
         }
     }
 }

@@ -8,13 +8,13 @@ decision_table! {
     pub GRIP: fn grip(enum GripStep, super::Situation) -> super::Action {
         /// Nothing sent yet.
         Start {
-            1:                          => Close            -> Closing;
+            1: otherwise            => Close  -> Closing;
         }
         /// The hand closes.
         Closing {
-            2:  object: Held            => Finish;
-            3:  object: None | Lost     => Lose(HandMissed);
-            4:  object: NotKnown        => Fail(HandUncertain);
+            2: object: Held         => Finish;
+            3: object: None | Lost  => Lose(HandMissed);
+            4: object: NotKnown     => Fail(HandUncertain);
         }
     }
 }

@@ -6,12 +6,12 @@ decision_table! {
     /// ORDERED: hand and table are waited for. A failure ends the command, and so does an object that comes
     /// loose in FLIP.
     pub ORDERED: fn ordered(super::Subordinates) -> super::Action or () {
-        1:  verb: Flip, object: Lost                                => Lose(HandLost);
-        2:  ordered: Nothing                                        => consult;
-        3:  ordered: Hand | Both, hand: Error | Joystick | Lost     => PassUpHand;
-        4:  ordered: Table | Both, table: Error | Joystick | Lost   => PassUpTable;
-        5:  ordered: Hand | Both, hand: Pending | Executing         => Wait;
-        6:  ordered: Table | Both, table: Pending | Executing       => Wait;
-        7:  ordered: Hand | Table | Both                            => consult;
+        1: verb: Flip, object: Lost                               => Lose(HandLost);
+        2: ordered: Nothing                                       => consult;
+        3: ordered: Hand | Both,  hand: Error | Joystick | Lost   => PassUpHand;
+        4: ordered: Table | Both, table: Error | Joystick | Lost  => PassUpTable;
+        5: ordered: Hand | Both,  hand: Pending | Executing       => Wait;
+        6: ordered: Table | Both, table: Pending | Executing      => Wait;
+        7: ordered: Hand | Table | Both                           => consult;
     }
 }

@@ -8,12 +8,12 @@ decision_table! {
     pub PAUSE: fn pause(enum PauseStep, super::Situation) -> super::Action {
         /// Nothing sent yet.
         Start {
-            1:                          => StopTable        -> Stopping;
+            1: otherwise      => StopTable  -> Stopping;
         }
         /// Table and hand come to rest.
         Stopping {
-            2:  fingers: Busy           => Wait;
-            3:  fingers: Over           => Finish;
+            2: fingers: Busy  => Wait;
+            3: fingers: Over  => Finish;
         }
     }
 }

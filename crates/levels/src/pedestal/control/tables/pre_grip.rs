@@ -9,18 +9,18 @@ decision_table! {
     pub PRE_GRIP: fn pre_grip(enum PreGripStep, super::Situation) -> super::Action {
         /// Nothing sent yet.
         Start {
-            1:  calibration: Known                  => OpenAndTurn              -> Moving;
-            2:  calibration: Missing, gripped: No   => Calibrate                -> Calibrating;
-            3:  calibration: Missing, gripped: Yes  => Fail(HandNotCalibrated);
+            1: calibration: Known                  => OpenAndTurn  -> Moving;
+            2: calibration: Missing, gripped: No   => Calibrate    -> Calibrating;
+            3: calibration: Missing, gripped: Yes  => Fail(HandNotCalibrated);
         }
         /// The hand is being calibrated.
         Calibrating {
-            4:  calibration: Known                  => OpenAndTurn              -> Moving;
-            5:  calibration: Missing                => Fail(HandNotCalibrated);
+            4: calibration: Known                  => OpenAndTurn  -> Moving;
+            5: calibration: Missing                => Fail(HandNotCalibrated);
         }
         /// The hand opens, the table turns.
         Moving {
-            6:                                      => Finish;
+            6: otherwise                           => Finish;
         }
     }
 }

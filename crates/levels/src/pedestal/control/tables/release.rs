@@ -7,11 +7,11 @@ decision_table! {
     pub RELEASE: fn release(enum ReleaseStep, super::Situation) -> super::Action {
         /// Nothing sent yet.
         Start {
-            1:                          => Open             -> Opening;
+            1: otherwise  => Open  -> Opening;
         }
         /// The hand opens.
         Opening {
-            2:                          => Finish;
+            2: otherwise  => Finish;
         }
     }
 }

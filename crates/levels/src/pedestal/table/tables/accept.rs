@@ -6,9 +6,9 @@ decision_table! {
     /// ACCEPT: the table turns to no angle beyond its limits. A calibration that is under way goes on beside
     /// a refusal.
     pub ACCEPT: fn accept(super::Request) -> crate::execution::Refusal or () {
-        1:  asked: Before           => consult;
-        2:  verb: None              => Fail(UnknownCommand);
-        3:  angle: Beyond           => Fail(TableLimit);
-        4:  angle: Within           => consult;
+        1: asked: Before  => consult;
+        2: verb: None     => Fail(UnknownCommand);
+        3: angle: Beyond  => Fail(TableLimit);
+        4: angle: Within  => consult;
     }
 }

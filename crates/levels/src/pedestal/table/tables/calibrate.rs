@@ -10,38 +10,38 @@ decision_table! {
     /// before, if counter and potentiometer agree.
     pub CALIBRATE: fn calibrate(super::Phase, super::Situation) -> super::Action or super::Duty {
         Missing {
-            1:  command: Nothing                                    => SeekLimit            -> Seeking;
+            1:  command: Nothing                                     => SeekLimit         -> Seeking;
         }
         Missing | Deferred | Failed {
-            2:  command: Turn                                       => SeekLimit            -> Seeking;
+            2:  command: Turn                                        => SeekLimit         -> Seeking;
         }
         Missing | Deferred | Failed | Valid {
-            3:  command: Calibrate                                  => SeekLimit            -> Seeking;
-            4:  command: Pause | Turn                               => consult(Command);
-            5:  command: Nothing | Refused                          => consult(Nothing);
+            3:  command: Calibrate                                   => SeekLimit         -> Seeking;
+            4:  command: Pause | Turn                                => consult(Command);
+            5:  command: Nothing | Refused                           => consult(Nothing);
         }
         Adopting {
-            6:  motor: Turning, clock: Running                      => Stop;
-            7:  motor: Pending | Settling, clock: Running           => Wait;
-            8:  motor: Standing, counter: Agrees                    => EndWait              -> Valid;
-            9:                                                      => EndWait              -> Deferred;
+            6:  motor: Turning,            clock: Running            => Stop;
+            7:  motor: Pending | Settling, clock: Running            => Wait;
+            8:  motor: Standing,           counter: Agrees           => EndWait           -> Valid;
+            9:  otherwise                                            => EndWait           -> Deferred;
         }
         Seeking | Setting | Parking {
-            10: motor: Pending | Turning | Settling, clock: Running => Wait;
+            10: motor: Pending | Turning | Settling, clock: Running  => Wait;
         }
         Seeking {
-            11: motor: Standing, place: There                       => SetCounter           -> Setting;
+            11: motor: Standing, place: There                        => SetCounter        -> Setting;
         }
         Setting {
-            12: motor: Standing, place: There                       => Park                 -> Parking;
+            12: motor: Standing, place: There                        => Park              -> Parking;
         }
         Parking {
-            13: motor: Standing, place: There, command: Calibrate   => Finish               -> Valid;
-            14: motor: Standing, place: There                       => EndWait              -> Valid;
+            13: motor: Standing, place: There, command: Calibrate    => Finish            -> Valid;
+            14: motor: Standing, place: There                        => EndWait           -> Valid;
         }
         Seeking | Setting | Parking {
-            15: command: Calibrate | Turn                           => Lose(TableStuck)     -> Failed;
-            16: command: Nothing | Refused | Pause                  => GiveUp               -> Failed;
+            15: command: Calibrate | Turn                            => Lose(TableStuck)  -> Failed;
+            16: command: Nothing | Refused | Pause                   => GiveUp            -> Failed;
         }
     }
 }

@@ -7,15 +7,15 @@ decision_table! {
     /// is stopped first.
     pub REST: fn rest(super::Step, super::Situation) -> super::Action or () {
         any {
-            1:  motor: Standing | Silent    => consult;
-            2:  clock: Expired              => Lose(TableStuck);
-            3:  motor: Pending | Settling   => Wait;
+            1: motor: Standing | Silent   => consult;
+            2: clock: Expired             => Lose(TableStuck);
+            3: motor: Pending | Settling  => Wait;
         }
         Start {
-            4:  motor: Turning              => Stop;
+            4: motor: Turning             => Stop;
         }
         Turning {
-            5:  motor: Turning              => Wait;
+            5: motor: Turning             => Wait;
         }
     }
 }

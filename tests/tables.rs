@@ -1,0 +1,287 @@
+//! Decision tables as the sources write them: their rows, and the columns in which they are written.
+//!
+//! [`aligned`] writes the rows of all tables of a file in columns: the number, the conditions, `=>` with the action,
+//! `->` with the next step. In adjacent rows that ask for the same variables, the variables are in columns too. A line
+//! has at most [`WIDEST`] columns. If the alignment makes a row wider, the variables are not aligned; if that is not
+//! enough, the rows with the longest conditions leave the columns; a row that is still wider has its action in a second
+//! line.
+
+use std::{
+    fs, io,
+    ops::Range,
+    path::{Path, PathBuf},
+};
+
+/// Widest line of a row, characters.
+pub const WIDEST: usize = 110;
+/// The word of a row without conditions.
+pub const OTHERWISE: &str = "otherwise";
+/// The line with which a table begins.
+const BEGIN: &str = "decision_table! {";
+
+/// A row: `4: held: Right | Wrong, work: Over => Release -> Releasing;`.
+#[derive(Clone, Debug)]
+pub struct Row {
+    /// Its lines in the file, from 0.
+    pub lines: Range<usize>,
+    /// Its text, in one line.
+    pub text: String,
+    /// The characters before the number.
+    pub indent: String,
+    /// Rows between the same braces have the same number.
+    pub group: usize,
+    /// The step that these rows are for, if it is one.
+    pub only_step: Option<String>,
+    /// Number of the row.
+    pub number: String,
+    /// Of each state variable the alternatives.
+    pub conditions: Vec<(String, Vec<String>)>,
+    /// The action with what it carries.
+    pub action: String,
+    /// The step after it, if it changes.
+    pub next: Option<String>,
+}
+
+impl Row {
+    fn read(lines: Range<usize>, text: &str, group: usize, only_step: Option<&String>) -> Option<Self> {
+        let digit = text.find(|character: char| character.is_ascii_digit())?;
+        let (indent, row) = text.split_at(digit);
+        let (number, rest) = row.trim_end().split_once(':')?;
+        if !number.bytes().all(|byte| byte.is_ascii_digit()) {
+            return None;
+        }
+        let (conditions, result) = rest.strip_suffix(';')?.split_once("=>")?;
+        let (action, next) = match result.split_once("->") {
+            Some((action, next)) => (action, Some(next.trim().to_owned())),
+            None => (result, None),
+        };
+        let read = |condition: &str| {
+            let (name, values) = condition.split_once(':')?;
+            let values = values.split('|').map(|value| value.trim().to_owned()).collect();
+            Some((name.trim().to_owned(), values))
+        };
+        let named = conditions.split(',').map(str::trim);
+        let named = named.filter(|condition| !condition.is_empty() && *condition != OTHERWISE);
+        Some(Self {
+            lines,
+            text: text.to_owned(),
+            indent: indent.to_owned(),
+            group,
+            only_step: only_step.cloned(),
+            number: number.to_owned(),
+            conditions: named.map(read).collect::<Option<_>>()?,
+            action: action.trim().to_owned(),
+            next,
+        })
+    }
+
+    /// The row in one line, without columns.
+    #[must_use]
+    pub fn write(&self) -> String {
+        let next = self.next.as_ref().map_or_else(String::new, |next| format!(" -> {next}"));
+        format!("{}{}: {} => {}{next};", self.indent, self.number, conditions(self), self.action)
+    }
+}
+
+/// A condition as it is written.
+fn condition((name, values): &(String, Vec<String>)) -> String {
+    format!("{name}: {}", values.join(" | "))
+}
+
+/// A table in a file.
+#[derive(Debug)]
+pub struct Table {
+    /// The file.
+    pub file: PathBuf,
+    /// Its name, `MOV_TO_LOC`.
+    pub name: String,
+    /// Its lines, from 0, from `decision_table! {` to the closing brace.
+    pub lines: Range<usize>,
+    /// The line of its head.
+    pub head: usize,
+    /// Its rows.
+    pub rows: Vec<Row>,
+    /// Its steps, as groups of rows name them.
+    pub steps: Vec<String>,
+}
+
+impl Table {
+    /// All tables of a file. They may be in comments, or in the code blocks of a page.
+    #[must_use]
+    pub fn read(file: &Path, text: &str) -> Vec<Self> {
+        let mut tables = Vec::<Self>::new();
+        let (mut before, mut group, mut of_group) = (None, 0, Vec::new());
+        let mut row: Option<(usize, String)> = None;
+        for (line, text) in text.lines().enumerate() {
+            let Some(prefix) = before else {
+                if let Some(prefix) = text.strip_suffix(BEGIN) {
+                    before = Some(prefix);
+                    tables.push(Self::new(file, line));
+                }
+                continue;
+            };
+            let (Some(inside), Some(table)) = (text.strip_prefix(prefix), tables.last_mut()) else {
+                continue;
+            };
+            let trimmed = inside.trim();
+            if inside == "}" {
+                table.lines.end = line + 1;
+                before = None;
+            } else if let Some((first, begun)) = &mut row {
+                *begun += &format!(" {trimmed}");
+                if trimmed.ends_with(';') {
+                    table.rows.extend(Row::read(*first..line + 1, begun, group, only(&of_group)));
+                    row = None;
+                }
+            } else if trimmed.starts_with("//") {
+            } else if let Some((name, _)) = trimmed.split_once(": fn ") {
+                name.trim_start_matches("pub ").clone_into(&mut table.name);
+                table.head = line;
+            } else if let Some(steps) = trimmed.strip_suffix(" {").or(trimmed.strip_suffix(" {}")) {
+                group += 1;
+                of_group = steps.split('|').map(|step| step.trim().to_owned()).collect();
+                for step in of_group.iter().filter(|step| *step != "any") {
+                    if !table.steps.contains(step) {
+                        table.steps.push(step.clone());
+                    }
+                }
+            } else if trimmed.ends_with(';') {
+                table.rows.extend(Row::read(line..line + 1, text, group, only(&of_group)));
+            } else if trimmed.starts_with(|first: char| first.is_ascii_digit()) {
+                row = Some((line, text.trim_end().to_owned()));
+            }
+        }
+        tables
+    }
+
+    fn new(file: &Path, line: usize) -> Self {
+        let (file, lines) = (file.to_owned(), line..line);
+        Self { file, name: String::new(), lines, head: line, rows: Vec::new(), steps: Vec::new() }
+    }
+}
+
+/// The step of a group of rows that has one.
+fn only(steps: &[String]) -> Option<&String> {
+    let [step] = steps else { return None };
+    Some(step).filter(|step| *step != "any")
+}
+
+/// All files with an extension under a directory.
+///
+/// # Errors
+/// A directory cannot be listed.
+pub fn files(directory: &Path, extension: &str, found: &mut Vec<PathBuf>) -> io::Result<()> {
+    for entry in fs::read_dir(directory)? {
+        let path = entry?.path();
+        if path.is_dir() {
+            files(&path, extension, found)?;
+        } else if path.extension().is_some_and(|found| found == extension) {
+            found.push(path);
+        }
+    }
+    Ok(())
+}
+
+/// The text of a file with the rows of all its tables in columns.
+#[must_use]
+pub fn aligned(text: &str) -> String {
+    let tables = Table::read(Path::new(""), text);
+    if tables.is_empty() {
+        return text.to_owned();
+    }
+    let mut lines: Vec<String> = text.lines().map(str::to_owned).collect();
+    for table in tables.iter().rev() {
+        for (row, after) in table.rows.iter().zip(in_columns(&table.rows)).rev() {
+            lines.splice(row.lines.clone(), after);
+        }
+    }
+    lines.join("\n") + "\n"
+}
+
+/// The lines of the rows of a table in columns.
+fn in_columns(rows: &[Row]) -> Vec<Vec<String>> {
+    let in_one_line: Vec<String> = rows.iter().map(conditions).collect();
+    let mut in_variables = vec![String::new(); rows.len()];
+    let mut first = 0;
+    for group in rows.chunk_by(|one, next| one.group == next.group) {
+        align_variables(group, 0, &mut in_variables[first..first + group.len()]);
+        first += group.len();
+    }
+    let full = in_variables.iter().map(String::len).max().unwrap_or_default();
+    let mut narrower: Vec<usize> = in_one_line.iter().map(String::len).collect();
+    narrower.sort_unstable_by(|one, other| other.cmp(one));
+    narrower.dedup();
+    let shapes = narrower.iter().map(|column| (&in_one_line, *column));
+    let mut shapes = [(&in_variables, full)].into_iter().chain(shapes);
+    let fits = |lines: &Vec<Vec<String>>| lines.iter().flatten().all(|line| line.chars().count() <= WIDEST);
+    let is_possible = |rows: &Vec<Vec<String>>| fits(rows) && rows.iter().all(|lines| lines.len() == 1);
+    let possible =
+        shapes.find_map(|(conditions, column)| Some(written(rows, conditions, column)).filter(is_possible));
+    possible.unwrap_or_else(|| {
+        let mut shapes = narrower.iter().map(|column| written(rows, &in_one_line, *column));
+        shapes.find(fits).unwrap_or_else(|| written(rows, &in_one_line, 0))
+    })
+}
+
+/// The conditions of a row, without columns.
+fn conditions(row: &Row) -> String {
+    if row.conditions.is_empty() {
+        return OTHERWISE.to_owned();
+    }
+    row.conditions.iter().map(condition).collect::<Vec<_>>().join(", ")
+}
+
+/// Append the conditions of rows from condition `at` on. Rows that are adjacent and ask for the same variables so far
+/// get the next variable in one column.
+fn align_variables(rows: &[Row], at: usize, texts: &mut [String]) {
+    let name = |row: &Row| row.conditions.get(at).map(|(name, _)| name.clone());
+    let mut first = 0;
+    for run in rows.chunk_by(|one, next| name(one) == name(next)) {
+        let texts = &mut texts[first..first + run.len()];
+        first += run.len();
+        if name(&run[0]).is_none() {
+            for text in texts.iter_mut().filter(|text| text.is_empty()) {
+                OTHERWISE.clone_into(text);
+            }
+            continue;
+        }
+        let goes_on = |row: &Row| row.conditions.len() > at + 1;
+        for (row, text) in run.iter().zip(&mut *texts) {
+            text.push_str(&condition(&row.conditions[at]));
+            text.push_str(if goes_on(row) { "," } else { "" });
+        }
+        let width = run.iter().zip(&*texts).filter(|(row, _)| goes_on(row)).map(|(_, text)| text.len()).max();
+        for (row, text) in run.iter().zip(&mut *texts) {
+            if goes_on(row) {
+                *text = format!("{text:0$} ", width.unwrap_or_default());
+            }
+        }
+        align_variables(run, at + 1, texts);
+    }
+}
+
+/// Rows with their actions in a column after `column` characters of conditions. Longer conditions leave the columns; an
+/// action that does not fit after them has a line of its own.
+fn written(rows: &[Row], conditions: &[String], column: usize) -> Vec<Vec<String>> {
+    let number = rows.iter().map(|row| row.number.len() + 1).max().unwrap_or_default();
+    let continued = rows.iter().filter(|row| row.next.is_some());
+    let action = continued.map(|row| row.action.len()).max().unwrap_or_default();
+    let lines = rows.iter().zip(conditions).map(|(row, conditions)| {
+        let effect = |action: usize, gap: &str| match &row.next {
+            Some(next) => format!("=> {:action$}{gap}-> {next};", row.action),
+            None => format!("=> {};", row.action),
+        };
+        let begin = format!("{}{:number$} ", row.indent, format!("{}:", row.number));
+        let in_columns = || format!("{begin}{conditions:column$}  {}", effect(action, "  "));
+        let alone = || format!("{begin}{conditions} {}", effect(0, " "));
+        if conditions.len() <= column {
+            vec![in_columns()]
+        } else if alone().chars().count() <= WIDEST {
+            vec![alone()]
+        } else {
+            let second = format!("{:1$}  {2}", "", begin.chars().count() + column, effect(action, "  "));
+            vec![format!("{begin}{conditions}"), second]
+        }
+    });
+    lines.collect()
+}
