@@ -155,10 +155,7 @@ pub(super) fn proof(plan: &Plan, below: &SubtaskStatus, data_base: DataBase) -> 
             .with_part(below.seat),
         TaskVerb::Move if plan.handling() == Handling::NoObject => destination(),
         TaskVerb::Move => is_held().and(destination()).with_part(below.seat),
-        TaskVerb::Position => {
-            let site = if plan.source.location.is_some() { &plan.source } else { &plan.destination };
-            is_free(below.held).and(at(site, below))
-        }
+        TaskVerb::Position => is_free(below.held).and(at(plan.position_site(), below)),
         TaskVerb::Acquire => is_held().with_part(below.seat),
         TaskVerb::Refixture => {
             is_held().and(in_grip(plan.destination.grip)).and(destination()).with_part(below.seat)

@@ -5,7 +5,7 @@
 //! (VII.1).
 //!
 //! ```text
-//!                 ACCEPT                 ORDERED: Subtask, Data System
+//!           ACCEPT, PRECONDITION         ORDERED: Subtask, Data System
 //!   a command --------------> Start ---> Gripper ---> Object ---> ... ---> finished
 //!       |                                  |            |
 //!       | what it needs is missing, or     | Subtask or the Data System failed, or JOYSTICK: the operator
@@ -90,7 +90,8 @@ impl<'d> Process<TaskData<'d>> for Task {
         outputs: &mut TaskOutputs,
     ) {
         let state = &mut self.state;
-        if state.execution.accepted(seen.asked) {
+        let is_refused = state.execution.rows.decided.is_some_and(|row| row.table == number::PRECONDITION);
+        if state.execution.accepted(seen.asked) && !is_refused {
             state.begin(&seen.plan, inputs, outputs);
         }
         outputs.confirmed = state.confirmed;
@@ -123,7 +124,7 @@ impl<'d> Process<TaskData<'d>> for Task {
 }
 
 impl State {
-    /// Consult JOYSTICK, the table of every tick, whatever EXECUTE has said. HALT, ACCEPT and ORDERED ask for what it has
+    /// Consult JOYSTICK, the table of every tick, whatever EXECUTE has said. HALT, PRECONDITION and ORDERED ask for what it has
     /// decided.
     ///
     /// # Errors
@@ -138,7 +139,7 @@ impl State {
                 decision.action
             }
         };
-        seen.request.control = self.control;
+        seen.preconditions.control = self.control;
         seen.replaced.joystick = match self.control {
             Control::Manual => BoxState::On,
             Control::Automatic => BoxState::Off,

@@ -70,40 +70,26 @@ pub enum Resumed {
     Leaving,
 }
 
-/// Is a location near the tool drum?
+/// Where the destination is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
-pub enum Near {
-    /// It is not, or is not named.
-    No,
-    /// It is TOOL-SAFE.
-    Yes,
+pub enum Destination {
+    /// At neither of the following, or none is named.
+    Elsewhere,
+    /// Near the tool drum: it is TOOL-SAFE.
+    NearDrum,
+    /// At the Active Pedestal: it is PEDESTAL.
+    Pedestal,
 }
 
-/// Is a location the Active Pedestal?
+/// A location of the command, with the grip of the object there.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
-pub enum AtPedestal {
-    /// It is not, or is not named.
-    No,
-    /// It is PEDESTAL.
-    Yes,
-}
-
-/// Is a location named?
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
-pub enum Named {
-    /// The command does not name it.
+pub enum SiteData {
+    /// The command does not name the location.
     Null,
-    /// It does.
-    Named,
-}
-
-/// A grip of the object.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
-pub enum Grip {
-    /// The task data have it, or no object is named.
+    /// It does, and the object has no such grip.
+    NoGrip,
+    /// It does, and the task data have the grip, or no object is named.
     Known,
-    /// The object has no such grip.
-    None,
 }
 
 /// Source and destination grip numbers.
@@ -135,13 +121,15 @@ pub enum ToolData {
     NoGrip,
 }
 
-/// The PED-PARA record of the object (VII.7.4).
+/// Must the object be regripped on the pedestal?
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
-pub enum PedestalData {
-    /// It is there, or no object is named.
-    Found,
-    /// The object has none.
-    Missing,
+pub enum Regrip {
+    /// No: the source and destination grips are the same.
+    None,
+    /// Yes, and the object has a PED-PARA record (VII.7.4), or no object is named.
+    Possible,
+    /// Yes, and it has none.
+    NoData,
 }
 
 /// A location, looked up.
@@ -206,8 +194,8 @@ pub struct Found {
     pub missing: Missing,
     /// `endeff-id#` of the gripper for the object.
     pub gripper: Gripper,
-    /// How the pedestal takes the object.
-    pub pedestal: PedestalData,
+    /// Must the object be regripped on the pedestal?
+    pub regrip: Regrip,
     /// The way from the tool drum to the end-at location.
     pub way_out: WayOut,
 }
@@ -275,9 +263,13 @@ impl Plan {
             update_due: object.is_some() && (is_in_mbd(source) || is_in_mbd(destination)),
             ..bare
         };
-        let pedestal = object.is_none_or(|object| data.ped_para(&object).is_some());
-        let pedestal = if pedestal { PedestalData::Found } else { PedestalData::Missing };
-        Found { plan, missing, gripper, pedestal, way_out: plan.way_out(data) }
+        let has_data = object.is_none_or(|object| data.ped_para(&object).is_some());
+        let regrip = match plan.grips() {
+            Grips::Same => Regrip::None,
+            Grips::Different if has_data => Regrip::Possible,
+            Grips::Different => Regrip::NoData,
+        };
+        Found { plan, missing, gripper, regrip, way_out: plan.way_out(data) }
     }
 
     /// The way to the end-at location of a command that ends at the tool drum.
@@ -313,10 +305,28 @@ impl Plan {
         if self.source.grip == self.destination.grip { Grips::Same } else { Grips::Different }
     }
 
-    /// Does the object have the grip of a site?
+    /// A location of the command, with the grip of the object there.
     #[must_use]
-    pub const fn grip(&self, site: &Site) -> Grip {
-        if self.object.is_some() && site.parameters.is_none() { Grip::None } else { Grip::Known }
+    pub const fn site(&self, site: &Site) -> SiteData {
+        if site.location.is_none() {
+            SiteData::Null
+        } else if self.has_grip(site) {
+            SiteData::Known
+        } else {
+            SiteData::NoGrip
+        }
+    }
+
+    /// The object has the grip of a site, or no object is named.
+    const fn has_grip(&self, site: &Site) -> bool {
+        self.object.is_none() || site.parameters.is_some()
+    }
+
+    /// The location to which the command goes.
+    #[must_use]
+    pub const fn goal(&self) -> SiteData {
+        let site = if matches!(self.verb, TaskVerb::Position) { self.position_site() } else { &self.destination };
+        self.site(site)
     }
 
     /// The object as a tool.
@@ -324,10 +334,10 @@ impl Plan {
     pub const fn tool(&self) -> ToolData {
         if !matches!(self.end_effector_id, Some(TOOL_GRIPPER)) {
             ToolData::Unfit
-        } else if matches!(self.grip(self.tool_site()), Grip::None) {
-            ToolData::NoGrip
-        } else {
+        } else if self.has_grip(self.tool_site()) {
             ToolData::Fit
+        } else {
+            ToolData::NoGrip
         }
     }
 
@@ -372,24 +382,14 @@ impl Site {
         self.location.as_ref().map(LocationKey::of)
     }
 
-    /// Is the location near the tool drum?
+    /// Where the location is, as a destination.
     #[must_use]
-    pub fn near_drum(&self) -> Near {
-        let near = self.location.is_some_and(|location| location.name.as_str() == named::TOOL_SAFE);
-        if near { Near::Yes } else { Near::No }
-    }
-
-    /// Is the location the Active Pedestal?
-    #[must_use]
-    pub fn at_pedestal(&self) -> AtPedestal {
-        let there = self.location.is_some_and(|location| location.name.as_str() == named::PEDESTAL);
-        if there { AtPedestal::Yes } else { AtPedestal::No }
-    }
-
-    /// Is the location named?
-    #[must_use]
-    pub const fn named(&self) -> Named {
-        if self.location.is_some() { Named::Named } else { Named::Null }
+    pub fn destination(&self) -> Destination {
+        match self.location.as_ref().map(|location| location.name.as_str()) {
+            Some(named::TOOL_SAFE) => Destination::NearDrum,
+            Some(named::PEDESTAL) => Destination::Pedestal,
+            Some(_) | None => Destination::Elsewhere,
+        }
     }
 }
 

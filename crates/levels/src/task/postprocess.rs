@@ -15,7 +15,7 @@ use super::{
     ledger::opened,
     plan::{Plan, Site, TaskVerb},
     state::State,
-    tables::{Action, Goal, Ordered, StateVariables, Takeover, joystick::Control},
+    tables::{Action, Ordered, StateVariables, Takeover, joystick::Control},
 };
 use crate::execution::{Outcome, Report};
 
@@ -80,9 +80,7 @@ impl State {
             }
             Action::GotoDest => self.send(SubtaskVerb::GotoDest, &plan.destination, inputs, outputs),
             Action::GotoEndpt => self.send(SubtaskVerb::GotoEndpt, &plan.end_at, inputs, outputs),
-            Action::Position(goal) => {
-                self.send(SubtaskVerb::Position, site(&plan, goal), inputs, outputs);
-            }
+            Action::Position => self.send(SubtaskVerb::Position, plan.position_site(), inputs, outputs),
             Action::Return => {
                 self.send(SubtaskVerb::Position, &plan.destination, inputs, outputs);
                 // >POSITION asks for the grip of the source first (SPECNOTES.md, contradiction 24).
@@ -112,9 +110,9 @@ impl State {
                 self.tell(inputs, outputs);
                 self.send(SubtaskVerb::GotoEndpt, &plan.end_at, inputs, outputs);
             }
-            Action::TellOwedAndPosition(goal) => {
+            Action::TellOwedAndPosition => {
                 self.data_system.tell_owed(tick, outputs);
-                self.send(SubtaskVerb::Position, site(&plan, goal), inputs, outputs);
+                self.send(SubtaskVerb::Position, plan.position_site(), inputs, outputs);
             }
             Action::AwaitUpdate => self.ordered = Ordered::DataSystem,
             Action::Finish => self.finish(inputs, outputs),
@@ -229,13 +227,5 @@ impl State {
             reason,
             unconfirmed: if finished { unconfirmed } else { Unconfirmed::None },
         };
-    }
-}
-
-/// The location of a plan to which POSITION goes.
-const fn site(plan: &Plan, goal: Goal) -> &Site {
-    match goal {
-        Goal::Source => &plan.source,
-        Goal::Destination => &plan.destination,
     }
 }

@@ -16,7 +16,7 @@ use super::{
     state::State,
     support::Support,
     tables::{
-        Drum, Ends, Ordered, Request, Situation, StateVariables, Station, Subordinates, Takeover, Tool, Way,
+        Drum, Ends, Ordered, Preconditions, Request, Situation, StateVariables, Station, Subordinates, Takeover, Tool, Way,
         joystick::Control,
     },
 };
@@ -38,16 +38,16 @@ impl State {
         let (below, ledger) = (&inputs.memory.subtask.status, inputs.memory.task.ledger.as_ref());
         self.data_system.hold(below.held.object(), ledger);
         self.note_support(inputs);
-        let (plan, request) = if asked == Asked::Now {
+        let (plan, request, preconditions) = if asked == Asked::Now {
             self.ordered = Ordered::Nothing;
             let found = Plan::look_up(command, inputs.data);
             let plan = Plan { resumed: resumed(command, ledger), ..found.plan };
             let replaces = plan.is_about_something() && plan.resumed == Resumed::Not;
             self.follow_object(plan.verb, replaces, inputs);
-            (self.plan(&plan, inputs), request(&found, command.checked))
+            (self.plan(&plan, inputs), request(&found), preconditions(&found, command.checked))
         } else {
             self.follow_object(self.plan.verb, false, inputs);
-            (self.plan, Request::default())
+            (self.plan, Request::default(), Preconditions::default())
         };
         let subtask = self.subtask(inputs);
         let data_base = self.data_system.status(data_base, inputs.tick);
@@ -65,6 +65,7 @@ impl State {
             verb: plan.verb,
             plan,
             request,
+            preconditions,
             subordinates: Subordinates {
                 takeover: Takeover::None,
                 ordered: self.ordered,
@@ -143,7 +144,6 @@ impl State {
             handling: plan.handling(),
             held: Held::of(below.held, plan.object),
             grips: plan.grips(),
-            source: plan.source.named(),
             ends: ends(&plan.end_at, below),
             update: self.data_system.update(plan),
             tool: match below.held {
@@ -164,26 +164,26 @@ impl State {
     }
 }
 
+/// What a new command names.
+const fn request(found: &Found) -> Request {
+    let Found { plan, missing, gripper, .. } = found;
+    Request { asked: Asked::Now, verb: plan.verb, missing: *missing, gripper: *gripper }
+}
+
 /// What a new command needs.
-fn request(found: &Found, checked: Checked) -> Request {
+fn preconditions(found: &Found, checked: Checked) -> Preconditions {
     let plan = &found.plan;
-    Request {
+    Preconditions {
         asked: Asked::Now,
         verb: plan.verb,
-        missing: found.missing,
-        gripper: found.gripper,
         handling: plan.handling(),
-        source: plan.source.named(),
-        source_grip: plan.grip(&plan.source),
-        destination: plan.destination.named(),
-        destination_grip: plan.grip(&plan.destination),
+        source: plan.site(&plan.source),
+        goal: plan.goal(),
+        destination: plan.destination.destination(),
         tool: plan.tool(),
-        grips: plan.grips(),
-        pedestal: found.pedestal,
-        near: plan.destination.near_drum(),
+        regrip: found.regrip,
         way_out: found.way_out,
         checked,
-        pedestal_goal: plan.destination.at_pedestal(),
         control: Control::Automatic,
     }
 }

@@ -10,6 +10,7 @@ pub mod mov;
 pub mod ordered;
 pub mod pause;
 pub mod position;
+pub mod precondition;
 pub mod refixture;
 pub mod release_tool;
 pub mod remove_tool;
@@ -25,13 +26,12 @@ use rcs_core::{
 };
 
 use self::joystick::Control;
-pub use self::variables::{DataBase, Drum, Ends, Goal, Ordered, Station, Tool, Update, Way, WayOut};
+pub use self::variables::{DataBase, Drum, Ends, Ordered, Station, Tool, Update, Way, WayOut};
 use super::{
     goals,
     ledger::{Part, Placed},
     plan::{
-        AtPedestal, Grip, Gripper, Grips, Handling, Named, Near, PedestalData, Plan, Resumed, TaskVerb,
-        ToolData,
+        Destination, Gripper, Grips, Handling, Plan, Regrip, Resumed, SiteData, TaskVerb, ToolData,
     },
     support::Support,
 };
@@ -69,7 +69,7 @@ pub struct Operator {
     pub outcome: Outcome,
 }
 
-/// What a new command needs, for [`accept::ACCEPT`].
+/// What a new command names, for [`accept::ACCEPT`].
 #[derive(Clone, Copy, Debug, Default, Variables)]
 pub struct Request {
     /// Is the command new?
@@ -80,30 +80,32 @@ pub struct Request {
     pub missing: Missing,
     /// `endeff-id#` of the gripper for the object.
     pub gripper: Gripper,
+}
+
+/// What a new command needs, for [`precondition::PRECONDITION`].
+#[derive(Clone, Copy, Debug, Default, Variables)]
+pub struct Preconditions {
+    /// Is the command new?
+    pub asked: Asked,
+    /// The command.
+    pub verb: TaskVerb,
     /// Is an object named?
     pub handling: Handling,
-    /// Is the source location named?
-    pub source: Named,
-    /// Does the object have the source grip?
-    pub source_grip: Grip,
-    /// Is the destination named?
-    pub destination: Named,
-    /// Does the object have the destination grip?
-    pub destination_grip: Grip,
+    /// The source location.
+    pub source: SiteData,
+    /// The location to which the command goes: the destination; for POSITION the source, or the destination if the
+    /// source is null.
+    pub goal: SiteData,
+    /// Where the destination is.
+    pub destination: Destination,
     /// The object as a tool.
     pub tool: ToolData,
-    /// Are the source and destination grips the same?
-    pub grips: Grips,
-    /// The PED-PARA record of the object (VII.7.4).
-    pub pedestal: PedestalData,
-    /// Is the destination near the tool drum?
-    pub near: Near,
+    /// Must the object be regripped on the pedestal?
+    pub regrip: Regrip,
     /// The way from the tool drum to the end-at location.
     pub way_out: WayOut,
     /// Verdict of the check against the task data.
     pub checked: Checked,
-    /// Is the destination the Active Pedestal?
-    pub pedestal_goal: AtPedestal,
     /// What has the robot.
     pub control: Control,
 }
@@ -132,8 +134,6 @@ pub struct Situation {
     pub held: Held,
     /// Are the source and destination grips the same?
     pub grips: Grips,
-    /// Is the source location named?
-    pub source: Named,
     /// Is there an end-at location, and is the robot there?
     pub ends: Ends,
     /// Pending update of the data base.
@@ -169,8 +169,10 @@ pub struct StateVariables {
     pub verb: TaskVerb,
     /// The new command looked up, or the current one.
     pub plan: Plan,
-    /// What a new command needs; [`joystick::JOYSTICK`] decides on `control`.
+    /// What a new command names.
     pub request: Request,
+    /// What it needs; [`joystick::JOYSTICK`] decides on `control`.
+    pub preconditions: Preconditions,
     /// How the last order of the command stands; [`joystick::JOYSTICK`] decides on `takeover`.
     pub subordinates: Subordinates,
     /// The goal of the command, compared with the statuses from below.
@@ -201,7 +203,7 @@ pub enum Action {
     /// GOTO-ENDPT to Subtask.
     GotoEndpt,
     /// >POSITION to Subtask.
-    Position(Goal),
+    Position,
     /// >POSITION to Subtask: back to the object at the destination.
     Return,
     /// RELEASE to Subtask.
@@ -235,7 +237,7 @@ pub enum Action {
     /// Tell the Data System where the object now is, and GOTO-ENDPT to Subtask.
     UpdateAndGotoEndpt,
     /// Tell the Data System the update that it has not taken, and >POSITION to Subtask.
-    TellOwedAndPosition(Goal),
+    TellOwedAndPosition,
     /// Wait for the Data System, which has been told.
     AwaitUpdate,
     /// Report finished.
@@ -265,8 +267,10 @@ impl Stopping for Action {
 commands! {
     /// Consult the table of a command.
     pub fn of_command(TaskVerb, enum Step, Situation) -> Action {
-        others: EXECUTE, accept::ACCEPT, HALT, joystick::JOYSTICK, ordered::ORDERED, CONFIRM;
-        before: EXECUTE, JOYSTICK by joystick, HALT, ACCEPT(request), ORDERED(subordinates -> situation.work);
+        others: EXECUTE, accept::ACCEPT, HALT, joystick::JOYSTICK, ordered::ORDERED, CONFIRM,
+            precondition::PRECONDITION;
+        before: EXECUTE, JOYSTICK by joystick, HALT, ACCEPT(request), PRECONDITION(preconditions),
+            ORDERED(subordinates -> situation.work);
         after: CONFIRM;
         None | Pause: goals::REST           => pause::pause;
         Transfer: goals::TRANSFERRED        => transfer::transfer;

@@ -16,40 +16,35 @@ decision_table! {
         }
         /// Nothing done yet.
         Start {
-            2:  held: Nothing, source: Named                => Position(Source)                  -> Moving;
-            3:  held: Nothing, source: Null                 => Position(Destination)             -> Moving;
-            4:  way: NoStart                                => Fail(UnknownStart);
-            5:  way: NoTrajectory                           => Fail(NoTrajectory);
-            6:  support: Place | Secured                    => Release                           -> Releasing;
-            7:  support: Jaws, way: Here, handling: Object  => Release                           -> Releasing;
-            8:  support: Jaws                               => Fail(NotClamped);
-            9:  support: None, held: Right | Other          => Fail(HeldElsewhere);
-            10: support: None, held: Something              => Fail(UnknownHeld);
-            11: support: None, held: NotKnown               => Fail(HeldNotKnown);
+            2:  held: Nothing                               => Position             -> Moving;
+            3:  way: NoStart                                => Fail(UnknownStart);
+            4:  way: NoTrajectory                           => Fail(NoTrajectory);
+            5:  support: Place | Secured                    => Release              -> Releasing;
+            6:  support: Jaws, way: Here, handling: Object  => Release              -> Releasing;
+            7:  support: Jaws                               => Fail(NotClamped);
+            8:  support: None, held: Right | Other          => Fail(HeldElsewhere);
+            9:  support: None, held: Something              => Fail(UnknownHeld);
+            10: support: None, held: NotKnown               => Fail(HeldNotKnown);
         }
         /// The held object is being released.
         Releasing {
-            12: update: None | Due, source: Named           => Position(Source)                  -> Moving;
-            13: update: None | Due, source: Null            => Position(Destination)             -> Moving;
-            14: update: Owed,       source: Named           => TellOwedAndPosition(Source)       -> Leaving;
-            15: update: Owed,       source: Null            => TellOwedAndPosition(Destination)  -> Leaving;
+            11: update: Owed                                => TellOwedAndPosition  -> Leaving;
+            12: otherwise                                   => Position             -> Moving;
         }
         /// The robot is on its way.
         Moving {
-            16: update: None | Due                          => Finish;
+            13: update: Owed                                => TellOwed             -> Telling;
+            14: otherwise                                   => Finish;
         }
         /// The robot is on its way, and the data base is being told where the object is.
         Leaving {
-            17: update: Owed                                => AwaitUpdate                       -> Telling;
-            18: update: None | Due                          => Finish;
+            15: update: Owed                                => AwaitUpdate          -> Telling;
+            16: otherwise                                   => Finish;
         }
         /// The data base is being told.
         Telling {
-            19: update: Owed                                => TellOwed;
-            20: update: None | Due                          => Finish;
-        }
-        Moving {
-            21: update: Owed                                => TellOwed                          -> Telling;
+            17: update: Owed                                => TellOwed;
+            18: otherwise                                   => Finish;
         }
     }
 }

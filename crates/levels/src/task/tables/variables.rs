@@ -97,15 +97,6 @@ pub enum WayOut {
     NoTrajectory,
 }
 
-/// A location of the command, to which POSITION goes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
-pub enum Goal {
-    /// The source location.
-    Source,
-    /// The destination.
-    Destination,
-}
-
 /// The neighbour that has the last order of the current command.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Ordered {
