@@ -24,7 +24,10 @@ use rcs_core::{
 
 use super::{
     plan::{Plan, TaskVerb},
-    tables::{DataBase, Update},
+    tables::{
+        DataBase, Update,
+        item::{Carrying, Following, Notice, Released, Taken, Taking, follow, take},
+    },
 };
 use crate::held::Held;
 
@@ -117,11 +120,14 @@ impl DataSystem {
         }
     }
 
-    /// Is the data base to be told where an object is that is let go, in the MBD or not?
+    /// What the robot carried last, compared with an object.
     #[must_use]
-    pub fn follows(&self, object: Name16, in_mbd: bool) -> bool {
-        let in_mbd = self.beliefs.connected && in_mbd;
-        self.beliefs.carried.is_some_and(|carried| carried.item == object && (carried.told || in_mbd))
+    pub fn carrying(&self, object: Name16) -> Carrying {
+        match self.beliefs.carried {
+            Some(carried) if carried.item == object && carried.told => Carrying::Followed,
+            Some(carried) if carried.item == object => Carrying::Known,
+            Some(_) | None => Carrying::Other,
+        }
     }
 
     /// Write a command for the first time.
@@ -149,32 +155,40 @@ impl DataSystem {
         (self.beliefs.connected, self.beliefs.connecting) = (true, false);
     }
 
-    /// A command about an object or a tool is accepted. If it takes an object of which the data base is told, the data
-    /// base is told where that is let go, also if the command is never finished. What is in the hand already keeps its
-    /// serial number.
+    /// A command about an object or a tool is accepted: consult FOLLOW and TAKE.
     pub fn accept(&mut self, plan: &Plan, below: &SubtaskStatus) {
         self.beliefs.taking = None;
-        let takes_tool = plan.verb == TaskVerb::AcquireTool;
-        let Some(item) = plan.object.filter(|_| plan.verb.takes() || takes_tool) else { return };
-        let is_followed =
-            self.beliefs.connected && !plan.from_elsewhere && (plan.update_due || self.follows(item, false));
-        let held = Held::of(below.held, Some(item));
-        if held == Held::Right {
-            let carried = self.beliefs.carried.as_mut().filter(|carried| carried.item == item);
-            if let Some(carried) = carried {
-                carried.told |= is_followed;
+        let Some(item) = plan.object else { return };
+        let following = Following {
+            connection: self.connection(None),
+            origin: plan.origin(),
+            due: if plan.update_due { Notice::Tell } else { Notice::Omit },
+            carrying: self.carrying(item),
+        };
+        let is_released = below.placed.is_some_and(|placed| placed.object == item);
+        let taken = Taken {
+            takes: plan.takes(),
+            held: Held::of(below.held, Some(item)),
+            released: if is_released { Released::Object } else { Released::Other },
+            notice: follow((), &following).action,
+        };
+        let action = take((), &taken).action;
+        match action {
+            Taking::Keep | Taking::Note => {}
+            Taking::Follow => {
+                if let Some(carried) = self.beliefs.carried.as_mut().filter(|carried| carried.item == item) {
+                    carried.told = true;
+                }
             }
-            return;
+            Taking::Drop | Taking::Replace => {
+                self.beliefs.carried = self.beliefs.carried.filter(|carried| carried.item != item);
+            }
         }
-        let is_placed = below.placed.is_some_and(|placed| placed.object == item);
-        if matches!(held, Held::Nothing | Held::Other) && !is_placed {
-            // The robot has lost what it carried under that name: what it takes now is another one.
-            self.beliefs.carried = self.beliefs.carried.filter(|carried| carried.item != item);
+        if matches!(action, Taking::Note | Taking::Replace) {
+            let site = plan.source.location.unwrap_or_default();
+            let (serial, location, sector) = (plan.serial, site.name, site.sector);
+            self.beliefs.taking = Some(Carried { item, serial, location, sector, told: true });
         }
-        let site = plan.source.location.unwrap_or_default();
-        let (serial, location, sector) = (plan.serial, site.name, site.sector);
-        let taken = Carried { item, serial, location, sector, told: true };
-        self.beliefs.taking = (is_followed && !takes_tool).then_some(taken);
     }
 
     /// Once a tick: what the robot was sent to take is what it holds, from the order to get it on.

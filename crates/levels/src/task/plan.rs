@@ -9,7 +9,10 @@ use rcs_core::{
 };
 use taskdata::files::TaskData;
 
-use super::tables::WayOut;
+use super::tables::{
+    WayOut,
+    item::{Origin, Takes},
+};
 use crate::places::{LocationKey, Missing, is_in_mbd, named, same_location};
 
 /// Commands of Task (V.4.1).
@@ -299,6 +302,22 @@ impl Plan {
         self.object.is_some() || self.verb.is_for_tools()
     }
 
+    /// The place where the object was taken.
+    #[must_use]
+    pub const fn origin(&self) -> Origin {
+        if self.from_elsewhere { Origin::Elsewhere } else { Origin::Source }
+    }
+
+    /// What the command takes, of what it names.
+    #[must_use]
+    pub const fn takes(&self) -> Takes {
+        match self.verb {
+            TaskVerb::AcquireTool if self.object.is_some() => Takes::Tool,
+            verb if verb.takes() && self.object.is_some() => Takes::Object,
+            _ => Takes::Nothing,
+        }
+    }
+
     /// Are the source and destination grips the same?
     #[must_use]
     pub const fn grips(&self) -> Grips {
@@ -325,7 +344,8 @@ impl Plan {
     /// The location to which the command goes.
     #[must_use]
     pub const fn goal(&self) -> SiteData {
-        let site = if matches!(self.verb, TaskVerb::Position) { self.position_site() } else { &self.destination };
+        let site =
+            if matches!(self.verb, TaskVerb::Position) { self.position_site() } else { &self.destination };
         self.site(site)
     }
 

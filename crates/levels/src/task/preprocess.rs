@@ -11,12 +11,16 @@ use taskdata::files::TaskData;
 
 use super::{
     goals::proof,
-    ledger::{Part, Placed, is_from_elsewhere, is_taken, placed, resumed},
+    ledger::{Part, is_from_elsewhere, is_taken, placed, resumed},
     plan::{Found, Plan, Resumed, Site, TOOL_GRIPPER, TaskVerb},
     state::State,
     support::Support,
     tables::{
-        Drum, Ends, Ordered, Preconditions, Request, Situation, StateVariables, Station, Subordinates, Takeover, Tool, Way,
+        Drum, Ends, Ordered, Preconditions, Request, Situation, StateVariables, Station, Subordinates,
+        Takeover, Tool, Way,
+        item::{
+            Area, Carrying, Continuation, InLedger, Move, Notice, Place, Release, Taker, released, update_due,
+        },
         joystick::Control,
     },
 };
@@ -98,36 +102,54 @@ impl State {
             .filter(|confirmed| confirmed.at == below.at && below.held != Holding::Nothing);
     }
 
-    /// A new command, with what it has to do with the commands before it.
+    /// A new command, compared with the commands before it.
     fn plan(&self, plan: &Plan, inputs: &Inputs<'_, TaskData<'_>>) -> Plan {
         let (below, ledger) = (&inputs.memory.subtask.status, inputs.memory.task.ledger.as_ref());
         let held = Held::of(below.held, plan.object);
-        // What is certainly not in the hand, nor placed, is taken again, and told of again.
-        let is_taken_again =
-            matches!(held, Held::Nothing | Held::Other) && placed(plan, below, ledger) == Placed::Not;
-        let told =
-            plan.resumed != Resumed::Not && ledger.is_some_and(|ledger| ledger.told) && !is_taken_again;
         let carried = self.data_system.beliefs.carried.as_ref();
         let from_elsewhere = plan.verb == TaskVerb::Acquire
             && held == Held::Right
             && is_from_elsewhere(&inputs.external.hws, plan, ledger, carried);
-        let is_known_in_hand = plan.verb == TaskVerb::Transfer
-            && plan.object.is_some_and(|object| self.data_system.follows(object, false));
-        let update_due = (plan.update_due || is_known_in_hand) && !told && !from_elsewhere;
-        Plan { update_due, from_elsewhere, ..*plan }
+        let plan = Plan { from_elsewhere, ..*plan };
+        let due = update_due(
+            (),
+            &Move {
+                verb: plan.verb,
+                origin: plan.origin(),
+                ledger: match ledger {
+                    Some(ledger) if plan.resumed != Resumed::Not && ledger.told => InLedger::Told,
+                    Some(_) if plan.resumed != Resumed::Not => InLedger::Untold,
+                    Some(_) | None => InLedger::Other,
+                },
+                held,
+                placed: placed(&plan, below, ledger),
+                area: if plan.update_due { Area::Mbd } else { Area::Outside },
+                carrying: plan.object.map_or(Carrying::Other, |object| self.data_system.carrying(object)),
+            },
+        );
+        Plan { update_due: due.action == Notice::Tell, ..plan }
     }
 
-    /// The data base is owed where the robot has let go what it carried, but not while the command in the ledger takes
-    /// that: it will take it again, or tell where it is, unless a command `replaces` it. POSITION takes nothing.
+    /// Consult RELEASED about the object that Subtask reports as released.
     fn follow_object(&mut self, verb: TaskVerb, replaces: bool, inputs: &Inputs<'_, TaskData<'_>>) {
         let memory = inputs.memory;
         let Some(placed) = memory.subtask.status.placed else { return };
-        let goes_on = verb != TaskVerb::Position && !replaces;
-        let waits = goes_on && is_taken(memory.task.ledger.as_ref(), &placed.object);
-        if !waits
-            && self.data_system.follows(placed.object, is_in_mbd(LocationKey::of(&placed).point, inputs.data))
-        {
-            self.data_system.owe_released(&placed);
+        let in_mbd = is_in_mbd(LocationKey::of(&placed).point, inputs.data);
+        let is_taken = is_taken(memory.task.ledger.as_ref(), &placed.object);
+        let place = Place {
+            carrying: self.data_system.carrying(placed.object),
+            area: if in_mbd { Area::Mbd } else { Area::Outside },
+            connection: self.data_system.connection(None),
+            taker: if is_taken { Taker::Ledger } else { Taker::Other },
+            command: match verb {
+                TaskVerb::Position => Continuation::Position,
+                _ if replaces => Continuation::Another,
+                _ => Continuation::Same,
+            },
+        };
+        match released((), &place).action {
+            Release::Keep => {}
+            Release::Append => self.data_system.owe_released(&placed),
         }
     }
 

@@ -5,6 +5,7 @@ pub mod accept;
 pub mod acquire;
 pub mod acquire_tool;
 pub mod insert_tool;
+pub mod item;
 pub mod joystick;
 pub mod mov;
 pub mod ordered;
@@ -30,9 +31,7 @@ pub use self::variables::{DataBase, Drum, Ends, Ordered, Station, Tool, Update, 
 use super::{
     goals,
     ledger::{Part, Placed},
-    plan::{
-        Destination, Gripper, Grips, Handling, Plan, Regrip, Resumed, SiteData, TaskVerb, ToolData,
-    },
+    plan::{Destination, Gripper, Grips, Handling, Plan, Regrip, Resumed, SiteData, TaskVerb, ToolData},
     support::Support,
 };
 use crate::{
@@ -268,7 +267,7 @@ commands! {
     /// Consult the table of a command.
     pub fn of_command(TaskVerb, enum Step, Situation) -> Action {
         others: EXECUTE, accept::ACCEPT, HALT, joystick::JOYSTICK, ordered::ORDERED, CONFIRM,
-            precondition::PRECONDITION;
+            precondition::PRECONDITION, item::UPDATE_DUE, item::FOLLOW, item::TAKE, item::RELEASED;
         before: EXECUTE, JOYSTICK by joystick, HALT, ACCEPT(request), PRECONDITION(preconditions),
             ORDERED(subordinates -> situation.work);
         after: CONFIRM;

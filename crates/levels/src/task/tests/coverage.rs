@@ -218,14 +218,22 @@ fn every_row_of_every_table_fires() {
     bench.finish();
     rows.append(&mut bench.rows);
     // The task data have no gripper numbers but 1 to 3. The look-up of a location needs no grip. No process is above.
-    assert_eq!(rows.missing(TABLES), ["ACCEPT 4", "ACCEPT 9", "HALT 4"]);
+    // The rows about updates are in no header.
+    let updates = ["UPDATE-DUE", "FOLLOW", "TAKE", "RELEASED"];
+    let mut missing = rows.missing(TABLES);
+    missing.retain(|row| !updates.iter().any(|table| row.starts_with(table)));
+    assert_eq!(missing, ["ACCEPT 4", "ACCEPT 9", "HALT 4"]);
 }
 
 /// So no order is given twice, and Task needs no EFFECT. An update that is told again ends by itself: the Data
 /// System takes it, refuses it or is silent.
 #[test]
 fn every_order_of_task_leads_to_a_later_step() {
-    let others = ["EXECUTE", "ACCEPT", "PRECONDITION", "HALT", "JOYSTICK", "ORDERED", "CONFIRM"];
+    let others = [
+        &["EXECUTE", "ACCEPT", "PRECONDITION", "HALT", "JOYSTICK", "ORDERED", "CONFIRM"][..],
+        &["UPDATE-DUE", "FOLLOW", "TAKE", "RELEASED"],
+    ]
+    .concat();
     let no_orders = ["Wait", "Finish", "Fail", "PassUp", "Connect", "TellOwed"];
     let mut orders = 0;
     for table in TABLES.iter().filter(|table| !others.contains(&table.name)) {
