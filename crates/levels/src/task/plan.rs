@@ -10,7 +10,7 @@ use rcs_core::{
 use taskdata::files::TaskData;
 
 use super::tables::{
-    WayOut,
+    Destination, Regrip, SiteData, ToolData, WayOut,
     item::{Origin, Takes},
 };
 use crate::places::{LocationKey, Missing, is_in_mbd, named, same_location};
@@ -73,28 +73,6 @@ pub enum Resumed {
     Leaving,
 }
 
-/// Where the destination is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
-pub enum Destination {
-    /// At neither of the following, or none is named.
-    Elsewhere,
-    /// Near the tool drum: it is TOOL-SAFE.
-    NearDrum,
-    /// At the Active Pedestal: it is PEDESTAL.
-    Pedestal,
-}
-
-/// A location of the command, with the grip of the object there.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
-pub enum SiteData {
-    /// The command does not name the location.
-    Null,
-    /// It does, and the object has no such grip.
-    NoGrip,
-    /// It does, and the task data have the grip, or no object is named.
-    Known,
-}
-
 /// Source and destination grip numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Grips {
@@ -111,28 +89,6 @@ pub enum Gripper {
     Valid,
     /// It cannot.
     Invalid,
-}
-
-/// The object as a tool.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
-pub enum ToolData {
-    /// It is for the tool gripper and has the source grip or the destination grip, or no object is named.
-    Fit,
-    /// It is for another gripper.
-    Unfit,
-    /// It has neither of the two grips.
-    NoGrip,
-}
-
-/// Must the object be regripped on the pedestal?
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
-pub enum Regrip {
-    /// No: the source and destination grips are the same.
-    None,
-    /// Yes, and the object has a PED-PARA record (VII.7.4), or no object is named.
-    Possible,
-    /// Yes, and it has none.
-    NoData,
 }
 
 /// A location, looked up.

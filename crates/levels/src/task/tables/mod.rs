@@ -27,11 +27,14 @@ use rcs_core::{
 };
 
 use self::joystick::Control;
-pub use self::variables::{DataBase, Drum, Ends, Ordered, Station, Tool, Update, Way, WayOut};
+pub use self::variables::{
+    DataBase, Destination, Drum, Ends, Ordered, Regrip, SiteData, Station, Tool, ToolData, Update, Way,
+    WayOut,
+};
 use super::{
     goals,
     ledger::{Part, Placed},
-    plan::{Destination, Gripper, Grips, Handling, Plan, Regrip, Resumed, SiteData, TaskVerb, ToolData},
+    plan::{Gripper, Grips, Handling, Plan, Resumed, TaskVerb},
     support::Support,
 };
 use crate::{
