@@ -157,9 +157,9 @@ Steps:
 PAUSE: do nothing.
 
 
-| row | when   | action |
-| --: | ------ | ------ |
-|   1 | always | Finish |
+| row | when      | action |
+| --: | --------- | ------ |
+|   1 | otherwise | Finish |
 
 ### Values
 
