@@ -44,7 +44,13 @@ fn assert_stopped(outcome: &Outcome, who: &str) {
     assert!(stop["cause"].as_str().is_some_and(|cause| cause.contains(who)), "{stop}");
     assert_eq!(stop["at_rest"], true, "{stop}");
     assert!(outcome.last_words.contains(who) && outcome.last_words.contains("with the hand at ("));
-    assert_eq!(outcome.result["failure"]["tick"], stop["tick"]);
+    let failure = &outcome.result["failure"];
+    assert_eq!(
+        (&failure["tick"], failure["kind"].as_str()),
+        (&stop["tick"], Some("emergency-stop")),
+        "{failure}"
+    );
+    crate::faults::assert_same_account(who, outcome);
     assert_eq!(outcome.result["allocations_after_start"], 0, "also on the way of the error");
     assert_replays(outcome);
 }

@@ -131,11 +131,11 @@ fn a_run_that_no_process_failed() {
     });
     let (answer, text) = why(&outcome);
     assert!(answer["failure"].is_null(), "{text}");
-    assert!(text.starts_with("First, at tick "), "{text}");
+    assert!(text.starts_with("first, at tick "), "{text}");
     let world = answer["world"]["text"].as_str().expect("something went wrong");
     assert!(text.contains("The commands that led there:"), "{text}");
     assert_eq!(answer["world"]["tick"].as_u64(), outcome.result["failure"]["tick"].as_u64(), "{world}");
-    assert!(text.contains("The run ended: HWSC: LINKBAR1_BH is to be machined"), "{text}");
+    assert!(text.contains("HWSC: LINKBAR1_BH is to be machined"), "{text}");
 }
 
 #[test]
@@ -143,10 +143,12 @@ fn a_contact_leads_to_the_line_of_the_data_that_the_robot_followed() {
     let outcome = run_with("linkbar", 1, "why-contact", &["--unchecked"], Scratch::with_a_low_via_point);
     let (answer, text) = why(&outcome);
     let world = &answer["world"];
-    assert!(world["text"].as_str().is_some_and(|said| said.contains(" runs into pot_")), "{text}");
+    assert_eq!(world["kind"], "collision", "{text}");
+    assert!(world["text"].as_str().is_some_and(|said| said.contains("the robot ran into pot_")), "{text}");
+    crate::faults::assert_same_account("a contact", &outcome);
     assert_eq!(world["tick"], outcome.result["contacts"][0]["tick"], "{text}");
     assert_eq!(processes(&world["commands"]), ["HWSC", "Task", "Subtask", "E-move"], "{text}");
-    assert!(text.starts_with("First, at tick "), "{text}");
+    assert!(text.starts_with("first, at tick "), "{text}");
     assert!(text.contains("pose UNIT-V1: poses.blk, block "), "{text}");
     assert!(outcome.last_words.contains("in `== MOVE LINKBAR1_BH +2 UNIT_1 4"), "{}", outcome.last_words);
 }

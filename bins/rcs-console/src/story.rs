@@ -1,6 +1,9 @@
 //! The history of a run, stored by change: rows, commands, reports, failures, re-starts, messages.
 
-use closed_loop::failure::{Failure, Watch};
+use closed_loop::{
+    account::{Account, Alarms, has_worked},
+    failure::{Failure, Watch},
+};
 use executive::histogram::Histogram;
 use interfaces::{Decided, Fault, ProcessId};
 use levels::ladder::{Ladder, PROCESS_COUNT};
@@ -49,17 +52,6 @@ pub struct Restart {
     pub reason: String,
 }
 
-/// The first cause of a failure.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Cause {
-    /// The tick.
-    pub tick: u64,
-    /// The process that reports the reason; `None` for an event in the cell.
-    pub process: Option<ProcessId>,
-    /// Description in one sentence.
-    pub text: String,
-}
-
 /// The history of a run.
 pub struct Story {
     doings: [Vec<Doing>; PROCESS_COUNT],
@@ -68,6 +60,9 @@ pub struct Story {
     lines: Vec<LogLine>,
     times: Histogram,
     watch: Box<Watch>,
+    alarms: Alarms,
+    /// The account that the run made at its end; `None` while it is under way, or if it was killed.
+    ended: Option<Option<Account>>,
     headers: Vec<HeaderPlace>,
     limit: usize,
 }
@@ -83,6 +78,8 @@ impl Story {
             lines: Vec::new(),
             times: Histogram::default(),
             watch: Box::default(),
+            alarms: Alarms::default(),
+            ended: None,
             headers: headers(),
             limit,
         }
@@ -103,7 +100,11 @@ impl Story {
             && failed(now) != failed(before)
             && let Some(failure) = self.watch.failure(Ladder::processes())
         {
+            self.alarms.failed(failure.clone());
             keep(&mut self.troubles, Trouble { tick: now.tick.0, failure }, self.limit);
+        }
+        if has_worked(&before.memory.task.status, &now.memory.task.status) {
+            self.alarms.worked(now.tick);
         }
         let counters = |picture: &Picture| picture.memory.t3i.status.counters.restarts;
         if counters(now) > counters(before) {
@@ -131,8 +132,16 @@ impl Story {
 
     /// Add the lines of a log.
     pub fn tell(&mut self, lines: impl Iterator<Item = LogLine>) {
-        self.lines.extend(lines);
+        for line in lines {
+            self.alarms.line(line.tick, &line.source, &line.code, &line.text);
+            self.lines.push(line);
+        }
         self.lines.sort_by_key(|line| line.tick);
+    }
+
+    /// Take over the account that the run made at its end; `None` if it did not fail.
+    pub fn end(&mut self, account: Option<Account>) {
+        self.ended = Some(account);
     }
 
     /// State of a process in a tick, with its first tick.
@@ -195,26 +204,10 @@ impl Story {
         begun.last().filter(|trouble| is_told || tick < trouble.tick)
     }
 
-    /// The first cause of the last failure: an earlier error of the cell or the robot controller, else the report of
-    /// the lowest process.
+    /// What went wrong first, and what followed; `None` if nothing that has not been mended did.
     #[must_use]
-    pub fn first_cause(&self) -> Option<Cause> {
-        let failed = self.troubles.last().map(|Trouble { failure, .. }| Cause {
-            tick: failure.tick.0,
-            process: process_named(&failure.process),
-            text: failure.text.clone(),
-        });
-        // The cell reports the events of a tick with the next tick.
-        let grave = self.lines.iter().find(|line| line.source == "cell" && line.level == Level::Error);
-        let world = grave.map(|line| Cause {
-            tick: line.tick.0.saturating_sub(1),
-            process: None,
-            text: line.text.clone(),
-        });
-        match (world, failed) {
-            (Some(world), Some(failed)) if world.tick <= failed.tick => Some(world),
-            (world, failed) => failed.or(world),
-        }
+    pub fn account(&self) -> Option<Account> {
+        self.ended.clone().unwrap_or_else(|| self.alarms.account())
     }
 
     /// Re-starts of the link up to a tick, oldest first.
@@ -343,8 +336,11 @@ mod tests {
         };
         assert_eq!(at(2), None);
         assert_eq!(at(3), Some(trouble), "it is on its way to Task");
-        let cause = story.first_cause().expect("there is a failure");
-        assert_eq!((cause.tick, cause.process), (3, Some(ProcessId::Emove)));
+        let account = story.account().expect("there is a failure");
+        assert_eq!(
+            (account.first.shown_at(), process_named(&account.first.process)),
+            (3, Some(ProcessId::Emove))
+        );
         assert_eq!(story.trouble(0, true), Some((3, Some(ProcessId::Emove))));
         assert_eq!(story.trouble(99, false), Some((5, Some(ProcessId::Task))));
     }
@@ -360,10 +356,13 @@ mod tests {
             code: "contact.begins".to_owned(),
         };
         story.tell([line(9, "cell")].into_iter());
-        assert_eq!(story.first_cause().map(|cause| cause.tick), Some(3), "it came later");
-        story.tell([line(3, "cell"), line(1, "Task")].into_iter());
-        let cause = story.first_cause().expect("there is a failure");
-        assert_eq!((cause.tick, cause.process, cause.text.as_str()), (2, None, "contact"));
+        let first = |story: &Story| story.account().expect("there is a failure").first;
+        assert_eq!(first(&story).tick, Tick(3), "the contact came later");
+        story.tell([line(3, "cell")].into_iter());
+        let contact = first(&story);
+        assert_eq!((contact.tick, contact.shown_at(), contact.text.as_str()), (Tick(2), 3, "contact"));
+        story.end(None);
+        assert_eq!(story.account(), None, "the run knows that it has finished");
     }
 
     #[test]

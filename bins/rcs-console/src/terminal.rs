@@ -15,6 +15,7 @@ use std::{
     time::{Duration, Instant},
 };
 
+use closed_loop::failure::Failure;
 use executive::{
     boards,
     memory::{self, RunName},
@@ -40,6 +41,7 @@ use crate::rcs_console::{
     redraw::{cleared, suspended, with_control},
     search::Search,
     source::{Live, Recorded, Source, State},
+    story::process_named,
     view::{Look, Scene, Waiting, draw},
     watch,
 };
@@ -316,9 +318,9 @@ impl Session {
         let Console::Source(model, source, hand) = &mut self.console else { return };
         match log_of(source.as_ref(), self.log.as_deref()) {
             Ok(log) => {
-                let cause = log.story().first_cause();
-                let tick = cause.as_ref().map_or(model.tick(), |cause| cause.tick);
-                model.show(Place::At(tick), cause.and_then(|cause| cause.process));
+                let first = log.story().account().map(|account| account.first);
+                let tick = first.as_ref().map_or(model.tick(), Failure::shown_at);
+                model.show(Place::At(tick), first.and_then(|first| process_named(&first.process)));
                 *source = Box::new(log);
                 *hand = None;
             }

@@ -2,6 +2,7 @@
 
 use std::{collections::BTreeMap, fmt, path::PathBuf, process::ExitCode};
 
+use closed_loop::account::Account;
 use interfaces::t3i::LinkCounters;
 use os_io::text::amount;
 use rcs_core::tick::{TICK_S, Tick};
@@ -43,7 +44,9 @@ struct Info {
     digest: Option<String>,
     commands: Vec<CommandStory>,
     link: Link,
-    failure: Option<String>,
+    /// What went wrong first, and what followed.
+    #[serde(rename = "failure")]
+    account: Option<Account>,
     /// Facts that the run recorded at its end: parts, faults, verdicts.
     facts: BTreeMap<String, String>,
     /// Number of warnings and of errors on `/log`.
@@ -126,6 +129,7 @@ fn look(log: &Log, arguments: &Arguments) -> Result<Info, Error> {
     }
     let level = |level| log.lines().filter(|line| line.level == level).count();
     let end = |key: &str| log.end.as_ref().and_then(|end| end.get(key)).cloned();
+    let account = chronicle.account(log);
     Ok(Info {
         file: arguments.file.display().to_string(),
         bytes: log.size(),
@@ -141,7 +145,7 @@ fn look(log: &Log, arguments: &Arguments) -> Result<Info, Error> {
         commands: chronicle.commands,
         link,
         facts: facts(log),
-        failure: chronicle.failure.map(|failure| failure.text),
+        account,
         warnings: level(Level::Warning),
         errors: level(Level::Error),
         attachments: log.attachments.iter().map(|attachment| attachment.name.clone()).collect(),
@@ -214,7 +218,7 @@ impl fmt::Display for Info {
         if let Some(digest) = &self.digest {
             writeln!(f, "digest     {digest}")?;
         }
-        for (key, value) in &self.facts {
+        for (key, value) in Account::without_account(&self.facts) {
             writeln!(f, "{:<10} {}", key.replace('_', " "), value.replace("; ", "\n           "))?;
         }
         writeln!(f, "\n  tick       s  for s  status     command")?;
@@ -225,9 +229,8 @@ impl fmt::Display for Info {
             let remark = command.remark();
             writeln!(f, "{tick:>6} {begin:>7.1} {length:>6.1}  {status:<10} {}{remark}", command.text)?;
         }
-        match &self.failure {
-            Some(failure) => writeln!(f, "\nfailure    {failure}"),
-            None => Ok(()),
-        }
+        let Some(account) = &self.account else { return Ok(()) };
+        writeln!(f)?;
+        account.sentences().try_for_each(|sentence| writeln!(f, "{sentence}"))
     }
 }

@@ -2,7 +2,10 @@
 
 use std::path::Path;
 
-use closed_loop::failure::{Failure, Watch};
+use closed_loop::{
+    account::{Account, Alarms, has_worked},
+    failure::{Failure, Watch},
+};
 use interfaces::{CommonMemory, ExternalInputs, hws::HwsReport};
 use levels::ladder::Ladder;
 use rcs_core::{plain::from_bytes, tick::Tick};
@@ -106,7 +109,7 @@ impl CommandStory {
     }
 }
 
-/// The commands of a run, and the failure if Task reported one.
+/// The commands of a run, and what went wrong in it.
 #[derive(Default)]
 pub struct Chronicle {
     /// Commands in order.
@@ -114,6 +117,7 @@ pub struct Chronicle {
     /// Why the last failed command failed.
     pub failure: Option<Failure>,
     watch: Box<Watch>,
+    alarms: Alarms,
     number: u32,
     last: Option<HwsReport>,
 }
@@ -123,6 +127,9 @@ impl Chronicle {
     pub fn note(&mut self, moment: &Moment) {
         self.watch.observe(moment.tick, &moment.external, &moment.before, &moment.after);
         let status = &moment.after.task.status;
+        if has_worked(&moment.before.task.status, status) {
+            self.alarms.worked(moment.tick);
+        }
         if status.echo != self.number {
             self.number = status.echo;
             self.last = None;
@@ -142,7 +149,21 @@ impl Chronicle {
         }
         if self.last != Some(status.report) && status.report == HwsReport::Error {
             self.failure = self.watch.failure(Ladder::processes());
+            self.failure.iter().cloned().for_each(|failure| self.alarms.failed(failure));
         }
         self.last = Some(status.report);
+    }
+
+    /// What went wrong first in the run of the log, and what followed: as the run has written it at its end, or as its
+    /// lines show it if the run was killed. `None` if nothing did.
+    pub fn account(&self, log: &Log) -> Option<Account> {
+        if let Some(facts) = &log.end {
+            return Account::of_facts(facts);
+        }
+        let mut alarms = self.alarms.clone();
+        for line in log.lines() {
+            alarms.line(line.tick, &line.source, &line.code, &line.text);
+        }
+        alarms.account()
     }
 }

@@ -27,7 +27,7 @@ impl fmt::Display for LastLines<'_> {
         }
         let Some(log) = result.log.as_deref().map(shell::path) else { return Ok(()) };
         let tick = match ending {
-            Ending::Failed(failure) => format!(" --tick {}", failure.tick),
+            Ending::Failed(account) => format!(" --tick {}", account.first.shown_at()),
             Ending::Finished | Ending::Stopped | Ending::StoppedByUser => String::new(),
         };
         writeln!(f)?;

@@ -19,7 +19,7 @@ impl fmt::Display for Page<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self(RunOutcome { ending, result, steps, log, slowest, .. }) = self;
         let outcome = match ending {
-            Ending::Failed(_) => "failed",
+            Ending::Failed(_) => "failed".into(),
             other => other.text(),
         };
         writeln!(

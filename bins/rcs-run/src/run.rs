@@ -89,14 +89,14 @@ fn status(outcome: &RunOutcome) -> u8 {
         stderr_line!("rcs-run: {job} was stopped by the user at tick {ticks}");
         return STOPPED;
     }
-    let (Ending::Failed(failure), Some(FailureResult { line, .. })) =
+    let (Ending::Failed(account), Some(FailureResult { line, .. })) =
         (&outcome.ending, &outcome.result.failure)
     else {
         return 0;
     };
-    let (job, tick, text) = (&outcome.result.job, failure.tick, &failure.text);
+    let (job, tick) = (&outcome.result.job, account.first.tick);
     let line = line.as_ref().map_or_else(String::new, |line| format!(" in `{line}`"));
     let to_do = outcome.remedy.map_or_else(String::new, |remedy| format!("; to do: {remedy}"));
-    stderr_line!("rcs-run: {job} failed at tick {tick}{line}: {text}{to_do}");
-    if failure.stopped { STOPPED } else { FAILED }
+    stderr_line!("rcs-run: {job} failed at tick {tick}{line}: {account}{to_do}");
+    if account.is_stopped() { STOPPED } else { FAILED }
 }

@@ -10,7 +10,7 @@
 
 use std::{collections::BTreeMap, fmt};
 
-use crate::failure::Failure;
+use crate::{account::Kind, failure::Failure};
 use geometry::units::Point;
 use interfaces::{CommonMemory, StatusReport, emove::EmoveVerb, subtask::SubtaskVerb};
 use os_io::text::amount;
@@ -291,8 +291,7 @@ impl ContactCheck {
              {tick} on, during {commands}{more}",
             Point(*position_in)
         );
-        let process = "cell".to_owned();
-        Some(Failure { tick: Tick(*tick), process, table: None, row: None, text, stopped: false })
+        Some(Failure::outside(Tick(*tick), Kind::Collision, "cell", text))
     }
 
     /// Process the contact of two objects. Returns the collision if one begins.

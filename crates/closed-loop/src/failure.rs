@@ -3,20 +3,29 @@
 //! A reason travels up the ladder unchanged, one level a tick, so its origin is the lowest process that reports the
 //! reason which arrived at Task. When it arrives there, the lower processes may be doing something else. Therefore
 //! [`Watch`] keeps, for each process, common memory as it was in the tick when the process began to report its reason.
+//!
+//! What a process reports is often not what went wrong first. [`Account`](crate::account::Account) puts it in order with
+//! collisions, lost parts and emergency stops.
 
 use interfaces::{CommonMemory, Detail, ExternalInputs, Fault, Header, HwsCommand, Reason};
 use levels::ladder::{PROCESS_COUNT, ProcessId, ProcessInfo};
 use rcs_core::{Plain, handshake::Lower, table::Fired, tick::Tick};
+use serde::{Deserialize, Serialize};
+
+use crate::account::Kind;
 
 /// Number of processes of [`CommonMemory`], in its order.
 pub const PROCESSES: usize = PROCESS_COUNT;
 
-/// The explanation of a failed run.
-#[derive(Clone, Debug, PartialEq, Eq)]
+/// Something that went wrong in a run. The names of the fields are those of the JSON object.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Failure {
-    /// Tick in which the failure began.
+    /// Tick in which it began.
+    #[serde(with = "number")]
     pub tick: Tick,
-    /// The process that reports the reason, with the manual's name.
+    /// What kind of failure it is.
+    pub kind: Kind,
+    /// The process that reports the reason, with the manual's name; `cell` and `T3` for what happens in the cell.
     pub process: String,
     /// Its decision table, if one was used.
     pub table: Option<String>,
@@ -25,7 +34,30 @@ pub struct Failure {
     /// The failure in one sentence.
     pub text: String,
     /// The link to the robot is lost, or the robot was stopped: not a failure of the job.
+    #[serde(skip)]
     pub stopped: bool,
+}
+
+impl Failure {
+    /// A failure that comes from no decision table.
+    #[must_use]
+    pub fn outside(tick: Tick, kind: Kind, process: &str, text: String) -> Self {
+        Self { tick, kind, process: process.to_owned(), table: None, row: None, text, stopped: false }
+    }
+}
+
+/// A tick as a number.
+mod number {
+    use super::{Deserialize, Tick};
+
+    #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde hands over a reference")]
+    pub fn serialize<S: serde::Serializer>(tick: &Tick, to: S) -> Result<S::Ok, S::Error> {
+        to.serialize_u64(tick.0)
+    }
+
+    pub fn deserialize<'de, D: serde::Deserializer<'de>>(from: D) -> Result<Tick, D::Error> {
+        u64::deserialize(from).map(Tick)
+    }
 }
 
 /// The beginning of a report that is still present.
@@ -103,8 +135,14 @@ impl Watch {
             while_doing(root, cause),
             fired.map_or_else(String::new, |fired| format!(" (table {fired})"))
         );
+        let kind = match reason {
+            _ if link => Kind::Link,
+            Reason::OffPath => Kind::OffPath,
+            _ => Kind::Process,
+        };
         Some(Failure {
             tick: cause.tick,
+            kind,
             process: process.name.to_owned(),
             table: fired.map(|fired| fired.table.name.to_owned()),
             row: fired.map(|fired| fired.row.number),

@@ -17,6 +17,7 @@
 //!
 //! `rcs-run run` puts clock, log, boards, robots and neighbours around it; `rcs-run campaign` forks it.
 
+pub mod account;
 pub mod contacts;
 pub mod course;
 pub mod failure;

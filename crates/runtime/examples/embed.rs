@@ -31,7 +31,7 @@ fn main() -> Result<(), StartError> {
             println!("finished after {} ticks, digest {}", outcome.result.ticks, outcome.result.digest)
         }
         Ending::Stopped | Ending::StoppedByUser => println!("stopped"),
-        Ending::Failed(failure) => println!("failed at tick {}: {}", failure.tick, failure.text),
+        Ending::Failed(account) => println!("failed at tick {}: {account}", account.first.tick),
     }
     for part in &outcome.result.parts {
         println!("{part}");

@@ -55,7 +55,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     match outcome.ending {
         Ending::Finished => println!("finished after {} ticks and {inches:.0} in", outcome.result.ticks),
         Ending::Stopped | Ending::StoppedByUser => println!("stopped after {inches:.0} in"),
-        Ending::Failed(failure) => println!("failed at tick {}: {}", failure.tick, failure.text),
+        Ending::Failed(account) => println!("failed at tick {}: {account}", account.first.tick),
     }
     Ok(())
 }

@@ -1,6 +1,7 @@
 //! Publishes the state of the simulated cell to other programs: [`CellView`], filled after each tick.
 
 use ::neighbours::workstation::player::BegunStep;
+use closed_loop::failure::Failure;
 use executive::memory::{
     Text,
     cell::{CellView, ControllerView, JobView, Lamps, LatenessView, PARTS, PartView, TableView},
@@ -30,7 +31,7 @@ impl View {
         &mut self,
         tick: Tick,
         cell: &Cell,
-        warning: Option<&(Tick, String)>,
+        warning: Option<&Failure>,
         (place, steps): ((usize, usize), &[BegunStep]),
         pace: &Pace,
     ) -> &CellView {
@@ -59,7 +60,7 @@ impl View {
 
 fn controller(
     t3: &T3Controller,
-    warning: Option<&(Tick, String)>,
+    warning: Option<&Failure>,
     tick: Tick,
     before: &ControllerView,
 ) -> ControllerView {
@@ -68,9 +69,8 @@ fn controller(
     let shown = match t3.error() {
         Some(error) if before.screen.as_str() == error => (before.screen_tick, before.screen),
         Some(error) => (tick, Text::clipped(error)),
-        None => {
-            warning.map_or((Tick::BEFORE_START, Text::default()), |(tick, text)| (*tick, Text::clipped(text)))
-        }
+        None => warning
+            .map_or((Tick::BEFORE_START, Text::default()), |shown| (shown.tick, Text::clipped(&shown.text))),
     };
     let (screen_tick, screen) = shown;
     let is = |stages: &[Stage]| stages.contains(&stage);

@@ -90,6 +90,8 @@ pub enum Event {
     Overrun(Overrun),
     /// The live view has disconnected a viewer, for this reason.
     ViewerDisconnected(String),
+    /// At the end of a run that failed: what went wrong first, or what followed, in a sentence.
+    WentWrong(String),
     /// The user stops the run, by a signal or by leaving the console that the run has started.
     UserStops,
     /// After skipped slots the robot is brought to rest, and the run ends.
@@ -133,6 +135,7 @@ impl Event {
             Self::BoardNotPunctual(_) => "time.board",
             Self::Overrun(_) => "time.overrun",
             Self::ViewerDisconnected(_) => "live.disconnected",
+            Self::WentWrong(_) => "run.failed",
             Self::UserStops => "run.stopped",
             Self::Stops => "time.stops",
             Self::Holds => "time.holds",
@@ -147,7 +150,7 @@ impl Event {
             Self::Cell(CellEvent::Warning(_) | CellEvent::ViseStuck) | Self::RobotRefuses(_) => Level::Error,
             Self::Cell(event) if event.is_harm() => Level::Error,
             Self::Untrue(confirmation) if confirmation.is_false() => Level::Error,
-            Self::Contact(_) | Self::CellStatusUnsent(_) | Self::Stops => Level::Error,
+            Self::Contact(_) | Self::CellStatusUnsent(_) | Self::Stops | Self::WentWrong(_) => Level::Error,
             Self::RealTime { complete: true, .. } => Level::Info,
             // The connection of a neighbour and the departure of an operator are no warnings.
             Self::Network(
@@ -190,6 +193,7 @@ impl Event {
             | Self::BoardNotPunctual(_)
             | Self::Overrun(_)
             | Self::UserStops
+            | Self::WentWrong(_)
             | Self::Stops
             | Self::Holds
             | Self::Punctual => "executive",
@@ -232,6 +236,7 @@ impl fmt::Display for Event {
             }
             Self::Overrun(overrun) => overrun.fmt(f),
             Self::ViewerDisconnected(why) => write!(f, "live view: {why}"),
+            Self::WentWrong(sentence) => f.write_str(sentence),
             Self::UserStops => {
                 f.write_str("the user stops the run: the robot ramps to rest, then the run ends")
             }

@@ -7,8 +7,8 @@ mod timing;
 
 use std::{collections::BTreeMap, path::PathBuf};
 
-use closed_loop::failure::Failure;
 use closed_loop::{
+    account::Account,
     contacts::{Collision, NearMiss},
     truth::TruthResult,
 };
@@ -65,18 +65,11 @@ pub fn bare(line: &str) -> String {
 /// Failure of a run.
 #[derive(Clone, Debug, Serialize)]
 pub struct FailureResult {
-    /// Tick in which the failure began.
-    pub tick: u64,
-    /// The line of the job, or the command, in progress at that time.
+    /// What went wrong first, and what followed.
+    #[serde(flatten)]
+    pub account: Account,
+    /// The line of the job, or the command, in progress when it went wrong first.
     pub line: Option<String>,
-    /// The process that reports the reason.
-    pub process: String,
-    /// Its decision table, if the reason comes from one.
-    pub table: Option<String>,
-    /// The row that fired.
-    pub row: Option<u8>,
-    /// The failure in one sentence.
-    pub text: String,
     /// What a person must do before the job can continue; `None` if PAUSE and the same command may be enough.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub remedy: Option<&'static str>,
@@ -85,16 +78,8 @@ pub struct FailureResult {
 impl FailureResult {
     /// A failure in a line, and what a person must do.
     #[must_use]
-    pub fn new(failure: &Failure, line: Option<&str>, remedy: Option<&'static str>) -> Self {
-        Self {
-            tick: failure.tick.0,
-            line: line.map(str::to_owned),
-            process: failure.process.clone(),
-            table: failure.table.clone(),
-            row: failure.row,
-            text: failure.text.clone(),
-            remedy,
-        }
+    pub fn new(account: &Account, line: Option<&str>, remedy: Option<&'static str>) -> Self {
+        Self { account: account.clone(), line: line.map(str::to_owned), remedy }
     }
 }
 
@@ -220,7 +205,8 @@ impl RunResult {
             facts.push(("cell_faults", list(self.cell_faults.iter().map(ToString::to_string).collect())));
         }
         if let Some(failure) = &self.failure {
-            facts.push(("failed_at", failure.tick.to_string()));
+            facts.push(("failed_at", failure.account.first.tick.to_string()));
+            facts.push(failure.account.fact());
             facts.extend(failure.line.iter().map(|line| ("line", line.clone())));
         }
         if let Some(verdict) = &self.realtime {

@@ -12,7 +12,11 @@ use std::{path::PathBuf, sync::atomic::Ordering, time::Instant};
 
 use ::neighbours::workstation::player;
 use closed_loop::{ClosedLoop, Given, RobotInputs};
-use closed_loop::{failure::Failure, rest::RestWatch};
+use closed_loop::{
+    account::{Alarms, Kind},
+    failure::Failure,
+    rest::RestWatch,
+};
 use depc::Plate;
 use executive::{
     boards::Lost,
@@ -21,7 +25,7 @@ use executive::{
     timing::Stage,
 };
 use geometry::{frame::Frame, pose::WireFrame};
-use interfaces::{CommonMemory, ExternalInputs};
+use interfaces::{CommonMemory, ExternalInputs, hws::HwsStatus};
 use levels::ladder::LadderState;
 use plant::Cell;
 use rcs_core::tick::Tick;
@@ -43,7 +47,7 @@ use crate::{
     pace::Pace,
     result::{DataResult, Events},
     robot::Robot,
-    verdict::{Ending, outside},
+    verdict::Ending,
 };
 
 /// Ticks for which the cell is simulated after the controller has stopped: two seconds, in which the arm comes to rest
@@ -80,8 +84,12 @@ pub struct Run {
     started: Option<Instant>,
     /// Ending of the run.
     ending: Option<Ending>,
-    /// The last warning on the screen of the T3 controller, and its tick.
-    pub(crate) warning: Option<(Tick, String)>,
+    /// The last warning on the screen of the robot controller.
+    pub(crate) warning: Option<Failure>,
+    /// Emergencies, what fell, and which devices of the cell failed.
+    pub(crate) alarms: Alarms,
+    /// The status of Task after the last tick.
+    task: HwsStatus,
     /// The state of the cell for other programs.
     view: Box<View>,
     /// Events of the cell since the last tick, for the log of the next one.
@@ -249,19 +257,19 @@ impl Run {
             player::Progress::Failed(_) if self.closed.workstation.is_settling(tick) => {}
             player::Progress::Failed(failure) => {
                 self.remedy = self.remedy.or(failure.remedy());
-                let ending = Ending::Failed(self.explain(&failure, &external));
-                self.end_at_rest(ending);
+                self.end_at_rest(self.explain(&failure, &external));
             }
             player::Progress::Running => self.end_if_nobody_asks(tick),
         }
         // An obstacle stops an arm that sinks without pressure; the verdict is the emergency.
         let stuck = self.closed.contacts().is_stuck() && !self.closed.workstation.is_settling(tick);
         if let Some(failure) = self.closed.contacts().verdict().filter(|_| stuck) {
-            return Some(Ending::Failed(failure));
+            return Some(failure.into());
         }
         if let Some(overrun) = self.pace.ends(&memory) {
             let text = format!("{overrun}; --overrun {} ends the run then", self.pace.policy());
-            return Some(Ending::Failed(Failure { stopped: true, ..outside(tick, "executive", text) }));
+            let failure = Failure::outside(tick, Kind::Program, "executive", text);
+            return Some(Failure { stopped: true, ..failure }.into());
         }
         self.runner.stage_times_mut().mark(Stage::Workstation);
         if self.config.stop.load(Ordering::Relaxed) {
@@ -273,6 +281,7 @@ impl Run {
             }
             self.end_at_rest(Ending::Stopped);
         }
+        self.note_work(tick, &memory);
         self.watch_link(tick, &memory);
         if let Some(ending) = self.at_rest(&memory) {
             return Some(ending);
@@ -296,7 +305,7 @@ impl Run {
             let Err(lost) = decided else { return None };
             let levels = self.closed.course_mut().levels_mut();
             if !levels.replace(&lost, &self.config, &mut *self.observer) {
-                return Some(Ending::Failed(self.lost(&lost)));
+                return Some(self.lost(&lost).into());
             }
         }
     }
@@ -316,7 +325,8 @@ impl Run {
             self.observe(tick, settled);
         }
         let text = lost.explain(&self.closed.external().hws, self.closed.memory());
-        Failure { stopped: true, ..outside(lost.tick, &lost.board.to_string(), text) }
+        let failure = Failure::outside(lost.tick, Kind::Program, &lost.board.to_string(), text);
+        Failure { stopped: true, ..failure }
     }
 
     /// Put the task data into effect that the job has loaded, if no command is in progress.

@@ -1,9 +1,16 @@
 //! How a run ended, and the reason, from which the last line on standard error and the exit status follow.
 
+use std::borrow::Cow;
+
 use ::neighbours::workstation::player::{JobFailure, Workstation as _};
-use closed_loop::failure::{self, Failure};
+use closed_loop::{
+    account::{Account, Kind},
+    failure::{self, Failure},
+    workstation::Emergency,
+};
 use interfaces::{ExternalInputs, t3i::LinkFault};
 use levels::{ladder::Ladder, prim::state::RESTART_TICKS};
+use plant::t3::Cut;
 use rcs_core::tick::Tick;
 
 use crate::Run;
@@ -19,19 +26,19 @@ pub enum Ending {
     Stopped,
     /// The user has stopped the run before its job had finished.
     StoppedByUser,
-    /// An error has ended the run.
-    Failed(Failure),
+    /// Something went wrong.
+    Failed(Account),
 }
 
 impl Ending {
     /// As text, for the log.
     #[must_use]
-    pub fn text(&self) -> &str {
+    pub fn text(&self) -> Cow<'static, str> {
         match self {
-            Self::Finished => "finished",
-            Self::Stopped => "stopped as requested",
-            Self::StoppedByUser => "stopped by the user",
-            Self::Failed(failure) => &failure.text,
+            Self::Finished => "finished".into(),
+            Self::Stopped => "stopped as requested".into(),
+            Self::StoppedByUser => "stopped by the user".into(),
+            Self::Failed(account) => account.to_string().into(),
         }
     }
 
@@ -45,24 +52,26 @@ impl Ending {
         }
     }
 
-    /// The ending with a verdict on the cell: a job with an error in the cell counts as failed, and a job that failed
-    /// may have failed because of it.
-    fn checked(self, verdict: Failure) -> Self {
+    /// The ending with the verdicts on the cell: a job with an error in the cell counts as failed, and a job that
+    /// failed may have failed because of it.
+    fn checked(self, verdicts: Vec<Failure>) -> Self {
         match self {
-            Self::Finished | Self::Stopped | Self::StoppedByUser => Self::Failed(verdict),
-            Self::Failed(failure) if failure.text == verdict.text => Self::Failed(failure),
-            Self::Failed(failure) => {
-                let when = if verdict.tick <= failure.tick { "before" } else { "later" };
-                let text = format!("{}; {when}, {}", failure.text, verdict.text);
-                Self::Failed(Failure { text, ..failure })
-            }
+            Self::Failed(account) => Self::Failed(account.with(verdicts)),
+            other => Account::of(verdicts).map_or(other, Self::Failed),
         }
+    }
+}
+
+impl From<Failure> for Ending {
+    fn from(failure: Failure) -> Self {
+        Self::Failed(Account { first: failure, followed: Vec::new() })
     }
 }
 
 impl Run {
     /// The ending with the verdicts on the cell: collisions of the robot, parts that are not at their
-    /// places, and false confirmations.
+    /// places, and false confirmations. A run that failed also has the
+    /// emergencies that nobody has mended, what fell, and which devices failed.
     pub(super) fn checked(&self, ending: Ending) -> Ending {
         let parts = self.closed.workstation.cell.parts();
         let mut verdicts: Vec<Failure> = self
@@ -73,18 +82,23 @@ impl Run {
             .chain(self.closed.placement().verdict(&parts))
             .collect();
         verdicts.extend(self.closed.truth().verdict());
-        verdicts.sort_by_key(|verdict| verdict.tick);
-        let simulated = |verdict: Failure| match self.robot.is_elsewhere() {
-            true => Failure { text: format!("in the simulated cell, {}", verdict.text), ..verdict },
-            false => verdict,
-        };
-        verdicts.into_iter().map(simulated).fold(ending, Ending::checked)
+        if let Ending::Failed(account) = &ending {
+            let same = |one: &Failure, other: &Failure| (one.kind, one.tick) == (other.kind, other.tick);
+            let known = |alarm: &&Failure| account.failures().any(|failure| same(failure, alarm));
+            verdicts.extend(self.alarms.failures().filter(|alarm| !known(alarm)).cloned());
+        }
+        if self.robot.is_elsewhere() {
+            for verdict in &mut verdicts {
+                verdict.text = format!("in the simulated cell, {}", verdict.text);
+            }
+        }
+        ending.checked(verdicts)
     }
 
     /// The ending of a run that another process commands: without a job that can fail, the state of the robot decides.
     pub(super) fn left(&self, ending: Ending) -> Ending {
         let commanding = self.neighbours.are_commanding();
-        self.standing().filter(|_| commanding).map_or(ending, Ending::Failed)
+        self.standing().filter(|_| commanding).map_or(ending, Ending::from)
     }
 
     /// The emergency or lost link that prevents the robot from moving at the end.
@@ -99,74 +113,62 @@ impl Run {
                 Some(trouble) => format!("T3I: {}; {trouble}", status.fault.text()),
                 None => format!("T3I: the link to the robot is lost: {}", status.fault.text()),
             };
-            Failure { stopped: true, ..outside(self.closed.tick(), "T3I", text) }
+            let failure = Failure::outside(self.closed.tick(), Kind::Link, "T3I", text);
+            Failure { stopped: true, ..failure }
         })
     }
 
-    /// The failure of a lost link, or of a robot of the caller that is elsewhere, with the warning that caused it.
-    fn warned(&self, failure: Failure) -> Failure {
-        let recent = |tick: Tick| tick <= failure.tick && failure.tick.since(tick) <= EXPLAINS_TICKS;
-        match &self.warning {
-            Some((tick, warning))
-                if *tick <= failure.tick && (failure.stopped || self.robot.is_own() && recent(*tick)) =>
-            {
-                Failure { text: format!("{warning} at tick {tick}; {}", failure.text), ..failure }
-            }
-            _ => failure,
+    /// What the robot controller has shown, or the robot at a port has reported, shortly before a failure that it
+    /// explains.
+    fn warning_before(&self, failure: &Failure) -> Option<Failure> {
+        if let Some(trouble) = self.robot.trouble().filter(|_| failure.stopped) {
+            return Some(Failure::outside(failure.tick, Kind::RobotController, "robot", trouble));
         }
+        let recent = |tick: Tick| failure.tick.since(tick) <= EXPLAINS_TICKS;
+        let explains = |warning: &&Failure| {
+            warning.tick <= failure.tick && (failure.stopped || self.robot.is_own() && recent(warning.tick))
+        };
+        self.warning.as_ref().filter(explains).cloned()
     }
 
     /// The emergency that has stopped the robot, and the state of the arm.
     fn stopped(&self, what: &str) -> Option<Failure> {
-        let emergency = self.closed.workstation.last_emergency()?;
-        let text = format!("{what}; the arm {}", emergency.droop.end());
-        Some(Failure { stopped: true, ..outside(emergency.tick, "T3", text) })
+        let Emergency { tick, droop } = self.closed.workstation.last_emergency()?;
+        let text = format!("{what}; the arm {}", droop.end());
+        let kind = if let Cut::EStop(_) = droop.cause { Kind::EmergencyStop } else { Kind::Power };
+        Some(Failure { stopped: true, ..Failure::outside(*tick, kind, "T3", text) })
     }
 
-    /// The failure of the job: the reason of the process that reports it, or the observation of the workstation
-    /// controller.
-    pub(super) fn explain(&self, failure: &JobFailure, external: &ExternalInputs) -> Failure {
-        match failure {
-            JobFailure::Emergency(what) => {
-                if let Some(stopped) = self.stopped(what) {
-                    return stopped;
-                }
-            }
-            JobFailure::Commander(what) => {
-                if let Some(standing) = self.standing() {
-                    return Failure { text: format!("{}; {what}", standing.text), ..standing };
-                }
-            }
-            _ => {}
-        }
-        let processes = Ladder::processes();
-        let known = match failure {
-            JobFailure::Command(_) => self.closed.course().watch().failure(processes),
+    /// What went wrong when the job failed: the reason of the process that reports it, or the observation of the
+    /// workstation controller, and what explains them.
+    pub(super) fn explain(&self, failure: &JobFailure, external: &ExternalInputs) -> Ending {
+        let reported = || self.closed.course().watch().failure(Ladder::processes());
+        let found = match failure {
+            JobFailure::Emergency(what) => self.stopped(what),
+            JobFailure::Commander(_) => self.standing(),
+            JobFailure::Command(_) => reported(),
             _ => None,
         };
-        let trouble = self.robot.trouble();
-        let known = known.map(|known| match trouble {
-            Some(trouble) if known.stopped => Failure { text: format!("{trouble}; {}", known.text), ..known },
-            _ => self.warned(known),
-        });
-        known.unwrap_or_else(|| {
-            let tick = match failure {
-                JobFailure::Unfinished { tick, .. } => *tick,
-                _ => self.closed.tick(),
-            };
-            let text = match failure {
-                JobFailure::TimeLimit(_) => {
-                    let doing = failure::present_commands(processes, &external.hws, self.closed.memory());
-                    format!("HWSC: {failure}; {doing}")
-                }
-                _ => format!("HWSC: {failure}"),
-            };
-            outside(tick, "HWSC", text)
-        })
+        let Some(found) = found else { return self.of_job(failure, external).into() };
+        let more = match failure {
+            JobFailure::Emergency(_) => reported().filter(|reported| reported.tick >= found.tick),
+            JobFailure::Commander(_) => Some(self.of_job(failure, external)),
+            _ => self.warning_before(&found),
+        };
+        Ending::Failed(Account { first: found, followed: Vec::new() }.with(more))
     }
-}
 
-/// A failure that no control process reports.
-pub fn outside(tick: Tick, process: &str, text: String) -> Failure {
-    Failure { tick, process: process.to_owned(), table: None, row: None, text, stopped: false }
+    /// What the workstation controller observes.
+    fn of_job(&self, failure: &JobFailure, external: &ExternalInputs) -> Failure {
+        let tick = match failure {
+            JobFailure::Unfinished { tick, .. } => *tick,
+            _ => self.closed.tick(),
+        };
+        let mut text = format!("HWSC: {failure}");
+        if let JobFailure::TimeLimit(_) = failure {
+            text += "; ";
+            text += &failure::present_commands(Ladder::processes(), &external.hws, self.closed.memory());
+        }
+        Failure::outside(tick, Kind::Job, "HWSC", text)
+    }
 }

@@ -1,9 +1,13 @@
 //! Carries out the keys.
 
+use closed_loop::account::Account;
 use interfaces::ProcessId;
 
 use super::{Model, Pane, Place, Prompt, Screen, buffers, drawing::Drawing, ladder, views::fields_named};
-use crate::rcs_console::source::{Source, State};
+use crate::rcs_console::{
+    source::{Source, State},
+    story::process_named,
+};
 
 /// Ticks per second.
 const SECOND: u64 = 25;
@@ -255,12 +259,12 @@ impl Model {
 
     /// Go to the first cause of the last failure, and to the process that reports it.
     fn go_to_cause(&mut self, source: &dyn Source) {
-        match source.story().first_cause() {
-            Some(cause) => {
-                self.go(cause.tick, source);
-                self.process = cause.process.unwrap_or(self.process);
+        match source.story().account() {
+            Some(Account { first, .. }) => {
+                self.go(first.shown_at(), source);
+                self.process = process_named(&first.process).unwrap_or(self.process);
             }
-            None => self.answer = Some("no process has reported a failure".to_owned()),
+            None => self.answer = Some("nothing has gone wrong that stops the work".to_owned()),
         }
     }
 

@@ -5,6 +5,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
+use closed_loop::account::Account;
 use record::{Attachment, Log, ReadError};
 use taskdata::load::Source as Blocks;
 
@@ -65,6 +66,9 @@ impl Recorded {
             before = Some(picture);
         }
         story.tell(log.lines());
+        if let Some(facts) = &log.end {
+            story.end(Account::of_facts(facts));
+        }
         if deltas.range().is_none() {
             return Err(ConsoleError::Empty(path.to_owned()));
         }

@@ -23,7 +23,7 @@ impl End {
     #[must_use]
     pub fn of_run(outcome: &RunOutcome) -> Self {
         let ticks = outcome.result.ticks + u64::from(outcome.result.ramp_ticks);
-        Self { outcome: outcome.ending.text().to_owned(), ticks, facts: outcome.result.facts() }
+        Self { outcome: outcome.ending.text().into_owned(), ticks, facts: outcome.result.facts() }
     }
 
     /// The end recorded in a log of `ticks` ticks.

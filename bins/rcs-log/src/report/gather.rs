@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use closed_loop::failure;
+use closed_loop::{account::Account, failure};
 use geometry::pose::WireFrame;
 use interfaces::{
     CommonMemory,
@@ -92,6 +92,8 @@ pub struct Run {
     pub overruns: u64,
     /// Commands and the failure of the run.
     pub chronicle: Chronicle,
+    /// What went wrong first, and what followed.
+    pub account: Option<Account>,
     /// The explained failure.
     pub failure: Option<Told>,
     /// Warnings and errors on `/log`.
@@ -117,7 +119,9 @@ pub fn gather(log: &Log, path: &Path) -> Result<Run, Error> {
     if run.ticks.is_empty() {
         return Err(Error::Empty(path.to_owned()));
     }
-    run.failure = run.chronicle.failure.as_ref().and_then(|failure| tell(log, &history, failure));
+    run.account = run.chronicle.account(log);
+    let reported = run.account.as_ref().map_or(run.chronicle.failure.as_ref(), Account::of_process);
+    run.failure = reported.and_then(|failure| tell(log, &history, failure, run.account.as_ref()));
     for line in log.lines() {
         run.all_lines += 1;
         if matches!(line.level, Level::Warning | Level::Error) {

@@ -51,7 +51,7 @@ pub fn page(log: &Log, run: &Run) -> String {
 
 fn head(log: &Log, run: &Run, title: &str) -> Markup {
     let end = log.end.as_ref().and_then(|end| end.get("result")).map_or("the log has no end", String::as_str);
-    let (class, word) = match (&run.chronicle.failure, end) {
+    let (class, word) = match (&run.account, end) {
         (None, "finished") => ("badge good", "finished"),
         (None, _) if log.complete => ("badge", "stopped"),
         (None, _) => ("badge bad", "broken off"),

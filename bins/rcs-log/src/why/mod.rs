@@ -18,7 +18,10 @@ use std::{
     process::ExitCode,
 };
 
-use closed_loop::failure::{self, Failure};
+use closed_loop::{
+    account::Account,
+    failure::{self, Failure},
+};
 use levels::ladder::{Ladder, ProcessId};
 use rcs_core::tick::{TICK_S, Tick};
 use record::{
@@ -144,12 +147,16 @@ struct Rung {
 pub fn why(arguments: &Arguments) -> Result<ExitCode, Error> {
     let log = open(&arguments.file)?;
     let (chronicle, history) = read(&log, &arguments.file)?;
-    let failure = chronicle.failure.filter(|_| arguments.tick.is_none());
-    let told = failure.and_then(|failure| tell(&log, &history, &failure));
+    let account = chronicle.account(&log).filter(|_| arguments.tick.is_none());
+    let reported = match &account {
+        Some(account) => account.of_process().cloned(),
+        None => chronicle.failure.filter(|_| arguments.tick.is_none()),
+    };
+    let told = reported.and_then(|failure| tell(&log, &history, &failure, account.as_ref()));
     let failed_at = told.as_ref().map(|told| told.story.tick);
-    let world = world::first(&log, &history)
-        .filter(|world| arguments.tick.is_none() && failed_at.is_none_or(|tick| world.tick <= tick));
-    let tick = arguments.tick.or(failed_at).or(world.as_ref().map(|world| world.tick));
+    let world = account.map(|account| world::first(&log, &history, account));
+    let first = world.as_ref().map(|world| world.account.first.tick.0);
+    let tick = arguments.tick.or(failed_at).or(first);
     let moment = find(&log, arguments, tick)?;
     print(&explain(&log, &moment, world, told), arguments.answer.json)?;
     Ok(ExitCode::SUCCESS)
@@ -172,15 +179,19 @@ fn read(log: &Log, path: &Path) -> Result<(Chronicle, History), Error> {
 /// [`Error::Read`] if the log cannot be read.
 pub fn last_command(log: &Log, path: &Path) -> Result<Option<Link>, Error> {
     let (chronicle, history) = read(log, path)?;
-    let told = chronicle.failure.and_then(|failure| tell(log, &history, &failure));
-    let failed_at = told.as_ref().map(|told| told.story.tick);
-    let world = world::first(log, &history).filter(|world| failed_at.is_none_or(|tick| world.tick <= tick));
-    let commands = world.map(|world| world.commands).or(told.map(|told| told.story.commands));
-    Ok(commands.and_then(|mut commands| commands.pop()))
+    let account = chronicle.account(log);
+    let reported = account.as_ref().map_or(chronicle.failure, |account| account.of_process().cloned());
+    let mut commands = account.map_or_else(Vec::new, |account| world::first(log, &history, account).commands);
+    if commands.is_empty() {
+        let told = reported.and_then(|failure| tell(log, &history, &failure, None));
+        commands = told.map_or_else(Vec::new, |told| told.story.commands);
+    }
+    Ok(commands.pop())
 }
 
 /// Explains a failure that a process began to report in a tick, from its commands to its first cause.
-pub fn tell(log: &Log, history: &History, failure: &Failure) -> Option<Told> {
+/// `account` says what went wrong before.
+pub fn tell(log: &Log, history: &History, failure: &Failure, account: Option<&Account>) -> Option<Told> {
     let at = ProcessId::from_text(&failure.process)?;
     let (tick, text) = (failure.tick.0, failure.text.clone());
     let (root, causes) = chain::down(history, at, tick);
@@ -188,7 +199,12 @@ pub fn tell(log: &Log, history: &History, failure: &Failure) -> Option<Told> {
     let since = history.command(root.process, root.tick).map_or(1, |command| command.tick);
     let begun = commands.iter().find(|link| link.process != "HWSC").map_or(since, |link| link.tick);
     let found = evidence::gather(log, root.process, since, root.tick);
-    let mut first_cause = first_cause(history, root, since, &found);
+    let mut first_cause = match account.map(|account| &account.first) {
+        Some(first) if first != failure => {
+            format!("{} at tick {}: {}", first.kind.text(), first.tick, first.text)
+        }
+        _ => first_cause(history, root, since, &found),
+    };
     let injected = log.lines().filter(|line| line.source == FAULT && line.tick.0 <= root.tick + 1).last();
     if let Some(line) = injected {
         first_cause += &format!("; the faults of the run, at tick {}: {}", line.tick, line.text);
@@ -286,13 +302,9 @@ fn explain(log: &Log, moment: &Moment, world: Option<World>, told: Option<Told>)
 impl fmt::Display for Explanation {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         if let Some(world) = &self.world {
-            writeln!(
-                f,
-                "First, at tick {} ({:.2} s): {}.",
-                world.tick,
-                world.tick as f64 * TICK_S,
-                world.text
-            )?;
+            for sentence in world.account.sentences() {
+                writeln!(f, "{sentence}.")?;
+            }
             links("The commands that led there:", &world.commands, f)?;
             list("The data that the last of them used:", &world.data, f)?;
             writeln!(f)?;
@@ -300,7 +312,7 @@ impl fmt::Display for Explanation {
         match &self.failure {
             Some(story) => self.tell(story, f)?,
             None => {
-                if let Some(ended) = &self.ended {
+                if let Some(ended) = self.ended.as_ref().filter(|_| self.world.is_none()) {
                     writeln!(f, "The run ended: {ended}")?;
                 }
                 writeln!(f, "No control process has reported a failure.\n\nBefore it:")?;
@@ -314,7 +326,9 @@ impl fmt::Display for Explanation {
 
 impl Explanation {
     fn tell(&self, story: &Story, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        writeln!(f, "Failure at tick {} ({:.2} s). {}.", self.tick, self.seconds, story.text)?;
+        if self.world.is_none() {
+            writeln!(f, "Failure at tick {} ({:.2} s). {}.", self.tick, self.seconds, story.text)?;
+        }
         writeln!(f, "First cause: {}.", story.first_cause)?;
         links("The commands that led there:", &story.commands, f)?;
         links("From the failure to its cause, each because of the next:", &story.causes, f)?;

@@ -1,10 +1,13 @@
-//! Finds what went wrong in the world: the first contact, lost part, or warning of the robot controller, or what ended
-//! the run if no process failed. From there the commands are traced up to the workstation controller, each with its
-//! row. The data that the last row used are listed with file, block and line.
+//! What went wrong first in the world, with the commands that led there from the workstation controller down, each with
+//! its row, and the data that the last row used, with file, block and line.
 
+use closed_loop::{
+    account::{Account, Kind},
+    failure::Failure,
+};
 use interfaces::{CommonMemory, emove::Way};
 use levels::ladder::ProcessId;
-use record::{Log, proto::foxglove::Level, replay::generations};
+use record::{Log, replay::generations};
 use serde::Serialize;
 
 use super::{
@@ -17,13 +20,12 @@ use crate::story::moments;
 /// End effector id of the gripper whose hand is the process Grip.
 const PARTS_GRIPPER: u8 = 1;
 
-/// The first thing that went wrong in the world.
+/// What went wrong first, and what followed.
 #[derive(Debug, Serialize)]
 pub struct World {
-    /// The tick of the event.
-    pub tick: u64,
-    /// Description of the event.
-    pub text: String,
+    /// The failures in order.
+    #[serde(flatten)]
+    pub account: Account,
     /// The commands that led to the event, from the workstation controller down.
     pub commands: Vec<Link>,
     /// The data that the last row used, with file, block and line.
@@ -46,38 +48,39 @@ impl Motion {
     }
 }
 
-/// The first thing that went wrong; `None` if nothing did.
-pub fn first(log: &Log, history: &History) -> Option<World> {
-    // The cell reports an event with the tick after it.
-    let of_world = |source: &str| matches!(source, "cell" | "robot");
-    let grave = log.lines().find(|line| of_world(&line.source) && line.level == Level::Error);
-    let (tick, text, code) = match grave {
-        Some(line) => (line.tick.0.saturating_sub(1), line.text, line.code),
-        None => {
-            let end = log.end.as_ref()?;
-            (end.get("failed_at")?.parse().ok()?, end.get("result")?.clone(), String::new())
-        }
-    };
+/// What went wrong first. Commands and data are listed for what a command can have caused.
+pub fn first(log: &Log, history: &History, account: Account) -> World {
+    let Failure { tick, kind, .. } = account.first;
+    let mut world = World { account: account.clone(), commands: Vec::new(), data: Vec::new() };
+    if account.first.table.is_some() || !is_commanded(kind) {
+        return world;
+    }
     let (mut motion, mut last) = (Motion::default(), None);
-    for (moment, _) in moments(log).take_while(|(moment, _)| moment.tick.0 <= tick) {
+    for (moment, _) in moments(log).take_while(|(moment, _)| moment.tick <= tick) {
         motion.note(&moment.before);
         last = Some((moment.before, moment.external.generation));
     }
-    let (memory, generation) = last?;
-    let process = mover(&code, &memory);
-    let commands = chain::commands(history, Root { process, tick });
-    let store = generations(log).ok().and_then(|all| all.into_iter().nth(usize::try_from(generation).ok()?));
-    let data = store.map_or_else(Vec::new, |store| data::used(&store, process, &memory, motion.way));
-    Some(World { tick, text, commands, data })
+    let Some((memory, generation)) = last else { return world };
+    let process = mover(kind, &memory);
+    world.commands = chain::commands(history, Root { process, tick: tick.0 });
+    let generation = usize::try_from(generation).unwrap_or(usize::MAX);
+    let store = generations(log).ok().and_then(|all| all.into_iter().nth(generation));
+    world.data = store.map_or_else(Vec::new, |store| data::used(&store, process, &memory, motion.way));
+    world
 }
 
-/// The lowest process whose command caused the event: the gripper for a lost part, T3I for a warning of the robot
-/// controller, Prim for all other motion.
-fn mover(code: &str, memory: &CommonMemory) -> ProcessId {
+/// True if the command of a process can have caused it.
+const fn is_commanded(kind: Kind) -> bool {
+    !matches!(kind, Kind::EmergencyStop | Kind::Power | Kind::Link | Kind::Device | Kind::Program)
+}
+
+/// The lowest process whose command caused the failure: the gripper for a part that it lost, T3I for a warning of the
+/// robot controller, Prim for all other motion.
+fn mover(kind: Kind, memory: &CommonMemory) -> ProcessId {
     let by_parts_gripper = memory.emove.prim.end_effector_id == Some(PARTS_GRIPPER);
-    match code {
-        "cell.warning" | "robot.refuses" => ProcessId::T3i,
-        "cell.dropped" if by_parts_gripper => ProcessId::Grip,
+    match kind {
+        Kind::RobotController => ProcessId::T3i,
+        Kind::Lost if by_parts_gripper => ProcessId::Grip,
         _ => ProcessId::Prim,
     }
 }

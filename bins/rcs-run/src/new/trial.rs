@@ -73,7 +73,7 @@ impl Trial {
             ..RunConfig::new(self.data(), job)
         };
         let outcome = Run::new(config, Box::new(()))?.complete();
-        let Ending::Failed(failure) = &outcome.ending else {
+        let Ending::Failed(account) = &outcome.ending else {
             return if outcome.is_finished() {
                 Ok(())
             } else {
@@ -82,10 +82,9 @@ impl Trial {
         };
         let line = outcome.result.failure.as_ref().and_then(|FailureResult { line, .. }| line.as_ref());
         let line = line.map_or_else(String::new, |line| format!(" in `{line}`"));
-        let tick = failure.tick;
+        let tick = account.first.tick;
         Err(Error::New(format!(
-            "the trial run of {job} with seed {seed} fails at tick {tick}{line}: {}",
-            failure.text
+            "the trial run of {job} with seed {seed} fails at tick {tick}{line}: {account}"
         )))
     }
 }

@@ -31,7 +31,7 @@ mod untruth;
 
 use std::fmt;
 
-use crate::failure::Failure;
+use crate::{account::Kind, failure::Failure};
 use interfaces::{CommonMemory, HwsCommand, StatusReport, Unconfirmed, hws::HwsReport, prim::PrimReport};
 use plant::Cell;
 use rcs_core::tick::Tick;
@@ -289,8 +289,7 @@ impl TruthCheck {
         let (first, rest) = self.result.lies.split_first()?;
         let more = if rest.is_empty() { String::new() } else { format!("; and {} more", rest.len()) };
         let text = format!("a confirmation is false: {first}{more}");
-        let process = "cell".to_owned();
-        Some(Failure { tick: Tick(first.tick), process, table: None, row: None, text, stopped: false })
+        Some(Failure::outside(Tick(first.tick), Kind::FalseReport, "cell", text))
     }
 }
 

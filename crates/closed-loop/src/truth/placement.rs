@@ -11,7 +11,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use crate::failure::Failure;
+use crate::{account::Kind, failure::Failure};
 use geometry::units::Length;
 use interfaces::{
     HwsCommand,
@@ -205,8 +205,7 @@ impl PlacementCheck {
             (*tick, format!("{command} has finished, but the gripper has had no part meanwhile"))
         });
         let (tick, text) = astray.chain(empty).min_by_key(|(tick, _)| *tick)?;
-        let process = "cell".to_owned();
-        Some(Failure { tick, process, table: None, row: None, text, stopped: false })
+        Some(Failure::outside(tick, Kind::Misplaced, "cell", text))
     }
 }
 

@@ -9,7 +9,7 @@ use super::Droop;
 use crate::{
     clearance::Contact,
     description::DescriptionError,
-    t3::{DriveError, Lamps, RobotEvent, explained},
+    t3::{Cut, DriveError, Lamps, RobotEvent, explained},
 };
 
 /// Errors of building a cell.
@@ -129,6 +129,9 @@ impl CellEvent {
             Self::Fell { .. } => "cell.fell",
             Self::Warning(_) => "cell.warning",
             Self::Sagged(_) => "cell.sagged",
+            Self::Robot(RobotEvent::Sinks(Cut::EStop(_))) => "cell.emergency",
+            Self::Robot(RobotEvent::Sinks(Cut::PressureLost)) => "cell.pressure",
+            Self::Robot(RobotEvent::Sinks(_)) => "cell.power",
             Self::Lamps(_) | Self::Robot(_) => "cell.t3",
             Self::CannotFollow(_) => "cell.cannot-follow",
             Self::Quarantined => "cell.quarantined",

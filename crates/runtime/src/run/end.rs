@@ -1,14 +1,11 @@
 //! The end of a run: the robot ramps to rest before.
 
-use closed_loop::{failure::Failure, rest::AT_LAST};
+use closed_loop::{account::Kind, failure::Failure, rest::AT_LAST};
 use interfaces::CommonMemory;
 use rcs_core::{digest::Digest, tick::Tick};
 
 use super::Run;
-use crate::{
-    event::Event,
-    verdict::{Ending, outside},
-};
+use crate::{event::Event, verdict::Ending};
 
 /// The robot is brought to rest: the velocity knob is at zero, and no more commands are sent.
 pub(super) struct Ramp {
@@ -37,8 +34,8 @@ impl Run {
         let have_ended = self.ramp.is_none() && self.asked.have_ended(tick);
         if have_ended && self.neighbours.job_under_way().is_ok_and(|job| job.waits_idle()) {
             let text = "the job waits for an operator, and the log with the operator's inputs has ended";
-            let failure = Failure { stopped: true, ..outside(tick, "operator", text.to_owned()) };
-            self.end_at_rest(Ending::Failed(failure));
+            let failure = Failure::outside(tick, Kind::Job, "operator", text.to_owned());
+            self.end_at_rest(Failure { stopped: true, ..failure }.into());
         }
     }
 

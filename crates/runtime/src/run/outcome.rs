@@ -7,6 +7,7 @@ use rcs_core::tick::TICK_S;
 
 use super::Run;
 use crate::{
+    event::Event,
     pace,
     result::{
         self, CommandResult, EgmResult, EmergencyResult, FailureResult, FaultsResult, ItemResult, PortResult,
@@ -114,8 +115,9 @@ impl Run {
             events: std::mem::take(&mut self.events),
             log: None,
             failure: match ending {
-                Ending::Failed(failure) => {
-                    Some(FailureResult::new(failure, self.neighbours.line_at(failure.tick), self.remedy))
+                Ending::Failed(account) => {
+                    let line = self.neighbours.line_at(account.first.tick);
+                    Some(FailureResult::new(account, line, self.remedy))
                 }
                 Ending::Finished | Ending::Stopped | Ending::StoppedByUser => None,
             },
@@ -137,8 +139,13 @@ impl Run {
 
     /// End the log and describe it. A finished job stays finished if its log could not be written.
     fn finish_log(&mut self, ending: &Ending, result: &mut RunResult) -> String {
-        let Some(log) = self.log.take() else { return "none".to_owned() };
-        let outcome = ending.text().to_owned();
+        let Some(mut log) = self.log.take() else { return "none".to_owned() };
+        if let Ending::Failed(account) = ending {
+            for sentence in account.sentences() {
+                log.event(self.closed.tick().next(), &Event::WentWrong(sentence));
+            }
+        }
+        let outcome = ending.text().into_owned();
         let path = self.log_path.take();
         match log.finish(self.closed.digest(), outcome, result.facts()) {
             Ok(summary) => {

@@ -2,14 +2,14 @@
 
 use std::sync::Arc;
 
-use closed_loop::ClosedLoop;
-use closed_loop::rest::RestWatch;
+use closed_loop::{ClosedLoop, account::Alarms, rest::RestWatch};
 use depc::host::{PATIENCE_TICKS, RESTART_TICKS};
 use diagnostics::FAULTS;
 use executive::{
     memory::{Announced, Mirror, Publisher, RunName, SET_UP_LIMIT, SharedMemoryError, within_limit},
     runner::Runner,
 };
+use interfaces::hws::HwsStatus;
 use sessions::network::Role;
 
 use super::Run;
@@ -179,6 +179,8 @@ impl Run {
             started: None,
             ending: None,
             warning: None,
+            alarms: Alarms::default(),
+            task: HwsStatus::default(),
             view: Box::default(),
             fresh: Vec::new(),
             events: Events::default(),

@@ -1,6 +1,10 @@
 //! Sends information to the log, the viewers and the operators of a run.
 
-use closed_loop::Settled;
+use closed_loop::{
+    Settled,
+    account::{self, Kind},
+    failure::Failure,
+};
 use interfaces::CommonMemory;
 use neighbours::data_system::DataSystem;
 use plant::CellEvent;
@@ -43,6 +47,14 @@ impl Run {
         self.runner.show_cell(|| self.view.look(tick, cell, warning, job, &self.pace));
     }
 
+    /// A command that finishes shows that what stopped the work before has been mended.
+    pub(super) fn note_work(&mut self, tick: Tick, memory: &CommonMemory) {
+        let before = std::mem::replace(&mut self.task, memory.task.status);
+        if account::has_worked(&before, &memory.task.status) {
+            self.alarms.worked(tick);
+        }
+    }
+
     /// Log the state of the line to the robot when it changes.
     pub(super) fn watch_link(&mut self, tick: Tick, memory: &CommonMemory) {
         if memory.t3i.status.link_running {
@@ -69,12 +81,13 @@ impl Run {
     pub(super) fn observe(&mut self, tick: Tick, settled: Settled) {
         let Settled { events, contacts, untrue } = settled;
         let shown = |event: &CellEvent| matches!(event, CellEvent::Warning(_)).then(|| event.to_string());
+        let controller = |text| Some(Failure::outside(tick, Kind::RobotController, "T3", text));
         if let Some(warning) = events.iter().find_map(shown) {
-            self.warning = Some((tick, warning));
+            self.warning = controller(warning);
         }
         self.fresh = events.into_iter().map(Event::Cell).collect();
         if let Some(event) = self.robot.news().map(Event::RobotRefuses) {
-            self.warning = Some((tick, event.to_string()));
+            self.warning = controller(event.to_string());
             self.fresh.push(event);
         }
         self.fresh.extend(contacts.into_iter().map(Event::Contact));
@@ -83,6 +96,12 @@ impl Run {
             self.fresh.push(event);
         }
         for event in &self.fresh {
+            // Contacts and false reports have their own judges, and a warning counts only if it explains a failure.
+            if let Some(Kind::EmergencyStop | Kind::Power | Kind::Lost | Kind::Device) =
+                Kind::of_code(event.code())
+            {
+                self.alarms.line(tick.next(), event.source(), event.code(), &event.to_string());
+            }
             self.observer.event(tick, event);
             self.events.push(tick, event);
         }

@@ -1,0 +1,304 @@
+//! What went wrong first in a run, and what followed: the one account that all programs give.
+//!
+//! A run that ends badly has often gone wrong more than once: the robot runs into the tray, the part slides in the
+//! fingers, and 5,000 ticks later a process reports that it holds nothing. [`Account`] puts these failures in order. The
+//! first one is the cause in the world; the others followed.
+//!
+//! The run makes its account when it ends, and writes it into the log. Where nobody has made one, in a live view or in
+//! the log of a killed run, [`Alarms`] collects the same failures from what can be seen.
+
+use std::{collections::BTreeMap, fmt, iter};
+
+use interfaces::hws::{HwsReport, HwsStatus};
+use rcs_core::tick::{TICK_S, Tick};
+use serde::{Deserialize, Serialize};
+
+use crate::failure::Failure;
+
+/// Kinds of failures. In the same tick, the earlier kind is the cause of the later one.
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Kind {
+    /// An E-stop was pressed.
+    EmergencyStop,
+    /// The robot has lost hydraulic pressure or power.
+    Power,
+    /// The robot, or what it carries, has run into something.
+    Collision,
+    /// A part or a gripper was dropped, lost or torn off.
+    Lost,
+    /// A device of the cell has failed.
+    Device,
+    /// The robot controller shows a warning, or refuses what it is sent.
+    RobotController,
+    /// The link to the robot controller is lost.
+    Link,
+    /// The robot is not where it was sent.
+    OffPath,
+    /// A process reports an error.
+    Process,
+    /// A command was reported as finished, but its goal is not reached.
+    FalseReport,
+    /// A part is not at the place where the job should have left it.
+    Misplaced,
+    /// The job could not go on: its own check failed, or an operator did not come.
+    Job,
+    /// The program, a board or the clock failed.
+    Program,
+}
+
+impl Kind {
+    /// The kind as a noun with its article: `a collision`.
+    #[must_use]
+    pub const fn text(self) -> &'static str {
+        match self {
+            Self::EmergencyStop => "an emergency stop",
+            Self::Power => "a loss of power",
+            Self::Collision => "a collision",
+            Self::Lost => "a lost part",
+            Self::Device => "a failed device",
+            Self::RobotController => "a warning of the robot controller",
+            Self::Link => "a lost link",
+            Self::OffPath => "a robot off its path",
+            Self::Process => "a process error",
+            Self::FalseReport => "a false report",
+            Self::Misplaced => "a misplaced part",
+            Self::Job => "a job that cannot go on",
+            Self::Program => "a failure of the program",
+        }
+    }
+
+    /// The kind of the event with this code of `/log`; `None` if the event is no failure.
+    #[must_use]
+    pub fn of_code(code: &str) -> Option<Self> {
+        Some(match code {
+            "cell.emergency" => Self::EmergencyStop,
+            "cell.pressure" | "cell.power" => Self::Power,
+            "cell.contact" | "contact.begins" => Self::Collision,
+            "cell.dropped" | "cell.forced-out" | "cell.gripper-fell" | "cell.gripper-torn" | "cell.fell" => {
+                Self::Lost
+            }
+            "cell.vise-stuck" | "cell.quarantined" => Self::Device,
+            "cell.warning" | "robot.refuses" => Self::RobotController,
+            "truth.false" => Self::FalseReport,
+            _ => return None,
+        })
+    }
+
+    /// True if it happens in the cell. The cell shows what happened in a tick with the next tick.
+    #[must_use]
+    pub const fn is_in_cell(self) -> bool {
+        matches!(
+            self,
+            Self::EmergencyStop
+                | Self::Power
+                | Self::Collision
+                | Self::Lost
+                | Self::Device
+                | Self::RobotController
+                | Self::FalseReport
+        )
+    }
+
+    /// True if work can go on afterwards, so that it does not explain what goes wrong later.
+    const fn passes(self) -> bool {
+        !matches!(self, Self::Collision | Self::Lost | Self::FalseReport | Self::Misplaced)
+    }
+}
+
+impl Failure {
+    /// The tick in which a log or a live view shows it.
+    #[must_use]
+    pub const fn shown_at(&self) -> u64 {
+        if self.kind.is_in_cell() { self.tick.0 + 1 } else { self.tick.0 }
+    }
+}
+
+/// Key of the account in the metadata at the end of a log.
+const FACT: &str = "account";
+
+/// What went wrong first, and what followed.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Account {
+    /// What went wrong first in the world.
+    #[serde(flatten)]
+    pub first: Failure,
+    /// What followed, in order.
+    #[serde(default)]
+    pub followed: Vec<Failure>,
+}
+
+impl Account {
+    /// Decides which of these failures was first, and puts the others behind it; `None` if there is none.
+    #[must_use]
+    pub fn of(failures: impl IntoIterator<Item = Failure>) -> Option<Self> {
+        let mut failures: Vec<Failure> = failures.into_iter().collect();
+        failures.sort_by_key(|failure| (failure.tick, failure.kind));
+        let mut ordered = Vec::with_capacity(failures.len());
+        for failure in failures {
+            // Who observes a failure often repeats its words: `HWSC: the jaw of the vise does not move`.
+            if ordered.iter().all(|known: &Failure| !failure.text.ends_with(&known.text)) {
+                ordered.push(failure);
+            }
+        }
+        let mut failures = ordered.into_iter();
+        Some(Self { first: failures.next()?, followed: failures.collect() })
+    }
+
+    /// The account with more failures.
+    #[must_use]
+    pub fn with(self, more: impl IntoIterator<Item = Failure>) -> Self {
+        let all: Vec<Failure> = self.failures().cloned().chain(more).collect();
+        Self::of(all).unwrap_or(self)
+    }
+
+    /// The other metadata at the end of a log.
+    pub fn without_account(facts: &BTreeMap<String, String>) -> impl Iterator<Item = (&String, &String)> {
+        facts.iter().filter(|(key, _)| *key != FACT)
+    }
+
+    /// The account in the metadata at the end of a log; `None` if the run did not fail.
+    #[must_use]
+    pub fn of_facts(facts: &BTreeMap<String, String>) -> Option<Self> {
+        serde_json::from_str(facts.get(FACT)?).ok()
+    }
+
+    /// The account as a fact for the metadata at the end of a log.
+    #[must_use]
+    pub fn fact(&self) -> (&'static str, String) {
+        // An account is text and numbers, which JSON can hold.
+        (FACT, serde_json::to_string(self).unwrap_or_default())
+    }
+
+    /// All failures in order.
+    pub fn failures(&self) -> impl Iterator<Item = &Failure> {
+        iter::once(&self.first).chain(&self.followed)
+    }
+
+    /// The first failure that a process reports: its rows explain it.
+    #[must_use]
+    pub fn of_process(&self) -> Option<&Failure> {
+        self.failures().find(|failure| failure.table.is_some())
+    }
+
+    /// The link to the robot is lost, or the robot was stopped: not a failure of the job.
+    #[must_use]
+    pub fn is_stopped(&self) -> bool {
+        self.failures().any(|failure| failure.stopped)
+    }
+}
+
+impl Account {
+    /// A sentence for each failure: `first, at tick 332, a collision: ...`, then `then, at tick ...`.
+    pub fn sentences(&self) -> impl Iterator<Item = String> {
+        let words = iter::once("first").chain(iter::repeat("then"));
+        self.failures().zip(words).map(|(Failure { tick, kind, text, .. }, word)| {
+            format!("{word}, at tick {tick} ({:.2} s), {}: {text}", tick.0 as f64 * TICK_S, kind.text())
+        })
+    }
+}
+
+/// The first failure, then each that followed with its tick.
+impl fmt::Display for Account {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.first.text)?;
+        self.followed
+            .iter()
+            .try_for_each(|Failure { tick, text, .. }| write!(f, "; then, at tick {tick}, {text}"))
+    }
+}
+
+/// True if a command other than PAUSE has finished between two statuses of Task: the work goes on.
+#[must_use]
+pub fn has_worked(before: &HwsStatus, now: &HwsStatus) -> bool {
+    let finished = |status: &HwsStatus| status.report == HwsReport::Finished;
+    finished(now) && (!finished(before) || before.echo != now.echo) && now.command.as_str() != "PAUSE"
+}
+
+/// Collects failures from what can be seen of a run: lines of `/log`, and what Task reports, in any order.
+#[derive(Clone, Debug, Default)]
+pub struct Alarms {
+    failures: Vec<Failure>,
+    /// The last tick in which a command other than PAUSE finished.
+    worked: Tick,
+}
+
+impl Alarms {
+    /// Note a line of `/log` with its tick and its code. Lines without a failure are ignored.
+    pub fn line(&mut self, tick: Tick, source: &str, code: &str, text: &str) {
+        if let Some(kind) = Kind::of_code(code) {
+            let tick = Tick(tick.0.saturating_sub(u64::from(kind.is_in_cell())));
+            self.failures.push(Failure::outside(tick, kind, source, text.to_owned()));
+        }
+    }
+
+    /// Note a failure that Task reports.
+    pub fn failed(&mut self, failure: Failure) {
+        self.failures.push(failure);
+    }
+
+    /// Note that a command other than PAUSE has finished in a tick: what stopped the work before has been mended.
+    pub fn worked(&mut self, tick: Tick) {
+        self.worked = self.worked.max(tick);
+    }
+
+    /// What went wrong and has not been mended, in the order in which it was noted.
+    pub fn failures(&self) -> impl Iterator<Item = &Failure> {
+        self.failures.iter().filter(|failure| failure.tick > self.worked || !failure.kind.passes())
+    }
+
+    /// What went wrong first, and what followed; `None` if nothing that has not been mended went wrong.
+    #[must_use]
+    pub fn account(&self) -> Option<Account> {
+        Account::of(self.failures().cloned())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn failure(tick: u64, kind: Kind, text: &str) -> Failure {
+        Failure::outside(Tick(tick), kind, "E-move", text.to_owned())
+    }
+
+    #[test]
+    fn earliest_failure_is_first() {
+        let account = Account::of([
+            failure(9, Kind::Process, "nothing is held"),
+            failure(3, Kind::Collision, "the robot ran into the tray"),
+            failure(9, Kind::Lost, "the part is lost"),
+            failure(9, Kind::Lost, "the part is lost"),
+        ]);
+        let account = account.expect("there are failures");
+        assert_eq!(
+            account.to_string(),
+            "the robot ran into the tray; then, at tick 9, the part is lost; then, at tick 9, nothing is held"
+        );
+        assert_eq!(Account::of([]), None);
+    }
+
+    #[test]
+    fn emergency_stop_explains_the_link_of_the_same_tick() {
+        let account = Account::of([
+            failure(5, Kind::Link, "not responding"),
+            failure(5, Kind::EmergencyStop, "the E-stop was pressed"),
+        ]);
+        assert_eq!(account.expect("there are failures").first.kind, Kind::EmergencyStop);
+    }
+
+    #[test]
+    fn mended_stop_is_no_cause_of_a_later_failure_but_a_collision_is() {
+        let mut alarms = Alarms::default();
+        alarms.line(Tick(4), "cell", "cell.emergency", "the E-stop was pressed");
+        alarms.line(Tick(5), "cell", "fault.begins", "no failure");
+        assert_eq!(alarms.account().map(|account| account.first.tick), Some(Tick(3)), "shown a tick later");
+        alarms.worked(Tick(20));
+        assert_eq!(alarms.account(), None);
+        alarms.line(Tick(31), "cell", "contact.begins", "the robot runs into the tray");
+        alarms.worked(Tick(40));
+        alarms.failed(failure(50, Kind::Process, "nothing is held"));
+        let kinds = |account: Account| account.failures().map(|failure| failure.kind).collect::<Vec<_>>();
+        assert_eq!(alarms.account().map(kinds), Some(vec![Kind::Collision, Kind::Process]));
+    }
+}
