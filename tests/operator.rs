@@ -420,7 +420,7 @@ fn a_job_on_stand_by_begins_when_it_may_and_one_that_nobody_attends_ends_with_it
     drop(client);
     let (outcome, log, directory) = cell.end();
     let failure = outcome.result.failure.as_ref().expect("nobody is left who could start the robot up");
-    assert!(failure.text.contains("pedestal"), "{}", failure.text);
+    assert!(failure.account.first.text.contains("pedestal"), "{}", failure.account);
     assert_repeats_with(|config| RunConfig { stand_by: true, ..config }, &outcome, &log, &directory);
 }
 
@@ -812,7 +812,11 @@ fn a_job_that_waits_after_the_last_input_of_a_log_ends() {
         repeated(&directory, |config| RunConfig { inputs, stand_by: true, ticks: Some(20_000), ..config });
     let outcome = outcome.unwrap();
     let failure = outcome.result.failure.unwrap();
-    assert!(failure.text.contains("the log with the operator's inputs has ended"), "{}", failure.text);
+    assert!(
+        failure.account.first.text.contains("the log with the operator's inputs has ended"),
+        "{}",
+        failure.account
+    );
     assert_eq!(outcome.result.ticks, last.0);
 }
 

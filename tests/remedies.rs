@@ -187,7 +187,7 @@ impl Operated {
         let held = outcome.result.parts.iter().any(|part| part.held);
         assert!(!held, "{:?}", outcome.result.parts);
         if let Some(failure) = &outcome.result.failure {
-            assert_eq!(failure.process, "cell", "{failure:?}");
+            assert_eq!(failure.account.first.process, "cell", "{failure:?}");
         }
     }
 

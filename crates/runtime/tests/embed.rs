@@ -27,7 +27,7 @@ impl Observer for Lines {
 fn the_linkbar_finishes_and_is_observed() {
     let lines = Lines::default();
     let outcome = Run::new(config("linkbar"), Box::new(lines.clone())).unwrap().complete();
-    assert!(outcome.is_finished(), "{:?}", outcome.result.failure.map(|failure| failure.text));
+    assert!(outcome.is_finished(), "{:?}", outcome.result.failure.map(|failure| failure.account));
     let lines = lines.0.lock().unwrap();
     assert!(lines.iter().any(|line| line.contains("MOVE LINKBAR1_BH")), "{lines:?}");
     let again = Run::new(config("linkbar"), Box::new(())).unwrap().complete();

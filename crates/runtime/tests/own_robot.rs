@@ -1,5 +1,6 @@
 //! A robot of the caller instead of the T3.
 
+use closed_loop::account::Kind;
 use depc::{
     Plate,
     controller::{JointProblem, Refusal, Robot, joints_for},
@@ -70,8 +71,8 @@ fn it_does_the_job_and_the_cell_follows_it() {
 #[test]
 fn what_it_complains_of_ends_the_job_in_words() {
     let outcome = run(300);
-    let Ending::Failed(failure) = &outcome.ending else { panic!("it was stopped") };
-    assert!(failure.text.contains("the robot has left its path"), "{}", failure.text);
+    let Ending::Failed(account) = &outcome.ending else { panic!("it was stopped") };
+    assert!(account.first.text.contains("the robot has left its path"), "{account}");
 }
 
 /// Shows its position some ticks late, and may have a fault.
@@ -179,8 +180,9 @@ fn a_robot_that_does_not_follow_is_stopped_and_reported() {
     let faults = [Fault::Frozen(MOVES), Fault::Waits(MOVES), Fault::Jumps(MOVES)].map(|fault| (2, fault));
     for (ticks, fault) in constant.into_iter().chain(faults) {
         let outcome = lagging(ticks, 200, fault);
-        let Ending::Failed(failure) = &outcome.ending else { panic!("{ticks} ticks: it was not stopped") };
-        let text = &failure.text;
+        let Ending::Failed(account) = &outcome.ending else { panic!("{ticks} ticks: it was not stopped") };
+        assert_eq!(account.first.kind, Kind::OffPath, "{account}");
+        let text = &account.first.text;
         assert!(text.starts_with("Prim: the robot is off its commanded path: "), "{ticks} ticks: {text}");
         let inches: f64 = text.split(": ").nth(2).unwrap().split(' ').next().unwrap().parse().unwrap();
         assert!((0.4..4.5).contains(&inches), "{ticks} ticks: {text}");
@@ -223,9 +225,10 @@ fn the_refusal_of_a_point_is_in_the_last_line_and_in_the_log() {
     let at = Plate::from_frame(&T3.forward_plate(&HOME_JOINTS), &Plate::default()).unwrap();
     let robot = Follower { joints: HOME_JOINTS, goal: at, at, points: 0, complains_after: u32::MAX };
     let outcome = Run::with_robot(config, Box::new(Refusing(robot, at)), Box::new(())).unwrap().complete();
-    let Ending::Failed(failure) = &outcome.ending else { panic!("it was stopped") };
+    let Ending::Failed(account) = &outcome.ending else { panic!("it was stopped") };
     let refused = "the robot does not accept the commanded position: P05 (joint 2, the shoulder";
-    assert!(failure.text.starts_with(refused), "{}", failure.text);
+    assert_eq!(account.first.kind, Kind::RobotController, "{account}");
+    assert!(account.first.text.starts_with(refused), "{account}");
     let log = record::Log::open(&log).unwrap();
     let line = log.lines().find(|line| line.text.starts_with(refused)).expect("a line of the log");
     assert_eq!((line.source.as_str(), line.code.as_str()), ("robot", "robot.refuses"));
