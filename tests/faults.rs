@@ -117,7 +117,7 @@ pub fn assert_same_account(what: &str, outcome: &Outcome) {
         }
     }
     let why = ask(outcome, &["why"]);
-    assert!(why.starts_with(&format!("first, at tick {tick} (")), "{what}: {why}");
+    assert!(why.starts_with(&format!("First, at tick {tick} (")), "{what}: {why}");
 }
 
 macro_rules! endings {

@@ -131,7 +131,7 @@ fn a_run_that_no_process_failed() {
     });
     let (answer, text) = why(&outcome);
     assert!(answer["failure"].is_null(), "{text}");
-    assert!(text.starts_with("first, at tick "), "{text}");
+    assert!(text.starts_with("First, at tick "), "{text}");
     let world = answer["world"]["text"].as_str().expect("something went wrong");
     assert!(text.contains("The commands that led there:"), "{text}");
     assert_eq!(answer["world"]["tick"].as_u64(), outcome.result["failure"]["tick"].as_u64(), "{world}");
@@ -148,7 +148,7 @@ fn a_contact_leads_to_the_line_of_the_data_that_the_robot_followed() {
     crate::faults::assert_same_account("a contact", &outcome);
     assert_eq!(world["tick"], outcome.result["contacts"][0]["tick"], "{text}");
     assert_eq!(processes(&world["commands"]), ["HWSC", "Task", "Subtask", "E-move"], "{text}");
-    assert!(text.starts_with("first, at tick "), "{text}");
+    assert!(text.starts_with("First, at tick "), "{text}");
     assert!(text.contains("pose UNIT-V1: poses.blk, block "), "{text}");
     assert!(outcome.last_words.contains("in `== MOVE LINKBAR1_BH +2 UNIT_1 4"), "{}", outcome.last_words);
 }

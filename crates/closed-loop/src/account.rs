@@ -189,9 +189,9 @@ impl Account {
 }
 
 impl Account {
-    /// A sentence for each failure: `first, at tick 332, a collision: ...`, then `then, at tick ...`.
+    /// A sentence for each failure: `First, at tick 332 (13.28 s), a collision: ...`, `Then, at tick ...`.
     pub fn sentences(&self) -> impl Iterator<Item = String> {
-        let words = iter::once("first").chain(iter::repeat("then"));
+        let words = iter::once("First").chain(iter::repeat("Then"));
         self.failures().zip(words).map(|(Failure { tick, kind, text, .. }, word)| {
             format!("{word}, at tick {tick} ({:.2} s), {}: {text}", tick.0 as f64 * TICK_S, kind.text())
         })
