@@ -28,27 +28,27 @@ decision_table! {
         }
         /// The gripper is opening.
         Opening {
-            13: work: Over                                 => DeltaMove(AcqNear)   -> Approaching;
+            13: otherwise                                 => DeltaMove(AcqNear)   -> Approaching;
         }
         /// The robot is moving towards the machine tool.
         Approaching {
-            14: work: Over                                 => CalSensor(Drum)      -> Calibrating;
+            14: otherwise                                 => CalSensor(Drum)      -> Calibrating;
         }
         /// The force sensor is being calibrated for the contact.
         Calibrating {
-            15: work: Over                                 => GoUntil(AcqStrike)   -> Striking;
+            15: otherwise                                 => GoUntil(AcqStrike)   -> Striking;
         }
         /// The robot is moving into contact with the strike plate.
         Striking {
-            16: work: Over                                 => CalSensor(Drum)      -> Recalibrating;
+            16: otherwise                                 => CalSensor(Drum)      -> Recalibrating;
         }
         /// The force sensor is being calibrated for the slide.
         Recalibrating {
-            17: work: Over                                 => GoUntil(AcqSlide)    -> Sliding;
+            17: otherwise                                 => GoUntil(AcqSlide)    -> Sliding;
         }
         /// The gripper is sliding to the left.
         Sliding {
-            18: work: Over                                 => Close                -> Grasping;
+            18: otherwise                                 => Close                -> Grasping;
         }
         /// The gripper is closing.
         Grasping {

@@ -42,7 +42,7 @@ decision_table! {
             1:  work: Busy                       => Wait;
         }
         Start | Awaiting | Initializing | Pausing | Resting | InitializingAgain | PausingAgain {
-            2:                                   => consult;
+            2:                                   otherwise => consult;
         }
         any {
             3:  button: Open                     => OpenByHand;
@@ -81,7 +81,7 @@ decision_table! {
             4:  motion: AtRest                         => Pause     -> Pausing;
         }
         InitializingAgain {
-            5:                                         => Pause     -> PausingAgain;
+            5:                                         otherwise => Pause     -> PausingAgain;
         }
         any {
             6:  prim: Pending | Executing              => Wait;

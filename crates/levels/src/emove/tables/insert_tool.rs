@@ -31,19 +31,19 @@ decision_table! {
         }
         /// The force sensor is being calibrated.
         Calibrating {
-            14: work: Over                                 => DeltaMove(InsFar)  -> Approaching;
+            14: otherwise                                 => DeltaMove(InsFar)  -> Approaching;
         }
         /// The tool is moving to the last point at which it touches nothing.
         Approaching {
-            15: work: Over                                 => GoWhile(InsNear)   -> Nearing;
+            15: otherwise                                 => GoWhile(InsNear)   -> Nearing;
         }
         /// The tool is moving to the fingers of the drum.
         Nearing {
-            16: work: Over                                 => GoWhile(InsIn)     -> Inserting;
+            16: otherwise                                 => GoWhile(InsIn)     -> Inserting;
         }
         /// The tool is moving into the drum.
         Inserting {
-            17: work: Over                                 => StandInDrum;
+            17: otherwise                                 => StandInDrum;
         }
     }
 }

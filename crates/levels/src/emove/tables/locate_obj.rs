@@ -17,7 +17,7 @@ decision_table! {
         }
         /// The robot is going back to where pictures are taken.
         Correcting {
-            3: work: Over                                                    => Flood   -> Flooding;
+            3: otherwise                                                    => Flood   -> Flooding;
         }
         Start {
             4: held: Nothing                                                 => Flood   -> Flooding;
@@ -35,7 +35,7 @@ decision_table! {
         }
         /// The camera is moving over the centroid.
         Centring {
-            11: work: Over                                                   => Precise -> Measuring;
+            11: otherwise                                                   => Precise -> Measuring;
         }
         /// The second picture is being taken.
         Measuring {
@@ -45,7 +45,7 @@ decision_table! {
         }
         /// The camera is moving over the part, and turning with it.
         Aligning {
-            15: work: Over                                                   => Located;
+            15: otherwise                                                   => Located;
         }
         Start {
             16: held: Right | Other | Something                              => Fail(AlreadyHolding);

@@ -25,11 +25,11 @@ decision_table! {
         }
         /// On the final motion.
         Stopping {
-            11: work: Over                                        => Arrive;
+            11: otherwise                                        => Arrive;
         }
         /// Back to the way beside which a person has left the robot.
         Rejoining {
-            12: work: Over                                        => Wait -> Moving;
+            12: otherwise                                        => Wait -> Moving;
         }
     }
 }

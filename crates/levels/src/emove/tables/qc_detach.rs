@@ -60,7 +60,7 @@ decision_table! {
         any {
             13: along: Out | Coming | Seat, lock: Locked | Between => Unlock            -> Unlocking;
             14: along: Out | Coming | Seat                         => DeltaMove(QcdOut) -> Rising;
-            15:                                                    => Fail(NotDetached);
+            15:                                                    otherwise => Fail(NotDetached);
         }
     }
 }
@@ -73,7 +73,7 @@ decision_table! {
     /// QC-LEAVE, which is consulted before, does the rest once the robot is bare.
     pub QC_DETACH: fn qc_detach(self::QcDetachStep, super::Situation) -> super::Action {
         Rising {
-            1:                                                           => Fail(NotDetached);
+            1:                                                           otherwise => Fail(NotDetached);
         }
         any {
             2:  mate: Wrong                                              => Fail(WrongGripper);
@@ -104,7 +104,7 @@ decision_table! {
             16: along: Low, holster: Empty, lock: Locked                 => GoUntil(QcdDown) -> Lowering;
             17: along: Coming | Seat, holster: Full, lock: Unlocked      => DeltaMove(QcdUp) -> Rising;
             18: lock: Unlocked                                           => GoUntil(QcdSeat) -> Seating;
-            19:                                                          => Unlock           -> Unlocking;
+            19:                                                          otherwise => Unlock           -> Unlocking;
         }
     }
 }

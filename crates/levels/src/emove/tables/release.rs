@@ -23,7 +23,7 @@ decision_table! {
         }
         /// The gripper is opening.
         Opening {
-            6: work: Over                        => Finish;
+            6: otherwise                        => Finish;
         }
     }
 }

@@ -25,19 +25,19 @@ decision_table! {
         }
         /// The gripper is opening.
         Opening {
-            11: work: Over                                 => CalSensor(Drum)      -> Calibrating;
+            11: otherwise                                 => CalSensor(Drum)      -> Calibrating;
         }
         /// The force sensor is being calibrated.
         Calibrating {
-            12: work: Over                                 => GoUntil(RelSlide)    -> Sliding;
+            12: otherwise                                 => GoUntil(RelSlide)    -> Sliding;
         }
         /// The gripper is sliding to the right.
         Sliding {
-            13: work: Over                                 => DeltaMove(RelBack)   -> Withdrawing;
+            13: otherwise                                 => DeltaMove(RelBack)   -> Withdrawing;
         }
         /// The robot is pulling back.
         Withdrawing {
-            14: work: Over                                 => Stand;
+            14: otherwise                                 => Stand;
         }
     }
 }

@@ -27,11 +27,11 @@ decision_table! {
         }
         /// The force sensor is being calibrated.
         Calibrating {
-            12: work: Over                                 => GoWhile(RemOut)    -> Removing;
+            12: otherwise                                 => GoWhile(RemOut)    -> Removing;
         }
         /// The tool is being pulled out.
         Removing {
-            13: work: Over                                 => Stand;
+            13: otherwise                                 => Stand;
         }
     }
 }

@@ -10,11 +10,11 @@ decision_table! {
         }
         /// Nothing done yet.
         Start {
-            2: work: Over => DeltaMove(Withdraw) -> Moving;
+            2: otherwise => DeltaMove(Withdraw) -> Moving;
         }
         /// The robot is on its way.
         Moving {
-            3: work: Over => Stand;
+            3: otherwise => Stand;
         }
     }
 }

@@ -8,7 +8,7 @@ decision_table! {
     /// consulted after it, begins both.
     pub UP_INIT: fn up_init(super::Phase, super::Situation) -> super::Action or () {
         Missing | Deferred | Adopting | Valid | Failed {
-            1:                                      => consult;
+            1:                                      otherwise => consult;
         }
         any {
             2:  gripper: Detached, command: UpInit | Motion | OpenWide => Fail(WrongGripper) -> Deferred;

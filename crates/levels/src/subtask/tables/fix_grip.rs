@@ -98,7 +98,7 @@ decision_table! {
             11: hand: Narrow                                           => Fail(PedestalError);
         }
         Gripping {
-            12:                                                        => Fail(GraspMissed);
+            12:                                                        otherwise => Fail(GraspMissed);
         }
         any {
             13: robot: First, table: Receive, hand: Open               => PedGrip      -> Gripping;
