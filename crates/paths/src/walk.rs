@@ -15,9 +15,8 @@ use levels::{
     emove::{
         motion::route::{Goal, LegGoal, Planning, Route},
         robot_place::is_same_pose,
-        tables::{Action, Request, accept::accept},
+        tables::{Action, Records, records::records},
     },
-    execution::Asked,
     places::{LocationKey, robot_at},
 };
 use rcs_core::{
@@ -165,7 +164,7 @@ impl<'a> Walk<'a> {
             }
             Err(planning) => {
                 let from = if self.place.location.is_empty() { "?" } else { self.place.location.as_str() };
-                phase.missing = Some(format!("from {from}: {}", refusal(verb, planning).text()));
+                phase.missing = Some(format!("from {from}: {}", refusal(planning).text()));
                 let gone_to =
                     object.map_or(GoneTo::Location, |object| GoneTo::Object(ObjectGrip { object, grip }));
                 let grips =
@@ -314,8 +313,8 @@ impl<'a> Walk<'a> {
 }
 
 /// The reason with which E-move refuses a command whose path cannot be planned.
-fn refusal(verb: EmoveVerb, route: Planning) -> Reason {
-    match accept((), &Request { asked: Asked::Now, verb, route, ..Request::default() }) {
+fn refusal(route: Planning) -> Reason {
+    match records((), &Records { route, ..Records::default() }) {
         Verdict::Decided(Decision { action: Action::Refuse(reason), .. }) => reason,
         Verdict::Decided(_) | Verdict::Passed(()) => Reason::None,
     }

@@ -5,7 +5,7 @@
 //! located object are kept from command to command.
 //!
 //! ```text
-//!                 ACCEPT             CARRIED, ORDERED: Prim, gripper, ring, vision
+//!           ACCEPT, RECORDS          CARRIED, ORDERED: Prim, gripper, ring, vision
 //!   a command --------------> Start ---> Moving ---> Stopping ---> done ---> E-PAUSE stands (ATTEND)
 //!       |                                  |             |                      |            ^
 //!       | what it needs is missing         | what is carried is lost, or        v            |
@@ -135,7 +135,8 @@ impl<'d> Process<TaskData<'d>> for Emove {
         outputs: &mut EmoveOutputs,
     ) {
         let state = &mut self.state;
-        if state.execution.accepted(seen.asked) {
+        let is_refused = state.execution.rows.decided.is_some_and(|row| row.table == number::RECORDS);
+        if state.execution.accepted(seen.asked) && !is_refused {
             state.motion.publish_route(outputs);
         }
         state.act(action, seen, inputs, outputs);

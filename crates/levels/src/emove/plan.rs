@@ -19,11 +19,28 @@ use super::{
     },
     robot_place::place_named,
     tables::{
-        Attached, Coupling, ExchangeWork, HolsterData, Knowledge, Ordered, Record, Request, Target, ToolWork,
+        Attached, CommandClass, Coupling, ExchangeWork, HolsterData, Knowledge, Ordered, Pause, Record,
+        Records, Request, Target, ToolWork,
     },
     vision::view_of,
 };
 use crate::{execution::Asked, halt::BoxState};
+
+const fn class(verb: EmoveVerb) -> CommandClass {
+    match verb {
+        EmoveVerb::None => CommandClass::None,
+        EmoveVerb::Pause => CommandClass::Pause,
+        EmoveVerb::MovToLoc | EmoveVerb::Withdraw => CommandClass::Plain,
+        EmoveVerb::MovToObj | EmoveVerb::MovObjTo | EmoveVerb::MovToVu => CommandClass::ObjectMove,
+        EmoveVerb::MovToHol => CommandClass::HolsterMove,
+        EmoveVerb::QcAttach | EmoveVerb::QcDetach => CommandClass::Exchange,
+        EmoveVerb::LocateObj | EmoveVerb::GraspObj => CommandClass::AtObject,
+        EmoveVerb::InsertTool | EmoveVerb::ReleaseTool | EmoveVerb::AcquireTool | EmoveVerb::RemoveTool => {
+            CommandClass::Tool
+        }
+        EmoveVerb::Release => CommandClass::Release,
+    }
+}
 
 /// The gripper on the robot, seen from the command.
 fn attached(command: &EmoveCommand, memory: &CommonMemory) -> Attached {
@@ -35,9 +52,11 @@ fn attached(command: &EmoveCommand, memory: &CommonMemory) -> Attached {
     }
 }
 
-/// A gripper with a holster, and the opening with which it goes through it.
+/// A gripper with a holster, and the opening with which it moves through the holster, for a command that changes it.
 fn holster(command: &EmoveCommand, data: &TaskData<'_>) -> HolsterData {
-    if Gripper::of(command.end_effector_id) == Gripper::None {
+    if class(command.command) != CommandClass::Exchange {
+        HolsterData::Found
+    } else if Gripper::of(command.end_effector_id) == Gripper::None {
         HolsterData::NoGripper
     } else if gripper_on(command, data).is_none() {
         HolsterData::NoOpening
@@ -65,8 +84,9 @@ fn target(command: &EmoveCommand, data: &TaskData<'_>) -> Target {
     }
 }
 
-const fn record(found: bool) -> Record {
-    if found { Record::Found } else { Record::Missing }
+/// A record of the task data, for a command that needs it.
+const fn record(is_needed: bool, is_found: bool) -> Record {
+    if is_needed && !is_found { Record::Missing } else { Record::Found }
 }
 
 impl State {
@@ -74,18 +94,19 @@ impl State {
     pub(super) fn look_up(
         &mut self,
         command: &EmoveCommand,
-        joystick: BoxState,
+        (joystick, pause): (BoxState, Pause),
         inputs: &EmoveInputs<'_>,
-    ) -> Request {
+    ) -> (Request, Records) {
         let (memory, data) = (inputs.memory, inputs.data);
+        let verb = command.command;
         let planned = self.plan(command, inputs);
         (self.ordered, self.uses_prim) = (Ordered::Nothing, false);
         self.motion.begin(planned.unwrap_or_default());
         self.vision.begin();
         self.held.begin();
-        Request {
+        let request = Request {
             asked: Asked::Now,
-            verb: command.command,
+            class: class(verb),
             gripper: attached(command, memory),
             start: match (self.localization.place(), self.drum.half_way()) {
                 (None, None) => Knowledge::Unknown,
@@ -95,13 +116,18 @@ impl State {
             exchange: if self.exchange.is_half_done() { ExchangeWork::HalfDone } else { ExchangeWork::None },
             drum: if self.drum.half_way().is_some() { ToolWork::HalfDone } else { ToolWork::None },
             target: target(command, inputs.data),
-            sizes: record(sizes(command, data).is_some()),
-            view: record(view_of(command, data).is_some()),
+        };
+        let grasps = matches!(verb, EmoveVerb::GraspObj | EmoveVerb::AcquireTool);
+        let records = Records {
+            sizes: record(grasps, sizes(command, data).is_some()),
+            view: record(verb == EmoveVerb::LocateObj, view_of(command, data).is_some()),
             holster: holster(command, data),
             moves: relative::look_up(command, memory, data),
             route: planned.err().unwrap_or(Planning::Planned),
             joystick,
-        }
+            pause,
+        };
+        (request, records)
     }
 
     /// The way of a motion command.

@@ -16,8 +16,8 @@ use super::{
     motion::route::Ahead,
     robot_place::present_frame,
     tables::{
-        FingerMotion, Knowledge, Link, Lock, Mate, Opening, Pause, PlaceKnowledge, Readiness, Request, Ring,
-        Situation, Spread, StateVariables, Step, Subordinates, Tooling, Watch,
+        FingerMotion, Knowledge, Link, Lock, Mate, Opening, Pause, PlaceKnowledge, Readiness, Records,
+        Request, Ring, Situation, Spread, StateVariables, Step, Subordinates, Tooling, Watch,
         e_pause::EPauseStep,
         number,
         search::{Look, search},
@@ -58,10 +58,10 @@ impl State {
         self.sense_drum(inputs);
         let replaced = self.replaced(&watch, inputs);
         let at_rest = replaced.below == Below::AtRest || replaced.joystick == BoxState::On;
-        let request = if asked == Asked::Now && (at_rest || replaced.kind == Kind::Pause) {
-            self.look_up(command, replaced.joystick, inputs)
+        let (request, records) = if asked == Asked::Now && (at_rest || replaced.kind == Kind::Pause) {
+            self.look_up(command, (replaced.joystick, watch.pause), inputs)
         } else {
-            Request::default()
+            (Request::default(), Records::default())
         };
         let subordinates = self.subordinates(command, inputs);
         let situation = self.situation(command, &subordinates, inputs);
@@ -72,6 +72,7 @@ impl State {
             replaced,
             progress: Progress { tries: self.vision.vain_pictures(), ..self.motion.flight().progress() },
             request,
+            records,
             watch,
             subordinates,
             proof: self.proof(command, &situation, inputs, outputs),

@@ -19,6 +19,7 @@ pub mod mov_to_vu;
 pub mod ordered;
 pub mod qc_attach;
 pub mod qc_detach;
+pub mod records;
 pub mod release;
 pub mod release_tool;
 pub mod remove_tool;
@@ -41,9 +42,9 @@ use rcs_core::{
 
 pub use self::drum::{AtDrum, Bias};
 pub use self::variables::{
-    Along, At, Attached, Contact, Coupling, ExchangeWork, FingerMotion, Fingers, Holster, HolsterData,
-    Initialization, Knowledge, Link, Load, Lock, Mate, Opening, Ordered, Pause, PlaceKnowledge, Reach,
-    Readiness, Record, Ring, Shut, Sight, Spread, Target, ToolWork, Tooling, Tries, VisionAnswer,
+    Along, At, Attached, CommandClass, Contact, Coupling, ExchangeWork, FingerMotion, Fingers, Holster,
+    HolsterData, Initialization, Knowledge, Link, Load, Lock, Mate, Opening, Ordered, Pause, PlaceKnowledge,
+    Reach, Readiness, Record, Ring, Shut, Sight, Spread, Target, ToolWork, Tooling, Tries, VisionAnswer,
 };
 use super::{
     goals,
@@ -59,13 +60,13 @@ use crate::{
     halt::{BoxState, Commanding, EFFECT, HALT, Replaced, Stopping},
 };
 
-/// What a new command needs, for [`accept::ACCEPT`].
+/// A new command and the state of the robot, for [`accept::ACCEPT`].
 #[derive(Clone, Copy, Debug, Default, Variables)]
 pub struct Request {
     /// Is the command new?
     pub asked: Asked,
-    /// The command.
-    pub verb: EmoveVerb,
+    /// The class of the command.
+    pub class: CommandClass,
     /// The gripper on the robot.
     pub gripper: Attached,
     /// Where the robot is.
@@ -78,18 +79,26 @@ pub struct Request {
     pub drum: ToolWork,
     /// The location of the command.
     pub target: Target,
-    /// Sizes of object and grip: END-EFF-PARA.
+}
+
+/// What a new command finds in the task data, for [`records::RECORDS`]. A record that a command does not need counts
+/// as found.
+#[derive(Clone, Copy, Debug, Default, Variables)]
+pub struct Records {
+    /// Sizes of object and grip for GRASP-OBJ and ACQUIRE-TOOL: END-EFF-PARA.
     pub sizes: Record,
-    /// How the object is seen: VISION-PARA.
+    /// How LOCATE-OBJ sees the object: VISION-PARA.
     pub view: Record,
-    /// The gripper's holster.
+    /// The gripper's holster for QC-ATTACH and QC-DETACH.
     pub holster: HolsterData,
     /// The relative moves of the command.
     pub moves: RelativeMoves,
-    /// The way to its goal.
+    /// The path to its goal.
     pub route: Planning,
     /// The joystick box.
     pub joystick: BoxState,
+    /// Is the command E-PAUSE?
+    pub pause: Pause,
 }
 
 /// What goes on whatever the command, for [`attend::ATTEND`] and [`search::SEARCH`].
@@ -198,8 +207,10 @@ pub struct StateVariables {
     pub replaced: Replaced,
     /// How far it has come.
     pub progress: Progress,
-    /// What a new command needs.
+    /// A new command and the state of the robot.
     pub request: Request,
+    /// What it finds in the task data.
+    pub records: Records,
     /// What goes on whatever the command.
     pub watch: Watch,
     /// How the last order of the command stands.
@@ -357,8 +368,9 @@ commands! {
     pub fn of_command(EmoveVerb, enum Step, Situation) -> Action {
         others: EXECUTE, accept::ACCEPT, HALT, EFFECT, attend::ATTEND, search::SEARCH, resume::RESUME,
             drum::DRUM, carried::CARRIED, ordered::ORDERED, CONFIRM, returning::RETURN, track::TRACK,
-            resume::STANCE;
-        before: EXECUTE, HALT, ATTEND by attend, ACCEPT(request), CARRIED(subordinates), ORDERED(subordinates -> situation.work);
+            resume::STANCE, records::RECORDS;
+        before: EXECUTE, HALT, ATTEND by attend, ACCEPT(request), RECORDS(records),
+            CARRIED(subordinates), ORDERED(subordinates -> situation.work);
         after: EFFECT, CONFIRM;
         None | Pause: goals::REST           => e_pause::standing then e_pause::e_pause;
         MovToLoc: goals::PLACE              => motion::motion;

@@ -2,6 +2,29 @@
 
 use rcs_core::Plain;
 
+/// The class of a command, by what it needs before it begins.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum CommandClass {
+    /// No command.
+    None,
+    /// E-PAUSE.
+    Pause,
+    /// A motion that needs no object: MOV-TO-LOC, WITHDRAW.
+    Plain,
+    /// A motion to an object or with one: MOV-TO-OBJ, MOV-OBJ-TO, MOV-TO-VU.
+    ObjectMove,
+    /// A motion to a holster: MOV-TO-HOL.
+    HolsterMove,
+    /// The change of a gripper: QC-ATTACH, QC-DETACH.
+    Exchange,
+    /// Work at an object: LOCATE-OBJ, GRASP-OBJ.
+    AtObject,
+    /// A tool command: INSERT-TOOL, RELEASE-TOOL, ACQUIRE-TOOL, REMOVE-TOOL.
+    Tool,
+    /// RELEASE.
+    Release,
+}
+
 /// The gripper on the robot, for a command that needs one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Attached {
