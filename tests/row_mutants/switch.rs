@@ -52,7 +52,8 @@ const CHECK: (&str, &str) = (
     "let (_, _, _) = (read, row, table.name);",
 );
 
-/// The head of a table, `pub TURN: fn turn(enum TurnStep, super::Situation) -> super::Action or () {`.
+/// The head of a table, `pub TURN: fn turn(enum TurnStep, super::Situation) -> super::Action or () {`. With `struct of
+/// super::Senses` the table declares the struct `TurnSituation`.
 struct Head<'a> {
     name: &'a str,
     decide: &'a str,
@@ -78,6 +79,15 @@ impl<'a> Head<'a> {
         Some(Self { name, decide, step, declares, situation, result })
     }
 
+    /// The type of the state variables.
+    fn variables(&self) -> String {
+        if !self.situation.starts_with("struct of ") {
+            return self.situation.to_owned();
+        }
+        let words = self.name.split('_').map(|word| word[..1].to_owned() + &word[1..].to_lowercase());
+        words.collect::<String>() + "Situation"
+    }
+
     /// The name of the function that consults one of the tables.
     fn function(&self, which: &str) -> String {
         format!("{}_{which}", self.decide.trim_start_matches("r#"))
@@ -100,7 +110,8 @@ impl<'a> Head<'a> {
         let (name, function) = (self.name, self.function(&format!("changed_{number}")));
         format!(
             "    pub {name}_CHANGED_{number}: fn {function}({step}{}) -> {} {{",
-            self.situation, self.result
+            self.variables(),
+            self.result
         )
     }
 
@@ -127,7 +138,7 @@ pub fn {}{generic}(step: {step}, situation: &{}) -> ::rcs_core::table::{result} 
     let (changed, before) = (crate::changed_row(), row(&unchanged));
 ",
             self.decide,
-            self.situation,
+            self.variables(),
             self.function("unchanged")
         );
         for (number, mutant) in mutants {
@@ -305,6 +316,21 @@ fn other() {}
 "
         );
         assert_eq!(places, [(11..22, 17)]);
+    }
+
+    #[test]
+    fn changed_table_has_the_state_variables_of_the_table() {
+        let text =
+            "    pub GRASP_OBJ: fn grasp_obj(enum GraspObjStep, struct of super::Senses) -> super::Action {";
+        let head = Head::read(text).unwrap();
+        assert_eq!(head.unchanged(), text.replace("fn grasp_obj(", "fn grasp_obj_unchanged("));
+        assert_eq!(
+            head.changed(3),
+            "    pub GRASP_OBJ_CHANGED_3: fn grasp_obj_changed_3(GraspObjStep, GraspObjSituation) -> super::Action {"
+        );
+        assert!(
+            head.selection(&[]).contains("fn grasp_obj(step: GraspObjStep, situation: &GraspObjSituation)")
+        );
     }
 
     #[test]

@@ -168,52 +168,50 @@ fn conditions(row: &Row) -> String {
     if asked.is_empty() { "otherwise".to_owned() } else { asked.join(", ") }
 }
 
-/// Groups of tables with the same state variables, and of tables with the same actions.
+/// State variables, each with the tables that test it, and groups of tables with the same actions.
 struct Groups {
-    variables: Vec<Vec<&'static Table>>,
+    variables: Vec<(&'static Variable, Vec<&'static Table>)>,
     actions: Vec<Vec<&'static Table>>,
 }
 
 impl Groups {
     /// The groups whose number of tables is `wanted`.
     fn of(tables: &[&'static Table], wanted: impl Fn(usize) -> bool) -> Self {
-        let group = |same: fn(&Table, &Table) -> bool| {
-            let mut groups: Vec<Vec<&'static Table>> = Vec::new();
-            for &table in tables {
-                match groups.iter_mut().find(|group| group.iter().any(|other| same(other, table))) {
-                    Some(group) => group.push(table),
-                    None => groups.push(vec![table]),
+        let mut variables: Vec<(&'static Variable, Vec<&'static Table>)> = Vec::new();
+        let mut actions: Vec<Vec<&'static Table>> = Vec::new();
+        for &table in tables {
+            for variable in table.asked() {
+                match variables.iter_mut().find(|(known, _)| *known == variable) {
+                    Some((_, group)) => group.push(table),
+                    None => variables.push((variable, vec![table])),
                 }
             }
-            groups.retain(|group| wanted(group.len()));
-            groups
-        };
-        Self {
-            variables: group(|a, b| a.variables == b.variables),
-            actions: group(|a, b| a.actions == b.actions),
+            match actions.iter_mut().find(|group| group.iter().any(|other| other.actions == table.actions)) {
+                Some(group) => group.push(table),
+                None => actions.push(vec![table]),
+            }
         }
+        variables.retain(|(_, group)| wanted(group.len()));
+        actions.retain(|group| wanted(group.len()));
+        Self { variables, actions }
     }
 
     /// The groups that contain a table.
     fn only(mut self, table: &Table) -> Self {
         let holds = |group: &Vec<&'static Table>| group.iter().any(|other| std::ptr::eq(*other, table));
-        self.variables.retain(holds);
+        self.variables.retain(|(_, group)| holds(group));
         self.actions.retain(holds);
         self
     }
 
     /// True if these groups have nothing to explain.
     fn is_empty(&self) -> bool {
-        let named =
-            |group: &[&'static Table]| variables(group).next().is_some() || actions(group).next().is_some();
-        !self.variables.iter().chain(&self.actions).any(|group| named(group))
+        self.variables.is_empty() && !self.actions.iter().any(|group| actions(group).next().is_some())
     }
 
     /// Append the explanation of variables, actions, and the arguments of actions.
     fn append(&self, text: &mut String) {
-        for group in &self.variables {
-            append_variables(text, group);
-        }
+        append_variables(text, &self.variables);
         for group in &self.actions {
             append_actions(text, group);
         }
@@ -224,25 +222,17 @@ fn rows(tables: &[&'static Table]) -> impl Iterator<Item = &'static Row> {
     tables.iter().flat_map(|table| table.rows)
 }
 
-/// The variables that the conditions of a group of tables use.
-fn variables(tables: &[&'static Table]) -> impl Iterator<Item = &'static Variable> {
-    let all = tables.first().map_or(&[][..], |table| table.variables);
-    all.iter().filter(move |variable| {
-        rows(tables).flat_map(|row| row.when).any(|asked| asked.variable == variable.name)
-    })
-}
-
 /// The actions that the rows of a group of tables use.
 fn actions(tables: &[&'static Table]) -> impl Iterator<Item = &'static ActionText> {
     let all = tables.first().map_or(&[][..], |table| table.actions);
     all.iter().filter(move |action| rows(tables).any(|row| row.action == action.name))
 }
 
-fn append_variables(text: &mut String, tables: &[&'static Table]) {
-    for (position, variable) in variables(tables).enumerate() {
-        if position == 0 {
-            text.push_str("\nState variables:\n\n");
-        }
+fn append_variables(text: &mut String, variables: &[(&'static Variable, Vec<&'static Table>)]) {
+    if !variables.is_empty() {
+        text.push_str("\nState variables:\n\n");
+    }
+    for (variable, tables) in variables {
         let asked = |value: &str| {
             let mut all = rows(tables).flat_map(|row| row.when);
             all.any(|asked| asked.variable == variable.name && asked.values.contains(&value))

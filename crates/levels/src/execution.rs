@@ -121,21 +121,6 @@ pub enum Work {
     Over,
 }
 
-/// How far a command has come, besides its step. An order that is given again after progress is no repetition.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
-pub struct Progress {
-    /// Points of the route that were sent.
-    pub on: u16,
-    /// The point before which the robot is on its way back.
-    pub back: u16,
-    /// It has been sent to the end of its way back.
-    pub is_back: bool,
-    /// Points that lie ahead on the return to its place or path.
-    pub rejoin: u8,
-    /// Pictures that were taken in vain.
-    pub tries: u8,
-}
-
 /// A row that has ordered something of a process below.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub struct LastOrder {
@@ -143,10 +128,8 @@ pub struct LastOrder {
     pub table: u8,
     /// Its number.
     pub row: u8,
-    /// The state variables at that time, as one number.
+    /// The state variables of its table at that time, as one number.
     pub variables: u64,
-    /// How far the command had come.
-    pub progress: Progress,
 }
 
 /// The actions with which a command ends, for [`CONFIRM`](crate::confirm::CONFIRM).

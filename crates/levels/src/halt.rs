@@ -21,7 +21,7 @@ use rcs_core::{
     tick::Tick,
 };
 
-use crate::execution::{Course, Ending, Execution, LastOrder, Progress};
+use crate::execution::{Course, Ending, Execution, LastOrder};
 
 /// The command of a process, for [`HALT`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
@@ -166,11 +166,22 @@ pub enum Order {
     Repeated,
 }
 
+/// What the command has achieved since its last order, besides the state variables: points of a route, for example.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Advance {
+    /// Nothing.
+    None,
+    /// It has advanced.
+    Made,
+}
+
 /// The row that fired, for [`EFFECT`].
 #[derive(Clone, Copy, Debug, Variables)]
 pub struct Fired {
     /// What it orders.
     pub order: Order,
+    /// The advance of the command since its last order.
+    pub advance: Advance,
 }
 
 /// What [`EFFECT`] can ask for.
@@ -181,11 +192,12 @@ pub enum Futile {
 }
 
 decision_table! {
-    /// EFFECT: an order that has changed no state variable is not given again by the same row. The command
-    /// fails.
+    /// EFFECT: an order that has changed no state variable of its table, nor advanced the command, is not given again by
+    /// the same row. The command fails.
     pub EFFECT: fn effect(Fired) -> Futile or () {
-        1: order: None | New  => consult;
-        2: order: Repeated    => Fail(NoEffect);
+        1: order: None | New                => consult;
+        2: order: Repeated, advance: Made   => consult;
+        3: order: Repeated, advance: None   => Fail(NoEffect);
     }
 }
 
@@ -246,21 +258,20 @@ impl Execution {
         }
     }
 
-    /// Consult [`EFFECT`], the table with this number, about a row that fired: the row, or that of EFFECT. `variables`
-    /// are those of the command's table, as one number, with the progress of the command.
+    /// Consult [`EFFECT`], the table with this number, about a row that fired: the row, or that of EFFECT.
     pub fn effect<Action: Commanding, Step>(
         &mut self,
         number: u8,
         choice: Choice<Action, Step>,
-        (variables, progress): (u64, Progress),
+        advance: Advance,
     ) -> Choice<Action, Step> {
-        let this = LastOrder { table: choice.table, row: choice.row, variables, progress };
+        let this = LastOrder { table: choice.table, row: choice.row, variables: choice.values.variables };
         let order = match choice.action.is_order() {
             false => Order::None,
             true if self.last_order == Some(this) => Order::Repeated,
             true => Order::New,
         };
-        match effect((), &Fired { order }) {
+        match effect((), &Fired { order, advance }) {
             Verdict::Passed(()) => {
                 self.last_order = if order == Order::New { Some(this) } else { self.last_order };
                 choice

@@ -31,7 +31,7 @@
 extern crate self as rcs_core;
 
 pub use plain::Plain;
-pub use rcs_macros::{Actions, Plain, Variables, commands, decision_table};
+pub use rcs_macros::{Actions, Plain, Variables, commands, decision_table, state_variables};
 
 pub mod digest;
 pub mod handshake;

@@ -85,6 +85,78 @@
 //! narrower than the variable that was asked for, so that the table below needs no rows for what was decided above. `->
 //! Action or ()` and `consult` pass nothing.
 //!
+//! # State variables of a table
+//!
+//! A process with many state variables senses each of them with a method of one type, in an `impl` block with
+//! `#[state_variables]`. A table whose head says `struct of super::Senses` declares a struct with those variables that
+//! its rows name: GRASP-OBJ declares `GraspObjSituation`. `commands!` with `enum Situation of Senses` makes an enum with
+//! a variant for each entry, and senses only what the tables of the command test.
+//!
+//! ```
+//! # mod cell {
+//! use rcs_core::{Actions, Plain, decision_table, state_variables};
+//!
+//! /// A switch.
+//! #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+//! pub enum Switch {
+//!     /// It is off.
+//!     Off,
+//!     /// It is on.
+//!     On,
+//! }
+//!
+//! /// What a row can ask for.
+//! #[derive(Clone, Copy, Debug, PartialEq, Eq, Actions)]
+//! pub enum Action {
+//!     /// Nothing new.
+//!     Wait,
+//!     /// Report done.
+//!     Finish,
+//! }
+//!
+//! /// The inputs of a tick.
+//! pub struct Senses<'a> {
+//!     /// Bits of the switches.
+//!     pub inputs: &'a u8,
+//! }
+//!
+//! #[state_variables]
+//! impl Senses<'_> {
+//!     /// The last order, which the table above passes on.
+//!     #[passed]
+//!     pub const fn order(&self) -> Switch {
+//!         Switch::Off
+//!     }
+//!
+//!     /// The switch of the door.
+//!     pub const fn door(&self) -> Switch {
+//!         if *self.inputs & 1 == 0 { Switch::Off } else { Switch::On }
+//!     }
+//!
+//!     /// The switch of the lamp. No row names it.
+//!     pub fn lamp(&self) -> Switch {
+//!         unreachable!("it is not sensed")
+//!     }
+//! }
+//!
+//! decision_table! {
+//!     /// AWAIT-DOOR: for the example.
+//!     pub AWAIT_DOOR: fn await_door(struct of Senses) -> Action {
+//!         1: order: On            => Wait;
+//!         2: door: Off            => Wait;
+//!         3: door: On             => Finish;
+//!     }
+//! }
+//! # }
+//! # use cell::*;
+//! let mut situation = AwaitDoorSituation::sense(&Senses { inputs: &1 });
+//! assert_eq!(situation, AwaitDoorSituation { order: Switch::Off, door: Switch::On });
+//! assert_eq!(await_door((), &situation).row, 3);
+//! situation.pass(Switch::On);
+//! assert_eq!(await_door((), &situation).row, 1);
+//! assert_eq!(AWAIT_DOOR.variables[1].doc, "The switch of the door.");
+//! ```
+//!
 //! # Looking back
 //!
 //! A decision says with which [`Values`] the table was consulted. From them the table names its variables and
@@ -114,6 +186,9 @@
 //! | `ACCEPT(request)` | a row decides with the variables `seen.request`, or the next table is consulted |
 //! | `LINK(situation in link)` | the same, with the step `state.link` instead of that of the command |
 //! | `ORDERED(subordinates -> situation.work)` | what it passes on becomes `seen.situation.work` |
+//! | `ORDERED(subordinates -> situation)` | the same for each table with a `struct of` state variables |
+//!
+//! `after` may say `EFFECT(advance)`: `seen.advance` tells whether the command has advanced since its last order.
 
 mod values;
 

@@ -2,6 +2,7 @@
 //!
 //! * [`Plain`](macro@Plain): fixed-size data with a byte image and a schema;
 //! * [`Variables`]: the state variables of a decision table;
+//! * [`macro@state_variables`]: methods that sense state variables, from which each table takes those that it tests;
 //! * [`Actions`]: what the rows of a decision table can ask for;
 //! * [`decision_table!`]: a decision table as one exhaustive `match`;
 //! * [`commands!`]: which table decides on which command of a process.
@@ -13,11 +14,12 @@ mod actions;
 mod commands;
 mod names;
 mod plain;
+mod senses;
 mod table;
 mod variables;
 
 use proc_macro::TokenStream;
-use syn::{DeriveInput, Error, parse_macro_input};
+use syn::{DeriveInput, Error, ItemImpl, parse_macro_input};
 
 fn finish(result: syn::Result<proc_macro2::TokenStream>) -> TokenStream {
     result.unwrap_or_else(Error::into_compile_error).into()
@@ -43,6 +45,15 @@ pub fn plain(input: TokenStream) -> TokenStream {
 #[proc_macro_derive(Variables)]
 pub fn variables(input: TokenStream) -> TokenStream {
     finish(variables::derive(&parse_macro_input!(input as DeriveInput)))
+}
+
+/// Describe the methods of an `impl` block as state variables, so that the head of a [`decision_table!`] can say
+/// `struct of super::Senses`. The struct of that table has those variables that its rows name.
+///
+/// `#[passed]` marks the variable whose value a table above passes on; its method returns the value before that.
+#[proc_macro_attribute]
+pub fn state_variables(_: TokenStream, input: TokenStream) -> TokenStream {
+    finish(senses::expand(parse_macro_input!(input as ItemImpl)))
 }
 
 /// Derive the description of actions for an enum whose variants are bare or carry one plain enum, so that

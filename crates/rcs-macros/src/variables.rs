@@ -1,10 +1,29 @@
 //! `#[derive(Variables)]`.
 
 use proc_macro2::TokenStream;
-use quote::{format_ident, quote};
-use syn::{Data, DeriveInput, Error, Fields, Result, spanned::Spanned as _};
+use quote::{ToTokens, format_ident, quote};
+use syn::{Data, DeriveInput, Error, Fields, Ident, Result, spanned::Spanned as _};
 
 use crate::names;
+
+/// The values of all variables of a struct as one number.
+pub fn code(name: &Ident, fields: &[&Ident], types: &[impl ToTokens]) -> TokenStream {
+    quote! {
+        const _: () = assert!(
+            ::rcs_core::table::Variable::combinations(#name::VARIABLES).is_some(),
+            "the values of the state variables do not fit into one number: divide the table",
+        );
+
+        impl ::rcs_core::table::Variables for #name {
+            fn code(&self) -> u64 {
+                let code = 0_u64;
+                #( let code = code.wrapping_mul(u64::try_from(<#types>::ALL.len()).unwrap_or(u64::MAX))
+                    .wrapping_add(u64::from(self.#fields.code())); )*
+                code
+            }
+        }
+    }
+}
 
 /// Describe the variables, and give the type of each under the name of its field, in a hidden module `__Name`.
 pub fn derive(input: &DeriveInput) -> Result<TokenStream> {
@@ -26,6 +45,7 @@ pub fn derive(input: &DeriveInput) -> Result<TokenStream> {
             return Err(Error::new(field.ty.span(), "a state variable is an enum that derives Plain"));
         }
     }
+    let code = code(name, &idents, &types);
     Ok(quote! {
         impl #name {
             /// Name, meaning and values of each variable.
@@ -36,19 +56,7 @@ pub fn derive(input: &DeriveInput) -> Result<TokenStream> {
             }, )* ];
         }
 
-        const _: () = assert!(
-            ::rcs_core::table::Variable::combinations(#name::VARIABLES).is_some(),
-            "the values of the state variables do not fit into one number: divide the table",
-        );
-
-        impl ::rcs_core::table::Variables for #name {
-            fn code(&self) -> u64 {
-                let code = 0_u64;
-                #( let code = code.wrapping_mul(u64::try_from(<#types>::ALL.len()).unwrap_or(u64::MAX))
-                    .wrapping_add(u64::from(self.#idents.code())); )*
-                code
-            }
-        }
+        #code
 
         #[doc(hidden)]
         #[allow(non_snake_case, non_camel_case_types, dead_code, reason = "a type under the name of each field")]

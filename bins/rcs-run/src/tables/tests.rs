@@ -99,8 +99,16 @@ decision_table! {
     }
 }
 
+decision_table! {
+    /// LOOK: look at the door.
+    pub LOOK: fn look(Situation) -> Action {
+        1: door: Open | Shut    => Finish;
+        2: door: Stuck          => Wait;
+    }
+}
+
 static PROCESSES: [ProcessInfo; 2] = [
-    ProcessInfo { name: "Front Door", tables: &[&ACCEPT, &CLOSE_DOOR, &PAUSE], goals: &[] },
+    ProcessInfo { name: "Front Door", tables: &[&ACCEPT, &CLOSE_DOOR, &PAUSE, &LOOK], goals: &[] },
     ProcessInfo { name: "Gate", tables: &[&PAUSE], goals: &[] },
 ];
 
@@ -113,7 +121,7 @@ fn a_page_explains_what_stands_in_its_tables_once() {
     assert_eq!(
         text,
         "
-- [Front Door](#front-door): ACCEPT, CLOSE-DOOR, PAUSE
+- [Front Door](#front-door): ACCEPT, CLOSE-DOOR, PAUSE, LOOK
 - [Gate](#gate): PAUSE
 
 ## Front Door
@@ -152,6 +160,11 @@ Steps:
 - `Start`: Nothing done yet.
 - `Closing`: The door is driven.
 
+State variables:
+
+- `lamp`: The lamp.
+  - `Off`: It is off.
+
 ### 3. PAUSE
 
 PAUSE: do nothing.
@@ -160,6 +173,16 @@ PAUSE: do nothing.
 | row | when      | action |
 | --: | --------- | ------ |
 |   1 | otherwise | Finish |
+
+### 4. LOOK
+
+LOOK: look at the door.
+
+
+| row | when               | action |
+| --: | ------------------ | ------ |
+|   1 | door: Open or Shut | Finish |
+|   2 | door: Stuck        | Wait   |
 
 ### Values
 
@@ -171,8 +194,6 @@ State variables:
   - `Open`: Nothing is in the way.
   - `Shut`: Both switches see it.
   - `Stuck`: It stands between its switches.
-- `lamp`: The lamp.
-  - `Off`: It is off.
 
 Actions:
 
@@ -193,6 +214,7 @@ Actions:
     assert_eq!(passed, rcs_core::table::Verdict::Passed(()));
     let decision = close_door(CloseDoorStep::Start, &Situation { door: Door::Stuck, lamp: Lamp::On });
     assert_eq!((decision.row, pause((), &Situation { door: Door::Shut, lamp: Lamp::On }).row), (3, 1));
+    assert_eq!(look((), &Situation { door: Door::Stuck, lamp: Lamp::On }).row, 2);
 }
 
 #[test]

@@ -23,6 +23,7 @@ use super::{
     tables::{Action, Ordered, StateVariables},
     tool_drum::start_of,
 };
+use crate::halt::Commanding as _;
 
 /// Force with which the joystick box closes the parts gripper, lb: the least of the usual ones (VIII.9.1;
 /// ASSUMED).
@@ -66,6 +67,9 @@ impl State {
         outputs: &mut EmoveOutputs,
     ) {
         let command = &inputs.memory.subtask.emove;
+        if action.is_order() {
+            self.ordered_at = self.motion.flight().progress();
+        }
         if let Some(ordered) = ordered(action) {
             self.ordered = ordered;
             self.uses_prim |=

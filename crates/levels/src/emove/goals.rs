@@ -1,5 +1,6 @@
 //! The goals of E-move's commands, and how the sensors compare with them.
 
+use geometry::frame::Frame;
 use interfaces::{
     CommonMemory, EmoveOutputs, Unconfirmed,
     emove::{EmoveCommand, EmoveVerb, Holding},
@@ -12,7 +13,8 @@ use super::{
     gripper::Gripper,
     localization::returning::offset_of_place,
     robot_place::{commanded_pose, offset},
-    tables::{Fingers, Holster, Lock, Mate, Situation},
+    senses::Senses,
+    tables::{Fingers, Holster, Lock, Mate},
 };
 use crate::{
     confirm::{Evidence, Proof},
@@ -118,9 +120,9 @@ pub static REMOVED: Goal = Goal {
 };
 
 /// The fingers stand at the size of the object; those of the parts gripper feel it.
-fn is_grasped(situation: &Situation, memory: &CommonMemory) -> Proof {
+fn is_grasped(senses: &Senses<'_>, memory: &CommonMemory) -> Proof {
     let attached = Gripper::attached(memory);
-    if situation.fingers != Fingers::Gripping {
+    if senses.fingers() != Fingers::Gripping {
         return Proof::of(Evidence::NotHeld);
     }
     match attached.felt(memory) {
@@ -135,8 +137,9 @@ impl State {
     /// The goal of the command, compared with the sensors.
     pub(super) fn proof(
         &self,
+        senses: &Senses<'_>,
+        present: Option<&Frame>,
         command: &EmoveCommand,
-        situation: &Situation,
         inputs: &EmoveInputs<'_>,
         outputs: &EmoveOutputs,
     ) -> Proof {
@@ -149,16 +152,16 @@ impl State {
         let at_goal = || {
             let [_, goal, ..] = &outputs.poses;
             let seen = self.motion.goal().map_or_else(
-                || offset(&goal.pose, memory),
-                |to| offset_of_place(&to, self.holding(memory), inputs),
+                || offset(&goal.pose, present),
+                |to| offset_of_place(to, present, self.holding(memory), inputs),
             );
             Proof::at(seen)
         };
         let at_command = || {
             commanded_pose(memory)
-                .map_or(Proof::unsensed(Unconfirmed::Position), |pose| Proof::at(offset(&pose, memory)))
+                .map_or(Proof::unsensed(Unconfirmed::Position), |pose| Proof::at(offset(&pose, present)))
         };
-        let is_held = || match situation.held {
+        let is_held = || match senses.held() {
             Held::Right => force,
             Held::NotKnown => Proof::of(Evidence::NotKnown),
             Held::Nothing | Held::Other | Held::Something => Proof::of(Evidence::NotHeld),
@@ -172,7 +175,7 @@ impl State {
         let seat = self.held.seat();
         match command.command {
             EmoveVerb::None | EmoveVerb::Pause => {
-                let moves = matches!(situation.prim, Lower::Pending | Lower::Executing);
+                let moves = matches!(senses.prim(), Lower::Pending | Lower::Executing);
                 Proof::when(!moves, Evidence::Moving)
             }
             EmoveVerb::MovToLoc
@@ -182,13 +185,13 @@ impl State {
             | EmoveVerb::LocateObj => at_goal(),
             EmoveVerb::MovObjTo => is_held().and(at_goal()).with_part(seat),
             EmoveVerb::GraspObj | EmoveVerb::AcquireTool => {
-                is_grasped(situation, memory).and(force).with_part(seat)
+                is_grasped(senses, memory).and(force).with_part(seat)
             }
             EmoveVerb::Release => is_free(),
-            EmoveVerb::QcAttach => Proof::when(situation.mate == Mate::Right, Evidence::GripperOff)
-                .and(Proof::when(situation.lock == Lock::Locked, Evidence::Ring))
-                .and(Proof::when(situation.holster != Holster::Full, Evidence::GripperOff)),
-            EmoveVerb::QcDetach => Proof::when(situation.mate == Mate::None, Evidence::GripperOn),
+            EmoveVerb::QcAttach => Proof::when(senses.mate() == Mate::Right, Evidence::GripperOff)
+                .and(Proof::when(senses.lock() == Lock::Locked, Evidence::Ring))
+                .and(Proof::when(senses.holster() != Holster::Full, Evidence::GripperOff)),
+            EmoveVerb::QcDetach => Proof::when(senses.mate() == Mate::None, Evidence::GripperOn),
             EmoveVerb::Withdraw => at_command(),
             EmoveVerb::InsertTool => {
                 is_held().and(at_command()).and_unsensed(Unconfirmed::ToolInDrum).with_part(seat)

@@ -93,7 +93,7 @@ impl HeldObject {
     }
 
     /// An object is held. `at` is the place of the robot.
-    pub(super) fn hold(&mut self, grasped: Grasped, at: Option<RobotPlace>) {
+    pub(super) fn hold(&mut self, grasped: Grasped, at: Option<&RobotPlace>) {
         (self.held, self.placed) = (Some(grasped), None);
         self.forget_disturbance(at);
         self.unfelt = 0;
@@ -216,17 +216,17 @@ impl HeldObject {
     /// it is grasped.
     ///
     /// `origin` is the place of the robot, or the one that it has left last; `ends` are all places to which it belongs;
-    /// `drum` is the drum at which it is half way.
+    /// `drum` is the drum at which it is half way; `is_sensed` is false if the resolvers give no position.
     pub(super) fn sense_seat(
         &mut self,
-        origin: Option<RobotPlace>,
-        ends: [Option<RobotPlace>; 3],
-        drum: Option<RobotPlace>,
+        (origin, ends): (Option<&RobotPlace>, [Option<&RobotPlace>; 3]),
+        drum: Option<&RobotPlace>,
+        is_sensed: bool,
         memory: &CommonMemory,
     ) {
         let prim = &memory.prim.status;
         let is_off = prim.controller_off || prim.report == PrimReport::T3LinkOff;
-        let is_off = is_off || present_frame(memory).is_none();
+        let is_off = is_off || !is_sensed;
         if !is_led(memory) && !is_off {
             return;
         }
@@ -235,12 +235,12 @@ impl HeldObject {
             self.seat = Seat::NotKnown;
         }
         let near = || ends.into_iter().flatten().find(|at| may_push(&at.pose, memory));
-        self.disturbed = drum.or_else(near).or(self.disturbed);
+        self.disturbed = drum.or_else(near).copied().or(self.disturbed);
     }
 
     /// Has an object been released at a place?
-    fn is_placed_at(&self, at: Option<RobotPlace>) -> bool {
-        self.placed.zip(at).is_some_and(|(placed, at)| LocationKey::of(&placed) == LocationKey::of(&at))
+    fn is_placed_at(&self, at: Option<&RobotPlace>) -> bool {
+        self.placed.zip(at).is_some_and(|(placed, at)| LocationKey::of(&placed) == LocationKey::of(at))
     }
 
     /// The seat of what the fingers are to close on. An object that may have been pushed, or that has slid before it was
@@ -257,9 +257,9 @@ impl HeldObject {
 
     /// The robot has grasped an object where it stands, or has let one go there that has not slid: it is not disturbed
     /// any more.
-    fn forget_disturbance(&mut self, here: Option<RobotPlace>) {
+    fn forget_disturbance(&mut self, here: Option<&RobotPlace>) {
         let is_here = |at: &RobotPlace| {
-            here.is_some_and(|here| LocationKey::of(at).has_location_of(LocationKey::of(&here)))
+            here.is_some_and(|here| LocationKey::of(at).has_location_of(LocationKey::of(here)))
         };
         self.disturbed = self.disturbed.filter(|at| !is_here(at));
     }
@@ -269,7 +269,7 @@ impl HeldObject {
     /// place of the robot.
     pub(super) fn sense_loss(
         &mut self,
-        at: Option<RobotPlace>,
+        at: Option<&RobotPlace>,
         grippers: &Grippers,
         inputs: &EmoveInputs<'_>,
     ) {
@@ -291,7 +291,7 @@ impl HeldObject {
         let has_let_go = grippers.has_let_go(inputs.tick, memory);
         if slipped || unfelt || gone || has_let_go {
             (self.held, self.grasping, self.gripper_gone) = (None, None, gone);
-            let let_go = |at: RobotPlace| PlacedObject {
+            let let_go = |at: &RobotPlace| PlacedObject {
                 object: held.object.object,
                 grip: held.object.grip,
                 location: at.location,
@@ -303,7 +303,7 @@ impl HeldObject {
             self.placed = put.map(let_go);
             match (put, self.seat) {
                 (Some(_), Seat::Kept) => self.forget_disturbance(put),
-                (Some(_), Seat::NotKnown) => self.disturbed = put,
+                (Some(_), Seat::NotKnown) => self.disturbed = put.copied(),
                 (None, _) => {}
             }
         }

@@ -24,7 +24,7 @@
 //! * [`motion`]: the route of the command, and the commands to Prim;
 //! * [`vision`]: pictures, and from a picture to a part frame.
 //!
-//! Besides there are [`plan`] with what a new command needs, [`goals`] with what a command that is done has reached,
+//! Besides there are [`senses`] with the state variables of the commands, [`plan`] with what a new command needs, [`goals`] with what a command that is done has reached,
 //! [`robot_place`] and [`grasp`] with conversions of places and objects, and [`tables`] with the decision tables, one
 //! file per command.
 
@@ -41,6 +41,7 @@ pub mod plan;
 pub mod report;
 pub mod robot_place;
 pub mod sense;
+pub mod senses;
 pub mod tables;
 #[cfg(test)]
 mod tests;
@@ -63,7 +64,7 @@ use self::{
     grippers::Grippers,
     held_object::HeldObject,
     localization::Localization,
-    motion::Motion,
+    motion::{Motion, flight::Progress},
     tables::{Action, Ordered, StateVariables, Step, attend::attend, number},
     tool_drum::ToolDrum,
     vision::Vision,
@@ -84,6 +85,8 @@ pub struct State {
     pub ordered: Ordered,
     /// It has ordered something of Prim, or waits until Prim has ended what it did before.
     pub uses_prim: bool,
+    /// The points that were sent when it gave its last order.
+    pub ordered_at: Progress,
     /// The object in the fingers.
     pub held: HeldObject,
     /// The gripper processes.

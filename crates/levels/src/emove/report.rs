@@ -9,8 +9,11 @@ use interfaces::{
 use rcs_core::handshake::Lower;
 
 use super::{
-    EmoveInputs, State, grasp::named_grasp, gripper::Gripper, localization::returning::offset_of_place,
-    robot_place::standing,
+    EmoveInputs, State,
+    grasp::named_grasp,
+    gripper::Gripper,
+    localization::returning::offset_of_place,
+    robot_place::{present_frame, standing},
 };
 use crate::execution::Outcome;
 
@@ -19,12 +22,17 @@ impl State {
     #[must_use]
     pub fn beliefs(&self) -> Beliefs {
         let mut beliefs = Beliefs::default();
-        self.held.write_to(&mut beliefs);
-        self.exchange.write_to(&mut beliefs);
-        self.drum.write_to(&mut beliefs);
-        self.localization.write_to(&mut beliefs);
-        self.vision.write_to(&mut beliefs);
+        self.write_to(&mut beliefs);
         beliefs
+    }
+
+    /// Write the estimates of all parts.
+    fn write_to(&self, beliefs: &mut Beliefs) {
+        self.held.write_to(beliefs);
+        self.exchange.write_to(beliefs);
+        self.drum.write_to(beliefs);
+        self.localization.write_to(beliefs);
+        self.vision.write_to(beliefs);
     }
 
     /// Adopt the estimates.
@@ -62,11 +70,12 @@ impl State {
     /// Write the status to Subtask and the flags of the gripper processes.
     pub(super) fn report(&self, inputs: &EmoveInputs<'_>, outputs: &mut EmoveOutputs) {
         let memory = inputs.memory;
+        let present = present_frame(memory);
         let (holding, place) = (self.holding(memory), self.localization.place());
         let (report, reason, unconfirmed) = self.outcome(inputs);
         outputs.header = self.execution.rows.header(inputs.tick, self.step.text());
         outputs.dormant = Gripper::attached(memory).dormancy();
-        outputs.beliefs = self.beliefs();
+        self.write_to(&mut outputs.beliefs);
         outputs.nearest = self.localization.surroundings().nearest;
         outputs.status = EmoveStatus {
             echo: self.execution.receiver.echo,
@@ -80,11 +89,12 @@ impl State {
             located: self.vision.located(),
             end_effector_id: self.exchange.end_effector_id(memory),
             pins: if self.exchange.is_misread(memory) { Pins::Differ } else { Pins::Agree },
-            at: place.as_ref().map(standing),
-            offset: place.map_or(Offset::None, |place| offset_of_place(&place, holding, inputs)),
+            at: place.map(standing),
+            offset: place
+                .map_or(Offset::None, |place| offset_of_place(place, present.as_ref(), holding, inputs)),
             exchange: self.exchange.changing(memory),
             drum: self.drum.is_around_tool(
-                self.localization.last_place().as_ref(),
+                self.localization.last_place(),
                 self.held.held().is_some(),
                 inputs,
             ),
@@ -107,6 +117,6 @@ impl State {
             }
             _ => {}
         }
-        outputs.beliefs = self.beliefs();
+        self.write_to(&mut outputs.beliefs);
     }
 }

@@ -144,13 +144,13 @@ pub const CONFIRMED_INCHES: f64 = 0.05;
 /// ... and radians (0.25 degree): the arm settles while the status is passed up.
 pub const CONFIRMED_RADIANS: f64 = 0.25 * core::f64::consts::PI / 180.0;
 
-/// How far the robot is from a pose, by the resolvers.
+/// How far the robot is from a pose. `present` is its frame by the resolvers.
 #[must_use]
-pub fn offset(pose: &Pose, memory: &CommonMemory) -> Offset {
-    let (Some(present), Ok(goal)) = (present_frame(memory), pose.to_frame()) else {
+pub fn offset(pose: &Pose, present: Option<&Frame>) -> Offset {
+    let (Some(present), Ok(goal)) = (present, pose.to_frame()) else {
         return Offset::NotSensed;
     };
-    let distance = goal.distance(&present);
+    let distance = goal.distance(present);
     if distance.inches <= THERE_INCHES && distance.radians <= THERE_RADIANS {
         Offset::None
     } else if distance.inches <= CONFIRMED_INCHES && distance.radians <= CONFIRMED_RADIANS {

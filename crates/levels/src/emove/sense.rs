@@ -1,5 +1,6 @@
 //! Preprocess of E-move: held object, place of the robot, and the state variables of the tables.
 
+use geometry::frame::Frame;
 use interfaces::{
     CommonMemory, EmoveOutputs,
     emove::{EmoveCommand, EmoveVerb, Grasped, Holding},
@@ -11,28 +12,21 @@ use rcs_core::handshake::Lower;
 use super::{
     EmoveInputs, State,
     gripper::Gripper,
-    gripper_exchange::{along, holster, shut},
     grippers::FingerVerb,
-    motion::route::Ahead,
     robot_place::present_frame,
+    senses::Senses,
     tables::{
-        FingerMotion, Knowledge, Link, Lock, Mate, Opening, Pause, PlaceKnowledge, Readiness, Records,
-        Request, Ring, Situation, Spread, StateVariables, Step, Subordinates, Tooling, Watch,
+        Opening, Pause, PlaceKnowledge, Records, Request, Situation, StateVariables, Step, Subordinates,
+        Watch,
         e_pause::EPauseStep,
-        number,
+        known, number,
         search::{Look, search},
     },
-    vision::{can_aim, sight},
 };
 use crate::{
-    execution::{Asked, Progress, Work},
-    halt::{Above, Below, BoxState, Intake, Kind, Replaced},
-    held::Held,
+    execution::Asked,
+    halt::{Above, Advance, Below, BoxState, Intake, Kind, Replaced},
 };
-
-const fn known(known: bool) -> Knowledge {
-    if known { Knowledge::Known } else { Knowledge::Unknown }
-}
 
 /// Do the fingers stand at an opening, 0.01 in, without air that moves them from there?
 fn stands_at(opening: i32, memory: &CommonMemory) -> bool {
@@ -52,8 +46,9 @@ impl State {
         self.sense_neighbours(inputs);
         self.localization.sense_path(inputs.memory, inputs.data);
         self.vision.sense(inputs.memory);
-        self.sense_held(command, inputs);
-        let watch = self.sense_place(command, inputs);
+        let present = present_frame(inputs.memory);
+        self.sense_held(command, present.is_some(), inputs);
+        let watch = self.sense_place(command, present.as_ref(), inputs);
         self.exchange.sense(inputs);
         self.sense_drum(inputs);
         let replaced = self.replaced(&watch, inputs);
@@ -64,18 +59,24 @@ impl State {
             (Request::default(), Records::default())
         };
         let subordinates = self.subordinates(command, inputs);
-        let situation = self.situation(command, &subordinates, inputs);
+        let senses = Senses::new(self, command, inputs, &subordinates);
+        let situation = Situation::sense(command.command, &senses);
+        let proof = self.proof(&senses, present.as_ref(), command, inputs, outputs);
         let seen = StateVariables {
             arrival,
             verb: command.command,
             asked,
             replaced,
-            progress: Progress { tries: self.vision.vain_pictures(), ..self.motion.flight().progress() },
+            advance: if self.motion.flight().progress() == self.ordered_at {
+                Advance::None
+            } else {
+                Advance::Made
+            },
             request,
             records,
             watch,
             subordinates,
-            proof: self.proof(command, &situation, inputs, outputs),
+            proof,
             situation,
         };
         self.grippers.note_button(inputs.memory);
@@ -123,13 +124,13 @@ impl State {
     }
 
     /// Whether the held object is still held, and whether anything is between the fingers.
-    fn sense_held(&mut self, command: &EmoveCommand, inputs: &EmoveInputs<'_>) {
+    fn sense_held(&mut self, command: &EmoveCommand, is_sensed: bool, inputs: &EmoveInputs<'_>) {
         let (memory, robot) = (inputs.memory, &self.localization);
         if self.exchange.is_misread(memory) {
             return;
         }
         self.held.sense_loss(robot.place(), &self.grippers, inputs);
-        self.held.sense_seat(robot.origin(), robot.ends(), self.drum.half_way(), memory);
+        self.held.sense_seat((robot.origin(), robot.ends()), self.drum.half_way(), is_sensed, memory);
         if self.exchange.sense_gripper(memory) {
             self.held.note_gripper(memory);
             self.grippers.note_gripper(memory);
@@ -158,16 +159,20 @@ impl State {
     }
 
     /// Whether it is known where the robot is.
-    fn place_knowledge(&self, inputs: &EmoveInputs<'_>) -> PlaceKnowledge {
+    pub(super) fn place_knowledge(&self, inputs: &EmoveInputs<'_>) -> PlaceKnowledge {
         let is_moving = matches!(self.motion.robot(inputs), Lower::Pending | Lower::Executing);
         let is_half_way = self.exchange.is_half_done() || self.drum.half_way().is_some();
         self.localization.knowledge(is_moving, is_half_way, inputs)
     }
 
     /// Is the robot still where its last move ended? If [`search`] says so, look where else it is.
-    fn sense_place(&mut self, command: &EmoveCommand, inputs: &EmoveInputs<'_>) -> Watch {
-        let present = present_frame(inputs.memory);
-        if let Some(present) = &present {
+    fn sense_place(
+        &mut self,
+        command: &EmoveCommand,
+        present: Option<&Frame>,
+        inputs: &EmoveInputs<'_>,
+    ) -> Watch {
+        if let Some(present) = present {
             self.localization.sense_place(present);
         }
         let pause = match (command.command, self.step) {
@@ -186,10 +191,10 @@ impl State {
             resolvers: known(present.is_some()),
         };
         self.localization.sense_track(watch.place, inputs.memory);
-        self.localization.sense_surroundings(watch.place, present.as_ref(), inputs.data);
+        self.localization.sense_surroundings(watch.place, present, inputs.data);
         let decision = search(self.step, &watch);
         self.execution.rows.beside(&decision.of(number::SEARCH));
-        match (decision.action, &present) {
+        match (decision.action, present) {
             (Look::Look, Some(present)) => self.localization.search(present, inputs.data),
             (Look::Look, None) | (Look::Rest, _) => {}
         }
@@ -225,120 +230,16 @@ impl State {
         }
     }
 
-    /// Set the state variables of the commands.
-    fn situation(
-        &self,
-        command: &EmoveCommand,
-        subordinates: &Subordinates,
-        inputs: &EmoveInputs<'_>,
-    ) -> Situation {
-        let (tick, memory) = (inputs.tick, inputs.memory);
-        let &Subordinates { prim, opening, gripper, ring, .. } = subordinates;
-        let at_place = self.localization.place().is_some();
-        Situation {
-            work: Work::Busy,
-            ahead: self.motion.flight().ahead(inputs.data),
-            opening,
-            held: Held::of(self.holding(memory), command.object),
-            fingers: self.held.fingers(at_place, command, &self.grippers, inputs),
-            spread: self.spread(gripper, command, inputs),
-            readiness: self.readiness(gripper, memory),
-            mate: match memory.quick_change.status.end_effector_id {
-                None => Mate::None,
-                id if id == command.end_effector_id => Mate::Right,
-                _ => Mate::Wrong,
-            },
-            holster: holster(command.end_effector_id, memory),
-            lock: self.exchange.lock(tick, memory),
-            along: along(command, inputs),
-            shut: shut(command, inputs),
-            at: self.localization.at(command),
-            drum: self.drum.at(command, inputs),
-            bias: self.drum.bias(memory),
-            sight: sight(self.localization.last_place().as_ref(), inputs),
-            aim: known(can_aim(command, inputs)),
-            reach: self.vision.reach(command, inputs),
-            tries: self.vision.tries(),
-            link: if memory.prim.status.link_running { Link::Up } else { Link::Down },
-            prim,
-            motion: if self.grippers.are_moving(tick, memory) {
-                FingerMotion::Moving
-            } else {
-                FingerMotion::AtRest
-            },
-            tooling: self.tooling(ring, gripper, inputs),
-            place: self.place_knowledge(inputs),
-            button: self.grippers.pressed(memory),
-        }
-    }
-
-    /// State of the attached gripper after its last order; without an order, the initial state.
-    fn readiness(&self, gripper: Lower, memory: &CommonMemory) -> Readiness {
-        let attached = Gripper::attached(memory);
-        let idle = gripper == Lower::Done || !self.grippers.are_ordered(memory);
-        match (idle, attached.is_uncalibrated(memory)) {
-            (true, true) => Readiness::Uncalibrated,
-            (true, false) => Readiness::Ready,
-            (false, _) => Readiness::Faulty,
-        }
-    }
-
-    /// Quick change and gripper while pausing. Grip's PAUSE is done only when a calibration at the start is (VI.3.1
-    /// UP-INIT); with no gripper, or one that has come since, there is nothing to wait for. A ring that stands half-way
-    /// is at rest, too: ACCEPT decides which commands it prevents.
-    fn tooling(&self, ring: Ring, gripper: Lower, inputs: &EmoveInputs<'_>) -> Tooling {
-        let asked = self.grippers.are_ordered(inputs.memory);
-        match (ring, gripper) {
-            (Ring::Faulty, _) if self.exchange.lock(inputs.tick, inputs.memory) != Lock::Between => {
-                Tooling::RingFaulty
-            }
-            (Ring::Busy, _) => Tooling::Busy,
-            (_, Lower::Error | Lower::Joystick | Lower::Lost) if asked => Tooling::GripFaulty,
-            (_, Lower::Pending | Lower::Executing) => Tooling::Busy,
-            (Ring::Faulty | Ring::Locked | Ring::Unlocked, _) => Tooling::Ready,
-        }
-    }
-
-    /// The opening for the goal of the route.
+    /// The opening for the goal of the route. While a release is under way, no opening is ordered.
     fn opening(&self, gripper: Lower, inputs: &EmoveInputs<'_>) -> Opening {
-        let EmoveInputs { memory, data, .. } = *inputs;
-        if self.is_letting_go() {
-            return Opening::LettingGo;
-        }
-        let Some((opening, is_sent)) = self.motion.opening() else { return Opening::Set };
-        if is_sent {
-            match gripper {
-                Lower::Pending | Lower::Executing => Opening::Moving,
-                Lower::Done => Opening::Set,
-                Lower::Error | Lower::Joystick | Lower::Lost => Opening::Failed,
+        match self.motion.opening() {
+            None => Opening::Free,
+            Some(_) if self.is_letting_go() => Opening::Free,
+            Some((_, true)) => Opening::Sent,
+            Some((opening, false)) if gripper == Lower::Done && stands_at(opening, inputs.memory) => {
+                Opening::Reached
             }
-        } else if gripper == Lower::Done && stands_at(opening, memory) {
-            Opening::Set
-        } else if self.motion.flight().departing(data) {
-            Opening::Departing
-        } else if Gripper::attached(memory).is_uncalibrated(memory)
-            && self.holding(memory) == Holding::Nothing
-        {
-            match (self.localization.place(), self.motion.flight().ahead(data)) {
-                (None, _) => Opening::Uncalibrated,
-                (Some(_), Ahead::Through) => Opening::Departing,
-                (Some(_), _) => Opening::Due,
-            }
-        } else {
-            Opening::Due
-        }
-    }
-
-    /// Are the fingers as wide open as letting go would leave them?
-    fn spread(&self, gripper: Lower, command: &EmoveCommand, inputs: &EmoveInputs<'_>) -> Spread {
-        let attached = Gripper::attached(inputs.memory);
-        let opening = self.held.depart_opening(self.holding(inputs.memory), command, inputs);
-        let open = attached.is_open(opening, inputs.memory);
-        let at_rest = attached == Gripper::None || gripper == Lower::Done;
-        match (attached.is_uncalibrated(inputs.memory), open && at_rest) {
-            (true, _) => Spread::Unknown,
-            (false, true) => Spread::Open,
-            (false, false) => Spread::Narrow,
+            Some((_, false)) => Opening::Due,
         }
     }
 }

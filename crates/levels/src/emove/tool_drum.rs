@@ -167,8 +167,8 @@ impl ToolDrum {
         (beliefs.drum, beliefs.calibrated) = (self.half_way, self.calibrated);
     }
 
-    pub(super) const fn half_way(&self) -> Option<RobotPlace> {
-        self.half_way
+    pub(super) const fn half_way(&self) -> Option<&RobotPlace> {
+        self.half_way.as_ref()
     }
 
     /// Where the robot is at the drum of the command, if it is half way there.
@@ -224,12 +224,13 @@ impl ToolDrum {
 
     /// A robot that was moved with the fingers around a tool in the drum is half way there again: the tool has moved, or
     /// the fingers on it. `at` is where its last motion ended. True if it was moved.
-    pub(super) fn sense_moved_tool(&mut self, at: Option<RobotPlace>, inputs: &EmoveInputs<'_>) -> bool {
-        let (Some(at), Some(present)) = (at, present_frame(inputs.memory)) else { return false };
+    pub(super) fn sense_moved_tool(&mut self, at: Option<&RobotPlace>, inputs: &EmoveInputs<'_>) -> bool {
+        let Some(at) = at.filter(|at| at.gone_to == GoneTo::Drum) else { return false };
+        let Some(present) = present_frame(inputs.memory) else { return false };
         let base = inputs.data.locpt(LocptId::from_option(at.record)).map(|locpt| locpt.frame);
         let is_there = at.pose.to_frame().is_ok_and(|pose| near(&pose, &present, UNMOVED, LOST_RADIANS));
-        if let (GoneTo::Drum, Some(base), false) = (at.gone_to, base, is_there) {
-            self.half_way = Some(RobotPlace { pose: Pose::from_frame(&base), ..at });
+        if let (Some(base), false) = (base, is_there) {
+            self.half_way = Some(RobotPlace { pose: Pose::from_frame(&base), ..*at });
             return true;
         }
         false
@@ -243,7 +244,8 @@ impl ToolDrum {
         execution: &mut Execution,
         inputs: &EmoveInputs<'_>,
     ) -> Option<RobotPlace> {
-        let (half_way, present) = (self.half_way?, present_frame(inputs.memory)?);
+        let half_way = self.half_way?;
+        let present = present_frame(inputs.memory)?;
         let grasped_here = grasped_at.is_some_and(|pose| {
             pose.to_frame().is_ok_and(|pose| near(&pose, &present, UNMOVED, LOST_RADIANS))
         });

@@ -337,11 +337,6 @@ impl Vision {
         Some(View { goal: Pose::from_frame(&inputs.data.moved(&target, view)), parameters, part })
     }
 
-    /// Pictures that were taken in vain.
-    pub(super) const fn vain_pictures(&self) -> u8 {
-        self.tries
-    }
-
     /// The handshake with vision. Searches renumber its requests (docs/evidence.md).
     pub const fn commander(&mut self) -> &mut Commander {
         &mut self.commander

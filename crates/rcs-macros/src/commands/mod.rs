@@ -26,6 +26,8 @@ pub struct Commands {
     step: Ident,
     verb: Path,
     situation: Path,
+    /// The situation is a new enum with a variant for each entry, whose variables this type senses.
+    senses: Option<Path>,
     action: Path,
     /// Tables that no command selects, in the order of their numbers.
     others: Vec<Path>,
@@ -42,6 +44,7 @@ struct Entry {
 }
 
 mod word {
+    syn::custom_keyword!(of);
     syn::custom_keyword!(others);
     syn::custom_keyword!(then);
 }
@@ -59,7 +62,14 @@ impl Parse for Commands {
         let declared = parameters.parse::<Option<Token![enum]>>()?.is_some();
         let step = parameters.parse()?;
         parameters.parse::<Token![,]>()?;
+        let is_new = parameters.parse::<Option<Token![enum]>>()?.is_some();
         let situation = parameters.call(Path::parse_mod_style)?;
+        let senses = if is_new {
+            parameters.parse::<word::of>()?;
+            Some(parameters.call(Path::parse_mod_style)?)
+        } else {
+            None
+        };
         input.parse::<Token![->]>()?;
         let action = input.call(Path::parse_mod_style)?;
         let body;
@@ -78,7 +88,20 @@ impl Parse for Commands {
         while !body.is_empty() {
             entries.push(body.parse()?);
         }
-        Ok(Self { attributes, vis, decide, declared, step, verb, situation, action, others, order, entries })
+        Ok(Self {
+            attributes,
+            vis,
+            decide,
+            declared,
+            step,
+            verb,
+            situation,
+            senses,
+            action,
+            others,
+            order,
+            entries,
+        })
     }
 }
 
@@ -106,6 +129,11 @@ impl Entry {
     /// The table at the end of the chain: its steps are those of the command.
     fn last(&self) -> &Path {
         self.chain.last().unwrap_or_else(|| unreachable!("a chain is not empty"))
+    }
+
+    /// Its variant of the enum of all situations: its last command.
+    fn variant(&self) -> &Ident {
+        self.verbs.last().unwrap_or_else(|| unreachable!("an entry has a command"))
     }
 }
 
@@ -139,6 +167,11 @@ fn step_of(table: &Path) -> Path {
 
 fn same(a: &Path, b: &Path) -> bool {
     quote!(#a).to_string() == quote!(#b).to_string()
+}
+
+/// The state variables of a table, by the name of its function.
+fn situation_of(table: &Path) -> Path {
+    beside(table, |name| format!("{}Situation", names::camel(name)))
 }
 
 /// Each path once, in the order of the first.
@@ -208,6 +241,61 @@ impl Commands {
         }
     }
 
+    /// The enum of the situations of all commands: what the tables of each command test, and nothing else.
+    fn situations(&self) -> TokenStream {
+        let Some(senses) = &self.senses else { return TokenStream::new() };
+        let (vis, name, verb) = (&self.vis, &self.situation, &self.verb);
+        let (mut variants, mut passes, mut sensed) = (Vec::new(), Vec::new(), Vec::new());
+        for entry in &self.entries {
+            let (variant, verbs) = (entry.variant(), &entry.verbs);
+            let of: Vec<_> = entry.chain.iter().map(situation_of).collect();
+            let tables: Vec<_> = (0..of.len()).map(|at| format_ident!("table_{at}")).collect();
+            sensed.push(quote!(#( #verb::#verbs )|* => Self::#variant(#( #of::sense(senses), )*)));
+            let texts = of.iter().map(|of| quote!(#of).to_string().replace(' ', ""));
+            let links: Vec<_> = texts.map(|of| format!("[`{of}`]")).collect();
+            let doc = format!("Of {}.", links.join(", "));
+            variants.push(quote!(#[doc = #doc] #variant(#( #of, )*)));
+            passes.push(quote!(Self::#variant(#( #tables, )*) => { #( #tables.pass(passed); )* }));
+        }
+        let passed = beside(senses, |name| format!("__{name}"));
+        quote! {
+            /// The state variables of a command: those that its tables test.
+            #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+            #vis enum #name { #( #variants, )* }
+
+            impl #name {
+                /// Sense what the tables of a command test.
+                #[must_use]
+                #vis fn sense(verb: #verb, senses: &#senses<'_>) -> Self {
+                    match verb { #( #sensed, )* }
+                }
+
+                /// Note what a table above those of the command has passed on.
+                #vis const fn pass(&mut self, passed: #passed::Passed) {
+                    match self { #( #passes, )* }
+                }
+            }
+        }
+    }
+
+    /// The function that consults the tables of a command.
+    fn of_command(&self, tables: &[Path]) -> TokenStream {
+        let Self { attributes, vis, decide, step, verb, situation, action, .. } = self;
+        let (selector, parameters) = if self.senses.is_some() {
+            (quote!(situation), quote!(step: #step, situation: &#situation))
+        } else {
+            (quote!(verb), quote!(verb: #verb, step: #step, situation: &#situation))
+        };
+        let arms = self.entries.iter().map(|entry| self.arm(entry, tables));
+        quote! {
+            #( #attributes )*
+            #[must_use]
+            #vis fn #decide(#parameters) -> ::rcs_core::table::Choice<#action, #step> {
+                match #selector { #( #arms, )* }
+            }
+        }
+    }
+
     /// The goals of the commands: by the command, and as a list.
     fn goals(&self) -> TokenStream {
         let (vis, verb) = (&self.vis, &self.verb);
@@ -233,8 +321,11 @@ impl Commands {
     /// The arm of a command: its tables in turn.
     fn arm(&self, entry: &Entry, tables: &[Path]) -> TokenStream {
         let (verb, all) = (&self.verb, &self.step);
-        let verbs = entry.verbs.iter().map(|name| quote!(#verb::#name));
         let last = entry.last();
+        let situations: Vec<Ident> = match &self.senses {
+            Some(_) => (0..entry.chain.len()).map(|at| format_ident!("table_{at}")).collect(),
+            None => vec![format_ident!("situation"); entry.chain.len()],
+        };
         let variant = camel(last);
         let number = |table: &Path| {
             let position = tables.iter().position(|other| same(other, &static_of(table)));
@@ -253,11 +344,13 @@ impl Commands {
             }
         };
         let decided = choice(last);
-        let mut body = quote! { let decision = #last(step, situation); #decided };
-        for table in entry.chain.iter().rev().skip(1) {
+        let mut below = entry.chain.iter().zip(&situations).rev();
+        let situation = below.next().map(|(_, situation)| situation);
+        let mut body = quote! { let decision = #last(step, #situation); #decided };
+        for (table, situation) in below {
             let decided = choice(table);
             body = quote! {
-                match #table(step, situation) {
+                match #table(step, #situation) {
                     ::rcs_core::table::Verdict::Decided(decision) => #decided,
                     ::rcs_core::table::Verdict::Passed(()) => { #body }
                 }
@@ -274,7 +367,13 @@ impl Commands {
                 #body
             };
         }
-        quote!(#( #verbs )|* => { #body })
+        if self.senses.is_some() {
+            let (of, variant) = (&self.situation, entry.variant());
+            quote!(#of::#variant(#( #situations, )*) => { #body })
+        } else {
+            let verbs = entry.verbs.iter().map(|name| quote!(#verb::#name));
+            quote!(#( #verbs )|* => { #body })
+        }
     }
 }
 
@@ -282,9 +381,9 @@ impl Commands {
 /// the table of a command, and the one that consults all tables in the declared order.
 pub fn expand(input: TokenStream) -> Result<TokenStream> {
     let commands: Commands = parse2(input)?;
-    let Commands { attributes, vis, decide, step, verb, situation, action, others, .. } = &commands;
+    let Commands { vis, others, .. } = &commands;
     let (tables, steps, goals) = (commands.tables(), commands.steps(), commands.goals());
-    let arms = commands.entries.iter().map(|entry| commands.arm(entry, &tables));
+    let (situations, of_command) = (commands.situations(), commands.of_command(&tables));
     let numbers = others.iter().zip(1_u8..).map(|(table, number)| {
         let (name, number) = (table.segments.last().map(|last| &last.ident), Literal::u8_suffixed(number));
         let doc =
@@ -303,14 +402,43 @@ pub fn expand(input: TokenStream) -> Result<TokenStream> {
         /// Numbers of the tables that no command selects.
         #vis mod number { #( #numbers )* }
 
-        #( #attributes )*
-        #[must_use]
-        #vis fn #decide(
-            verb: #verb, step: #step, situation: &#situation,
-        ) -> ::rcs_core::table::Choice<#action, #step> {
-            match verb { #( #arms, )* }
-        }
+        #situations
+
+        #of_command
 
         #order
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn situation_of_a_command_has_the_variables_of_its_tables() {
+        let list = "
+            /// Consult the tables of a command.
+            fn of_command(Verb, enum Step, enum Situation of Senses) -> Action {
+                Pause: goals::REST => pause::pause;
+                Go: goals::PLACE => go::go then motion::motion;
+                Come | Return: goals::PLACE => go::go then arm::arm;
+            }";
+        let code = expand(list.parse().expect("tokens")).expect("the list is right").to_string();
+        for text in [
+            "Pause (pause :: PauseSituation ,)",
+            "Go (go :: GoSituation , motion :: MotionSituation ,)",
+            "Return (go :: GoSituation , arm :: ArmSituation ,)",
+            "Verb :: Come | Verb :: Return => Self :: Return (go :: GoSituation :: sense (senses) , arm",
+            "Self :: Go (table_0 , table_1 ,) => { table_0 . pass (passed) ; table_1 . pass (passed) ; }",
+            "match situation { Situation :: Pause (table_0 ,) =>",
+            "match go :: go (step , table_0)",
+        ] {
+            assert!(code.contains(text), "{text} in {code}");
+        }
+        assert_eq!(
+            code.matches("Situation :: Go (table_0 , table_1 ,) => {").count(),
+            1,
+            "one arm for two commands"
+        );
+    }
 }

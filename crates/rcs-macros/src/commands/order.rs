@@ -21,13 +21,20 @@ pub struct Order {
     /// Tables before that of the command.
     before: Vec<Before>,
     /// Tables about the row that fired.
-    after: Vec<Ident>,
+    after: Vec<After>,
 }
 
 /// A table that is consulted before that of the command.
 struct Before {
     table: Ident,
     how: How,
+}
+
+/// A table about the row that fired: `CONFIRM`, `EFFECT`, or `EFFECT(advance)`.
+struct After {
+    table: Ident,
+    /// The field of `StateVariables` that says whether the command has advanced since its last order.
+    advance: Option<Ident>,
 }
 
 /// How it is consulted.
@@ -46,7 +53,13 @@ struct Row {
     /// `in link`: the field of the state that is its step.
     step: Option<Ident>,
     /// The field of `StateVariables` that gets what it passes on.
-    passes: Option<(Ident, Ident)>,
+    passes: Option<Passes>,
+}
+
+/// `-> situation.work`, or `-> situation` if each table has a struct of its own.
+struct Passes {
+    of: Ident,
+    field: Option<Ident>,
 }
 
 impl Parse for Before {
@@ -64,12 +77,26 @@ impl Parse for Before {
         let step = if field.parse::<Option<Token![in]>>()?.is_some() { Some(field.parse()?) } else { None };
         let passes = if field.parse::<Option<Token![->]>>()?.is_some() {
             let of = field.parse()?;
-            field.parse::<Token![.]>()?;
-            Some((of, field.parse()?))
+            let is_named = field.parse::<Option<Token![.]>>()?.is_some();
+            Some(Passes { of, field: if is_named { Some(field.parse()?) } else { None } })
         } else {
             None
         };
         Ok(Self { table, how: How::Row(Row { variables, step, passes }) })
+    }
+}
+
+impl Parse for After {
+    fn parse(input: ParseStream<'_>) -> Result<Self> {
+        let table: Ident = input.parse()?;
+        let advance = if table == "EFFECT" && input.peek(syn::token::Paren) {
+            let field;
+            parenthesized!(field in input);
+            Some(field.parse()?)
+        } else {
+            None
+        };
+        Ok(Self { table, advance })
     }
 }
 
@@ -85,7 +112,7 @@ impl Order {
         input.parse::<Token![;]>()?;
         let after = if input.parse::<Option<word::after>>()?.is_some() {
             input.parse::<Token![:]>()?;
-            let after = Punctuated::<Ident, Token![,]>::parse_separated_nonempty(input)?;
+            let after = Punctuated::<After, Token![,]>::parse_separated_nonempty(input)?;
             input.parse::<Token![;]>()?;
             after.into_iter().collect()
         } else {
@@ -118,8 +145,10 @@ impl Order {
                 How::Common | How::By(_) => {}
             }
         }
-        match self.after.iter().find(|table| **table != "EFFECT" && **table != "CONFIRM") {
-            Some(table) => Err(Error::new(table.span(), "only EFFECT and CONFIRM are consulted after a row")),
+        match self.after.iter().find(|After { table, .. }| table != "EFFECT" && table != "CONFIRM") {
+            Some(After { table, .. }) => {
+                Err(Error::new(table.span(), "only EFFECT and CONFIRM are consulted after a row"))
+            }
             None => Ok(()),
         }
     }
@@ -144,8 +173,9 @@ impl Order {
                     if let Some(step) = step {
                         text += &format!(", with the step `{step}` of its own");
                     }
-                    if let Some((of, field)) = passes {
-                        text += &format!("; it passes `{of}.{field}` on");
+                    if let Some(Passes { of, field }) = passes {
+                        let field = field.as_ref().map(|field| format!(".{field}")).unwrap_or_default();
+                        text += &format!("; it passes `{of}{field}` on");
                     }
                     text
                 }
@@ -153,7 +183,7 @@ impl Order {
             lines.push(format!("1. {}: {what}", link(table)?));
         }
         lines.push(String::from("1. the table of the command, about `situation`"));
-        for table in &self.after {
+        for After { table, .. } in &self.after {
             let what =
                 if *table == "EFFECT" { "a row that gives an order" } else { "a row that reports done" };
             lines.push(format!("1. {}: about {what}", link(table)?));
@@ -190,16 +220,16 @@ impl Order {
         } else {
             quote!(<#step as ::rcs_core::Plain>::ZERO)
         };
-        let is_after = |name: &str| self.after.iter().any(|table| *table == name);
-        let (variables, effect) = if is_after("EFFECT") {
-            (
-                quote!(let variables = seen.variables();),
-                quote!(let choice = state.execution.effect(number::EFFECT, choice, variables);),
-            )
-        } else {
-            (TokenStream::new(), TokenStream::new())
-        };
-        let confirm = is_after("CONFIRM").then(|| {
+        let verb = if commands.senses.is_none() { quote!(seen.verb,) } else { TokenStream::new() };
+        let after = |name: &str| self.after.iter().find(|after| after.table == name);
+        let effect = after("EFFECT").map(|After { advance, .. }| {
+            let advance = match advance {
+                Some(field) => quote!(seen.#field),
+                None => quote!(crate::halt::Advance::None),
+            };
+            quote!(let choice = state.execution.effect(number::EFFECT, choice, #advance);)
+        });
+        let confirm = after("CONFIRM").map(|_| {
             quote! {
                 let goal = (goal(seen.verb), seen.proof);
                 let choice = state.execution.confirm(number::CONFIRM, state.step, choice, goal);
@@ -208,7 +238,6 @@ impl Order {
         Ok(quote! {
             #( #[doc = #documentation] )*
             #vis fn decide(state: &mut super::State, seen: &mut StateVariables) -> #action {
-                #variables
                 let course = state.execution.execute(seen.arrival);
                 #( #gates )*
                 match course {
@@ -218,7 +247,7 @@ impl Order {
                 }
                 let choice = 'decided: {
                     #( #rows )*
-                    #of_command(seen.verb, state.step, &seen.situation)
+                    #of_command(#verb state.step, &seen.situation)
                 };
                 #effect
                 #confirm
@@ -246,8 +275,12 @@ impl Row {
         };
         let passed = match &self.passes {
             None => quote!(::rcs_core::table::Verdict::Passed(()) => {}),
-            Some((of, field)) => {
-                quote!(::rcs_core::table::Verdict::Passed(value) => seen.#of.#field = value,)
+            Some(Passes { of, field }) => {
+                let set = match field {
+                    Some(field) => quote!(seen.#of.#field = value),
+                    None => quote!(seen.#of.pass(value)),
+                };
+                quote!(::rcs_core::table::Verdict::Passed(value) => #set,)
             }
         };
         quote! {
@@ -294,14 +327,13 @@ mod tests {
         let code = expand(
             "before: EXECUTE, JOYSTICK by joystick, HALT, ACCEPT(request), LINK(situation in link),
                      ORDERED(subordinates -> situation.work);
-             after: EFFECT, CONFIRM;",
+             after: EFFECT(advance), CONFIRM;",
         )
         .expect("the order is right");
         let decide = &code[code.find("fn decide (").expect("the function is generated")..];
         assert_in_order(
             decide,
             &[
-                "seen . variables ()",
                 "execution . execute (seen . arrival)",
                 "state . joystick (course , seen)",
                 "execution . halt (number :: HALT",
@@ -312,7 +344,7 @@ mod tests {
                 "ordered :: ordered (state . step , & seen . subordinates)",
                 "seen . situation . work = value",
                 "of_command (seen . verb , state . step , & seen . situation)",
-                "execution . effect (number :: EFFECT",
+                "execution . effect (number :: EFFECT , choice , seen . advance)",
                 "execution . confirm (number :: CONFIRM",
                 "state . step = choice . next",
             ],
@@ -332,6 +364,24 @@ mod tests {
         let code = code.expect("the order is right");
         assert_in_order(&code[code.find("declared order").expect("it has a comment")..], &texts);
         assert!(!code.contains("execution . effect"), "EFFECT is not consulted");
+    }
+
+    #[test]
+    fn effect_without_a_field_sees_no_advance() {
+        let code = expand("before: EXECUTE; after: EFFECT;").expect("the order is right");
+        assert!(
+            code.contains("effect (number :: EFFECT , choice , crate :: halt :: Advance :: None)"),
+            "{code}"
+        );
+    }
+
+    #[test]
+    fn value_is_passed_to_a_field_or_to_the_situation() {
+        let code = |order: &str| expand(order).expect("the order is right");
+        let field = code("before: EXECUTE, ORDERED(subordinates -> situation.work);");
+        assert!(field.contains("Passed (value) => seen . situation . work = value ,"), "{field}");
+        let whole = code("before: EXECUTE, ORDERED(subordinates -> situation);");
+        assert!(whole.contains("Passed (value) => seen . situation . pass (value) ,"), "{whole}");
     }
 
     #[test]

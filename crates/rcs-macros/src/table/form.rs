@@ -8,6 +8,8 @@ use syn::{
     token,
 };
 
+use crate::names;
+
 /// A table as written.
 pub struct Table {
     pub attributes: Vec<Attribute>,
@@ -16,6 +18,8 @@ pub struct Table {
     pub decide: Ident,
     pub step: Option<Step>,
     pub situation: Path,
+    /// The struct of the state variables is a new one, of those that the rows name, which this type senses.
+    pub senses: Option<Path>,
     pub action: Path,
     /// What a row that does not decide passes on.
     pub passed: Option<Passed>,
@@ -54,6 +58,7 @@ pub struct Condition {
 }
 
 mod word {
+    syn::custom_keyword!(of);
     syn::custom_keyword!(or);
     syn::custom_keyword!(any);
     syn::custom_keyword!(consult);
@@ -64,13 +69,13 @@ impl Parse for Table {
     fn parse(input: ParseStream<'_>) -> Result<Self> {
         let attributes = input.call(Attribute::parse_outer)?;
         let vis = input.parse()?;
-        let name = input.parse()?;
+        let name: Ident = input.parse()?;
         input.parse::<Token![:]>()?;
         input.parse::<Token![fn]>()?;
         let decide = input.parse()?;
         let parameters;
         parenthesized!(parameters in input);
-        let (step, situation) = head(&parameters)?;
+        let (step, situation, senses) = head(&name, &parameters)?;
         input.parse::<Token![->]>()?;
         let action = input.call(Path::parse_mod_style)?;
         let passed = if input.parse::<Option<word::or>>()?.is_none() {
@@ -95,26 +100,35 @@ impl Parse for Table {
         } else {
             groups.push(StepGroup { attributes: Vec::new(), steps: Vec::new(), rows: rows(&body)? });
         }
-        let table = Self { attributes, vis, name, decide, step, situation, action, passed, groups };
+        let table = Self { attributes, vis, name, decide, step, situation, senses, action, passed, groups };
         table.check()?;
         Ok(table)
     }
 }
 
-/// `enum NewStep, Situation`, `OldStep, Situation` or `Situation`.
-fn head(input: ParseStream<'_>) -> Result<(Option<Step>, Path)> {
-    let step = if input.parse::<Option<Token![enum]>>()?.is_some() {
-        Step::Declared(input.parse()?)
-    } else {
+/// `enum NewStep, Situation`, `OldStep, Situation` or `Situation`; for `Situation` also `struct of Senses`.
+fn head(table: &Ident, input: ParseStream<'_>) -> Result<(Option<Step>, Path, Option<Path>)> {
+    let mut step = None;
+    if input.parse::<Option<Token![enum]>>()?.is_some() {
+        step = Some(Step::Declared(input.parse()?));
+    } else if !input.peek(Token![struct]) {
         let first = input.call(Path::parse_mod_style)?;
         if input.is_empty() {
-            return Ok((None, first));
+            return Ok((None, first, None));
         }
-        Step::Named(first)
+        step = Some(Step::Named(first));
+    }
+    if step.is_some() {
+        input.parse::<Token![,]>()?;
+    }
+    let (situation, senses) = if input.parse::<Option<Token![struct]>>()?.is_some() {
+        input.parse::<word::of>()?;
+        let name = format!("{}Situation", names::camel(&table.to_string().to_lowercase()));
+        (Ident::new(&name, table.span()).into(), Some(input.call(Path::parse_mod_style)?))
+    } else {
+        (input.call(Path::parse_mod_style)?, None)
     };
-    input.parse::<Token![,]>()?;
-    let situation = input.call(Path::parse_mod_style)?;
-    if input.is_empty() { Ok((Some(step), situation)) } else { Err(input.error("`)` is expected")) }
+    if input.is_empty() { Ok((step, situation, senses)) } else { Err(input.error("`)` is expected")) }
 }
 
 fn rows(input: ParseStream<'_>) -> Result<Vec<Row>> {

@@ -7,7 +7,7 @@ use quote::{quote, quote_spanned};
 use syn::{Ident, Path, Result, parse2};
 
 use self::form::{Condition, Passed, Row, Step, StepGroup, Table};
-use crate::names;
+use crate::{names, variables};
 
 impl Table {
     /// The type of the steps in a pattern or an expression, at `span`.
@@ -82,6 +82,60 @@ impl Table {
             #[doc = #doc]
             #[derive(Clone, Copy, Debug, PartialEq, Eq, ::rcs_core::Plain)]
             #vis enum #name { #( #variants, )* }
+        }
+    }
+
+    /// The variables that the rows name, each once.
+    fn asked(&self) -> Vec<&Ident> {
+        let mut asked: Vec<&Ident> = Vec::new();
+        for Condition { variable, .. } in self.rows().flat_map(|(_, row)| &row.conditions) {
+            if !asked.contains(&variable) {
+                asked.push(variable);
+            }
+        }
+        asked
+    }
+
+    /// The struct of the state variables, if the table declares it.
+    fn situation(&self) -> TokenStream {
+        let (Some(senses), Some(name)) = (&self.senses, self.situation.get_ident()) else {
+            return TokenStream::new();
+        };
+        let (vis, asked) = (&self.vis, self.asked());
+        let of = hidden(senses, name.span());
+        let types: Vec<_> = asked.iter().map(|variable| quote!(#of::#variable)).collect();
+        let docs = asked.iter().map(|variable| format!("`{variable}`"));
+        let (doc, code) =
+            (format!("State variables of {}.", self.title()), variables::code(name, &asked, &types));
+        let beside = hidden(&self.situation, name.span());
+        quote! {
+            #[doc = #doc]
+            #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+            #vis struct #name { #( #[doc = #docs] pub #asked: #types, )* }
+
+            impl #name {
+                /// Name, meaning and values of each variable.
+                pub const VARIABLES: &'static [::rcs_core::table::Variable] = &[ #( #types, )* ];
+
+                /// Sense each variable.
+                #[must_use]
+                #vis fn sense(senses: &#senses<'_>) -> Self {
+                    Self { #( #asked: senses.#asked(), )* }
+                }
+
+                /// Note what a table above has passed on.
+                #vis const fn pass(&mut self, passed: #of::Passed) {
+                    #( #of::pass::#asked(&mut self.#asked, passed); )*
+                }
+            }
+
+            #code
+
+            #[doc(hidden)]
+            #[allow(non_snake_case, reason = "the types under the names of the variables")]
+            #vis mod #beside {
+                pub use super::#of::{ #( #asked, )* };
+            }
         }
     }
 
@@ -167,6 +221,7 @@ pub fn expand(input: TokenStream) -> Result<TokenStream> {
     let title = table.title();
     let doc = names::doc(attributes);
     let (documentation, texts, steps) = (table.documentation(), table.texts(), table.steps());
+    let declared = table.situation();
     let step_docs = match &table.step {
         Some(Step::Declared(step)) => quote!(Some(#step::ENUM)),
         Some(Step::Named(step)) => quote!(Some(#step::ENUM)),
@@ -212,6 +267,8 @@ pub fn expand(input: TokenStream) -> Result<TokenStream> {
         };
 
         #steps
+
+        #declared
 
         #[doc = #see]
         #[must_use]

@@ -66,23 +66,24 @@ impl Localization {
 
     /// The place of the robot, unless it has been moved away from there. If it is moved back, as by the joystick box,
     /// it is there again.
-    pub(super) fn place(&self) -> Option<RobotPlace> {
-        self.place.filter(|_| !self.away)
+    pub(super) fn place(&self) -> Option<&RobotPlace> {
+        self.place.as_ref().filter(|_| !self.away)
     }
 
     /// Where its last motion ended, even if it has been moved away from there.
-    pub(super) const fn last_place(&self) -> Option<RobotPlace> {
-        self.place
+    pub(super) const fn last_place(&self) -> Option<&RobotPlace> {
+        self.place.as_ref()
     }
 
     /// The places to which it belongs: that of its last motion, or the ends of its path.
-    pub(super) fn ends(&self) -> [Option<RobotPlace>; 3] {
-        [self.place, self.way.map(|way| way.to), self.way.map(|way| way.from)]
+    pub(super) fn ends(&self) -> [Option<&RobotPlace>; 3] {
+        let way = self.way.as_ref();
+        [self.place.as_ref(), way.map(|way| &way.to), way.map(|way| &way.from)]
     }
 
     /// Its place, or the one that it has left last.
-    pub(super) fn origin(&self) -> Option<RobotPlace> {
-        self.place().or_else(|| self.way.map(|way| way.from))
+    pub(super) fn origin(&self) -> Option<&RobotPlace> {
+        self.place().or_else(|| self.way.as_ref().map(|way| &way.from))
     }
 
     pub(super) const fn track(&self) -> &Track {
@@ -96,7 +97,7 @@ impl Localization {
     /// Where the robot is, seen from the command's location.
     pub(super) fn at(&self, command: &EmoveCommand) -> At {
         match self.place() {
-            Some(at) if LocationKey::of(&at).has_location_of(LocationKey::of(command)) => match at.gone_to {
+            Some(at) if LocationKey::of(at).has_location_of(LocationKey::of(command)) => match at.gone_to {
                 GoneTo::Drum => At::InDrum,
                 GoneTo::Location | GoneTo::Object(_) | GoneTo::View(_) | GoneTo::Brought(_) => At::There,
             },
@@ -129,7 +130,7 @@ impl Localization {
     pub(super) fn sense_place(&mut self, present: &Frame) {
         let there =
             |pose: &Pose| pose.to_frame().is_ok_and(|frame| near(&frame, present, LOST_INCHES, LOST_RADIANS));
-        self.away = self.place.is_some_and(|place| !there(&place.pose));
+        self.away = self.place.as_ref().is_some_and(|place| !there(&place.pose));
     }
 
     /// Which known places are nearest, as long as it is not known where the robot is.

@@ -164,21 +164,25 @@ pub(in crate::emove) fn settle_at(
 
 /// The present frame, seen from the place of the robot. A closing vise shifts the hand, and leaves the commanded
 /// pose where it is; the joystick box moves both.
-fn offset(at: &RobotPlace, holding: Holding, inputs: &EmoveInputs<'_>) -> Offset {
+fn offset(at: &RobotPlace, present: Option<&Frame>, holding: Holding, inputs: &EmoveInputs<'_>) -> Offset {
     let Ok(goal) = at.pose.to_frame() else { return Offset::Unseen };
     let is_there = |frame: &Frame| near(frame, &goal, THERE_INCHES, THERE_RADIANS);
-    let commanded = commanded_pose(inputs.memory).and_then(|pose| pose.to_frame().ok());
-    let is_sent_there = commanded.is_some_and(|frame| is_there(&frame));
-    let gripped = holding.is_held() && clamps(at, inputs.data);
-    let clamped = gripped || at.gone_to == GoneTo::Drum;
-    match present_frame(inputs.memory) {
-        Some(present) if is_there(&present) => Offset::There,
-        Some(present) if clamped && is_sent_there && near(&present, &goal, CLAMP_INCHES, CLAMP_RADIANS) => {
-            Offset::There
+    let is_sent_there = || {
+        let commanded = commanded_pose(inputs.memory).and_then(|pose| pose.to_frame().ok());
+        commanded.is_some_and(|frame| is_there(&frame))
+    };
+    let is_clamped = || {
+        let gripped = holding.is_held() && clamps(at, inputs.data);
+        gripped || at.gone_to == GoneTo::Drum
+    };
+    match present {
+        Some(present) if is_there(present) => Offset::There,
+        Some(present) if is_clamped() => {
+            let is_shifted = is_sent_there() && near(present, &goal, CLAMP_INCHES, CLAMP_RADIANS);
+            if is_shifted { Offset::There } else { Offset::Clamped }
         }
-        Some(_) if clamped => Offset::Clamped,
         Some(_) => Offset::Beside,
-        None if is_sent_there => Offset::There,
+        None if is_sent_there() => Offset::There,
         None => Offset::Unseen,
     }
 }
@@ -187,12 +191,14 @@ fn offset(at: &RobotPlace, holding: Holding, inputs: &EmoveInputs<'_>) -> Offset
 /// shifted the hand: the robot is there then, as it is for the next command.
 pub(in crate::emove) fn offset_of_place(
     at: &RobotPlace,
+    present: Option<&Frame>,
     holding: Holding,
     inputs: &EmoveInputs<'_>,
 ) -> Deviation {
-    let is_there = offset(at, holding, inputs) == Offset::There;
-    match robot_place::offset(&at.pose, inputs.memory) {
-        Deviation::Slight | Deviation::Off if is_there => Deviation::None,
+    match robot_place::offset(&at.pose, present) {
+        Deviation::Slight | Deviation::Off if offset(at, present, holding, inputs) == Offset::There => {
+            Deviation::None
+        }
         seen => seen,
     }
 }
@@ -208,7 +214,8 @@ impl Localization {
         inputs: &EmoveInputs<'_>,
     ) -> Result<Flight, Planning> {
         let Some(at) = self.place() else { return Ok(Flight::default()) };
-        let rejoin = settle_at(&at, offset(&at, holding, inputs), inputs.data)?;
+        let present = present_frame(inputs.memory);
+        let rejoin = settle_at(at, offset(at, present.as_ref(), holding, inputs), inputs.data)?;
         Ok(Flight { rejoin, ..Flight::default() })
     }
 
@@ -224,14 +231,14 @@ impl Localization {
         let data = inputs.data;
         let nowhere =
             Origination { place: None, way: None, offset: Offset::There, rejoin: None, is_out: false };
+        let present = present_frame(inputs.memory);
         if let Some(place) = self.place() {
             return Ok(Origination {
-                place: Some(place),
-                offset: offset(&place, holding, inputs),
+                place: Some(*place),
+                offset: offset(place, present.as_ref(), holding, inputs),
                 ..nowhere
             });
         }
-        let present = present_frame(inputs.memory);
         if let Some(way) = self.on_path(inputs) {
             let rejoin = present.filter(|_| way.by_hand).and_then(|present| to_way(&present, &way, data));
             return Ok(Origination { way: Some(way), rejoin, ..nowhere });

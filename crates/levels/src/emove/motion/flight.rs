@@ -30,7 +30,6 @@ use crate::{
         robot_place::{is_same_goal, is_same_pose},
         tables::resume::{Beginning, GoalOf, LegNow, Robot, Start, WayBack, resume},
     },
-    execution::Progress,
     places::LocationKey,
 };
 
@@ -43,6 +42,19 @@ pub struct Flight {
     pub back: Option<Back>,
     /// The points to which the robot goes first, back to its place or path.
     pub rejoin: Option<Rejoin>,
+}
+
+/// How far a motion has come. An order that is given again after progress is no repetition.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub struct Progress {
+    /// Points of the route that were sent.
+    pub on: u16,
+    /// The point before which the robot is on its way back.
+    pub back: u16,
+    /// It has been sent to the end of its way back.
+    pub is_back: bool,
+    /// Points that lie ahead on the return to its place or path.
+    pub rejoin: u8,
 }
 
 /// The part of an interrupted way that is flown back.
@@ -229,8 +241,8 @@ impl Flight {
     /// True while the fingers must not move yet: beside the way, on the way back, and as long as the next point is a
     /// depart point (docs/design/motion.md "Finger opening").
     pub(in crate::emove) fn departing(&self, data: &TaskData<'_>) -> bool {
-        let back = self.back.is_some_and(|back| !back.complete);
-        self.rejoin.is_some() || back || self.route.is_some_and(|route| route.departing(data))
+        let back = self.back.as_ref().is_some_and(|back| !back.complete);
+        self.rejoin.is_some() || back || self.route.as_ref().is_some_and(|route| route.departing(data))
     }
 
     /// The next leg, which is noted as commanded, and the path on which the robot is then ([`super::Motion::send_leg`]).
@@ -266,13 +278,13 @@ impl Flight {
     }
 
     /// The points that were sent.
-    pub(in crate::emove) fn progress(&self) -> Progress {
+    #[must_use]
+    pub fn progress(&self) -> Progress {
         Progress {
-            on: self.route.map_or(0, |route| route.commanded),
-            back: self.back.map_or(0, |back| back.next),
-            is_back: self.back.is_some_and(|back| back.complete),
-            rejoin: self.rejoin.map_or(0, |rejoin| rejoin.ahead()),
-            tries: 0,
+            on: self.route.as_ref().map_or(0, |route| route.commanded),
+            back: self.back.as_ref().map_or(0, |back| back.next),
+            is_back: self.back.as_ref().is_some_and(|back| back.complete),
+            rejoin: self.rejoin.as_ref().map_or(0, Rejoin::ahead),
         }
     }
 }

@@ -116,7 +116,7 @@ impl Motion {
 
     /// Opening of the fingers at the goal, 0.01 in, and whether it has been commanded; `None` if it does not matter.
     pub(super) fn opening(&self) -> Option<(i32, bool)> {
-        let route = self.flight.route?;
+        let route = self.flight.route.as_ref()?;
         Some((route.opening?, route.opening_sent))
     }
 
@@ -143,9 +143,9 @@ impl Motion {
 
     /// The goal of the motion.
     #[must_use]
-    pub const fn goal(&self) -> Option<RobotPlace> {
-        match self.flight.route {
-            Some(route) => Some(route.to),
+    pub const fn goal(&self) -> Option<&RobotPlace> {
+        match &self.flight.route {
+            Some(route) => Some(&route.to),
             None => None,
         }
     }

@@ -1,13 +1,111 @@
 //! Preconditions of a command before anything moves.
 
-use rcs_core::decision_table;
+use rcs_core::{Plain, Variables, decision_table};
+
+use super::Knowledge;
+use crate::execution::Asked;
+
+/// The class of a command, by what it needs before it begins.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum CommandClass {
+    /// No command.
+    None,
+    /// E-PAUSE.
+    Pause,
+    /// A motion that needs no object: MOV-TO-LOC, WITHDRAW.
+    Plain,
+    /// A motion to an object or with one: MOV-TO-OBJ, MOV-OBJ-TO, MOV-TO-VU.
+    ObjectMove,
+    /// A motion to a holster: MOV-TO-HOL.
+    HolsterMove,
+    /// The change of a gripper: QC-ATTACH, QC-DETACH.
+    Exchange,
+    /// Work at an object: LOCATE-OBJ, GRASP-OBJ.
+    AtObject,
+    /// A tool command: INSERT-TOOL, RELEASE-TOOL, ACQUIRE-TOOL, REMOVE-TOOL.
+    Tool,
+    /// RELEASE.
+    Release,
+}
+
+/// The gripper on the robot, for a command that needs one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Attached {
+    /// The one that the command names, or any if it names none.
+    Right,
+    /// Another one.
+    Wrong,
+    /// None: the robot is bare.
+    None,
+}
+
+/// How the gripper hangs on the robot.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Coupling {
+    /// There is none.
+    Bare,
+    /// It is mated, and the ring is locked.
+    Locked,
+    /// It is mated, and the ring is not locked.
+    Loose,
+    /// The ring has been locked ever since a gripper was mated, and the id pins do not say so any more.
+    Misread,
+}
+
+/// The change of a gripper.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum ExchangeWork {
+    /// None is under way.
+    None,
+    /// The robot is in a holster, between the first and the last point of one.
+    HalfDone,
+}
+
+/// A tool command.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum ToolWork {
+    /// None is under way.
+    None,
+    /// The robot is at the tool drum, between the first and the last point of one.
+    HalfDone,
+}
+
+/// The location of a motion command.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Target {
+    /// No holster, or the command is there to go to one.
+    Plain,
+    /// A holster, as a plain location.
+    Holster,
+}
+
+/// A new command and the state of the robot, for [`ACCEPT`].
+#[derive(Clone, Copy, Debug, Default, Variables)]
+pub struct Request {
+    /// Is the command new?
+    pub asked: Asked,
+    /// The class of the command.
+    pub class: CommandClass,
+    /// The gripper on the robot.
+    pub gripper: Attached,
+    /// Where the robot is.
+    pub start: Knowledge,
+    /// How the gripper hangs on it.
+    pub coupling: Coupling,
+    /// The change of a gripper.
+    pub exchange: ExchangeWork,
+    /// A tool command.
+    pub drum: ToolWork,
+    /// The location of the command.
+    pub target: Target,
+}
 
 decision_table! {
     /// ACCEPT: the state of the robot in which a new command is refused. Nothing has been ordered then, since HALT has
     /// stopped the robot. A robot that changes a gripper, is half way at the tool drum, or whose gripper is not locked
     /// moves nowhere. A robot whose id pins fail moves only to a plain location. E-PAUSE and RELEASE need nothing.
     /// RECORDS decides next.
-    pub ACCEPT: fn accept(super::Request) -> super::Action or () {
+    pub ACCEPT: fn accept(self::Request) -> super::Action or () {
         1:  asked: Before                                                                   => consult;
         2:  class: None                                                                     => Refuse(UnknownCommand);
         3:  class: ObjectMove | HolsterMove | Exchange | AtObject | Tool, coupling: Misread => Refuse(PinsFail);

@@ -8,7 +8,7 @@ decision_table! {
     /// the drum, between the fingers. Sent again after an interruption it goes on from where the robot is at the drum
     /// (docs/design/recovery.md "Drum"): fingers that are around the tool close, others slide on, or touch
     /// the strike plate again.
-    pub ACQUIRE_TOOL: fn acquire_tool(enum AcquireToolStep, super::Situation) -> super::Action {
+    pub ACQUIRE_TOOL: fn acquire_tool(enum AcquireToolStep, struct of super::Senses) -> super::Action {
         any {
             1:  work: Busy                                 => Wait;
         }

@@ -37,7 +37,7 @@ decision_table! {
     /// STANDING: E-PAUSE (V.2.1) after its end. While it stands, the joystick box has robot and gripper. A
     /// link that fails is reported beside `done`, and the next motion restarts it. When the operator gives
     /// the robot back, the processes below pause again: jaws keep their air, and may have begun to close.
-    pub STANDING: fn standing(self::EPauseStep, super::Situation) -> super::Action or () {
+    pub STANDING: fn standing(self::EPauseStep, struct of super::Senses) -> super::Action or () {
         any {
             1:  work: Busy                       => Wait;
         }
@@ -67,7 +67,7 @@ decision_table! {
     /// Fingers that move do first what they were told: a valve that is left open would close them with the
     /// whole supply pressure. A link that fails before it is done is initialized again, once. STANDING
     /// decides after that.
-    pub E_PAUSE: fn e_pause(self::EPauseStep, super::Situation) -> super::Action {
+    pub E_PAUSE: fn e_pause(self::EPauseStep, struct of super::Senses) -> super::Action {
         Start {
             1:  link: Down                             => RobotInit -> Initializing;
         }

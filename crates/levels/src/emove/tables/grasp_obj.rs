@@ -7,7 +7,7 @@ decision_table! {
     /// fingers. What is felt at the object is grasped anew: it may be half gripped. So is what
     /// counts as held since a release of it has not ended well. A robot that a person has moved off its place goes
     /// back there first, and one that is lost closes on nothing.
-    pub GRASP_OBJ: fn grasp_obj(enum GraspObjStep, super::Situation) -> super::Action {
+    pub GRASP_OBJ: fn grasp_obj(enum GraspObjStep, struct of super::Senses) -> super::Action {
         any {
             1: work: Busy                                => Wait;
         }

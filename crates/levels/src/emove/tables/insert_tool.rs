@@ -10,7 +10,7 @@ decision_table! {
     /// known. Sent again after an interruption, the command continues from where the robot is at the drum
     /// (docs/design/recovery.md "Drum"). The force sensor is calibrated only at TOOL-SAFE: nothing is touched
     /// there, and the weight on the sensor has the same direction as at the drum.
-    pub INSERT_TOOL: fn insert_tool(enum InsertToolStep, super::Situation) -> super::Action {
+    pub INSERT_TOOL: fn insert_tool(enum InsertToolStep, struct of super::Senses) -> super::Action {
         any {
             1:  work: Busy                                 => Wait;
         }

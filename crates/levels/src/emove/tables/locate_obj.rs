@@ -7,7 +7,7 @@ decision_table! {
     /// and angle, align. It moves the robot straight, so that nothing may be held: a grasp that was interrupted
     /// may have ended since, and the robot stands in the nest of the part then. An object so near to the edge of
     /// its tray that the open fingers would meet the wall is not gone to.
-    pub LOCATE_OBJ: fn locate_obj(enum LocateObjStep, super::Situation) -> super::Action {
+    pub LOCATE_OBJ: fn locate_obj(enum LocateObjStep, struct of super::Senses) -> super::Action {
         any {
             1: work: Busy                                                    => Wait;
         }

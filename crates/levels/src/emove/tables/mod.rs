@@ -8,6 +8,7 @@ pub mod carried;
 pub mod drum;
 pub mod e_pause;
 pub mod exchange;
+pub mod fingers;
 pub mod grasp_obj;
 pub mod insert_tool;
 pub mod locate_obj;
@@ -33,73 +34,34 @@ pub mod withdraw;
 use interfaces::{
     Reason,
     emove::{CalibratedAt, EmoveVerb},
-    prim::JoystickGrip,
 };
 use rcs_core::{
     Actions, Variables, commands,
     handshake::{Arrival, Lower},
 };
 
-pub use self::drum::{AtDrum, Bias};
-pub use self::variables::{
-    Along, At, Attached, CommandClass, Contact, Coupling, ExchangeWork, FingerMotion, Fingers, Holster,
-    HolsterData, Initialization, Knowledge, Link, Load, Lock, Mate, Opening, Ordered, Pause, PlaceKnowledge,
-    Reach, Readiness, Record, Ring, Shut, Sight, Spread, Target, ToolWork, Tooling, Tries, VisionAnswer,
+pub(super) use self::variables::known;
+pub use self::{
+    accept::{Attached, CommandClass, Coupling, ExchangeWork, Request, Target, ToolWork},
+    drum::{AtDrum, Bias},
+    records::{HolsterData, Record, Records},
+    variables::{
+        Along, At, Calibration, Contact, Departure, FingerMotion, Fingers, Holster, Initialization,
+        Knowledge, Link, Load, Lock, Mate, Opening, Ordered, Pause, PlaceKnowledge, Reach, Readiness,
+        ReleaseWork, Ring, Shut, Sight, Spread, Tooling, Tries, VisionAnswer,
+    },
 };
 use super::{
     goals,
-    motion::{
-        relative::{Relative, RelativeMoves},
-        route::{Ahead, Planning},
-    },
+    motion::relative::Relative,
+    senses::{__Senses, Senses},
 };
 pub use crate::held::Held;
 use crate::{
     confirm::{CONFIRM, Proof},
-    execution::{Asked, EXECUTE, Ending, Outcome, Progress, Work},
-    halt::{BoxState, Commanding, EFFECT, HALT, Replaced, Stopping},
+    execution::{Asked, EXECUTE, Ending, Outcome},
+    halt::{Advance, Commanding, EFFECT, HALT, Replaced, Stopping},
 };
-
-/// A new command and the state of the robot, for [`accept::ACCEPT`].
-#[derive(Clone, Copy, Debug, Default, Variables)]
-pub struct Request {
-    /// Is the command new?
-    pub asked: Asked,
-    /// The class of the command.
-    pub class: CommandClass,
-    /// The gripper on the robot.
-    pub gripper: Attached,
-    /// Where the robot is.
-    pub start: Knowledge,
-    /// How the gripper hangs on it.
-    pub coupling: Coupling,
-    /// The change of a gripper.
-    pub exchange: ExchangeWork,
-    /// A tool command.
-    pub drum: ToolWork,
-    /// The location of the command.
-    pub target: Target,
-}
-
-/// What a new command finds in the task data, for [`records::RECORDS`]. A record that a command does not need counts
-/// as found.
-#[derive(Clone, Copy, Debug, Default, Variables)]
-pub struct Records {
-    /// Sizes of object and grip for GRASP-OBJ and ACQUIRE-TOOL: END-EFF-PARA.
-    pub sizes: Record,
-    /// How LOCATE-OBJ sees the object: VISION-PARA.
-    pub view: Record,
-    /// The gripper's holster for QC-ATTACH and QC-DETACH.
-    pub holster: HolsterData,
-    /// The relative moves of the command.
-    pub moves: RelativeMoves,
-    /// The path to its goal.
-    pub route: Planning,
-    /// The joystick box.
-    pub joystick: BoxState,
-    /// Is the command E-PAUSE?
-    pub pause: Pause,
-}
 
 /// What goes on whatever the command, for [`attend::ATTEND`] and [`search::SEARCH`].
 #[derive(Clone, Copy, Debug, Variables)]
@@ -139,61 +101,6 @@ pub struct Subordinates {
     pub vision: VisionAnswer,
 }
 
-/// The state variables of a tick, for the tables of the commands.
-#[derive(Clone, Copy, Debug, Variables)]
-pub struct Situation {
-    /// The last order.
-    pub work: Work,
-    /// What lies ahead on the route.
-    pub ahead: Ahead,
-    /// The opening of the fingers for the goal.
-    pub opening: Opening,
-    /// Is the object held?
-    pub held: Held,
-    /// What the fingers have between them.
-    pub fingers: Fingers,
-    /// Are they wide open?
-    pub spread: Spread,
-    /// The gripper after its last order.
-    pub readiness: Readiness,
-    /// What is mated.
-    pub mate: Mate,
-    /// The locking ring, by its sensors.
-    pub lock: Lock,
-    /// The holster.
-    pub holster: Holster,
-    /// Where the robot is in the exchange.
-    pub along: Along,
-    /// The fingers, for the way through the holster.
-    pub shut: Shut,
-    /// Is the robot at the command's location?
-    pub at: At,
-    /// Is it half way at the drum?
-    pub drum: AtDrum,
-    /// What the force sensor reads without a force.
-    pub bias: Bias,
-    /// What vision has answered.
-    pub sight: Sight,
-    /// Where the camera is to go next.
-    pub aim: Knowledge,
-    /// Do the open fingers stay within the object's array?
-    pub reach: Reach,
-    /// May a picture be taken again?
-    pub tries: Tries,
-    /// The link.
-    pub link: Link,
-    /// Status of Prim; done as long as the command does not need it.
-    pub prim: Lower,
-    /// Do the fingers move?
-    pub motion: FingerMotion,
-    /// Quick change and gripper.
-    pub tooling: Tooling,
-    /// Is it known where the robot is?
-    pub place: PlaceKnowledge,
-    /// A gripper button of the joystick box that has just been pressed.
-    pub button: JoystickGrip,
-}
-
 /// What preprocess has found in a tick.
 #[derive(Clone, Copy, Debug)]
 pub struct StateVariables {
@@ -205,8 +112,8 @@ pub struct StateVariables {
     pub asked: Asked,
     /// What it replaces.
     pub replaced: Replaced,
-    /// How far it has come.
-    pub progress: Progress,
+    /// Whether it has sent another point since its last order, for EFFECT.
+    pub advance: Advance,
     /// A new command and the state of the robot.
     pub request: Request,
     /// What it finds in the task data.
@@ -217,15 +124,8 @@ pub struct StateVariables {
     pub subordinates: Subordinates,
     /// The goal of the command, compared with the sensors.
     pub proof: Proof,
-    /// The state variables of the command's table; [`Subordinates`] decide on `work`.
+    /// The state variables of the command's tables; ORDERED passes `work` on.
     pub situation: Situation,
-}
-
-impl StateVariables {
-    /// The state variables that an order is to change, for EFFECT.
-    pub(super) fn variables(&self) -> (u64, Progress) {
-        (rcs_core::table::Variables::code(&self.situation), self.progress)
-    }
 }
 
 /// What a row can ask for.
@@ -365,19 +265,19 @@ impl Commanding for Action {
 
 commands! {
     /// Consult the tables of a command.
-    pub fn of_command(EmoveVerb, enum Step, Situation) -> Action {
+    pub fn of_command(EmoveVerb, enum Step, enum Situation of Senses) -> Action {
         others: EXECUTE, accept::ACCEPT, HALT, EFFECT, attend::ATTEND, search::SEARCH, resume::RESUME,
             drum::DRUM, carried::CARRIED, ordered::ORDERED, CONFIRM, returning::RETURN, track::TRACK,
             resume::STANCE, records::RECORDS;
         before: EXECUTE, HALT, ATTEND by attend, ACCEPT(request), RECORDS(records),
-            CARRIED(subordinates), ORDERED(subordinates -> situation.work);
-        after: EFFECT, CONFIRM;
+            CARRIED(subordinates), ORDERED(subordinates -> situation);
+        after: EFFECT(advance), CONFIRM;
         None | Pause: goals::REST           => e_pause::standing then e_pause::e_pause;
-        MovToLoc: goals::PLACE              => motion::motion;
-        MovToObj: goals::PLACE              => mov_to_obj::mov_to_obj then motion::motion;
-        MovObjTo: goals::BROUGHT            => mov_obj_to::mov_obj_to then motion::motion;
-        MovToHol: goals::PLACE              => mov_to_hol::mov_to_hol then motion::motion;
-        MovToVu: goals::PLACE               => mov_to_vu::mov_to_vu then motion::motion;
+        MovToLoc: goals::PLACE              => fingers::fingers then motion::motion;
+        MovToObj: goals::PLACE              => mov_to_obj::mov_to_obj then fingers::fingers then motion::motion;
+        MovObjTo: goals::BROUGHT            => mov_obj_to::mov_obj_to then fingers::fingers then motion::motion;
+        MovToHol: goals::PLACE              => mov_to_hol::mov_to_hol then fingers::fingers then motion::motion;
+        MovToVu: goals::PLACE               => mov_to_vu::mov_to_vu then fingers::fingers then motion::motion;
         LocateObj: goals::LOCATED           => locate_obj::locate_obj;
         GraspObj: goals::HELD               => grasp_obj::grasp_obj;
         Release: goals::RELEASED            => release::release;

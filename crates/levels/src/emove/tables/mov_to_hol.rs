@@ -6,7 +6,7 @@ decision_table! {
     /// MOV-TO-HOL (V.2.1): move to a holster, like MOV-TO-LOC; the gripper, if one is attached, is brought to the opening
     /// of the holster object on the way. A gripper that holds an object cannot do that. A gripper that is to be put
     /// away must find its holster empty: the approach already leads it between the cheeks.
-    pub MOV_TO_HOL: fn mov_to_hol(super::Situation) -> super::Action or () {
+    pub MOV_TO_HOL: fn mov_to_hol(struct of super::Senses) -> super::Action or () {
         1: held: Right | Other | Something                          => Fail(AlreadyHolding);
         2: held: NotKnown                                           => Fail(HeldNotKnown);
         3: held: Nothing, mate: Right, holster: Empty               => consult;

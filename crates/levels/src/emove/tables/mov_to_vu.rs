@@ -5,7 +5,7 @@ use rcs_core::decision_table;
 decision_table! {
     /// MOV-TO-VU (V.2.1): move to where pictures are taken, like MOV-TO-LOC; the gripper is fully opened on the way. A
     /// gripper that holds an object cannot do that.
-    pub MOV_TO_VU: fn mov_to_vu(super::Situation) -> super::Action or () {
+    pub MOV_TO_VU: fn mov_to_vu(struct of super::Senses) -> super::Action or () {
         1: held: Right | Other | Something  => Fail(AlreadyHolding);
         2: held: NotKnown                   => Fail(HeldNotKnown);
         3: held: Nothing                    => consult;

@@ -9,7 +9,7 @@ decision_table! {
     /// occupied.
     pub ORDERED: fn ordered(super::Subordinates) -> super::Action or crate::execution::Work {
         1:  ordered: Nothing | All                                                 => consult(Over);
-        2:  opening: Failed                                                        => FailGrip;
+        2:  opening: Sent, gripper: Error | Joystick | Lost                        => FailGrip;
         3:  ordered: Nearing, prim: Error, contact: Met                            => Fail(DrumOccupied);
         4:  ordered: Prim | GoUntil | Nearing, prim: Error | Joystick | Lost       => PassUp;
         5:  ordered: QuickChange | GripperInHolster, prim: Error | Joystick | Lost => PassUp;

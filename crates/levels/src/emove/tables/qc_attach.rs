@@ -41,7 +41,7 @@ pub enum QcAttachStep {
 decision_table! {
     /// QC-LIFT: second part of QC-ATTACH (V.2.1), with the gripper mated: lock, close the gripper, back,
     /// lift, up, calibrate if required. Done at once if the gripper is locked on and clear of its holster.
-    pub QC_LIFT: fn qc_lift(self::QcAttachStep, super::Situation) -> super::Action or () {
+    pub QC_LIFT: fn qc_lift(self::QcAttachStep, struct of super::Senses) -> super::Action or () {
         any {
             1:  mate: None | Wrong                                   => consult;
         }
@@ -98,7 +98,7 @@ decision_table! {
     /// an order that has changed nothing ends it. This table moves the bare robot onto the gripper;
     /// QC-LIFT, which is consulted before, does the rest once the gripper is mated. A bare robot that has
     /// found no gripper leaves upward.
-    pub QC_ATTACH: fn qc_attach(self::QcAttachStep, super::Situation) -> super::Action {
+    pub QC_ATTACH: fn qc_attach(self::QcAttachStep, struct of super::Senses) -> super::Action {
         Start {
             1:  mate: Wrong                                      => Fail(WrongGripper);
         }

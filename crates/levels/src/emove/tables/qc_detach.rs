@@ -28,7 +28,7 @@ decision_table! {
     /// QC-LEAVE: last part of QC-DETACH (V.2.1), with nothing mated: up, and check that the gripper stayed
     /// in its holster. A bare robot in an empty holster leaves upward. Done at once if the gripper is in
     /// its holster and the robot clear.
-    pub QC_LEAVE: fn qc_leave(self::QcDetachStep, super::Situation) -> super::Action or () {
+    pub QC_LEAVE: fn qc_leave(self::QcDetachStep, struct of super::Senses) -> super::Action or () {
         any {
             1:  mate: Right | Wrong                                => consult;
         }
@@ -71,7 +71,7 @@ decision_table! {
     /// where the robot is in the holster and on what is mated and locked, so that a command that is sent
     /// again goes on (docs/design/recovery.md "Exchange"). This table leaves the gripper in the holster;
     /// QC-LEAVE, which is consulted before, does the rest once the robot is bare.
-    pub QC_DETACH: fn qc_detach(self::QcDetachStep, super::Situation) -> super::Action {
+    pub QC_DETACH: fn qc_detach(self::QcDetachStep, struct of super::Senses) -> super::Action {
         Rising {
             1:                                                           otherwise => Fail(NotDetached);
         }

@@ -1,12 +1,58 @@
 //! Task data of a command, and its path, before anything moves.
 
-use rcs_core::decision_table;
+use rcs_core::{Plain, Variables, decision_table};
+
+use super::Pause;
+use crate::{
+    emove::motion::{relative::RelativeMoves, route::Planning},
+    halt::BoxState,
+};
+
+/// A record of the task data that a command names.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Record {
+    /// It is there.
+    Found,
+    /// It is not.
+    Missing,
+}
+
+/// What the task data say of the holster of a gripper.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum HolsterData {
+    /// All that is needed.
+    Found,
+    /// No gripper has the number that the command names.
+    NoGripper,
+    /// Nothing says with which opening the gripper goes through its holster.
+    NoOpening,
+}
+
+/// What a new command finds in the task data, for [`RECORDS`]. A record that a command does not need counts
+/// as found.
+#[derive(Clone, Copy, Debug, Default, Variables)]
+pub struct Records {
+    /// Sizes of object and grip for GRASP-OBJ and ACQUIRE-TOOL: END-EFF-PARA.
+    pub sizes: Record,
+    /// How LOCATE-OBJ sees the object: VISION-PARA.
+    pub view: Record,
+    /// The gripper's holster for QC-ATTACH and QC-DETACH.
+    pub holster: HolsterData,
+    /// The relative moves of the command.
+    pub moves: RelativeMoves,
+    /// The path to its goal.
+    pub route: Planning,
+    /// The joystick box.
+    pub joystick: BoxState,
+    /// Is the command E-PAUSE?
+    pub pause: Pause,
+}
 
 decision_table! {
     /// RECORDS: a new command that ACCEPT has not refused is refused if a record that it needs is missing, or if there
     /// is no path to its goal. While the operator has the robot, only E-PAUSE is accepted: fingers and ring must not
     /// move at a place that the process above does not know.
-    pub RECORDS: fn records(super::Records) -> super::Action or () {
+    pub RECORDS: fn records(self::Records) -> super::Action or () {
         1:  sizes: Missing              => Refuse(UnknownGrip);
         2:  view: Missing               => Refuse(BadRecord);
         3:  holster: NoGripper          => Refuse(NoHolster);

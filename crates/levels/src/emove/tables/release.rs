@@ -6,7 +6,7 @@ decision_table! {
     /// RELEASE (V.2.1): open the gripper to the depart size, and from something unknown by 0.5 in at least; done
     /// at once if it is open and holds nothing. A gripper that is not calibrated knows no size: it opens fully. A robot
     /// that a person has moved off its place goes back there first: an object is let go only there.
-    pub RELEASE: fn release(enum ReleaseStep, super::Situation) -> super::Action {
+    pub RELEASE: fn release(enum ReleaseStep, struct of super::Senses) -> super::Action {
         any {
             1: work: Busy                        => Wait;
         }

@@ -7,7 +7,7 @@ decision_table! {
     /// gives a moment, pull back. Done at once if the robot is before the drum with open fingers and nothing
     /// in them. Sent again after an interruption it goes on from where the robot is at the drum
     /// (docs/design/recovery.md "Drum").
-    pub RELEASE_TOOL: fn release_tool(enum ReleaseToolStep, super::Situation) -> super::Action {
+    pub RELEASE_TOOL: fn release_tool(enum ReleaseToolStep, struct of super::Senses) -> super::Action {
         any {
             1:  work: Busy                                 => Wait;
         }

@@ -8,7 +8,7 @@ decision_table! {
     /// at once if the tool is out. A tool that is half let go is not pulled. Sent again after an interruption
     /// it goes on pulling (docs/design/recovery.md "Drum"). The sensor is calibrated against a tool that is
     /// half out only if its calibration has been lost with its power: no other command leads out.
-    pub REMOVE_TOOL: fn remove_tool(enum RemoveToolStep, super::Situation) -> super::Action {
+    pub REMOVE_TOOL: fn remove_tool(enum RemoveToolStep, struct of super::Senses) -> super::Action {
         any {
             1:  work: Busy                                 => Wait;
         }

@@ -2,60 +2,6 @@
 
 use rcs_core::Plain;
 
-/// The class of a command, by what it needs before it begins.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
-pub enum CommandClass {
-    /// No command.
-    None,
-    /// E-PAUSE.
-    Pause,
-    /// A motion that needs no object: MOV-TO-LOC, WITHDRAW.
-    Plain,
-    /// A motion to an object or with one: MOV-TO-OBJ, MOV-OBJ-TO, MOV-TO-VU.
-    ObjectMove,
-    /// A motion to a holster: MOV-TO-HOL.
-    HolsterMove,
-    /// The change of a gripper: QC-ATTACH, QC-DETACH.
-    Exchange,
-    /// Work at an object: LOCATE-OBJ, GRASP-OBJ.
-    AtObject,
-    /// A tool command: INSERT-TOOL, RELEASE-TOOL, ACQUIRE-TOOL, REMOVE-TOOL.
-    Tool,
-    /// RELEASE.
-    Release,
-}
-
-/// The gripper on the robot, for a command that needs one.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
-pub enum Attached {
-    /// The one that the command names, or any if it names none.
-    Right,
-    /// Another one.
-    Wrong,
-    /// None: the robot is bare.
-    None,
-}
-
-/// A record of the task data that a command names.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
-pub enum Record {
-    /// It is there.
-    Found,
-    /// It is not.
-    Missing,
-}
-
-/// What the task data say of the holster of a gripper.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
-pub enum HolsterData {
-    /// All that is needed.
-    Found,
-    /// No gripper has the number that the command names.
-    NoGripper,
-    /// Nothing says with which opening the gripper goes through its holster.
-    NoOpening,
-}
-
 /// Is it known?
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Knowledge {
@@ -63,6 +9,10 @@ pub enum Knowledge {
     Known,
     /// It is not.
     Unknown,
+}
+
+pub(in crate::emove) const fn known(known: bool) -> Knowledge {
+    if known { Knowledge::Known } else { Knowledge::Unknown }
 }
 
 /// `.R` at the terminal of board 2 (IV.3.3 step 2).
@@ -85,37 +35,6 @@ pub enum Pause {
     UnderWay,
     /// They do.
     Standing,
-}
-
-/// How the gripper hangs on the robot.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
-pub enum Coupling {
-    /// There is none.
-    Bare,
-    /// It is mated, and the ring is locked.
-    Locked,
-    /// It is mated, and the ring is not locked.
-    Loose,
-    /// The ring has been locked ever since a gripper was mated, and the id pins do not say so any more.
-    Misread,
-}
-
-/// The change of a gripper.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
-pub enum ExchangeWork {
-    /// None is under way.
-    None,
-    /// The robot is in a holster, between the first and the last point of one.
-    HalfDone,
-}
-
-/// The location of a motion command.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
-pub enum Target {
-    /// No holster, or the command is there to go to one.
-    Plain,
-    /// A holster, as a plain location.
-    Holster,
 }
 
 /// The process that has the last order of the current command.
@@ -155,21 +74,43 @@ pub enum Contact {
 /// The opening of the fingers for the goal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Opening {
-    /// As it should be, or it does not matter.
-    Set,
-    /// Not yet: the next point is a depart point.
-    Departing,
-    /// To be commanded now.
+    /// None is needed, or a release must end first.
+    Free,
+    /// The fingers are at rest at it, and it was not ordered.
+    Reached,
+    /// It is not ordered yet.
     Due,
-    /// To be commanded now, but the gripper is not calibrated. It holds nothing, and the robot has left its
-    /// place.
-    Uncalibrated,
-    /// The fingers are moving.
-    Moving,
-    /// The gripper reports an error.
-    Failed,
+    /// It is ordered.
+    Sent,
+}
+
+/// The departure of the robot from the place that it leaves.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Departure {
+    /// It is at a known place, and no depart point lies ahead.
+    AtPlace,
+    /// It is off its path, on the path back, or before the last depart point: the fingers must not move.
+    UnderWay,
+    /// The robot has left the place.
+    Over,
+}
+
+/// The release of an object.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum ReleaseWork {
+    /// No release is under way.
+    None,
     /// A release that was begun where the robot stands has not ended.
-    LettingGo,
+    UnderWay,
+}
+
+/// The calibration of the attached gripper (VI.3.1 UP-INIT).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Calibration {
+    /// The gripper is calibrated, or needs no calibration.
+    Done,
+    /// The gripper must be calibrated first.
+    Missing,
 }
 
 /// What was held when the command came.
@@ -259,15 +200,6 @@ pub enum At {
     There,
     /// There, with the fingers around a tool in the drum.
     InDrum,
-}
-
-/// A tool command.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
-pub enum ToolWork {
-    /// None is under way.
-    None,
-    /// The robot is at the tool drum, between the first and the last point of one.
-    HalfDone,
 }
 
 /// What is mated with the quick change, seen from the gripper of the command.

@@ -4,7 +4,7 @@ use rcs_core::decision_table;
 
 decision_table! {
     /// WITHDRAW (V.2.1): a DELTA-MOVE from above E-move.
-    pub WITHDRAW: fn withdraw(enum WithdrawStep, super::Situation) -> super::Action {
+    pub WITHDRAW: fn withdraw(enum WithdrawStep, struct of super::Senses) -> super::Action {
         any {
             1: work: Busy => Wait;
         }

@@ -1,65 +1,51 @@
 //! The tables of a gripper change against a world in which no order has an effect (docs/design/recovery.md
 //! "Exchange").
 
-use interfaces::{emove::EmoveVerb, prim::JoystickGrip};
-use rcs_core::handshake::Lower;
+use interfaces::emove::EmoveVerb;
 
 use crate::{
-    emove::{
-        motion::route::Ahead,
-        tables::{
-            Along, At, AtDrum, Bias, FingerMotion, Fingers, Held, Holster, Knowledge, Link, Lock, Mate,
-            Opening, PlaceKnowledge, Reach, Readiness, Shut, Sight, Situation, Spread, Step, Tooling, Tries,
-            of_command,
-        },
+    emove::tables::{
+        Along, At, Held, Holster, Lock, Mate, Readiness, Shut, Situation, Step,
+        exchange::ExchangeSituation,
+        of_command,
+        qc_attach::{QcAttachSituation, QcLiftSituation},
+        qc_detach::{QcDetachSituation, QcLeaveSituation},
     },
     execution::Work,
     halt::Commanding as _,
 };
 
-/// All that the two tables ask for.
-fn situations() -> impl Iterator<Item = Situation> {
-    let exchange = Mate::ALL.iter().flat_map(|&mate| {
-        Lock::ALL.iter().flat_map(move |&lock| {
-            Holster::ALL
-                .iter()
-                .flat_map(move |&holster| Along::ALL.iter().map(move |&along| (mate, lock, holster, along)))
-        })
-    });
-    exchange.flat_map(|(mate, lock, holster, along)| {
-        Held::ALL.iter().flat_map(move |&held| {
-            Shut::ALL.iter().flat_map(move |&shut| {
-                Readiness::ALL.iter().flat_map(move |&readiness| {
-                    At::ALL.iter().map(move |&at| Situation {
-                        work: Work::Over,
-                        ahead: Ahead::Nothing,
-                        opening: Opening::Set,
-                        held,
-                        fingers: Fingers::Empty,
-                        spread: Spread::Narrow,
-                        readiness,
-                        mate,
-                        lock,
-                        holster,
-                        along,
-                        shut,
-                        at,
-                        drum: AtDrum::Off,
-                        bias: Bias::Missing,
-                        sight: Sight::Missing,
-                        aim: Knowledge::Unknown,
-                        reach: Reach::Inside,
-                        tries: Tries::Left,
-                        link: Link::Up,
-                        prim: Lower::Done,
-                        motion: FingerMotion::AtRest,
-                        tooling: Tooling::Ready,
-                        place: PlaceKnowledge::Known,
-                        button: JoystickGrip::None,
-                    })
-                })
-            })
-        })
+/// Each combination of the values of two variables.
+fn pairs<A: Copy, B: Copy>(all: &[A], with: &'static [B]) -> Vec<(A, B)> {
+    all.iter().flat_map(|&a| with.iter().map(move |&b| (a, b))).collect()
+}
+
+/// The values of what the tables of both commands test.
+fn exchanges() -> Vec<((((Mate, Lock), Holster), Along), At)> {
+    pairs(&pairs(&pairs(&pairs(Mate::ALL, Lock::ALL), Holster::ALL), Along::ALL), At::ALL)
+}
+
+/// What the tables of QC-ATTACH test.
+fn attach() -> impl Iterator<Item = Situation> {
+    pairs(&pairs(&exchanges(), Shut::ALL), Readiness::ALL).into_iter().map(
+        |((((((mate, lock), holster), along), at), shut), readiness)| {
+            Situation::QcAttach(
+                ExchangeSituation { work: Work::Over, lock },
+                QcLiftSituation { mate, at, holster, lock, along, shut, readiness },
+                QcAttachSituation { mate, along, holster, lock },
+            )
+        },
+    )
+}
+
+/// What the tables of QC-DETACH test.
+fn detach() -> impl Iterator<Item = Situation> {
+    pairs(&exchanges(), Held::ALL).into_iter().map(|(((((mate, lock), holster), along), at), held)| {
+        Situation::QcDetach(
+            ExchangeSituation { work: Work::Over, lock },
+            QcLeaveSituation { mate, holster, at, along, lock },
+            QcDetachSituation { mate, lock, along, holster, held },
+        )
     })
 }
 
@@ -69,7 +55,7 @@ fn orders(verb: EmoveVerb, situation: &Situation) {
     let (mut step, mut last) = (Step::first(verb), None);
     let mut orders = Vec::new();
     loop {
-        let choice = of_command(verb, step, situation);
+        let choice = of_command(step, situation);
         let row = Some((choice.table, choice.row));
         let futile = last == row;
         if futile || !choice.action.is_order() {
@@ -83,8 +69,10 @@ fn orders(verb: EmoveVerb, situation: &Situation) {
 
 #[test]
 fn a_gripper_change_ends_in_a_world_that_ignores_every_order() {
-    for situation in situations() {
+    for situation in attach() {
         orders(EmoveVerb::QcAttach, &situation);
+    }
+    for situation in detach() {
         orders(EmoveVerb::QcDetach, &situation);
     }
 }

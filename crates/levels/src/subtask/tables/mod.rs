@@ -34,7 +34,7 @@ pub use self::variables::{
 use super::goals;
 use crate::{
     confirm::{CONFIRM, Proof},
-    execution::{Asked, EXECUTE, Ending, Progress, Work},
+    execution::{Asked, EXECUTE, Ending, Work},
     halt::{Commanding, EFFECT, HALT, Replaced, Stopping},
     held::Held,
     places::Missing,
@@ -139,13 +139,6 @@ pub struct StateVariables {
     pub proof: Proof,
     /// The state variables of the command's table; [`Subordinates`] decide on `work`.
     pub situation: Situation,
-}
-
-impl StateVariables {
-    /// The state variables that an order is to change, for EFFECT.
-    pub(super) fn variables(&self) -> (u64, Progress) {
-        (rcs_core::table::Variables::code(&self.situation), Progress::default())
-    }
 }
 
 /// What a row can ask for.

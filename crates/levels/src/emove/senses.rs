@@ -1,0 +1,274 @@
+//! The state variables of the commands. Each table takes those that its rows name (docs/design/tables.md "State
+//! variables").
+
+use interfaces::{
+    CommonMemory,
+    emove::{EmoveCommand, EmoveVerb, Holding},
+    prim::JoystickGrip,
+};
+use rcs_core::{handshake::Lower, state_variables};
+
+use super::{
+    EmoveInputs, State,
+    gripper::Gripper,
+    gripper_exchange::{along, holster, shut},
+    motion::route::Ahead,
+    tables::{
+        Along, At, AtDrum, Bias, Calibration, Departure, FingerMotion, Fingers, Holster, Knowledge, Link,
+        Lock, Mate, Opening, PlaceKnowledge, Reach, Readiness, ReleaseWork, Ring, Shut, Sight, Spread,
+        Subordinates, Tooling, Tries, known,
+    },
+    vision::{can_aim, sight},
+};
+use crate::{execution::Work, held::Held};
+
+/// What the state variables of a command are sensed from.
+pub struct Senses<'a> {
+    state: &'a State,
+    command: &'a EmoveCommand,
+    inputs: &'a EmoveInputs<'a>,
+    subordinates: &'a Subordinates,
+    along: Along,
+}
+
+impl<'a> Senses<'a> {
+    /// For a command in a tick.
+    #[must_use]
+    pub fn new(
+        state: &'a State,
+        command: &'a EmoveCommand,
+        inputs: &'a EmoveInputs<'a>,
+        subordinates: &'a Subordinates,
+    ) -> Self {
+        Self { state, command, inputs, subordinates, along: along(command, inputs) }
+    }
+
+    /// The command.
+    #[must_use]
+    pub const fn verb(&self) -> EmoveVerb {
+        self.command.command
+    }
+
+    const fn memory(&self) -> &CommonMemory {
+        self.inputs.memory
+    }
+
+    fn attached(&self) -> Gripper {
+        Gripper::attached(self.memory())
+    }
+
+    fn holding(&self) -> Holding {
+        self.state.holding(self.memory())
+    }
+}
+
+#[state_variables]
+impl Senses<'_> {
+    /// The last order.
+    #[passed]
+    #[must_use]
+    pub const fn work(&self) -> Work {
+        Work::Busy
+    }
+
+    /// What lies ahead on the route.
+    #[must_use]
+    pub fn ahead(&self) -> Ahead {
+        self.state.motion.flight().ahead(self.inputs.data)
+    }
+
+    /// The departure from the place that the robot leaves.
+    #[must_use]
+    pub fn departure(&self) -> Departure {
+        match self.state.localization.place() {
+            _ if self.state.motion.flight().departing(self.inputs.data) => Departure::UnderWay,
+            Some(_) => Departure::AtPlace,
+            None => Departure::Over,
+        }
+    }
+
+    /// The opening of the fingers for the goal.
+    #[must_use]
+    pub const fn opening(&self) -> Opening {
+        self.subordinates.opening
+    }
+
+    /// The release of an object at the place of the robot.
+    #[must_use]
+    pub fn release(&self) -> ReleaseWork {
+        if self.state.is_letting_go() { ReleaseWork::UnderWay } else { ReleaseWork::None }
+    }
+
+    /// Status of the attached gripper.
+    #[must_use]
+    pub const fn gripper(&self) -> Lower {
+        self.subordinates.gripper
+    }
+
+    /// The calibration of the attached gripper.
+    #[must_use]
+    pub fn calibration(&self) -> Calibration {
+        if self.attached().is_uncalibrated(self.memory()) { Calibration::Missing } else { Calibration::Done }
+    }
+
+    /// Is the object held?
+    #[must_use]
+    pub fn held(&self) -> Held {
+        Held::of(self.holding(), self.command.object)
+    }
+
+    /// What the fingers have between them.
+    #[must_use]
+    pub fn fingers(&self) -> Fingers {
+        let state = self.state;
+        state.held.fingers(state.localization.place().is_some(), self.command, &state.grippers, self.inputs)
+    }
+
+    /// Are they as wide open as a release would leave them?
+    #[must_use]
+    pub fn spread(&self) -> Spread {
+        let attached = self.attached();
+        let opening = self.state.held.depart_opening(self.holding(), self.command, self.inputs);
+        let open = attached.is_open(opening, self.memory());
+        let at_rest = attached == Gripper::None || self.subordinates.gripper == Lower::Done;
+        match (attached.is_uncalibrated(self.memory()), open && at_rest) {
+            (true, _) => Spread::Unknown,
+            (false, true) => Spread::Open,
+            (false, false) => Spread::Narrow,
+        }
+    }
+
+    /// The gripper after its last order; without an order, in its initial state.
+    #[must_use]
+    pub fn readiness(&self) -> Readiness {
+        let idle =
+            self.subordinates.gripper == Lower::Done || !self.state.grippers.are_ordered(self.memory());
+        match (idle, self.attached().is_uncalibrated(self.memory())) {
+            (true, true) => Readiness::Uncalibrated,
+            (true, false) => Readiness::Ready,
+            (false, _) => Readiness::Faulty,
+        }
+    }
+
+    /// What is mated.
+    #[must_use]
+    pub fn mate(&self) -> Mate {
+        match self.memory().quick_change.status.end_effector_id {
+            None => Mate::None,
+            id if id == self.command.end_effector_id => Mate::Right,
+            _ => Mate::Wrong,
+        }
+    }
+
+    /// The locking ring, by its sensors.
+    #[must_use]
+    pub fn lock(&self) -> Lock {
+        self.state.exchange.lock(self.inputs.tick, self.memory())
+    }
+
+    /// The holster.
+    #[must_use]
+    pub fn holster(&self) -> Holster {
+        holster(self.command.end_effector_id, self.memory())
+    }
+
+    /// Where the robot is in the exchange.
+    #[must_use]
+    pub const fn along(&self) -> Along {
+        self.along
+    }
+
+    /// The fingers, for the path through the holster.
+    #[must_use]
+    pub fn shut(&self) -> Shut {
+        shut(self.command, self.inputs)
+    }
+
+    /// Is the robot at the command's location?
+    #[must_use]
+    pub fn at(&self) -> At {
+        self.state.localization.at(self.command)
+    }
+
+    /// Is it half way at the drum?
+    #[must_use]
+    pub fn drum(&self) -> AtDrum {
+        self.state.drum.at(self.command, self.inputs)
+    }
+
+    /// What the force sensor reads without a force.
+    #[must_use]
+    pub const fn bias(&self) -> Bias {
+        self.state.drum.bias(self.memory())
+    }
+
+    /// What vision has answered.
+    #[must_use]
+    pub fn sight(&self) -> Sight {
+        sight(self.state.localization.last_place(), self.inputs)
+    }
+
+    /// Where the camera is to go next.
+    #[must_use]
+    pub fn aim(&self) -> Knowledge {
+        known(can_aim(self.command, self.inputs))
+    }
+
+    /// Do the open fingers stay within the object's array?
+    #[must_use]
+    pub fn reach(&self) -> Reach {
+        self.state.vision.reach(self.command, self.inputs)
+    }
+
+    /// May a picture be taken again?
+    #[must_use]
+    pub const fn tries(&self) -> Tries {
+        self.state.vision.tries()
+    }
+
+    /// The link.
+    #[must_use]
+    pub const fn link(&self) -> Link {
+        if self.memory().prim.status.link_running { Link::Up } else { Link::Down }
+    }
+
+    /// Status of Prim; done as long as the command does not need it.
+    #[must_use]
+    pub const fn prim(&self) -> Lower {
+        self.subordinates.prim
+    }
+
+    /// Do the fingers move?
+    #[must_use]
+    pub fn motion(&self) -> FingerMotion {
+        let moving = self.state.grippers.are_moving(self.inputs.tick, self.memory());
+        if moving { FingerMotion::Moving } else { FingerMotion::AtRest }
+    }
+
+    /// Quick change and gripper while pausing. Grip's PAUSE is done only when a calibration at the start is done (VI.3.1
+    /// UP-INIT); with no gripper, or one that has come since, there is nothing to wait for. A ring that stands half-way
+    /// is at rest, too: ACCEPT decides which commands it prevents.
+    #[must_use]
+    pub fn tooling(&self) -> Tooling {
+        let asked = self.state.grippers.are_ordered(self.memory());
+        match (self.subordinates.ring, self.subordinates.gripper) {
+            (Ring::Faulty, _) if self.lock() != Lock::Between => Tooling::RingFaulty,
+            (Ring::Busy, _) => Tooling::Busy,
+            (_, Lower::Error | Lower::Joystick | Lower::Lost) if asked => Tooling::GripFaulty,
+            (_, Lower::Pending | Lower::Executing) => Tooling::Busy,
+            (Ring::Faulty | Ring::Locked | Ring::Unlocked, _) => Tooling::Ready,
+        }
+    }
+
+    /// Is it known where the robot is?
+    #[must_use]
+    pub fn place(&self) -> PlaceKnowledge {
+        self.state.place_knowledge(self.inputs)
+    }
+
+    /// A gripper button of the joystick box that has just been pressed.
+    #[must_use]
+    pub fn button(&self) -> JoystickGrip {
+        self.state.grippers.pressed(self.memory())
+    }
+}

@@ -1,0 +1,28 @@
+//! When the fingers move on the path to a goal.
+
+use rcs_core::decision_table;
+
+decision_table! {
+    /// FINGERS: if the goal of a motion needs an opening, the fingers are brought to it once the last depart point is
+    /// behind, and the final motion waits for them (docs/design/motion.md "Finger opening"). A gripper that is not
+    /// calibrated and holds nothing is calibrated on the way: nothing is between its fingers there. A release that has
+    /// not ended comes first.
+    pub FINGERS: fn fingers(super::motion::MotionStep, struct of super::Senses) -> super::Action or () {
+        any {
+            1:  work: Busy                                                                  => consult;
+        }
+        Moving {
+            2:  release: UnderWay, ahead: Through | Stop | Beside                           => Fail(ReleaseNotEnded);
+            3:  opening: Free | Reached                                                     => consult;
+            4:  opening: Sent, gripper: Pending | Executing, ahead: Stop | Nothing          => Wait;
+            5:  opening: Sent                                                               => consult;
+            6:  departure: UnderWay                                                         => consult;
+            7:  calibration: Missing, held: Nothing, departure: Over                        => Calibrate;
+            8:  calibration: Missing, held: Nothing, departure: AtPlace, ahead: Through     => consult;
+            9:  opening: Due                                                                => Open;
+        }
+        Stopping | Rejoining {
+            10: otherwise                                                                  => consult;
+        }
+    }
+}
