@@ -71,7 +71,7 @@ fn from_home_and_safe_it_touches_nothing() {
         assert_eq!(contacts(&rig), [] as [&CellEvent; 0], "from {start:?}");
         let sunk = Vector::from(droop.position) - hand(&rig);
         assert!(sunk.z > 15.0, "it has sagged by {sunk}");
-        // SPECNOTES: the fingertips stop 13 in above the floor.
+        // With the shot pin of data/cell.toml the fingertips stop 13 in above the floor.
         assert!((hand(&rig).z + 37.0).abs() < 2.0, "{}", hand(&rig));
     }
 }

@@ -1,5 +1,4 @@
-//! Times of a load and of look-ups with 100,000 records of task data in one file, and in each file (SPECNOTES.md, Task
-//! data).
+//! Times of a load and of look-ups with 100,000 records of task data in one file, and in all files at once.
 //!
 //! The time of a load ends when the data are ready, before the memory is freed. Look-ups are timed warm (the same few
 //! records again and again), cold (all records in an order that no cache can predict; together they are several times
