@@ -13,7 +13,7 @@ use super::{
     grasp::{gripper_on, sizes},
     gripper::Gripper,
     motion::{
-        flight::Flight,
+        flight::{Flight, Progress},
         relative::{self, Relative},
         route::{Goal, Planning},
     },
@@ -100,7 +100,7 @@ impl State {
         let (memory, data) = (inputs.memory, inputs.data);
         let verb = command.command;
         let planned = self.plan(command, inputs);
-        (self.ordered, self.uses_prim) = (Ordered::Nothing, false);
+        (self.ordered, self.uses_prim, self.ordered_at) = (Ordered::Nothing, false, Progress::default());
         self.motion.begin(planned.unwrap_or_default());
         self.vision.begin();
         self.held.begin();

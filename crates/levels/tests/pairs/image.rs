@@ -223,6 +223,7 @@ pub fn forget(emove: &mut emove::State) -> bool {
         }
         (emove.ordered, emove.uses_prim) = Default::default();
         emove.execution.last_order = None;
+        emove.ordered_at = Default::default();
         emove.motion.forget_flight();
         emove.vision.begin();
         emove.held.begin();

@@ -14,6 +14,7 @@ impl<G: Fingered> Pair<G> {
         it.gripper.execution().reason = Reason::None;
         // Rows that order something lead to later steps: none of them fires twice in a command.
         it.emove.execution.last_order = None;
+        it.emove.ordered_at = Default::default();
         it.emove.held.forget_places();
         if it.is_settled() {
             G::forget_order(&mut it.emove_out);

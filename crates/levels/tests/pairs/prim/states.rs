@@ -19,6 +19,7 @@ impl Pair {
         (it.emove.execution.reason, it.prim.execution.reason) = (Reason::None, Reason::None);
         if it.emove.execution.outcome != Outcome::Executing {
             it.emove.execution.last_order = None;
+            it.emove.ordered_at = Default::default();
             if it.command.command != EmoveVerb::Pause {
                 (it.emove.step, it.emove.ordered, it.emove.uses_prim) = Default::default();
                 it.emove.motion.forget_flight();
