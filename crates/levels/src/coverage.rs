@@ -1,8 +1,11 @@
 //! Which rows of which tables have fired in the tests of a process.
 
-use std::collections::BTreeSet;
+use std::{
+    cell::RefCell,
+    collections::{BTreeMap, BTreeSet},
+};
 
-use interfaces::{Consulted, Header};
+use interfaces::{Consulted, Header, process::Process};
 use rcs_core::table::{Table, Values};
 
 use crate::{confirm::CONFIRM, execution::EXECUTE};
@@ -48,4 +51,21 @@ impl Coverage {
         let missing = rows.filter(|(_, table, row)| !has_fired(*table, *row));
         missing.map(|(name, _, row)| format!("{name} {row}")).collect()
     }
+}
+
+thread_local! {
+    /// What has fired in this thread, by the name of the process.
+    static FIRED: RefCell<BTreeMap<&'static str, Coverage>> = const { RefCell::new(BTreeMap::new()) };
+}
+
+/// Take in what a process has reported in a test.
+pub fn note(process: &'static str, header: &Header) {
+    FIRED.with_borrow_mut(|fired| fired.entry(process).or_default().note(header));
+}
+
+/// The rows of a process that fire in none of its scenarios, as [`Coverage::missing`] has them.
+pub fn silent<P: Process<Data>, Data>(scenarios: &[fn()]) -> Vec<String> {
+    FIRED.take();
+    scenarios.iter().for_each(|scenario| scenario());
+    FIRED.take().entry(P::NAME).or_default().missing(P::TABLES)
 }

@@ -38,12 +38,20 @@
     )
 )]
 
+/// The tests name the package as those in `tests` do, with which they share the environment.
+#[cfg(test)]
+extern crate self as levels;
+
+#[cfg(test)]
+#[path = "../tests/environment/bench.rs"]
+mod bench;
 pub mod confirm;
 #[cfg(test)]
 mod coverage;
 pub mod emove;
 #[cfg(test)]
-mod exact_robot;
+#[path = "../tests/environment/mod.rs"]
+mod environment;
 pub mod execution;
 pub mod goal;
 pub mod grip;

@@ -2,14 +2,20 @@
 //! people and programs that look on do.
 
 use interfaces::{
-    CommonMemory, EmoveOutputs, ExternalInputs, T3iOutputs,
+    CommonMemory, EmoveOutputs, ExternalInputs, GripOutputs, JawsOutputs, PedestalOutputs, T3iOutputs,
+    TableOutputs,
     emove::{EmoveCommand, EmoveVerb},
     prim::PrimVerb,
     process::{Inputs, Process},
     t3i::{T3iCommand, T3iVerb},
 };
-use levels::{emove::Emove, t3i::T3i};
-use rcs_core::tick::Tick;
+use levels::{
+    emove::Emove,
+    grip, jaws,
+    pedestal::{control, table},
+    t3i::T3i,
+};
+use rcs_core::{Plain, tick::Tick};
 use taskdata::files::TaskData;
 
 #[test]
@@ -45,4 +51,16 @@ fn e_move_passes_the_feedback_pose_up_and_the_gripper_down() {
     }
     assert_eq!(outputs.status.reference_pose, Some(0x8300_0007));
     assert_eq!((outputs.prim.command, outputs.prim.end_effector_id), (PrimVerb::RobotInit, Some(2)));
+}
+
+#[test]
+fn states_and_outputs_of_the_lowest_processes_are_small() {
+    for (process, state, outputs, most) in [
+        ("Grip", grip::state::State::SIZE, GripOutputs::SIZE, (512, 192)),
+        ("V-Grip", jaws::state::State::SIZE, JawsOutputs::SIZE, (191, 128)),
+        ("Active Pedestal", control::state::State::SIZE, PedestalOutputs::SIZE, (191, 192)),
+        ("Rotary Table", table::State::SIZE, TableOutputs::SIZE, (191, 144)),
+    ] {
+        assert!(state <= most.0 && outputs <= most.1, "{process}: {state} and {outputs} bytes");
+    }
 }

@@ -3,29 +3,57 @@
 use geometry::units::hundredths;
 use interfaces::{
     CommonMemory, ExternalInputs, GripOutputs,
-    device::{QuickChangeSensors, valve},
+    device::valve,
     grip::{GripCommand, GripReport, GripVerb},
-    process::{Inputs, Process},
 };
 use rcs_core::tick::Tick;
 
-use super::{Grip, gripper::Gripper};
-use crate::coverage::Coverage;
+use super::Grip;
+use crate::{
+    bench::{self, Tested, World},
+    environment::{air::Gripper, ring::mated},
+};
 
 const OPEN: u8 = valve::OPEN_COARSE | valve::OPEN_MEDIUM | valve::OPEN_FINE;
 pub const CLOSE: u8 = valve::CLOSE_COARSE | valve::CLOSE_MEDIUM | valve::CLOSE_FINE;
 
-/// Process, inputs, plant, and what was seen.
-pub struct Bench {
-    pub process: Grip,
-    pub memory: CommonMemory,
-    pub external: ExternalInputs,
-    pub gripper: Gripper,
-    pub tick: Tick,
-    /// Tables and rows that fired.
-    pub rows: Coverage,
-    /// Valve patterns of the current command in the order in which they came, without repetitions.
-    pub patterns: Vec<u8>,
+pub type Bench = bench::Bench<Grip, Gripper>;
+
+fn is_attached(external: &ExternalInputs) -> bool {
+    let quick_change = external.devices.quick_change;
+    quick_change.locked && quick_change.end_effector_id == 1
+}
+
+impl Tested<()> for Grip {
+    type Order = GripCommand;
+    type End = GripOutputs;
+    const LONGEST: u64 = 2000;
+
+    fn order(memory: &mut CommonMemory, order: GripCommand, number: u32) {
+        memory.emove.grip = GripCommand { number, ..order };
+    }
+
+    fn end(outputs: &GripOutputs) -> Option<GripOutputs> {
+        let executes = matches!(outputs.status.report, GripReport::Executing | GripReport::Paused);
+        Some(*outputs).filter(|_| !executes)
+    }
+
+    fn check(outputs: &GripOutputs, _: &CommonMemory, external: &ExternalInputs) {
+        let bits = outputs.valves.bits;
+        assert!(bits & OPEN == 0 || bits & CLOSE == 0, "opens and closes at once: {bits:#04x}");
+        assert_eq!(bits, outputs.status.valves);
+        assert!(is_attached(external) || bits == 0, "valves without a gripper: {bits:#04x}");
+    }
+}
+
+impl World<Grip> for Gripper {
+    fn sense(&mut self, _: Tick, _: &mut CommonMemory, external: &mut ExternalInputs) {
+        external.devices.grip = if is_attached(external) { self.sensors() } else { Default::default() };
+    }
+
+    fn act(&mut self, _: Tick, _: &CommonMemory, after: &mut CommonMemory, _: &mut ExternalInputs) {
+        self.advance(after.grip.valves.bits);
+    }
 }
 
 impl Bench {
@@ -41,35 +69,15 @@ impl Bench {
     }
 
     fn boot(gripper: Gripper, attached: bool) -> Self {
-        let mut bench = Self {
-            process: Grip::default(),
-            memory: CommonMemory::default(),
-            external: ExternalInputs::default(),
-            gripper,
-            tick: Tick::BEFORE_START,
-            rows: Coverage::default(),
-            patterns: Vec::new(),
-        };
+        let mut bench = Self::before(gripper);
         bench.attach(attached);
         bench.step();
         bench
     }
 
-    /// Ticks in which the process is dormant: its outputs are republished.
-    pub fn sleep(&mut self, ticks: u32) {
-        for _ in 0..ticks {
-            self.tick = self.tick.next();
-            self.memory.grip.header.stamp = self.tick;
-            self.memory.grip.header.republished = true;
-            self.gripper.advance(self.memory.grip.valves.bits);
-        }
-    }
-
     /// Attach or detach the gripper.
     pub fn attach(&mut self, locked: bool) {
-        let end_effector_id = u8::from(locked);
-        self.external.devices.quick_change =
-            QuickChangeSensors { locked, unlocked: !locked, end_effector_id };
+        self.external.devices.quick_change = mated(locked, 1);
     }
 
     /// Write a new command; opening in inches, force in pounds.
@@ -79,71 +87,18 @@ impl Bench {
 
     /// Write a new command with a speed, 0.01 in/s.
     pub fn command_at(&mut self, command: GripVerb, opening: f64, force: i32, velocity: i32) {
-        let number = self.memory.emove.grip.number + 1;
-        let position = hundredths(opening);
-        self.memory.emove.grip =
-            GripCommand { number, command, force, position, velocity, end_effector_id: Some(1) };
-        self.patterns.clear();
+        let (number, position, end_effector_id) = (0, hundredths(opening), Some(1));
+        self.send(GripCommand { number, command, force, position, velocity, end_effector_id });
+        self.world.patterns.clear();
     }
 
-    /// One tick.
-    pub fn step(&mut self) -> GripOutputs {
-        self.tick = self.tick.next();
-        self.external.devices.grip =
-            if self.process.attached(&self.external) { self.gripper.sensors() } else { Default::default() };
-        let mut outputs = self.memory.grip;
-        let inputs = Inputs { tick: self.tick, memory: &self.memory, external: &self.external, data: &() };
-        self.process.step(&inputs, &mut outputs);
-        let bits = outputs.valves.bits;
-        assert!(bits & OPEN == 0 || bits & CLOSE == 0, "opens and closes at once: {bits:#04x}");
-        assert_eq!(bits, outputs.status.valves);
-        assert!(self.process.attached(&self.external) || bits == 0, "valves without a gripper: {bits:#04x}");
-        self.rows.note(&outputs.header);
-        if self.patterns.last() != Some(&bits) {
-            self.patterns.push(bits);
-        }
-        self.gripper.advance(bits);
-        self.memory.grip = outputs;
-        outputs
-    }
-
-    /// Ticks until the command has ended, and how.
-    pub fn finish(&mut self) -> (u32, GripOutputs) {
-        for ticks in 1..=2000 {
-            let outputs = self.step();
-            assert_eq!(outputs.status.echo, self.memory.emove.grip.number);
-            if !matches!(outputs.status.report, GripReport::Executing | GripReport::Paused) {
-                return (ticks, outputs);
-            }
-        }
-        panic!("no end at tick {}: {:?}", self.tick, self.process);
-    }
-
-    /// Command and finish; panics unless it is done.
-    pub fn done(&mut self, command: GripVerb, opening: f64, force: i32) -> (u32, GripOutputs) {
+    /// Command and finish; panics unless it is done. Ticks until then, and what is written.
+    pub fn done(&mut self, command: GripVerb, opening: f64, force: i32) -> (u64, GripOutputs) {
         self.command(command, opening, force);
-        let (ticks, outputs) = self.finish();
-        assert_eq!(
-            outputs.status.report,
-            GripReport::Done,
-            "{command} {opening} {force}: {:?}",
-            outputs.status
-        );
-        (ticks, outputs)
-    }
-
-    /// Let ticks pass.
-    pub fn wait(&mut self, ticks: u32) -> GripOutputs {
-        for _ in 0..ticks {
-            self.step();
-        }
-        self.memory.grip
-    }
-}
-
-impl Grip {
-    fn attached(&self, external: &ExternalInputs) -> bool {
-        let quick_change = external.devices.quick_change;
-        quick_change.locked && quick_change.end_effector_id == 1
+        let began = self.tick;
+        let outputs = self.finish();
+        let status = &outputs.status;
+        assert_eq!(status.report, GripReport::Done, "{command} {opening} {force}: {status:?}");
+        (self.tick.since(began), outputs)
     }
 }

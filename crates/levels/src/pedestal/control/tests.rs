@@ -8,28 +8,68 @@ use interfaces::{
     process::{Inputs, Process},
 };
 use proptest::prelude::*;
-use rcs_core::{Plain, plain::to_bytes, tick::Tick};
+use rcs_core::tick::Tick;
 
-use super::{Pedestal, state::State, tables::TABLES};
+use super::Pedestal;
 use crate::{
-    coverage::Coverage,
-    grip::tests::gripper::{Gripper, Object},
-    pedestal::{Hand, Table, table::tests::Rotary},
+    bench::{self, Tested, World},
+    coverage::silent,
+    environment::{
+        air::{Gripper, Object},
+        rotary::Rotary,
+    },
+    pedestal::{Hand, Table},
 };
 
 /// The pedestal process, and what its lower neighbours are made to say.
-#[derive(Default)]
-struct Bench {
-    process: Pedestal,
-    memory: CommonMemory,
-    tick: Tick,
-    rows: Coverage,
+type Bench = bench::Bench<Pedestal, ByHand>;
+/// All three processes with a simulated hand and a simulated table.
+type Cell = bench::Bench<Pedestal, Real>;
+
+impl Tested<()> for Pedestal {
+    /// A command with grasp size, grasp force and table angle.
+    type Order = (PedestalVerb, i32, i32, i32);
+    type End = (PedestalReport, Reason);
+    const LONGEST: u64 = 5000;
+
+    fn order(
+        memory: &mut CommonMemory,
+        (command, grasp_size, grasp_force, table_angle): Self::Order,
+        number: u32,
+    ) {
+        let cycle = memory.pedestal.header.stamp;
+        memory.subtask.pedestal =
+            PedestalCommand { cycle, number, command, grasp_size, grasp_force, table_angle };
+    }
+
+    fn end(outputs: &PedestalOutputs) -> Option<(PedestalReport, Reason)> {
+        let status = outputs.status;
+        (status.report != PedestalReport::Executing).then_some((status.report, status.reason))
+    }
+
+    fn check(outputs: &PedestalOutputs, memory: &CommonMemory, _: &ExternalInputs) {
+        assert_eq!(outputs.status.cycle_echo, memory.subtask.pedestal.cycle);
+    }
+}
+
+/// Hand and table say what a test has written.
+#[derive(Clone, Default)]
+struct ByHand {
+    /// They write nothing.
+    silent: bool,
+}
+
+impl World<Pedestal> for ByHand {
+    fn sense(&mut self, tick: Tick, memory: &mut CommonMemory, _: &mut ExternalInputs) {
+        let stamp = if self.silent { Tick::BEFORE_START } else { tick.previous() };
+        (memory.hand.header.stamp, memory.table.header.stamp) = (stamp, stamp);
+    }
 }
 
 impl Bench {
     /// A bench after a tick in which nothing was commanded, with hand and table calibrated.
     fn new() -> Self {
-        let mut bench = Self::default();
+        let mut bench = Self::before(ByHand::default());
         bench.memory.hand.status.initialized = true;
         bench.memory.hand.status.position = 500;
         bench.memory.hand.status.felt = Felt::Nothing;
@@ -39,31 +79,13 @@ impl Bench {
         bench
     }
 
-    fn send(&mut self, command: PedestalVerb, grasp_size: i32, grasp_force: i32, table_angle: i32) {
-        let number = self.memory.subtask.pedestal.number + 1;
-        let cycle = self.tick;
-        self.memory.subtask.pedestal =
-            PedestalCommand { cycle, number, command, grasp_size, grasp_force, table_angle };
-    }
-
-    fn step(&mut self) -> PedestalOutputs {
-        for header in [&mut self.memory.hand.header, &mut self.memory.table.header] {
-            header.stamp = self.tick;
-        }
-        self.step_with_old_stamps()
-    }
-
-    /// The same, hand and table not having written anything.
-    fn step_with_old_stamps(&mut self) -> PedestalOutputs {
-        self.tick = self.tick.next();
-        let mut outputs = self.memory.pedestal;
-        let external = ExternalInputs::default();
-        let inputs = Inputs { tick: self.tick, memory: &self.memory, external: &external, data: &() };
-        self.process.step(&inputs, &mut outputs);
-        assert_eq!(outputs.status.cycle_echo, self.memory.subtask.pedestal.cycle);
-        self.rows.note(&outputs.header);
-        self.memory.pedestal = outputs;
-        outputs
+    /// A bench whose hand has closed on an object.
+    fn gripping() -> Self {
+        let mut bench = Self::new();
+        bench.send((PedestalVerb::Grip, 250, 50, 0));
+        bench.step();
+        bench.hand(GripReport::Done, 256).step();
+        bench
     }
 
     /// The hand answers its last command, with fingers that have something between them where they stand in
@@ -91,9 +113,56 @@ impl Bench {
         self
     }
 
+    /// What is reported in the next tick.
     fn end(&mut self) -> (PedestalReport, Reason) {
         let status = self.step().status;
         (status.report, status.reason)
+    }
+}
+
+/// Hand and table, and their devices.
+#[derive(Clone)]
+struct Real {
+    hand: Hand,
+    table: Table,
+    fingers: Gripper,
+    rotary: Rotary,
+}
+
+impl World<Pedestal> for Real {
+    fn sense(&mut self, _: Tick, _: &mut CommonMemory, external: &mut ExternalInputs) {
+        let (sensors, grip) = (&mut external.devices.pedestal, self.fingers.sensors());
+        sensors.potentiometer = grip.potentiometer;
+        (sensors.strain_left, sensors.strain_right) = (grip.strain_left, grip.strain_right);
+        self.rotary.sense(sensors);
+    }
+
+    fn act(
+        &mut self,
+        tick: Tick,
+        memory: &CommonMemory,
+        after: &mut CommonMemory,
+        external: &mut ExternalInputs,
+    ) {
+        let inputs = Inputs { tick, memory, external, data: &() };
+        self.hand.step(&inputs, &mut after.hand);
+        self.table.step(&inputs, &mut after.table);
+        self.fingers.advance(after.hand.valves.bits);
+        self.rotary.advance(&after.table.motor);
+    }
+}
+
+impl Cell {
+    /// A cell whose hand holds an object at the angle where it takes one, as in Figure VII.13.
+    fn taken() -> Self {
+        let (fingers, rotary) = (Gripper::new(1.0, 1987), Rotary::new(-1200));
+        let world = Real { hand: Hand::default(), table: Table::default(), fingers, rotary };
+        let mut cell = Self::before(world);
+        cell.step();
+        assert_eq!(cell.execute((PedestalVerb::PreGrip, 500, 50, -2135)), DONE);
+        cell.world.fingers.object = Some(Object { size: 2.56, off_centre: 0.05 });
+        assert_eq!(cell.execute((PedestalVerb::Grip, 250, 50, 0)), DONE);
+        cell
     }
 }
 
@@ -103,7 +172,7 @@ const DONE: (PedestalReport, Reason) = (PedestalReport::Done, Reason::None);
 #[test]
 fn pre_grip_opens_the_hand_and_turns_the_table_at_once() {
     let mut bench = Bench::new();
-    bench.send(PedestalVerb::PreGrip, 450, 0, -1000);
+    bench.send((PedestalVerb::PreGrip, 450, 0, -1000));
     let outputs = bench.step();
     assert_eq!((outputs.hand.command, outputs.hand.position), (GripVerb::OpenGrip, 450));
     assert_eq!((outputs.table.command, outputs.table.angle), (TableVerb::Turn, -1000));
@@ -126,7 +195,7 @@ fn commands_are_not_done_while_hand_or_table_are_elsewhere() {
         (450, false, error(Reason::TableStuck)),
     ] {
         let mut bench = Bench::new();
-        bench.send(PedestalVerb::PreGrip, 450, 0, -1000);
+        bench.send((PedestalVerb::PreGrip, 450, 0, -1000));
         bench.step();
         bench.hand(GripReport::Done, hand);
         if table {
@@ -140,11 +209,11 @@ fn commands_are_not_done_while_hand_or_table_are_elsewhere() {
         assert_eq!(bench.end(), end, "hand at {hand}, table there: {table}");
     }
     let mut bench = Bench::new();
-    bench.send(PedestalVerb::Flip, 0, 0, 1835);
+    bench.send((PedestalVerb::Flip, 0, 0, 1835));
     bench.step();
     assert_eq!(bench.table_elsewhere(PedestalReport::Done).end(), EXECUTING);
     assert_eq!(bench.end(), error(Reason::TableStuck));
-    bench.send(PedestalVerb::Release, 450, 0, 0);
+    bench.send((PedestalVerb::Release, 450, 0, 0));
     bench.step();
     assert_eq!(bench.hand(GripReport::Done, 300).end(), EXECUTING);
     assert_eq!(bench.end(), error(Reason::HandTimeout));
@@ -153,7 +222,7 @@ fn commands_are_not_done_while_hand_or_table_are_elsewhere() {
 #[test]
 fn grip_flip_and_release_command_one_neighbour_each() {
     let mut bench = Bench::new();
-    bench.send(PedestalVerb::Grip, 250, 50, 0);
+    bench.send((PedestalVerb::Grip, 250, 50, 0));
     let outputs = bench.step();
     assert_eq!(
         (outputs.hand.command, outputs.hand.position, outputs.hand.force),
@@ -167,7 +236,7 @@ fn grip_flip_and_release_command_one_neighbour_each() {
     assert_eq!((status.grip_size, status.grip_force, status.table_position), (256, 51, Some(-2135)));
 
     let gripping = bench.memory.pedestal.hand;
-    bench.send(PedestalVerb::Flip, 0, 0, 1835);
+    bench.send((PedestalVerb::Flip, 0, 0, 1835));
     let outputs = bench.step();
     assert_eq!((outputs.table.command, outputs.table.angle), (TableVerb::Turn, -300), "relative");
     assert_eq!(outputs.hand, gripping, "no command is sent to the hand");
@@ -175,7 +244,7 @@ fn grip_flip_and_release_command_one_neighbour_each() {
     assert_eq!(bench.table(PedestalReport::Done).end(), DONE);
 
     let turned = bench.memory.pedestal.table;
-    bench.send(PedestalVerb::Release, 450, 0, 0);
+    bench.send((PedestalVerb::Release, 450, 0, 0));
     let outputs = bench.step();
     assert_eq!((outputs.hand.command, outputs.hand.position), (GripVerb::OpenGrip, 450));
     assert_eq!(outputs.table, turned);
@@ -197,14 +266,14 @@ fn what_cannot_be_done_is_refused_before_anything_moves() {
     ] {
         let mut bench = Bench::new();
         let before = bench.memory.pedestal;
-        bench.send(verb, size, force, angle);
+        bench.send((verb, size, force, angle));
         assert_eq!(bench.end(), (PedestalReport::CannotDo, reason), "{verb} {size} {force} {angle}");
         let after = bench.memory.pedestal;
         assert_eq!((after.hand, after.table), (before.hand, before.table));
     }
     let mut bench = Bench::new();
     bench.memory.table.status.position = None;
-    bench.send(PedestalVerb::Flip, 0, 0, 1835);
+    bench.send((PedestalVerb::Flip, 0, 0, 1835));
     assert_eq!(bench.end(), (PedestalReport::CannotDo, Reason::TableAngleUnknown), "from where?");
 }
 
@@ -216,7 +285,7 @@ fn a_hand_that_closes_on_nothing_or_cannot_tell_is_an_error() {
         (Felt::NotKnown, 256, Reason::HandUncertain),
     ] {
         let mut bench = Bench::new();
-        bench.send(PedestalVerb::Grip, 250, 50, 0);
+        bench.send((PedestalVerb::Grip, 250, 50, 0));
         bench.step();
         bench.hand(GripReport::Done, position).memory.hand.status.felt = felt;
         assert_eq!(bench.end(), (PedestalReport::Error, reason), "{felt}");
@@ -229,26 +298,25 @@ fn what_the_hand_holds_and_the_angle_are_published_whatever_is_commanded() {
     let mut bench = Bench::new();
     let status = bench.step().status;
     assert_eq!((status.felt, status.gripped, status.table_position), (Felt::Nothing, false, Some(-2135)));
-    bench.send(PedestalVerb::Grip, 250, 50, 0);
+    bench.send((PedestalVerb::Grip, 250, 50, 0));
     bench.step();
     // A PAUSE in the middle of a GRIP: the hand goes on, and what it holds is known.
-    bench.send(PedestalVerb::Pause, 0, 0, 0);
+    bench.send((PedestalVerb::Pause, 0, 0, 0));
     bench.step();
     bench.hand(GripReport::Done, 256).table(PedestalReport::Done);
     let status = bench.step().status;
     assert_eq!((status.report, status.felt, status.gripped), (PedestalReport::Done, Felt::Something, true));
     // A restarted process finds it out again.
-    bench.process = Pedestal::default();
+    bench.restart();
     let status = bench.step().status;
     assert_eq!((status.reason, status.felt, status.gripped), (Reason::Restarted, Felt::Something, true));
     bench.table(PedestalReport::Done);
     bench.memory.hand.status.felt = Felt::Nothing;
-    bench.send(PedestalVerb::Flip, 0, 0, 1835);
+    bench.send((PedestalVerb::Flip, 0, 0, 1835));
     assert_eq!(bench.end(), (PedestalReport::Error, Reason::HandLost), "it was gripped before");
     // Hand and table that do not answer are not believed.
-    bench.memory.table.header = Header::default();
-    bench.memory.hand.header = Header::default();
-    let status = bench.step_with_old_stamps().status;
+    bench.world.silent = true;
+    let status = bench.step().status;
     assert_eq!((status.felt, status.table_position), (Felt::NotKnown, None));
 }
 
@@ -256,7 +324,7 @@ fn what_the_hand_holds_and_the_angle_are_published_whatever_is_commanded() {
 fn pre_grip_calibrates_a_hand_that_was_not_told_to_grip() {
     let mut bench = Bench::new();
     bench.memory.hand.status.initialized = false;
-    bench.send(PedestalVerb::PreGrip, 450, 0, -1000);
+    bench.send((PedestalVerb::PreGrip, 450, 0, -1000));
     let outputs = bench.step();
     assert_eq!((outputs.hand.command, outputs.table.number), (GripVerb::UpInit, 0));
     bench.hand(GripReport::Executing, 0).step();
@@ -266,64 +334,62 @@ fn pre_grip_calibrates_a_hand_that_was_not_told_to_grip() {
     // One that reports done and is not calibrated is not told again.
     bench.hand(GripReport::Done, 500).table(PedestalReport::Done).step();
     bench.memory.hand.status.initialized = false;
-    bench.send(PedestalVerb::PreGrip, 450, 0, -1000);
+    bench.send((PedestalVerb::PreGrip, 450, 0, -1000));
     bench.step();
     let (report, reason) = bench.hand(GripReport::Done, 500).end();
     assert_eq!((report, reason), (PedestalReport::CannotDo, Reason::HandNotCalibrated));
     // One that may hold something is not closed on it.
     bench.memory.hand.status.initialized = true;
-    bench.send(PedestalVerb::Grip, 250, 50, 0);
+    bench.send((PedestalVerb::Grip, 250, 50, 0));
     bench.step();
     bench.hand(GripReport::Done, 256).step();
     bench.memory.hand.status.initialized = false;
     let before = bench.memory.pedestal.hand;
-    bench.send(PedestalVerb::PreGrip, 450, 0, -1000);
+    bench.send((PedestalVerb::PreGrip, 450, 0, -1000));
     assert_eq!(bench.end(), (PedestalReport::CannotDo, Reason::HandNotCalibrated));
     assert_eq!(bench.memory.pedestal.hand, before);
 }
 
 #[test]
 fn a_flip_that_is_interrupted_is_ended_by_what_is_left() {
-    let mut cell = Cell::new(1.0, -1200);
-    cell.take();
+    let mut cell = Cell::taken();
     let goal = -2135 + 1835;
     for (nth, verb) in [PedestalVerb::Pause, PedestalVerb::None].into_iter().cycle().take(4).enumerate() {
         let left = goal - cell.memory.pedestal.status.table_position.unwrap();
         assert!(left > 0);
-        cell.send(PedestalVerb::Flip, 0, left);
-        (0..20).for_each(|_| cell.step());
+        cell.send((PedestalVerb::Flip, 0, 50, left));
+        cell.wait(20);
         if verb == PedestalVerb::None {
             // A restart stops the table, and the same command can be given again.
             if nth == 1 {
-                cell.pedestal = Pedestal::default()
+                cell.restart()
             } else {
-                cell.table = Table::default()
+                cell.world.table = Table::default()
             }
-            (0..40).for_each(|_| cell.step());
+            cell.wait(40);
             assert_eq!(cell.memory.pedestal.status.reason, Reason::Restarted);
         } else {
-            assert_eq!(cell.execute(verb, 0, 0), DONE);
+            assert_eq!(cell.execute((verb, 0, 50, 0)), DONE);
         }
-        let stopped = cell.rotary.position;
-        (0..20).for_each(|_| cell.step());
-        assert_eq!(cell.rotary.position, stopped);
+        let stopped = cell.world.rotary.position;
+        cell.wait(20);
+        assert_eq!(cell.world.rotary.position, stopped);
     }
     let left = goal - cell.memory.pedestal.status.table_position.unwrap();
-    assert_eq!(cell.execute(PedestalVerb::Flip, 0, left), DONE);
+    assert_eq!(cell.execute((PedestalVerb::Flip, 0, 50, left)), DONE);
     assert_eq!(cell.memory.pedestal.status.table_position, Some(goal));
-    assert!((cell.rotary.angle() + 30.0).abs() < 0.06 && (cell.fingers.force - 50.0).abs() <= 3.0);
-    assert_eq!(cell.execute(PedestalVerb::Flip, 0, 0), DONE, "nothing is left");
+    assert!(
+        (cell.world.rotary.angle() + 30.0).abs() < 0.06 && (cell.world.fingers.force - 50.0).abs() <= 3.0
+    );
+    assert_eq!(cell.execute((PedestalVerb::Flip, 0, 50, 0)), DONE, "nothing is left");
     assert_eq!(cell.memory.pedestal.status.table_position, Some(goal));
 }
 
 #[test]
 fn an_object_that_comes_loose_is_noticed_while_it_is_turned() {
     for when in [0, 1, 5] {
-        let mut bench = Bench::new();
-        bench.send(PedestalVerb::Grip, 250, 50, 0);
-        bench.step();
-        bench.hand(GripReport::Done, 256).end();
-        bench.send(PedestalVerb::Flip, 0, 0, 1835);
+        let mut bench = Bench::gripping();
+        bench.send((PedestalVerb::Flip, 0, 0, 1835));
         for _ in 0..when {
             bench.step();
             bench.table(PedestalReport::Executing);
@@ -336,11 +402,8 @@ fn an_object_that_comes_loose_is_noticed_while_it_is_turned() {
 #[test]
 fn failures_below_are_passed_up_and_send_nothing_to_the_hand() {
     let pass_up = |verb, fail: &dyn Fn(&mut Bench), reason| {
-        let mut bench = Bench::new();
-        bench.send(PedestalVerb::Grip, 250, 50, 0);
-        bench.step();
-        bench.hand(GripReport::Done, 256).step();
-        bench.send(verb, 250, 50, if verb == PedestalVerb::Flip { 1835 } else { -1000 });
+        let mut bench = Bench::gripping();
+        bench.send((verb, 250, 50, if verb == PedestalVerb::Flip { 1835 } else { -1000 }));
         bench.step();
         let hand = bench.memory.pedestal.hand;
         bench.hand(GripReport::Executing, 256).table(PedestalReport::Executing).step();
@@ -368,7 +431,7 @@ fn failures_below_are_passed_up_and_send_nothing_to_the_hand() {
 fn a_neighbour_that_does_not_answer_is_lost() {
     for (verb, angle) in [(PedestalVerb::Grip, 0), (PedestalVerb::Flip, 100)] {
         let mut bench = Bench::new();
-        bench.send(verb, 250, 50, angle);
+        bench.send((verb, 250, 50, angle));
         let first = bench.end();
         assert!((0..3).all(|_| bench.end() == first), "it has some time");
         assert_eq!(bench.end(), (PedestalReport::Error, Reason::NeighbourLost), "{verb}");
@@ -379,10 +442,10 @@ fn a_neighbour_that_does_not_answer_is_lost() {
 fn pause_stops_the_table_and_waits_for_the_hand() {
     for end in [GripReport::Done, GripReport::Serror] {
         let mut bench = Bench::new();
-        bench.send(PedestalVerb::PreGrip, 450, 0, -1000);
+        bench.send((PedestalVerb::PreGrip, 450, 0, -1000));
         let before = bench.step();
         bench.hand(GripReport::Executing, 300).table(PedestalReport::Executing).step();
-        bench.send(PedestalVerb::Pause, 0, 0, 0);
+        bench.send((PedestalVerb::Pause, 0, 0, 0));
         let outputs = bench.step();
         assert_eq!((outputs.table.command, outputs.hand), (TableVerb::Pause, before.hand));
         assert_eq!(bench.table(PedestalReport::Executing).end(), EXECUTING);
@@ -394,32 +457,39 @@ fn pause_stops_the_table_and_waits_for_the_hand() {
 #[test]
 fn a_restarted_process_adopts_the_command_and_stops_the_table() {
     let mut bench = Bench::new();
-    bench.send(PedestalVerb::Flip, 0, 0, 100);
+    bench.send((PedestalVerb::Flip, 0, 0, 100));
     let before = bench.step();
     bench.hand(GripReport::Done, 256).table(PedestalReport::Executing);
-    bench.process = Pedestal::default();
+    bench.restart();
     assert_eq!(bench.end(), EXECUTING);
     let PedestalOutputs { hand, table, .. } = bench.memory.pedestal;
     assert_eq!((hand, table.command), (before.hand, TableVerb::Pause), "the hand is told nothing");
     assert_eq!(bench.end(), EXECUTING, "the table stops");
     assert_eq!(bench.memory.pedestal.table, table, "it is stopped once");
     assert_eq!(bench.table(PedestalReport::Done).end(), (PedestalReport::Error, Reason::Restarted));
-    bench.send(PedestalVerb::Flip, 0, 0, 100);
+    bench.send((PedestalVerb::Flip, 0, 0, 100));
     bench.step();
     assert_eq!(bench.table(PedestalReport::Done).end(), DONE, "whatever the hand holds");
+    // While the table comes to rest after a PAUSE.
+    bench.send((PedestalVerb::Flip, 0, 0, 100));
+    bench.step();
+    bench.table(PedestalReport::Executing).send((PedestalVerb::Pause, 0, 0, 0));
+    let pause = bench.step().table;
+    bench.table(PedestalReport::Executing).restart();
+    assert_eq!((bench.end(), bench.memory.pedestal.table), (EXECUTING, pause));
 }
 
 /// A new command while hand and table move.
 fn replaced(verb: PedestalVerb, paused: bool) -> Bench {
     let mut bench = Bench::new();
-    bench.send(PedestalVerb::PreGrip, 450, 0, -1000);
+    bench.send((PedestalVerb::PreGrip, 450, 0, -1000));
     let before = bench.step();
     bench.hand(GripReport::Executing, 300).table(PedestalReport::Executing).step();
     if paused {
-        bench.hand(GripReport::Done, 450).send(PedestalVerb::Pause, 0, 0, 0);
+        bench.hand(GripReport::Done, 450).send((PedestalVerb::Pause, 0, 0, 0));
         bench.step();
     }
-    bench.send(verb, 250, 0, 0);
+    bench.send((verb, 250, 0, 0));
     assert_eq!(bench.end(), EXECUTING, "{verb}");
     let PedestalOutputs { hand, table, .. } = bench.memory.pedestal;
     assert_eq!((hand, table.command), (before.hand, TableVerb::Pause));
@@ -446,219 +516,70 @@ fn a_new_command_stops_the_table_and_waits_for_the_hand_before_it_is_answered() 
 
 #[test]
 fn every_row_fires() {
-    let mut bench = Bench::new();
-    let mut play = |verb, hands: &[(GripReport, i32)], tables: &[PedestalReport]| {
-        for (position, report) in hands.iter().map(|(report, position)| (*position, *report)) {
-            for &table in tables {
-                bench.send(verb, 250, 50, if verb == PedestalVerb::Flip { 10 } else { -1000 });
-                bench.step();
-                bench.hand(report, position).table(table);
-                bench.step();
-                bench.hand(GripReport::Done, position).table(PedestalReport::Done);
-                bench.step();
-            }
-        }
-    };
-    let hands = [
-        (GripReport::Serror, 256),
-        (GripReport::Executing, 256),
-        (GripReport::Done, 10),
-        (GripReport::Done, 256),
-    ];
-    let tables = [PedestalReport::Error, PedestalReport::Executing, PedestalReport::Done];
-    for verb in [PedestalVerb::PreGrip, PedestalVerb::Grip] {
-        play(verb, &hands, &tables);
-    }
-    for verb in [PedestalVerb::Flip, PedestalVerb::Pause] {
-        play(verb, &[(GripReport::Done, 256)], &tables);
-    }
-    play(PedestalVerb::Flip, &[(GripReport::Done, 10)], &tables);
-    play(PedestalVerb::Release, &hands, &tables);
-    // ACCEPT 2 to 5, EXECUTE 2.
-    play(PedestalVerb::None, &[(GripReport::Done, 10)], &[PedestalReport::Done]);
-    for (calibrated, verb, size, angle) in [
-        (false, PedestalVerb::Flip, 0, 10),
-        (true, PedestalVerb::Flip, 0, 9000),
-        (true, PedestalVerb::Release, 501, 0),
-    ] {
-        bench.memory.table.status.position = calibrated.then_some(-2135);
-        bench.send(verb, size, 0, angle);
-        bench.step();
-    }
-    // PRE-GRIP 2 to 5: a hand that is not calibrated, and may hold something.
-    bench.memory.table.status.position = Some(-2135);
-    for verb in [PedestalVerb::PreGrip, PedestalVerb::Grip, PedestalVerb::PreGrip] {
-        bench.memory.hand.status.initialized = verb == PedestalVerb::Grip;
-        for calibrated in [true, false] {
-            bench.send(verb, 250, 50, -1000);
-            bench.step();
-            bench.hand(GripReport::Done, 256).table(PedestalReport::Done);
-            bench.memory.hand.status.initialized |= calibrated;
-            bench.step();
-            bench.hand(GripReport::Done, 256).table(PedestalReport::Done).step();
-            bench.memory.hand.status.initialized = verb == PedestalVerb::Grip;
-        }
-    }
-    // GRIP 4.
-    bench.send(PedestalVerb::Grip, 250, 50, 0);
-    bench.step();
-    bench.hand(GripReport::Done, 256).memory.hand.status.felt = Felt::NotKnown;
-    bench.step();
-    // PAUSE 2.
-    bench.send(PedestalVerb::Grip, 250, 50, 0);
-    bench.step();
-    bench.send(PedestalVerb::Pause, 0, 0, 0);
-    bench.step();
-    bench.hand(GripReport::Executing, 256).table(PedestalReport::Done);
-    bench.step();
-    bench.process = Pedestal::default();
-    bench.step();
-    bench.step();
-    // HALT 7.
-    let mut bench_in_pause = Bench::new();
-    bench_in_pause.send(PedestalVerb::Flip, 0, 0, 100);
-    bench_in_pause.step();
-    bench_in_pause.table(PedestalReport::Executing).send(PedestalVerb::Pause, 0, 0, 0);
-    bench_in_pause.step();
-    bench_in_pause.table(PedestalReport::Executing).process = Pedestal::default();
-    bench_in_pause.step();
-    bench.rows.append(&mut bench_in_pause.rows);
-    // HALT 8 to 11.
-    for paused in [false, true] {
-        bench.rows.append(&mut replaced(PedestalVerb::Release, paused).rows);
-    }
+    let silent = silent::<Pedestal, ()>(&[
+        pre_grip_opens_the_hand_and_turns_the_table_at_once,
+        commands_are_not_done_while_hand_or_table_are_elsewhere,
+        grip_flip_and_release_command_one_neighbour_each,
+        what_cannot_be_done_is_refused_before_anything_moves,
+        a_hand_that_closes_on_nothing_or_cannot_tell_is_an_error,
+        what_the_hand_holds_and_the_angle_are_published_whatever_is_commanded,
+        pre_grip_calibrates_a_hand_that_was_not_told_to_grip,
+        an_object_that_comes_loose_is_noticed_while_it_is_turned,
+        failures_below_are_passed_up_and_send_nothing_to_the_hand,
+        pause_stops_the_table_and_waits_for_the_hand,
+        a_restarted_process_adopts_the_command_and_stops_the_table,
+        a_new_command_stops_the_table_and_waits_for_the_hand_before_it_is_answered,
+    ]);
     // The pedestal process does not watch Subtask.
-    assert_eq!(bench.rows.missing(TABLES), ["HALT 4"]);
-}
-
-/// All three processes with a simulated hand and a simulated table.
-struct Cell {
-    pedestal: Pedestal,
-    hand: Hand,
-    table: Table,
-    memory: CommonMemory,
-    external: ExternalInputs,
-    fingers: Gripper,
-    rotary: Rotary,
-    tick: Tick,
-}
-
-impl Cell {
-    fn new(opening: f64, angle: i32) -> Self {
-        let mut cell = Self {
-            pedestal: Pedestal::default(),
-            hand: Hand::default(),
-            table: Table::default(),
-            memory: CommonMemory::default(),
-            external: ExternalInputs::default(),
-            fingers: Gripper::new(opening, 1987),
-            rotary: Rotary::new(angle),
-            tick: Tick::BEFORE_START,
-        };
-        cell.step();
-        cell
-    }
-
-    fn step(&mut self) {
-        self.tick = self.tick.next();
-        let sensors = &mut self.external.devices.pedestal;
-        let grip = self.fingers.sensors();
-        sensors.potentiometer = grip.potentiometer;
-        (sensors.strain_left, sensors.strain_right) = (grip.strain_left, grip.strain_right);
-        self.rotary.sense(sensors);
-        let mut after = self.memory;
-        let inputs = Inputs { tick: self.tick, memory: &self.memory, external: &self.external, data: &() };
-        self.pedestal.step(&inputs, &mut after.pedestal);
-        self.hand.step(&inputs, &mut after.hand);
-        self.table.step(&inputs, &mut after.table);
-        self.memory = after;
-        self.fingers.advance(after.hand.valves.bits);
-        self.rotary.advance(&after.table.motor);
-    }
-
-    fn send(&mut self, command: PedestalVerb, grasp_size: i32, table_angle: i32) -> u32 {
-        let number = self.memory.subtask.pedestal.number + 1;
-        let grasp_force = 50;
-        self.memory.subtask.pedestal =
-            PedestalCommand { cycle: self.tick, number, command, grasp_size, grasp_force, table_angle };
-        number
-    }
-
-    fn execute(
-        &mut self,
-        command: PedestalVerb,
-        grasp_size: i32,
-        table_angle: i32,
-    ) -> (PedestalReport, Reason) {
-        let number = self.send(command, grasp_size, table_angle);
-        for _ in 0..5000 {
-            self.step();
-            let status = self.memory.pedestal.status;
-            if status.echo == number && status.report != PedestalReport::Executing {
-                return (status.report, status.reason);
-            }
-        }
-        panic!("no end: {:#?}", self.memory.pedestal);
-    }
-
-    /// An object is taken, as in Figure VII.13.
-    fn take(&mut self) {
-        assert_eq!(self.execute(PedestalVerb::PreGrip, 500, -2135), DONE);
-        self.fingers.object = Some(Object { size: 2.56, off_centre: 0.05 });
-        assert_eq!(self.execute(PedestalVerb::Grip, 250, 0), DONE);
-    }
+    assert_eq!(silent, ["HALT 4"]);
 }
 
 /// FIX-GRIP (V.3.1) with the clevis of Figure VII.13, from booting on.
 #[test]
 fn the_pedestal_takes_turns_and_gives_back_an_object() {
-    let mut cell = Cell::new(1.0, -1200);
-    cell.take();
-    assert!((cell.rotary.angle() + 213.5).abs() < 0.06);
-    assert!((cell.fingers.force - 50.0).abs() <= 3.0);
-    assert_eq!(cell.execute(PedestalVerb::Flip, 0, 1835), DONE);
-    assert!((cell.rotary.angle() + 30.0).abs() < 0.06);
-    assert!((cell.fingers.force - 50.0).abs() <= 3.0, "still held");
+    let mut cell = Cell::taken();
+    assert!((cell.world.rotary.angle() + 213.5).abs() < 0.06);
+    assert!((cell.world.fingers.force - 50.0).abs() <= 3.0);
+    assert_eq!(cell.execute((PedestalVerb::Flip, 0, 50, 1835)), DONE);
+    assert!((cell.world.rotary.angle() + 30.0).abs() < 0.06);
+    assert!((cell.world.fingers.force - 50.0).abs() <= 3.0, "still held");
     let status = cell.memory.pedestal.status;
     assert!((status.grip_size - 256).abs() <= 2 && (status.grip_force - 50).abs() <= 3);
     assert_eq!(status.table_position, Some(-300));
-    assert_eq!(cell.execute(PedestalVerb::Release, 450, 0), DONE);
-    assert!((cell.fingers.opening - 4.5).abs() <= 0.02 && cell.fingers.force == 0.0);
+    assert_eq!(cell.execute((PedestalVerb::Release, 450, 50, 0)), DONE);
+    assert!((cell.world.fingers.opening - 4.5).abs() <= 0.02 && cell.world.fingers.force == 0.0);
 }
 
 #[test]
 fn the_object_stays_gripped_whatever_fails() {
     for (fault, breakage) in [
-        ("the table is blocked", (|c: &mut Cell| c.rotary.blocked = true) as fn(&mut Cell)),
-        ("the table's controller is off", |c| c.rotary.off = true),
-        ("steps are lost", |c| c.rotary.slip = 4),
-        ("the pedestal process is restarted", |c| c.pedestal = Pedestal::default()),
-        ("the hand process is restarted", |c| c.hand = Hand::default()),
-        ("the table process is restarted", |c| c.table = Table::default()),
+        ("the table is blocked", (|c: &mut Cell| c.world.rotary.blocked = true) as fn(&mut Cell)),
+        ("the table's controller is off", |c| c.world.rotary.off = true),
+        ("steps are lost", |c| c.world.rotary.slip = 4),
+        ("the pedestal process is restarted", |c| c.restart()),
+        ("the hand process is restarted", |c| c.world.hand = Hand::default()),
+        ("the table process is restarted", |c| c.world.table = Table::default()),
         ("the angle is beyond the limit", |c| c.memory.subtask.pedestal.table_angle = 9000),
         ("the command is none", |c| c.memory.subtask.pedestal.command = PedestalVerb::None),
     ] {
         for later in [0, 30] {
-            let mut cell = Cell::new(1.0, -1200);
-            cell.take();
-            let force = cell.fingers.force;
-            let number = cell.memory.subtask.pedestal.number + 1;
-            cell.memory.subtask.pedestal = PedestalCommand {
-                number,
-                command: PedestalVerb::Flip,
-                table_angle: 1835,
-                ..PedestalCommand::default()
-            };
-            (0..later).for_each(|_| cell.step());
+            let mut cell = Cell::taken();
+            let force = cell.world.fingers.force;
+            cell.send((PedestalVerb::Flip, 0, 0, 1835));
+            cell.wait(later);
             breakage(&mut cell);
-            (0..2500).for_each(|_| cell.step());
-            assert!((cell.fingers.force - force).abs() <= 2.0, "{fault}: {} lb", cell.fingers.force);
-            assert_ne!(cell.memory.pedestal.status.report, PedestalReport::Executing, "{fault}");
-            cell.execute(PedestalVerb::Pause, 0, 0);
+            cell.wait(2500);
             assert!(
-                (cell.fingers.force - force).abs() <= 2.0,
+                (cell.world.fingers.force - force).abs() <= 2.0,
+                "{fault}: {} lb",
+                cell.world.fingers.force
+            );
+            assert_ne!(cell.memory.pedestal.status.report, PedestalReport::Executing, "{fault}");
+            cell.execute((PedestalVerb::Pause, 0, 50, 0));
+            assert!(
+                (cell.world.fingers.force - force).abs() <= 2.0,
                 "{fault}: {} lb after PAUSE",
-                cell.fingers.force
+                cell.world.fingers.force
             );
         }
     }
@@ -669,16 +590,15 @@ fn the_object_stays_gripped_whatever_fails() {
 fn what_the_hand_has_not_let_go_is_gripped() {
     let mut kept = 0;
     for later in 0..40 {
-        let mut cell = Cell::new(1.0, -1200);
-        cell.take();
-        cell.send(PedestalVerb::Release, 450, 0);
-        (0..later).for_each(|_| cell.step());
-        cell.hand = Hand::default();
-        (0..200).for_each(|_| cell.step());
+        let mut cell = Cell::taken();
+        cell.send((PedestalVerb::Release, 450, 50, 0));
+        cell.wait(later);
+        cell.world.hand = Hand::default();
+        cell.wait(200);
         let status = cell.memory.pedestal.status;
         assert!(status.gripped || status.felt != Felt::Something, "restarted after {later} ticks");
         kept += u32::from(status.gripped && status.felt == Felt::Something);
-        assert_eq!(cell.execute(PedestalVerb::Release, 450, 0), DONE, "restarted after {later} ticks");
+        assert_eq!(cell.execute((PedestalVerb::Release, 450, 50, 0)), DONE, "restarted after {later} ticks");
         assert!(!cell.memory.pedestal.status.gripped);
     }
     assert!(kept > 0, "the first of them come before the fingers move");
@@ -690,40 +610,35 @@ fn what_the_hand_has_not_let_go_is_gripped() {
 fn every_command_ends_whatever_it_interrupts_and_whatever_does_not_obey() {
     let worlds: [fn(&mut Cell); 6] = [
         |_| {},
-        |c| c.rotary.blocked = true,
-        |c| c.rotary.off = true,
-        |c| c.fingers.without_air = true,
-        |c| c.fingers.object = None,
-        |c| c.fingers.strain[0] = (0.0, 0.0),
+        |c| c.world.rotary.blocked = true,
+        |c| c.world.rotary.off = true,
+        |c| c.world.fingers.without_air = true,
+        |c| c.world.fingers.object = None,
+        |c| c.world.fingers.strain[0] = (0.0, 0.0),
     ];
-    let restarts: [fn(&mut Cell); 4] = [
-        |_| {},
-        |c| c.pedestal = Pedestal::default(),
-        |c| c.hand = Hand::default(),
-        |c| c.table = Table::default(),
-    ];
+    let restarts: [fn(&mut Cell); 4] =
+        [|_| {}, |c| c.restart(), |c| c.world.hand = Hand::default(), |c| c.world.table = Table::default()];
+    let taken = Cell::taken();
     let mut ends = [0; 2];
-    let mut end = |cell: &mut Cell, verb: PedestalVerb| {
-        let (report, reason) = cell.execute(verb, 250, if verb == PedestalVerb::Flip { 500 } else { -1000 });
-        assert_eq!(report == PedestalReport::Done, reason == Reason::None, "{verb}: {report} {reason}");
-        ends[usize::from(report == PedestalReport::Done)] += 1;
-    };
-    for first in PedestalVerb::ALL {
-        for second in PedestalVerb::ALL {
-            for world in worlds {
-                for restart in restarts {
-                    for later in [1, 12] {
-                        let mut cell = Cell::new(1.0, -1200);
-                        cell.take();
-                        world(&mut cell);
-                        cell.send(*first, 250, if *first == PedestalVerb::Flip { 500 } else { -1000 });
-                        (0..later).for_each(|_| cell.step());
-                        restart(&mut cell);
-                        (0..later).for_each(|_| cell.step());
-                        end(&mut cell, *second);
-                        end(&mut cell, PedestalVerb::Pause);
-                        end(&mut cell, *first);
-                    }
+    let angle = |verb| if verb == PedestalVerb::Flip { 500 } else { -1000 };
+    let interruptions = worlds.iter().flat_map(|world| restarts.iter().map(move |restart| (world, restart)));
+    for (world, restart) in interruptions {
+        for (first, second) in PedestalVerb::ALL
+            .iter()
+            .flat_map(|first| PedestalVerb::ALL.iter().map(move |second| (first, second)))
+        {
+            for later in [1, 12] {
+                let mut cell = taken.clone();
+                world(&mut cell);
+                cell.send((*first, 250, 50, angle(*first)));
+                cell.wait(later);
+                restart(&mut cell);
+                cell.wait(later);
+                for verb in [*second, PedestalVerb::Pause, *first] {
+                    let (report, reason) = cell.execute((verb, 250, 50, angle(verb)));
+                    let done = report == PedestalReport::Done;
+                    assert_eq!(done, reason == Reason::None, "{verb}: {report} {reason}");
+                    ends[usize::from(done)] += 1;
                 }
             }
         }
@@ -745,7 +660,7 @@ proptest! {
         for (what, a, b, report, answers) in ticks {
             for bench in [&mut bench, &mut twin] {
                 if let Some(verb) = PedestalVerb::from_code(what) {
-                    bench.send(verb, a, b, if what % 2 == 0 { b } else { -1000 });
+                    bench.send((verb, a, b, if what % 2 == 0 { b } else { -1000 }));
                 }
                 match what {
                     10 => bench.process = Pedestal::default(),
@@ -767,13 +682,8 @@ proptest! {
                     prop_assert!(matches!(verb, PedestalVerb::PreGrip | PedestalVerb::Release));
                 }
             }
-            let state = *<Pedestal as Process<()>>::state(&twin.process);
-            twin.process = Pedestal::default();
-            Process::<()>::restore(&mut twin.process, state);
-            let (one, two): ([u8; 192], [u8; 192]) =
-                (to_bytes(&bench.memory.pedestal), to_bytes(&twin.memory.pedestal));
-            prop_assert_eq!(one, two);
+            twin.restore();
+            prop_assert_eq!(bench.image(), twin.image());
         }
-        prop_assert!(State::SIZE < 192 && PedestalOutputs::SIZE <= 192);
     }
 }

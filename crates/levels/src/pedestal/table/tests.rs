@@ -2,145 +2,54 @@
 
 use interfaces::{
     CommonMemory, ExternalInputs, Reason, TableOutputs,
-    device::{MotorCommand, MotorOrder, PedestalSensors, TABLE_STEPS_PER_TENTH},
+    device::{MotorCommand, MotorOrder, TABLE_STEPS_PER_TENTH},
     pedestal::{PedestalReport, TableCommand, TableVerb},
-    process::{Inputs, Process},
 };
 use proptest::prelude::*;
-use rcs_core::{Plain, plain::to_bytes, tick::Tick};
+use rcs_core::tick::Tick;
 
 use super::{
     LIMIT_MINUS, LIMIT_PLUS, State, Table,
     preprocess::{AT_LIMIT, LIMIT_TICKS},
-    tables::{Phase, TABLES},
+    tables::Phase,
 };
-use crate::coverage::Coverage;
+use crate::{
+    bench::{self, Tested, World},
+    coverage::silent,
+    environment::rotary::Rotary,
+};
 
-/// Motor, controller, switches and potentiometer.
-#[derive(Clone, Debug)]
-pub struct Rotary {
-    /// Steps; 0 where the calibrated counter is 0.
-    pub position: i32,
-    goal: i32,
-    offset: i32,
-    echo: u32,
-    /// Steps a tick.
-    pub speed: i32,
-    /// Ticks that an order needs on the line.
-    pub delay: u8,
-    waiting: (MotorCommand, u8),
-    /// Steps lost in each tick of a turn.
-    pub slip: i32,
-    /// The table is blocked.
-    pub blocked: bool,
-    /// The controller takes no orders.
-    pub off: bool,
-    /// The motor does not stop, whatever it is told.
-    pub runs_on: bool,
-    /// Counts that the potentiometer is wrong by.
-    pub wrong: f64,
-}
+type Bench = bench::Bench<Table, Rotary>;
 
-impl Rotary {
-    /// A table that was left at an angle, 0.1 degree.
-    pub fn new(angle: i32) -> Self {
-        let position = angle * TABLE_STEPS_PER_TENTH;
-        Self {
-            position,
-            goal: position,
-            offset: -position,
-            echo: 57,
-            speed: 120,
-            delay: 0,
-            waiting: (MotorCommand::default(), 0),
-            slip: 0,
-            blocked: false,
-            off: false,
-            runs_on: false,
-            wrong: 0.0,
-        }
+impl Tested<()> for Table {
+    /// A command and its angle, 0.1 degree.
+    type Order = (TableVerb, i32);
+    type End = (PedestalReport, Reason);
+    const LONGEST: u64 = 3 * LIMIT_TICKS;
+
+    fn order(memory: &mut CommonMemory, (command, angle): (TableVerb, i32), number: u32) {
+        memory.pedestal.table = TableCommand { number, command, angle };
     }
 
-    /// One tick.
-    pub fn advance(&mut self, command: &MotorCommand) {
-        if command.number != self.waiting.0.number {
-            self.waiting = (*command, self.delay);
-        } else {
-            self.waiting.1 = self.waiting.1.saturating_sub(1);
-        }
-        let (order, wait) = self.waiting;
-        if wait == 0 && order.number != 0 && order.number != self.echo && !self.off {
-            self.echo = order.number;
-            match order.order {
-                MotorOrder::None => {}
-                MotorOrder::Turn => self.goal = self.position + order.steps,
-                MotorOrder::SetCounter => self.offset = order.steps - self.position,
-                MotorOrder::Stop => self.goal = self.position,
-            }
-        }
-        if self.blocked {
-            return;
-        }
-        let way = (self.goal - self.position).clamp(-self.speed, self.speed);
-        self.position += way;
-        if way != 0 {
-            self.position -= self.slip;
-            self.offset += self.slip;
-            self.goal -= self.slip;
-        }
-        // A switch stops the motor a few steps late, and lets it run away from it.
-        if way > 0 && self.at_plus() {
-            self.position = AT_LIMIT * TABLE_STEPS_PER_TENTH + 2;
-            self.goal = self.position;
-        }
-        if way < 0 && self.at_minus() {
-            self.goal = self.position;
-        }
-    }
-
-    fn at_plus(&self) -> bool {
-        self.position >= AT_LIMIT * TABLE_STEPS_PER_TENTH
-    }
-
-    fn at_minus(&self) -> bool {
-        self.position <= (LIMIT_MINUS - 50) * TABLE_STEPS_PER_TENTH
-    }
-
-    /// Degrees on the calibrated counter.
-    pub fn angle(&self) -> f64 {
-        f64::from(self.position) / f64::from(10 * TABLE_STEPS_PER_TENTH)
-    }
-
-    /// Words of table and motor; those of the hand stay.
-    pub fn sense(&self, sensors: &mut PedestalSensors) {
-        let counts = 3950.0 + self.angle() * 10.0 * 180.0 / 183.5 + self.wrong;
-        sensors.table_potentiometer = counts.round().clamp(0.0, 4095.0) as u16;
-        (sensors.limit_plus, sensors.limit_minus) = (self.at_plus(), self.at_minus());
-        (sensors.motor_echo, sensors.motor_moving) = (self.echo, self.runs_on || self.goal != self.position);
-        sensors.motor_counter = self.position + self.offset;
+    fn end(outputs: &TableOutputs) -> Option<(PedestalReport, Reason)> {
+        let status = outputs.status;
+        (status.report != PedestalReport::Executing).then_some((status.report, status.reason))
     }
 }
 
-/// Process, buffers and plant.
-struct Bench {
-    process: Table,
-    memory: CommonMemory,
-    external: ExternalInputs,
-    table: Rotary,
-    tick: Tick,
-    rows: Coverage,
+impl World<Table> for Rotary {
+    fn sense(&mut self, _: Tick, _: &mut CommonMemory, external: &mut ExternalInputs) {
+        Self::sense(self, &mut external.devices.pedestal);
+    }
+
+    fn act(&mut self, _: Tick, _: &CommonMemory, after: &mut CommonMemory, _: &mut ExternalInputs) {
+        self.advance(&after.table.motor);
+    }
 }
 
 impl Bench {
     fn new(table: Rotary) -> Self {
-        let mut bench = Self {
-            process: Table::default(),
-            memory: CommonMemory::default(),
-            external: ExternalInputs::default(),
-            table,
-            tick: Tick::BEFORE_START,
-            rows: Coverage::default(),
-        };
+        let mut bench = Self::before(table);
         bench.step();
         bench
     }
@@ -148,48 +57,8 @@ impl Bench {
     /// A bench with a calibrated table.
     fn calibrated() -> Self {
         let mut bench = Self::new(Rotary::new(-1200));
-        assert_eq!(bench.execute(TableVerb::Calibrate, 0), DONE);
+        assert_eq!(bench.execute((TableVerb::Calibrate, 0)), DONE);
         bench
-    }
-
-    fn send(&mut self, command: TableVerb, angle: i32) {
-        let number = self.memory.pedestal.table.number + 1;
-        self.memory.pedestal.table = TableCommand { number, command, angle };
-    }
-
-    fn step(&mut self) -> TableOutputs {
-        self.tick = self.tick.next();
-        self.table.sense(&mut self.external.devices.pedestal);
-        let mut outputs = self.memory.table;
-        let inputs = Inputs { tick: self.tick, memory: &self.memory, external: &self.external, data: &() };
-        self.process.step(&inputs, &mut outputs);
-        self.rows.note(&outputs.header);
-        self.table.advance(&outputs.motor);
-        self.memory.table = outputs;
-        outputs
-    }
-
-    fn wait(&mut self, ticks: u32) -> TableOutputs {
-        (0..ticks).for_each(|_| {
-            self.step();
-        });
-        self.memory.table
-    }
-
-    fn execute(&mut self, command: TableVerb, angle: i32) -> (PedestalReport, Reason) {
-        self.send(command, angle);
-        self.finish()
-    }
-
-    fn finish(&mut self) -> (PedestalReport, Reason) {
-        for _ in 0..3 * LIMIT_TICKS {
-            let status = self.step().status;
-            assert_eq!(status.echo, self.memory.pedestal.table.number);
-            if status.report != PedestalReport::Executing {
-                return (status.report, status.reason);
-            }
-        }
-        panic!("no end at tick {}: {:?}", self.tick, self.process.state);
     }
 }
 
@@ -206,21 +75,29 @@ fn a_table_that_is_booted_calibrates_itself() {
             (true, PedestalReport::Idle, Reason::None)
         );
         assert_eq!((status.position, status.echo), (Some(LIMIT_PLUS), 0));
-        assert!((bench.table.angle() + 20.0).abs() < 0.05, "{}", bench.table.angle());
+        assert!((bench.world.angle() + 20.0).abs() < 0.05, "{}", bench.world.angle());
         let order = bench.memory.table.motor;
         assert_eq!(bench.wait(100).motor, order, "once is enough");
     }
 }
 
 #[test]
+fn a_calibrated_table_is_calibrated_again_by_command() {
+    let mut bench = Bench::calibrated();
+    bench.execute((TableVerb::Turn, -1000));
+    assert_eq!(bench.execute((TableVerb::Calibrate, 0)), DONE);
+    assert_eq!(bench.memory.table.status.position, Some(LIMIT_PLUS), "where it is parked");
+}
+
+#[test]
 fn angles_are_reached_and_reported() {
     let mut bench = Bench::calibrated();
     for angle in [-2135, -300, -235, LIMIT_MINUS, LIMIT_PLUS, -1000, -1000, -1001] {
-        assert_eq!(bench.execute(TableVerb::Turn, angle), DONE, "{angle}");
+        assert_eq!(bench.execute((TableVerb::Turn, angle)), DONE, "{angle}");
         assert!(
-            (bench.table.angle() - f64::from(angle) / 10.0).abs() < 0.06,
+            (bench.world.angle() - f64::from(angle) / 10.0).abs() < 0.06,
             "{angle}: {}",
-            bench.table.angle()
+            bench.world.angle()
         );
         assert_eq!(bench.memory.table.status.position, Some(angle));
     }
@@ -230,38 +107,38 @@ fn angles_are_reached_and_reported() {
 fn angles_beyond_the_limits_cannot_be_done() {
     let mut bench = Bench::calibrated();
     for angle in [LIMIT_PLUS + 1, LIMIT_MINUS - 1, 1600, i32::MAX, i32::MIN] {
-        let before = bench.table.position;
-        assert_eq!(bench.execute(TableVerb::Turn, angle), (PedestalReport::CannotDo, Reason::TableLimit));
-        assert_eq!((bench.table.position, bench.memory.table.status.calibrated), (before, true));
+        let before = bench.world.position;
+        assert_eq!(bench.execute((TableVerb::Turn, angle)), (PedestalReport::CannotDo, Reason::TableLimit));
+        assert_eq!((bench.world.position, bench.memory.table.status.calibrated), (before, true));
     }
-    assert_eq!(bench.execute(TableVerb::None, 0), (PedestalReport::CannotDo, Reason::UnknownCommand));
+    assert_eq!(bench.execute((TableVerb::None, 0)), (PedestalReport::CannotDo, Reason::UnknownCommand));
 }
 
 #[test]
 fn a_turn_before_the_calibration_is_made_after_it() {
     let mut bench = Bench::new(Rotary::new(-1200));
     bench.wait(4);
-    assert_eq!(bench.execute(TableVerb::Turn, -2135), DONE);
-    assert!((bench.table.angle() + 213.5).abs() < 0.06);
+    assert_eq!(bench.execute((TableVerb::Turn, -2135)), DONE);
+    assert!((bench.world.angle() + 213.5).abs() < 0.06);
     let mut bench = Bench::new(Rotary::new(-1200));
-    assert_eq!(bench.execute(TableVerb::Pause, 0), DONE, "PAUSE waits as well");
+    assert_eq!(bench.execute((TableVerb::Pause, 0)), DONE, "PAUSE waits as well");
     assert!(bench.memory.table.status.calibrated);
 }
 
 #[test]
 fn pause_stops_a_turning_table_and_a_new_turn_starts_from_rest() {
     let mut bench = Bench::calibrated();
-    bench.send(TableVerb::Turn, -3000);
+    bench.send((TableVerb::Turn, -3000));
     bench.wait(40);
-    assert_eq!(bench.execute(TableVerb::Pause, 0), DONE);
-    let stopped = bench.table.position;
+    assert_eq!(bench.execute((TableVerb::Pause, 0)), DONE);
+    let stopped = bench.world.position;
     bench.wait(50);
-    assert_eq!(bench.table.position, stopped);
+    assert_eq!(bench.world.position, stopped);
     assert!(stopped > -30_000 && stopped < LIMIT_PLUS * TABLE_STEPS_PER_TENTH);
-    bench.send(TableVerb::Turn, -3000);
+    bench.send((TableVerb::Turn, -3000));
     bench.wait(20);
-    assert_eq!(bench.execute(TableVerb::Turn, -300), DONE, "back, out of the middle of a turn");
-    assert!((bench.table.angle() + 30.0).abs() < 0.06);
+    assert_eq!(bench.execute((TableVerb::Turn, -300)), DONE, "back, out of the middle of a turn");
+    assert!((bench.world.angle() + 30.0).abs() < 0.06);
 }
 
 #[test]
@@ -270,8 +147,8 @@ fn a_slow_line_is_waited_for() {
     table.delay = 8;
     let mut bench = Bench::new(table);
     for angle in [-2135, -300] {
-        assert_eq!(bench.execute(TableVerb::Turn, angle), DONE);
-        assert!((bench.table.angle() - f64::from(angle) / 10.0).abs() < 0.06);
+        assert_eq!(bench.execute((TableVerb::Turn, angle)), DONE);
+        assert!((bench.world.angle() - f64::from(angle) / 10.0).abs() < 0.06);
     }
 }
 
@@ -285,12 +162,12 @@ fn what_keeps_the_table_from_its_angle_is_an_error_and_the_next_turn_calibrates_
         ("a counter that has lost its setting", |t| t.offset += 5_000),
     ] {
         let mut bench = Bench::calibrated();
-        bench.execute(TableVerb::Turn, -1000);
-        breakage(&mut bench.table);
-        assert_eq!(bench.execute(TableVerb::Turn, -2135), STUCK, "{fault}");
+        bench.execute((TableVerb::Turn, -1000));
+        breakage(&mut bench.world);
+        assert_eq!(bench.execute((TableVerb::Turn, -2135)), STUCK, "{fault}");
         assert!(!bench.memory.table.status.calibrated, "{fault}");
         bench.wait(LIMIT_TICKS as u32);
-        let (good, broken) = (Rotary::new(0), &mut bench.table);
+        let (good, broken) = (Rotary::new(0), &mut bench.world);
         *broken = Rotary {
             position: broken.position,
             goal: broken.position,
@@ -298,8 +175,8 @@ fn what_keeps_the_table_from_its_angle_is_an_error_and_the_next_turn_calibrates_
             echo: broken.echo,
             ..good
         };
-        assert_eq!(bench.execute(TableVerb::Turn, -2135), DONE, "{fault}");
-        assert!((bench.table.angle() + 213.5).abs() < 0.06, "{fault}: {}", bench.table.angle());
+        assert_eq!(bench.execute((TableVerb::Turn, -2135)), DONE, "{fault}");
+        assert!((bench.world.angle() + 213.5).abs() < 0.06, "{fault}: {}", bench.world.angle());
     }
 }
 
@@ -311,7 +188,7 @@ fn a_calibration_that_fails_fails_the_command_that_needs_it_and_no_other() {
             let mut table = Rotary::new(-1200);
             breakage(&mut table);
             let mut bench = Bench::new(table);
-            assert_eq!(bench.execute(verb, -1000), end, "{verb}");
+            assert_eq!(bench.execute((verb, -1000)), end, "{verb}");
             assert_eq!(bench.process.state.phase, Phase::Failed);
         }
     }
@@ -322,7 +199,7 @@ fn a_calibration_that_fails_does_not_count_for_a_refused_command_nor_for_none() 
     for refused in [false, true] {
         let mut bench = Bench::new(Rotary { blocked: true, ..Rotary::new(-1200) });
         if refused {
-            assert_eq!(bench.execute(TableVerb::Turn, 0), (PedestalReport::CannotDo, Reason::TableLimit));
+            assert_eq!(bench.execute((TableVerb::Turn, 0)), (PedestalReport::CannotDo, Reason::TableLimit));
         }
         let before = bench.wait(1).status;
         let mut outputs = bench.wait(1);
@@ -346,129 +223,104 @@ fn a_command_that_is_refused_while_a_calibration_fails_keeps_its_reason() {
     for ticks in (0..4).filter_map(|before| failed?.checked_sub(before)) {
         let mut bench = astray();
         bench.wait(ticks);
-        assert_eq!(bench.execute(TableVerb::Turn, 0), (PedestalReport::CannotDo, Reason::TableLimit));
+        assert_eq!(bench.execute((TableVerb::Turn, 0)), (PedestalReport::CannotDo, Reason::TableLimit));
     }
 }
 
 #[test]
 fn a_restarted_process_stops_the_table_and_adopts_its_calibration() {
     let mut bench = Bench::calibrated();
-    bench.execute(TableVerb::Turn, -1000);
-    bench.process = Table::default();
-    let (before, order) = (bench.table.position, bench.memory.table.motor);
+    bench.execute((TableVerb::Turn, -1000));
+    bench.restart();
+    let (before, order) = (bench.world.position, bench.memory.table.motor);
     let status = bench.wait(20).status;
     assert_eq!((status.report, status.reason), (PedestalReport::Error, Reason::Restarted));
-    assert_eq!((bench.table.position, status.calibrated, status.position), (before, true, Some(-1000)));
+    assert_eq!((bench.world.position, status.calibrated, status.position), (before, true, Some(-1000)));
     assert_eq!(bench.memory.table.motor, order, "a table that stands is not stopped");
-    assert_eq!(bench.execute(TableVerb::Turn, -2135), DONE);
+    assert_eq!(bench.execute((TableVerb::Turn, -2135)), DONE);
     // In the middle of a turn: it stops, and the same command goes on.
     for later in [1, 2, 3, 20, 60] {
-        bench.execute(TableVerb::Turn, -3000);
-        bench.send(TableVerb::Turn, -300);
+        bench.execute((TableVerb::Turn, -3000));
+        bench.send((TableVerb::Turn, -300));
         bench.wait(later);
-        bench.process = Table::default();
+        bench.restart();
         let status = bench.wait(30).status;
         assert_eq!((status.reason, status.calibrated), (Reason::Restarted, true), "{later}");
-        let stopped = bench.table.position;
-        assert_eq!((bench.wait(50).status.reason, bench.table.position), (Reason::Restarted, stopped));
-        assert_eq!(bench.execute(TableVerb::Turn, -300), DONE);
-        assert!((bench.table.angle() + 30.0).abs() < 0.06, "{later}");
+        let stopped = bench.world.position;
+        assert_eq!((bench.wait(50).status.reason, bench.world.position), (Reason::Restarted, stopped));
+        assert_eq!(bench.execute((TableVerb::Turn, -300)), DONE);
+        assert!((bench.world.angle() + 30.0).abs() < 0.06, "{later}");
     }
 }
 
 #[test]
 fn a_restarted_process_adopts_no_calibration_that_the_sensors_deny() {
     for breakage in [
-        (|b: &mut Bench| b.table.wrong = 200.0) as fn(&mut Bench),
-        |b| b.table.offset += 5_000,
+        (|b: &mut Bench| b.world.wrong = 200.0) as fn(&mut Bench),
+        |b| b.world.offset += 5_000,
         |b| b.memory.table.at_limit = None,
-        |b| b.table.off = true,
+        |b| b.world.off = true,
     ] {
         let mut bench = Bench::calibrated();
-        bench.execute(TableVerb::Turn, -1000);
+        bench.execute((TableVerb::Turn, -1000));
         breakage(&mut bench);
-        bench.process = Table::default();
-        bench.table.runs_on = bench.table.off;
+        bench.restart();
+        bench.world.runs_on = bench.world.off;
         let status = bench.wait(LIMIT_TICKS as u32 + 10).status;
         assert_eq!((status.calibrated, status.position), (false, None));
         assert_eq!(bench.memory.table.at_limit, None);
         assert_eq!(bench.process.state.phase, Phase::Deferred);
-        assert_eq!(bench.execute(TableVerb::Pause, 0), DONE);
-        (bench.table.off, bench.table.runs_on, bench.table.wrong) = (false, false, 0.0);
-        assert_eq!(bench.execute(TableVerb::Turn, -2135), DONE);
-        assert!((bench.table.angle() + 213.5).abs() < 0.06);
+        assert_eq!(bench.execute((TableVerb::Pause, 0)), DONE);
+        (bench.world.off, bench.world.runs_on, bench.world.wrong) = (false, false, 0.0);
+        assert_eq!(bench.execute((TableVerb::Turn, -2135)), DONE);
+        assert!((bench.world.angle() + 213.5).abs() < 0.06);
     }
 }
 
 #[test]
 fn an_angle_that_the_potentiometer_denies_is_not_published_until_it_agrees() {
     let mut bench = Bench::calibrated();
-    bench.execute(TableVerb::Turn, -1000);
-    bench.table.wrong = 100.0;
+    bench.execute((TableVerb::Turn, -1000));
+    bench.world.wrong = 100.0;
     let status = bench.wait(5).status;
     assert_eq!((status.position, status.calibrated), (None, true));
-    bench.table.wrong = 0.0;
+    bench.world.wrong = 0.0;
     assert_eq!(bench.step().status.position, Some(-1000));
 }
 
 #[test]
 fn every_row_fires() {
-    let mut bench = Bench::calibrated();
-    // REST 3 to 5, TURN 2 to 4, PAUSE 1, CALIBRATE 2, 9: a calibration for a turn.
-    bench.table.delay = 3;
-    bench.execute(TableVerb::Turn, -1000);
-    bench.send(TableVerb::Turn, -3000);
-    bench.wait(20);
-    bench.execute(TableVerb::Turn, -1000);
-    bench.send(TableVerb::Turn, -3000);
-    bench.wait(20);
-    bench.execute(TableVerb::Pause, 0);
-    bench.table.slip = 4;
-    bench.execute(TableVerb::Turn, -300);
-    bench.table.slip = 0;
-    bench.execute(TableVerb::Turn, -300);
-    // REST 2: the motor turns for ever.
-    for verb in [TableVerb::Turn, TableVerb::Pause] {
-        bench.execute(TableVerb::Turn, -300);
-        bench.table.runs_on = true;
-        bench.execute(verb, -1000);
-        bench.table.runs_on = false;
+    let silent = silent::<Table, ()>(&[
+        a_table_that_is_booted_calibrates_itself,
+        a_calibrated_table_is_calibrated_again_by_command,
+        angles_beyond_the_limits_cannot_be_done,
+        a_turn_before_the_calibration_is_made_after_it,
+        pause_stops_a_turning_table_and_a_new_turn_starts_from_rest,
+        a_slow_line_is_waited_for,
+        what_keeps_the_table_from_its_angle_is_an_error_and_the_next_turn_calibrates_again,
+        a_calibration_that_fails_fails_the_command_that_needs_it_and_no_other,
+        a_calibration_that_fails_does_not_count_for_a_refused_command_nor_for_none,
+        a_restarted_process_stops_the_table_and_adopts_its_calibration,
+        a_restarted_process_adopts_no_calibration_that_the_sensors_deny,
+        a_table_that_never_stops_is_stuck,
+    ]);
+    assert_eq!(silent, [""; 0]);
+}
+
+#[test]
+fn a_table_that_never_stops_is_stuck() {
+    for (verb, end) in [(TableVerb::Turn, STUCK), (TableVerb::Pause, STUCK)] {
+        let mut bench = Bench::calibrated();
+        bench.execute((TableVerb::Turn, -300));
+        bench.world.runs_on = true;
+        assert_eq!(bench.execute((verb, -1000)), end, "{verb}");
     }
-    // A table that does not answer: TURN 1, CALIBRATE 10.
-    bench.execute(TableVerb::Turn, -1000);
-    bench.table.off = true;
-    bench.execute(TableVerb::Turn, -300);
-    bench.execute(TableVerb::Turn, -300);
-    bench.table.off = false;
-    // CALIBRATE 10, 11: it stops before the limit; it never stops, while no command needs it.
-    bench.send(TableVerb::Calibrate, 0);
-    bench.wait(10);
-    bench.table.goal = bench.table.position;
-    bench.finish();
-    bench.table.speed = 0;
-    bench.send(TableVerb::Calibrate, 0);
-    bench.wait(10);
-    bench.execute(TableVerb::Pause, 0);
-    // ACCEPT 2, 3, EXECUTE 2, CALIBRATE 1.
-    bench.execute(TableVerb::Turn, 0);
-    bench.execute(TableVerb::None, 0);
-    // CALIBRATE 6 to 9: restarted in the middle of a turn, and with a counter that was never set.
-    bench.table.speed = 120;
-    bench.execute(TableVerb::Calibrate, 0);
-    bench.send(TableVerb::Turn, -3000);
-    bench.wait(20);
-    bench.process = Table::default();
-    bench.wait(20);
-    bench.table.offset += 5_000;
-    bench.process = Table::default();
-    bench.wait(20);
-    assert_eq!(bench.rows.missing(TABLES), [""; 0]);
 }
 
 #[test]
 fn a_calibration_goes_on_beside_a_command_that_is_refused() {
     let mut bench = Bench::new(Rotary::new(-1200));
-    assert_eq!(bench.execute(TableVerb::Turn, 0), (PedestalReport::CannotDo, Reason::TableLimit));
+    assert_eq!(bench.execute((TableVerb::Turn, 0)), (PedestalReport::CannotDo, Reason::TableLimit));
     let status = bench.wait(600).status;
     assert_eq!((status.calibrated, status.position), (true, Some(LIMIT_PLUS)));
     assert_eq!((status.report, status.reason), (PedestalReport::CannotDo, Reason::TableLimit));
@@ -480,24 +332,19 @@ fn a_calibration_goes_on_beside_a_command_that_is_refused() {
 fn every_command_ends_from_every_state_whether_the_table_obeys_or_not() {
     let worlds: [fn(&mut Rotary); 5] =
         [|_| {}, |t| t.blocked = true, |t| t.off = true, |t| t.runs_on = true, |t| t.slip = 4];
+    let positions = [(-3400, Some(3950)), (-1000, Some(3950)), (-200, Some(100)), (0, None)];
     let mut ends = [0; 2];
-    for phase in Phase::ALL {
-        for step in super::tables::Step::ALL {
-            for world in worlds {
-                for (angle, at_limit) in
-                    [(-3400, Some(3950)), (-1000, Some(3950)), (-200, Some(100)), (0, None)]
-                {
-                    for verb in TableVerb::ALL {
-                        let mut bench = Bench::new(Rotary { offset: 0, ..Rotary::new(angle) });
-                        world(&mut bench.table);
-                        bench.process.state =
-                            State { phase: *phase, step: *step, at_limit, ..bench.process.state };
-                        let (report, reason) = bench.execute(*verb, -2135);
-                        let done = report == PedestalReport::Done;
-                        assert_eq!(done, reason == Reason::None, "{verb} in {phase} {step}");
-                        ends[usize::from(done)] += 1;
-                    }
-                }
+    for (phase, step) in Phase::ALL.iter().flat_map(|p| super::tables::Step::ALL.iter().map(move |s| (p, s)))
+    {
+        for (world, verb) in worlds.iter().flat_map(|w| TableVerb::ALL.iter().map(move |verb| (w, verb))) {
+            for (angle, at_limit) in positions {
+                let mut bench = Bench::new(Rotary { offset: 0, ..Rotary::new(angle) });
+                world(&mut bench.world);
+                bench.process.state = State { phase: *phase, step: *step, at_limit, ..bench.process.state };
+                let (report, reason) = bench.execute((*verb, -2135));
+                let done = report == PedestalReport::Done;
+                assert_eq!(done, reason == Reason::None, "{verb} in {phase} {step}");
+                ends[usize::from(done)] += 1;
             }
         }
     }
@@ -520,9 +367,9 @@ proptest! {
             let mut bench = Bench::new(table);
             let mut images = Vec::new();
             for angle in &angles {
-                prop_assert_eq!(bench.execute(TableVerb::Turn, *angle), DONE);
-                prop_assert!((bench.table.angle() - f64::from(*angle) / 10.0).abs() < 0.06);
-                images.push(to_bytes::<80, _>(&bench.memory.table));
+                prop_assert_eq!(bench.execute((TableVerb::Turn, *angle)), DONE);
+                prop_assert!((bench.world.angle() - f64::from(*angle) / 10.0).abs() < 0.06);
+                images.push(bench.image());
             }
             Ok(images)
         };
@@ -537,20 +384,19 @@ proptest! {
         let mut last = MotorCommand::default();
         for (what, a, b) in ticks {
             if let Some(verb) = TableVerb::from_code(what) {
-                bench.send(verb, a);
+                bench.send((verb, a));
             }
             match what {
-                10 => bench.process = Table::default(),
-                11 => bench.table.off = !bench.table.off,
-                12 => bench.table.blocked = !bench.table.blocked,
-                13 => bench.table.offset = a / 4,
-                14 => bench.table.echo = b,
+                10 => bench.restart(),
+                11 => bench.world.off = !bench.world.off,
+                12 => bench.world.blocked = !bench.world.blocked,
+                13 => bench.world.offset = a / 4,
+                14 => bench.world.echo = b,
                 _ => {}
             }
             let motor = bench.step().motor;
             prop_assert!(motor.number == 0 || motor == last || motor.number != last.number);
             last = motor;
         }
-        prop_assert!(State::SIZE < 192 && TableOutputs::SIZE <= 144);
     }
 }

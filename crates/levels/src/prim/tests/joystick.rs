@@ -13,6 +13,23 @@ use rcs_core::tick::TICK_S;
 use super::*;
 use crate::prim::manual::{ACCELERATION, SPEED};
 
+pub(super) const SCENARIOS: &[fn()] = &[
+    translations_follow_the_axes_of_the_frame_at_the_speed_of_the_knob,
+    rotations_leave_their_centre_where_it_is,
+    a_stick_that_is_not_quite_centred_moves_nothing,
+    the_box_is_done_when_the_robot_stands,
+    the_box_waits_until_a_motion_has_ramped_down,
+    two_frames_are_none,
+    a_stick_stops_every_motion_and_the_commander_hears_of_it,
+    a_stick_is_heard_of_after_a_motion_is_done,
+    a_command_in_the_middle_of_a_manual_motion_begins_when_that_has_ramped_down,
+    without_a_position_the_box_moves_nothing,
+    the_gripper_buttons_are_passed_on_while_the_box_has_the_robot,
+    a_recorded_pose_suspends_until_the_operator_goes_on,
+    a_prim_that_was_held_goes_on_from_rest_to_its_goal,
+    a_step_is_a_knot_point_of_the_trajectory,
+];
+
 const FULL: i16 = 1000;
 
 impl Rig {
@@ -37,8 +54,8 @@ impl Rig {
         let joystick = &mut self.external.devices.joystick;
         (joystick.x, joystick.y) = (0, 0);
         (joystick.up, joystick.down, joystick.roll_plus, joystick.roll_minus) = (false, false, false, false);
-        self.steps(40);
-        assert!(!self.prim.state().manual.is_moving());
+        self.wait(40);
+        assert!(!self.process.state().manual.is_moving());
     }
 
     fn leds(&self) -> u8 {
@@ -72,7 +89,7 @@ fn translations_follow_the_axes_of_the_frame_at_the_speed_of_the_knob() {
                 rig.external.devices.joystick.up = up && sign > 0;
                 rig.external.devices.joystick.down = up && sign < 0;
                 let before = rig.commanded();
-                rig.steps(60);
+                rig.wait(60);
                 let here = rig.commanded();
                 rig.step();
                 let speed = (rig.commanded().position - here.position) / TICK_S;
@@ -84,7 +101,7 @@ fn translations_follow_the_axes_of_the_frame_at_the_speed_of_the_knob() {
             }
         }
     }
-    assert_eq!(rig.t3i.output, WireFrame::from_frame(&rig.commanded()));
+    assert_eq!(rig.world.t3i.output, WireFrame::from_frame(&rig.commanded()));
 }
 
 #[test]
@@ -104,7 +121,7 @@ fn rotations_leave_their_centre_where_it_is() {
         rig.frame_switch(switch);
         rig.stick(x, y);
         rig.external.devices.joystick.roll_plus = roll;
-        rig.steps(60);
+        rig.wait(60);
         let here = rig.commanded();
         let axis = at.y() * f64::from(x.signum()) + at.z() * f64::from(y.signum());
         let axis = if roll { at.x() } else { axis };
@@ -134,7 +151,7 @@ fn a_stick_that_is_not_quite_centred_moves_nothing() {
     rig.stick(30, -30);
     rig.external.devices.joystick.up = true;
     rig.external.devices.joystick.down = true;
-    rig.steps(50);
+    rig.wait(50);
     assert_eq!((rig.commanded(), rig.report()), (at, PrimReport::JoystickOn));
 }
 
@@ -143,22 +160,38 @@ fn the_box_is_done_when_the_robot_stands() {
     let mut rig = Rig::paused();
     rig.frame_switch(joystick_frame::WORLD);
     rig.stick(FULL, FULL);
-    rig.steps(30);
+    rig.wait(30);
     rig.frame_switch(0);
     rig.step();
     assert_eq!((rig.report(), rig.leds()), (PrimReport::Executing, 0));
     let at = rig.commanded();
-    assert_eq!(rig.until_over(), PrimReport::Done);
+    assert_eq!(rig.finish(), PrimReport::Done);
     let path = rig.commanded().distance(&at).path();
     assert!(path > 0.5 && path < SPEED * SPEED / ACCELERATION, "{path}");
     let held = rig.commanded();
-    rig.steps(20);
-    assert_eq!((rig.commanded(), rig.t3i.output), (held, WireFrame::from_frame(&held)));
+    rig.wait(20);
+    assert_eq!((rig.commanded(), rig.world.t3i.output), (held, WireFrame::from_frame(&held)));
     // It can be taken again, by the same PAUSE.
     rig.frame_switch(joystick_frame::TOOL);
-    rig.steps(20);
+    rig.wait(20);
     assert_eq!(rig.report(), PrimReport::JoystickOn);
     assert_ne!(rig.commanded(), held);
+}
+
+#[test]
+fn the_box_waits_until_a_motion_has_ramped_down() {
+    let mut rig = Rig::initialized();
+    rig.command(PrimVerb::GotoPt, 3);
+    rig.wait(30);
+    rig.command(PrimVerb::Pause, 0);
+    rig.wait(3);
+    rig.frame_switch(joystick_frame::WORLD);
+    rig.stick(FULL, 0);
+    rig.step();
+    assert_eq!((rig.report(), rig.leds()), (PrimReport::JoystickOn, 0));
+    rig.wait(60);
+    assert_eq!(rig.leds(), joystick_frame::WORLD);
+    rig.check_path(&start());
 }
 
 #[test]
@@ -167,20 +200,20 @@ fn two_frames_are_none() {
     let at = rig.commanded();
     rig.frame_switch(joystick_frame::WORLD | joystick_frame::TOOL);
     rig.stick(FULL, 0);
-    rig.steps(30);
+    rig.wait(30);
     assert_eq!((rig.commanded(), rig.report(), rig.leds()), (at, PrimReport::JoystickOn, 0));
     // A bit that is no switch of the box is no frame either.
     rig.frame_switch(0x40);
-    rig.steps(30);
+    rig.wait(30);
     assert_eq!((rig.commanded(), rig.report(), rig.leds()), (at, PrimReport::JoystickOn, 0));
     rig.frame_switch(joystick_frame::WORLD);
-    rig.steps(30);
+    rig.wait(30);
     assert_eq!(rig.leds(), joystick_frame::WORLD);
     // The second one while it moves: ramp down.
     rig.frame_switch(joystick_frame::WORLD | joystick_frame::WRIST_ORIGIN);
-    rig.steps(40);
+    rig.wait(40);
     let held = rig.commanded();
-    rig.steps(10);
+    rig.wait(10);
     assert_eq!((rig.commanded(), rig.report(), rig.leds()), (held, PrimReport::JoystickOn, 0));
 }
 
@@ -198,7 +231,7 @@ fn a_stick_stops_every_motion_and_the_commander_hears_of_it() {
             rig.frame_switch(frame);
             rig.stick(x, 0);
             rig.external.devices.joystick.velocity = knob;
-            rig.steps(10);
+            rig.wait(10);
             assert_eq!(rig.report(), PrimReport::Executing, "{verb} {frame} {x} {knob}");
         }
         rig.external.devices.joystick.velocity = 1000;
@@ -208,23 +241,23 @@ fn a_stick_stops_every_motion_and_the_commander_hears_of_it() {
             (rig.report(), rig.memory.prim.status.reason),
             (PrimReport::JoystickOn, Reason::JoystickOn)
         );
-        rig.steps(80);
+        rig.wait(80);
         assert!(rig.at_rest());
         assert_eq!(rig.leds(), 0, "the box moves nothing before PAUSE");
         let held = rig.commanded();
         rig.frame_switch(0);
-        rig.steps(20);
+        rig.wait(20);
         assert_eq!((rig.report(), rig.commanded()), (PrimReport::JoystickOn, held), "it is not resumed");
         rig.check_path(&start());
         rig.command(PrimVerb::Pause, 0);
-        assert_eq!(rig.until_over(), PrimReport::Done);
+        assert_eq!(rig.finish(), PrimReport::Done);
         rig.frame_switch(joystick_frame::WORLD);
-        rig.steps(20);
+        rig.wait(20);
         assert_ne!(rig.commanded(), held);
         // With the switch on and the stick at rest a motion goes on, until the stick is moved.
         rig.let_go();
         rig.guard(verb, 2, "SEATED-R");
-        rig.steps(10);
+        rig.wait(10);
         assert_eq!(rig.report(), PrimReport::Executing);
         rig.external.devices.joystick.roll_plus = true;
         rig.step();
@@ -243,7 +276,7 @@ fn a_stick_is_heard_of_after_a_motion_is_done() {
     rig.external.devices.joystick.up = true;
     rig.step();
     assert_eq!(rig.report(), PrimReport::JoystickOn);
-    rig.steps(80);
+    rig.wait(80);
     assert!(rig.at_rest());
     assert!(rig.commanded().distance(&flying).path() < 10.0);
     rig.check_path(&start());
@@ -254,22 +287,25 @@ fn a_command_in_the_middle_of_a_manual_motion_begins_when_that_has_ramped_down()
     let mut rig = Rig::paused();
     rig.frame_switch(joystick_frame::WORLD);
     rig.stick(-FULL, FULL);
-    rig.steps(30);
+    rig.wait(30);
     rig.frame_switch(0);
     assert_eq!(rig.run(PrimVerb::GotoPt, 2), PrimReport::Done);
-    assert_eq!(rig.t3i.output, WireFrame::from_frame(&shifted(10.0, 10.0)));
+    assert_eq!(rig.world.t3i.output, WireFrame::from_frame(&shifted(10.0, 10.0)));
     rig.check_path(&start());
 }
 
 #[test]
 fn without_a_position_the_box_moves_nothing() {
     let mut rig = Rig::new();
-    rig.steps(3);
+    rig.wait(3);
     rig.frame_switch(joystick_frame::WORLD);
     rig.stick(FULL, 0);
     assert_eq!(rig.run(PrimVerb::Pause, 0), PrimReport::JoystickOn);
-    rig.steps(10);
+    rig.wait(10);
     assert_eq!((rig.leds(), rig.memory.prim.t3i.command), (0, T3iVerb::Pause));
+    rig.external.devices.joystick.record = true;
+    let status = rig.step().status;
+    assert_eq!((status.recording, status.recorded_pose), (false, None));
     // ROBOT-INIT moves nothing either, and is not hindered.
     assert_eq!(rig.run(PrimVerb::RobotInit, 0), PrimReport::Done);
     assert_eq!(rig.run(PrimVerb::CalSensor, 0), PrimReport::JoystickOn);
@@ -300,7 +336,7 @@ fn a_recorded_pose_suspends_until_the_operator_goes_on() {
     assert_eq!((rig.memory.prim.status.recorded_pose, rig.memory.prim.status.recording), (None, false));
     rig.frame_switch(joystick_frame::WORLD);
     rig.stick(FULL, 0);
-    rig.steps(30);
+    rig.wait(30);
     rig.external.devices.joystick.record = true;
     rig.step();
     let status = rig.memory.prim.status;
@@ -309,22 +345,22 @@ fn a_recorded_pose_suspends_until_the_operator_goes_on() {
     assert_eq!(pose, Some(Pose::from_frame(&rig.commanded())));
     assert_eq!(pose, rig.pose(status.present_pose).copied());
     // The last point is the one recorded, and the robot holds it.
-    rig.steps(2);
-    let held = rig.t3i.output;
+    rig.wait(2);
+    let held = rig.world.t3i.output;
     assert_eq!(held, WireFrame::from_frame(&rig.commanded()));
-    rig.steps(50);
-    assert_eq!((rig.t3i.output, rig.memory.prim.header.republished), (held, true));
-    rig.t3i.path.clear();
+    rig.wait(50);
+    assert_eq!((rig.world.t3i.output, rig.memory.prim.header.republished), (held, true));
+    rig.world.t3i.path.clear();
     rig.external.devices.joystick.resume = true;
     rig.step();
     assert!(!rig.memory.prim.status.recording && !rig.memory.prim.header.republished);
     rig.external.devices.joystick.resume = false;
-    rig.steps(40);
+    rig.wait(40);
     assert!(!rig.memory.prim.status.recording, "the button was never let go");
     assert_eq!(rig.pose(rig.memory.prim.status.recorded_pose).copied(), pose);
     // The stick was held all the time: from rest again.
     rig.check_path(&held.to_frame().unwrap());
-    assert_ne!(rig.t3i.output, held);
+    assert_ne!(rig.world.t3i.output, held);
 }
 
 #[test]
@@ -333,24 +369,24 @@ fn a_prim_that_was_held_goes_on_from_rest_to_its_goal() {
         let mut rig = Rig::initialized();
         if verb == PrimVerb::Pause {
             rig.command(PrimVerb::GotoPt, 3);
-            rig.steps(30);
+            rig.wait(30);
         }
         rig.command(verb, 3);
-        rig.steps(if verb == PrimVerb::Pause { 5 } else { 30 });
+        rig.wait(if verb == PrimVerb::Pause { 5 } else { 30 });
         (rig.held, rig.external.devices.joystick.hold) = (true, single_step::PRIM);
-        rig.steps(2);
-        let held = rig.t3i.output;
-        rig.steps(30);
-        assert_eq!(rig.t3i.output, held);
+        rig.wait(2);
+        let held = rig.world.t3i.output;
+        rig.wait(30);
+        assert_eq!(rig.world.t3i.output, held);
         (rig.held, rig.external.devices.joystick.hold) = (false, 0);
-        rig.t3i.path.clear();
-        assert_eq!(rig.until_over(), PrimReport::Done);
+        rig.world.t3i.path.clear();
+        assert_eq!(rig.finish(), PrimReport::Done);
         rig.check_path(&held.to_frame().unwrap());
         if verb == PrimVerb::Pause {
-            assert_eq!(rig.t3i.output, held, "what ramped down stands already");
+            assert_eq!(rig.world.t3i.output, held, "what ramped down stands already");
         } else {
-            rig.steps(100);
-            assert_eq!(rig.t3i.output, WireFrame::from_frame(&shifted(40.0, 3.0)));
+            rig.wait(100);
+            assert_eq!(rig.world.t3i.output, WireFrame::from_frame(&shifted(40.0, 3.0)));
         }
     }
 }
@@ -359,24 +395,24 @@ fn a_prim_that_was_held_goes_on_from_rest_to_its_goal() {
 fn a_step_is_a_knot_point_of_the_trajectory() {
     let mut rig = Rig::initialized();
     rig.command(PrimVerb::GotoPt, 3);
-    rig.steps(60);
+    rig.wait(60);
     (rig.held, rig.external.devices.joystick.hold) = (true, single_step::PRIM);
-    rig.steps(10);
+    rig.wait(10);
     for _ in 0..5 {
-        let before = rig.t3i.path.len();
+        let before = rig.world.t3i.path.len();
         rig.held = false;
         rig.step();
         rig.held = true;
-        rig.steps(10);
-        let [.., a, b] = rig.t3i.path.as_slice() else { panic!("no path") };
-        assert_eq!(rig.t3i.path.len(), before + 1);
+        rig.wait(10);
+        let [.., a, b] = rig.world.t3i.path.as_slice() else { panic!("no path") };
+        assert_eq!(rig.world.t3i.path.len(), before + 1);
         let step = a.to_frame().unwrap().distance(&b.to_frame().unwrap()).inches;
         assert!((step - 0.4).abs() < 0.02, "{step} in: the points lie where they would");
     }
     // Let go in the tick after a step: from rest all the same.
-    let held = rig.t3i.output;
+    let held = rig.world.t3i.output;
     (rig.held, rig.external.devices.joystick.hold) = (false, 0);
-    rig.t3i.path.clear();
-    assert_eq!(rig.until_over(), PrimReport::Done);
+    rig.world.t3i.path.clear();
+    assert_eq!(rig.finish(), PrimReport::Done);
     rig.check_path(&held.to_frame().unwrap());
 }

@@ -30,7 +30,7 @@ impl Lagging {
     }
 
     fn tick(&mut self) {
-        self.bench.tick();
+        self.bench.step();
         let counts = &mut self.bench.external.devices.resolvers.counts;
         self.past.push_back(*counts);
         if self.frozen || self.past.len() <= self.ticks {
@@ -117,10 +117,10 @@ fn a_robot_that_stops_or_jumps_is_off_its_path_and_one_that_rests_for_long_is_no
         let mut robot = Lagging::by(2);
         robot.rest(500);
         assert_eq!(robot.following(), Following::OnPath);
-        let mut joints = robot.bench.robot.joints;
+        let mut joints = robot.bench.world.line.robot.joints;
         joints[joint] += by;
         robot.bench.external.devices.resolvers.counts = counts(&joints);
-        robot.bench.tick();
+        robot.bench.step();
         assert_eq!(robot.following(), Following::OffPath, "a jump of {what} at rest");
     }
 }
@@ -135,7 +135,7 @@ fn resolvers_that_are_not_valid_are_not_compared() {
 }
 
 #[test]
-fn a_robot_off_its_path_gets_nothing_until_a_restart() {
+pub(super) fn a_robot_off_its_path_gets_nothing_until_a_restart() {
     let mut robot = Lagging::by(2);
     robot.frozen = true;
     assert!(!robot.goes(50, 0.4));
@@ -143,26 +143,24 @@ fn a_robot_off_its_path_gets_nothing_until_a_restart() {
     let found = bench.memory.t3i.status;
     assert_eq!((bench.report(), bench.row()), (T3iReport::Error, ("TROUBLE", 3)));
     assert!(bench.memory.device_outputs().robot_stop);
-    let stood = bench.robot.at;
+    let stood = bench.at();
     // Points that are on their way, PAUSE, a restart of the process.
     for command in [T3iVerb::Point, T3iVerb::Point, T3iVerb::Pause, T3iVerb::Point] {
         *x += 0.4;
         bench.memory.prim.t3i.frame = WireFrame::from_frame(&beside(*x));
         bench.command(command);
-        bench.tick();
-        assert_eq!((bench.sent(), bench.report(), bench.robot.at), (None, T3iReport::Error, stood));
+        bench.step();
+        assert_eq!((bench.sent(), bench.report(), bench.at()), (None, T3iReport::Error, stood));
     }
-    bench.t3i = T3i::default();
+    bench.restart();
     for _ in 0..5 {
-        bench.tick();
-        assert_eq!((bench.sent(), bench.report(), bench.robot.at), (None, T3iReport::Error, stood));
+        bench.step();
+        assert_eq!((bench.sent(), bench.report(), bench.at()), (None, T3iReport::Error, stood));
     }
     let status = bench.memory.t3i.status;
     assert_eq!((status.following, status.left), (Following::OffPath, found.left));
     bench.command(T3iVerb::Restart);
-    for _ in 0..40 {
-        bench.tick();
-    }
+    bench.wait(40);
     let status = bench.memory.t3i.status;
     assert_eq!(
         (bench.report(), status.following, status.left),
@@ -171,20 +169,20 @@ fn a_robot_off_its_path_gets_nothing_until_a_restart() {
     assert!(!bench.memory.device_outputs().robot_stop);
     let x = bench.robot_tool().position.x;
     bench.point(&beside(x + 0.1));
-    bench.tick();
+    bench.step();
     assert!((bench.robot_tool().position.x - x - 0.1).abs() < 0.02);
 }
 
 /// The resolvers of the simulated cell see a robot at a serial port for the first time when it has reported.
 #[test]
-fn the_resolvers_have_a_second_to_come_near_a_reported_position() {
+pub(super) fn the_resolvers_have_a_second_to_come_near_a_reported_position() {
     let mut bench = Bench::new();
-    bench.tick();
+    bench.step();
     bench.command(T3iVerb::Restart);
     let elsewhere = counts(&HOME_JOINTS.map(|joint| joint + 0.1));
     for tick in 1..=40 {
         bench.external.devices.resolvers.counts = elsewhere;
-        bench.tick();
+        bench.step();
         let running = bench.memory.t3i.status.link_running;
         let expected = if tick < 20 { Following::Joining } else { Following::OffPath };
         assert!(tick < 2 || running);
@@ -193,8 +191,6 @@ fn the_resolvers_have_a_second_to_come_near_a_reported_position() {
         }
     }
     bench.command(T3iVerb::Restart);
-    for _ in 0..40 {
-        bench.tick();
-    }
+    bench.wait(40);
     assert_eq!(bench.memory.t3i.status.following, Following::OnPath);
 }

@@ -3,124 +3,92 @@
 use nalgebra::Rotation3;
 
 mod follow;
-mod rows;
 
 use depc::{
-    Limits, Plate,
-    controller::{Controller, ControllerInputs, ControllerState, Warning},
+    Plate,
+    controller::{ControllerState, Warning},
     step::Position,
     wire::DataCommand,
 };
 use geometry::{
     frame::{Frame, Vector},
-    kinematics::{HOME_JOINTS, Joints, T3},
+    kinematics::{HOME_JOINTS, T3},
     pose::WireFrame,
 };
 use interfaces::{
     CommonMemory, Decided, ExternalInputs, T3iOutputs,
-    device::{LinkBytes, RESOLVER_COUNTS},
-    process::{Inputs, Process},
-    t3i::{LinkFault, ReportCheck, T3iReport, T3iVerb},
+    device::LinkBytes,
+    t3i::{LinkFault, ReportCheck, T3iCommand, T3iReport, T3iVerb},
 };
 use rcs_core::tick::Tick;
 
 use super::{T3i, tables};
-use crate::{coverage::Coverage, exact_robot::Exact};
+use crate::{
+    bench::{self, Tested, World},
+    coverage::silent,
+    environment::line::{Line, counts},
+};
 
 /// T3I, the line, the controller; the test is Prim.
-struct Bench {
-    t3i: T3i,
-    memory: CommonMemory,
-    external: ExternalInputs,
-    tick: Tick,
-    controller: Controller,
-    robot: Exact,
-    /// Prim is stepped in the next ticks.
+type Bench = bench::Bench<T3i, Below>;
+
+/// The line, and whether Prim is stepped in the next ticks.
+#[derive(Clone)]
+struct Below {
+    line: Line,
     prim_runs: bool,
-    /// The line carries bytes.
-    connected: bool,
-    hold: bool,
-    /// The controller's program runs; else its DTR is off.
-    on: bool,
-    /// Tables and rows that fired.
-    rows: Coverage,
+}
+
+impl World<T3i> for Below {
+    fn sense(&mut self, tick: Tick, memory: &mut CommonMemory, _: &mut ExternalInputs) {
+        if self.prim_runs {
+            memory.prim.header.stamp = tick.previous();
+        }
+    }
+
+    fn act(&mut self, _: Tick, _: &CommonMemory, after: &mut CommonMemory, external: &mut ExternalInputs) {
+        self.line.step(&after.t3i.link_tx, &mut external.devices);
+    }
+}
+
+impl Tested<()> for T3i {
+    type Order = T3iCommand;
+    type End = T3iReport;
+    const LONGEST: u64 = 2000;
+
+    fn order(memory: &mut CommonMemory, order: T3iCommand, number: u32) {
+        memory.prim.t3i = T3iCommand { number, ..order };
+    }
+
+    fn end(outputs: &T3iOutputs) -> Option<T3iReport> {
+        Some(outputs.status.report).filter(|report| *report != T3iReport::Executing)
+    }
 }
 
 fn home() -> Frame {
     T3.forward(&HOME_JOINTS)
 }
 
-fn counts(joints: &Joints) -> [u32; 6] {
-    joints.map(|angle| {
-        let turns = (angle / (2.0 * std::f64::consts::PI)).rem_euclid(1.0);
-        (turns * f64::from(RESOLVER_COUNTS)).round() as u32 % RESOLVER_COUNTS
-    })
-}
-
 impl Bench {
     fn new() -> Self {
-        let at = Plate::from_tool(&home(), &T3, &Plate::default()).unwrap();
-        let mut bench = Self {
-            t3i: T3i::default(),
-            memory: CommonMemory::default(),
-            external: ExternalInputs::default(),
-            tick: Tick(0),
-            controller: Controller::new(Limits::NBS),
-            robot: Exact { joints: HOME_JOINTS, at },
-            prim_runs: true,
-            connected: true,
-            hold: false,
-            on: true,
-            rows: Coverage::default(),
-        };
-        bench.external.devices.resolvers.valid = true;
-        bench.cell(&LinkBytes::default(), true);
-        bench
+        let mut external = ExternalInputs::default();
+        let line = Line::new(&mut external.devices);
+        Self { external, ..Self::before(Below { line, prim_runs: true }) }
     }
 
     /// A bench on which RESTART is finished.
     fn running() -> Self {
         let mut bench = Self::new();
-        bench.tick();
+        bench.step();
         bench.command(T3iVerb::Restart);
-        for _ in 0..4 {
-            bench.tick();
-        }
+        bench.wait(4);
         assert_eq!(bench.report(), T3iReport::Finished);
         bench
     }
 
-    /// The cell's part of a tick.
-    fn cell(&mut self, tx: &LinkBytes, start: bool) {
-        let rx = if self.connected { *tx } else { LinkBytes::default() };
-        let inputs =
-            ControllerInputs { rx, cts: true, board: true, start, hold: self.hold, ..Default::default() };
-        let out = self.controller.step(&inputs, &mut self.robot);
-        self.external.devices.link_rx = if self.connected { out.tx } else { LinkBytes::default() };
-        self.external.devices.link_ready = out.dtr && self.on;
-        self.external.devices.resolvers.counts = counts(&self.robot.joints);
-    }
-
-    /// One tick of everything; what T3I wrote is in common memory afterwards.
-    fn tick(&mut self) -> &T3iOutputs {
-        if self.prim_runs {
-            self.memory.prim.header.stamp = self.tick;
-        }
-        self.tick = self.tick.next();
-        let mut outputs = self.memory.t3i;
-        let inputs = Inputs { tick: self.tick, memory: &self.memory, external: &self.external, data: &() };
-        Process::<()>::step(&mut self.t3i, &inputs, &mut outputs);
-        self.memory.t3i = outputs;
-        self.rows.note(&outputs.header);
-        self.cell(&outputs.link_tx, false);
-        &self.memory.t3i
-    }
-
     /// Prim writes a command; T3I reads it in the next tick.
-    fn command(&mut self, verb: T3iVerb) {
-        self.memory.prim.t3i.number += 1;
-        self.memory.prim.t3i.command = verb;
-        self.memory.prim.t3i.cycle = self.tick;
+    fn command(&mut self, command: T3iVerb) {
+        self.send(T3iCommand { command, cycle: self.tick, ..self.memory.prim.t3i });
     }
 
     fn point(&mut self, frame: &Frame) {
@@ -146,8 +114,18 @@ impl Bench {
         DataCommand::parse(self.memory.t3i.link_tx.as_slice()).ok().map(|command| command.plate)
     }
 
+    fn at(&self) -> Plate {
+        self.world.line.robot.at
+    }
+
     fn robot_tool(&self) -> Frame {
-        self.robot.at.to_tool(&T3)
+        self.at().to_tool(&T3)
+    }
+
+    /// The line carries nothing, not even what is on its way.
+    fn cut(&mut self) {
+        self.world.line.connected = false;
+        self.external.devices.link_rx = LinkBytes::default();
     }
 }
 
@@ -160,16 +138,16 @@ fn beside(x: f64) -> Frame {
 #[test]
 fn restart_brings_the_link_up_and_holds_the_reported_position() {
     let mut bench = Bench::new();
-    bench.tick();
+    bench.step();
     bench.command(T3iVerb::Restart);
-    let out = bench.tick();
+    let out = bench.step();
     assert_eq!((out.link_tx.as_slice(), out.status.report), (&[0x05][..], T3iReport::Executing));
-    let out = bench.tick();
+    let out = bench.step();
     assert_eq!((out.status.report, out.status.echo, out.status.link_running), (T3iReport::Finished, 1, true));
-    assert_eq!(bench.sent(), Some(bench.robot.at));
+    assert_eq!(bench.sent(), Some(bench.at()));
     for _ in 0..10 {
-        bench.tick();
-        assert_eq!((bench.sent(), bench.row()), (Some(bench.robot.at), ("RESTART", 4)));
+        bench.step();
+        assert_eq!((bench.sent(), bench.row()), (Some(bench.at()), ("RESTART", 4)));
     }
 }
 
@@ -179,14 +157,14 @@ fn one_point_a_tick_is_sustained() {
     let mut reports = Vec::new();
     for n in 1..=50 {
         bench.point(&beside(0.1 * f64::from(n)));
-        bench.tick();
+        bench.step();
         reports.push(bench.report());
         // Read in the tick after it was written, sent in the same, executed by the cell before the next.
         assert!((bench.robot_tool().position.x - 0.1 * f64::from(n)).abs() < 0.01, "point {n}");
         assert_eq!(bench.row(), ("POINT", 8));
     }
     assert!(reports.iter().all(|report| *report == T3iReport::Ready));
-    bench.tick();
+    bench.step();
     assert_eq!(bench.report(), T3iReport::Finished);
     assert_eq!(bench.memory.t3i.status.counters.limited, 0);
 }
@@ -199,7 +177,7 @@ fn a_point_beyond_the_limits_is_scaled_back_on_a_straight_line() {
     bench.point(&goal);
     let mut ticks = 0;
     loop {
-        bench.tick();
+        bench.step();
         let moved = bench.robot_tool().position - home().position;
         assert!((moved.x / 3.0 - moved.y / 4.0).abs() < 0.006 && moved.z.abs() < 0.006, "{moved:?}");
         let feedback = bench.memory.t3i.status.frame_feedback;
@@ -224,7 +202,7 @@ fn a_queue_that_fills_asks_prim_to_wait_and_never_overflows() {
     // Prim answers each report one tick later, as it would: 0.9 in a point is more than the line can do.
     for _ in 0..200 {
         let report = bench.report();
-        bench.tick();
+        bench.step();
         if matches!(report, T3iReport::Ready | T3iReport::Finished) {
             x += 0.9_f64.min(20.0 - x);
             bench.point(&beside(x));
@@ -241,28 +219,28 @@ fn a_queue_that_fills_asks_prim_to_wait_and_never_overflows() {
 fn a_gap_in_the_numbers_is_an_invalid_command_until_pause() {
     let mut bench = Bench::running();
     bench.point(&beside(0.1));
-    bench.tick();
+    bench.step();
     bench.memory.prim.t3i.number += 1;
     bench.point(&beside(0.3));
-    bench.tick();
+    bench.step();
     assert_eq!(
         (bench.report(), bench.fault(), bench.row()),
         (T3iReport::Error, LinkFault::InvalidCommand, ("RECEIVE", 8))
     );
     // The next point was on its way already.
     bench.point(&beside(0.4));
-    bench.tick();
+    bench.step();
     assert_eq!(
         (bench.report(), bench.fault(), bench.row()),
         (T3iReport::Error, LinkFault::InvalidCommand, ("RECEIVE", 10))
     );
     assert!((bench.robot_tool().position.x - 0.1).abs() < 0.01);
     bench.command(T3iVerb::Pause);
-    bench.tick();
-    bench.tick();
+    bench.step();
+    bench.step();
     assert_eq!((bench.report(), bench.fault()), (T3iReport::Finished, LinkFault::None));
     bench.point(&beside(0.2));
-    bench.tick();
+    bench.step();
     assert!((bench.robot_tool().position.x - 0.2).abs() < 0.01);
 }
 
@@ -273,7 +251,7 @@ fn a_frame_without_words_is_an_invalid_command() {
         let mut bench = Bench::running();
         bench.memory.prim.t3i.frame = frame;
         bench.command(T3iVerb::Point);
-        bench.tick();
+        bench.step();
         assert_eq!((bench.report(), bench.fault()), (T3iReport::Error, LinkFault::InvalidCommand));
     }
 }
@@ -289,33 +267,77 @@ fn beside_the_end_of_the_words() -> (Bench, Frame) {
     // The robot of the bench is at HOME.
     bench.external.devices.resolvers.valid = false;
     let at = Plate::from_tool(&turned(100.0), &T3, &Plate::default()).unwrap();
-    bench.t3i.state.position = Position::reported(at, &T3);
+    bench.process.state.position = Position::reported(at, &T3);
     (bench, turned(260.0))
 }
 
 #[test]
 fn a_way_without_words_is_an_invalid_command() {
     let (mut bench, goal) = beside_the_end_of_the_words();
-    let at = bench.t3i.state.position.plate;
+    let at = bench.process.state.position.plate;
     bench.point(&goal);
-    bench.tick();
+    bench.step();
     assert_eq!(
         (bench.sent(), bench.fault(), bench.row()),
         (Some(at), LinkFault::InvalidCommand, ("POINT", 10))
     );
     bench.point(&goal);
-    bench.tick();
+    bench.step();
+    assert_eq!((bench.report(), bench.fault()), (T3iReport::Error, LinkFault::InvalidCommand));
+}
+
+/// One tick in which the answer to what was sent last does not come yet.
+fn unanswered(bench: &mut Bench) {
+    let late = std::mem::take(&mut bench.external.devices.link_rx);
+    bench.step();
+    bench.external.devices.link_rx.extend(late.as_slice());
+}
+
+#[test]
+fn while_a_frame_is_outstanding_nothing_is_sent() {
+    let mut bench = Bench::running();
+    bench.point(&beside(5.0));
+    unanswered(&mut bench);
+    assert_eq!((bench.sent(), bench.row()), (None, ("POINT", 3)));
+    for _ in 0..2 {
+        bench.point(&beside(5.0));
+        bench.step();
+    }
+    unanswered(&mut bench);
+    assert_eq!((bench.sent(), bench.row()), (None, ("POINT", 4)));
+    bench.memory.prim.header.republished = true;
+    bench.step();
+    unanswered(&mut bench);
+    assert_eq!((bench.sent(), bench.row()), (None, ("POINT", 2)), "Prim stands still");
+    bench.step();
+    assert_eq!((bench.sent(), bench.row()), (Some(bench.at()), ("POINT", 7)));
+}
+
+#[test]
+fn the_first_of_two_points_without_words_is_an_invalid_command() {
+    let (mut bench, goal) = beside_the_end_of_the_words();
+    bench.point(&goal);
+    unanswered(&mut bench);
+    bench.point(&goal);
+    bench.step();
+    assert_eq!((bench.fault(), bench.row()), (LinkFault::InvalidCommand, ("POINT", 11)));
+}
+
+#[test]
+fn a_command_without_a_word_is_invalid() {
+    let mut bench = Bench::running();
+    bench.command(T3iVerb::None);
+    bench.step();
     assert_eq!((bench.report(), bench.fault()), (T3iReport::Error, LinkFault::InvalidCommand));
 }
 
 #[test]
 fn points_before_the_report_are_refused() {
     let mut bench = Bench::new();
-    bench.connected = false;
-    bench.external.devices.link_rx = LinkBytes::default();
-    bench.tick();
+    bench.cut();
+    bench.step();
     bench.point(&beside(0.1));
-    bench.tick();
+    bench.step();
     assert_eq!(
         (bench.report(), bench.fault(), bench.row()),
         (T3iReport::Error, LinkFault::InvalidCommand, ("RECEIVE", 7))
@@ -326,14 +348,14 @@ fn points_before_the_report_are_refused() {
 fn pause_empties_the_queue_and_holds() {
     let mut bench = Bench::running();
     bench.point(&beside(5.0));
-    bench.tick();
-    bench.tick();
+    bench.step();
+    bench.step();
     bench.command(T3iVerb::Pause);
-    bench.tick();
-    let at = bench.robot.at;
+    bench.step();
+    let at = bench.at();
     for _ in 0..5 {
-        bench.tick();
-        assert_eq!((bench.robot.at, bench.sent(), bench.report()), (at, Some(at), T3iReport::Finished));
+        bench.step();
+        assert_eq!((bench.at(), bench.sent(), bench.report()), (at, Some(at), T3iReport::Finished));
     }
 }
 
@@ -342,18 +364,16 @@ fn while_prim_is_held_or_lost_the_position_stands() {
     for lost in [true, false] {
         let mut bench = Bench::running();
         bench.point(&beside(5.0));
-        bench.tick();
-        bench.tick();
-        let at = bench.robot.at;
-        (bench.prim_runs, bench.memory.prim.header.republished) = (!lost, !lost);
+        bench.step();
+        bench.step();
+        let at = bench.at();
+        (bench.world.prim_runs, bench.memory.prim.header.republished) = (!lost, !lost);
         for _ in 0..5 {
-            bench.tick();
-            assert_eq!((bench.robot.at, bench.sent()), (at, Some(at)));
+            bench.step();
+            assert_eq!((bench.at(), bench.sent()), (at, Some(at)));
         }
-        (bench.prim_runs, bench.memory.prim.header.republished) = (true, false);
-        for _ in 0..10 {
-            bench.tick();
-        }
+        (bench.world.prim_runs, bench.memory.prim.header.republished) = (true, false);
+        bench.wait(10);
         assert!((bench.robot_tool().position.x - 5.0).abs() < 0.01);
     }
 }
@@ -362,30 +382,26 @@ fn while_prim_is_held_or_lost_the_position_stands() {
 fn a_cut_line_is_noticed_reported_and_mended_only_by_restart() {
     let mut bench = Bench::running();
     bench.point(&beside(5.0));
-    bench.tick();
-    bench.connected = false;
-    for _ in 0..4 {
-        bench.tick();
-    }
+    bench.step();
+    bench.world.line.connected = false;
+    bench.wait(4);
     assert_eq!((bench.report(), bench.fault()), (T3iReport::Error, LinkFault::NotResponding));
     assert!(!bench.memory.t3i.status.link_running);
-    let at = bench.robot.at;
-    bench.connected = true;
+    let at = bench.at();
+    bench.world.line.connected = true;
     for _ in 0..30 {
-        bench.tick();
-        assert_eq!((bench.report(), bench.robot.at), (T3iReport::Error, at));
+        bench.step();
+        assert_eq!((bench.report(), bench.at()), (T3iReport::Error, at));
     }
     assert!(bench.memory.t3i.status.link_running);
     bench.point(&beside(5.0));
-    bench.tick();
-    assert_eq!((bench.report(), bench.row(), bench.robot.at), (T3iReport::Error, ("RECEIVE", 6), at));
+    bench.step();
+    assert_eq!((bench.report(), bench.row(), bench.at()), (T3iReport::Error, ("RECEIVE", 6), at));
     bench.command(T3iVerb::Restart);
-    for _ in 0..3 {
-        bench.tick();
-    }
+    bench.wait(3);
     assert_eq!((bench.report(), bench.fault()), (T3iReport::Finished, LinkFault::None));
     bench.point(&beside(bench.robot_tool().position.x - home().position.x));
-    bench.tick();
+    bench.step();
     assert_eq!(bench.report(), T3iReport::Ready);
 }
 
@@ -393,22 +409,20 @@ fn a_cut_line_is_noticed_reported_and_mended_only_by_restart() {
 fn bytes_that_the_port_did_not_take_are_said_to_be_not_transmitted() {
     let mut bench = Bench::running();
     bench.point(&beside(5.0));
-    bench.tick();
-    let at = bench.robot.at;
+    bench.step();
+    let at = bench.at();
     // The serial line is not ready either after a torn frame.
     (bench.external.devices.link_unsent, bench.external.devices.link_ready) = (true, false);
-    bench.tick();
+    bench.step();
     assert_eq!((bench.report(), bench.fault()), (T3iReport::Error, LinkFault::NotTransmitted));
     assert_eq!(LinkFault::NotTransmitted.code(), 4);
     bench.external.devices.link_unsent = false;
     for _ in 0..5 {
-        bench.tick();
-        assert_eq!((bench.fault(), bench.robot.at), (LinkFault::NotTransmitted, at));
+        bench.step();
+        assert_eq!((bench.fault(), bench.at()), (LinkFault::NotTransmitted, at));
     }
     bench.command(T3iVerb::Restart);
-    for _ in 0..12 {
-        bench.tick();
-    }
+    bench.wait(12);
     assert_eq!((bench.report(), bench.fault()), (T3iReport::Finished, LinkFault::None));
 }
 
@@ -420,10 +434,10 @@ fn a_prim_that_is_stepped_singly_lets_one_point_out_a_step() {
         assert!(matches!(bench.report(), T3iReport::Ready | T3iReport::Finished));
         bench.memory.prim.header.republished = false;
         bench.point(&beside(0.4 * f64::from(n)));
-        bench.tick();
+        bench.step();
         bench.memory.prim.header.republished = true;
         for _ in 0..5 {
-            bench.tick();
+            bench.step();
             let x = bench.robot_tool().position.x;
             assert!((x - 0.4 * f64::from(n)).abs() < 0.01, "{x} after {n} steps");
         }
@@ -435,10 +449,10 @@ fn a_restart_without_an_answer_is_an_error_at_the_end_of_patience() {
     for (patience, ticks) in [(Some(100), 100), (None, 1500)] {
         let mut bench = Bench::running();
         bench.external.devices.link_patience = patience;
-        bench.connected = false;
+        bench.world.line.connected = false;
         bench.command(T3iVerb::Restart);
         let (mut executing, mut asked) = (0, 0);
-        while bench.tick().status.report == T3iReport::Executing {
+        while bench.step().status.report == T3iReport::Executing {
             executing += 1;
             asked += usize::from(bench.memory.t3i.link_tx.as_slice() == [0x05]);
             let status = &bench.memory.t3i.status;
@@ -458,37 +472,32 @@ fn cut_off(taken: bool) -> Bench {
     let mut bench = Bench::running();
     for point in 1..=5 {
         bench.point(&beside(0.3 * f64::from(point)));
-        bench.tick();
+        bench.step();
     }
     assert_eq!(check(&bench), ReportCheck::AsSent);
     if !taken {
-        bench.connected = false;
+        bench.world.line.connected = false;
     }
     bench.point(&beside(1.8));
-    bench.tick();
-    bench.connected = false;
-    bench.external.devices.link_rx = LinkBytes::default();
-    for _ in 0..4 {
-        bench.tick();
-    }
+    bench.step();
+    bench.cut();
+    bench.wait(4);
     assert_eq!((bench.fault(), check(&bench)), (LinkFault::NotResponding, ReportCheck::NoReport));
     bench
 }
 
 /// The line is mended and the link restarted.
 fn restarted(mut bench: Bench) -> Bench {
-    bench.connected = true;
+    bench.world.line.connected = true;
     bench.command(T3iVerb::Restart);
-    for _ in 0..40 {
-        bench.tick();
-    }
+    bench.wait(40);
     assert_eq!((bench.report(), bench.fault()), (T3iReport::Finished, LinkFault::None));
     bench
 }
 
 /// Words that the robot is moved by, otherwise than over the line.
 fn led(mut bench: Bench, words: i16) -> Bench {
-    bench.robot.at.words[0] += words;
+    bench.world.line.robot.at.words[0] += words;
     bench
 }
 
@@ -499,7 +508,7 @@ fn a_robot_that_took_the_last_words_or_not_or_is_between_is_where_it_was_sent() 
     {
         let bench = restarted(led(cut_off(taken), words));
         assert_eq!(check(&bench), ReportCheck::AsSent, "{taken} {words}");
-        let at = bench.robot.at.to_tool(&T3);
+        let at = bench.at().to_tool(&T3);
         assert_eq!(bench.memory.t3i.status.frame_feedback, WireFrame::from_frame(&at));
     }
     for (taken, words) in [(true, 3), (true, -33), (false, -3), (false, 33)] {
@@ -516,11 +525,8 @@ fn where_the_robot_stands_after_a_report_counts_for_the_next_one() {
     {
         let mut bench = restarted(led(cut_off(true), -15));
         assert_eq!(check(&bench), ReportCheck::AsSent);
-        bench.connected = false;
-        bench.external.devices.link_rx = LinkBytes::default();
-        for _ in 0..4 {
-            bench.tick();
-        }
+        bench.cut();
+        bench.wait(4);
         let bench = restarted(led(bench, words));
         assert_eq!(check(&bench), expected, "{words}");
     }
@@ -532,16 +538,14 @@ fn a_robot_that_is_elsewhere_stays_so_until_it_is_sent_on() {
     assert_eq!(check(&bench), ReportCheck::Elsewhere);
     // Another RESTART, and another loss of the link, do not make it right.
     for connected in [true, false] {
-        bench.connected = connected;
-        for _ in 0..5 {
-            bench.tick();
-        }
+        bench.world.line.connected = connected;
+        bench.wait(5);
         bench = restarted(bench);
         assert_eq!(check(&bench), ReportCheck::Elsewhere);
     }
     bench.point(&bench.robot_tool());
-    bench.tick();
-    bench.tick();
+    bench.step();
+    bench.step();
     assert_eq!(check(&bench), ReportCheck::AsSent);
 }
 
@@ -549,20 +553,20 @@ fn a_robot_that_is_elsewhere_stays_so_until_it_is_sent_on() {
 fn a_report_after_dtr_was_off_is_not_believed_to_be_where_it_was_sent() {
     let mut bench = Bench::running();
     bench.point(&beside(0.3));
-    bench.tick();
-    (bench.on, bench.external.devices.link_ready) = (false, false);
-    bench.tick();
+    bench.step();
+    (bench.world.line.on, bench.external.devices.link_ready) = (false, false);
+    bench.step();
     let status = &bench.memory.t3i.status;
     assert_eq!((status.controller_ready, status.report), (false, T3iReport::Error));
-    bench.on = true;
+    bench.world.line.on = true;
     let bench = restarted(bench);
     assert_eq!(check(&bench), ReportCheck::Elsewhere);
     // Before anything was sent it does not matter.
     let mut bench = Bench::new();
-    (bench.on, bench.external.devices.link_ready) = (false, false);
-    bench.tick();
+    (bench.world.line.on, bench.external.devices.link_ready) = (false, false);
+    bench.step();
     assert_eq!(check(&bench), ReportCheck::NoReport);
-    bench.on = true;
+    bench.world.line.on = true;
     assert_eq!(check(&restarted(bench)), ReportCheck::AsSent);
 }
 
@@ -570,16 +574,16 @@ fn a_report_after_dtr_was_off_is_not_believed_to_be_where_it_was_sent() {
 fn a_restarted_t3i_knows_from_its_outputs_what_was_sent() {
     for (words, expected) in [(0, ReportCheck::AsSent), (3, ReportCheck::Elsewhere)] {
         let mut bench = cut_off(true);
-        bench.t3i = T3i::default();
-        bench.tick();
+        bench.restart();
+        bench.step();
         assert_eq!(bench.fault(), LinkFault::InvalidCommand);
         let bench = restarted(led(bench, words));
         assert_eq!(check(&bench), expected);
     }
     // Nor does it forget that a person has to decide.
     let mut bench = restarted(led(cut_off(true), 100));
-    bench.t3i = T3i::default();
-    bench.tick();
+    bench.restart();
+    bench.step();
     assert_eq!(check(&restarted(bench)), ReportCheck::Elsewhere);
 }
 
@@ -591,21 +595,22 @@ fn a_joint_limit_silences_the_controller_and_restart_mends_it() {
     for _ in 0..2 {
         goal = goal.turned(&Rotation3::from_axis_angle(&Vector::x_axis(), 1.3));
         bench.point(&goal);
-        bench.tick();
+        bench.step();
     }
     for _ in 0..100 {
-        bench.tick();
-        reports.push((bench.report(), bench.controller.warning()));
+        bench.step();
+        reports.push((bench.report(), bench.world.line.controller.warning()));
     }
     assert!(reports.iter().any(|(_, warning)| *warning == Warning::JointLimit));
     assert_eq!((bench.report(), bench.fault()), (T3iReport::Error, LinkFault::NotResponding));
     bench.command(T3iVerb::Restart);
-    for _ in 0..3 {
-        bench.tick();
-    }
-    assert_eq!((bench.report(), bench.controller.state()), (T3iReport::Finished, ControllerState::Running));
+    bench.wait(3);
+    assert_eq!(
+        (bench.report(), bench.world.line.controller.state()),
+        (T3iReport::Finished, ControllerState::Running)
+    );
     // Where the robot really stands, not where it was sent.
-    assert!(bench.robot.joints[5] <= T3.limits[5].1);
+    assert!(bench.world.line.robot.joints[5] <= T3.limits[5].1);
     assert_eq!(bench.memory.t3i.status.frame_feedback, WireFrame::from_frame(&bench.robot_tool()));
 }
 
@@ -613,21 +618,15 @@ fn a_joint_limit_silences_the_controller_and_restart_mends_it() {
 fn hold_on_the_panel_is_survived() {
     let mut bench = Bench::running();
     bench.point(&beside(1.0));
-    bench.tick();
-    bench.hold = true;
-    for _ in 0..20 {
-        bench.tick();
-    }
+    bench.step();
+    bench.world.line.hold = true;
+    bench.wait(20);
     assert_eq!(bench.report(), T3iReport::Error);
-    bench.hold = false;
-    for _ in 0..10 {
-        bench.tick();
-    }
-    assert_eq!(bench.controller.state(), ControllerState::Running);
+    bench.world.line.hold = false;
+    bench.wait(10);
+    assert_eq!(bench.world.line.controller.state(), ControllerState::Running);
     bench.command(T3iVerb::Restart);
-    for _ in 0..4 {
-        bench.tick();
-    }
+    bench.wait(4);
     assert_eq!((bench.report(), bench.fault()), (T3iReport::Finished, LinkFault::None));
 }
 
@@ -635,9 +634,9 @@ fn hold_on_the_panel_is_survived() {
 fn a_restarted_t3i_does_not_move_and_says_so() {
     let mut bench = Bench::running();
     bench.point(&beside(0.3));
-    bench.t3i = T3i::default();
+    bench.restart();
     for _ in 0..10 {
-        bench.tick();
+        bench.step();
         assert_eq!((bench.report(), bench.fault()), (T3iReport::Error, LinkFault::InvalidCommand));
     }
     assert!(bench.robot_tool().position.x.abs() < 0.01);
@@ -646,12 +645,11 @@ fn a_restarted_t3i_does_not_move_and_says_so() {
 #[test]
 fn feedback_is_the_resolver_frame_until_the_link_runs() {
     let mut bench = Bench::new();
-    bench.connected = false;
-    bench.external.devices.link_rx = LinkBytes::default();
-    bench.robot.joints[0] += 0.2;
-    bench.external.devices.resolvers.counts = counts(&bench.robot.joints);
-    let expected = WireFrame::from_frame(&T3.forward(&bench.robot.joints));
-    let status = bench.tick().status;
+    bench.cut();
+    bench.world.line.robot.joints[0] += 0.2;
+    bench.external.devices.resolvers.counts = counts(&bench.world.line.robot.joints);
+    let expected = WireFrame::from_frame(&T3.forward(&bench.world.line.robot.joints));
+    let status = bench.step().status;
     assert!(!status.link_running);
     assert_eq!((Some(status.frame_feedback), status.scale_factor), (status.resolver_frame, 131_072));
     for (found, expected) in status.frame_feedback.tool.iter().zip(expected.tool) {
@@ -663,15 +661,38 @@ fn feedback_is_the_resolver_frame_until_the_link_runs() {
 fn a_state_that_is_restored_goes_on_to_the_bit() {
     let mut bench = Bench::running();
     bench.point(&beside(5.0));
-    bench.tick();
-    let mut other = T3i::default();
-    Process::<()>::restore(&mut other, *Process::<()>::state(&bench.t3i));
-    bench.memory.prim.header.stamp = bench.tick;
-    let inputs =
-        Inputs { tick: bench.tick.next(), memory: &bench.memory, external: &bench.external, data: &() };
-    let (mut a, mut b) = (T3iOutputs::default(), T3iOutputs::default());
-    Process::<()>::step(&mut bench.t3i, &inputs, &mut a);
-    Process::<()>::step(&mut other, &inputs, &mut b);
-    assert_eq!(a, b);
-    assert_eq!(a.link_tx.length, 16);
+    bench.step();
+    let mut other = bench.clone();
+    other.restore();
+    assert_eq!(bench.step(), other.step());
+    assert_eq!(bench.memory.t3i.link_tx.length, 16);
+}
+
+#[test]
+fn every_row_fires() {
+    let silent = silent::<T3i, ()>(&[
+        restart_brings_the_link_up_and_holds_the_reported_position,
+        one_point_a_tick_is_sustained,
+        a_point_beyond_the_limits_is_scaled_back_on_a_straight_line,
+        a_queue_that_fills_asks_prim_to_wait_and_never_overflows,
+        a_gap_in_the_numbers_is_an_invalid_command_until_pause,
+        a_way_without_words_is_an_invalid_command,
+        while_a_frame_is_outstanding_nothing_is_sent,
+        the_first_of_two_points_without_words_is_an_invalid_command,
+        a_command_without_a_word_is_invalid,
+        points_before_the_report_are_refused,
+        pause_empties_the_queue_and_holds,
+        while_prim_is_held_or_lost_the_position_stands,
+        a_cut_line_is_noticed_reported_and_mended_only_by_restart,
+        bytes_that_the_port_did_not_take_are_said_to_be_not_transmitted,
+        a_restart_without_an_answer_is_an_error_at_the_end_of_patience,
+        a_robot_that_is_elsewhere_stays_so_until_it_is_sent_on,
+        a_report_after_dtr_was_off_is_not_believed_to_be_where_it_was_sent,
+        a_restarted_t3i_does_not_move_and_says_so,
+        hold_on_the_panel_is_survived,
+        follow::a_robot_off_its_path_gets_nothing_until_a_restart,
+        follow::the_resolvers_have_a_second_to_come_near_a_reported_position,
+    ]);
+    // Points are taken only while the link runs, and a link that is lost is a fault.
+    assert_eq!(silent, ["POINT 1"]);
 }

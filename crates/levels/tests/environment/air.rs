@@ -1,4 +1,4 @@
-//! A small simulated gripper: what the valves of `interface::device::valve` do to opening, force and counts.
+//! The fingers of a gripper that is servoed by air: what the valves do to opening, force and counts.
 
 use interfaces::device::{ADC_FULL_SCALE, GripSensors, valve};
 use rcs_core::tick::TICK_S;
@@ -45,6 +45,8 @@ pub struct Gripper {
     pub late: bool,
     /// There is no air: nothing moves, whatever the valves do.
     pub without_air: bool,
+    /// Patterns of the valves in the order in which they came, without repetitions.
+    pub patterns: Vec<u8>,
     pending: u8,
     random: u64,
 }
@@ -61,6 +63,7 @@ impl Gripper {
             strain: [(310.0, 40.5), (287.0, 39.2)],
             late: false,
             without_air: false,
+            patterns: Vec::new(),
             pending: 0,
             random: seed.wrapping_mul(2).wrapping_add(1),
         }
@@ -68,6 +71,9 @@ impl Gripper {
 
     /// One tick of air.
     pub fn advance(&mut self, bits: u8) {
+        if self.patterns.last() != Some(&bits) {
+            self.patterns.push(bits);
+        }
         if self.without_air {
             return;
         }

@@ -1,0 +1,215 @@
+//! A process with what is around it, tick by tick. The test is its commander.
+
+use std::fmt::Debug;
+
+use interfaces::{
+    CommonMemory, ExternalInputs, Header, for_each_process,
+    process::{Inputs, Process},
+};
+use rcs_core::{Plain, plain::Writer, tick::Tick};
+
+use crate::{coverage, processes};
+
+/// The buffers of a process in common memory.
+pub trait Buffers {
+    type Outputs: Plain + Copy;
+
+    fn outputs(memory: &mut CommonMemory) -> &mut Self::Outputs;
+    fn header(outputs: &mut Self::Outputs) -> &mut Header;
+    /// The number of the command that its status echoes.
+    fn echo(outputs: &Self::Outputs) -> u32;
+    /// The number of the last command of its commander; of Task, whose commander is no process, 0.
+    fn number(memory: &mut CommonMemory) -> u32;
+}
+
+macro_rules! buffers {
+    ($(
+        #[doc = $doc:literal]
+        $id:ident $text:literal {
+            buffers: $field:ident, $outputs:ty;
+            failure: $failure:ident;
+            board: $board:literal;
+            commander: $($commander:ident, $above:ident . $command:ident)?;
+            reads: $reads:expr;
+        }
+    )+) => {
+        $(
+            impl Buffers for processes::$id {
+                type Outputs = $outputs;
+
+                fn outputs(memory: &mut CommonMemory) -> &mut $outputs {
+                    &mut memory.$field
+                }
+
+                fn header(outputs: &mut $outputs) -> &mut Header {
+                    &mut outputs.header
+                }
+
+                fn echo(outputs: &$outputs) -> u32 {
+                    outputs.status.echo
+                }
+
+                fn number(_memory: &mut CommonMemory) -> u32 {
+                    0 $(+ _memory.$above.$command.number)?
+                }
+            }
+        )+
+    };
+}
+
+for_each_process!(buffers);
+
+/// A process that a test commands.
+pub trait Tested<Data>: Buffers + Process<Data, Outputs = <Self as Buffers>::Outputs> + Default {
+    /// A command.
+    type Order: Copy;
+    /// How a command ends.
+    type End: Copy + Debug + PartialEq;
+    /// Ticks in which every command ends.
+    const LONGEST: u64;
+
+    /// The command of its commander with a number.
+    fn order(memory: &mut CommonMemory, order: Self::Order, number: u32);
+    /// How the command that is echoed has ended.
+    fn end(outputs: &<Self as Buffers>::Outputs) -> Option<Self::End>;
+    /// The process has suspended itself until a person goes on.
+    fn is_suspended(_outputs: &<Self as Buffers>::Outputs, _external: &ExternalInputs) -> bool {
+        false
+    }
+    /// What must hold after each tick: of what was written in it, by what was read.
+    fn check(_outputs: &<Self as Buffers>::Outputs, _memory: &CommonMemory, _external: &ExternalInputs) {}
+}
+
+/// What is around a process: devices, and neighbours.
+pub trait World<P: Buffers> {
+    /// What devices say in this tick, and neighbours have written in the tick before.
+    fn sense(&mut self, _tick: Tick, _memory: &mut CommonMemory, _external: &mut ExternalInputs) {}
+    /// Neighbours read what was written `before`, and write in this tick; devices do what the process has written in it.
+    fn act(
+        &mut self,
+        _tick: Tick,
+        _before: &CommonMemory,
+        _after: &mut CommonMemory,
+        _external: &mut ExternalInputs,
+    ) {
+    }
+}
+
+/// Process, buffers, and what is around it.
+#[derive(Clone)]
+pub struct Bench<P, W, Data = ()> {
+    pub process: P,
+    pub memory: CommonMemory,
+    pub external: ExternalInputs,
+    pub world: W,
+    pub data: Data,
+    pub tick: Tick,
+    /// The process is not stepped: its outputs are republished.
+    pub held: bool,
+}
+
+impl<P: Tested<()>, W: World<P>> Bench<P, W> {
+    /// A bench before its first tick.
+    pub fn before(world: W) -> Self {
+        Self::with(world, ())
+    }
+}
+
+impl<P: Tested<Data>, W: World<P>, Data> Bench<P, W, Data> {
+    /// A bench before its first tick, with task data.
+    pub fn with(world: W, data: Data) -> Self {
+        Self {
+            process: P::default(),
+            memory: CommonMemory::default(),
+            external: ExternalInputs::default(),
+            world,
+            data,
+            tick: Tick::BEFORE_START,
+            held: false,
+        }
+    }
+
+    /// The command that follows the last one.
+    pub fn send(&mut self, order: P::Order) {
+        let number = P::number(&mut self.memory) + 1;
+        P::order(&mut self.memory, order, number);
+    }
+
+    /// What the process has written last.
+    pub fn outputs(&mut self) -> <P as Buffers>::Outputs {
+        *P::outputs(&mut self.memory)
+    }
+
+    /// One tick.
+    pub fn step(&mut self) -> <P as Buffers>::Outputs {
+        self.tick = self.tick.next();
+        self.world.sense(self.tick, &mut self.memory, &mut self.external);
+        let (before, mut outputs) = (self.memory, self.outputs());
+        if self.held || P::is_suspended(&outputs, &self.external) {
+            let header = P::header(&mut outputs);
+            (header.stamp, header.republished) = (self.tick, true);
+        } else {
+            let (memory, external, data) = (&before, &self.external, &self.data);
+            self.process.step(&Inputs { tick: self.tick, memory, external, data }, &mut outputs);
+            coverage::note(P::NAME, P::header(&mut outputs));
+            P::check(&outputs, &before, &self.external);
+        }
+        *P::outputs(&mut self.memory) = outputs;
+        self.world.act(self.tick, &before, &mut self.memory, &mut self.external);
+        outputs
+    }
+
+    /// Ticks; what was written in the last one.
+    pub fn wait(&mut self, ticks: u32) -> <P as Buffers>::Outputs {
+        (0..ticks).for_each(|_| {
+            self.step();
+        });
+        self.outputs()
+    }
+
+    /// Ticks until the command has ended, and how.
+    pub fn finish(&mut self) -> P::End {
+        for _ in 0..P::LONGEST {
+            let outputs = self.step();
+            assert_eq!(P::echo(&outputs), P::number(&mut self.memory));
+            if let Some(end) = P::end(&outputs) {
+                return end;
+            }
+        }
+        panic!("no end at tick {}", self.tick);
+    }
+
+    /// A command from its beginning to its end.
+    pub fn execute(&mut self, order: P::Order) -> P::End {
+        self.send(order);
+        self.finish()
+    }
+
+    /// Ticks in which the process is not stepped.
+    pub fn sleep(&mut self, ticks: u32) {
+        self.held = true;
+        self.wait(ticks);
+        self.held = false;
+    }
+
+    pub fn restart(&mut self) {
+        self.process = P::default();
+    }
+
+    /// The process continues from its state as a new one.
+    pub fn restore(&mut self)
+    where
+        P::State: Copy,
+    {
+        let state = *self.process.state();
+        self.restart();
+        self.process.restore(state);
+    }
+
+    /// The bytes of its outputs.
+    pub fn image(&mut self) -> Vec<u8> {
+        let mut bytes = vec![0; <<P as Buffers>::Outputs as Plain>::SIZE];
+        P::outputs(&mut self.memory).encode(&mut Writer::new(&mut bytes));
+        bytes
+    }
+}

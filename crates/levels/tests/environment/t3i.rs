@@ -1,0 +1,140 @@
+//! T3 Interface as Prim sees it: a model that stalls, fails and watches the order of points.
+
+use std::collections::VecDeque;
+
+use geometry::pose::WireFrame;
+use interfaces::{
+    CommonMemory, Header, T3iOutputs,
+    t3i::{Following, LinkFault, ReportCheck, T3iReport, T3iVerb},
+};
+use rcs_core::{
+    handshake::{Arrival, Receiver, successor},
+    tick::Tick,
+};
+
+/// Points that T3I can queue.
+const QUEUE: usize = 4;
+
+/// T3I and everything below it, as far as Prim can see.
+#[derive(Clone, Default)]
+pub struct ModelT3i {
+    pub receiver: Receiver,
+    pub command: T3iVerb,
+    pub queue: VecDeque<WireFrame>,
+    pub output: WireFrame,
+    /// Ticks until the link runs.
+    pub starting: Option<u32>,
+    pub running: bool,
+    pub fault: LinkFault,
+    /// How each start of the link ends; the link runs then if nothing is wrong.
+    pub broken: LinkFault,
+    /// Faults that come by themselves as soon as the link runs again.
+    pub more_faults: u32,
+    /// The controller's DTR is off.
+    pub dtr_off: bool,
+    /// The robot is not where it was sent.
+    pub elsewhere: bool,
+    /// Every frame that went to the robot, without the repetitions.
+    pub path: Vec<WireFrame>,
+    /// The resolvers see this many 0.01 in beside the output.
+    pub off: i32,
+    /// No tick passes for it; its last outputs stand as they are.
+    pub dead: bool,
+    /// It is held; its last outputs are republished.
+    pub held: bool,
+    /// It reads no command, and goes on with the last one.
+    pub deaf: bool,
+    /// The robot has left its path.
+    pub left: bool,
+    /// It is off its path again after each RESTART.
+    pub astray: bool,
+}
+
+impl ModelT3i {
+    pub fn step(&mut self, tick: Tick, memory: &CommonMemory, stalled: bool) -> T3iOutputs {
+        if self.dead {
+            return memory.t3i;
+        }
+        if self.held {
+            let header = Header { stamp: tick, republished: true, ..memory.t3i.header };
+            return T3iOutputs { header, ..memory.t3i };
+        }
+        let command = &memory.prim.t3i;
+        let expected = successor(self.receiver.echo);
+        if !self.deaf && self.receiver.observe(command.number) == Arrival::New {
+            self.command = command.command;
+            match command.command {
+                T3iVerb::Restart => {
+                    (self.fault, self.running, self.starting) = (LinkFault::None, false, Some(7));
+                    self.left = self.astray;
+                    self.queue.clear();
+                }
+                T3iVerb::Point if self.fault != LinkFault::None || self.left => {}
+                T3iVerb::Point => {
+                    assert_eq!(command.number, expected, "a point is missing");
+                    assert!(self.running, "a point before the link runs");
+                    assert!(self.queue.len() < QUEUE, "the queue overruns");
+                    self.queue.push_back(command.frame);
+                }
+                T3iVerb::Pause => {
+                    self.queue.clear();
+                    if self.fault == LinkFault::InvalidCommand {
+                        self.fault = LinkFault::None;
+                    }
+                }
+                T3iVerb::None => panic!("a command without a word"),
+            }
+        }
+        if self.starting.is_some_and(|left| left == 0) {
+            self.starting = None;
+            self.fault = if self.dtr_off { LinkFault::NotResponding } else { self.broken };
+            self.running = self.fault == LinkFault::None;
+        }
+        if self.running && self.more_faults > 0 {
+            (self.fault, self.more_faults) = (LinkFault::Checksum, self.more_faults - 1);
+        }
+        self.starting = self.starting.map(|left| left - 1);
+        let stalled = stalled || memory.prim.header.republished;
+        if self.fault != LinkFault::None {
+            self.running = false;
+            self.queue.clear();
+        }
+        if self.left {
+            self.queue.clear();
+        }
+        if !stalled && let Some(point) = self.queue.pop_front() {
+            self.output = point;
+            self.path.push(point);
+        }
+        self.outputs(tick)
+    }
+
+    fn outputs(&self, tick: Tick) -> T3iOutputs {
+        let mut outputs =
+            T3iOutputs { header: Header { stamp: tick, ..Header::default() }, ..T3iOutputs::default() };
+        let status = &mut outputs.status;
+        status.echo = self.receiver.echo;
+        status.command = self.command;
+        status.fault = self.fault;
+        status.report = match self.queue.len() {
+            _ if self.fault != LinkFault::None || self.left => T3iReport::Error,
+            _ if self.starting.is_some() => T3iReport::Executing,
+            0 => T3iReport::Finished,
+            1 | 2 => T3iReport::Ready,
+            _ => T3iReport::Executing,
+        };
+        status.following = if self.left { Following::OffPath } else { Following::OnPath };
+        status.frame_feedback = self.output;
+        let mut seen = self.output;
+        seen.tool[0] += self.off;
+        status.resolver_frame = Some(seen);
+        status.link_running = self.running;
+        status.controller_ready = !self.dtr_off;
+        status.check = match (self.starting, self.broken) {
+            (None, LinkFault::None) if self.elsewhere => ReportCheck::Elsewhere,
+            (None, LinkFault::None) => ReportCheck::AsSent,
+            _ => ReportCheck::NoReport,
+        };
+        outputs
+    }
+}
