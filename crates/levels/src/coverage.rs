@@ -23,11 +23,6 @@ impl Coverage {
         }));
     }
 
-    /// Take in what another test has covered.
-    pub fn append(&mut self, other: &mut Self) {
-        self.0.append(&mut other.0);
-    }
-
     /// Rows that have not fired, as `GET-OBJECT 3`. Rows that no header ever names are left out: those that
     /// pass on to the table below, and those of EXECUTE that do not refuse. CONFIRM has rows for all processes; its own
     /// tests reach them.

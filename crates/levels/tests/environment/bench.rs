@@ -18,7 +18,7 @@ pub trait Buffers {
     fn header(outputs: &mut Self::Outputs) -> &mut Header;
     /// The number of the command that its status echoes.
     fn echo(outputs: &Self::Outputs) -> u32;
-    /// The number of the last command of its commander; of Task, whose commander is no process, 0.
+    /// The number of the last command of its commander; 0 of Task, whose commander is no process.
     fn number(memory: &mut CommonMemory) -> u32;
 }
 
@@ -70,6 +70,10 @@ pub trait Tested<Data>: Buffers + Process<Data, Outputs = <Self as Buffers>::Out
 
     /// The command of its commander with a number.
     fn order(memory: &mut CommonMemory, order: Self::Order, number: u32);
+    /// The number of the last command, if no process commands this one.
+    fn number_outside(_external: &ExternalInputs) -> u32 {
+        0
+    }
     /// How the command that is echoed has ended.
     fn end(outputs: &<Self as Buffers>::Outputs) -> Option<Self::End>;
     /// The process has suspended itself until a person goes on.
@@ -171,7 +175,8 @@ impl<P: Tested<Data>, W: World<P>, Data> Bench<P, W, Data> {
     pub fn finish(&mut self) -> P::End {
         for _ in 0..P::LONGEST {
             let outputs = self.step();
-            assert_eq!(P::echo(&outputs), P::number(&mut self.memory));
+            let number = P::number(&mut self.memory) + P::number_outside(&self.external);
+            assert_eq!(P::echo(&outputs), number);
             if let Some(end) = P::end(&outputs) {
                 return end;
             }

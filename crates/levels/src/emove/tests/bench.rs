@@ -1,6 +1,6 @@
 //! E-move with doubles of its neighbours, tick by tick. The test is Subtask.
 
-use std::{cell::RefCell, sync::OnceLock};
+use std::sync::OnceLock;
 
 use geometry::{frame::Frame, pose::Pose};
 use interfaces::{
@@ -21,12 +21,7 @@ use super::{
     doubles::{Grip, Jaws, Mishap, Prim, Ring, Vision, World},
     together::Real,
 };
-use crate::{coverage::Coverage, emove::Emove};
-
-thread_local! {
-    /// The rows that have fired in this thread.
-    pub static ROWS: RefCell<Coverage> = RefCell::new(Coverage::default());
-}
+use crate::{coverage, emove::Emove};
 
 /// The task data of the tests.
 pub fn data() -> TaskData<'static> {
@@ -195,7 +190,7 @@ impl Bench {
     }
 
     fn note_row(&self) {
-        ROWS.with_borrow_mut(|rows| rows.note(&self.memory.emove.header));
+        coverage::note(<Emove as Process<TaskData<'_>>>::NAME, &self.memory.emove.header);
     }
 
     pub fn steps(&mut self, ticks: u32) {

@@ -3,13 +3,12 @@
 
 use geometry::pose::Pose;
 use interfaces::{
-    CommonMemory, EmoveOutputs, ExternalInputs, Header, OperatorInputs, PedestalOutputs, Reason,
-    StatusReport,
+    CommonMemory, EmoveOutputs, ExternalInputs, Header, PedestalOutputs, Reason, StatusReport,
+    SubtaskOutputs,
     emove::{EmoveCommand, EmoveVerb, Holding, LocatedObject, ObjectGrip, PlacedObject, Standing},
     grip::Felt,
     pedestal::{PedestalCommand, PedestalReport, PedestalVerb},
-    process::{Inputs, Process},
-    subtask::{SubtaskCommand, SubtaskStatus, SubtaskVerb},
+    subtask::{SubtaskCommand, SubtaskVerb},
 };
 use rcs_core::{
     handshake::{Arrival, Receiver},
@@ -19,7 +18,11 @@ use rcs_core::{
 use taskdata::files::TaskData;
 
 use super::data::data;
-use crate::{coverage::Coverage, places::Missing, subtask::Subtask};
+use crate::{
+    bench::{self, Tested, World},
+    places::Missing,
+    subtask::Subtask,
+};
 
 /// Ticks that a double takes for a command.
 const WORK: u32 = 3;
@@ -241,44 +244,56 @@ impl PedestalDouble {
     }
 }
 
-/// Process, inputs, doubles, and what was seen.
-pub struct Bench<'d> {
-    pub process: Subtask,
-    pub memory: CommonMemory,
-    pub data: TaskData<'d>,
+/// Subtask, and the doubles.
+pub type Bench<'d> = bench::Bench<Subtask, Below, TaskData<'d>>;
+
+pub struct Below {
     pub emove: EmoveDouble,
     pub pedestal: PedestalDouble,
-    pub tick: Tick,
     /// Task writes no buffers.
     pub task_is_lost: bool,
-    /// What a person asks for.
-    pub operator: OperatorInputs,
-    /// Tables and rows that fired.
-    pub rows: Coverage,
+}
+
+impl World<Subtask> for Below {
+    fn act(&mut self, tick: Tick, before: &CommonMemory, after: &mut CommonMemory, _: &mut ExternalInputs) {
+        self.emove.step(tick, &before.subtask.emove);
+        self.pedestal.step(tick, &before.subtask.pedestal);
+        if !self.task_is_lost {
+            after.task.header.stamp = tick;
+        }
+        (after.emove, after.pedestal) = (self.emove.outputs, self.pedestal.outputs);
+    }
+}
+
+impl<'d> Tested<TaskData<'d>> for Subtask {
+    type Order = SubtaskCommand;
+    type End = (StatusReport, Reason);
+    const LONGEST: u64 = 300;
+
+    fn order(memory: &mut CommonMemory, order: SubtaskCommand, number: u32) {
+        memory.task.subtask = SubtaskCommand { number, ..order };
+    }
+
+    fn end(outputs: &SubtaskOutputs) -> Option<(StatusReport, Reason)> {
+        let status = outputs.status;
+        (status.report != StatusReport::Executing).then_some((status.report, status.reason))
+    }
 }
 
 impl Default for Bench<'static> {
     fn default() -> Self {
-        Self::with(data())
+        Self::of(data())
     }
 }
 
 impl<'d> Bench<'d> {
     /// A bench with the parts gripper attached, after one tick in which nothing was commanded.
-    pub fn with(data: TaskData<'d>) -> Self {
-        let mut bench = Self {
-            process: Subtask::default(),
-            memory: CommonMemory::default(),
-            data,
-            emove: EmoveDouble::default(),
-            pedestal: PedestalDouble { part: 255, ..PedestalDouble::default() },
-            tick: Tick::BEFORE_START,
-            task_is_lost: false,
-            operator: OperatorInputs::default(),
-            rows: Coverage::default(),
-        };
-        bench.emove.outputs.status.end_effector_id = Some(1);
-        let status = &mut bench.pedestal.outputs.status;
+    pub fn of(data: TaskData<'d>) -> Self {
+        let pedestal = PedestalDouble { part: 255, ..PedestalDouble::default() };
+        let mut bench =
+            Self::with(Below { emove: EmoveDouble::default(), pedestal, task_is_lost: false }, data);
+        bench.world.emove.outputs.status.end_effector_id = Some(1);
+        let status = &mut bench.world.pedestal.outputs.status;
         (status.felt, status.table_position) = (Felt::Nothing, Some(-200));
         bench.step();
         bench
@@ -294,7 +309,6 @@ impl<'d> Bench<'d> {
         });
         let number = self.memory.task.subtask.number + 1;
         let mut command = SubtaskCommand {
-            number,
             command: verb,
             object: Some(object).filter(|object| !object.is_empty()),
             end_effector_id: self
@@ -316,39 +330,7 @@ impl<'d> Bench<'d> {
             command.pose = poses[0].number;
         }
         self.memory.task.poses = poses;
-        self.memory.task.subtask = command;
-    }
-
-    /// One tick of all.
-    pub fn step(&mut self) -> SubtaskStatus {
-        self.tick = self.tick.next();
-        let mut outputs = self.memory.subtask;
-        let external = ExternalInputs { operator: self.operator, ..ExternalInputs::default() };
-        let inputs = Inputs { tick: self.tick, memory: &self.memory, external: &external, data: &self.data };
-        self.process.step(&inputs, &mut outputs);
-        self.rows.note(&outputs.header);
-        let before = self.memory.subtask;
-        self.emove.step(self.tick, &before.emove);
-        self.pedestal.step(self.tick, &before.pedestal);
-        if !self.task_is_lost {
-            self.memory.task.header.stamp = self.tick;
-        }
-        self.memory.subtask = outputs;
-        self.memory.emove = self.emove.outputs;
-        self.memory.pedestal = self.pedestal.outputs;
-        outputs.status
-    }
-
-    /// Ticks until the command has ended, and how.
-    pub fn finish(&mut self) -> (StatusReport, Reason) {
-        for _ in 0..300 {
-            let status = self.step();
-            assert_eq!(status.echo, self.memory.task.subtask.number);
-            if status.report != StatusReport::Executing {
-                return (status.report, status.reason);
-            }
-        }
-        panic!("no end at tick {}: {:?}", self.tick, self.process);
+        self.send(command);
     }
 
     /// Command and finish.
@@ -359,20 +341,20 @@ impl<'d> Bench<'d> {
         grips: (i32, i32),
         location: &str,
     ) -> (StatusReport, Reason) {
-        self.emove.received.clear();
-        self.pedestal.received.clear();
+        self.world.emove.received.clear();
+        self.world.pedestal.received.clear();
         self.command(verb, object, grips, location);
         self.finish()
     }
 
     /// The words that E-move was sent since the last command began.
     pub fn sent(&self) -> Vec<&'static str> {
-        self.emove.received.iter().map(|command| command.command.text()).collect()
+        self.world.emove.received.iter().map(|command| command.command.text()).collect()
     }
 
     /// The words that the pedestal was sent.
     pub fn sent_to_pedestal(&self) -> Vec<&'static str> {
-        self.pedestal.received.iter().map(|command| command.command.text()).collect()
+        self.world.pedestal.received.iter().map(|command| command.command.text()).collect()
     }
 
     /// An object is held that Subtask has seen grasped with a grip.
@@ -381,7 +363,7 @@ impl<'d> Bench<'d> {
         Self: Default,
     {
         let mut bench = Self::default();
-        bench.emove.outputs.status.end_effector_id = Some(
+        bench.world.emove.outputs.status.end_effector_id = Some(
             bench.data.obj_grips(&Name16::new(object).unwrap()).map_or(1, |grips| grips.endeff_id as u8),
         );
         bench.step();

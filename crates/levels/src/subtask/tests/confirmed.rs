@@ -18,15 +18,15 @@ fn end(
 ) -> (StatusReport, Reason) {
     bench.command(verb, object, grips, location);
     for _ in 0..300 {
-        let status = bench.step();
+        let status = bench.step().status;
         if status.report != StatusReport::Executing {
             return (status.report, status.reason);
         }
-        let ended = bench.emove.outputs.status.report == StatusReport::Done;
+        let ended = bench.world.emove.outputs.status.report == StatusReport::Done;
         if ended && bench.memory.subtask.emove.command == last {
             change(&mut bench);
-            bench.memory.emove = bench.emove.outputs;
-            bench.memory.pedestal = bench.pedestal.outputs;
+            bench.memory.emove = bench.world.emove.outputs;
+            bench.memory.pedestal = bench.world.pedestal.outputs;
         }
     }
     panic!("no end: {:?}", bench.process);
@@ -34,28 +34,28 @@ fn end(
 
 fn holds(bench: &mut Bench<'static>, object: &str, grip: i32) {
     let held = ObjectGrip { object: Name16::clipped(object), grip };
-    bench.emove.outputs.status.held = Holding::Object(held);
+    bench.world.emove.outputs.status.held = Holding::Object(held);
 }
 
 #[test]
 fn goto_is_not_done_elsewhere_or_beside_the_place() {
     let goto = (SubtaskVerb::GotoDest, "", (0, 0), "HOME");
     let error = (StatusReport::Error, Reason::NotAtGoal);
-    let away = |bench: &mut Bench<'static>| bench.emove.outputs.status.at = None;
+    let away = |bench: &mut Bench<'static>| bench.world.emove.outputs.status.at = None;
     assert_eq!(end(Bench::default(), goto, EmoveVerb::MovToLoc, away), error);
-    let beside = |bench: &mut Bench<'static>| bench.emove.outputs.status.offset = Offset::Off;
+    let beside = |bench: &mut Bench<'static>| bench.world.emove.outputs.status.offset = Offset::Off;
     assert_eq!(end(Bench::default(), goto, EmoveVerb::MovToLoc, beside), error);
-    let slight = |bench: &mut Bench<'static>| bench.emove.outputs.status.offset = Offset::Slight;
+    let slight = |bench: &mut Bench<'static>| bench.world.emove.outputs.status.offset = Offset::Slight;
     assert_eq!(end(Bench::default(), goto, EmoveVerb::MovToLoc, slight), DONE);
 }
 
 #[test]
 fn goto_without_resolvers_is_done_and_unconfirmed() {
     let mut bench = Bench::default();
-    bench.emove.outputs.status.offset = Offset::NotSensed;
+    bench.world.emove.outputs.status.offset = Offset::NotSensed;
     assert_eq!(bench.run(SubtaskVerb::GotoDest, "", (0, 0), "HOME"), DONE);
     assert_eq!(bench.memory.subtask.status.unconfirmed, Unconfirmed::Position);
-    bench.emove.outputs.status.offset = Offset::None;
+    bench.world.emove.outputs.status.offset = Offset::None;
     assert_eq!(bench.run(SubtaskVerb::GotoDest, "", (0, 0), "HOME"), DONE);
     assert_eq!(bench.memory.subtask.status.unconfirmed, Unconfirmed::None);
 }
@@ -68,11 +68,11 @@ fn object_is_not_placed_while_something_is_between_the_fingers() {
         (Holding::NotKnown, Reason::HeldNotKnown),
         (Holding::Object(ObjectGrip::default()), Reason::ReleaseNotEnded),
     ] {
-        let change = |bench: &mut Bench<'static>| bench.emove.outputs.status.held = held;
+        let change = |bench: &mut Bench<'static>| bench.world.emove.outputs.status.held = held;
         let ended = end(Bench::grasped("PART", 1), place, EmoveVerb::Release, change);
         assert_eq!(ended, (StatusReport::Error, reason), "{held:?}");
     }
-    let change = |bench: &mut Bench<'static>| bench.emove.outputs.status.placed = None;
+    let change = |bench: &mut Bench<'static>| bench.world.emove.outputs.status.placed = None;
     let ended = end(Bench::grasped("PART", 1), place, EmoveVerb::Release, change);
     assert_eq!(ended, (StatusReport::Error, Reason::ObjectLost), "released nowhere");
 }
@@ -88,7 +88,7 @@ fn release_is_not_done_while_the_object_is_held() {
 #[test]
 fn brought_object_is_not_at_the_place_that_the_robot_has_left() {
     let bring = (SubtaskVerb::MoveObjToDest, "PART", (1, 1), "SAFE");
-    let change = |bench: &mut Bench<'static>| bench.emove.outputs.status.offset = Offset::Off;
+    let change = |bench: &mut Bench<'static>| bench.world.emove.outputs.status.offset = Offset::Off;
     let ended = end(Bench::grasped("PART", 1), bring, EmoveVerb::MovObjTo, change);
     assert_eq!(ended, (StatusReport::Error, Reason::NotAtGoal));
     assert_eq!(end(Bench::grasped("PART", 1), bring, EmoveVerb::MovObjTo, |_| {}), DONE);
@@ -97,7 +97,7 @@ fn brought_object_is_not_at_the_place_that_the_robot_has_left() {
 #[test]
 fn tool_that_is_not_in_the_drum_is_not_inserted() {
     let insert = (SubtaskVerb::InsertTool, "TOOL-1", (1, 1), "");
-    let change = |bench: &mut Bench<'static>| bench.emove.outputs.status.drum = false;
+    let change = |bench: &mut Bench<'static>| bench.world.emove.outputs.status.drum = false;
     let ended = end(Bench::grasped("TOOL-1", 1), insert, EmoveVerb::InsertTool, change);
     assert_eq!(ended, (StatusReport::Error, Reason::NotPrepared));
     let mut bench = Bench::grasped("TOOL-1", 1);
@@ -110,7 +110,7 @@ fn tool_that_is_not_in_the_drum_is_not_inserted() {
 #[test]
 fn part_that_may_have_slid_is_done_and_unconfirmed() {
     let mut bench = Bench::grasped("PART", 1);
-    bench.emove.outputs.status.seat = Seat::NotKnown;
+    bench.world.emove.outputs.status.seat = Seat::NotKnown;
     bench.step();
     for (verb, location) in [
         (SubtaskVerb::GetObject, "PFIXTURE"),
@@ -128,9 +128,9 @@ fn part_that_may_have_slid_is_done_and_unconfirmed() {
 #[test]
 fn gripper_that_the_id_pins_do_not_name_is_not_attached() {
     let mut bench = Bench::default();
-    bench.emove.outputs.status.end_effector_id = Some(1);
+    bench.world.emove.outputs.status.end_effector_id = Some(1);
     assert_eq!(bench.run(SubtaskVerb::GetEndeff, "PART", (1, 1), "PFIXTURE"), DONE);
-    bench.emove.outputs.status.pins = Pins::Differ;
+    bench.world.emove.outputs.status.pins = Pins::Differ;
     bench.step();
     let error = (StatusReport::Error, Reason::PinsFail);
     assert_eq!(bench.run(SubtaskVerb::GetEndeff, "PART", (1, 1), "PFIXTURE"), error);

@@ -14,13 +14,14 @@ use interfaces::{
     subtask::{LocationKind, SubtaskVerb},
 };
 use rcs_core::name::Name16;
+use taskdata::files::TaskData;
 
 use self::{
     bench::{Bench, DONE, Mishap},
     data::without,
 };
-use super::{Subtask, tables::TABLES};
-use crate::{coverage::Coverage, places::LocationKey};
+use super::Subtask;
+use crate::{coverage::silent, places::LocationKey};
 
 fn error(reason: Reason) -> (StatusReport, Reason) {
     (StatusReport::Error, reason)
@@ -35,7 +36,7 @@ fn pose_of(bench: &Bench<'_>, number: u32) -> Option<geometry::pose::Pose> {
 fn a_link_that_fails_while_a_pause_stands_is_reported_and_no_failure() {
     let mut bench = Bench::default();
     assert_eq!(bench.run(SubtaskVerb::Pause, "", (0, 0), ""), DONE);
-    bench.emove.outputs.status.reason = Reason::LinkOff;
+    bench.world.emove.outputs.status.reason = Reason::LinkOff;
     bench.step();
     bench.step();
     let status = bench.memory.subtask.status;
@@ -59,6 +60,7 @@ fn a_wrong_gripper_is_left_in_its_holster_and_the_right_one_fetched() {
     assert_eq!(bench.run(SubtaskVerb::GetEndeff, "CYLINDER", (1, 1), "PFIXTURE"), DONE);
     assert_eq!(bench.sent(), ["MOV-TO-HOL", "QC-DETACH", "MOV-TO-HOL", "QC-ATTACH"]);
     let aims: Vec<_> = bench
+        .world
         .emove
         .received
         .iter()
@@ -68,7 +70,7 @@ fn a_wrong_gripper_is_left_in_its_holster_and_the_right_one_fetched() {
         .collect();
     let (own, wanted) = (("GRIPPER-1", 1, "HOLSTER-R", Some(1)), ("GRIPPER-2", 2, "HOLSTER-L", Some(2)));
     assert_eq!(aims, [own, own, wanted, wanted]);
-    for command in &bench.emove.received {
+    for command in &bench.world.emove.received {
         assert_eq!(command.pose.unwrap() & pose_range::WRITER, pose_range::SUBTASK);
         let locpt = bench.data.locpt(bench.data.locpt_named(&command.location).unwrap()).unwrap();
         let expected = geometry::pose::Pose::from_frame(&locpt.frame);
@@ -81,12 +83,13 @@ fn a_wrong_gripper_is_left_in_its_holster_and_the_right_one_fetched() {
 #[test]
 fn a_bare_robot_goes_to_the_wanted_holster_at_once() {
     let mut bench = Bench::default();
-    bench.emove.outputs.status.end_effector_id = None;
+    bench.world.emove.outputs.status.end_effector_id = None;
     bench.step();
     assert_eq!(bench.run(SubtaskVerb::GetEndeff, "PART", (1, 1), "PFIXTURE"), DONE);
     assert_eq!(bench.sent(), ["MOV-TO-HOL", "QC-ATTACH"]);
     assert!(
         bench
+            .world
             .emove
             .received
             .iter()
@@ -98,7 +101,7 @@ fn a_bare_robot_goes_to_the_wanted_holster_at_once() {
 fn a_gripper_that_holds_something_is_not_left() {
     for held in ["BAR", "CYLINDER"] {
         let mut bench = Bench::default();
-        bench.emove.hold(held, 1);
+        bench.world.emove.hold(held, 1);
         bench.step();
         let end = bench.run(SubtaskVerb::GetEndeff, "CYLINDER", (1, 1), "PFIXTURE");
         assert_eq!(end, error(Reason::AlreadyHolding));
@@ -117,12 +120,12 @@ fn what_goes_wrong_with_an_exchange_is_named() {
         (EmoveVerb::QcAttach, Mishap::Silence, Reason::NeighbourLost),
     ] {
         let mut bench = Bench::default();
-        bench.emove.mishap = Some((verb, mishap));
+        bench.world.emove.mishap = Some((verb, mishap));
         let end = bench.run(SubtaskVerb::GetEndeff, "CYLINDER", (1, 1), "PFIXTURE");
         assert_eq!(end, error(reason), "{verb} {mishap:?}");
-        let sent = bench.emove.received.len();
-        (0..50).for_each(|_| assert_eq!(bench.step().report, StatusReport::Error));
-        assert_eq!(bench.emove.received.len(), sent, "nothing is sent after an error");
+        let sent = bench.world.emove.received.len();
+        (0..50).for_each(|_| assert_eq!(bench.step().status.report, StatusReport::Error));
+        assert_eq!(bench.world.emove.received.len(), sent, "nothing is sent after an error");
     }
 }
 
@@ -130,7 +133,7 @@ fn what_goes_wrong_with_an_exchange_is_named() {
 fn a_gripper_without_a_holster_is_refused_before_anything_moves() {
     for word in ["-o-loc- GRIPPER-1", "-o-loc- GRIPPER-2"] {
         let store = without(&[word]);
-        let mut bench = Bench::with(store.view());
+        let mut bench = Bench::of(store.view());
         let end = bench.run(SubtaskVerb::GetEndeff, "CYLINDER", (1, 1), "PFIXTURE");
         assert_eq!(end, error(Reason::NoHolster));
         assert!(bench.sent().is_empty());
@@ -139,7 +142,7 @@ fn a_gripper_without_a_holster_is_refused_before_anything_moves() {
     let mut bench = Bench::default();
     assert_eq!(bench.run(SubtaskVerb::GetEndeff, "TOOL-1", (1, 1), ""), error(Reason::UnknownGrip));
     let mut bench = Bench::default();
-    bench.emove.outputs.status.end_effector_id = None;
+    bench.world.emove.outputs.status.end_effector_id = None;
     bench.step();
     assert_eq!(bench.run(SubtaskVerb::GetEndeff, "GRIPPER-1", (1, 1), ""), error(Reason::NoHolster));
 }
@@ -150,6 +153,7 @@ fn an_object_is_regripped_on_the_pedestal() {
     assert_eq!(bench.run(SubtaskVerb::FixGrip, "PART", (1, -1), ""), DONE);
     assert_eq!(bench.sent(), ["MOV-OBJ-TO", "RELEASE", "MOV-TO-LOC", "MOV-TO-OBJ", "GRASP-OBJ"]);
     let aims: Vec<_> = bench
+        .world
         .emove
         .received
         .iter()
@@ -157,11 +161,12 @@ fn an_object_is_regripped_on_the_pedestal() {
         .collect();
     let (bring, take) = (("PART", 1, "PEDESTAL"), ("PART", -1, "PEDESTAL"));
     assert_eq!(aims, [bring, bring, ("", 0, "PED-SAFE"), take, take]);
-    for command in bench.emove.received.iter().filter(|c| c.object.is_some()) {
+    for command in bench.world.emove.received.iter().filter(|c| c.object.is_some()) {
         let (id, _) = bench.data.object(&command.object.unwrap(), command.grip).unwrap();
         assert_eq!(command.object_parameters, Some(id.number()));
     }
     let told: Vec<_> = bench
+        .world
         .pedestal
         .received
         .iter()
@@ -176,7 +181,7 @@ fn an_object_is_regripped_on_the_pedestal() {
             (PedestalVerb::Release, 450, 0, 0),
         ]
     );
-    assert!(bench.emove.outputs.status.held.is_held());
+    assert!(bench.world.emove.outputs.status.held.is_held());
     // The goal already holds.
     assert_eq!(bench.run(SubtaskVerb::FixGrip, "PART", (1, -1), ""), DONE);
     assert!(bench.sent().is_empty() && bench.sent_to_pedestal().is_empty());
@@ -196,7 +201,7 @@ fn pedestal_and_robot_do_not_move_into_each_other() {
     let mut bench = Bench::grasped("PART", 1);
     bench.command(SubtaskVerb::FixGrip, "PART", (1, -1), "");
     for _ in 0..200 {
-        let status = bench.step();
+        let status = bench.step().status;
         let robot = bench.memory.emove.status.report == StatusReport::Executing
             || bench.memory.subtask.emove.number != bench.memory.emove.status.echo;
         let pedestal = bench.memory.pedestal.status.report == PedestalReport::Executing
@@ -228,12 +233,16 @@ fn a_pedestal_that_fails_stops_the_robot_with_its_grip_kept() {
             (Mishap::Silence, Reason::PedestalSilent),
         ] {
             let mut bench = Bench::grasped("PART", 1);
-            bench.pedestal.mishap = Some((verb, mishap));
+            bench.world.pedestal.mishap = Some((verb, mishap));
             let end = bench.run(SubtaskVerb::FixGrip, "PART", (1, -1), "");
             assert_eq!(end, error(reason), "{verb} {mishap:?}");
-            (0..50).for_each(|_| assert_eq!(bench.step().report, StatusReport::Error));
-            assert_eq!(bench.emove.received.len(), sent, "{verb}: nothing is sent to the robot after it");
-            assert_eq!(bench.emove.outputs.status.held.is_held(), verb != PedestalVerb::Flip);
+            (0..50).for_each(|_| assert_eq!(bench.step().status.report, StatusReport::Error));
+            assert_eq!(
+                bench.world.emove.received.len(),
+                sent,
+                "{verb}: nothing is sent to the robot after it"
+            );
+            assert_eq!(bench.world.emove.outputs.status.held.is_held(), verb != PedestalVerb::Flip);
         }
     }
 }
@@ -241,11 +250,11 @@ fn a_pedestal_that_fails_stops_the_robot_with_its_grip_kept() {
 #[test]
 fn an_object_that_the_pedestal_does_not_have_is_not_let_go() {
     let mut bench = Bench::grasped("PART", 1);
-    bench.pedestal.part = 0;
+    bench.world.pedestal.part = 0;
     assert_eq!(bench.run(SubtaskVerb::FixGrip, "PART", (1, -1), ""), error(Reason::GraspMissed));
     assert_eq!(bench.sent(), ["MOV-OBJ-TO"]);
     let mut bench = Bench::grasped("PART", 1);
-    bench.pedestal.slips = true;
+    bench.world.pedestal.slips = true;
     assert_eq!(bench.run(SubtaskVerb::FixGrip, "PART", (1, -1), ""), error(Reason::ObjectLost));
     assert_eq!(bench.sent(), ["MOV-OBJ-TO", "RELEASE", "MOV-TO-LOC"]);
 }
@@ -253,12 +262,13 @@ fn an_object_that_the_pedestal_does_not_have_is_not_let_go() {
 #[test]
 fn a_pedestal_that_holds_something_else_is_named_and_nothing_moves() {
     let mut bench = Bench::grasped("PART", 1);
-    (bench.pedestal.outputs.status.felt, bench.pedestal.outputs.status.gripped) = (Felt::Something, true);
+    (bench.world.pedestal.outputs.status.felt, bench.world.pedestal.outputs.status.gripped) =
+        (Felt::Something, true);
     bench.step();
     assert_eq!(bench.run(SubtaskVerb::FixGrip, "PART", (1, -1), ""), error(Reason::PedestalHoldsOther));
     assert!(bench.sent().is_empty());
     // What the robot holds is asked for first.
-    bench.emove.outputs.status.held = Holding::NotKnown;
+    bench.world.emove.outputs.status.held = Holding::NotKnown;
     bench.step();
     assert_eq!(bench.run(SubtaskVerb::FixGrip, "PART", (1, -1), ""), error(Reason::HeldNotKnown));
 }
@@ -271,20 +281,20 @@ fn an_object_that_the_robot_loses_is_noticed() {
         (EmoveVerb::MovToObj, Mishap::Error(Reason::NoApproach), Reason::NoApproach),
     ] {
         let mut bench = Bench::grasped("PART", 1);
-        bench.emove.mishap = Some((verb, mishap));
+        bench.world.emove.mishap = Some((verb, mishap));
         assert_eq!(bench.run(SubtaskVerb::FixGrip, "PART", (1, -1), ""), error(reason));
     }
     // While the pedestal prepares, and while it lets go.
     for (verb, sent) in [(PedestalVerb::PreGrip, 0), (PedestalVerb::Release, 5)] {
         let mut bench = Bench::grasped("PART", 1);
         bench.command(SubtaskVerb::FixGrip, "PART", (1, -1), "");
-        bench.emove.received.clear();
+        bench.world.emove.received.clear();
         while bench.memory.subtask.pedestal.command != verb {
             bench.step();
         }
-        bench.emove.hold("", 0);
+        bench.world.emove.hold("", 0);
         assert_eq!(bench.finish(), error(Reason::ObjectLost));
-        assert_eq!(bench.emove.received.len(), sent);
+        assert_eq!(bench.world.emove.received.len(), sent);
     }
 }
 
@@ -296,13 +306,13 @@ fn a_regrip_needs_the_object_its_grips_and_its_pedestal_data() {
     assert_eq!(bench.run(SubtaskVerb::FixGrip, "BAR", (1, 2), ""), error(Reason::NoPedestalData));
     assert_eq!(bench.run(SubtaskVerb::FixGrip, "PART", (1, 7), ""), error(Reason::UnknownGrip));
     let store = without(&["-pt-  PED-SAFE"]);
-    let mut bench = Bench::with(store.view());
+    let mut bench = Bench::of(store.view());
     assert_eq!(bench.run(SubtaskVerb::FixGrip, "PART", (1, -1), ""), error(Reason::UnknownLocation));
     // Held with a grip that is neither that of the source nor that of the destination.
     let mut bench = Bench::grasped("PART", 2);
     assert_eq!(bench.run(SubtaskVerb::FixGrip, "PART", (1, -1), ""), error(Reason::RegripNeeded));
     // Another object is held.
-    bench.emove.hold("BAR", 1);
+    bench.world.emove.hold("BAR", 1);
     bench.step();
     assert_eq!(bench.run(SubtaskVerb::FixGrip, "PART", (1, -1), ""), error(Reason::NothingHeld));
 }
@@ -316,7 +326,7 @@ fn an_object_is_placed_only_in_the_grip_of_the_destination() {
         assert_eq!(bench.run(verb, "PART", (1, 1), "PFIXTURE"), DONE);
         // E-move says how the object was taken, also to a Subtask that is new.
         let mut bench = Bench::grasped("PART", 1);
-        bench.process = Subtask::default();
+        bench.restart();
         bench.memory.subtask = SubtaskOutputs::default();
         bench.step();
         assert_eq!(bench.run(verb, "PART", (1, 2), "PFIXTURE"), error(Reason::RegripNeeded));
@@ -337,7 +347,7 @@ fn the_tool_commands_go_down_with_the_transfer_location() {
         let mut bench = if held { Bench::grasped("TOOL-1", 1) } else { Bench::default() };
         assert_eq!(bench.run(verb, "TOOL-1", (1, 1), ""), DONE);
         assert_eq!(bench.sent(), [word]);
-        let command = bench.emove.received[0];
+        let command = bench.world.emove.received[0];
         assert_eq!(
             (command.object.unwrap_or_default().as_str(), command.location.as_str()),
             ("TOOL-1", "TOOL-TRNS")
@@ -387,7 +397,7 @@ fn what_goes_wrong_with_a_tool_is_named() {
         ),
     ] {
         let mut bench = hold(held);
-        bench.emove.mishap = Some((emove, mishap));
+        bench.world.emove.mishap = Some((emove, mishap));
         assert_eq!(bench.run(verb, "TOOL-1", (1, 1), ""), error(reason), "{verb}");
     }
     for verb in [SubtaskVerb::InsertTool, SubtaskVerb::ReleaseTool, SubtaskVerb::RemoveTool] {
@@ -400,7 +410,7 @@ fn what_goes_wrong_with_a_tool_is_named() {
     assert_eq!(bench.sent(), ["ACQUIRE-TOOL"], "whether it is held in the drum, E-move senses");
     assert_eq!(bench.run(SubtaskVerb::AcquireTool, "PART", (1, 1), ""), error(Reason::AlreadyHolding));
     let store = without(&["-pt-  TOOL-TRNS", "TRNS-TOOLS"]);
-    let mut bench = Bench::with(store.view());
+    let mut bench = Bench::of(store.view());
     assert_eq!(bench.run(SubtaskVerb::AcquireTool, "TOOL-1", (1, 1), ""), error(Reason::UnknownLocation));
 }
 
@@ -411,7 +421,7 @@ fn an_object_is_found_by_vision_if_the_data_ask_for_it() {
     assert_eq!(bench.sent(), ["MOV-TO-VU", "LOCATE-OBJ", "MOV-TO-OBJ", "GRASP-OBJ"]);
     let (told, bar) = (bench.memory.task.subtask, Name16::new("BAR").unwrap());
     let place = LocationKey::of(&told).place(told.location_kind);
-    for command in &bench.emove.received {
+    for command in &bench.world.emove.received {
         assert_eq!(
             (command.location_kind, command.location_record),
             (LocationKind::Point, told.location_record)
@@ -424,11 +434,11 @@ fn an_object_is_found_by_vision_if_the_data_ask_for_it() {
     let end = bench.run(SubtaskVerb::GetObject, "PART", (1, 1), "PFIXTURE");
     assert_eq!(end, error(Reason::AlreadyHolding));
     let mut bench = Bench::default();
-    bench.emove.mishap = Some((EmoveVerb::LocateObj, Mishap::Error(Reason::NothingSeen)));
+    bench.world.emove.mishap = Some((EmoveVerb::LocateObj, Mishap::Error(Reason::NothingSeen)));
     let end = bench.run(SubtaskVerb::GetObject, "BAR", (1, 1), "UNIT_1");
     assert_eq!(end, error(Reason::NothingSeen));
     let mut bench = Bench::default();
-    bench.emove.mishap = Some((EmoveVerb::GraspObj, Mishap::NoEffect));
+    bench.world.emove.mishap = Some((EmoveVerb::GraspObj, Mishap::NoEffect));
     let end = bench.run(SubtaskVerb::GetObject, "PART", (1, 1), "PFIXTURE");
     assert_eq!(end, error(Reason::GraspMissed));
     assert_eq!(bench.sent(), ["MOV-TO-OBJ", "GRASP-OBJ"]);
@@ -444,7 +454,7 @@ fn each_other_command_is_its_elemental_moves() {
         assert_eq!(bench.sent(), ["MOV-TO-LOC"]);
     }
     assert_eq!(bench.run(SubtaskVerb::Position, "PART", (0, -1), "PFIXTURE"), DONE);
-    assert_eq!((bench.sent(), bench.emove.received[0].grip), (vec!["MOV-TO-OBJ"], -1));
+    assert_eq!((bench.sent(), bench.world.emove.received[0].grip), (vec!["MOV-TO-OBJ"], -1));
     assert_eq!(bench.run(SubtaskVerb::Position, "", (0, 0), "SAFE"), DONE);
     assert_eq!(bench.sent(), ["MOV-TO-LOC"]);
     assert_eq!(bench.run(SubtaskVerb::Release, "PART", (1, 1), ""), DONE);
@@ -458,7 +468,7 @@ fn each_other_command_is_its_elemental_moves() {
 fn an_object_that_is_lost_on_the_way_is_noticed() {
     for verb in [SubtaskVerb::PlaceObj, SubtaskVerb::MoveObjToDest] {
         let mut bench = Bench::grasped("PART", 1);
-        bench.emove.mishap = Some((EmoveVerb::MovObjTo, Mishap::Loss));
+        bench.world.emove.mishap = Some((EmoveVerb::MovObjTo, Mishap::Loss));
         assert_eq!(bench.run(verb, "PART", (1, 1), "PFIXTURE"), error(Reason::ObjectLost));
     }
 }
@@ -474,7 +484,7 @@ fn an_error_of_e_move_is_passed_up_by_every_command() {
         (SubtaskVerb::Pause, EmoveVerb::Pause, ""),
     ] {
         let mut bench = Bench::grasped("PART", 1);
-        bench.emove.mishap = Some((emove, Mishap::Error(Reason::NotAtGoal)));
+        bench.world.emove.mishap = Some((emove, Mishap::Error(Reason::NotAtGoal)));
         assert_eq!(bench.run(verb, object, (1, 1), "SAFE"), error(Reason::NotAtGoal), "{verb}");
     }
 }
@@ -482,9 +492,9 @@ fn an_error_of_e_move_is_passed_up_by_every_command() {
 #[test]
 fn a_pause_stops_a_pedestal_that_was_told_to_move() {
     let mut bench = Bench::grasped("PART", 1);
-    bench.pedestal.mishap = Some((PedestalVerb::Flip, Mishap::Hang));
+    bench.world.pedestal.mishap = Some((PedestalVerb::Flip, Mishap::Hang));
     bench.command(SubtaskVerb::FixGrip, "PART", (1, -1), "");
-    (0..100).for_each(|_| assert_eq!(bench.step().report, StatusReport::Executing));
+    (0..100).for_each(|_| assert_eq!(bench.step().status.report, StatusReport::Executing));
     assert_eq!(bench.run(SubtaskVerb::Pause, "", (0, 0), ""), DONE);
     assert_eq!((bench.sent(), bench.sent_to_pedestal()), (vec!["E-PAUSE"], vec!["PAUSE"]));
     assert_eq!(bench.run(SubtaskVerb::Pause, "", (0, 0), ""), DONE);
@@ -494,23 +504,23 @@ fn a_pause_stops_a_pedestal_that_was_told_to_move() {
 #[test]
 fn the_joystick_is_reported_as_long_as_it_is_on() {
     let mut bench = Bench::default();
-    bench.emove.mishap = Some((EmoveVerb::MovToLoc, Mishap::Special(Reason::JoystickOn)));
+    bench.world.emove.mishap = Some((EmoveVerb::MovToLoc, Mishap::Special(Reason::JoystickOn)));
     let end = bench.run(SubtaskVerb::GotoDest, "", (0, 0), "SAFE");
     assert_eq!(end, (StatusReport::JoystickOn, Reason::JoystickOn));
-    (0..20).for_each(|_| assert_eq!(bench.step().report, StatusReport::JoystickOn));
-    bench.emove.outputs.status.report = StatusReport::Done;
+    (0..20).for_each(|_| assert_eq!(bench.step().status.report, StatusReport::JoystickOn));
+    bench.world.emove.outputs.status.report = StatusReport::Done;
     bench.step();
-    let status = bench.step();
+    let status = bench.step().status;
     assert_eq!((status.report, status.reason), (StatusReport::Error, Reason::JoystickOn));
     // Also while no command is executed.
-    bench.emove.mishap = None;
+    bench.world.emove.mishap = None;
     assert_eq!(bench.run(SubtaskVerb::GotoDest, "", (0, 0), "SAFE"), DONE);
-    bench.emove.outputs.status.report = StatusReport::JoystickOn;
+    bench.world.emove.outputs.status.report = StatusReport::JoystickOn;
     bench.step();
-    assert_eq!(bench.step().report, StatusReport::JoystickOn);
-    bench.emove.outputs.status.report = StatusReport::Done;
+    assert_eq!(bench.step().status.report, StatusReport::JoystickOn);
+    bench.world.emove.outputs.status.report = StatusReport::Done;
     bench.step();
-    assert_eq!(bench.step().report, StatusReport::Done);
+    assert_eq!(bench.step().status.report, StatusReport::Done);
 }
 
 #[test]
@@ -518,17 +528,17 @@ fn a_restarted_subtask_executes_nothing_old() {
     let mut bench = Bench::default();
     bench.command(SubtaskVerb::GotoDest, "", (0, 0), "SAFE");
     bench.step();
-    bench.process = Subtask::default();
+    bench.restart();
     assert_eq!(bench.finish(), error(Reason::Restarted));
-    let sent = bench.emove.received.len();
-    (0..20).for_each(|_| assert_eq!(bench.step().reason, Reason::Restarted));
-    assert!(bench.emove.received.len() <= sent + 1);
+    let sent = bench.world.emove.received.len();
+    (0..20).for_each(|_| assert_eq!(bench.step().status.reason, Reason::Restarted));
+    assert!(bench.world.emove.received.len() <= sent + 1);
 }
 
 #[test]
 fn where_the_robot_is_and_what_it_holds_are_passed_up() {
     let mut bench = Bench::grasped("PART", 1);
-    bench.emove.outputs.status.reference_pose = Some(0x8300_0007);
+    bench.world.emove.outputs.status.reference_pose = Some(0x8300_0007);
     assert_eq!(bench.run(SubtaskVerb::MoveObjToDest, "PART", (1, 1), "SAFE"), DONE);
     let status = bench.memory.subtask.status;
     assert_eq!(status.reference_pose, Some(0x8300_0007));
@@ -539,151 +549,37 @@ fn where_the_robot_is_and_what_it_holds_are_passed_up() {
     assert_eq!(status.end_effector_id, Some(1));
 }
 
-/// Rows that the scenarios above fire, played again in one test.
-fn all_rows() -> Coverage {
-    let mut rows = Coverage::default();
-    let mut play = |bench: &mut Bench<'_>| {
-        rows.append(&mut bench.rows);
-    };
-    let loss = |verb| Some((verb, Mishap::Loss));
-    let fails = |verb| Some((verb, Mishap::Error(Reason::NotAtGoal)));
-    let none = |verb| Some((verb, Mishap::NoEffect));
-    let e = SubtaskVerb::GetEndeff;
-    let mut restarted = Bench::default();
-    restarted.command(e, "PART", (1, 1), "");
-    restarted.process = Subtask::default();
-    restarted.finish();
-    play(&mut restarted);
-    let mut lost = recovery::pictures_lost();
-    lost.finish();
-    play(&mut lost);
-
-    // Command, object, grips, location; held object and its grip; what goes wrong in E-move.
-    type Case = (
-        SubtaskVerb,
-        &'static str,
-        (i32, i32),
-        &'static str,
-        (&'static str, i32),
-        Option<(EmoveVerb, Mishap)>,
-    );
-    let cases: &[Case] = &[
-        (SubtaskVerb::None, "", (0, 0), "", ("", 0), None),
-        (SubtaskVerb::Pause, "", (0, 0), "", ("", 0), None),
-        (SubtaskVerb::Pause, "", (0, 0), "", ("", 0), fails(EmoveVerb::Pause)),
-        (e, "PART", (1, 1), "", ("", 0), None),
-        (e, "CYLINDER", (1, 1), "", ("PART", 1), None),
-        (e, "CYLINDER", (1, 1), "", ("", 0), None),
-        (e, "CYLINDER", (1, 1), "", ("", 0), none(EmoveVerb::QcDetach)),
-        (e, "CYLINDER", (1, 1), "", ("", 0), none(EmoveVerb::QcAttach)),
-        (e, "CYLINDER", (1, 1), "", ("", 0), Some((EmoveVerb::QcAttach, Mishap::OtherGripper(3)))),
-        (e, "CYLINDER", (1, 1), "", ("", 0), fails(EmoveVerb::MovToHol)),
-        (SubtaskVerb::GetObject, "BAR", (1, 1), "UNIT_1", ("", 0), None),
-        (SubtaskVerb::GetObject, "BAR", (1, 1), "UNIT_1", ("BAR", 1), None),
-        (SubtaskVerb::GetObject, "BAR", (1, 1), "UNIT_1", ("PART", 1), None),
-        (SubtaskVerb::GetObject, "BAR", (1, 1), "UNIT_1", ("", 0), none(EmoveVerb::GraspObj)),
-        (SubtaskVerb::GetObject, "BAR", (1, 1), "UNIT_1", ("", 0), fails(EmoveVerb::MovToVu)),
-        (SubtaskVerb::FixGrip, "PART", (1, -1), "", ("", 0), None),
-        (SubtaskVerb::FixGrip, "PART", (1, -1), "", ("PART", -1), None),
-        (SubtaskVerb::FixGrip, "PART", (1, -1), "", ("PART", 2), None),
-        (SubtaskVerb::FixGrip, "PART", (1, -1), "", ("PART", 1), None),
-        (SubtaskVerb::FixGrip, "PART", (1, -1), "", ("PART", 1), loss(EmoveVerb::MovObjTo)),
-        (SubtaskVerb::FixGrip, "PART", (1, -1), "", ("PART", 1), none(EmoveVerb::GraspObj)),
-        (SubtaskVerb::FixGrip, "PART", (1, -1), "", ("PART", 1), fails(EmoveVerb::MovToLoc)),
-        (SubtaskVerb::PlaceObj, "PART", (1, 1), "SAFE", ("PART", 1), None),
-        (SubtaskVerb::PlaceObj, "PART", (1, 2), "SAFE", ("PART", 1), None),
-        (SubtaskVerb::PlaceObj, "PART", (1, 1), "SAFE", ("", 0), None),
-        (SubtaskVerb::PlaceObj, "PART", (1, 1), "SAFE", ("PART", 1), loss(EmoveVerb::MovObjTo)),
-        (SubtaskVerb::PlaceObj, "PART", (1, 1), "SAFE", ("PART", 1), fails(EmoveVerb::Release)),
-        (SubtaskVerb::MoveObjToDest, "PART", (1, 1), "SAFE", ("PART", 1), None),
-        (SubtaskVerb::MoveObjToDest, "PART", (1, 2), "SAFE", ("PART", 1), None),
-        (SubtaskVerb::MoveObjToDest, "PART", (1, 1), "SAFE", ("", 0), None),
-        (SubtaskVerb::MoveObjToDest, "PART", (1, 1), "SAFE", ("PART", 1), loss(EmoveVerb::MovObjTo)),
-        (SubtaskVerb::MoveObjToDest, "PART", (1, 1), "SAFE", ("PART", 1), fails(EmoveVerb::MovObjTo)),
-        (SubtaskVerb::GotoDest, "", (0, 0), "SAFE", ("", 0), None),
-        (SubtaskVerb::GotoEndpt, "", (0, 0), "SAFE", ("", 0), fails(EmoveVerb::MovToLoc)),
-        (SubtaskVerb::Position, "PART", (1, 1), "SAFE", ("", 0), None),
-        (SubtaskVerb::Position, "", (0, 0), "SAFE", ("", 0), None),
-        (SubtaskVerb::Position, "", (0, 0), "SAFE", ("", 0), fails(EmoveVerb::MovToLoc)),
-        (SubtaskVerb::Release, "PART", (1, 1), "", ("PART", 1), None),
-        (SubtaskVerb::Release, "PART", (1, 1), "", ("PART", 1), fails(EmoveVerb::Release)),
-        (SubtaskVerb::InsertTool, "TOOL-1", (1, 1), "", ("TOOL-1", 1), None),
-        (SubtaskVerb::InsertTool, "TOOL-1", (1, 1), "", ("", 0), None),
-        (SubtaskVerb::InsertTool, "TOOL-1", (1, 1), "", ("TOOL-1", 1), loss(EmoveVerb::InsertTool)),
-        (SubtaskVerb::InsertTool, "TOOL-1", (1, 1), "", ("TOOL-1", 1), fails(EmoveVerb::InsertTool)),
-        (SubtaskVerb::ReleaseTool, "TOOL-1", (1, 1), "", ("TOOL-1", 1), None),
-        (SubtaskVerb::ReleaseTool, "TOOL-1", (1, 1), "", ("", 0), None),
-        (SubtaskVerb::ReleaseTool, "TOOL-1", (1, 1), "", ("TOOL-1", 1), fails(EmoveVerb::ReleaseTool)),
-        (SubtaskVerb::AcquireTool, "TOOL-1", (1, 1), "", ("TOOL-1", 1), None),
-        (SubtaskVerb::AcquireTool, "TOOL-1", (1, 1), "", ("PART", 1), None),
-        (SubtaskVerb::AcquireTool, "TOOL-1", (1, 1), "", ("", 0), None),
-        (SubtaskVerb::AcquireTool, "TOOL-1", (1, 1), "", ("", 0), none(EmoveVerb::AcquireTool)),
-        (SubtaskVerb::AcquireTool, "TOOL-1", (1, 1), "", ("", 0), fails(EmoveVerb::AcquireTool)),
-        (SubtaskVerb::RemoveTool, "TOOL-1", (1, 1), "", ("TOOL-1", 1), None),
-        (SubtaskVerb::RemoveTool, "TOOL-1", (1, 1), "", ("", 0), None),
-        (SubtaskVerb::RemoveTool, "TOOL-1", (1, 1), "", ("TOOL-1", 1), loss(EmoveVerb::RemoveTool)),
-        (SubtaskVerb::RemoveTool, "TOOL-1", (1, 1), "", ("TOOL-1", 1), fails(EmoveVerb::RemoveTool)),
-    ];
-    for (verb, object, grips, location, (held, grip), mishap) in cases {
-        let mut bench = if held.is_empty() { Bench::default() } else { Bench::grasped(held, *grip) };
-        bench.emove.mishap = *mishap;
-        bench.run(*verb, object, *grips, location);
-        bench.step();
-        play(&mut bench);
-    }
-    let mut bench = Bench::default();
-    bench.emove.outputs.status.end_effector_id = None;
-    bench.step();
-    bench.run(e, "PART", (1, 1), "");
-    play(&mut bench);
-    // The joystick ends a command; the pedestal fails, loses the object, or the robot does while it moves.
-    let mut bench = Bench::default();
-    bench.emove.mishap = Some((EmoveVerb::MovToLoc, Mishap::Special(Reason::JoystickOn)));
-    bench.run(SubtaskVerb::GotoDest, "", (0, 0), "SAFE");
-    bench.step();
-    play(&mut bench);
-    for mishap in [Mishap::Special(Reason::None), Mishap::Error(Reason::None), Mishap::Silence] {
-        let mut bench = Bench::grasped("PART", 1);
-        bench.pedestal.mishap = Some((PedestalVerb::Grip, mishap));
-        bench.run(SubtaskVerb::FixGrip, "PART", (1, -1), "");
-        play(&mut bench);
-    }
-    for (part, slips) in [(0, false), (255, true)] {
-        let mut bench = Bench::grasped("PART", 1);
-        (bench.pedestal.part, bench.pedestal.slips) = (part, slips);
-        bench.run(SubtaskVerb::FixGrip, "PART", (1, -1), "");
-        play(&mut bench);
-    }
-    for verb in [PedestalVerb::PreGrip, PedestalVerb::Release] {
-        let mut bench = Bench::grasped("PART", 1);
-        bench.command(SubtaskVerb::FixGrip, "PART", (1, -1), "");
-        while bench.memory.subtask.pedestal.command != verb {
-            bench.step();
-        }
-        bench.emove.hold("", 0);
-        bench.finish();
-        play(&mut bench);
-    }
-    // Refused.
-    for (lacking, verb, object, grips) in [
-        ("", SubtaskVerb::FixGrip, "", (1, -1)),
-        ("", SubtaskVerb::FixGrip, "BAR", (1, 2)),
-        ("", SubtaskVerb::FixGrip, "PART", (1, 7)),
-        ("-pt-  PED-SAFE", SubtaskVerb::FixGrip, "PART", (1, -1)),
-        ("-o-loc- GRIPPER-1", e, "CYLINDER", (1, 1)),
-    ] {
-        let lacking: Vec<_> = Some(lacking).into_iter().filter(|word| !word.is_empty()).collect();
-        let store = without(&lacking);
-        let mut bench = Bench::with(store.view());
-        bench.run(verb, object, grips, "");
-        play(&mut bench);
-    }
-    recovery::all_rows(&mut rows);
-    rows
-}
-
 #[test]
 fn every_row_of_every_table_fires() {
+    const SCENARIOS: &[fn()] = &[
+        a_link_that_fails_while_a_pause_stands_is_reported_and_no_failure,
+        the_right_gripper_is_not_fetched,
+        a_wrong_gripper_is_left_in_its_holster_and_the_right_one_fetched,
+        a_bare_robot_goes_to_the_wanted_holster_at_once,
+        a_gripper_that_holds_something_is_not_left,
+        what_goes_wrong_with_an_exchange_is_named,
+        a_gripper_without_a_holster_is_refused_before_anything_moves,
+        an_object_is_regripped_on_the_pedestal,
+        the_cycle_count_of_a_pedestal_command_is_its_tick,
+        pedestal_and_robot_do_not_move_into_each_other,
+        a_pedestal_that_fails_stops_the_robot_with_its_grip_kept,
+        an_object_that_the_pedestal_does_not_have_is_not_let_go,
+        a_pedestal_that_holds_something_else_is_named_and_nothing_moves,
+        an_object_that_the_robot_loses_is_noticed,
+        a_regrip_needs_the_object_its_grips_and_its_pedestal_data,
+        an_object_is_placed_only_in_the_grip_of_the_destination,
+        the_tool_commands_go_down_with_the_transfer_location,
+        what_goes_wrong_with_a_tool_is_named,
+        an_object_is_found_by_vision_if_the_data_ask_for_it,
+        each_other_command_is_its_elemental_moves,
+        an_object_that_is_lost_on_the_way_is_noticed,
+        an_error_of_e_move_is_passed_up_by_every_command,
+        a_pause_stops_a_pedestal_that_was_told_to_move,
+        the_joystick_is_reported_as_long_as_it_is_on,
+        a_restarted_subtask_executes_nothing_old,
+        where_the_robot_is_and_what_it_holds_are_passed_up,
+    ];
+    let silent = silent::<Subtask, TaskData<'_>>(&[SCENARIOS, recovery::SCENARIOS].concat());
     // The locations that Subtask names itself are location points, which need neither object nor sector.
-    assert_eq!(all_rows().missing(TABLES), ["ACCEPT 8", "ACCEPT 9", "ACCEPT 10", "ACCEPT 11", "ACCEPT 12"]);
+    assert_eq!(silent, ["ACCEPT 8", "ACCEPT 9", "ACCEPT 10", "ACCEPT 11", "ACCEPT 12"]);
 }

@@ -16,7 +16,31 @@ use super::{
     bench::{Bench, DONE, Mishap},
     error,
 };
-use crate::{coverage::Coverage, subtask::Subtask};
+
+pub(super) const SCENARIOS: &[fn()] = &[
+    a_new_command_stops_what_is_under_way_before_it_is_answered,
+    a_stop_that_the_box_has_ended_is_not_waited_for_again,
+    a_restarted_subtask_stops_what_it_had_commanded,
+    without_task_everything_stops,
+    an_interrupted_regrip_goes_on,
+    a_table_that_was_stopped_half_way_turns_by_what_is_left,
+    while_the_part_is_in_the_pedestal_nothing_else_is_done,
+    a_regrip_ends_from_every_state_whether_the_world_obeys_or_ignores,
+    an_exchange_that_was_interrupted_is_finished_first,
+    what_is_held_and_not_known_is_neither_taken_nor_placed,
+    what_counts_as_held_is_grasped_again_in_its_grip,
+    an_object_that_is_placed_is_not_placed_again,
+    what_vision_has_found_is_not_looked_for_again,
+    object_that_may_have_slid_is_released_and_located_again_where_pictures_are_taken,
+    pictures_that_are_lost_on_the_way_are_taken_again_before_anything_is_grasped,
+    what_belongs_to_one_sector_does_not_count_for_another,
+    fingers_that_have_let_go_are_led_out_of_the_drum,
+    an_interrupted_grasp_of_a_tool_is_made_again,
+    a_pause_waits_for_robot_and_pedestal,
+    a_person_takes_a_part_with_the_pedestal_turns_and_releases_it,
+    orders_of_a_person_are_refused_while_subtask_or_robot_are_at_the_pedestal,
+    a_person_opens_the_hand_on_a_part_that_the_robot_grips,
+];
 
 /// FIX-GRIP of the part from grip 1 to grip -1.
 fn fix(bench: &mut Bench<'_>) -> (StatusReport, Reason) {
@@ -45,9 +69,7 @@ fn a_new_command_stops_what_is_under_way_before_it_is_answered() {
         for ticks in 1..60 {
             let mut bench = Bench::grasped("PART", 1);
             bench.command(SubtaskVerb::FixGrip, "PART", (1, -1), "");
-            for _ in 0..ticks {
-                bench.step();
-            }
+            bench.wait(ticks);
             bench.command(verb, object, (1, 2), location);
             let (end, under_way) = (bench.finish(), is_under_way(&bench));
             assert!(!under_way, "{verb} at tick {ticks} ends with {end:?} while something moves");
@@ -62,15 +84,13 @@ fn a_new_command_stops_what_is_under_way_before_it_is_answered() {
 fn a_stop_that_the_box_has_ended_is_not_waited_for_again() {
     let mut bench = Bench::grasped("PART", 1);
     bench.command(SubtaskVerb::GotoDest, "", (0, 0), "SAFE");
-    (0..3).for_each(|_| {
-        bench.step();
-    });
-    bench.emove.mishap = Some((EmoveVerb::Pause, Mishap::Special(Reason::JoystickOn)));
+    bench.wait(3);
+    bench.world.emove.mishap = Some((EmoveVerb::Pause, Mishap::Special(Reason::JoystickOn)));
     bench.command(SubtaskVerb::GotoDest, "", (0, 0), "HOME");
-    while bench.emove.outputs.status.report != StatusReport::JoystickOn {
+    while bench.world.emove.outputs.status.report != StatusReport::JoystickOn {
         bench.step();
     }
-    bench.emove.mishap = None;
+    bench.world.emove.mishap = None;
     while bench.sent().last() != Some(&EmoveVerb::MovToLoc.text()) {
         bench.step();
     }
@@ -85,14 +105,10 @@ fn a_restarted_subtask_stops_what_it_had_commanded() {
     for ticks in 1..60 {
         let mut bench = Bench::grasped("PART", 1);
         bench.command(SubtaskVerb::FixGrip, "PART", (1, -1), "");
-        for _ in 0..ticks {
-            bench.step();
-        }
-        bench.process = Subtask::default();
+        bench.wait(ticks);
+        bench.restart();
         bench.finish();
-        (0..10).for_each(|_| {
-            bench.step();
-        });
+        bench.wait(10);
         assert!(!is_under_way(&bench), "tick {ticks}");
         assert_eq!(bench.memory.subtask.status.reason, Reason::Restarted);
     }
@@ -107,7 +123,7 @@ fn without_task_everything_stops() {
         let status = bench.memory.subtask.status;
         let ends = [(StatusReport::Error, Reason::NeighbourLost), (StatusReport::Done, Reason::None)];
         assert!(ends.contains(&(status.report, status.reason)), "tick {ticks}: {status:?}");
-        bench.task_is_lost = false;
+        bench.world.task_is_lost = false;
         bench.step();
         let again = bench.run(SubtaskVerb::FixGrip, "PART", (1, -1), "");
         assert_eq!(again, (StatusReport::Done, Reason::None), "tick {ticks}");
@@ -118,13 +134,9 @@ fn without_task_everything_stops() {
 fn without_task_after(ticks: u32) -> Bench<'static> {
     let mut bench = Bench::grasped("PART", 1);
     bench.command(SubtaskVerb::FixGrip, "PART", (1, -1), "");
-    (0..ticks).for_each(|_| {
-        bench.step();
-    });
-    bench.task_is_lost = true;
-    (0..20).for_each(|_| {
-        bench.step();
-    });
+    bench.wait(ticks);
+    bench.world.task_is_lost = true;
+    bench.wait(20);
     bench
 }
 
@@ -134,15 +146,11 @@ fn an_interrupted_regrip_goes_on() {
         for ticks in 1..80 {
             let mut bench = Bench::grasped("PART", 1);
             bench.command(SubtaskVerb::FixGrip, "PART", (1, -1), "");
-            for _ in 0..ticks {
-                bench.step();
-            }
+            bench.wait(ticks);
             if restart {
-                bench.process = Subtask::default();
+                bench.restart();
                 bench.finish();
-                (0..10).for_each(|_| {
-                    bench.step();
-                });
+                bench.wait(10);
             } else {
                 assert_eq!(bench.run(SubtaskVerb::Pause, "", (0, 0), ""), DONE);
             }
@@ -167,10 +175,10 @@ fn a_table_that_was_stopped_half_way_turns_by_what_is_left() {
         bench.step();
     }
     assert_eq!(bench.run(SubtaskVerb::Pause, "", (0, 0), ""), DONE);
-    bench.pedestal.outputs.status.table_position = Some(-1000);
+    bench.world.pedestal.outputs.status.table_position = Some(-1000);
     bench.step();
     assert_eq!(fix(&mut bench), DONE);
-    let flip = bench.pedestal.received[0];
+    let flip = bench.world.pedestal.received[0];
     assert_eq!((flip.command, flip.table_angle), (PedestalVerb::Flip, 1000 - 300));
 }
 
@@ -208,7 +216,7 @@ fn while_the_part_is_in_the_pedestal_nothing_else_is_done() {
         bench.step();
     }
     assert_eq!(bench.run(SubtaskVerb::Pause, "", (0, 0), ""), DONE);
-    bench.pedestal.outputs.status.felt = Felt::Nothing;
+    bench.world.pedestal.outputs.status.felt = Felt::Nothing;
     bench.step();
     assert_eq!(bench.run(SubtaskVerb::GotoDest, "", (0, 0), "SAFE"), DONE);
 }
@@ -238,7 +246,7 @@ fn standing(bench: &Bench<'_>, at: Option<(&str, Option<i32>)>) -> Option<Standi
 
 /// FIX-GRIP from every combination of its state variables, in a world that obeys or ignores: it ends. How
 /// often it was done.
-fn regrips(ignores: (bool, bool), rows: &mut Coverage) -> (usize, usize) {
+fn regrips(ignores: (bool, bool)) -> (usize, usize) {
     let (mut done, mut worlds) = (0, 0);
     let places = [
         None,
@@ -259,15 +267,15 @@ fn regrips(ignores: (bool, bool), rows: &mut Coverage) -> (usize, usize) {
                     for at in places {
                         let mut bench = Bench::default();
                         let grip_size = if in_hand.is_some() { 255 } else { open };
-                        let status = &mut bench.pedestal.outputs.status;
+                        let status = &mut bench.world.pedestal.outputs.status;
                         (status.grip_size, status.table_position) = (grip_size, table_position);
                         (status.felt, status.gripped) = (felt, in_hand.is_some());
-                        bench.emove.outputs.status.held = holding(held);
-                        bench.emove.outputs.status.at = standing(&bench, at);
+                        bench.world.emove.outputs.status.held = holding(held);
+                        bench.world.emove.outputs.status.at = standing(&bench, at);
                         bench.step();
                         let object = |name| Name16::new(name).unwrap();
                         bench.process.state.regrip = in_hand.map(|name| Regrip { object: object(name) });
-                        (bench.emove.ignores, bench.pedestal.ignores) = ignores;
+                        (bench.world.emove.ignores, bench.world.pedestal.ignores) = ignores;
                         bench.step();
                         let end = fix(&mut bench);
                         let is_right = bench.memory.emove.status.held == holding("destination");
@@ -292,7 +300,6 @@ fn regrips(ignores: (bool, bool), rows: &mut Coverage) -> (usize, usize) {
                         assert_ne!(end.0, StatusReport::Executing);
                         done += usize::from(end == DONE);
                         worlds += 1;
-                        rows.append(&mut bench.rows);
                     }
                 }
             }
@@ -303,24 +310,23 @@ fn regrips(ignores: (bool, bool), rows: &mut Coverage) -> (usize, usize) {
 
 #[test]
 fn a_regrip_ends_from_every_state_whether_the_world_obeys_or_ignores() {
-    let mut rows = Coverage::default();
-    let (obeys, worlds) = regrips((false, false), &mut rows);
-    let (ignores, _) = regrips((true, true), &mut rows);
-    regrips((true, false), &mut rows);
-    regrips((false, true), &mut rows);
+    let (obeys, worlds) = regrips((false, false));
+    let (ignores, _) = regrips((true, true));
+    regrips((true, false));
+    regrips((false, true));
     assert!(obeys > ignores && obeys < worlds, "{obeys} and {ignores} of {worlds}");
 }
 
 /// GET-ENDEFF from every gripper and exchange: it ends, and only with the gripper on and clear of its
 /// holster.
-fn exchanges(ignores: bool, rows: &mut Coverage) {
+fn exchanges(ignores: bool) {
     for held in ["", "source", "something", "not known"] {
         for attached in [None, Some(1), Some(2)] {
             for exchange in [None, Some(1), Some(2)] {
                 let mut bench = Bench::default();
-                let status = &mut bench.emove.outputs.status;
+                let status = &mut bench.world.emove.outputs.status;
                 (status.end_effector_id, status.exchange, status.held) = (attached, exchange, holding(held));
-                bench.emove.ignores = ignores;
+                bench.world.emove.ignores = ignores;
                 bench.step();
                 let end = bench.run(SubtaskVerb::GetEndeff, "CYLINDER", (1, 1), "");
                 let status = &bench.memory.emove.status;
@@ -331,11 +337,10 @@ fn exchanges(ignores: bool, rows: &mut Coverage) {
                     let word = if id == 2 { "QC-ATTACH" } else { "QC-DETACH" };
                     assert_eq!(bench.sent()[0], word, "the exchange is finished first");
                     assert_eq!(
-                        bench.emove.received[0].end_effector_id, exchange,
+                        bench.world.emove.received[0].end_effector_id, exchange,
                         "in the holster where it is"
                     );
                 }
-                rows.append(&mut bench.rows);
             }
         }
     }
@@ -344,26 +349,26 @@ fn exchanges(ignores: bool, rows: &mut Coverage) {
 #[test]
 fn an_exchange_that_was_interrupted_is_finished_first() {
     for ignores in [false, true] {
-        exchanges(ignores, &mut Coverage::default());
+        exchanges(ignores);
     }
     // Any gripper will do for an object that names none: also the one in whose holster the robot is.
     let mut bench = Bench::default();
-    bench.emove.outputs.status.exchange = Some(1);
+    bench.world.emove.outputs.status.exchange = Some(1);
     bench.step();
     assert_eq!(bench.run(SubtaskVerb::GetEndeff, "GRIPPER-1", (1, 1), ""), DONE);
     assert_eq!(bench.sent(), ["QC-ATTACH"]);
 }
 
 /// GET-OBJECT, PLACE-OBJ and MOVE-OBJ>D from everything that can be held.
-fn handling(ignores: bool, rows: &mut Coverage) {
+fn handling(ignores: bool) {
     for verb in [SubtaskVerb::GetObject, SubtaskVerb::PlaceObj, SubtaskVerb::MoveObjToDest] {
         for held in ["", "source", "destination", "neither", "other", "something", "not known"] {
             for at in [None, Some(("PFIXTURE", Some(1))), Some(("PFIXTURE", Some(-1))), Some(("SAFE", None))]
             {
                 let mut bench = Bench::default();
-                bench.emove.outputs.status.held = holding(held);
-                bench.emove.outputs.status.at = standing(&bench, at);
-                bench.emove.ignores = ignores;
+                bench.world.emove.outputs.status.held = holding(held);
+                bench.world.emove.outputs.status.at = standing(&bench, at);
+                bench.world.emove.ignores = ignores;
                 bench.step();
                 let end = bench.run(verb, "PART", (1, 1), "PFIXTURE");
                 if held == "something" && verb == SubtaskVerb::GetObject && !ignores {
@@ -377,7 +382,6 @@ fn handling(ignores: bool, rows: &mut Coverage) {
                 if held == "not known" {
                     assert_eq!(end, error(Reason::HeldNotKnown), "{verb}");
                 }
-                rows.append(&mut bench.rows);
             }
         }
     }
@@ -393,15 +397,14 @@ fn handling(ignores: bool, rows: &mut Coverage) {
             let get = matches!(verb, SubtaskVerb::GetObject | SubtaskVerb::AcquireTool);
             let object = if emove as u8 >= EmoveVerb::InsertTool as u8 { "TOOL-1" } else { "PART" };
             let mut bench = if get { Bench::default() } else { Bench::grasped(object, 1) };
-            bench.emove.mishap = Some((emove, Mishap::NoEffect));
+            bench.world.emove.mishap = Some((emove, Mishap::NoEffect));
             bench.command(verb, object, (1, 1), "PFIXTURE");
             while bench.memory.subtask.emove.command != emove {
                 bench.step();
             }
-            bench.emove.outputs.status.held = holding(after);
+            bench.world.emove.outputs.status.held = holding(after);
             let reason = if after == "something" { Reason::UnknownHeld } else { Reason::HeldNotKnown };
             assert_eq!(bench.finish(), error(reason), "{verb}, {after}");
-            rows.append(&mut bench.rows);
         }
     }
 }
@@ -409,7 +412,7 @@ fn handling(ignores: bool, rows: &mut Coverage) {
 #[test]
 fn what_is_held_and_not_known_is_neither_taken_nor_placed() {
     for ignores in [false, true] {
-        handling(ignores, &mut Coverage::default());
+        handling(ignores);
     }
 }
 
@@ -419,11 +422,11 @@ fn what_counts_as_held_is_grasped_again_in_its_grip() {
         let mut bench = Bench::grasped("PART", grip);
         assert_eq!(bench.run(SubtaskVerb::GetObject, "PART", (1, -1), "PFIXTURE"), DONE);
         assert_eq!(bench.sent(), ["GRASP-OBJ"]);
-        let sent = bench.emove.received[0];
+        let sent = bench.world.emove.received[0];
         let part = bench.data.object(&Name16::new("PART").unwrap(), grip).map(|(id, _)| id.number());
         assert_eq!((sent.grip, sent.object_parameters), (grip, part));
         // A release that has not ended well has left nothing between the fingers.
-        bench.emove.mishap = Some((EmoveVerb::GraspObj, Mishap::Error(Reason::GraspMissed)));
+        bench.world.emove.mishap = Some((EmoveVerb::GraspObj, Mishap::Error(Reason::GraspMissed)));
         let end = bench.run(SubtaskVerb::GetObject, "PART", (1, -1), "PFIXTURE");
         assert_eq!(end, error(Reason::GraspMissed));
     }
@@ -451,7 +454,8 @@ fn what_vision_has_found_is_not_looked_for_again() {
     let mut bench = Bench::default();
     let record = bench.data.locpt_named(&Name10::new("UNIT_1").unwrap()).map(|id| id.number());
     let object = Name16::new("BAR").unwrap();
-    bench.emove.outputs.status.located = Some(LocatedObject { object, record, array: None, sector: None });
+    bench.world.emove.outputs.status.located =
+        Some(LocatedObject { object, record, array: None, sector: None });
     bench.step();
     assert_eq!(bench.run(SubtaskVerb::GetObject, "BAR", (1, 1), "UNIT_1"), DONE);
     assert_eq!(bench.sent(), ["MOV-TO-OBJ", "GRASP-OBJ"]);
@@ -461,8 +465,8 @@ fn what_vision_has_found_is_not_looked_for_again() {
 fn led_with_a_part(held: Holding) -> Bench<'static> {
     let mut bench = Bench::default();
     assert_eq!(bench.run(SubtaskVerb::GetObject, "BAR", (1, 1), "UNIT_1"), DONE);
-    bench.emove.received.clear();
-    let status = &mut bench.emove.outputs.status;
+    bench.world.emove.received.clear();
+    let status = &mut bench.world.emove.outputs.status;
     (status.held, status.seat) = (held, Seat::NotKnown);
     bench.step();
     bench
@@ -478,7 +482,7 @@ fn object_that_may_have_slid_is_released_and_located_again_where_pictures_are_ta
     }
     // Elsewhere it would fall.
     let mut bench = led_with_a_part(object);
-    bench.emove.outputs.status.at = None;
+    bench.world.emove.outputs.status.at = None;
     bench.step();
     assert_eq!(bench.run(SubtaskVerb::GetObject, "BAR", (1, 1), "UNIT_1"), DONE);
     assert_eq!(bench.sent(), ["GRASP-OBJ"]);
@@ -492,7 +496,7 @@ pub fn pictures_lost() -> Bench<'static> {
     while bench.memory.subtask.emove.command != EmoveVerb::MovToObj {
         bench.step();
     }
-    bench.emove.outputs.status.located = None;
+    bench.world.emove.outputs.status.located = None;
     bench
 }
 
@@ -525,23 +529,24 @@ fn what_belongs_to_one_sector_does_not_count_for_another() {
         bench
     };
     let mut bench = begun(EmoveVerb::MovToObj);
-    bench.emove.received.clear();
+    bench.world.emove.received.clear();
     at_another_sector(&mut bench);
     assert_eq!(bench.finish(), DONE);
     let sent = ["MOV-TO-OBJ", "E-PAUSE", "MOV-TO-VU", "LOCATE-OBJ", "MOV-TO-OBJ", "GRASP-OBJ"];
     assert_eq!(bench.sent(), sent, "pictures of this sector");
     // An interrupted grasp has closed on something at the first sector.
     let mut bench = begun(EmoveVerb::GraspObj);
-    bench.emove.outputs.status.held = Holding::Something;
-    bench.emove.mishap = Some((EmoveVerb::GraspObj, Mishap::NoEffect));
-    bench.emove.received.clear();
+    bench.world.emove.outputs.status.held = Holding::Something;
+    bench.world.emove.mishap = Some((EmoveVerb::GraspObj, Mishap::NoEffect));
+    bench.world.emove.received.clear();
     at_another_sector(&mut bench);
     assert_eq!(bench.finish(), error(Reason::UnknownHeld));
     assert_eq!(bench.sent(), ["GRASP-OBJ", "E-PAUSE"]);
 }
 
 /// The tool commands with fingers in the drum, outside, or at no place.
-fn tools(rows: &mut Coverage) {
+#[test]
+fn fingers_that_have_let_go_are_led_out_of_the_drum() {
     for verb in
         [SubtaskVerb::InsertTool, SubtaskVerb::ReleaseTool, SubtaskVerb::AcquireTool, SubtaskVerb::RemoveTool]
     {
@@ -550,9 +555,9 @@ fn tools(rows: &mut Coverage) {
                 [(true, Some(("TOOL-TRNS", None))), (false, Some(("SAFE", None))), (false, None)]
             {
                 let mut bench = Bench::default();
-                bench.emove.outputs.status.held = holding(held);
-                bench.emove.outputs.status.at = standing(&bench, at);
-                bench.emove.outputs.status.drum = drum;
+                bench.world.emove.outputs.status.held = holding(held);
+                bench.world.emove.outputs.status.at = standing(&bench, at);
+                bench.world.emove.outputs.status.drum = drum;
                 bench.step();
                 let end = bench.run(verb, "TOOL-1", (1, 1), "");
                 if verb == SubtaskVerb::ReleaseTool {
@@ -565,15 +570,9 @@ fn tools(rows: &mut Coverage) {
                     let expected = if led_out { DONE } else { error(hindered) };
                     assert_eq!(end, expected, "{held}, {drum}, {at:?}");
                 }
-                rows.append(&mut bench.rows);
             }
         }
     }
-}
-
-#[test]
-fn fingers_that_have_let_go_are_led_out_of_the_drum() {
-    tools(&mut Coverage::default());
 }
 
 /// An interrupted grasp has closed on something in the drum, which can only be the tool.
@@ -581,9 +580,9 @@ fn fingers_that_have_let_go_are_led_out_of_the_drum() {
 fn an_interrupted_grasp_of_a_tool_is_made_again() {
     for (drum, end, sent) in [(true, DONE, &["ACQUIRE-TOOL"][..]), (false, error(Reason::UnknownHeld), &[])] {
         let mut bench = Bench::default();
-        bench.emove.outputs.status.held = holding("something");
-        bench.emove.outputs.status.at = standing(&bench, Some(("TOOL-TRNS", None)));
-        bench.emove.outputs.status.drum = drum;
+        bench.world.emove.outputs.status.held = holding("something");
+        bench.world.emove.outputs.status.at = standing(&bench, Some(("TOOL-TRNS", None)));
+        bench.world.emove.outputs.status.drum = drum;
         bench.step();
         assert_eq!(bench.run(SubtaskVerb::AcquireTool, "TOOL-1", (1, 1), ""), end);
         assert_eq!(bench.sent(), sent);
@@ -591,11 +590,11 @@ fn an_interrupted_grasp_of_a_tool_is_made_again() {
 }
 
 /// What a pause waits for, and what a command that comes then does.
-fn pauses(rows: &mut Coverage) {
-    let mut play = |bench: &mut Bench<'_>| rows.append(&mut bench.rows);
+#[test]
+fn a_pause_waits_for_robot_and_pedestal() {
     let moving = |verb, mishap| {
         let mut bench = Bench::grasped("PART", 1);
-        bench.pedestal.mishap = mishap;
+        bench.world.pedestal.mishap = mishap;
         bench.command(SubtaskVerb::FixGrip, "PART", (1, -1), "");
         while bench.memory.subtask.pedestal.command != verb {
             bench.step();
@@ -607,11 +606,9 @@ fn pauses(rows: &mut Coverage) {
     let mut bench = moving(PedestalVerb::Flip, Some((PedestalVerb::Pause, Mishap::Silence)));
     let end = bench.run(SubtaskVerb::Pause, "", (0, 0), "");
     assert_eq!(end, DONE);
-    play(&mut bench);
     let mut bench = moving(PedestalVerb::Flip, None);
-    bench.emove.mishap = Some((EmoveVerb::Pause, Mishap::Error(Reason::LinkOff)));
+    bench.world.emove.mishap = Some((EmoveVerb::Pause, Mishap::Error(Reason::LinkOff)));
     assert_eq!(bench.run(SubtaskVerb::Pause, "", (0, 0), ""), error(Reason::LinkOff));
-    play(&mut bench);
     // A pause that is replaced is waited for.
     let mut bench = moving(PedestalVerb::Flip, None);
     bench.command(SubtaskVerb::Pause, "", (0, 0), "");
@@ -619,24 +616,21 @@ fn pauses(rows: &mut Coverage) {
     bench.step();
     assert_eq!(bench.run(SubtaskVerb::FixGrip, "PART", (1, -1), ""), DONE);
     assert!(!bench.sent_to_pedestal().contains(&"PAUSE"));
-    play(&mut bench);
     // A restarted Subtask finds a pause under way.
     let mut bench = moving(PedestalVerb::Flip, None);
     bench.command(SubtaskVerb::Pause, "", (0, 0), "");
     bench.step();
     bench.step();
-    bench.process = Subtask::default();
+    bench.restart();
     bench.finish();
-    play(&mut bench);
     let mut bench = moving(PedestalVerb::Flip, None);
     assert_eq!(bench.run(SubtaskVerb::GotoDest, "", (0, 0), "SAFE"), DONE);
-    play(&mut bench);
 }
 
 /// The pedestal alone has the part, and the robot waits at PED-SAFE: it may leave. It may not while it is at the
 /// pedestal, or holds something, or is at no place with its tool near PEDESTAL.
 fn leaves_only_empty_and_clear(bench: &mut Bench<'_>) {
-    let safe = bench.emove.outputs.status.at;
+    let safe = bench.world.emove.outputs.status.at;
     for verb in [SubtaskVerb::GotoEndpt, SubtaskVerb::GotoDest, SubtaskVerb::Position] {
         let refused = |bench: &mut Bench<'_>, why: &str| {
             bench.step();
@@ -645,21 +639,22 @@ fn leaves_only_empty_and_clear(bench: &mut Bench<'_>) {
         };
         let pedestal = bench.data.locpt_named(&Name10::clipped("PEDESTAL")).unwrap();
         bench.memory.prim.status.sensor_pose = None;
-        bench.emove.outputs.status.at = safe.map(|at| Standing { record: Some(pedestal.number()), ..at });
+        bench.world.emove.outputs.status.at =
+            safe.map(|at| Standing { record: Some(pedestal.number()), ..at });
         refused(bench, "at the pedestal");
-        bench.emove.outputs.status.at = None;
+        bench.world.emove.outputs.status.at = None;
         refused(bench, "at no place, and it is not known where");
         tool_above_pedestal(bench, 3.0);
         refused(bench, "at no place, 3 in from PEDESTAL");
-        bench.emove.outputs.status.at = safe;
-        bench.emove.outputs.status.held = Holding::NotKnown;
+        bench.world.emove.outputs.status.at = safe;
+        bench.world.emove.outputs.status.held = Holding::NotKnown;
         refused(bench, "it may hold something");
-        bench.emove.outputs.status.held = Holding::Nothing;
-        bench.emove.outputs.status.at = None;
+        bench.world.emove.outputs.status.held = Holding::Nothing;
+        bench.world.emove.outputs.status.at = None;
         tool_above_pedestal(bench, 6.0);
         bench.step();
         assert_eq!(bench.run(verb, "", (0, 0), "SAFE"), DONE, "{verb}");
-        bench.emove.outputs.status.at = safe;
+        bench.world.emove.outputs.status.at = safe;
         bench.step();
     }
 }
@@ -676,13 +671,11 @@ fn tool_above_pedestal(bench: &mut Bench<'_>, inches: f64) {
 
 /// What the pedestal gets of the order of a person: words, in the ticks after it.
 fn order(bench: &mut Bench<'_>, order: HandOrder) -> Vec<&'static str> {
-    bench.pedestal.received.clear();
-    bench.operator.pedestal = Some(order);
+    bench.world.pedestal.received.clear();
+    bench.external.operator.pedestal = Some(order);
     bench.step();
-    bench.operator.pedestal = None;
-    (0..8).for_each(|_| {
-        bench.step();
-    });
+    bench.external.operator.pedestal = None;
+    bench.wait(8);
     bench.sent_to_pedestal()
 }
 
@@ -703,10 +696,6 @@ fn resting(at: &str) -> Bench<'static> {
 
 #[test]
 fn a_person_takes_a_part_with_the_pedestal_turns_and_releases_it() {
-    manual_regrip(&mut Coverage::default());
-}
-
-fn manual_regrip(rows: &mut Coverage) {
     let mut bench = resting("PED-SAFE");
     assert_eq!(order(&mut bench, of_part(PedestalVerb::PreGrip)), ["PRE-GRIP"]);
     assert_eq!(order(&mut bench, of_part(PedestalVerb::Grip)), ["GRIP"]);
@@ -714,41 +703,33 @@ fn manual_regrip(rows: &mut Coverage) {
     assert_eq!(regrip(&bench).as_deref(), Some("PART"));
     let flip = HandOrder { table_angle: 900, ..by_hand(PedestalVerb::Flip) };
     assert_eq!(order(&mut bench, flip), ["FLIP"]);
-    assert_eq!(bench.pedestal.outputs.status.table_position, Some(-1235));
+    assert_eq!(bench.world.pedestal.outputs.status.table_position, Some(-1235));
     assert!(order(&mut bench, of_part(PedestalVerb::PreGrip)).is_empty(), "it would drop the part");
     assert!(order(&mut bench, by_hand(PedestalVerb::Release)).is_empty(), "the part would fall");
     let held = HandOrder { by_hand: true, ..by_hand(PedestalVerb::Release) };
     assert_eq!(order(&mut bench, held), ["RELEASE"]);
-    assert_eq!(bench.pedestal.received[0].grasp_size, 450);
+    assert_eq!(bench.world.pedestal.received[0].grasp_size, 450);
     assert_eq!(regrip(&bench), None, "the sensors of the hand feel nothing");
     assert_eq!(order(&mut bench, by_hand(PedestalVerb::Release)), ["RELEASE"], "it holds nothing");
     assert_eq!(order(&mut bench, by_hand(PedestalVerb::Pause)), ["PAUSE"]);
-    bench.pedestal.part = 0;
+    bench.world.pedestal.part = 0;
     order(&mut bench, of_part(PedestalVerb::Grip));
     assert_eq!(regrip(&bench), None, "the hand has closed on nothing");
-    rows.append(&mut bench.rows);
 }
 
 #[test]
 fn orders_of_a_person_are_refused_while_subtask_or_robot_are_at_the_pedestal() {
-    refused_orders(&mut Coverage::default());
-}
-
-fn refused_orders(rows: &mut Coverage) {
     for ticks in [1, 10, 30] {
         let mut bench = Bench::grasped("PART", 1);
         bench.command(SubtaskVerb::FixGrip, "PART", (1, -1), "");
-        (0..ticks).for_each(|_| {
-            bench.step();
-        });
-        bench.operator.pedestal = Some(by_hand(PedestalVerb::Release));
+        bench.wait(ticks);
+        bench.external.operator.pedestal = Some(by_hand(PedestalVerb::Release));
         let before = bench.memory.subtask.pedestal.number;
         bench.step();
         let sent = bench.memory.subtask.pedestal;
         assert!(sent.number == before || sent.command != PedestalVerb::Release, "tick {ticks}");
-        bench.operator.pedestal = None;
+        bench.external.operator.pedestal = None;
         assert_eq!(bench.finish(), DONE, "tick {ticks}");
-        rows.append(&mut bench.rows);
     }
     let mut bench = resting("PEDESTAL");
     let flip = HandOrder { table_angle: 900, ..by_hand(PedestalVerb::Flip) };
@@ -757,76 +738,26 @@ fn refused_orders(rows: &mut Coverage) {
     let unknown = HandOrder { object: Some(Name16::clipped("BAR")), ..by_hand(PedestalVerb::Grip) };
     assert!(order(&mut bench, unknown).is_empty(), "no PED-PARA record");
     assert!(order(&mut bench, by_hand(PedestalVerb::Grip)).is_empty(), "no object");
-    bench.pedestal.mishap = Some((PedestalVerb::Grip, Mishap::Hang));
+    bench.world.pedestal.mishap = Some((PedestalVerb::Grip, Mishap::Hang));
     assert_eq!(order(&mut bench, of_part(PedestalVerb::Grip)), ["GRIP"]);
     assert!(order(&mut bench, of_part(PedestalVerb::Grip)).is_empty(), "the hand moves");
     assert_eq!(order(&mut bench, by_hand(PedestalVerb::Pause)), ["PAUSE"]);
-    bench.pedestal.mishap = Some((PedestalVerb::Pause, Mishap::Silence));
+    bench.world.pedestal.mishap = Some((PedestalVerb::Pause, Mishap::Silence));
     order(&mut bench, by_hand(PedestalVerb::Pause));
     let sent = bench.memory.subtask.pedestal.number;
     order(&mut bench, by_hand(PedestalVerb::Pause));
     assert_eq!(bench.memory.subtask.pedestal.number, sent, "the pedestal does not answer");
-    rows.append(&mut bench.rows);
 }
 
 /// Robot and pedestal both hold the part: then the hand may open without a person.
 #[test]
 fn a_person_opens_the_hand_on_a_part_that_the_robot_grips() {
-    manual_release(&mut Coverage::default());
-}
-
-fn manual_release(rows: &mut Coverage) {
     let mut bench = Bench::grasped("PART", 1);
     bench.command(SubtaskVerb::FixGrip, "PART", (1, -1), "");
     while bench.memory.subtask.emove.command != EmoveVerb::Release {
         bench.step();
     }
     assert_eq!(bench.run(SubtaskVerb::Pause, "", (0, 0), ""), DONE);
-    assert!(bench.emove.outputs.status.held.is_held() && bench.memory.subtask.status.pedestal_part);
+    assert!(bench.world.emove.outputs.status.held.is_held() && bench.memory.subtask.status.pedestal_part);
     assert_eq!(order(&mut bench, by_hand(PedestalVerb::Release)), ["RELEASE"]);
-    rows.append(&mut bench.rows);
-}
-
-#[test]
-fn a_pause_waits_for_robot_and_pedestal() {
-    pauses(&mut Coverage::default());
-}
-
-/// Rows that only an interruption fires.
-pub(super) fn all_rows(rows: &mut Coverage) {
-    for ignores in [(false, false), (true, true), (true, false), (false, true)] {
-        regrips(ignores, rows);
-    }
-    for ignores in [false, true] {
-        exchanges(ignores, rows);
-        handling(ignores, rows);
-    }
-    tools(rows);
-    pauses(rows);
-    manual_regrip(rows);
-    refused_orders(rows);
-    manual_release(rows);
-    rows.append(&mut without_task_after(10).rows);
-    let mut bench = led_with_a_part(Holding::Something);
-    bench.run(SubtaskVerb::GetObject, "BAR", (1, 1), "UNIT_1");
-    rows.append(&mut bench.rows);
-    let mut bench = Bench::grasped("PART", 1);
-    bench.run(SubtaskVerb::PlaceObj, "PART", (1, 1), "SAFE");
-    bench.run(SubtaskVerb::PlaceObj, "PART", (1, 1), "SAFE");
-    rows.append(&mut bench.rows);
-    let mut bench = Bench::grasped("PART", 1);
-    bench.command(SubtaskVerb::FixGrip, "PART", (1, -1), "");
-    while bench.memory.subtask.pedestal.command != PedestalVerb::Flip {
-        bench.step();
-    }
-    bench.run(SubtaskVerb::Pause, "", (0, 0), "");
-    for verb in
-        [SubtaskVerb::GetObject, SubtaskVerb::GotoDest, SubtaskVerb::InsertTool, SubtaskVerb::AcquireTool]
-    {
-        bench.run(verb, "PART", (1, 1), "SAFE");
-        rows.append(&mut bench.rows);
-    }
-    bench.run(SubtaskVerb::GetEndeff, "CYLINDER", (1, 1), "");
-    leaves_only_empty_and_clear(&mut bench);
-    rows.append(&mut bench.rows);
 }

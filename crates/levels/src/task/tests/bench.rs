@@ -2,11 +2,10 @@
 
 use interfaces::{
     CommonMemory, DataBaseCommand, DataBaseStatus, ExternalInputs, Header, HwsCommand, Reason, StatusReport,
-    SubtaskOutputs,
+    SubtaskOutputs, TaskOutputs,
     data_base::{DataBaseReport, DataBaseVerb},
     emove::{Holding, ObjectGrip, PlacedObject, Standing},
-    hws::{HwsReport, HwsStatus},
-    process::{Inputs, Process},
+    hws::HwsReport,
     subtask::{SubtaskCommand, SubtaskVerb},
 };
 use rcs_core::{
@@ -16,7 +15,11 @@ use rcs_core::{
 };
 use taskdata::files::TaskData;
 
-use crate::{coverage::Coverage, subtask::tests::data::data, task::Task};
+use crate::{
+    bench::{self, Tested, World},
+    subtask::tests::data::data,
+    task::Task,
+};
 
 /// Ticks that a double takes for a command.
 const WORK: u32 = 3;
@@ -230,43 +233,62 @@ impl DataSystem {
     }
 }
 
-/// Process, inputs, doubles, and what was seen.
-pub struct Bench<'d> {
-    pub process: Task,
-    pub memory: CommonMemory,
-    pub external: ExternalInputs,
-    pub data: TaskData<'d>,
+/// Task, and the doubles.
+pub type Bench<'d> = bench::Bench<Task, Below, TaskData<'d>>;
+
+#[derive(Default)]
+pub struct Below {
     pub subtask: SubtaskDouble,
     pub data_system: DataSystem,
-    pub tick: Tick,
-    /// Tables and rows that fired.
-    pub rows: Coverage,
+}
+
+impl World<Task> for Below {
+    fn act(
+        &mut self,
+        tick: Tick,
+        before: &CommonMemory,
+        after: &mut CommonMemory,
+        external: &mut ExternalInputs,
+    ) {
+        self.subtask.step(tick, &before.task.subtask);
+        self.data_system.step(tick, &after.task.data_base);
+        after.subtask = self.subtask.outputs;
+        external.data_base = self.data_system.status;
+    }
+}
+
+impl<'d> Tested<TaskData<'d>> for Task {
+    /// Commands of the workstation controller are lines ([`Bench::command`]).
+    type Order = ();
+    type End = (HwsReport, Reason);
+    const LONGEST: u64 = 3000;
+
+    fn order(_: &mut CommonMemory, (): (), _: u32) {}
+
+    fn number_outside(external: &ExternalInputs) -> u32 {
+        external.hws.number
+    }
+
+    fn end(outputs: &TaskOutputs) -> Option<(HwsReport, Reason)> {
+        let status = outputs.status;
+        (status.report != HwsReport::Executing).then_some((status.report, status.reason))
+    }
 }
 
 impl Default for Bench<'static> {
     fn default() -> Self {
-        Self::with(data())
+        Self::of(data())
     }
 }
 
 impl<'d> Bench<'d> {
     /// A bench with the parts gripper attached and a vise that reports a clamped part, after two ticks in which
     /// nothing was commanded.
-    pub fn with(data: TaskData<'d>) -> Self {
-        let mut bench = Self {
-            process: Task::default(),
-            memory: CommonMemory::default(),
-            external: ExternalInputs::default(),
-            data,
-            subtask: SubtaskDouble::default(),
-            data_system: DataSystem::default(),
-            tick: Tick::BEFORE_START,
-            rows: Coverage::default(),
-        };
-        bench.subtask.outputs.status.end_effector_id = Some(1);
+    pub fn of(data: TaskData<'d>) -> Self {
+        let mut bench = Self::with(Below::default(), data);
+        bench.world.subtask.outputs.status.end_effector_id = Some(1);
         bench.external.devices.clamping = Some(Name10::clipped("PFIXTURE"));
-        bench.step();
-        bench.step();
+        bench.wait(2);
         bench
     }
 
@@ -276,9 +298,9 @@ impl<'d> Bench<'d> {
         Self: Default,
     {
         let mut bench = Self::default();
-        bench.data_system.answer = Answer::After(2);
+        bench.world.data_system.answer = Answer::After(2);
         assert_eq!(bench.run("STARTUP -- 0 -- 0 0 -- 0 -- 0"), FINISHED);
-        bench.data_system.received.clear();
+        bench.world.data_system.received.clear();
         bench
     }
 
@@ -308,65 +330,30 @@ impl<'d> Bench<'d> {
         };
     }
 
-    /// One tick of all.
-    pub fn step(&mut self) -> HwsStatus {
-        self.tick = self.tick.next();
-        let mut outputs = self.memory.task;
-        let inputs =
-            Inputs { tick: self.tick, memory: &self.memory, external: &self.external, data: &self.data };
-        self.process.step(&inputs, &mut outputs);
-        self.rows.note(&outputs.header);
-        self.subtask.step(self.tick, &self.memory.task.subtask);
-        self.data_system.step(self.tick, &outputs.data_base);
-        self.memory.task = outputs;
-        self.memory.subtask = self.subtask.outputs;
-        self.external.data_base = self.data_system.status;
-        outputs.status
-    }
-
-    /// Let ticks pass.
-    pub fn wait(&mut self, ticks: u32) {
-        for _ in 0..ticks {
-            self.step();
-        }
-    }
-
-    /// Ticks until the command has ended, and how.
-    pub fn finish(&mut self) -> (HwsReport, Reason) {
-        for _ in 0..3000 {
-            let status = self.step();
-            assert_eq!(status.echo, self.external.hws.number);
-            if status.report != HwsReport::Executing {
-                return (status.report, status.reason);
-            }
-        }
-        panic!("no end at tick {}: {:?}", self.tick, self.process);
-    }
-
     /// Command and finish.
     pub fn run(&mut self, line: &str) -> (HwsReport, Reason) {
-        self.subtask.received.clear();
-        self.data_system.received.clear();
+        self.world.subtask.received.clear();
+        self.world.data_system.received.clear();
         self.command(line);
         self.finish()
     }
 
     /// The words that Subtask was sent since the last command began.
     pub fn sent(&self) -> Vec<&'static str> {
-        self.subtask.received.iter().map(|command| command.command.text()).collect()
+        self.world.subtask.received.iter().map(|command| command.command.text()).collect()
     }
 
     /// The words that the Data System was sent.
     pub fn asked(&self) -> Vec<&'static str> {
-        self.data_system.received.iter().map(|command| command.command.text()).collect()
+        self.world.data_system.received.iter().map(|command| command.command.text()).collect()
     }
 
     /// The gripper with an id is on, it holds an object, and the robot stands at a location.
     pub fn set(&mut self, gripper: u8, object: &str, at: &str) {
-        self.subtask.outputs.status.end_effector_id = (gripper != 0).then_some(gripper);
-        self.subtask.hold(object);
-        self.subtask.stand(at);
-        if let Some(at) = &mut self.subtask.outputs.status.at {
+        self.world.subtask.outputs.status.end_effector_id = (gripper != 0).then_some(gripper);
+        self.world.subtask.hold(object);
+        self.world.subtask.stand(at);
+        if let Some(at) = &mut self.world.subtask.outputs.status.at {
             at.record = self.data.locpt_named(&at.location).map(|id| id.number());
             at.grip = (!object.is_empty()).then_some(1);
         }

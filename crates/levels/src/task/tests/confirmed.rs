@@ -9,6 +9,16 @@ use interfaces::{
 
 use super::bench::{Bench, FINISHED};
 
+pub(super) const SCENARIOS: &[fn()] = &[
+    move_is_not_finished_elsewhere_or_beside_the_destination,
+    transfer_is_not_finished_while_something_is_held_or_nothing_was_placed,
+    position_is_not_finished_while_the_object_is_held,
+    object_that_is_gone_is_not_acquired,
+    robot_beside_its_end_at_location_goes_there,
+    tool_in_the_drum_is_finished_and_unconfirmed,
+    part_that_may_have_slid_is_finished_and_unconfirmed,
+];
+
 /// Subtask reports done for the last order of a line, and its status is changed then. How the command ends.
 fn end(
     (line, gripper, object, at): (&str, u8, &str, &str),
@@ -19,14 +29,14 @@ fn end(
     bench.set(gripper, object, at);
     bench.command(line);
     for _ in 0..300 {
-        let status = bench.step();
+        let status = bench.step().status;
         if status.report != HwsReport::Executing {
             return (status.report, status.reason);
         }
-        let ended = bench.subtask.outputs.status.report == StatusReport::Done;
+        let ended = bench.world.subtask.outputs.status.report == StatusReport::Done;
         if ended && bench.memory.task.subtask.command == last {
-            change(&mut bench.subtask.outputs.status);
-            bench.memory.subtask = bench.subtask.outputs;
+            change(&mut bench.world.subtask.outputs.status);
+            bench.memory.subtask = bench.world.subtask.outputs;
         }
     }
     panic!("no end: {:?}", bench.process);
@@ -81,7 +91,7 @@ fn robot_beside_its_end_at_location_goes_there() {
     let mut bench = Bench::default();
     bench.set(3, "TOOL-1", "TOOL-SAFE");
     assert_eq!(bench.run(remove), FINISHED, "the tool is there already");
-    bench.subtask.outputs.status.offset = Offset::Slight;
+    bench.world.subtask.outputs.status.offset = Offset::Slight;
     bench.step();
     assert_eq!(bench.run(remove).0, HwsReport::Error, "a remembered place is no end");
 }
@@ -102,7 +112,7 @@ fn tool_in_the_drum_is_finished_and_unconfirmed() {
 fn part_that_may_have_slid_is_finished_and_unconfirmed() {
     let mut bench = Bench::default();
     bench.set(1, "PART", "PFIXTURE");
-    bench.subtask.outputs.status.seat = Seat::NotKnown;
+    bench.world.subtask.outputs.status.seat = Seat::NotKnown;
     bench.step();
     assert_eq!(bench.run("MOVE PART +1 PFIXTURE 0 +1 SAFE 0 -- 0"), FINISHED);
     assert_eq!(bench.memory.task.status.unconfirmed, Unconfirmed::PartInFingers);

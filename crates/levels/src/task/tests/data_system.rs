@@ -17,6 +17,37 @@ use super::{
 };
 use crate::task::data_system::{ANSWER_LIMIT, MAX_TRIES};
 
+pub(super) const SCENARIOS: &[fn()] = &[
+    startup_sends_abort_initiate_and_startup,
+    a_data_system_that_is_not_connected_is_not_waited_for,
+    with_db_done_no_answer_is_waited_for,
+    moves_from_and_to_the_mbd_are_told_and_no_others,
+    the_data_base_is_told_before_the_robot_leaves,
+    a_slow_data_system_is_waited_for,
+    a_silent_data_system_is_asked_again_and_then_an_error,
+    a_late_answer_to_an_update_that_was_repeated_is_not_believed,
+    an_update_that_is_not_taken_is_kept_and_told_before_the_next_object_moves,
+    an_update_that_is_not_taken_is_told_at_the_end_of_the_next_startup,
+    an_answer_that_comes_after_the_command_has_failed_settles_the_update,
+    a_data_system_that_does_not_let_itself_be_connected_is_an_error,
+    the_serial_number_of_the_command_goes_to_the_data_system,
+    an_object_that_was_taken_elsewhere_is_not_told_as_taken_from_the_mbd,
+    a_position_tells_what_was_let_go_before_it_was_replaced,
+    the_next_command_tells_what_was_let_go_before_another_was_replaced,
+    release_tool_tells_where_the_tool_is,
+    what_was_put_into_a_tray_is_told_with_its_sector,
+    what_an_abandoned_command_has_taken_out_of_a_tray_is_told,
+    a_part_that_was_lost_is_not_told_for_the_next_one,
+    two_parts_of_a_name_keep_their_serial_numbers,
+    a_hand_that_cannot_be_read_changes_nothing,
+    the_sector_is_that_in_which_the_part_was_let_go,
+    a_transfer_that_is_accepted_in_the_tick_of_the_grasp_tells,
+    refixture_tells_first_what_is_owed,
+    a_deleted_command_takes_nothing,
+    what_the_robot_holds_is_not_forgotten_for_what_it_cannot_take,
+    a_transfer_tells_where_it_puts_what_the_robot_had,
+];
+
 const STARTUP: &str = "STARTUP -- 0 -- 0 0 -- 0 -- 0";
 const SHUTDOWN: &str = "SHUTDOWN -- 0 -- 0 0 -- 0 -- 0";
 const TO_TRAY: &str = "TRANSFER PART +1 PFIXTURE 0 +1 UNIT_1 2 SAFE 0";
@@ -25,14 +56,14 @@ const FROM_TRAY: &str = "MOVE PART +1 UNIT_1 2 +1 PFIXTURE 0 -- 0";
 
 /// What the last update says: item, serial number, position, sector.
 fn update(bench: &Bench<'_>) -> (String, String, String, i32) {
-    let told = bench.data_system.received.iter().rfind(|c| c.command == DataBaseVerb::Update).unwrap();
+    let told = bench.world.data_system.received.iter().rfind(|c| c.command == DataBaseVerb::Update).unwrap();
     (told.item.to_string(), told.serial.to_string(), told.position.to_string(), told.sector.unwrap_or(0))
 }
 
 #[test]
 fn startup_sends_abort_initiate_and_startup() {
     let mut bench = Bench::default();
-    bench.data_system.answer = Answer::After(5);
+    bench.world.data_system.answer = Answer::After(5);
     assert_eq!(bench.run(STARTUP), FINISHED);
     assert_eq!(bench.asked(), ["ABORT", "INITIATE", "STARTUP"]);
     assert!(bench.sent().is_empty(), "the robot has nothing to do with it");
@@ -49,7 +80,7 @@ fn a_data_system_that_is_not_connected_is_not_waited_for() {
     assert!(bench.asked().is_empty());
     let mut bench = Bench::connected();
     assert_eq!(bench.run(SHUTDOWN), FINISHED);
-    bench.data_system.answer = Answer::Absent;
+    bench.world.data_system.answer = Answer::Absent;
     assert_eq!(bench.run(TO_TRAY), FINISHED);
     assert!(bench.asked().is_empty());
 }
@@ -57,7 +88,7 @@ fn a_data_system_that_is_not_connected_is_not_waited_for() {
 #[test]
 fn with_db_done_no_answer_is_waited_for() {
     let mut bench = Bench::connected();
-    bench.data_system.answer = Answer::Absent;
+    bench.world.data_system.answer = Answer::Absent;
     bench.external.operator.db_done = true;
     assert_eq!(bench.run(TO_TRAY), FINISHED);
     assert_eq!(bench.asked(), ["UPDATE"], "it is sent once");
@@ -78,7 +109,7 @@ fn moves_from_and_to_the_mbd_are_told_and_no_others() {
     assert_eq!((bench.asked(), update(&bench)), (vec!["UPDATE"], words("PART", "UNIT_1", 2)));
     assert_eq!(bench.run(FROM_TRAY), FINISHED);
     assert_eq!((bench.asked(), update(&bench)), (vec!["UPDATE"], words("PART", "H_ROBOT", 0)));
-    bench.subtask.hold("");
+    bench.world.subtask.hold("");
     assert_eq!(bench.run("TRANSFER PART +1 UNIT_1 1 +1 PFIXTURE 0 SAFE 0"), FINISHED);
     assert_eq!((bench.asked(), update(&bench)), (vec!["UPDATE"], words("PART", "PFIXTURE", 0)));
     for line in ["TRANSFER PART +1 PFIXTURE 0 +1 SAFE 0 -- 0", "MOVE PART +1 PFIXTURE 0 +1 SAFE 0 -- 0"] {
@@ -104,7 +135,7 @@ fn the_data_base_is_told_before_the_robot_leaves() {
 #[test]
 fn a_slow_data_system_is_waited_for() {
     let mut bench = Bench::connected();
-    bench.data_system.answer = Answer::After(200);
+    bench.world.data_system.answer = Answer::After(200);
     for line in [TO_TRAY, FROM_TRAY] {
         let before = bench.tick;
         assert_eq!(bench.run(line), FINISHED);
@@ -117,12 +148,12 @@ fn a_slow_data_system_is_waited_for() {
 fn a_silent_data_system_is_asked_again_and_then_an_error() {
     for line in [TO_TRAY, TO_TRAY_AND_STAY, FROM_TRAY] {
         let mut bench = Bench::connected();
-        bench.data_system.answer = Answer::Absent;
+        bench.world.data_system.answer = Answer::Absent;
         let before = bench.tick;
         assert_eq!(bench.run(line), error(Reason::DataBaseSilent), "{line}");
         assert!(bench.tick.since(before) > u64::from(MAX_TRIES) * ANSWER_LIMIT);
         assert_eq!(bench.asked(), ["UPDATE"; MAX_TRIES as usize]);
-        let numbers: Vec<_> = bench.data_system.received.iter().map(|c| c.number).collect();
+        let numbers: Vec<_> = bench.world.data_system.received.iter().map(|c| c.number).collect();
         assert!(numbers.windows(2).all(|pair| pair[1] == pair[0] + 1));
     }
 }
@@ -130,16 +161,16 @@ fn a_silent_data_system_is_asked_again_and_then_an_error() {
 #[test]
 fn a_late_answer_to_an_update_that_was_repeated_is_not_believed() {
     let mut bench = Bench::connected();
-    bench.data_system.answer = Answer::Absent;
+    bench.world.data_system.answer = Answer::Absent;
     bench.command(TO_TRAY);
-    while bench.data_system.received.len() < 2 {
-        assert_eq!(bench.step().report, HwsReport::Executing);
+    while bench.world.data_system.received.len() < 2 {
+        assert_eq!(bench.step().status.report, HwsReport::Executing);
     }
     bench.external.data_base.report = interfaces::data_base::DataBaseReport::Done;
-    bench.external.data_base.echo = bench.data_system.received[0].number;
-    bench.data_system.status = bench.external.data_base;
-    (0..20).for_each(|_| assert_eq!(bench.step().report, HwsReport::Executing));
-    bench.data_system.answer = Answer::After(0);
+    bench.external.data_base.echo = bench.world.data_system.received[0].number;
+    bench.world.data_system.status = bench.external.data_base;
+    (0..20).for_each(|_| assert_eq!(bench.step().status.report, HwsReport::Executing));
+    bench.world.data_system.answer = Answer::After(0);
     assert_eq!(bench.finish(), FINISHED);
 }
 
@@ -148,7 +179,7 @@ fn an_update_that_is_not_taken_is_kept_and_told_before_the_next_object_moves() {
     for trouble in [Answer::Absent, Answer::Refuse] {
         let reason = if trouble == Answer::Refuse { Reason::DataBase } else { Reason::DataBaseSilent };
         let mut bench = Bench::connected();
-        bench.data_system.answer = trouble;
+        bench.world.data_system.answer = trouble;
         assert_eq!(bench.run(TO_TRAY), error(reason));
         let kept = update(&bench);
         // The robot alone can be moved.
@@ -158,10 +189,10 @@ fn an_update_that_is_not_taken_is_kept_and_told_before_the_next_object_moves() {
             assert_eq!(bench.run(line), error(reason));
             assert_eq!((bench.sent(), update(&bench)), (vec![], kept.clone()));
         }
-        bench.data_system.answer = Answer::After(1);
+        bench.world.data_system.answer = Answer::After(1);
         assert_eq!(bench.run(FROM_TRAY), FINISHED);
         assert_eq!(bench.asked(), ["UPDATE", "UPDATE"]);
-        let first = bench.data_system.received[0];
+        let first = bench.world.data_system.received[0];
         assert_eq!((first.position.as_str(), first.sector), ("UNIT_1", Some(2)));
         assert_eq!(update(&bench).2, "H_ROBOT");
     }
@@ -170,18 +201,18 @@ fn an_update_that_is_not_taken_is_kept_and_told_before_the_next_object_moves() {
 #[test]
 fn an_update_that_is_not_taken_is_told_at_the_end_of_the_next_startup() {
     let mut bench = Bench::connected();
-    bench.data_system.answer = Answer::Absent;
+    bench.world.data_system.answer = Answer::Absent;
     assert_eq!(bench.run(TO_TRAY), error(Reason::DataBaseSilent));
-    bench.data_system.answer = Answer::After(1);
+    bench.world.data_system.answer = Answer::After(1);
     assert_eq!(bench.run(STARTUP), FINISHED);
     assert_eq!(bench.asked(), ["ABORT", "INITIATE", "STARTUP", "UPDATE"]);
     assert_eq!(bench.run(STARTUP), FINISHED);
     assert_eq!(bench.asked(), ["ABORT", "INITIATE", "STARTUP"], "it is owed no longer");
     // SHUTDOWN ends what was owed.
-    bench.data_system.answer = Answer::Absent;
+    bench.world.data_system.answer = Answer::Absent;
     assert_eq!(bench.run(FROM_TRAY), error(Reason::DataBaseSilent));
     assert_eq!(bench.run(SHUTDOWN), error(Reason::DataBaseSilent));
-    bench.data_system.answer = Answer::After(1);
+    bench.world.data_system.answer = Answer::After(1);
     assert_eq!(bench.run(STARTUP), FINISHED);
     assert_eq!(bench.asked(), ["ABORT", "INITIATE", "STARTUP"]);
 }
@@ -189,9 +220,9 @@ fn an_update_that_is_not_taken_is_told_at_the_end_of_the_next_startup() {
 #[test]
 fn an_answer_that_comes_after_the_command_has_failed_settles_the_update() {
     let mut bench = Bench::connected();
-    bench.data_system.answer = Answer::Absent;
+    bench.world.data_system.answer = Answer::Absent;
     assert_eq!(bench.run(TO_TRAY), error(Reason::DataBaseSilent));
-    bench.data_system.answer = Answer::After(0);
+    bench.world.data_system.answer = Answer::After(0);
     bench.wait(3);
     assert_eq!(bench.run(FROM_TRAY), FINISHED);
     assert_eq!(bench.asked(), ["UPDATE"], "only that of this command");
@@ -203,8 +234,8 @@ fn a_data_system_that_does_not_let_itself_be_connected_is_an_error() {
         for (answer, reason) in [(Answer::Refuse, Reason::DataBase), (Answer::Absent, Reason::DataBaseSilent)]
         {
             let mut bench = Bench::default();
-            bench.data_system.answer = Answer::After(1);
-            bench.data_system.except = Some((verb, answer));
+            bench.world.data_system.answer = Answer::After(1);
+            bench.world.data_system.except = Some((verb, answer));
             assert_eq!(bench.run(STARTUP), error(reason), "{verb}");
             // It is not connected: nothing is told.
             assert_eq!(bench.run(TO_TRAY), FINISHED);
@@ -213,7 +244,7 @@ fn a_data_system_that_does_not_let_itself_be_connected_is_an_error() {
     }
     for (answer, reason) in [(Answer::Refuse, Reason::DataBase), (Answer::Absent, Reason::DataBaseSilent)] {
         let mut bench = Bench::connected();
-        bench.data_system.answer = answer;
+        bench.world.data_system.answer = answer;
         assert_eq!(bench.run(SHUTDOWN), error(reason));
         assert_eq!(bench.run(TO_TRAY), FINISHED, "it counts as gone all the same");
     }
@@ -231,7 +262,7 @@ fn the_serial_number_of_the_command_goes_to_the_data_system() {
 /// What the Data System was told by a line: the positions of its updates.
 fn told(bench: &mut Bench<'_>, line: &str) -> Vec<String> {
     assert_eq!(bench.run(line), FINISHED, "{line}");
-    let updates = bench.data_system.received.iter().filter(|told| told.command == DataBaseVerb::Update);
+    let updates = bench.world.data_system.received.iter().filter(|told| told.command == DataBaseVerb::Update);
     updates.map(|told| told.position.to_string()).collect()
 }
 
@@ -277,7 +308,7 @@ fn an_object_that_was_taken_elsewhere_is_not_told_as_taken_from_the_mbd() {
         assert_eq!(told(&mut bench, FROM_SECTOR_2), ["H_ROBOT"], "{first}");
     }
     let mut bench = Bench::default();
-    bench.data_system.answer = Answer::After(1);
+    bench.world.data_system.answer = Answer::After(1);
     assert!(told(&mut bench, FROM_SECTOR_2).is_empty());
     assert_eq!(bench.run(STARTUP), FINISHED);
     assert_eq!(told(&mut bench, FROM_SECTOR_2), ["H_ROBOT"]);
@@ -293,7 +324,8 @@ const OTHER: &str = "TRANSFER BAR +1 PFIXTURE 0 +1 UNIT_1 1 SAFE 0";
 
 /// The positions that the Data System was told since the bench was asked last.
 fn positions(bench: &mut Bench<'_>) -> Vec<String> {
-    let updates = bench.data_system.received.drain(..).filter(|told| told.command == DataBaseVerb::Update);
+    let updates =
+        bench.world.data_system.received.drain(..).filter(|told| told.command == DataBaseVerb::Update);
     updates.map(|told| told.position.to_string()).collect()
 }
 
@@ -304,7 +336,7 @@ fn let_go_while_replaced(line: &str, by: &str) -> Vec<(Bench<'static>, Vec<Strin
     for ticks in 1.. {
         let mut bench = Bench::connected();
         assert_eq!(told(&mut bench, FROM_TRAY), ["H_ROBOT"]);
-        bench.data_system.received.clear();
+        bench.world.data_system.received.clear();
         bench.command(line);
         bench.wait(ticks);
         if bench.memory.task.status.report != HwsReport::Executing {
@@ -369,7 +401,7 @@ fn release_tool_tells_where_the_tool_is() {
             bench.set(3, "", "HOME");
             assert_eq!(told(&mut bench, "MOVE TOOL-1 +1 UNIT_1 2 +1 TOOL-SAFE 0 -- 0"), ["H_ROBOT"]);
             bench.set(3, "TOOL-1", "TOOL-TRNS");
-            bench.data_system.received.clear();
+            bench.world.data_system.received.clear();
             bench
         };
         assert_eq!(told(&mut bench(), &release), ["TOOL-TRNS"], "{end_at}");
@@ -398,7 +430,7 @@ fn what_was_put_into_a_tray_is_told_with_its_sector() {
         if positions.is_empty() {
             untold += 1;
             assert_eq!(told(&mut bench, OTHER), ["UNIT_1", "UNIT_1"]);
-            let first = bench.data_system.received[0];
+            let first = bench.world.data_system.received[0];
             assert_eq!((first.item.as_str(), first.sector), ("PART", Some(2)));
         }
     }
@@ -414,7 +446,7 @@ fn was(serial: &str, position: &str, sector: i32) -> Told {
 
 /// What the Data System was told of PART since the bench was asked last.
 fn parts(bench: &mut Bench<'_>) -> Vec<Told> {
-    let updates = bench.data_system.received.drain(..);
+    let updates = bench.world.data_system.received.drain(..);
     let of_part = updates.filter(|told| told.command == DataBaseVerb::Update && told.item.as_str() == "PART");
     of_part.map(|told| was(told.serial.as_str(), told.position.as_str(), told.sector.unwrap_or(0))).collect()
 }
@@ -434,7 +466,7 @@ fn perform(bench: &mut Bench<'_>, line: &str, serial: &str) {
 /// Step until a condition of Subtask holds.
 fn until(bench: &mut Bench<'_>, holds: impl Fn(&SubtaskStatus) -> bool) {
     while !holds(&bench.memory.subtask.status) {
-        assert_eq!(bench.step().report, HwsReport::Executing);
+        assert_eq!(bench.step().status.report, HwsReport::Executing);
     }
 }
 
@@ -513,7 +545,7 @@ fn a_part_that_was_lost_is_not_told_for_the_next_one() {
     for is_sent_before in [false, true] {
         let mut bench = Bench::connected();
         perform(&mut bench, FROM_TRAY, "A");
-        bench.data_system.answer = Answer::Refuse;
+        bench.world.data_system.answer = Answer::Refuse;
         assert_eq!(bench.run(STARTUP), error(Reason::DataBase));
         if is_sent_before {
             order(&mut bench, NEXT, "B");
@@ -522,7 +554,7 @@ fn a_part_that_was_lost_is_not_told_for_the_next_one() {
         }
         bench.set(1, "", "PFIXTURE");
         perform(&mut bench, NEXT, "B");
-        bench.data_system.answer = Answer::After(1);
+        bench.world.data_system.answer = Answer::After(1);
         assert_eq!(bench.run(STARTUP), FINISHED);
         assert_eq!(bench.run(OTHER), FINISHED);
         assert_eq!(parts(&mut bench), []);
@@ -532,7 +564,7 @@ fn a_part_that_was_lost_is_not_told_for_the_next_one() {
     bench.set(3, "", "HOME");
     perform(&mut bench, "MOVE TOOL-1 +1 UNIT_1 2 +1 TOOL-SAFE 0 -- 0", "A");
     bench.set(3, "", "TOOL-SAFE");
-    bench.data_system.received.clear();
+    bench.world.data_system.received.clear();
     for line in
         ["ACQUIRE-TOOL TOOL-1 +1 -- 0 +1 TOOL-SAFE 0 -- 0", "RELEASE-TOOL TOOL-1 +1 -- 0 +1 -- 0 TOOL-SAFE 0"]
     {
@@ -609,20 +641,20 @@ fn a_hand_that_cannot_be_read_changes_nothing() {
         let mut bench = Bench::connected();
         perform(&mut bench, "ACQUIRE PART +1 PFIXTURE 0 0 -- 0 -- 0", "A");
         begin(&mut bench, ACQUIRE, "A");
-        let held = core::mem::replace(&mut bench.subtask.outputs.status.held, unreadable);
+        let held = core::mem::replace(&mut bench.world.subtask.outputs.status.held, unreadable);
         bench.step();
         begin(&mut bench, ACQUIRE, "A");
-        bench.subtask.outputs.status.held = held;
+        bench.world.subtask.outputs.status.held = held;
         bench.step();
         perform(&mut bench, ACQUIRE, "A");
         assert_eq!(parts(&mut bench), [], "it was taken from the fixture: {unreadable:?}");
 
         let mut bench = Bench::connected();
         perform(&mut bench, FROM_TRAY, "A");
-        let held = core::mem::replace(&mut bench.subtask.outputs.status.held, unreadable);
+        let held = core::mem::replace(&mut bench.world.subtask.outputs.status.held, unreadable);
         bench.step();
         begin(&mut bench, "TRANSFER PART +1 UNIT_1 1 +1 SAFE 0 -- 0", "B");
-        bench.subtask.outputs.status.held = held;
+        bench.world.subtask.outputs.status.held = held;
         bench.set(1, "PART", "PFIXTURE");
         perform(&mut bench, LET_GO, "A");
         assert_eq!(parts(&mut bench), [was("A", "PFIXTURE", 0)], "{unreadable:?}");
@@ -666,7 +698,7 @@ fn a_transfer_that_is_accepted_in_the_tick_of_the_grasp_tells() {
         let mut bench = Bench::connected();
         order(&mut bench, FROM_TRAY, "A");
         bench.wait(ticks);
-        let is_held = bench.subtask.outputs.status.held.object().is_some();
+        let is_held = bench.world.subtask.outputs.status.held.object().is_some();
         perform(&mut bench, TO_FIXTURE, "A");
         if is_held {
             assert_eq!(parts(&mut bench).last(), Some(&was("A", "PFIXTURE", 0)), "tick {ticks}");
@@ -678,7 +710,7 @@ fn a_transfer_that_is_accepted_in_the_tick_of_the_grasp_tells() {
 #[test]
 fn refixture_tells_first_what_is_owed() {
     let mut bench = Bench::connected();
-    bench.data_system.answer = Answer::Refuse;
+    bench.world.data_system.answer = Answer::Refuse;
     order(&mut bench, FROM_TRAY, "A");
     assert_eq!(bench.finish(), error(Reason::DataBase));
     bench.set(1, "PART", "PFIXTURE");
@@ -687,7 +719,7 @@ fn refixture_tells_first_what_is_owed() {
     const REFIXTURE: &str = "REFIXTURE PART +1 UNIT_1 2 +2 PFIXTURE 0 -- 0";
     assert_eq!(bench.run(REFIXTURE), error(Reason::DataBase));
     assert!(bench.sent().is_empty(), "nothing moves");
-    bench.data_system.answer = Answer::After(1);
+    bench.world.data_system.answer = Answer::After(1);
     perform(&mut bench, REFIXTURE, "B");
     assert_eq!(parts(&mut bench).split_off(1), [was("A", "H_ROBOT", 0), was("A", "PFIXTURE", 0)]);
 }
@@ -727,7 +759,7 @@ fn a_transfer_tells_where_it_puts_what_the_robot_had() {
     let mut bench = Bench::connected();
     assert_eq!(told(&mut bench, FROM_TRAY), ["H_ROBOT"]);
     assert_eq!(told(&mut bench, TO_FIXTURE), ["PFIXTURE"]);
-    bench.subtask.hold("PART");
+    bench.world.subtask.hold("PART");
     assert!(told(&mut bench, TO_FIXTURE).is_empty(), "the data base has it elsewhere");
     // Replaced at any tick and sent again it tells once.
     for by in [PAUSE, NOWHERE, HOME] {

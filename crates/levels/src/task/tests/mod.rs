@@ -8,17 +8,42 @@ mod recovery;
 
 use interfaces::{
     Reason,
+    emove::Holding,
     hws::{Checked, HwsReport},
     subtask::SubtaskVerb,
 };
 use rcs_core::name::Name16;
 
 use self::bench::{Bench, FINISHED, Mishap};
-use super::{
-    Task,
-    plan::{Plan, TaskVerb},
-};
+use super::plan::{Plan, TaskVerb};
 use crate::subtask::tests::data::without;
+
+pub(super) const SCENARIOS: &[fn()] = &[
+    a_command_is_known_by_its_first_ten_characters,
+    transfer_fetches_places_and_leaves,
+    an_object_is_regripped_when_the_grips_differ,
+    move_moves_an_object_or_the_robot,
+    position_releases_what_is_held_first,
+    acquire_gets_the_gripper_and_the_object,
+    refixture_skips_what_is_done_already,
+    a_tool_is_inserted_and_released,
+    a_tool_is_acquired_and_removed,
+    a_free_gripper_before_the_drum_only_leaves,
+    a_tool_command_without_an_end_stays_where_it_is_and_without_a_name_means_the_tool_held,
+    a_tool_command_that_is_not_prepared_is_refused,
+    a_tool_command_is_refused_while_it_is_not_known_what_is_held,
+    a_tool_is_acquired_at_once_by_fingers_in_the_drum,
+    a_command_with_a_bad_name_is_refused_before_anything_moves,
+    a_refused_command_leaves_the_poses_of_the_one_before,
+    an_error_below_is_passed_up_by_every_command,
+    the_operator_takes_the_robot_from_a_command_and_gives_it_back,
+    the_operator_can_take_the_robot_between_two_commands,
+    a_command_that_comes_when_the_operator_takes_the_robot_is_not_executed,
+    command_that_fails_its_check_is_refused_and_the_next_one_is_executed,
+    a_pause_is_accepted_while_the_operator_has_the_robot,
+    a_restarted_task_executes_nothing_old_and_is_connected,
+    each_location_of_a_command_has_a_pose_of_its_own,
+];
 
 fn error(reason: Reason) -> (HwsReport, Reason) {
     (HwsReport::Error, reason)
@@ -41,7 +66,7 @@ fn transfer_fetches_places_and_leaves() {
     let mut bench = Bench::default();
     assert_eq!(bench.run("TRANSFER PART +1 PFIXTURE 0 +1 UNIT_1 2 SAFE 0"), FINISHED);
     assert_eq!(bench.sent(), ["GET-ENDEFF", "GET-OBJECT", "PLACE-OBJ", "GOTO-ENDPT"]);
-    let [_, get, place, leave] = bench.subtask.received[..] else { panic!() };
+    let [_, get, place, leave] = bench.world.subtask.received[..] else { panic!() };
     assert_eq!((get.location.as_str(), place.location.as_str()), ("PFIXTURE", "UNIT_1"));
     assert_eq!(leave.location.as_str(), "SAFE");
     assert_eq!((place.location_array, place.source_grip, place.destination_grip), (Some(1), 1, 1));
@@ -54,7 +79,7 @@ fn an_object_is_regripped_when_the_grips_differ() {
     let mut bench = Bench::default();
     assert_eq!(bench.run("TRANSFER PART +1 PFIXTURE 0 -1 UNIT_1 2 SAFE 0"), FINISHED);
     assert_eq!(bench.sent(), ["GET-ENDEFF", "GET-OBJECT", "FIX-GRIP", "PLACE-OBJ", "GOTO-ENDPT"]);
-    let [_, get, fix, place, _] = bench.subtask.received[..] else { panic!() };
+    let [_, get, fix, place, _] = bench.world.subtask.received[..] else { panic!() };
     assert_eq!((fix.source_grip, fix.destination_grip), (1, -1));
     let grip = |grip| bench.data.object(&Name16::new("PART").unwrap(), grip).map(|(id, _)| id.number());
     assert_eq!((get.object_parameters, place.object_parameters), (grip(1), grip(-1)));
@@ -71,7 +96,7 @@ fn move_moves_an_object_or_the_robot() {
     assert_eq!(bench.sent(), ["GET-ENDEFF", "GET-OBJECT", "MOVE-OBJ>D"]);
     assert_eq!(bench.run("MOVE -- 0 -- 0 0 SAFE 0 -- 0"), FINISHED);
     assert_eq!(bench.sent(), ["GOTO-DEST"]);
-    assert!(bench.subtask.outputs.status.held.is_held(), "what is held is kept");
+    assert!(bench.world.subtask.outputs.status.held.is_held(), "what is held is kept");
 }
 
 #[test]
@@ -84,7 +109,7 @@ fn position_releases_what_is_held_first() {
     }
     assert_eq!(bench.run("POSITION -- 0 -- 0 0 SAFE 0 -- 0"), FINISHED);
     assert_eq!(bench.sent(), [">POSITION"]);
-    assert_eq!(bench.subtask.outputs.status.at.unwrap().location.as_str(), "SAFE");
+    assert_eq!(bench.world.subtask.outputs.status.at.unwrap().location.as_str(), "SAFE");
 }
 
 #[test]
@@ -92,7 +117,7 @@ fn acquire_gets_the_gripper_and_the_object() {
     let mut bench = Bench::default();
     assert_eq!(bench.run("ACQUIRE CYLINDER +1 PFIXTURE 0 0 -- 0 -- 0"), FINISHED);
     assert_eq!(bench.sent(), ["GET-ENDEFF", "GET-OBJECT"]);
-    assert_eq!(bench.subtask.received[0].end_effector_id, Some(2));
+    assert_eq!(bench.world.subtask.received[0].end_effector_id, Some(2));
 }
 
 #[test]
@@ -119,7 +144,7 @@ fn a_tool_is_inserted_and_released() {
     bench.set(3, "TOOL-1", "TOOL-SAFE");
     assert_eq!(bench.run(INSERT), FINISHED);
     assert_eq!(bench.sent(), ["INSERT-TOOL"]);
-    let command = bench.subtask.received[0];
+    let command = bench.world.subtask.received[0];
     let parameters = bench.data.object(&Name16::new("TOOL-1").unwrap(), 1).map(|(id, _)| id.number());
     assert_eq!(
         (command.end_effector_id, command.object_parameters, command.source_grip),
@@ -136,7 +161,7 @@ fn a_tool_is_acquired_and_removed() {
     let mut bench = Bench::default();
     assert_eq!(bench.run(ACQUIRE), FINISHED);
     assert_eq!(bench.sent(), ["GET-ENDEFF", "GOTO-DEST", "ACQUIRE-TOOL"]);
-    let [gripper, near, acquire] = bench.subtask.received[..] else { panic!() };
+    let [gripper, near, acquire] = bench.world.subtask.received[..] else { panic!() };
     assert_eq!((gripper.end_effector_id, near.location.as_str()), (Some(3), "TOOL-SAFE"));
     assert_eq!((acquire.object.unwrap_or_default().as_str(), acquire.source_grip), ("TOOL-1", 1));
     assert_eq!((bench.run(ACQUIRE), bench.sent()), (FINISHED, vec![]), "it is held already");
@@ -150,7 +175,7 @@ fn a_free_gripper_before_the_drum_only_leaves() {
     for (line, sent) in [(RELEASE, &["GOTO-ENDPT"][..]), ("RELEASE-TOOL TOOL-1 +1 -- 0 0 -- 0 -- 0", &[])] {
         let mut bench = Bench::default();
         bench.set(3, "", "TOOL-TRNS");
-        bench.subtask.outputs.status.drum = false;
+        bench.world.subtask.outputs.status.drum = false;
         bench.step();
         assert_eq!(bench.run(line), FINISHED, "{line}");
         assert_eq!(bench.sent(), sent, "{line}");
@@ -167,8 +192,8 @@ fn a_tool_command_without_an_end_stays_where_it_is_and_without_a_name_means_the_
     ] {
         assert_eq!(bench.run(line), FINISHED);
         assert_eq!(bench.sent(), [word]);
-        assert_eq!(bench.subtask.received[0].object.unwrap_or_default().as_str(), "TOOL-1");
-        assert_eq!(bench.subtask.received[0].end_effector_id, Some(3));
+        assert_eq!(bench.world.subtask.received[0].object.unwrap_or_default().as_str(), "TOOL-1");
+        assert_eq!(bench.world.subtask.received[0].end_effector_id, Some(3));
     }
     // The location that the command names as its source does not count: only TOOL-SAFE is near the drum.
     bench.set(3, "TOOL-1", "HOME");
@@ -198,6 +223,39 @@ fn a_tool_command_that_is_not_prepared_is_refused() {
         assert_eq!(bench.run(line), error(reason), "{line}, gripper {gripper}, {object} at {at}");
         assert!(bench.sent().is_empty());
     }
+}
+
+#[test]
+fn a_tool_command_is_refused_while_it_is_not_known_what_is_held() {
+    for (held, acquired) in
+        [(Holding::Something, Reason::UnknownHeld), (Holding::NotKnown, Reason::HeldNotKnown)]
+    {
+        let with = |line: &str| {
+            let mut bench = Bench::default();
+            bench.set(3, "", "HOME");
+            bench.world.subtask.outputs.status.held = held;
+            bench.step();
+            (bench.run(line), bench.sent())
+        };
+        for (line, reason) in [
+            (INSERT, Reason::UnknownHeld),
+            (RELEASE, Reason::UnknownHeld),
+            (REMOVE, Reason::UnknownHeld),
+            (ACQUIRE, acquired),
+        ] {
+            assert_eq!(with(line), (error(reason), vec![]), "{line}, {held:?}");
+        }
+        // Subtask says whether it hinders an object from being fetched.
+        let (end, sent) = with("REFIXTURE PART +1 PFIXTURE 0 -1 PFIXTURE 0 -- 0");
+        assert_eq!((end, sent[0]), (FINISHED, "GET-ENDEFF"));
+    }
+}
+
+#[test]
+fn a_tool_is_acquired_at_once_by_fingers_in_the_drum() {
+    let mut bench = Bench::default();
+    bench.set(3, "", "TOOL-TRNS");
+    assert_eq!((bench.run(ACQUIRE), bench.sent()), (FINISHED, vec!["ACQUIRE-TOOL"]));
 }
 
 /// Commands that lack something, and why they are refused.
@@ -240,7 +298,7 @@ fn a_command_with_a_bad_name_is_refused_before_anything_moves() {
         assert!(bench.sent().is_empty());
     }
     let store = without(&["-o-loc- PART"]);
-    let mut bench = Bench::with(store.view());
+    let mut bench = Bench::of(store.view());
     assert_eq!(bench.run("MOVE PART +1 UNIT_1 1 +1 SAFE 0 -- 0"), error(Reason::NoArrayForObject));
 }
 
@@ -274,11 +332,11 @@ fn an_error_below_is_passed_up_by_every_command() {
         {
             let mut bench = Bench::default();
             bench.set(gripper, object, at);
-            bench.subtask.mishap = Some((verb, mishap));
+            bench.world.subtask.mishap = Some((verb, mishap));
             assert_eq!(bench.run(line), error(reason), "{line}");
-            let sent = bench.subtask.received.len();
-            (0..20).for_each(|_| assert_eq!(bench.step().report, HwsReport::Error));
-            assert_eq!(bench.subtask.received.len(), sent, "nothing is sent after an error");
+            let sent = bench.world.subtask.received.len();
+            (0..20).for_each(|_| assert_eq!(bench.step().status.report, HwsReport::Error));
+            assert_eq!(bench.world.subtask.received.len(), sent, "nothing is sent after an error");
         }
     }
 }
@@ -287,22 +345,22 @@ fn an_error_below_is_passed_up_by_every_command() {
 fn the_operator_takes_the_robot_from_a_command_and_gives_it_back() {
     let mut bench = Bench::default();
     bench.command("MOVE -- 0 -- 0 0 SAFE 0 -- 0");
-    (0..3).for_each(|_| assert_eq!(bench.step().report, HwsReport::Executing));
-    bench.subtask.joystick = true;
+    (0..3).for_each(|_| assert_eq!(bench.step().status.report, HwsReport::Executing));
+    bench.world.subtask.joystick = true;
     bench.step();
     bench.step();
     for _ in 0..30 {
-        let status = bench.step();
+        let status = bench.step().status;
         assert_eq!((status.report, status.reason), (HwsReport::JoystickOn, Reason::JoystickOn));
     }
     assert_eq!(bench.sent(), ["GOTO-DEST", "S-PAUSE"], "one pause is enough");
     // Nothing is executed while the operator has the robot.
     assert_eq!(bench.run("MOVE -- 0 -- 0 0 HOME 0 -- 0"), (HwsReport::JoystickOn, Reason::JoystickOn));
     assert!(bench.sent().is_empty());
-    bench.subtask.joystick = false;
+    bench.world.subtask.joystick = false;
     bench.wait(5);
     for _ in 0..30 {
-        let status = bench.step();
+        let status = bench.step().status;
         assert_eq!((status.report, status.reason), (HwsReport::Error, Reason::JoystickOn));
     }
     assert!(bench.sent().is_empty(), "the interrupted command is not resumed");
@@ -313,16 +371,16 @@ fn the_operator_takes_the_robot_from_a_command_and_gives_it_back() {
 fn the_operator_can_take_the_robot_between_two_commands() {
     let mut bench = Bench::default();
     assert_eq!(bench.run("MOVE -- 0 -- 0 0 SAFE 0 -- 0"), FINISHED);
-    bench.subtask.joystick = true;
+    bench.world.subtask.joystick = true;
     bench.wait(30);
     assert_eq!(bench.sent(), ["GOTO-DEST", "S-PAUSE"]);
     assert_eq!(bench.memory.task.status.report, HwsReport::JoystickOn);
-    bench.subtask.joystick = false;
+    bench.world.subtask.joystick = false;
     bench.wait(5);
-    assert_eq!((bench.step().report, bench.step().reason), (HwsReport::Idle, Reason::None));
+    assert_eq!((bench.step().status.report, bench.step().status.reason), (HwsReport::Idle, Reason::None));
     // Before any command.
     let mut bench = Bench::default();
-    bench.subtask.joystick = true;
+    bench.world.subtask.joystick = true;
     bench.wait(30);
     assert_eq!((bench.sent(), bench.memory.task.status.report), (vec!["S-PAUSE"], HwsReport::JoystickOn));
 }
@@ -335,15 +393,15 @@ fn a_command_that_comes_when_the_operator_takes_the_robot_is_not_executed() {
         ("PAUSE -- 0 -- 0 0 -- 0 -- 0", Reason::JoystickOn),
     ] {
         let mut bench = Bench::default();
-        bench.subtask.joystick = true;
+        bench.world.subtask.joystick = true;
         bench.step();
         bench.command(line);
         bench.wait(30);
         assert_eq!(bench.sent(), ["S-PAUSE"], "{line}");
         assert_eq!(bench.memory.task.status.report, HwsReport::JoystickOn);
-        bench.subtask.joystick = false;
+        bench.world.subtask.joystick = false;
         bench.wait(5);
-        let status = bench.step();
+        let status = bench.step().status;
         assert_eq!((status.report, status.reason), error(reason), "{line}");
     }
 }
@@ -364,14 +422,14 @@ fn command_that_fails_its_check_is_refused_and_the_next_one_is_executed() {
 #[test]
 fn a_pause_is_accepted_while_the_operator_has_the_robot() {
     let mut bench = Bench::default();
-    bench.subtask.joystick = true;
+    bench.world.subtask.joystick = true;
     bench.wait(10);
     bench.command("PAUSE -- 0 -- 0 0 -- 0 -- 0");
-    (0..30).for_each(|_| assert_eq!(bench.step().report, HwsReport::JoystickOn));
+    (0..30).for_each(|_| assert_eq!(bench.step().status.report, HwsReport::JoystickOn));
     assert_eq!(bench.sent(), ["S-PAUSE", "S-PAUSE"]);
-    bench.subtask.joystick = false;
+    bench.world.subtask.joystick = false;
     bench.wait(5);
-    assert_eq!(bench.step().reason, Reason::JoystickOn);
+    assert_eq!(bench.step().status.reason, Reason::JoystickOn);
     assert_eq!(bench.run("PAUSE -- 0 -- 0 0 -- 0 -- 0"), FINISHED);
 }
 
@@ -380,7 +438,7 @@ fn a_restarted_task_executes_nothing_old_and_is_connected() {
     let mut bench = Bench::connected();
     bench.command("MOVE PART +1 UNIT_1 1 +1 SAFE 0 -- 0");
     bench.step();
-    bench.process = Task::default();
+    bench.restart();
     assert_eq!(bench.finish(), error(Reason::Restarted));
     assert_eq!(bench.run("MOVE PART +1 UNIT_1 1 +1 SAFE 0 -- 0"), FINISHED);
     assert_eq!(bench.asked(), ["UPDATE"]);
@@ -392,7 +450,7 @@ fn each_location_of_a_command_has_a_pose_of_its_own() {
     assert_eq!(bench.run("TRANSFER PART +1 PFIXTURE 0 +1 UNIT_1 2 SAFE 0"), FINISHED);
     let plan = Plan::look_up(&bench.external.hws, &bench.data).plan;
     for (command, site) in
-        bench.subtask.received[1..].iter().zip([plan.source, plan.destination, plan.end_at])
+        bench.world.subtask.received[1..].iter().zip([plan.source, plan.destination, plan.end_at])
     {
         let pose = site.location.map(|location| location.pose.pose);
         assert_eq!(

@@ -12,10 +12,38 @@ use rcs_core::name::{Name10, Name16};
 
 use super::{
     ACQUIRE, INSERT, RELEASE, REMOVE,
-    bench::{Answer, Bench, FINISHED, Mishap},
+    bench::{Answer, Bench, FINISHED},
     error,
 };
-use crate::{coverage::Coverage, task::Task};
+
+pub(super) const SCENARIOS: &[fn()] = &[
+    a_new_command_stops_what_is_under_way_before_it_is_answered,
+    a_command_that_replaces_nothing_is_accepted_in_the_tick_in_which_it_comes,
+    a_pause_that_is_replaced_is_waited_for,
+    a_restarted_task_stops_what_it_had_commanded,
+    the_operator_with_the_box_is_sent_nothing,
+    an_interrupted_transfer_goes_on,
+    a_transfer_that_stays_goes_back_to_its_object,
+    what_an_earlier_command_has_placed_does_not_count,
+    another_command_about_an_object_ends_what_was_interrupted,
+    a_part_in_the_pedestal_is_regripped_first,
+    an_interrupted_tool_command_goes_on,
+    a_tool_command_that_stays_is_finished_only_at_the_drum,
+    a_tool_command_whose_effect_has_come_only_leaves,
+    nothing_is_let_go_before_it_is_known_that_the_robot_can_leave,
+    position_releases_at_a_vise_only_what_is_clamped_or_confirmed,
+    position_releases_nothing_in_mid_air_unless_a_person_holds_it,
+    position_releases_in_a_nest,
+    a_confirmation_ends_when_the_robot_leaves_or_holds_nothing,
+    a_position_is_finished_when_the_data_system_knows_where_the_object_is,
+    the_books_follow_an_object_out_of_the_hand,
+    two_updates_are_kept_and_told_in_order,
+    what_is_told_survives_a_command_that_replaces_it,
+    an_interrupted_startup_says_that_nothing_is_told,
+    a_restarted_task_believes_what_it_believed,
+    a_link_that_fails_while_a_pause_stands_is_reported_and_no_failure,
+    updates_that_were_not_taken_are_told_in_their_order,
+];
 
 const PAUSE: &str = "PAUSE -- 0 -- 0 0 -- 0 -- 0";
 const STARTUP: &str = "STARTUP -- 0 -- 0 0 -- 0 -- 0";
@@ -32,7 +60,7 @@ const SEAT_BY_DESTINATION: &str = "POSITION PART 0 -- 0 +1 PFIXTURE 0 -- 0";
 /// A bench whose robot is at no known place while it moves.
 fn moving_bench() -> Bench<'static> {
     let mut bench = Bench::connected();
-    bench.subtask.loses_place = true;
+    bench.world.subtask.loses_place = true;
     bench
 }
 
@@ -48,11 +76,11 @@ fn a_new_command_stops_what_is_under_way_before_it_is_answered() {
     for line in [PAUSE, HOME, NOWHERE, STARTUP, SHUTDOWN, TRANSFER, SEAT, ACQUIRE] {
         for ticks in 1..25 {
             let mut bench = Bench::default();
-            bench.data_system.answer = Answer::After(2);
+            bench.world.data_system.answer = Answer::After(2);
             bench.command(TRANSFER);
             bench.wait(ticks);
             let under_way = is_under_way(&bench);
-            let before = bench.subtask.received.len();
+            let before = bench.world.subtask.received.len();
             bench.command(line);
             bench.step();
             if under_way {
@@ -94,6 +122,15 @@ fn a_pause_that_is_replaced_is_waited_for() {
     bench.wait(2);
     assert_eq!(bench.run(HOME), FINISHED);
     assert_eq!(bench.sent(), ["GOTO-DEST"], "one S-PAUSE is enough");
+    // By a restart.
+    let mut bench = Bench::default();
+    bench.command(TRANSFER);
+    bench.wait(2);
+    bench.command(PAUSE);
+    bench.wait(2);
+    bench.restart();
+    assert_eq!(bench.finish(), error(Reason::Restarted));
+    assert_eq!(bench.sent().iter().filter(|word| **word == "S-PAUSE").count(), 1);
 }
 
 #[test]
@@ -103,7 +140,7 @@ fn a_restarted_task_stops_what_it_had_commanded() {
         bench.command(TRANSFER);
         bench.wait(ticks);
         let under_way = is_under_way(&bench);
-        bench.process = Task::default();
+        bench.restart();
         assert_eq!(bench.finish(), error(Reason::Restarted));
         bench.wait(10);
         assert!(!is_under_way(&bench));
@@ -118,7 +155,7 @@ fn the_operator_with_the_box_is_sent_nothing() {
     let mut bench = Bench::default();
     bench.command(TRANSFER);
     bench.wait(6);
-    bench.subtask.joystick = true;
+    bench.world.subtask.joystick = true;
     bench.wait(10);
     let sent = bench.sent().len();
     for line in [NOWHERE, HOME] {
@@ -151,7 +188,7 @@ fn interrupt(bench: &mut Bench<'_>, line: &str, ticks: u32, by: Interruption) ->
     }
     match by {
         Interruption::Command(other) => bench.command(other),
-        Interruption::Restart => bench.process = Task::default(),
+        Interruption::Restart => bench.restart(),
     }
     bench.finish();
     bench.wait(10);
@@ -168,8 +205,12 @@ fn an_interrupted_transfer_goes_on() {
                     continue;
                 }
                 let placed = bench.memory.subtask.status.placed.is_some();
-                let told =
-                    bench.data_system.received.iter().filter(|told| told.command == DataBaseVerb::Update);
+                let told = bench
+                    .world
+                    .data_system
+                    .received
+                    .iter()
+                    .filter(|told| told.command == DataBaseVerb::Update);
                 let told = told.count();
                 assert_eq!(bench.run(line), FINISHED, "{line}, tick {ticks}, {by:?}");
                 if placed {
@@ -243,7 +284,7 @@ fn another_command_about_an_object_ends_what_was_interrupted() {
         bench.step();
     }
     assert_eq!(bench.run("ACQUIRE BAR +1 PFIXTURE 0 0 -- 0 -- 0"), FINISHED);
-    bench.subtask.hold("");
+    bench.world.subtask.hold("");
     assert_eq!(bench.run(TRANSFER), FINISHED);
     assert_eq!(bench.sent(), ["GET-ENDEFF", "GET-OBJECT", "PLACE-OBJ", "GOTO-ENDPT"]);
 }
@@ -258,7 +299,7 @@ fn a_part_in_the_pedestal_is_regripped_first() {
         (TRANSFER, &["GET-ENDEFF", "GET-OBJECT", "PLACE-OBJ", "GOTO-ENDPT"]),
     ] {
         let mut bench = Bench::default();
-        bench.subtask.outputs.status.pedestal_part = true;
+        bench.world.subtask.outputs.status.pedestal_part = true;
         bench.step();
         assert_eq!(bench.run(line), FINISHED);
         assert_eq!(bench.sent(), words, "{line}");
@@ -301,10 +342,10 @@ fn staying(line: &str, holds: &str, at: &str) -> Bench<'static> {
     while bench.memory.subtask.status.drum {
         bench.step();
     }
-    bench.process = Task::default();
+    bench.restart();
     bench.finish();
     bench.set(3, holds, at);
-    bench.subtask.outputs.status.drum = false;
+    bench.world.subtask.outputs.status.drum = false;
     bench.step();
     bench
 }
@@ -322,6 +363,22 @@ fn a_tool_command_that_stays_is_finished_only_at_the_drum() {
     }
 }
 
+/// The command was cut off before its effect was seen.
+#[test]
+fn a_tool_command_whose_effect_has_come_only_leaves() {
+    for (line, held, at, sent) in [
+        (RELEASE, "", "HOME", &["GOTO-ENDPT"][..]),
+        (RELEASE, "", "TOOL-SAFE", &[]),
+        (REMOVE, "TOOL-1", "HOME", &["GOTO-ENDPT"]),
+    ] {
+        let mut bench = Bench::default();
+        bench.set(3, "TOOL-1", "TOOL-TRNS");
+        assert!(interrupt(&mut bench, line, 3, Interruption::Command(PAUSE)));
+        bench.set(3, held, at);
+        assert_eq!((bench.run(line), bench.sent()), (FINISHED, sent.to_vec()), "{line}, {at}");
+    }
+}
+
 #[test]
 fn nothing_is_let_go_before_it_is_known_that_the_robot_can_leave() {
     for (at, reason) in [("", Reason::UnknownStart), ("HOME", Reason::NoTrajectory)] {
@@ -336,7 +393,7 @@ fn nothing_is_let_go_before_it_is_known_that_the_robot_can_leave() {
 fn brought(held: Holding, at: &str) -> Bench<'static> {
     let mut bench = Bench::default();
     bench.set(1, "PART", at);
-    bench.subtask.outputs.status.held = held;
+    bench.world.subtask.outputs.status.held = held;
     bench.external.devices.clamping = None;
     bench.step();
     bench
@@ -418,14 +475,14 @@ fn a_confirmation_ends_when_the_robot_leaves_or_holds_nothing() {
     let counts = |bench: &Bench<'_>| bench.memory.task.confirmed.is_some();
     let mut bench = confirmed(brought(part(), "HOME"), Support::ByHand);
     assert!(counts(&bench));
-    bench.process = Task::default();
+    bench.restart();
     bench.step();
     assert!(counts(&bench), "a restarted Task knows it");
-    bench.subtask.outputs.status.at = None;
+    bench.world.subtask.outputs.status.at = None;
     bench.wait(2);
     assert!(!counts(&bench));
     let mut bench = confirmed(brought(part(), "HOME"), Support::ByHand);
-    bench.subtask.outputs.status.held = Holding::Nothing;
+    bench.world.subtask.outputs.status.held = Holding::Nothing;
     bench.wait(2);
     assert!(!counts(&bench));
     assert!(!counts(&confirmed(brought(Holding::Nothing, "HOME"), Support::ByHand)));
@@ -433,7 +490,7 @@ fn a_confirmation_ends_when_the_robot_leaves_or_holds_nothing() {
 
 /// What the updates say that the Data System has taken: item and position.
 fn updates(bench: &Bench<'_>) -> Vec<(String, i32)> {
-    let told = bench.data_system.received.iter().filter(|told| told.command == DataBaseVerb::Update);
+    let told = bench.world.data_system.received.iter().filter(|told| told.command == DataBaseVerb::Update);
     told.map(|told| (told.position.to_string(), told.sector.unwrap_or(0))).collect()
 }
 
@@ -443,7 +500,7 @@ fn a_position_is_finished_when_the_data_system_knows_where_the_object_is() {
     for seat in [SEAT, SEAT_BY_DESTINATION] {
         let mut bench = Bench::connected();
         assert_eq!(bench.run(FROM_TRAY), FINISHED);
-        bench.data_system.answer = Answer::After(100);
+        bench.world.data_system.answer = Answer::After(100);
         assert_eq!(bench.run(seat), FINISHED);
         assert_eq!(updates(&bench), [("PFIXTURE".to_owned(), 0)]);
         assert_eq!(bench.sent(), ["RELEASE", ">POSITION"]);
@@ -459,7 +516,7 @@ fn the_books_follow_an_object_out_of_the_hand() {
         assert_eq!(updates(&bench), [("H_ROBOT".to_owned(), 0)]);
         assert_eq!(bench.run(seat), FINISHED);
         assert_eq!(updates(&bench), [("PFIXTURE".to_owned(), 0)]);
-        let told = bench.data_system.received[0];
+        let told = bench.world.data_system.received[0];
         assert_eq!((told.item, told.serial), (Name16::new("PART").unwrap(), Name16::new("S-17").unwrap()));
         assert_eq!(bench.run(seat), FINISHED);
         assert!(updates(&bench).is_empty(), "nothing is held");
@@ -482,7 +539,7 @@ fn the_books_follow_an_object_out_of_the_hand() {
 /// go.
 fn owing_two(trouble: Answer) -> Bench<'static> {
     let mut bench = Bench::connected();
-    bench.data_system.answer = trouble;
+    bench.world.data_system.answer = trouble;
     bench.run(FROM_TRAY);
     bench.run(SEAT);
     bench
@@ -494,7 +551,7 @@ fn two_updates_are_kept_and_told_in_order() {
         for line in [TRANSFER, FROM_TRAY, "ACQUIRE PART +1 UNIT_1 2 0 -- 0 -- 0", STARTUP] {
             let mut bench = owing_two(trouble);
             assert!(!bench.memory.subtask.status.held.is_held(), "the object is let go all the same");
-            bench.data_system.answer = Answer::After(1);
+            bench.world.data_system.answer = Answer::After(1);
             assert_eq!(bench.run(line), FINISHED);
             assert_eq!(
                 updates(&bench)[..2],
@@ -509,14 +566,14 @@ fn two_updates_are_kept_and_told_in_order() {
 fn what_is_told_survives_a_command_that_replaces_it() {
     for by in [PAUSE, HOME, NOWHERE] {
         let mut bench = Bench::connected();
-        bench.data_system.answer = Answer::Absent;
+        bench.world.data_system.answer = Answer::Absent;
         bench.command(TRANSFER);
         while bench.asked().is_empty() {
             bench.step();
         }
         bench.command(by);
         bench.finish();
-        bench.data_system.answer = Answer::After(1);
+        bench.world.data_system.answer = Answer::After(1);
         assert_eq!(bench.run("ACQUIRE BAR +1 PFIXTURE 0 0 -- 0 -- 0"), FINISHED);
         // It was written once more: the Data System has not answered the first.
         assert!(updates(&bench).len() <= 1);
@@ -534,7 +591,7 @@ fn an_interrupted_startup_says_that_nothing_is_told() {
     assert_eq!(bench.run(TRANSFER), FINISHED);
     assert_eq!(bench.memory.task.connection, Connection::Interrupted);
     assert!(updates(&bench).is_empty());
-    bench.data_system.answer = Answer::After(1);
+    bench.world.data_system.answer = Answer::After(1);
     assert_eq!(bench.run(STARTUP), FINISHED);
     assert_eq!(bench.memory.task.connection, Connection::Open);
     assert_eq!(bench.run(SHUTDOWN), FINISHED);
@@ -545,32 +602,32 @@ fn an_interrupted_startup_says_that_nothing_is_told() {
 fn a_restarted_task_believes_what_it_believed() {
     // It is connected, and tells what it owes, in order.
     let mut bench = owing_two(Answer::Refuse);
-    bench.process = Task::default();
+    bench.restart();
     bench.step();
     assert_eq!(bench.memory.task.connection, Connection::Open);
-    bench.data_system.answer = Answer::After(1);
+    bench.world.data_system.answer = Answer::After(1);
     assert_eq!(bench.run(FROM_TRAY), FINISHED);
     assert_eq!(updates(&bench)[..2], [("H_ROBOT".to_owned(), 0), ("PFIXTURE".to_owned(), 0)]);
     // It knows what the robot carries.
-    bench.process = Task::default();
+    bench.restart();
     bench.step();
     assert_eq!(bench.run(SEAT), FINISHED);
     assert_eq!(updates(&bench), [("PFIXTURE".to_owned(), 0)]);
     // What is taken after the restart was told before it.
     let mut bench = Bench::connected();
-    bench.data_system.answer = Answer::After(8);
+    bench.world.data_system.answer = Answer::After(8);
     bench.command(TRANSFER);
     while bench.asked().is_empty() {
         bench.step();
     }
-    bench.process = Task::default();
+    bench.restart();
     bench.wait(12);
     assert_eq!(bench.memory.task.beliefs.owed, [None; 2]);
     // A STARTUP that a restart has cut off is not forgotten.
     let mut bench = Bench::default();
     bench.command(STARTUP);
     bench.wait(3);
-    bench.process = Task::default();
+    bench.restart();
     assert_eq!(bench.finish(), error(Reason::Restarted));
     assert_eq!(bench.memory.task.connection, Connection::Interrupted);
     assert_eq!(bench.run(TRANSFER), FINISHED);
@@ -582,140 +639,39 @@ fn a_restarted_task_believes_what_it_believed() {
 fn a_link_that_fails_while_a_pause_stands_is_reported_and_no_failure() {
     let mut bench = Bench::default();
     assert_eq!(bench.run(PAUSE), FINISHED);
-    bench.subtask.outputs.status.reason = Reason::LinkOff;
+    bench.world.subtask.outputs.status.reason = Reason::LinkOff;
     bench.wait(3);
     let status = bench.memory.task.status;
     assert_eq!((status.report, status.reason), (HwsReport::Finished, Reason::LinkOff));
     assert_eq!(bench.run(HOME), FINISHED);
 }
 
-/// Rows that only an interruption or trouble fires.
-pub(super) fn all_rows(rows: &mut Coverage) {
-    let mut play = |bench: &mut Bench<'_>| rows.append(&mut bench.rows);
-    let tools = [
-        (INSERT, "TOOL-1", "TOOL-SAFE"),
-        (RELEASE, "TOOL-1", "TOOL-TRNS"),
-        (ACQUIRE, "", "HOME"),
-        (REMOVE, "TOOL-1", "TOOL-TRNS"),
-    ];
-    let lines = [(TRANSFER, "", ""), (REGRIP, "", "")];
-    for (line, object, at) in tools.into_iter().chain(lines) {
-        for ticks in 1..45 {
-            let mut bench = moving_bench();
-            bench.set(3, object, at);
-            interrupt(&mut bench, line, ticks, Interruption::Command(PAUSE));
-            bench.run(line);
-            play(&mut bench);
-        }
-    }
-    for (held, at, line) in [
-        (part(), "PFIXTURE", SEAT),
-        (part(), "PFIXTURE", STAY_AT_FIXTURE),
-        (Holding::Something, "HOME", STAY_AT_HOME),
-        (Holding::NotKnown, "HOME", STAY_AT_HOME),
-    ] {
-        let mut bench = brought(held, at);
-        bench.run(line);
-        play(&mut bench);
-    }
-    let mut bench = moving_bench();
-    bench.command(TRANSFER_AND_STAY);
-    while bench.memory.subtask.status.placed.is_none() {
-        bench.step();
-    }
-    bench.run(HOME);
-    bench.run(TRANSFER_AND_STAY);
-    play(&mut bench);
-    // Interrupted when the tool command is done and not seen to be.
-    for (line, held, at) in [(RELEASE, "", "HOME"), (RELEASE, "", "TOOL-SAFE"), (REMOVE, "TOOL-1", "HOME")] {
-        let mut bench = Bench::default();
-        bench.set(3, "TOOL-1", "TOOL-TRNS");
-        interrupt(&mut bench, line, 3, Interruption::Command(PAUSE));
-        bench.set(3, held, at);
-        bench.run(line);
-        play(&mut bench);
-    }
-    for (line, holds) in STAYING {
-        for at in ["TOOL-TRNS", "HOME"] {
-            let mut bench = staying(line, holds, at);
-            bench.run(line);
-            play(&mut bench);
-        }
-    }
-    let mut bench = Bench::default();
-    bench.set(3, "", "TOOL-TRNS");
-    bench.subtask.outputs.status.drum = false;
-    bench.step();
-    bench.run(RELEASE);
-    play(&mut bench);
-    for holding in [Holding::Something, Holding::NotKnown] {
-        for line in [INSERT, RELEASE, ACQUIRE, REMOVE, "REFIXTURE PART +1 PFIXTURE 0 -1 PFIXTURE 0 -- 0"] {
-            let mut bench = Bench::default();
-            bench.set(3, "", "HOME");
-            bench.subtask.outputs.status.held = holding;
-            bench.step();
-            bench.run(line);
-            play(&mut bench);
-        }
-    }
-    for (line, held, at) in [(ACQUIRE, "", "TOOL-TRNS"), (RELEASE, "TOOL-1", "")] {
-        let mut bench = Bench::default();
-        bench.set(3, held, at);
-        bench.run(line);
-        play(&mut bench);
-    }
-    // The Data System begins to answer when it has been told the first of two updates again.
+/// The Data System begins to answer when it has been told the first of two updates again.
+#[test]
+fn updates_that_were_not_taken_are_told_in_their_order() {
     let mut bench = Bench::connected();
-    bench.data_system.answer = Answer::Absent;
+    bench.world.data_system.answer = Answer::Absent;
     bench.run(FROM_TRAY);
-    bench.data_system.received.clear();
+    bench.world.data_system.received.clear();
     bench.command(SEAT);
-    while bench.data_system.received.is_empty() {
+    while bench.world.data_system.received.is_empty() {
         bench.step();
     }
-    bench.data_system.answer = Answer::After(1);
+    bench.world.data_system.answer = Answer::After(1);
     assert_eq!(bench.finish(), FINISHED);
     assert_eq!(updates(&bench), [("H_ROBOT".to_owned(), 0), ("PFIXTURE".to_owned(), 0)]);
-    play(&mut bench);
-    for line in
-        [REGRIP, "MOVE PART +1 PFIXTURE 0 -1 SAFE 0 -- 0", "REFIXTURE PART +1 PFIXTURE 0 -1 PFIXTURE 0 -- 0"]
-    {
-        let mut bench = Bench::default();
-        bench.subtask.outputs.status.pedestal_part = true;
+    // Of a tool.
+    let mut bench = Bench::connected();
+    bench.set(3, "TOOL-1", "HOME");
+    bench.world.data_system.answer = Answer::Absent;
+    bench.run("MOVE TOOL-1 +1 UNIT_1 2 +1 TOOL-SAFE 0 -- 0");
+    bench.set(3, "TOOL-1", "TOOL-TRNS");
+    bench.world.data_system.received.clear();
+    bench.command(RELEASE);
+    while bench.world.data_system.received.is_empty() {
         bench.step();
-        bench.run(line);
-        play(&mut bench);
     }
-    for line in
-        [TRANSFER, FROM_TRAY, "ACQUIRE PART +1 UNIT_1 2 0 -- 0 -- 0", STARTUP, SEAT, SEAT_BY_DESTINATION]
-    {
-        let mut bench = owing_two(Answer::Absent);
-        bench.data_system.answer = Answer::After(1);
-        bench.run(line);
-        play(&mut bench);
-    }
-    for seat in [SEAT, SEAT_BY_DESTINATION] {
-        for answer in [Answer::After(1), Answer::After(100)] {
-            let mut bench = Bench::connected();
-            bench.run(FROM_TRAY);
-            bench.data_system.answer = answer;
-            bench.run(seat);
-            play(&mut bench);
-        }
-    }
-    // A pause that does not end at once is waited for.
-    let mut bench = Bench::default();
-    bench.command(TRANSFER);
-    bench.wait(6);
-    bench.command(PAUSE);
-    bench.wait(2);
-    bench.run(HOME);
-    play(&mut bench);
-    // Subtask fails at the pause.
-    let mut bench = Bench::default();
-    bench.subtask.mishap = Some((SubtaskVerb::Pause, Mishap::Error(Reason::LinkOff)));
-    bench.command(TRANSFER);
-    bench.wait(6);
-    bench.run(HOME);
-    play(&mut bench);
+    bench.world.data_system.answer = Answer::After(1);
+    assert_eq!(bench.finish(), FINISHED);
+    assert_eq!(updates(&bench), [("H_ROBOT".to_owned(), 0), ("TOOL-TRNS".to_owned(), 0)]);
 }
