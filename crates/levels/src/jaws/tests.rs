@@ -193,9 +193,7 @@ fn fingers_that_closed_on_something_have_grasped_it_when_they_have_stood_for_a_s
     let mut bench = VBench::new(3.5);
     bench.world.object = Some(2.0);
     bench.send(order(JawsVerb::Grasp, 2.0));
-    while bench.world.opening > 2.0 {
-        bench.step();
-    }
+    bench.until(|bench| bench.world.opening <= 2.0);
     let arrived = bench.tick;
     assert_eq!(bench.wait(24).status.felt, Felt::NotKnown);
     bench.send(order(JawsVerb::Pause, 0.0));

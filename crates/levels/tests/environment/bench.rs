@@ -184,6 +184,50 @@ impl<P: Tested<Data>, W: World<P>, Data> Bench<P, W, Data> {
         panic!("no end at tick {}", self.tick);
     }
 
+    /// Step until something holds.
+    pub fn until(&mut self, holds: impl Fn(&Self) -> bool) {
+        let began = self.tick;
+        while !holds(self) {
+            assert!(self.tick.since(began) <= P::LONGEST, "it never holds, up to tick {}", self.tick);
+            self.step();
+        }
+    }
+
+    /// A copy of the bench in each tick in which the command that was sent executes.
+    pub fn at_every_tick(mut self) -> impl Iterator<Item = Self>
+    where
+        Self: Clone,
+    {
+        std::iter::from_fn(move || {
+            let executes = P::end(&self.step()).is_none();
+            executes.then(|| self.clone())
+        })
+    }
+
+    /// Interrupt a command at every tick, in each of some ways, and send it again: `judge` finishes it. What it had
+    /// begun must not matter.
+    pub fn sent_again(
+        &self,
+        send: impl Fn(&mut Self),
+        interruptions: &[fn(&mut Self)],
+        mut judge: impl FnMut(&mut Self),
+    ) where
+        Self: Clone,
+    {
+        for interrupt in interruptions {
+            let mut bench = self.clone();
+            send(&mut bench);
+            let mut ticks = 0;
+            for mut copy in bench.at_every_tick() {
+                interrupt(&mut copy);
+                send(&mut copy);
+                judge(&mut copy);
+                ticks += 1;
+            }
+            assert!(ticks > 1, "the command ends at once");
+        }
+    }
+
     /// A command from its beginning to its end.
     pub fn execute(&mut self, order: P::Order) -> P::End {
         self.send(order);

@@ -135,12 +135,40 @@ fn a_grasp_that_both_fingers_touch_waits_for_neither() {
     }
 }
 
+#[test]
+fn an_interrupted_grasp_or_opening_goes_on() {
+    let interruptions: [fn(&mut Bench); 2] = [
+        |bench| {
+            bench.restart();
+            bench.finish();
+        },
+        |bench| bench.command(GripVerb::Position, 4.0, 0),
+    ];
+    let mut bench = calibrated(19);
+    bench.done(GripVerb::OpenGrip, 2.0, 0);
+    bench.sent_again(
+        |bench| bench.command(GripVerb::OpenGrip, 3.0, 0),
+        &interruptions,
+        |bench| {
+            assert_eq!(bench.finish().status.report, GripReport::Done);
+            assert!((bench.world.opening - 3.0).abs() <= 0.02, "{}", bench.world.opening);
+        },
+    );
+    bench.world.object = Some(Object { size: 0.625, off_centre: 0.1 });
+    bench.sent_again(
+        |bench| bench.command(GripVerb::CloseGrip, 0.60, 30),
+        &interruptions[..1],
+        |bench| {
+            assert_eq!(bench.finish().status.report, GripReport::Done);
+            assert!((bench.world.force - 30.0).abs() <= 3.0, "{} lb", bench.world.force);
+        },
+    );
+}
+
 /// Up to the tick after the valves went off.
 fn settle(bench: &mut Bench) {
     bench.step();
-    while bench.process.state.settled == 0 {
-        bench.step();
-    }
+    bench.until(|bench| bench.process.state.settled != 0);
 }
 
 #[test]

@@ -393,9 +393,7 @@ fn a_last_point_that_is_not_echoed_is_noticed() {
     let mut rig = Rig::initialized();
     rig.command(PrimVerb::GotoPt, 2);
     rig.wait(5);
-    while !rig.at_rest() {
-        rig.step();
-    }
+    rig.until(|rig| rig.at_rest());
     rig.world.t3i.deaf = true;
     assert_eq!(rig.finish(), PrimReport::NoRespT3i);
 }

@@ -47,7 +47,7 @@ pub enum Mishap {
 }
 
 /// The E-move that a test sees.
-#[derive(Default)]
+#[derive(Clone, Default)]
 pub struct EmoveDouble {
     receiver: Receiver,
     left: u32,
@@ -173,7 +173,7 @@ impl EmoveDouble {
 }
 
 /// The Active Pedestal that a test sees.
-#[derive(Default)]
+#[derive(Clone, Default)]
 pub struct PedestalDouble {
     receiver: Receiver,
     left: u32,
@@ -247,6 +247,7 @@ impl PedestalDouble {
 /// Subtask, and the doubles.
 pub type Bench<'d> = bench::Bench<Subtask, Below, TaskData<'d>>;
 
+#[derive(Clone)]
 pub struct Below {
     pub emove: EmoveDouble,
     pub pedestal: PedestalDouble,
@@ -355,6 +356,16 @@ impl<'d> Bench<'d> {
     /// The words that the pedestal was sent.
     pub fn sent_to_pedestal(&self) -> Vec<&'static str> {
         self.world.pedestal.received.iter().map(|command| command.command.text()).collect()
+    }
+
+    /// FIX-GRIP of the part from grip 1 to grip -1 has been sent to a robot that holds it.
+    pub fn fixing() -> Self
+    where
+        Self: Default,
+    {
+        let mut bench = Self::grasped("PART", 1);
+        bench.command(SubtaskVerb::FixGrip, "PART", (1, -1), "");
+        bench
     }
 
     /// An object is held that Subtask has seen grasped with a grip.

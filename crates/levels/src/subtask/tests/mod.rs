@@ -189,8 +189,7 @@ fn an_object_is_regripped_on_the_pedestal() {
 
 #[test]
 fn the_cycle_count_of_a_pedestal_command_is_its_tick() {
-    let mut bench = Bench::grasped("PART", 1);
-    bench.command(SubtaskVerb::FixGrip, "PART", (1, -1), "");
+    let mut bench = Bench::fixing();
     bench.step();
     let command = bench.memory.subtask.pedestal;
     assert_eq!((command.command, command.cycle), (PedestalVerb::PreGrip, bench.tick));
@@ -198,8 +197,7 @@ fn the_cycle_count_of_a_pedestal_command_is_its_tick() {
 
 #[test]
 fn pedestal_and_robot_do_not_move_into_each_other() {
-    let mut bench = Bench::grasped("PART", 1);
-    bench.command(SubtaskVerb::FixGrip, "PART", (1, -1), "");
+    let mut bench = Bench::fixing();
     for _ in 0..200 {
         let status = bench.step().status;
         let robot = bench.memory.emove.status.report == StatusReport::Executing
@@ -286,12 +284,9 @@ fn an_object_that_the_robot_loses_is_noticed() {
     }
     // While the pedestal prepares, and while it lets go.
     for (verb, sent) in [(PedestalVerb::PreGrip, 0), (PedestalVerb::Release, 5)] {
-        let mut bench = Bench::grasped("PART", 1);
-        bench.command(SubtaskVerb::FixGrip, "PART", (1, -1), "");
+        let mut bench = Bench::fixing();
         bench.world.emove.received.clear();
-        while bench.memory.subtask.pedestal.command != verb {
-            bench.step();
-        }
+        bench.until(|bench| bench.memory.subtask.pedestal.command == verb);
         bench.world.emove.hold("", 0);
         assert_eq!(bench.finish(), error(Reason::ObjectLost));
         assert_eq!(bench.world.emove.received.len(), sent);

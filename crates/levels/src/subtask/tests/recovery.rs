@@ -66,13 +66,11 @@ fn a_new_command_stops_what_is_under_way_before_it_is_answered() {
         (SubtaskVerb::GotoDest, "", "SAFE"),
         (SubtaskVerb::Release, "PART", ""),
     ] {
-        for ticks in 1..60 {
-            let mut bench = Bench::grasped("PART", 1);
-            bench.command(SubtaskVerb::FixGrip, "PART", (1, -1), "");
-            bench.wait(ticks);
+        for mut bench in Bench::fixing().at_every_tick() {
+            let tick = bench.tick;
             bench.command(verb, object, (1, 2), location);
             let (end, under_way) = (bench.finish(), is_under_way(&bench));
-            assert!(!under_way, "{verb} at tick {ticks} ends with {end:?} while something moves");
+            assert!(!under_way, "{verb} at tick {tick} ends with {end:?} while something moves");
             assert_eq!(bench.memory.emove.status.echo, bench.memory.subtask.emove.number);
             assert_eq!(bench.memory.pedestal.status.echo, bench.memory.subtask.pedestal.number);
         }
@@ -87,13 +85,9 @@ fn a_stop_that_the_box_has_ended_is_not_waited_for_again() {
     bench.wait(3);
     bench.world.emove.mishap = Some((EmoveVerb::Pause, Mishap::Special(Reason::JoystickOn)));
     bench.command(SubtaskVerb::GotoDest, "", (0, 0), "HOME");
-    while bench.world.emove.outputs.status.report != StatusReport::JoystickOn {
-        bench.step();
-    }
+    bench.until(|bench| bench.world.emove.outputs.status.report == StatusReport::JoystickOn);
     bench.world.emove.mishap = None;
-    while bench.sent().last() != Some(&EmoveVerb::MovToLoc.text()) {
-        bench.step();
-    }
+    bench.until(|bench| bench.sent().last() == Some(&EmoveVerb::MovToLoc.text()));
     bench.command(SubtaskVerb::Pause, "", (0, 0), "");
     bench.step();
     assert_eq!(bench.memory.subtask.emove.command, EmoveVerb::Pause);
@@ -102,14 +96,12 @@ fn a_stop_that_the_box_has_ended_is_not_waited_for_again() {
 
 #[test]
 fn a_restarted_subtask_stops_what_it_had_commanded() {
-    for ticks in 1..60 {
-        let mut bench = Bench::grasped("PART", 1);
-        bench.command(SubtaskVerb::FixGrip, "PART", (1, -1), "");
-        bench.wait(ticks);
+    for mut bench in Bench::fixing().at_every_tick() {
+        let tick = bench.tick;
         bench.restart();
         bench.finish();
         bench.wait(10);
-        assert!(!is_under_way(&bench), "tick {ticks}");
+        assert!(!is_under_way(&bench), "tick {tick}");
         assert_eq!(bench.memory.subtask.status.reason, Reason::Restarted);
     }
 }
@@ -117,63 +109,43 @@ fn a_restarted_subtask_stops_what_it_had_commanded() {
 /// Nothing that Task has commanded goes on without it; Task, when it is back, sends the same command again.
 #[test]
 fn without_task_everything_stops() {
-    for ticks in 1..60 {
-        let mut bench = without_task_after(ticks);
-        assert!(!is_under_way(&bench), "tick {ticks}");
+    for mut bench in Bench::fixing().at_every_tick() {
+        let tick = bench.tick;
+        bench.world.task_is_lost = true;
+        bench.wait(20);
+        assert!(!is_under_way(&bench), "tick {tick}");
         let status = bench.memory.subtask.status;
-        let ends = [(StatusReport::Error, Reason::NeighbourLost), (StatusReport::Done, Reason::None)];
-        assert!(ends.contains(&(status.report, status.reason)), "tick {ticks}: {status:?}");
+        let ends = [(StatusReport::Error, Reason::NeighbourLost), DONE];
+        assert!(ends.contains(&(status.report, status.reason)), "tick {tick}: {status:?}");
         bench.world.task_is_lost = false;
         bench.step();
-        let again = bench.run(SubtaskVerb::FixGrip, "PART", (1, -1), "");
-        assert_eq!(again, (StatusReport::Done, Reason::None), "tick {ticks}");
+        assert_eq!(fix(&mut bench), DONE, "tick {tick}");
     }
-}
-
-/// Task is lost so many ticks after it has commanded FIX-GRIP; 20 ticks later.
-fn without_task_after(ticks: u32) -> Bench<'static> {
-    let mut bench = Bench::grasped("PART", 1);
-    bench.command(SubtaskVerb::FixGrip, "PART", (1, -1), "");
-    bench.wait(ticks);
-    bench.world.task_is_lost = true;
-    bench.wait(20);
-    bench
 }
 
 #[test]
 fn an_interrupted_regrip_goes_on() {
-    for restart in [false, true] {
-        for ticks in 1..80 {
-            let mut bench = Bench::grasped("PART", 1);
-            bench.command(SubtaskVerb::FixGrip, "PART", (1, -1), "");
-            bench.wait(ticks);
-            if restart {
-                bench.restart();
-                bench.finish();
-                bench.wait(10);
-            } else {
-                assert_eq!(bench.run(SubtaskVerb::Pause, "", (0, 0), ""), DONE);
-            }
-            assert_eq!(fix(&mut bench), DONE, "interrupted after {ticks} ticks");
-            assert_eq!(
-                bench.memory.pedestal.status.table_position,
-                Some(-2135 + 1835),
-                "the angle is absolute"
-            );
-            let held = ObjectGrip { object: Name16::new("PART").unwrap(), grip: -1 };
-            assert_eq!(bench.memory.emove.status.held, Holding::Object(held));
-            assert_eq!(bench.memory.subtask.regrip, None);
-        }
-    }
+    let restarts = |bench: &mut Bench<'static>| {
+        bench.restart();
+        bench.finish();
+        bench.wait(10);
+    };
+    let pauses = |bench: &mut Bench<'static>| {
+        assert_eq!(bench.run(SubtaskVerb::Pause, "", (0, 0), ""), DONE);
+    };
+    let send = |bench: &mut Bench<'static>| bench.command(SubtaskVerb::FixGrip, "PART", (1, -1), "");
+    Bench::grasped("PART", 1).sent_again(send, &[pauses, restarts], |bench| {
+        assert_eq!(bench.finish(), DONE, "at tick {}", bench.tick);
+        assert_eq!(bench.memory.pedestal.status.table_position, Some(-2135 + 1835), "the angle is absolute");
+        assert_eq!(bench.memory.emove.status.held, holding("destination"));
+        assert_eq!(bench.memory.subtask.regrip, None);
+    });
 }
 
 #[test]
 fn a_table_that_was_stopped_half_way_turns_by_what_is_left() {
-    let mut bench = Bench::grasped("PART", 1);
-    bench.command(SubtaskVerb::FixGrip, "PART", (1, -1), "");
-    while bench.memory.subtask.pedestal.command != PedestalVerb::Flip {
-        bench.step();
-    }
+    let mut bench = Bench::fixing();
+    bench.until(|bench| bench.memory.subtask.pedestal.command == PedestalVerb::Flip);
     assert_eq!(bench.run(SubtaskVerb::Pause, "", (0, 0), ""), DONE);
     bench.world.pedestal.outputs.status.table_position = Some(-1000);
     bench.step();
@@ -184,11 +156,8 @@ fn a_table_that_was_stopped_half_way_turns_by_what_is_left() {
 
 #[test]
 fn while_the_part_is_in_the_pedestal_nothing_else_is_done() {
-    let mut bench = Bench::grasped("PART", 1);
-    bench.command(SubtaskVerb::FixGrip, "PART", (1, -1), "");
-    while bench.memory.subtask.pedestal.command != PedestalVerb::Flip {
-        bench.step();
-    }
+    let mut bench = Bench::fixing();
+    bench.until(|bench| bench.memory.subtask.pedestal.command == PedestalVerb::Flip);
     assert_eq!(bench.run(SubtaskVerb::Pause, "", (0, 0), ""), DONE);
     assert!(bench.memory.subtask.status.pedestal_part);
     for verb in [
@@ -210,11 +179,8 @@ fn while_the_part_is_in_the_pedestal_nothing_else_is_done() {
     assert_eq!(fix(&mut bench), DONE);
     assert!(!bench.memory.subtask.status.pedestal_part);
     // A hand that is opened at the pedestal is free.
-    let mut bench = Bench::grasped("PART", 1);
-    bench.command(SubtaskVerb::FixGrip, "PART", (1, -1), "");
-    while bench.memory.subtask.pedestal.command != PedestalVerb::Flip {
-        bench.step();
-    }
+    let mut bench = Bench::fixing();
+    bench.until(|bench| bench.memory.subtask.pedestal.command == PedestalVerb::Flip);
     assert_eq!(bench.run(SubtaskVerb::Pause, "", (0, 0), ""), DONE);
     bench.world.pedestal.outputs.status.felt = Felt::Nothing;
     bench.step();
@@ -399,9 +365,7 @@ fn handling(ignores: bool) {
             let mut bench = if get { Bench::default() } else { Bench::grasped(object, 1) };
             bench.world.emove.mishap = Some((emove, Mishap::NoEffect));
             bench.command(verb, object, (1, 1), "PFIXTURE");
-            while bench.memory.subtask.emove.command != emove {
-                bench.step();
-            }
+            bench.until(|bench| bench.memory.subtask.emove.command == emove);
             bench.world.emove.outputs.status.held = holding(after);
             let reason = if after == "something" { Reason::UnknownHeld } else { Reason::HeldNotKnown };
             assert_eq!(bench.finish(), error(reason), "{verb}, {after}");
@@ -493,9 +457,7 @@ fn object_that_may_have_slid_is_released_and_located_again_where_pictures_are_ta
 pub fn pictures_lost() -> Bench<'static> {
     let mut bench = Bench::default();
     bench.command(SubtaskVerb::GetObject, "BAR", (1, 1), "UNIT_1");
-    while bench.memory.subtask.emove.command != EmoveVerb::MovToObj {
-        bench.step();
-    }
+    bench.until(|bench| bench.memory.subtask.emove.command == EmoveVerb::MovToObj);
     bench.world.emove.outputs.status.located = None;
     bench
 }
@@ -523,9 +485,7 @@ fn what_belongs_to_one_sector_does_not_count_for_another() {
     let begun = |until: EmoveVerb| {
         let mut bench = Bench::default();
         bench.command(SubtaskVerb::GetObject, "BAR", (1, 1), "UNIT_1");
-        while bench.memory.subtask.emove.command != until {
-            bench.step();
-        }
+        bench.until(|bench| bench.memory.subtask.emove.command == until);
         bench
     };
     let mut bench = begun(EmoveVerb::MovToObj);
@@ -596,9 +556,7 @@ fn a_pause_waits_for_robot_and_pedestal() {
         let mut bench = Bench::grasped("PART", 1);
         bench.world.pedestal.mishap = mishap;
         bench.command(SubtaskVerb::FixGrip, "PART", (1, -1), "");
-        while bench.memory.subtask.pedestal.command != verb {
-            bench.step();
-        }
+        bench.until(|bench| bench.memory.subtask.pedestal.command == verb);
         bench.step();
         bench
     };
@@ -720,8 +678,7 @@ fn a_person_takes_a_part_with_the_pedestal_turns_and_releases_it() {
 #[test]
 fn orders_of_a_person_are_refused_while_subtask_or_robot_are_at_the_pedestal() {
     for ticks in [1, 10, 30] {
-        let mut bench = Bench::grasped("PART", 1);
-        bench.command(SubtaskVerb::FixGrip, "PART", (1, -1), "");
+        let mut bench = Bench::fixing();
         bench.wait(ticks);
         bench.external.operator.pedestal = Some(by_hand(PedestalVerb::Release));
         let before = bench.memory.subtask.pedestal.number;
@@ -752,11 +709,8 @@ fn orders_of_a_person_are_refused_while_subtask_or_robot_are_at_the_pedestal() {
 /// Robot and pedestal both hold the part: then the hand may open without a person.
 #[test]
 fn a_person_opens_the_hand_on_a_part_that_the_robot_grips() {
-    let mut bench = Bench::grasped("PART", 1);
-    bench.command(SubtaskVerb::FixGrip, "PART", (1, -1), "");
-    while bench.memory.subtask.emove.command != EmoveVerb::Release {
-        bench.step();
-    }
+    let mut bench = Bench::fixing();
+    bench.until(|bench| bench.memory.subtask.emove.command == EmoveVerb::Release);
     assert_eq!(bench.run(SubtaskVerb::Pause, "", (0, 0), ""), DONE);
     assert!(bench.world.emove.outputs.status.held.is_held() && bench.memory.subtask.status.pedestal_part);
     assert_eq!(order(&mut bench, by_hand(PedestalVerb::Release)), ["RELEASE"]);

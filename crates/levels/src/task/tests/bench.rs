@@ -34,7 +34,7 @@ pub enum Mishap {
 }
 
 /// The Subtask that a test sees.
-#[derive(Default)]
+#[derive(Clone, Default)]
 pub struct SubtaskDouble {
     receiver: Receiver,
     left: u32,
@@ -203,7 +203,7 @@ pub enum Answer {
 }
 
 /// The Data System that a test sees.
-#[derive(Default)]
+#[derive(Clone, Default)]
 pub struct DataSystem {
     receiver: Receiver,
     since: u64,
@@ -236,7 +236,7 @@ impl DataSystem {
 /// Task, and the doubles.
 pub type Bench<'d> = bench::Bench<Task, Below, TaskData<'d>>;
 
-#[derive(Default)]
+#[derive(Clone, Default)]
 pub struct Below {
     pub subtask: SubtaskDouble,
     pub data_system: DataSystem,

@@ -124,9 +124,7 @@ fn moves_from_and_to_the_mbd_are_told_and_no_others() {
 fn the_data_base_is_told_before_the_robot_leaves() {
     let mut bench = Bench::connected();
     bench.command(TO_TRAY);
-    while bench.asked().is_empty() {
-        bench.step();
-    }
+    bench.until(|bench| !bench.asked().is_empty());
     assert_eq!(bench.sent().last(), Some(&"PLACE-OBJ"), "GOTO-ENDPT has not arrived yet");
     assert_eq!(bench.finish(), FINISHED);
     assert_eq!(bench.asked(), ["UPDATE"]);
@@ -292,18 +290,14 @@ fn an_object_that_was_taken_elsewhere_is_not_told_as_taken_from_the_mbd() {
     // Taken elsewhere by a command that was interrupted.
     let mut bench = Bench::connected();
     bench.command("MOVE PART +1 PFIXTURE 0 +1 SAFE 0 -- 0");
-    while bench.memory.subtask.status.held.object().is_none() {
-        bench.step();
-    }
+    bench.until(|bench| bench.memory.subtask.status.held.object().is_some());
     assert_eq!(bench.run(PAUSE), FINISHED);
     assert!(told(&mut bench, FROM_SECTOR_2).is_empty());
     // Taken there, by the same command, by a MOVE, and before the Data System was connected.
     for first in [FROM_SECTOR_2, "MOVE PART +1 UNIT_1 2 +1 PFIXTURE 0 -- 0"] {
         let mut bench = Bench::connected();
         bench.command(first);
-        while bench.memory.subtask.status.held.object().is_none() {
-            bench.step();
-        }
+        bench.until(|bench| bench.memory.subtask.status.held.object().is_some());
         assert_eq!(bench.run(PAUSE), FINISHED);
         assert_eq!(told(&mut bench, FROM_SECTOR_2), ["H_ROBOT"], "{first}");
     }

@@ -74,23 +74,21 @@ fn is_under_way(bench: &Bench<'_>) -> bool {
 #[test]
 fn a_new_command_stops_what_is_under_way_before_it_is_answered() {
     for line in [PAUSE, HOME, NOWHERE, STARTUP, SHUTDOWN, TRANSFER, SEAT, ACQUIRE] {
-        for ticks in 1..25 {
-            let mut bench = Bench::default();
-            bench.world.data_system.answer = Answer::After(2);
-            bench.command(TRANSFER);
-            bench.wait(ticks);
+        let mut bench = Bench::default();
+        bench.world.data_system.answer = Answer::After(2);
+        bench.command(TRANSFER);
+        for mut bench in bench.at_every_tick() {
+            let tick = bench.tick;
             let under_way = is_under_way(&bench);
             let before = bench.world.subtask.received.len();
             bench.command(line);
             bench.step();
             if under_way {
-                assert_eq!(bench.memory.task.subtask.command, SubtaskVerb::Pause, "{line}, tick {ticks}");
+                assert_eq!(bench.memory.task.subtask.command, SubtaskVerb::Pause, "{line}, tick {tick}");
                 assert_eq!(bench.memory.task.status.report, HwsReport::Executing);
             }
-            while bench.memory.task.status.report == HwsReport::Executing {
-                bench.step();
-            }
-            assert!(!is_under_way(&bench), "{line}, tick {ticks}: Subtask goes on");
+            bench.until(|bench| bench.memory.task.status.report != HwsReport::Executing);
+            assert!(!is_under_way(&bench), "{line}, tick {tick}: Subtask goes on");
             assert_eq!(bench.memory.subtask.status.report, StatusReport::Done);
             if under_way && line == NOWHERE {
                 assert_eq!(bench.sent()[before..].last(), Some(&"S-PAUSE"));
@@ -135,16 +133,16 @@ fn a_pause_that_is_replaced_is_waited_for() {
 
 #[test]
 fn a_restarted_task_stops_what_it_had_commanded() {
-    for ticks in 1..25 {
-        let mut bench = Bench::default();
-        bench.command(TRANSFER);
-        bench.wait(ticks);
+    let mut bench = Bench::default();
+    bench.command(TRANSFER);
+    for mut bench in bench.at_every_tick() {
+        let tick = bench.tick;
         let under_way = is_under_way(&bench);
         bench.restart();
         assert_eq!(bench.finish(), error(Reason::Restarted));
         bench.wait(10);
         assert!(!is_under_way(&bench));
-        assert_eq!(bench.sent().last() == Some(&"S-PAUSE"), under_way, "tick {ticks}");
+        assert_eq!(bench.sent().last() == Some(&"S-PAUSE"), under_way, "tick {tick}");
         assert_eq!(bench.memory.task.status.reason, Reason::Restarted);
         assert_eq!(bench.run(TRANSFER), FINISHED);
     }
@@ -239,9 +237,7 @@ fn a_transfer_that_stays_goes_back_to_its_object() {
     for line in [TRANSFER_AND_STAY, other_grip] {
         let mut bench = moving_bench();
         bench.command(line);
-        while bench.memory.subtask.status.placed.is_none() {
-            bench.step();
-        }
+        bench.until(|bench| bench.memory.subtask.status.placed.is_some());
         assert_eq!(bench.run(HOME), FINISHED);
         assert_eq!(bench.run(line), FINISHED);
         assert_eq!(bench.sent(), [">POSITION"]);
@@ -254,9 +250,7 @@ fn a_transfer_that_stays_goes_back_to_its_object() {
     // One that goes on to its end-at location does so from wherever the robot is.
     let mut bench = moving_bench();
     bench.command(TRANSFER);
-    while bench.memory.subtask.status.placed.is_none() {
-        bench.step();
-    }
+    bench.until(|bench| bench.memory.subtask.status.placed.is_some());
     assert_eq!(bench.run(HOME), FINISHED);
     assert_eq!(bench.run(TRANSFER), FINISHED);
     assert_eq!(bench.sent(), ["GOTO-ENDPT"]);
@@ -267,9 +261,7 @@ fn what_an_earlier_command_has_placed_does_not_count() {
     let mut bench = moving_bench();
     assert_eq!(bench.run(TRANSFER), FINISHED);
     bench.command(TRANSFER);
-    while bench.memory.task.subtask.command != SubtaskVerb::GetObject {
-        bench.step();
-    }
+    bench.until(|bench| bench.memory.task.subtask.command == SubtaskVerb::GetObject);
     assert_eq!(bench.run(PAUSE), FINISHED);
     assert!(bench.memory.subtask.status.placed.is_some());
     assert_eq!(bench.run(TRANSFER), FINISHED);
@@ -280,9 +272,7 @@ fn what_an_earlier_command_has_placed_does_not_count() {
 fn another_command_about_an_object_ends_what_was_interrupted() {
     let mut bench = moving_bench();
     bench.command(TRANSFER);
-    while bench.memory.task.subtask.command != SubtaskVerb::GotoEndpt {
-        bench.step();
-    }
+    bench.until(|bench| bench.memory.task.subtask.command == SubtaskVerb::GotoEndpt);
     assert_eq!(bench.run("ACQUIRE BAR +1 PFIXTURE 0 0 -- 0 -- 0"), FINISHED);
     bench.world.subtask.hold("");
     assert_eq!(bench.run(TRANSFER), FINISHED);
@@ -339,9 +329,7 @@ fn staying(line: &str, holds: &str, at: &str) -> Bench<'static> {
     let mut bench = moving_bench();
     bench.set(3, "TOOL-1", "TOOL-TRNS");
     bench.command(line);
-    while bench.memory.subtask.status.drum {
-        bench.step();
-    }
+    bench.until(|bench| !bench.memory.subtask.status.drum);
     bench.restart();
     bench.finish();
     bench.set(3, holds, at);
@@ -568,9 +556,7 @@ fn what_is_told_survives_a_command_that_replaces_it() {
         let mut bench = Bench::connected();
         bench.world.data_system.answer = Answer::Absent;
         bench.command(TRANSFER);
-        while bench.asked().is_empty() {
-            bench.step();
-        }
+        bench.until(|bench| !bench.asked().is_empty());
         bench.command(by);
         bench.finish();
         bench.world.data_system.answer = Answer::After(1);
@@ -617,9 +603,7 @@ fn a_restarted_task_believes_what_it_believed() {
     let mut bench = Bench::connected();
     bench.world.data_system.answer = Answer::After(8);
     bench.command(TRANSFER);
-    while bench.asked().is_empty() {
-        bench.step();
-    }
+    bench.until(|bench| !bench.asked().is_empty());
     bench.restart();
     bench.wait(12);
     assert_eq!(bench.memory.task.beliefs.owed, [None; 2]);
@@ -654,9 +638,7 @@ fn updates_that_were_not_taken_are_told_in_their_order() {
     bench.run(FROM_TRAY);
     bench.world.data_system.received.clear();
     bench.command(SEAT);
-    while bench.world.data_system.received.is_empty() {
-        bench.step();
-    }
+    bench.until(|bench| !bench.world.data_system.received.is_empty());
     bench.world.data_system.answer = Answer::After(1);
     assert_eq!(bench.finish(), FINISHED);
     assert_eq!(updates(&bench), [("H_ROBOT".to_owned(), 0), ("PFIXTURE".to_owned(), 0)]);
@@ -668,9 +650,7 @@ fn updates_that_were_not_taken_are_told_in_their_order() {
     bench.set(3, "TOOL-1", "TOOL-TRNS");
     bench.world.data_system.received.clear();
     bench.command(RELEASE);
-    while bench.world.data_system.received.is_empty() {
-        bench.step();
-    }
+    bench.until(|bench| !bench.world.data_system.received.is_empty());
     bench.world.data_system.answer = Answer::After(1);
     assert_eq!(bench.finish(), FINISHED);
     assert_eq!(updates(&bench), [("H_ROBOT".to_owned(), 0), ("TOOL-TRNS".to_owned(), 0)]);
