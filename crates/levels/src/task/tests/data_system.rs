@@ -279,13 +279,10 @@ fn an_object_that_was_taken_elsewhere_is_not_told_as_taken_from_the_mbd() {
         }
     }
     // The same, interrupted at any tick of the second command.
-    for ticks in 1..30 {
-        let mut bench = Bench::connected();
-        told(&mut bench, FROM_FIXTURE);
-        bench.command(FROM_SECTOR_2);
-        bench.wait(ticks);
-        bench.run(PAUSE);
-        assert!(told(&mut bench, FROM_SECTOR_2).is_empty(), "tick {ticks}");
+    let mut bench = Bench::connected();
+    told(&mut bench, FROM_FIXTURE);
+    for mut bench in replaced(bench, FROM_SECTOR_2, PAUSE) {
+        assert!(told(&mut bench, FROM_SECTOR_2).is_empty(), "tick {}", bench.tick);
     }
     // Taken elsewhere by a command that was interrupted.
     let mut bench = Bench::connected();
@@ -323,28 +320,30 @@ fn positions(bench: &mut Bench<'_>) -> Vec<String> {
     updates.map(|told| told.position.to_string()).collect()
 }
 
+/// What becomes of a line that is replaced after each tick in which it executes.
+fn replaced(mut bench: Bench<'static>, line: &str, by: &str) -> impl Iterator<Item = Bench<'static>> {
+    bench.command(line);
+    bench.at_every_tick().map(move |mut copy| {
+        copy.command(by);
+        copy.finish();
+        copy.wait(5);
+        copy
+    })
+}
+
 /// What becomes of a part that the data base has as the robot's when `line`, which lets it go, is replaced by `by`
 /// after each number of ticks: the benches in which the part lies in the fixture, and where it is said to be by then.
 fn let_go_while_replaced(line: &str, by: &str) -> Vec<(Bench<'static>, Vec<String>)> {
-    let mut benches = Vec::new();
-    for ticks in 1.. {
-        let mut bench = Bench::connected();
-        assert_eq!(told(&mut bench, FROM_TRAY), ["H_ROBOT"]);
-        bench.world.data_system.received.clear();
-        bench.command(line);
-        bench.wait(ticks);
-        if bench.memory.task.status.report != HwsReport::Executing {
-            return benches;
-        }
-        bench.command(by);
-        bench.finish();
-        bench.wait(5);
-        if bench.memory.subtask.status.placed.is_some() {
+    let mut bench = Bench::connected();
+    assert_eq!(told(&mut bench, FROM_TRAY), ["H_ROBOT"]);
+    bench.world.data_system.received.clear();
+    let placed = replaced(bench, line, by).filter(|bench| bench.memory.subtask.status.placed.is_some());
+    placed
+        .map(|mut bench| {
             let told = positions(&mut bench);
-            benches.push((bench, told));
-        }
-    }
-    benches
+            (bench, told)
+        })
+        .collect()
 }
 
 /// The fingers have let the part go when the POSITION comes again. It has nothing to release, and tells of the part
@@ -400,18 +399,10 @@ fn release_tool_tells_where_the_tool_is() {
         };
         assert_eq!(told(&mut bench(), &release), ["TOOL-TRNS"], "{end_at}");
         // Replaced at any tick after the fingers have let go, and sent again.
-        for ticks in 1.. {
-            let mut bench = bench();
-            bench.command(&release);
-            bench.wait(ticks);
-            if bench.memory.task.status.report != HwsReport::Executing {
-                break;
-            }
-            bench.command(PAUSE);
-            bench.finish();
+        for mut bench in replaced(bench(), &release, PAUSE) {
             let mut positions = positions(&mut bench);
             positions.extend(told(&mut bench, &release));
-            assert_eq!(positions, ["TOOL-TRNS"], "{end_at}, tick {ticks}");
+            assert_eq!(positions, ["TOOL-TRNS"], "{end_at}, tick {}", bench.tick);
         }
     }
 }
@@ -479,23 +470,19 @@ fn what_an_abandoned_command_has_taken_out_of_a_tray_is_told() {
         [PAUSE, NOWHERE, HOME].into_iter().flat_map(move |by| [(line, by, false), (line, by, true)])
     }) {
         let (mut approaching, mut placed, mut held) = (0, 0, 0);
-        for ticks in 1.. {
-            let mut bench = Bench::connected();
-            if earlier {
-                perform(&mut bench, FROM_TRAY, "A");
-                bench.set(1, "PART", "PFIXTURE");
-                perform(&mut bench, LET_GO, "A");
-                assert_eq!(parts(&mut bench), [was("A", "H_ROBOT", 0), was("A", "PFIXTURE", 0)]);
-            }
-            order(&mut bench, line, "B");
-            bench.wait(ticks);
-            if bench.memory.task.status.report != HwsReport::Executing {
-                break;
-            }
+        let mut bench = Bench::connected();
+        if earlier {
+            perform(&mut bench, FROM_TRAY, "A");
+            bench.set(1, "PART", "PFIXTURE");
+            perform(&mut bench, LET_GO, "A");
+            assert_eq!(parts(&mut bench), [was("A", "H_ROBOT", 0), was("A", "PFIXTURE", 0)]);
+        }
+        order(&mut bench, line, "B");
+        for mut bench in bench.at_every_tick() {
             bench.command(by);
             bench.finish();
             bench.wait(5);
-            let case = format!("{line}, {by}, tick {ticks}, {earlier}");
+            let case = format!("{line}, {by}, tick {}, {earlier}", bench.tick);
             let mut told = parts(&mut bench);
             let below = bench.memory.subtask.status;
             let has_begun = bench.memory.task.beliefs.taking.is_none();
@@ -688,14 +675,13 @@ fn the_sector_is_that_in_which_the_part_was_let_go() {
 /// A TRANSFER that comes just when another command has grasped its part tells where it puts it.
 #[test]
 fn a_transfer_that_is_accepted_in_the_tick_of_the_grasp_tells() {
-    for ticks in 1..20 {
-        let mut bench = Bench::connected();
-        order(&mut bench, FROM_TRAY, "A");
-        bench.wait(ticks);
+    let mut bench = Bench::connected();
+    order(&mut bench, FROM_TRAY, "A");
+    for mut bench in bench.at_every_tick() {
         let is_held = bench.world.subtask.outputs.status.held.object().is_some();
         perform(&mut bench, TO_FIXTURE, "A");
         if is_held {
-            assert_eq!(parts(&mut bench).last(), Some(&was("A", "PFIXTURE", 0)), "tick {ticks}");
+            assert_eq!(parts(&mut bench).last(), Some(&was("A", "PFIXTURE", 0)), "tick {}", bench.tick);
         }
     }
 }

@@ -163,70 +163,51 @@ fn the_operator_with_the_box_is_sent_nothing() {
     }
 }
 
-/// What comes between a command and the same command again.
-#[derive(Clone, Copy, Debug, PartialEq)]
-enum Interruption {
-    Command(&'static str),
-    Restart,
-}
+/// What comes between a command and the same command again: another one, or a restart.
+const INTERRUPTIONS: [Option<&str>; 4] = [Some(PAUSE), Some(NOWHERE), Some(HOME), None];
 
-const INTERRUPTIONS: [Interruption; 4] = [
-    Interruption::Command(PAUSE),
-    Interruption::Command(NOWHERE),
-    Interruption::Command(HOME),
-    Interruption::Restart,
-];
-
-/// Interrupt a line after so many ticks. False if it had ended by then.
-fn interrupt(bench: &mut Bench<'_>, line: &str, ticks: u32, by: Interruption) -> bool {
+/// What becomes of a command that is interrupted after each tick in which it executes.
+fn interrupted(
+    mut bench: Bench<'static>,
+    line: &str,
+    by: Option<&'static str>,
+) -> impl Iterator<Item = Bench<'static>> {
     bench.command(line);
-    bench.wait(ticks);
-    if bench.memory.task.status.report != HwsReport::Executing {
-        return false;
-    }
-    match by {
-        Interruption::Command(other) => bench.command(other),
-        Interruption::Restart => bench.restart(),
-    }
-    bench.finish();
-    bench.wait(10);
-    true
+    bench.at_every_tick().map(move |mut copy| {
+        match by {
+            Some(other) => copy.command(other),
+            None => copy.restart(),
+        }
+        copy.finish();
+        copy.wait(10);
+        copy
+    })
 }
 
 #[test]
 fn an_interrupted_transfer_goes_on() {
-    for line in [TRANSFER, TRANSFER_AND_STAY, REGRIP] {
-        for by in INTERRUPTIONS {
-            for ticks in 1..60 {
-                let mut bench = moving_bench();
-                if !interrupt(&mut bench, line, ticks, by) {
-                    continue;
-                }
-                let placed = bench.memory.subtask.status.placed.is_some();
-                let told = bench
-                    .world
-                    .data_system
-                    .received
-                    .iter()
-                    .filter(|told| told.command == DataBaseVerb::Update);
-                let told = told.count();
-                assert_eq!(bench.run(line), FINISHED, "{line}, tick {ticks}, {by:?}");
-                if placed {
-                    let rest: &[&str] = match (line, by) {
-                        (TRANSFER_AND_STAY, Interruption::Command(HOME)) => &[">POSITION"],
-                        (TRANSFER_AND_STAY, _) => &[],
-                        _ => &["GOTO-ENDPT"],
-                    };
-                    assert_eq!(bench.sent(), rest, "{line}, tick {ticks}, {by:?}");
-                    assert_eq!(told + bench.asked().len(), 1, "{line}, tick {ticks}, {by:?}: told once");
-                } else {
-                    assert!(bench.sent().contains(&"PLACE-OBJ"));
-                }
-                // What is finished begins anew.
-                assert_eq!(bench.memory.task.ledger, None);
-                assert_eq!(bench.run(line), FINISHED);
-                assert_eq!(bench.sent()[..2], ["GET-ENDEFF", "GET-OBJECT"]);
+    for (line, by) in
+        [TRANSFER, TRANSFER_AND_STAY, REGRIP].into_iter().flat_map(|line| INTERRUPTIONS.map(|by| (line, by)))
+    {
+        for mut bench in interrupted(moving_bench(), line, by) {
+            let case = format!("{line}, {by:?}, tick {}", bench.tick);
+            let (placed, told) = (bench.memory.subtask.status.placed.is_some(), updates(&bench).len());
+            assert_eq!(bench.run(line), FINISHED, "{case}");
+            if placed {
+                let rest: &[&str] = match (line, by) {
+                    (TRANSFER_AND_STAY, Some(HOME)) => &[">POSITION"],
+                    (TRANSFER_AND_STAY, _) => &[],
+                    _ => &["GOTO-ENDPT"],
+                };
+                assert_eq!(bench.sent(), rest, "{case}");
+                assert_eq!(told + bench.asked().len(), 1, "{case}: told once");
+            } else {
+                assert!(bench.sent().contains(&"PLACE-OBJ"));
             }
+            // What is finished begins anew.
+            assert_eq!(bench.memory.task.ledger, None);
+            assert_eq!(bench.run(line), FINISHED);
+            assert_eq!(bench.sent()[..2], ["GET-ENDEFF", "GET-OBJECT"]);
         }
     }
 }
@@ -304,17 +285,16 @@ fn an_interrupted_tool_command_goes_on() {
         (ACQUIRE, "", "HOME"),
         (REMOVE, "TOOL-1", "TOOL-TRNS"),
     ] {
-        for by in [Interruption::Command(PAUSE), Interruption::Restart] {
-            for ticks in 1..40 {
-                let mut bench = moving_bench();
-                bench.set(3, object, at);
-                if interrupt(&mut bench, line, ticks, by) {
-                    assert_eq!(bench.run(line), FINISHED, "{line}, tick {ticks}, {by:?}");
-                    let status = &bench.memory.subtask.status;
-                    let held = matches!(line, INSERT | ACQUIRE | REMOVE);
-                    let drum = matches!(line, INSERT | ACQUIRE);
-                    assert_eq!((status.held.is_held(), status.drum), (held, drum), "{line}, tick {ticks}");
-                }
+        for by in [Some(PAUSE), None] {
+            let mut bench = moving_bench();
+            bench.set(3, object, at);
+            for mut bench in interrupted(bench, line, by) {
+                let case = format!("{line}, {by:?}, tick {}", bench.tick);
+                assert_eq!(bench.run(line), FINISHED, "{case}");
+                let status = &bench.memory.subtask.status;
+                let held = matches!(line, INSERT | ACQUIRE | REMOVE);
+                let drum = matches!(line, INSERT | ACQUIRE);
+                assert_eq!((status.held.is_held(), status.drum), (held, drum), "{case}");
             }
         }
     }
@@ -361,7 +341,7 @@ fn a_tool_command_whose_effect_has_come_only_leaves() {
     ] {
         let mut bench = Bench::default();
         bench.set(3, "TOOL-1", "TOOL-TRNS");
-        assert!(interrupt(&mut bench, line, 3, Interruption::Command(PAUSE)));
+        let mut bench = interrupted(bench, line, Some(PAUSE)).nth(2).unwrap();
         bench.set(3, held, at);
         assert_eq!((bench.run(line), bench.sent()), (FINISHED, sent.to_vec()), "{line}, {at}");
     }
