@@ -25,7 +25,7 @@ use crate::{
     data::{data, emove_command, place, pose_of_point},
     image::Image,
     robot::{self, PrimDoes, Robot, is_at},
-    search::{World, Wrong},
+    search::{Mishap, World, Wrong, resumed},
 };
 
 /// A command of Subtask, and the location to which it goes if that is not the object's.
@@ -101,21 +101,12 @@ pub fn is_done(outputs: &EmoveOutputs, number: u32) -> bool {
     outputs.status.echo == number && outputs.status.report == StatusReport::Done
 }
 
-/// A process that is restarted.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Restarted {
-    None,
-    Emove,
-    /// The other one of the pair.
-    Below,
-}
-
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Event<Fingers> {
     pub told: Option<Line>,
     pub fingers: Fingers,
     pub prim: PrimDoes,
-    pub restarted: Restarted,
+    pub mishap: Mishap,
     /// A long time has passed in which nothing else happened.
     pub long: bool,
 }
@@ -213,15 +204,14 @@ impl<G: Fingered> World for Pair<G> {
         let moving = self.is_moving();
         let prim: &[PrimDoes] =
             if moving { &[PrimDoes::Goes, PrimDoes::Ends, PrimDoes::Fails] } else { &[PrimDoes::Goes] };
-        let all = [Restarted::None, Restarted::Emove, Restarted::Below];
-        let restarts = if self.left.1 > 0 { &all[..] } else { &all[..1] };
+        let mishaps = Mishap::choices(self.left.1, Mishap::RESTARTS);
         let mut events = Vec::new();
         for told in self.commands() {
             for &prim in prim {
                 for (fingers, arrive) in self.next() {
-                    for &restarted in restarts {
-                        let event = Event { told, fingers, prim, restarted, long: false };
-                        let quiet = told.is_none() && restarted == Restarted::None;
+                    for &mishap in &mishaps {
+                        let event = Event { told, fingers, prim, mishap, long: false };
+                        let quiet = told.is_none() && mishap == Mishap::None;
                         events.push((event, quiet && arrive && (!moving || prim != PrimDoes::Goes)));
                         let waits = quiet && !moving && self.is_settled();
                         if waits && self.gripper.may_be_long(self.fingers, (fingers, arrive)) {
@@ -237,14 +227,11 @@ impl<G: Fingered> World for Pair<G> {
     fn step(&mut self, event: Self::Event) -> Result<(), Wrong> {
         let old = self.clone();
         self.tick = if event.long { Tick(self.tick.0 + LONG) } else { self.tick.next() };
-        let mut process = Emove::default();
-        if event.restarted != Restarted::Emove {
-            process.restore(self.emove);
-        }
-        if event.restarted == Restarted::Below {
+        let mut process: Emove = resumed(self.emove, event.mishap == Mishap::RestartUpper);
+        if event.mishap == Mishap::RestartLower {
             self.gripper.restart();
         }
-        self.left.1 -= u8::from(event.restarted != Restarted::None);
+        self.left.1 -= u8::from(event.mishap != Mishap::None);
         if let Some(line) = event.told {
             if !self.has_ended() {
                 self.left.0 = self.left.0.map(|early| early - 1);

@@ -17,7 +17,7 @@ use rcs_core::tick::Tick;
 use crate::{
     fingers::{Fingers, Sizes, calibration, flow},
     image::{Image, rebase, rebase_echoes},
-    search::{World, Wrong},
+    search::{Mishap, World, Wrong, resumed},
     told::{Told, choices},
 };
 
@@ -40,14 +40,6 @@ pub enum TableDoes {
     Goes,
     Ends,
     Fails,
-}
-
-/// What else happens.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Mishap {
-    None,
-    RestartPedestal,
-    RestartHand,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -165,8 +157,7 @@ impl World for Pair {
         let table: &[TableDoes] =
             if turning { &[TableDoes::Goes, TableDoes::Ends, TableDoes::Fails] } else { &[TableDoes::Goes] };
         let mut events = Vec::new();
-        let mishaps = [Mishap::None, Mishap::RestartPedestal, Mishap::RestartHand];
-        for mishap in mishaps.into_iter().take(if self.mishaps > 0 { 3 } else { 1 }) {
+        for mishap in Mishap::choices(self.mishaps, Mishap::RESTARTS) {
             for told in choices(self.commands, &self.command, &self.pedestal_out.status) {
                 for &table in table {
                     for (fingers, arrive) in self.fingers.next(self.hand_out.valves.bits) {
@@ -189,13 +180,8 @@ impl World for Pair {
 
     fn step(&mut self, event: Event) -> Result<(), Wrong> {
         self.tick = if event.long { Tick(self.tick.0 + LONG) } else { self.tick.next() };
-        let mut process = (Pedestal::default(), Hand::default());
-        if event.mishap != Mishap::RestartPedestal {
-            Process::<()>::restore(&mut process.0, self.pedestal);
-        }
-        if event.mishap != Mishap::RestartHand {
-            Process::<()>::restore(&mut process.1, self.hand);
-        }
+        let mut upper: Pedestal = resumed::<_, ()>(self.pedestal, event.mishap == Mishap::RestartUpper);
+        let mut lower: Hand = resumed::<_, ()>(self.hand, event.mishap == Mishap::RestartLower);
         self.mishaps -= u8::from(event.mishap != Mishap::None);
         if let Told::Command(verb) = event.told {
             self.tell(verb);
@@ -215,14 +201,14 @@ impl World for Pair {
         let inputs = Inputs { tick: self.tick, memory: &memory, external: &external, data: &() };
         let old = self.clone();
         let (mut pedestal_out, mut hand_out) = (self.pedestal_out, self.hand_out);
-        process.0.step(&inputs, &mut pedestal_out);
-        process.1.step(&inputs, &mut hand_out);
+        upper.step(&inputs, &mut pedestal_out);
+        lower.step(&inputs, &mut hand_out);
         // The table reads what was written in the tick before.
         self.table_does(event.table);
         self.fingers = event.fingers;
         (self.pedestal_out, self.hand_out) = (pedestal_out, hand_out);
-        self.pedestal = *Process::<()>::state(&process.0);
-        self.hand = *Process::<()>::state(&process.1);
+        self.pedestal = *Process::<()>::state(&upper);
+        self.hand = *Process::<()>::state(&lower);
         let wrong = self.judge(&old);
         self.renumber();
         wrong

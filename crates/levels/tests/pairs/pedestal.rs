@@ -15,7 +15,7 @@ use rcs_core::tick::Tick;
 
 use crate::{
     image::{Image, rebase, rebase_echoes},
-    search::{World, Wrong},
+    search::{Mishap, World, Wrong, resumed},
     told::{Told, choices},
 };
 
@@ -52,16 +52,6 @@ pub enum MotorDoes {
     Takes,
     Arrives,
     StopsElsewhere,
-}
-
-/// What else happens.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Mishap {
-    None,
-    RestartPedestal,
-    RestartTable,
-    /// The potentiometer of the table reads something else than before.
-    Slip,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -258,8 +248,8 @@ impl World for Pair {
             (false, false) => &[MotorDoes::Goes],
         };
         let mut events = Vec::new();
-        let mishaps = [Mishap::None, Mishap::RestartPedestal, Mishap::RestartTable, Mishap::Slip];
-        for mishap in mishaps.into_iter().take(if self.mishaps > 0 { 4 } else { 1 }) {
+        let all = [Mishap::RestartUpper, Mishap::RestartLower, Mishap::Slip];
+        for mishap in Mishap::choices(self.mishaps, &all) {
             for told in choices(self.commands, &self.command, &self.pedestal_out.status) {
                 for hand in &hand {
                     let mishaps = u8::from(*hand == HandDoes::Silent) + u8::from(mishap != Mishap::None);
@@ -294,13 +284,8 @@ impl World for Pair {
         if event.long && self.table.unanswered > 0 {
             self.table.unanswered = u8::MAX;
         }
-        let mut process = (Pedestal::default(), Table::default());
-        if event.mishap != Mishap::RestartPedestal {
-            Process::<()>::restore(&mut process.0, self.pedestal);
-        }
-        if event.mishap != Mishap::RestartTable {
-            Process::<()>::restore(&mut process.1, self.table);
-        }
+        let mut upper: Pedestal = resumed::<_, ()>(self.pedestal, event.mishap == Mishap::RestartUpper);
+        let mut lower: Table = resumed::<_, ()>(self.table, event.mishap == Mishap::RestartLower);
         self.mishaps -= u8::from(event.mishap != Mishap::None) + u8::from(event.hand == HandDoes::Silent);
         if let Told::Command(verb) = event.told {
             self.tell(verb);
@@ -317,16 +302,16 @@ impl World for Pair {
         let inputs = Inputs { tick: self.tick, memory: &memory, external: &external, data: &() };
         let old = self.clone();
         let (mut pedestal_out, mut table_out) = (self.pedestal_out, self.table_out);
-        process.0.step(&inputs, &mut pedestal_out);
-        process.1.step(&inputs, &mut table_out);
+        upper.step(&inputs, &mut pedestal_out);
+        lower.step(&inputs, &mut table_out);
         // Hand and motor read what was written in the tick before.
         self.hand_does(event.hand);
         self.silent = event.hand == HandDoes::Silent;
         self.slipped ^= event.mishap == Mishap::Slip;
         self.motor_does(event.motor);
         (self.pedestal_out, self.table_out) = (pedestal_out, table_out);
-        self.pedestal = *Process::<()>::state(&process.0);
-        self.table = *Process::<()>::state(&process.1);
+        self.pedestal = *Process::<()>::state(&upper);
+        self.table = *Process::<()>::state(&lower);
         let wrong = self.judge(&old);
         self.renumber();
         wrong

@@ -29,7 +29,7 @@ use rcs_core::tick::Tick;
 use crate::{
     data::{data, emove_command, place, pose_of_point},
     holster,
-    search::{World, Wrong},
+    search::{Mishap, World, Wrong, resumed},
 };
 use change::Change;
 pub use tool::DRUM;
@@ -66,14 +66,7 @@ pub enum Link {
     /// The robot stands beside the commanded pose: after RESTART T3 Interface sees it.
     Aside,
     /// It wants no point, and E-move or Prim is restarted.
-    Restart(Restarted),
-}
-
-/// A process that is restarted.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Restarted {
-    Emove,
-    Prim,
+    Restart(Mishap),
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -322,22 +315,16 @@ impl Pair {
     /// One tick of both.
     fn tick(&mut self, link: Link, happens: Happens) -> Result<(), Wrong> {
         self.tick = self.tick.next();
-        let mut process = (Emove::default(), Prim::default());
-        process.0.restore(self.emove);
-        process.1.restore(self.prim);
-        match link {
-            Link::Restart(Restarted::Emove) => process.0 = Emove::default(),
-            Link::Restart(Restarted::Prim) => process.1 = Prim::default(),
-            _ => {}
-        }
+        let mut upper: Emove = resumed(self.emove, link == Link::Restart(Mishap::RestartUpper));
+        let mut lower: Prim = resumed(self.prim, link == Link::Restart(Mishap::RestartLower));
         let (memory, external) = self.inputs();
         let data = data();
         let inputs = Inputs { tick: self.tick, memory: &memory, external: &external, data: &data };
         let old = self.clone();
         self.aside = if self.aside == 0 { 0 } else { (self.aside + 1).min(LATE + 1) };
-        process.0.step(&inputs, &mut self.emove_out);
-        process.1.step(&inputs, &mut self.prim_out);
-        (self.emove, self.prim) = (*process.0.state(), *process.1.state());
+        upper.step(&inputs, &mut self.emove_out);
+        lower.step(&inputs, &mut self.prim_out);
+        (self.emove, self.prim) = (*upper.state(), *lower.state());
         self.quick_change = old.emove_out.quick_change.number;
         self.t3i_does(&old.prim_out.t3i, link);
         if let Some(tool) = &mut self.tool {
@@ -373,7 +360,7 @@ impl World for Pair {
             ];
             links.extend(faults.map(|(fault, ready)| Link::Fails(fault, ready)));
             links.extend([Link::Silent, Link::Aside]);
-            links.extend([Restarted::Emove, Restarted::Prim].map(Link::Restart));
+            links.extend(Mishap::RESTARTS.iter().copied().map(Link::Restart));
         }
         let prompt = |link: Link| link == Link::Goes && !self.awaits_arrival();
         let quiet = |link| Event { told: None, link, happens: Happens::Nothing };

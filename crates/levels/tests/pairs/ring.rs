@@ -27,11 +27,11 @@ use rcs_core::tick::Tick;
 
 use crate::{
     data::{data, emove_command, place},
-    emove::{Restarted, run},
+    emove::run,
     holster::{self, GRIPPER, Ring, SEAT, holster},
     parts_gripper::{GripDoes, PartsGripper},
     robot::{PrimDoes, Robot, SETTLED},
-    search::{World, Wrong},
+    search::{Mishap, World, Wrong, resumed},
 };
 
 /// Longer than the time in which the ring must arrive.
@@ -61,7 +61,7 @@ pub struct Event {
     pub ring: Ring,
     /// The sensors fail so from then on.
     pub fault: Option<Fault>,
-    pub restarted: Restarted,
+    pub mishap: Mishap,
     /// A long time has passed in which nothing else happened.
     pub long: bool,
 }
@@ -253,14 +253,11 @@ impl Pair {
     }
 
     /// What can go wrong beside.
-    fn mishaps(&self) -> Vec<(Option<Fault>, Restarted)> {
-        let mut mishaps = vec![(None, Restarted::None)];
-        if self.left.1 > 0 {
-            let faults = [Fault::Both, Fault::Pins(0), Fault::Pins(2), Fault::Pins(7)];
-            mishaps.extend(faults.map(|fault| (Some(fault), Restarted::None)));
-            mishaps.extend([Restarted::Emove, Restarted::Below].map(|process| (None, process)));
-        }
-        mishaps
+    fn mishaps(&self) -> Vec<(Option<Fault>, Mishap)> {
+        let mishaps = Mishap::choices(self.left.1, Mishap::RESTARTS).into_iter().map(|mishap| (None, mishap));
+        let faults = [Fault::Both, Fault::Pins(0), Fault::Pins(2), Fault::Pins(7)];
+        let faults = faults.into_iter().filter(|_| self.left.1 > 0).map(|fault| (Some(fault), Mishap::None));
+        mishaps.chain(faults).collect()
     }
 }
 
@@ -287,10 +284,10 @@ impl World for Pair {
             for &prim in &prim {
                 for &grip in grip {
                     for &ring in &rings {
-                        for (fault, restarted) in self.mishaps() {
-                            let event = Event { told, prim, grip, ring, fault, restarted, long: false };
-                            let quiet = told.is_none() && fault.is_none() && restarted == Restarted::None;
-                            if !quiet && told.is_some() && (fault.is_some() || restarted != Restarted::None) {
+                        for (fault, mishap) in self.mishaps() {
+                            let event = Event { told, prim, grip, ring, fault, mishap, long: false };
+                            let quiet = told.is_none() && fault.is_none() && mishap == Mishap::None;
+                            if !quiet && told.is_some() && (fault.is_some() || mishap != Mishap::None) {
                                 continue;
                             }
                             let ends = (prim != PrimDoes::Half
@@ -315,15 +312,12 @@ impl World for Pair {
 
     fn step(&mut self, event: Event) -> Result<(), Wrong> {
         self.tick = if event.long { Tick(self.tick.0 + LONG) } else { self.tick.next() };
-        let mut process = Emove::default();
-        if event.restarted != Restarted::Emove {
-            process.restore(self.emove);
-        }
-        if event.restarted == Restarted::Below {
+        let mut process: Emove = resumed(self.emove, event.mishap == Mishap::RestartUpper);
+        if event.mishap == Mishap::RestartLower {
             self.quick_change = quick_change::state::State::default();
         }
         let fails = event.fault.is_some_and(|fault| fault != Fault::None);
-        self.left.1 -= u8::from(event.restarted != Restarted::None) + u8::from(fails);
+        self.left.1 -= u8::from(event.mishap != Mishap::None) + u8::from(fails);
         if let Some(verb) = event.told {
             self.left.0 -= u8::from(!self.has_ended());
             self.tell(verb);

@@ -7,8 +7,42 @@ use std::{
     hash::{DefaultHasher, Hasher as _},
 };
 
+use interfaces::process::Process;
+
 /// What has shown to be wrong.
 pub type Wrong = &'static str;
+
+/// What goes wrong in a tick, in addition to orders that fail.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Mishap {
+    None,
+    /// The upper process of the pair is restarted.
+    RestartUpper,
+    RestartLower,
+    /// The lower process is not stepped, and writes nothing.
+    SilentLower,
+    /// The potentiometer of the rotary table reads something else than before.
+    Slip,
+}
+
+impl Mishap {
+    pub const RESTARTS: &[Self] = &[Self::RestartUpper, Self::RestartLower];
+
+    /// None, and each of some if any is left.
+    pub fn choices(left: u8, some: &[Self]) -> Vec<Self> {
+        let some = if left > 0 { some } else { &[] };
+        [&[Self::None], some].concat()
+    }
+}
+
+/// A process that continues from a state, or has been restarted.
+pub fn resumed<P: Process<Data> + Default, Data>(state: P::State, is_restarted: bool) -> P {
+    let mut process = P::default();
+    if !is_restarted {
+        process.restore(state);
+    }
+    process
+}
 
 /// A pair of neighbouring processes, and what is around them.
 pub trait World: Clone {

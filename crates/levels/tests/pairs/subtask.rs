@@ -31,7 +31,7 @@ use crate::{
     image::Image,
     parts_gripper::{GripDoes, PartsGripper},
     robot::{PrimDoes, Robot},
-    search::{World, Wrong},
+    search::{Mishap, World, Wrong, resumed},
 };
 
 /// Ticks after which vision counts as silent, and more than that.
@@ -52,16 +52,6 @@ pub const BRING: Line = (SubtaskVerb::MoveObjToDest, true, "UNIT_2", Some(2), 2)
 pub const POSITION: Line = (SubtaskVerb::Position, true, "UNIT_2", Some(1), 1);
 pub const RELEASE: Line = (SubtaskVerb::Release, true, "UNIT_2", Some(2), 2);
 pub const GRIPPER: Line = (SubtaskVerb::GetEndeff, true, "UNIT_2", Some(1), 1);
-
-/// What else happens.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Mishap {
-    None,
-    RestartSubtask,
-    RestartEmove,
-    /// E-move is not stepped, and writes nothing.
-    SilentEmove,
-}
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Event {
@@ -229,7 +219,7 @@ impl World for Pair {
                             && if gripping { grip != GripDoes::Goes } else { grip == GripDoes::Goes };
                         events.push((event, told.is_none() && ends));
                         if told.is_none() && self.left.1 > 0 {
-                            let all = [Mishap::RestartSubtask, Mishap::RestartEmove, Mishap::SilentEmove];
+                            let all = [Mishap::RestartUpper, Mishap::RestartLower, Mishap::SilentLower];
                             events.extend(all.map(|mishap| (Event { mishap, ..event }, false)));
                         }
                         let waits = !moving && !gripping && self.is_settled() && told.is_none();
@@ -245,13 +235,8 @@ impl World for Pair {
 
     fn step(&mut self, event: Event) -> Result<(), Wrong> {
         self.tick = if event.long { Tick(self.tick.0 + LONG) } else { self.tick.next() };
-        let mut process = (Subtask::default(), Emove::default());
-        if event.mishap != Mishap::RestartSubtask {
-            process.0.restore(self.subtask);
-        }
-        if event.mishap != Mishap::RestartEmove {
-            process.1.restore(self.emove);
-        }
+        let mut upper: Subtask = resumed(self.subtask, event.mishap == Mishap::RestartUpper);
+        let mut lower: Emove = resumed(self.emove, event.mishap == Mishap::RestartLower);
         self.left.1 -= u8::from(event.mishap != Mishap::None);
         if let Some(nth) = event.told {
             self.left.0 -= u8::from(!self.has_ended() && self.command.number != 0);
@@ -267,12 +252,12 @@ impl World for Pair {
         let data = data();
         let inputs = Inputs { tick: self.tick, memory: &memory, external: &external, data: &data };
         let old = self.clone();
-        process.0.step(&inputs, &mut self.subtask_out);
-        self.subtask = *process.0.state();
-        self.silent = event.mishap == Mishap::SilentEmove;
+        upper.step(&inputs, &mut self.subtask_out);
+        self.subtask = *upper.state();
+        self.silent = event.mishap == Mishap::SilentLower;
         if !self.silent {
-            process.1.step(&inputs, &mut self.emove_out);
-            self.emove = *process.1.state();
+            lower.step(&inputs, &mut self.emove_out);
+            self.emove = *lower.state();
         }
         let sent = self.subtask_out.emove.number != old.subtask_out.emove.number;
         self.own |= sent && self.subtask_out.status.echo == self.command.number;

@@ -25,7 +25,7 @@ use rcs_core::{name::Name10, tick::Tick};
 use crate::{
     data::{data, emove_command},
     image::{Image, rebase, rebase_echoes},
-    search::{World, Wrong},
+    search::{Mishap, World, Wrong, resumed},
 };
 
 /// Longer than the time in which the Data System is expected to answer.
@@ -48,14 +48,6 @@ pub enum EmoveDoes {
     LetsGo,
     /// It writes nothing.
     Silent,
-}
-
-/// What else happens.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Mishap {
-    None,
-    RestartTask,
-    RestartSubtask,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -348,8 +340,7 @@ impl World for Pair {
             (false, _) => &[None],
         };
         let mut events = Vec::new();
-        let mishaps = [Mishap::None, Mishap::RestartTask, Mishap::RestartSubtask];
-        for mishap in mishaps.into_iter().take(if self.mishaps > 0 { 3 } else { 1 }) {
+        for mishap in Mishap::choices(self.mishaps, Mishap::RESTARTS) {
             for told in self.commands() {
                 for (&emove, &answer) in
                     emove.iter().flat_map(|emove| answers.iter().map(move |answer| (emove, answer)))
@@ -377,13 +368,8 @@ impl World for Pair {
 
     fn step(&mut self, event: Event) -> Result<(), Wrong> {
         self.tick = if event.long { Tick(self.tick.0 + LONG) } else { self.tick.next() };
-        let mut process = (Task::default(), Subtask::default());
-        if event.mishap != Mishap::RestartTask {
-            process.0.restore(self.task);
-        }
-        if event.mishap != Mishap::RestartSubtask {
-            process.1.restore(self.subtask);
-        }
+        let mut upper: Task = resumed(self.task, event.mishap == Mishap::RestartUpper);
+        let mut lower: Subtask = resumed(self.subtask, event.mishap == Mishap::RestartLower);
         self.mishaps -= u8::from(event.mishap != Mishap::None) + u8::from(event.emove == EmoveDoes::Silent);
         self.own &= event.mishap == Mishap::None;
         if let Some(nth) = event.told {
@@ -402,8 +388,8 @@ impl World for Pair {
         let inputs = Inputs { tick: self.tick, memory: &memory, external: &external, data: &data };
         let old = self.clone();
         let (mut task_out, mut subtask_out) = (self.task_out, self.subtask_out);
-        process.0.step(&inputs, &mut task_out);
-        process.1.step(&inputs, &mut subtask_out);
+        upper.step(&inputs, &mut task_out);
+        lower.step(&inputs, &mut subtask_out);
         // E-move and the Data System read what was written in the tick before.
         self.box_on ^= event.switched;
         self.emove_does(event.emove);
@@ -425,7 +411,7 @@ impl World for Pair {
             }
         }
         (self.task_out, self.subtask_out) = (task_out, subtask_out);
-        (self.task, self.subtask) = (*process.0.state(), *process.1.state());
+        (self.task, self.subtask) = (*upper.state(), *lower.state());
         let goes_on = self.emove.report == StatusReport::Executing
             && self.emove.echo == old.subtask_out.emove.number
             && old.subtask_out.emove.command != EmoveVerb::Pause;

@@ -8,11 +8,11 @@ use interfaces::{
 };
 use levels::emove::grippers::FingerVerb;
 
-use super::{Event, Fingered, Pair, Restarted, is_done};
+use super::{Event, Fingered, Pair, is_done};
 use crate::{
     data::place,
     robot::{self, is_at},
-    search::{World as _, Wrong},
+    search::{Mishap, World as _, Wrong},
 };
 
 impl<G: Fingered> Pair<G> {
@@ -26,7 +26,7 @@ impl<G: Fingered> Pair<G> {
     /// `before` is the pair as it was when the processes read it.
     pub(super) fn judge(&self, before: &Self, event: &Event<G::Fingers>) -> Result<(), Wrong> {
         let open = G::are_open(before.fingers);
-        if event.restarted == Restarted::Emove && before.lets_go() && !self.lets_go() && !open {
+        if event.mishap == Mishap::RestartUpper && before.lets_go() && !self.lets_go() && !open {
             return Err("a restarted E-move does not know that it lets go");
         }
         let status = &self.emove_out.status;

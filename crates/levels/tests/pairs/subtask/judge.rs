@@ -8,8 +8,12 @@ use interfaces::{
 };
 use levels::{execution::Outcome, places::LocationKey};
 
-use super::{Event, LATE, Mishap, Pair};
-use crate::{data::data, parts_gripper, robot, search::Wrong};
+use super::{Event, LATE, Pair};
+use crate::{
+    data::data,
+    parts_gripper, robot,
+    search::{Mishap, Wrong},
+};
 
 impl Pair {
     /// Is it where the robot is to stand for a command?
