@@ -24,7 +24,7 @@ fn every_row_of_every_table_fires() {
     let scenarios =
         [super::SCENARIOS, confirmed::SCENARIOS, data_system::SCENARIOS, recovery::SCENARIOS].concat();
     // The task data have no gripper numbers but 1 to 3. The look-up of a location needs no grip. No process is above.
-// The rows about updates are in no header.
+    // The rows about updates are in no header.
     let updates = ["UPDATE-DUE", "FOLLOW", "TAKE", "RELEASED"];
     let mut missing = silent::<Task, TaskData<'_>>(&scenarios);
     missing.retain(|row| !updates.iter().any(|table| row.starts_with(table)));
