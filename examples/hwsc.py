@@ -6,8 +6,7 @@
     examples/hwsc.py unix:/tmp/rcs.sock
 
 delivers a blank into the tray, has the robot TRANSFER it into the vise, and prints every status until `finished`. With
-tcp:IP:PORT the directory follows that `rcs-neighbour keys` has made. With CELL@tls/IP:PORT, the gateway of a cell, the
-path of a certificate follows without .pem and .key: keys/hwsc-1.
+CELL@tls/IP:PORT, the gateway of a cell, the path of a certificate follows without .pem and .key: keys/hwsc-1.
 """
 
 import sys

@@ -8,7 +8,8 @@
 
 answers every request from the picture of the simulated cell: the commanded part is the one nearest to the optical axis. With
 --taught it answers Y, Z (inches) and angle (degrees) of a part that was measured by hand, at every first picture, and (0, 0) at
-the second, when the camera is above it. With tcp:IP:PORT the directory of keys follows.
+the second, when the camera is above it. With
+CELL@tls/IP:PORT, the gateway of a cell, the path of a certificate follows without .pem and .key: keys/vision-1.
 """
 
 import argparse

@@ -88,8 +88,10 @@ fn program(name: &str, built: &'static OnceLock<PathBuf>) -> &'static Path {
         let target = profile.parent().expect("a profile lies in the target directory");
         let cargo = env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
         let mut build = Command::new(cargo);
-        build.args(["build", "--quiet", "--release", "--workspace", "--target-dir"]).arg(target);
-        build.args(selection(name));
+        // As a part of the workspace a program has the features of the tests, and most of it is built already.
+        build
+            .args(["build", "--quiet", "--release", "--workspace", "--bin", name, "--target-dir"])
+            .arg(target);
         // What cargo tells a test about its package: crates that read it would be built anew, and all above them.
         let told = env::vars_os().map(|(variable, _)| variable).filter(|variable| {
             let variable = variable.to_string_lossy();
@@ -102,15 +104,6 @@ fn program(name: &str, built: &'static OnceLock<PathBuf>) -> &'static Path {
         assert!(built.success(), "{name} does not build");
         target.join("release").join(name)
     })
-}
-
-/// What cargo is to build of the workspace: as a part of it a program has the features of the tests, and most
-/// of it is built already. With Zenoh it is built beside a test, so that Zenoh is not built twice: what tests
-/// want of the crates below it is a part of what they are.
-fn selection(name: &str) -> Vec<&str> {
-    let program = ["--bin", name];
-    let with_zenoh = ["--features", "zenoh", "--test", "runs"];
-    program.into_iter().chain(with_zenoh.into_iter().filter(|_| cfg!(feature = "zenoh"))).collect()
 }
 
 /// A directory for the files of one run, removed with it. Two of one name are two directories: tests run

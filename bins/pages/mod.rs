@@ -5,6 +5,7 @@
 #![forbid(unsafe_code)]
 
 mod markdown;
+mod removed;
 mod values;
 
 use std::{
@@ -26,6 +27,7 @@ use diagnostics::nearest;
 use os_io::{text::plain, units::Units};
 
 pub use markdown::markdown;
+pub use removed::{KEYS_MOVED, RemovedTls};
 pub use values::{DataArgument, data_directory, default_data, fault_file, job, names, robot, with_names};
 
 /// The version, and the commit that the program was built from if that is known.

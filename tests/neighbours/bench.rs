@@ -20,8 +20,8 @@ use neighbours::{
 use rcs_core::{Plain as _, digest::Digest, name::Name16, plain::from_bytes};
 use record::Log;
 use serde_json::Value;
-use sessions::network::{Address, NeighbourKeys, Peer, PeerError, Received, Role};
-use whole_system_tests::{Scratch, rcs_neighbour, rcs_run, root};
+use sessions::network::{Address, Peer, PeerError, Received, Role};
+use whole_system_tests::{Scratch, rcs_run, root};
 
 /// How long something may take that takes milliseconds.
 pub const PATIENCE: Duration = Duration::from_secs(120);
@@ -87,10 +87,10 @@ impl Controller {
     }
 
     /// Connect to it, if need be as soon as it has noticed that another one has gone.
-    pub fn connect(&self, role: Role, keys: Option<&Path>) -> Peer {
+    pub fn connect(&self, role: Role) -> Peer {
         let started = Instant::now();
         loop {
-            match self.try_connect(role, keys) {
+            match self.try_connect(role) {
                 Err(PeerError::Disconnected(why)) if why.ends_with("is connected already") => {
                     assert!(started.elapsed() < PATIENCE, "{why}");
                     thread::sleep(Duration::from_millis(10));
@@ -101,9 +101,8 @@ impl Controller {
     }
 
     /// Connect to it, or hear why not.
-    pub fn try_connect(&self, role: Role, keys: Option<&Path>) -> Result<Peer, PeerError> {
-        let keys = keys.map(|keys| NeighbourKeys::load(keys, role).expect("they can be used"));
-        Peer::connect_within(PATIENCE, &self.address, role, keys.as_ref())
+    pub fn try_connect(&self, role: Role) -> Result<Peer, PeerError> {
+        Peer::connect_within(PATIENCE, &self.address, role)
     }
 
     /// Kill it, so that it can do nothing more; what it leaves.
@@ -150,11 +149,7 @@ pub struct Workstation {
 
 impl Workstation {
     pub fn connect(controller: &Controller) -> Self {
-        Self::connect_with(controller, None)
-    }
-
-    pub fn connect_with(controller: &Controller, keys: Option<&Path>) -> Self {
-        let peer = controller.connect(Role::Workstation, keys);
+        let peer = controller.connect(Role::Workstation);
         let command_box = Mailbox::initialized(HWSC_COMMAND);
         let cell_box = Mailbox::initialized(CELL_COMMAND);
         let mut workstation = Self { peer, tick: 0, unanswered: false, command_box, cell_box, line: 0 };
@@ -270,18 +265,6 @@ pub fn bare(number: u32, verb: &str) -> HwsCommand {
 /// A program of the examples.
 pub fn example(name: &str) -> PathBuf {
     root().join("examples").join(name)
-}
-
-/// An authority of its own, and certificates of so many days, in a directory.
-pub fn make_keys(scratch: &Scratch, name: &str, days: u16) -> PathBuf {
-    let directory = scratch.file(name);
-    let made = Command::new(rcs_neighbour())
-        .args(["keys", "--days", &days.to_string()])
-        .arg(&directory)
-        .output()
-        .expect("rcs-neighbour can be started");
-    assert!(made.status.success(), "{}", String::from_utf8_lossy(&made.stderr));
-    directory
 }
 
 /// Fingerprint of all buffers of a logged run in all ticks, but for what the tables of the pedestal were consulted

@@ -103,7 +103,7 @@ impl Shop {
         let outbox = scratch.file("outbox").display().to_string();
         let controller =
             Controller::start_at(scratch, None, "workstation,data-system", &["--json", "--outbox", &outbox]);
-        let data_system = serve(controller.connect(Role::DataSystem, None), file.to_owned(), fate);
+        let data_system = serve(controller.connect(Role::DataSystem), file.to_owned(), fate);
         let mut workstation = Workstation::connect(&controller);
         assert_eq!(workstation.carry_out(&bare(1, "PAUSE")).0, "finished");
         Self { controller, workstation, data_system }
@@ -195,7 +195,7 @@ fn a_data_system_that_connects_last_is_connected_in_the_first_tick() {
     std::fs::write(&job, "== PAUSE -- +0 -- 0 +0 -- 0 -- 0\n").expect("a job can be written");
     let more = [job.to_str().expect("a path"), "--json", "--outbox", &outbox];
     let controller = Controller::start_at(scratch, None, "data-system", &more);
-    let server = serve(controller.connect(Role::DataSystem, None), file, Fate::Answers);
+    let server = serve(controller.connect(Role::DataSystem), file, Fate::Answers);
     let ended = controller.end();
     server.join().expect("it has not panicked");
     assert_eq!(ended.status, Some(0), "{}", ended.said);
@@ -222,7 +222,7 @@ fn a_data_system_that_is_killed_and_started_again_hears_the_update_once() {
             assert_ne!(status.report.text(), "error", "{fate:?}: {}", status.reason);
             if shop.data_system.is_finished() {
                 killed += 1;
-                let peer = shop.controller.connect(Role::DataSystem, None);
+                let peer = shop.controller.connect(Role::DataSystem);
                 shop.data_system = serve(peer, file.clone(), Fate::Answers);
             }
         }

@@ -60,7 +60,7 @@ fn assert_ended(ended: &Ended, status: Option<i32>, why: &str) {
 fn who_goes_before_he_has_answered_ends_the_run_in_its_first_tick() {
     for answers in 0..3 {
         let controller = Controller::start("early", "workstation", &TOO_LONG);
-        let mut peer = controller.connect(Role::Workstation, None);
+        let mut peer = controller.connect(Role::Workstation);
         for answer in 0..=answers {
             let tick = loop {
                 if let Received::Pulse(tick) = peer.receive().expect("the controller goes on") {
@@ -81,8 +81,8 @@ fn who_goes_before_he_has_answered_ends_the_run_in_its_first_tick() {
 #[test]
 fn who_goes_while_others_are_waited_for_ends_the_run_in_its_first_tick() {
     let controller = Controller::start("earlier", "workstation,pedestal", &TOO_LONG);
-    drop(controller.connect(Role::Workstation, None));
-    let pedestal = controller.connect(Role::Pedestal, None);
+    drop(controller.connect(Role::Workstation));
+    let pedestal = controller.connect(Role::Pedestal);
     let pedestal = thread::spawn(move || attend(pedestal));
     let ended = controller.end();
     assert_eq!(ended.status, Some(0), "{}", ended.said);

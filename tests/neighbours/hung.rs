@@ -31,7 +31,7 @@ fn who_hangs_is_disconnected_and_the_robot_goes_on() {
     let controller = Controller::start_at(scratch, None, outside, &more);
     let mut workstation = Workstation::connect(&controller);
     let hung = HUNG.map(|role| {
-        let peer = controller.connect(role, None);
+        let peer = controller.connect(role);
         thread::spawn(move || hang(peer))
     });
     // It waits for the Data System, which is asked for nothing before.
@@ -45,7 +45,7 @@ fn who_hangs_is_disconnected_and_the_robot_goes_on() {
     // The page has the first events only: all three are noted before another takes a place.
     (0..5).for_each(|_| workstation.tick());
     for role in HUNG {
-        drop(controller.connect(role, None));
+        drop(controller.connect(role));
     }
     assert_eq!(workstation.carry_out(&bare(2, "PAUSE")).0, "finished");
     assert_eq!(hang(workstation.peer), TOLD);

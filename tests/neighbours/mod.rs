@@ -3,8 +3,6 @@
 //! Nearly all of it in fast clock, where the tick waits for its neighbours: nothing depends on how fast the machine is.
 
 mod bench;
-#[cfg(feature = "zenoh")]
-mod between_machines;
 mod data_system;
 mod ends;
 mod hung;

@@ -1,11 +1,11 @@
-//! An operator is a role of the network like others: its certificate lets it in, and nothing else.
+//! An operator is a role of the network like others, if the run takes operators there.
 
 use std::{
     fs,
     io::{Read as _, Write as _},
-    net::{Shutdown, TcpStream},
+    net::Shutdown,
     os::unix::net::{UnixListener, UnixStream},
-    path::{Path, PathBuf},
+    path::PathBuf,
     process::Command,
     sync::{
         Arc,
@@ -17,18 +17,17 @@ use std::{
 
 use executive::memory::{RunName, operator_socket};
 use record::Log;
-use sessions::network::{Address, NeighbourKeys, Peer, PeerError, Role};
+use sessions::network::{Address, PeerError, connect_operator};
 use sessions::operator::{Client, ClientError};
 use whole_system_tests::{Scratch, rcs_run, root};
 
-use super::bench::{Controller, PATIENCE, make_keys};
+use super::bench::{Controller, PATIENCE};
 
 const JOB: &str = "== MOVE -- 0 -- 0 0 SAFE 0 -- 0\n";
 
-/// A run at a port, on stand-by if an operator may connect, with its keys and its log.
+/// A run on stand-by if an operator may connect, with its log.
 struct Cell {
     controller: Controller,
-    keys: PathBuf,
     log: PathBuf,
     name: RunName,
 }
@@ -36,43 +35,31 @@ struct Cell {
 impl Cell {
     fn start(name: &str, outside: &str, access: &str) -> Self {
         let scratch = Scratch::new(name);
-        let keys = make_keys(&scratch, "keys", 1);
         let (log, job) = (scratch.file("log.mcap"), scratch.file("safe.job"));
         fs::write(&job, JOB).expect("a job can be written");
         let name: RunName = format!("{name}-{}", std::process::id()).parse().expect("a name");
-        let paths = [&keys, &log, &job].map(|path| path.display().to_string());
-        let [keys_text, log_text, job_text] = paths.each_ref().map(String::as_str);
+        let paths = [&log, &job].map(|path| path.display().to_string());
+        let [log_text, job_text] = paths.each_ref().map(String::as_str);
         let more = [
-            &["--clock", "5x", "--operator", access, "--keys", keys_text][..],
+            &["--clock", "5x", "--operator", access][..],
             // Without an operator nobody ends a stand-by.
             if access == "none" { &[] } else { &["--stand-by"] },
             &["--run", name.as_str(), "--log", log_text, job_text],
         ];
-        let controller = Controller::start_at(scratch, Some("tcp:127.0.0.1:0"), outside, &more.concat());
-        Self { controller, keys, log, name }
+        let controller = Controller::start_at(scratch, None, outside, &more.concat());
+        Self { controller, log, name }
     }
 
     /// Ask for admission as soon as the run lets operators in.
-    fn admission(&self, keys: &Path) -> Result<Peer, PeerError> {
-        let keys = NeighbourKeys::load(keys, Role::Operator).expect("they can be used");
-        let begun = Instant::now();
-        loop {
-            match Peer::connect_within(PATIENCE, &self.controller.address, Role::Operator, Some(&keys)) {
-                Err(PeerError::Disconnected(why)) if why.starts_with("the run has not begun") => {
-                    assert!(begun.elapsed() < PATIENCE, "{why}");
-                    thread::sleep(Duration::from_millis(50));
-                }
-                other => return other,
-            }
-        }
+    fn admission(&self) -> Result<UnixStream, PeerError> {
+        admission(&self.controller.address)
     }
 
     /// `rcs-run send` over the network: whether it was taken, and what it prints.
     fn send(&self, line: &str) -> (bool, String) {
         let address = self.controller.address.to_string();
         let output = Command::new(rcs_run())
-            .args(["send", "--connect", &address, "--name", "anna", line, "--keys"])
-            .arg(&self.keys)
+            .args(["send", "--connect", &address, "--name", "anna", line])
             .current_dir(root())
             .output()
             .expect("rcs-run can be started");
@@ -81,32 +68,27 @@ impl Cell {
     }
 }
 
-fn refused(result: Result<Peer, PeerError>) -> String {
-    result.err().expect("it is refused").to_string()
+/// Ask for admission at an address as soon as the run lets operators in.
+fn admission(address: &Address) -> Result<UnixStream, PeerError> {
+    let begun = Instant::now();
+    loop {
+        match connect_operator(address) {
+            Err(PeerError::Disconnected(why)) if why.starts_with("the run has not begun") => {
+                assert!(begun.elapsed() < PATIENCE, "{why}");
+                thread::sleep(Duration::from_millis(200));
+            }
+            other => return other,
+        }
+    }
 }
 
 #[test]
-fn an_operator_with_its_certificate_works_on_a_run_and_one_without_does_not() {
+fn operator_of_the_network_commands_and_another_name_does_not_hide_it() {
     let cell = Cell::start("net-operator", "", "network");
-    let (stream, carrier) =
-        cell.admission(&cell.keys).expect("it is admitted").into_stream().expect("a pair");
-    let mut anna = Client::over(stream, carrier, &"anna".parse().expect("a name")).expect("a session");
+    let stream = cell.admission().expect("it is admitted");
+    let mut anna = Client::over(stream, &"anna".parse().expect("a name")).expect("a session");
     assert_eq!(anna.run(), cell.name.as_str());
     assert!(anna.ask("joystick velocity 900").expect("an answer").is_ok());
-    // The certificate of another role, and no TLS at all.
-    let wrong = cell.controller.file("wrong");
-    fs::create_dir(&wrong).expect("a directory can be made");
-    for (from, to) in [("ca.pem", "ca.pem"), ("vision.pem", "operator.pem"), ("vision.key", "operator.key")] {
-        fs::copy(cell.keys.join(from), wrong.join(to)).expect("it can be copied");
-    }
-    let why = refused(cell.admission(&wrong));
-    assert!(why.contains("the certificate is bound to vision, not to operator"), "{why}");
-    let Address::Tcp(port) = cell.controller.address else { panic!("a port was asked for") };
-    let mut plain = TcpStream::connect(port).expect("it waits");
-    plain.write_all(b"RCS2\x03\x00\x05\x00").expect("it reads");
-    let mut answer = Vec::new();
-    plain.read_to_end(&mut answer).expect("it closes");
-    assert_eq!(answer.first(), Some(&21), "a TLS alert, and nothing of the protocol: {answer:02X?}");
     // One commands, here and there, whatever name the other one gives.
     let mut local =
         Client::connect(&operator_socket(&cell.name), &"anna".parse().expect("a name")).expect("it waits");
@@ -123,9 +105,6 @@ fn an_operator_with_its_certificate_works_on_a_run_and_one_without_does_not() {
     let mut lines = Vec::new();
     let ended = controller.end_with(|| lines.extend(Log::open(&log).expect("a log").operator_lines()));
     assert_eq!(ended.status, Some(0), "{}", ended.said);
-    for event in ["operator has connected", "a connection was refused: the certificate is bound to vision"] {
-        assert!(ended.page.contains(event), "{event}: {}", ended.page);
-    }
     let said = |source: &str, line: &str| {
         let found = lines.iter().find(|one| one.source == source && one.line == line);
         found.map(|one| one.refused.is_some())
@@ -143,7 +122,7 @@ struct Line {
 
 impl Line {
     fn to(controller: &Controller) -> Self {
-        let Address::Unix(run) = controller.address.clone() else { panic!("a socket was asked for") };
+        let run = controller.address.path().to_owned();
         let path = controller.file("line.sock");
         let listener = UnixListener::bind(&path).expect("a socket");
         let stalls = Arc::new(AtomicBool::new(false));
@@ -187,16 +166,8 @@ fn a_command_that_a_stalled_line_delays_is_discarded() {
     let controller =
         Controller::start_at(scratch, None, "", &[&more[..], &["--log", &log_text, &job_text]].concat());
     let line = Line::to(&controller);
-    let begun = Instant::now();
-    let peer = loop {
-        match Peer::connect_within(PATIENCE, &line.address, Role::Operator, None) {
-            Ok(peer) => break peer,
-            Err(why) => assert!(begun.elapsed() < PATIENCE, "{why}"),
-        }
-        thread::sleep(Duration::from_millis(50));
-    };
-    let (stream, carrier) = peer.into_stream().expect("a pair");
-    let mut anna = Client::over(stream, carrier, &"anna".parse().expect("a name")).expect("a session");
+    let stream = admission(&line.address).expect("it is admitted");
+    let mut anna = Client::over(stream, &"anna".parse().expect("a name")).expect("a session");
     assert!(anna.ask("joystick velocity 900").expect("an answer").is_ok());
     line.stalls.store(true, Ordering::Relaxed);
     let given_up = anna.ask("MOVE -- 0 -- 0 0 HOME 0 -- 0");
@@ -217,15 +188,8 @@ fn a_command_that_a_stalled_line_delays_is_discarded() {
 fn a_run_says_who_may_operate_it() {
     for access in ["none", "owner"] {
         let cell = Cell::start(&format!("net-{access}"), "workstation", access);
-        let why = refused(cell.admission(&cell.keys));
-        assert!(why.contains("the run takes no operator over the network"), "{access}: {why}");
-        // The certificate of an operator is no other's.
-        for extension in ["pem", "key"] {
-            let of = |name: &str| cell.keys.join(name).with_extension(extension);
-            fs::copy(of("operator"), of("workstation")).expect("it can be copied");
-        }
-        let why = refused(cell.controller.try_connect(Role::Workstation, Some(&cell.keys)));
-        assert!(why.contains("the certificate is bound to operator, not to workstation"), "{access}: {why}");
+        let why = cell.admission().expect_err("it is refused").to_string();
+        assert!(why.contains("the run takes no operator at its network"), "{access}: {why}");
     }
 }
 

@@ -108,7 +108,7 @@ impl Shop {
 
     /// Let a pedestal in.
     fn admit(&mut self, fate: Fate) -> Guest {
-        let guest = Guest::new(self.controller.connect(Role::Pedestal, None), fate);
+        let guest = Guest::new(self.controller.connect(Role::Pedestal), fate);
         while !guest.is_there.load(Ordering::Acquire) {
             self.workstation.tick();
         }

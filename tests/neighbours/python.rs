@@ -10,7 +10,7 @@ use std::{
 
 use whole_system_tests::{Scratch, root};
 
-use super::bench::{Controller, example, make_keys};
+use super::bench::{Controller, example};
 
 const EXAMPLES: [&str; 2] = ["hwsc.py", "vision.py"];
 /// Mark, version 3, and the clock, which the examples do not read.
@@ -65,19 +65,16 @@ fn disconnect(reason: &[u8]) -> Vec<u8> {
     [&1_u32.to_le_bytes()[..], &length.to_le_bytes(), &[0; 6], reason].concat()
 }
 
-/// The client in another language that the documentation shows, with TLS and strict verification of certificates.
+/// The client in another language that the documentation shows.
 #[test]
 fn hwsc_py_transfers_a_part() {
     if !has_python() {
         return;
     }
-    let scratch = Scratch::new("python");
-    let keys = make_keys(&scratch, "keys", 1).display().to_string();
-    let more = ["--json", "--keys", keys.as_str()];
-    let controller = Controller::start_at(scratch, Some("tcp:127.0.0.1:0"), "workstation", &more);
+    let controller = Controller::start("python", "workstation", &["--json"]);
     let output = python()
         .arg(example("hwsc.py"))
-        .args([&controller.address.to_string(), &keys])
+        .arg(controller.address.to_string())
         .output()
         .expect("python3 can be started");
     let said = String::from_utf8_lossy(&output.stdout).into_owned();

@@ -32,7 +32,7 @@ fn start(
     let outbox = scratch.file("outbox").display().to_string();
     let more = ["--clock", clock, "--outbox", &outbox];
     let controller = Controller::start_at(scratch, None, "workstation,data-system", &more);
-    let peer = controller.connect(Role::DataSystem, None);
+    let peer = controller.connect(Role::DataSystem);
     let data_system = thread::spawn(move || serve(peer));
     let workstation = Workstation::connect(&controller);
     (controller, workstation, data_system)
@@ -78,7 +78,7 @@ fn a_run_ends_as_asked_for_while_a_tick_waits_for_a_neighbour() {
         let (tell, heard) = channel();
         let controller = Controller::start("asked", "workstation,pedestal,vision", &["--clock", "fast"]);
         let peers = STEPPED.map(|role| {
-            let (peer, tell) = (controller.connect(role, None), tell.clone());
+            let (peer, tell) = (controller.connect(role), tell.clone());
             let answers = if role == silent { LONG } else { usize::MAX };
             thread::spawn(move || fall_silent(peer, answers, &tell))
         });

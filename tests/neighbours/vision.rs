@@ -298,7 +298,7 @@ fn fetch(number: u32) -> HwsCommand {
 fn vision_that_is_killed_in_the_middle_and_started_again_answers() {
     for fate in [Fate::Answers, Fate::DiesAtOnce, Fate::DiesInTheMiddle] {
         let controller = Controller::start("vision-dies", "workstation,vision", &[]);
-        let mut vision = serve(controller.connect(Role::Vision, None), fate);
+        let mut vision = serve(controller.connect(Role::Vision), fate);
         let mut workstation = Workstation::connect(&controller);
         assert_eq!(workstation.carry_out(&bare(1, "PAUSE")).0, "finished");
         workstation.in_cell("tray UNIT_1 4 LINKBAR1_BH 40 -30 1500");
@@ -313,7 +313,7 @@ fn vision_that_is_killed_in_the_middle_and_started_again_answers() {
             assert_ne!(status.report.text(), "error", "{fate:?}: {}", status.reason);
             if vision.is_finished() {
                 killed += 1;
-                vision = serve(controller.connect(Role::Vision, None), Fate::Answers);
+                vision = serve(controller.connect(Role::Vision), Fate::Answers);
             }
         }
         assert_eq!(killed, u32::from(fate != Fate::Answers), "{fate:?}");

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand};
-use programs::pages::DataArgument;
+use programs::pages::{DataArgument, RemovedTls};
 use sessions::network::Address;
 
 use crate::vision::fault::Fault;
@@ -32,9 +32,8 @@ Examples:
                                        a run whose pictures are analysed elsewhere
   rcs-neighbour vision --network unix:/tmp/rcs.sock --fault 2:not-recognised
                                        and the vision system, which fails at the second picture
-  rcs-neighbour keys cell-keys         keys for neighbours on other machines:
-  rcs-run --clock real --network tcp:10.0.0.1:7400 --keys cell-keys --outside workstation
-  rcs-neighbour workstation --network tcp:10.0.0.1:7400 --keys cell-keys linkbar
+
+On another machine connect to the socket of `rcs-gateway connect` (docs/several-machines.md).
 
 Exit status: 0 finished; 1 the job failed or the connection broke; 2 usage, configuration or data error."
 )]
@@ -58,37 +57,28 @@ pub enum Command {
     /// The vision system: analyses the pictures of the cell's camera. Serves one run after the other; exits when no run
     /// comes within --wait
     Vision(VisionArguments),
-    /// Make a certificate authority, and keys and certificates for the controller and all neighbours; existing files
-    /// stay
-    Keys(KeysArguments),
+    /// Keys are made by tools/keys.sh
+    #[command(hide = true)]
+    Keys {
+        /// Arguments of earlier versions.
+        #[arg(num_args = 0.., trailing_var_arg = true, allow_hyphen_values = true)]
+        rest: Vec<String>,
+    },
 }
 
 /// Where the controller is.
 #[derive(Clone, Debug, Args)]
 pub struct ControllerArguments {
-    /// Address at which the run waits for its neighbours: unix:PATH, tcp:IP:PORT, zenoh:NAME or zenoh:NAME@ENDPOINT
+    /// Address at which the run, or `rcs-gateway connect` for a run on another machine, waits for its neighbours:
+    /// unix:PATH
     #[arg(long, value_name = "ADDRESS")]
     pub network: Address,
-    /// Directory with keys and certificates for tcp: and zenoh:; `rcs-neighbour keys` makes it
-    #[arg(long, value_name = "DIR")]
-    pub keys: Option<PathBuf>,
-    /// File with Zenoh's own configuration (JSON5): TLS, access control, routers
-    #[arg(long, value_name = "FILE")]
-    pub zenoh_config: Option<PathBuf>,
+    /// Options that no longer exist.
+    #[command(flatten)]
+    pub removed: RemovedTls,
     /// Seconds to wait for a run
     #[arg(long, value_name = "SECONDS", default_value_t = 60)]
     pub wait: u64,
-}
-
-/// Arguments of `keys`.
-#[derive(Clone, Debug, Args)]
-pub struct KeysArguments {
-    /// Directory for the files, created if missing. To renew a certificate, delete its two files first
-    #[arg(value_name = "DIR")]
-    pub directory: PathBuf,
-    /// Days for which the certificates are valid; the authority is valid for 3650 days
-    #[arg(long, value_name = "N", default_value_t = 825, value_parser = clap::value_parser!(u16).range(..=3650))]
-    pub days: u16,
 }
 
 /// Arguments of `workstation`.

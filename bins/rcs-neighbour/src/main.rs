@@ -1,11 +1,11 @@
-//! `rcs-neighbour`: neighbour systems of the controller as separate processes, on this machine or on another.
+//! `rcs-neighbour`: neighbour systems of the controller as separate processes; `rcs-gateway` carries them to other
+//! machines.
 //!
 //! Each process connects to the mailboxes of a run (`rcs-run --network … --outside …`) and replaces the neighbour in
 //! the controller's process. Other programs can use the same byte formats: docs/neighbours.md.
 
 mod cli;
 mod data_system;
-mod keys;
 mod pedestal;
 mod vision;
 mod workstation;
@@ -17,16 +17,14 @@ use std::{
 };
 
 use plant::description::DescriptionError;
+use programs::pages::KEYS_MOVED;
 use sessions::{
     data_system::StoreError,
-    network::{AttachError, KeysError, NeighbourKeys, Peer, PeerError, Role, address::AddressError},
+    network::{AttachError, Peer, PeerError, Role},
 };
 use taskdata::load::Diagnostics;
 
-use crate::{
-    cli::{Cli, Command, ControllerArguments},
-    keys::KeysFailure,
-};
+use crate::cli::{Cli, Command, ControllerArguments};
 
 /// Exit status if a job failed or a connection broke.
 const FAILED: u8 = 1;
@@ -39,15 +37,9 @@ enum Error {
     /// The controller cannot be reached, or has closed the connection.
     #[error(transparent)]
     Peer(#[from] PeerError),
-    /// Keys or certificates cannot be used.
-    #[error(transparent)]
-    Keys(#[from] KeysError),
-    /// Keys or certificates cannot be made.
-    #[error(transparent)]
-    Make(#[from] KeysFailure),
-    /// Options of the network contradict each other.
-    #[error(transparent)]
-    Address(#[from] AddressError),
+    /// A command of earlier versions.
+    #[error("{KEYS_MOVED}")]
+    KeysMoved,
     /// The data base cannot be used.
     #[error("the items cannot be kept: {0}")]
     DataBase(#[from] StoreError),
@@ -83,11 +75,8 @@ enum Error {
 impl Error {
     const fn status(&self) -> u8 {
         match self {
-            Self::Peer(error) if error.is_usage() => UNUSABLE,
             Self::Peer(_) | Self::Job(_) => FAILED,
-            Self::Address(_)
-            | Self::Keys(_)
-            | Self::Make(_)
+            Self::KeysMoved
             | Self::DataBase(_)
             | Self::Cell(_)
             | Self::AnotherCell { .. }
@@ -105,7 +94,7 @@ fn main() -> ExitCode {
         Command::DataSystem(arguments) => data_system::serve(&arguments),
         Command::Pedestal(arguments) => pedestal::serve(&arguments),
         Command::Vision(arguments) => vision::serve(&arguments),
-        Command::Keys(arguments) => keys::make(&arguments).map_err(Error::Make),
+        Command::Keys { .. } => Err(Error::KeysMoved),
     };
     match outcome {
         Ok(()) => ExitCode::SUCCESS,
@@ -176,17 +165,16 @@ fn connect_again(
 
 /// Connects to the controller.
 fn connect(arguments: &ControllerArguments, role: Role) -> Result<Peer, Error> {
-    let keys = arguments.keys.as_deref().map(|directory| NeighbourKeys::load(directory, role)).transpose()?;
     let wait = Duration::from_secs(arguments.wait);
-    let address = arguments.network.clone().configured(arguments.zenoh_config.clone())?;
+    let address = &arguments.network;
     let soon = wait.min(UNNOTICED);
-    match Peer::connect_within(soon, &address, role, keys.as_ref()) {
+    match Peer::connect_within(soon, address, role) {
         Err(error) if error.is_passing() && soon < wait => {
             os_io::stderr_line!(
                 "rcs-neighbour: {error}; waiting for a controller, {} s at most (--wait)",
                 wait.as_secs()
             );
-            Ok(Peer::connect_within(wait - soon, &address, role, keys.as_ref())?)
+            Ok(Peer::connect_within(wait - soon, address, role)?)
         }
         outcome => Ok(outcome?),
     }

@@ -97,8 +97,8 @@ pub struct RunArguments {
     /// only]
     #[arg(long, value_name = "FILE", alias = "data-base")]
     pub database: Option<PathBuf>,
-    /// Address at which neighbours in other processes, and operators of --operator network, connect: unix:PATH, or with
-    /// --keys tcp:IP:PORT, zenoh:NAME or zenoh:NAME@ENDPOINT (docs/neighbours.md)
+    /// Address at which neighbours in other processes, and operators of --operator network, connect: unix:PATH
+    /// (docs/neighbours.md). rcs-gateway connects it with other machines
     #[arg(long, value_name = "ADDRESS")]
     pub network: Option<Address>,
     /// Neighbours that run as other processes, separated by commas: workstation, data-system, pedestal, vision
@@ -111,12 +111,9 @@ pub struct RunArguments {
     /// File that keeps updates for a Data System in another process until it has answered them
     #[arg(long, value_name = "FILE", default_value = "runs/data-system.outbox")]
     pub outbox: PathBuf,
-    /// Directory with keys and certificates for neighbours on other machines; `rcs-neighbour keys` makes it
-    #[arg(long, value_name = "DIR", requires = "network")]
-    pub keys: Option<PathBuf>,
-    /// File with Zenoh's own configuration (JSON5): TLS, access control, routers
-    #[arg(long, value_name = "FILE", requires = "network")]
-    pub zenoh_config: Option<PathBuf>,
+    /// Options that no longer exist.
+    #[command(flatten)]
+    pub removed: pages::RemovedTls,
     /// Stop after N ticks, unless the job ends before
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
     pub ticks: Option<u64>,
@@ -217,8 +214,6 @@ impl RunArguments {
             outside: own.outside,
             stand_alone: own.stand_alone,
             outbox: own.outbox,
-            keys: own.keys,
-            zenoh_config: own.zenoh_config,
             ticks: own.ticks,
             retry: own.retry,
             operator: own.operator,
@@ -315,15 +310,13 @@ pub struct SendArguments {
     /// Name of the run; may be left out if there is only one
     #[arg(long, value_name = "NAME")]
     pub run: Option<RunName>,
-    /// Address of the --network of a run with --operator network, on this machine or another one
+    /// Address of the --network of a run with --operator network, unix:PATH, or of `rcs-gateway connect` for a run on
+    /// another machine
     #[arg(long, value_name = "ADDRESS", conflicts_with = "run")]
     pub connect: Option<Address>,
-    /// Directory with ca.pem, operator.pem and operator.key for tcp: and zenoh:, as `rcs-neighbour keys` makes them
-    #[arg(long, value_name = "DIR", requires = "connect")]
-    pub keys: Option<PathBuf>,
-    /// File with Zenoh's own configuration (JSON5): TLS, access control, routers
-    #[arg(long, value_name = "FILE", requires = "connect")]
-    pub zenoh_config: Option<PathBuf>,
+    /// Options that no longer exist.
+    #[command(flatten)]
+    pub removed: pages::RemovedTls,
     /// Seconds to stay connected after the last line; at the end, motion by hand ends: stick, buttons and frame of the
     /// joystick box are released
     #[arg(long, value_name = "SECONDS", default_value = "0", value_parser = seconds)]

@@ -7,7 +7,7 @@ use executive::{
     memory::{ReadError, SharedMemoryError},
 };
 use runtime::StartError;
-use sessions::network::{KeysError, PeerError, address::AddressError};
+use sessions::network::PeerError;
 
 /// Exit status of a job that failed.
 pub const FAILED: u8 = 1;
@@ -87,15 +87,9 @@ pub enum Error {
     /// A run does not accept the operator.
     #[error(transparent)]
     Operator(#[from] sessions::operator::ClientError),
-    /// A remote run cannot be reached, or does not admit the operator.
+    /// A run at an address cannot be reached, or does not admit the operator.
     #[error(transparent)]
     Network(#[from] PeerError),
-    /// Keys or certificates cannot be used.
-    #[error(transparent)]
-    Keys(#[from] KeysError),
-    /// Options of the network contradict each other.
-    #[error(transparent)]
-    Address(#[from] AddressError),
     /// A board cannot take part in a run.
     #[error(transparent)]
     Board(#[from] MemberError),

@@ -4,8 +4,7 @@ use std::process::ExitCode;
 
 use executive::memory::{Attached, SharedMemoryError, operator_socket, starting};
 use os_io::{console, stderr_line};
-use sessions::network::{NeighbourKeys, Peer, Role};
-use sessions::operator::Client;
+use sessions::{network::connect_operator, operator::Client};
 
 use crate::rcs_run::{
     arguments::SendArguments,
@@ -13,7 +12,7 @@ use crate::rcs_run::{
     status::only_run,
 };
 
-/// Open a session with a run of this user, or with a remote run.
+/// Open a session with a run of this user, or with one behind a gateway.
 fn connect(arguments: &SendArguments) -> Result<Client, Error> {
     let Some(address) = &arguments.connect else {
         let run = arguments.run.clone().map_or_else(only_run, Ok)?;
@@ -27,10 +26,7 @@ fn connect(arguments: &SendArguments) -> Result<Client, Error> {
         }
         return Ok(Client::connect(&socket, &arguments.name)?);
     };
-    let keys = arguments.keys.as_deref().map(|keys| NeighbourKeys::load(keys, Role::Operator)).transpose()?;
-    let address = address.clone().configured(arguments.zenoh_config.clone())?;
-    let (stream, carrier) = Peer::connect(&address, Role::Operator, keys.as_ref())?.into_stream()?;
-    Ok(Client::over(stream, carrier, &arguments.name)?)
+    Ok(Client::over(connect_operator(address)?, &arguments.name)?)
 }
 
 /// Send the requests in order, and print the answers. A refused request ends the command with exit status 1.

@@ -4,7 +4,7 @@
 use std::{collections::BTreeSet, env, process::Command};
 
 /// Packages that do I/O or keep time, and those of this workspace that use them.
-const WITH_IO: [&str; 14] = [
+const WITH_IO: [&str; 15] = [
     "executive",
     "getrandom",
     "iceoryx2",
@@ -16,6 +16,7 @@ const WITH_IO: [&str; 14] = [
     "serialport",
     "sessions",
     "signal-hook",
+    "sockets",
     "thread-priority",
     "tungstenite",
     "zenoh",

@@ -78,10 +78,6 @@ pub struct RunConfig {
     pub stand_alone: bool,
     /// File that keeps updates until a Data System in another process receives them.
     pub outbox: PathBuf,
-    /// Directory with keys and certificates for neighbours on other machines.
-    pub keys: Option<PathBuf>,
-    /// Configuration file of Zenoh.
-    pub zenoh_config: Option<PathBuf>,
     /// Stop after this number of ticks, unless the job ends before.
     pub ticks: Option<u64>,
     /// After a command that ends with an error, send PAUSE and the same command again, at most this number of times per
@@ -138,8 +134,6 @@ impl RunConfig {
             outside: Vec::new(),
             stand_alone: false,
             outbox: "runs/data-system.outbox".into(),
-            keys: None,
-            zenoh_config: None,
             ticks: None,
             retry: 0,
             operator: OperatorAccess::Owner,
@@ -176,7 +170,7 @@ pub enum OperatorAccess {
     None,
     /// Programs of the user who runs it, on this machine
     Owner,
-    /// These, and over the network who has the role: a certificate at --network, the token at --live
+    /// These, and operators at --network, which rcs-gateway connects with other machines; viewers with the token of --live
     Network,
 }
 
@@ -408,7 +402,7 @@ mod tests {
             boards: Boards::Split,
             name: Some("cell-1".parse().unwrap()),
             log: LogTarget::None,
-            network: Some("tcp:127.0.0.1:7400".parse().unwrap()),
+            network: Some("unix:/run/t3.sock".parse().unwrap()),
             outside: vec![Role::Workstation, Role::DataSystem],
             ticks: Some(50),
             live: Some(0),

@@ -10,7 +10,7 @@ use plant::CellError;
 use record::RecordError;
 use sessions::{
     data_system::{OutboxError, StoreError},
-    network::{KeysError, address::AddressError, listener::ListenError},
+    network::listener::ListenError,
 };
 use taskdata::load::Diagnostics;
 
@@ -125,15 +125,9 @@ pub enum StartError {
     /// Neighbours cannot connect.
     #[error("neighbours cannot connect: {0}")]
     Network(#[from] ListenError),
-    /// Options of the network contradict each other.
-    #[error("neighbours cannot connect: {0}")]
-    Address(#[from] AddressError),
     /// The mailboxes of a neighbour cannot be made.
     #[error("neighbours cannot connect: {0}")]
     Endpoint(#[source] io::Error),
-    /// Keys or certificates cannot be used.
-    #[error(transparent)]
-    Keys(#[from] KeysError),
     /// The workstation controller has not connected.
     #[error("the workstation controller has not connected within {0} s; --wait N sets a longer time")]
     NoWorkstation(u32),

@@ -16,11 +16,7 @@ use neighbours::{
 };
 use plant::{CellEvent, t3::explained};
 use record::Level;
-use sessions::{
-    data_system,
-    network::{Disconnect, NetEvent, Role},
-    pedestal, vision,
-};
+use sessions::{data_system, network::NetEvent, pedestal, vision};
 
 use closed_loop::{contacts::ContactEvent, truth::Confirmation};
 
@@ -152,10 +148,7 @@ impl Event {
             Self::Untrue(confirmation) if confirmation.is_false() => Level::Error,
             Self::Contact(_) | Self::CellStatusUnsent(_) | Self::Stops | Self::WentWrong(_) => Level::Error,
             Self::RealTime { complete: true, .. } => Level::Info,
-            // The connection of a neighbour and the departure of an operator are no warnings.
-            Self::Network(
-                NetEvent::Connected(_) | NetEvent::Disconnected(Role::Operator, Disconnect::Closed),
-            ) => Level::Info,
+            Self::Network(NetEvent::Connected(_)) => Level::Info,
             Self::HandedOver | Self::TakenBack | Self::Loaded { .. } | Self::Changed(_) | Self::Punctual => {
                 Level::Info
             }

@@ -1,4 +1,4 @@
-//! The listeners for neighbours and operators in other processes or on other machines.
+//! The listener for neighbours and operators in other processes.
 
 use std::{
     io,
@@ -6,7 +6,7 @@ use std::{
     sync::mpsc::{Receiver, channel},
 };
 
-use sessions::network::{ControllerKeys, Endpoint, EndpointHandle, Listener, NetEvent, Operators, Role};
+use sessions::network::{Endpoint, EndpointHandle, Listener, NetEvent, Operators, Role};
 
 use crate::{
     config::{ClockKind, OperatorAccess, RunConfig},
@@ -35,7 +35,6 @@ impl Network {
         observer: &mut dyn Observer,
     ) -> Result<Option<Self>, StartError> {
         check(config)?;
-        let keys = config.keys.as_deref().map(ControllerKeys::load).transpose()?;
         let Some(address) = &config.network else { return Ok(None) };
         let operators = (config.operator == OperatorAccess::Network).then(|| {
             let (sender, events) = channel();
@@ -46,16 +45,18 @@ impl Network {
             (_, None) => "neighbours",
             (_, Some(_)) => "neighbours and operators",
         };
-        let address = address.clone().configured(config.zenoh_config.clone())?;
         let entering = operators.as_ref().map(|(operators, _)| operators.clone());
-        let listener = Listener::with_operators(&address, keys, endpoints.iter().copied(), entering)?;
-        observer.message(&format!("{who} can connect at {}", listener.address()));
+        let listener = Listener::with_operators(address, endpoints.iter().copied(), entering)?;
+        observer.message(&format!("{who} can connect at {address}"));
         let handles = endpoints.iter().map(|endpoint| endpoint.handle()).collect();
         Ok(Some(Self { handles, operators, _listener: listener }))
     }
 
     /// Admit operators: the run has begun.
-    pub fn let_operators_in(&self, enter: impl Fn() -> io::Result<UnixStream> + Send + Sync + 'static) {
+    pub fn let_operators_in(
+        &self,
+        enter: impl Fn(UnixStream, Vec<u8>) -> io::Result<()> + Send + Sync + 'static,
+    ) {
         if let Some((operators, _)) = &self.operators {
             operators.open(enter);
         }

@@ -1,6 +1,6 @@
 //! Connections of a run with other processes.
 //!
-//! * [`network`]: carries mailboxes to neighbours, over Unix sockets, TCP with TLS, or Zenoh;
+//! * [`network`]: carries mailboxes to neighbours over a Unix socket;
 //! * [`pedestal`], [`vision`]: the controller's end of a neighbour in another process;
 //! * [`data_system`]: the database of items, on a thread or in another process;
 //! * [`operator`]: lines of text over a Unix socket, from the console of an operator or a script;

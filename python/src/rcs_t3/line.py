@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import os
 import socket
-import ssl
 import struct
 from types import TracebackType
 from typing import Optional, Tuple, Type, TypeVar, Union
@@ -16,8 +14,6 @@ PULSE, DISCONNECT, WELCOME = 0, 1, 2
 _HELLO, _VERSION = struct.Struct("<4sHH"), 3
 _FRAME = struct.Struct("<IHHHH")
 _MAX_LENGTH = 4096
-# The certificate of a controller names it so wherever it is reached.
-_SERVER_NAME = "controller.rcs2.internal"
 
 _Line = TypeVar("_Line", bound="Line")
 
@@ -30,17 +26,16 @@ def plain(data: bytes) -> str:
 class Line:
     """A connection on which both sides have sent their hello, and the controller its welcome.
 
-    `address` is ``unix:PATH``; ``CELL@tls/IP:PORT`` for the gateway of a cell, with the path `keys` of a certificate
-    without ``.pem`` and ``.key``; or ``tcp:IP:PORT`` with the directory `keys` that ``rcs-neighbour keys`` has made, in
-    which the certificate of the role has the name `certificate`. `timeout` is the longest silence of the controller in
-    seconds; `None` waits without a limit, for example for a run that an operator holds.
+    `address` is ``unix:PATH``, or ``CELL@tls/IP:PORT`` for the gateway of a cell, with the path `keys` of a certificate
+    without ``.pem`` and ``.key``. `timeout` is the longest silence of the controller in seconds; `None` waits without a
+    limit, for example for a run that an operator holds.
     """
 
     def __init__(
-        self, address: str, role: int, certificate: str, keys: Optional[str] = None, timeout: Optional[float] = None
+        self, address: str, role: int, keys: Optional[str] = None, timeout: Optional[float] = None
     ) -> None:
         try:
-            self._socket = _connect(address, role, certificate, keys, timeout)
+            self._socket = _connect(address, role, keys, timeout)
         except (OSError, ValueError) as error:
             raise ConnectionLost(f"{address}: {error}") from error
         try:
@@ -95,12 +90,7 @@ class Line:
         self.send(_FRAME.pack(address, 8 + len(data), mailgram, 0, 0) + data)
 
     def close(self) -> None:
-        """End the connection in order, so that the controller can distinguish the end from a cut."""
-        try:
-            if isinstance(self._socket, ssl.SSLSocket):
-                self._socket.unwrap()
-        except OSError:
-            pass  # The controller has closed its side, or sent data that is not read.
+        """End the connection."""
         self._socket.close()
 
     def __enter__(self: _Line) -> _Line:
@@ -121,27 +111,18 @@ class Line:
 
 
 def _connect(
-    address: str, role: int, certificate: str, keys: Optional[str], timeout: Optional[float]
+    address: str, role: int, keys: Optional[str], timeout: Optional[float]
 ) -> Union[socket.socket, GatewaySocket]:
     if is_gateway(address):
         return GatewaySocket(address, role, keys, timeout)
     kind, _, place = address.partition(":")
-    if kind == "unix" and place and keys is None:
-        line = socket.socket(socket.AF_UNIX)
-        try:
-            line.settimeout(timeout)
-            line.connect(place)
-        except OSError:
-            line.close()
-            raise
-        return line
-    if kind != "tcp" or keys is None:
-        raise ValueError("unix:PATH was expected, CELL@tls/IP:PORT or tcp:IP:PORT with keys")
-    host, _, port = place.rpartition(":")
-    context = ssl.create_default_context(cafile=os.path.join(keys, "ca.pem"))
-    context.minimum_version = ssl.TLSVersion.TLSv1_3
-    context.verify_flags |= ssl.VERIFY_X509_STRICT
-    context.load_cert_chain(os.path.join(keys, certificate + ".pem"), os.path.join(keys, certificate + ".key"))
-    raw = socket.create_connection((host.strip("[]"), int(port)), timeout)
-    raw.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
-    return context.wrap_socket(raw, server_hostname=_SERVER_NAME)
+    if kind != "unix" or not place or keys is not None:
+        raise ValueError("unix:PATH was expected, or CELL@tls/IP:PORT with keys (docs/several-machines.md)")
+    line = socket.socket(socket.AF_UNIX)
+    try:
+        line.settimeout(timeout)
+        line.connect(place)
+    except OSError:
+        line.close()
+        raise
+    return line

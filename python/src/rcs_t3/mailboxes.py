@@ -18,12 +18,11 @@ class Neighbour(Line):
         self,
         address: str,
         role: int,
-        certificate: str,
         writes: Iterable[int],
         keys: Optional[str] = None,
         timeout: Optional[float] = None,
     ) -> None:
-        super().__init__(address, role, certificate, keys, timeout)
+        super().__init__(address, role, keys, timeout)
         self.mailgrams = dict.fromkeys(writes, 0)
         self._pulse: Optional[bytes] = None
 

@@ -31,7 +31,7 @@ class Operator(Line):
     def __init__(
         self, address: str, name: str, keys: Optional[str] = None, timeout: Optional[float] = 10.0
     ) -> None:
-        super().__init__(address, _ROLE, "operator", keys, timeout)
+        super().__init__(address, _ROLE, keys, timeout)
         self._buffer = b""
         self._number = 0
         self._send_line(f"hello {name}")

@@ -56,7 +56,7 @@ class Vision(Neighbour):
     """
 
     def __init__(self, address: str, keys: Optional[str] = None, timeout: Optional[float] = None) -> None:
-        super().__init__(address, _ROLE, "vision", (_RESPONSE,), keys, timeout)
+        super().__init__(address, _ROLE, (_RESPONSE,), keys, timeout)
         self._request: Optional[Request] = None
         self._picture: Optional[Tuple[int, List[Part]]] = None
 

@@ -94,7 +94,7 @@ class Workstation(Neighbour):
     """
 
     def __init__(self, address: str, keys: Optional[str] = None, timeout: Optional[float] = None) -> None:
-        super().__init__(address, _ROLE, "workstation", (_HWSC_COMMAND, _CELL_COMMAND), keys, timeout)
+        super().__init__(address, _ROLE, (_HWSC_COMMAND, _CELL_COMMAND), keys, timeout)
         self._status: Optional[Status] = None
         self._cell: Optional[tuple[int, int, int, str]] = None
 

@@ -1,6 +1,6 @@
 //! Sources of an operator's inputs: sessions, or a log.
 
-use std::{collections::VecDeque, fs, path::Path};
+use std::{collections::VecDeque, path::Path};
 
 use executive::memory::{RunName, operator_socket};
 use rcs_core::tick::Tick;
@@ -148,8 +148,6 @@ impl Inputs {
             return Ok(Self::None);
         }
         let path = operator_socket(name);
-        // A killed run of the same name may have left it.
-        let _ = fs::remove_file(&path);
         match Listener::start(&path, name.as_str()) {
             Ok(listener) => Ok(Self::Sessions(listener)),
             Err(source) if config.stand_by => Err(StartError::NoOperator { path, source }),

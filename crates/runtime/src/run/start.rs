@@ -145,7 +145,7 @@ impl Run {
         let asked = Inputs::of(&config, &name, &mut *observer)?;
         let network = neighbours.network.as_ref();
         if let Some((network, entrance)) = network.zip(asked.entrance()) {
-            network.let_operators_in(move || entrance.enter());
+            network.let_operators_in(move |stream, unread| entrance.enter(stream, &unread));
         }
         if let Some(live) = &mut live {
             let operators = asked.socket().filter(|_| config.operator == OperatorAccess::Network);

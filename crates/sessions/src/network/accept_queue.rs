@@ -6,15 +6,17 @@
 
 use std::{
     io,
+    net::Shutdown,
+    os::unix::net::UnixStream,
     sync::Mutex,
     time::{Duration, Instant},
 };
 
-use super::{shared::locked, socket::Socket};
+use super::shared::locked;
 
 /// Greatest number of connections without a hello.
 pub(super) const SLOTS: usize = 8;
-/// Minimum time in a slot: enough for TLS and a hello, and the penalty for a wrong one.
+/// Minimum time in a slot: enough for a hello, and the penalty for a wrong one.
 pub(super) const SAFE: Duration = Duration::from_secs(1);
 
 /// The queue.
@@ -33,7 +35,7 @@ struct Inner {
 struct Waiting {
     ticket: u64,
     since: Instant,
-    socket: Socket,
+    stream: UnixStream,
 }
 
 /// A slot, released on drop, unless another connection has it by then.
@@ -47,8 +49,8 @@ impl AcceptQueue {
     ///
     /// # Errors
     /// If the system has no descriptor left.
-    pub fn enter(&self, socket: &Socket) -> io::Result<Option<u64>> {
-        let socket = socket.try_clone()?;
+    pub fn enter(&self, stream: &UnixStream) -> io::Result<Option<u64>> {
+        let stream = stream.try_clone()?;
         let mut inner = locked(&self.inner);
         let now = Instant::now();
         let waited = |slot: &Option<Waiting>| slot.as_ref().map_or(Duration::MAX, |other| now - other.since);
@@ -58,8 +60,9 @@ impl AcceptQueue {
         inner.last += 1;
         let ticket = inner.last;
         let slot = inner.slots.iter_mut().find(|slot| waited(slot) == longest);
-        if let Some(before) = slot.and_then(|slot| slot.replace(Waiting { ticket, since: now, socket })) {
-            before.socket.shut_down();
+        if let Some(before) = slot.and_then(|slot| slot.replace(Waiting { ticket, since: now, stream })) {
+            // It may be closed already.
+            let _ = before.stream.shutdown(Shutdown::Both);
         }
         Ok(Some(ticket))
     }
@@ -81,13 +84,12 @@ impl Drop for Slot<'_> {
 
 #[cfg(test)]
 mod tests {
-    use std::{io::Read as _, os::unix::net::UnixStream};
+    use std::io::Read as _;
 
     use super::*;
 
-    fn connection() -> (Socket, UnixStream) {
-        let (ours, theirs) = UnixStream::pair().unwrap();
-        (Socket::Unix(ours), theirs)
+    fn connection() -> (UnixStream, UnixStream) {
+        UnixStream::pair().unwrap()
     }
 
     /// Let all have been there for so much longer.

@@ -1,47 +1,36 @@
-//! Transport of mailboxes between the controller and neighbours in other processes or on other machines.
+//! Transport of mailboxes between the controller and neighbours in other processes, over a Unix socket. `rcs-gateway`
+//! carries them to other machines.
 //!
 //! The mailboxes are in the controller's common memory, which the network reads and writes (IX). The tick copies them
 //! and never waits for a socket; a thread for each connection sends and receives changes. As in the original a mailbox
 //! holds the latest mailgram, without a queue.
 //!
 //! ```text
-//!   tick -- Endpoint -- mailboxes in memory -- Link -- thread with Session -- Channel -- Peer in another process
+//!   tick -- Endpoint -- mailboxes in memory -- Link -- thread with Session -- Line -- Peer in another process
 //! ```
 //!
 //! * [`neighbours::line`]: roles, frames, and the protocol of a connection, without I/O;
 //! * [`endpoint`]: the tick's side of the mailboxes, `shared`: the network's; [`event`]: events for the tick;
-//! * [`keys`]: TLS between machines, and which certificate is which neighbour;
-//! * `socket`, `channel`: bytes of a session over a socket, with TLS or without;
 //! * [`listener`], `accept_queue`, `server`: the controller's end of connections, [`peer`]: the neighbour's;
-//! * [`operators`]: operators, whose connections carry lines in the place of mailboxes;
-//! * [`zenoh_address`], `over_zenoh`: connections through a Zenoh network (with the feature `zenoh`).
+//! * [`operators`]: operators, whose connections carry lines in the place of mailboxes.
 //!
 //! In fast clock the tick waits for the pulse of every neighbour that is connected, so that runs with
 //! neighbours in other processes have the same bits every time.
 
 mod accept_queue;
-pub mod address;
-mod channel;
 pub mod endpoint;
 pub mod event;
-pub mod keys;
 pub mod listener;
 pub mod operators;
-#[cfg(feature = "zenoh")]
-mod over_zenoh;
 pub mod peer;
 mod server;
 mod shared;
-mod socket;
-pub mod zenoh_address;
 
-pub use neighbours::line::{ClockKind, Role, clock, frame, role, session};
+pub use neighbours::line::{Address, ClockKind, Role, address, clock, frame, role, session};
 
-pub use address::Address;
 pub use endpoint::{Endpoint, Presence, StopHandle};
 pub use event::{Disconnect, NetEvent};
-pub use keys::{ControllerKeys, KeysError, NeighbourKeys};
 pub use listener::Listener;
 pub use operators::Operators;
-pub use peer::{Peer, PeerError, Received};
+pub use peer::{Peer, PeerError, Received, connect_operator};
 pub use shared::{AttachError, EndpointHandle};

@@ -2,25 +2,18 @@
 
 use std::{
     io,
-    net::TcpStream,
     os::unix::net::UnixStream,
     thread,
     time::{Duration, Instant},
 };
 
-#[cfg(not(feature = "zenoh"))]
-use super::listener::NO_ZENOH;
-#[cfg(feature = "zenoh")]
-use super::over_zenoh;
 use super::{
-    Address, ClockKind, KeysError, NeighbourKeys, Role,
-    channel::Channel,
-    operators::{Carrier, carry},
+    Address, ClockKind, Role,
     session::{Event, NEIGHBOUR_LIMIT, Session, SessionError},
     shared::OVER,
-    socket::Socket,
 };
 use neighbours::mailbox::{Mailbox, MailboxError, Place};
+use sockets::Line;
 
 /// Time between two attempts to connect.
 const PAUSE: Duration = Duration::from_millis(50);
@@ -37,14 +30,6 @@ pub enum PeerError {
         address: Address,
         /// Error of the system.
         source: io::Error,
-    },
-    /// TLS refuses the other side, or the other side refuses the certificate.
-    #[error("{address}: TLS: {source}")]
-    Tls {
-        /// Address of the controller.
-        address: Address,
-        /// Error of the TLS library.
-        source: Box<rustls::Error>,
     },
     /// The other side is not a controller, or breaks the protocol.
     #[error("{address}: {source}")]
@@ -66,13 +51,6 @@ pub enum PeerError {
     /// The controller has closed the connection, with this reason.
     #[error("the controller says: {0}")]
     Disconnected(String),
-    /// The keys do not fit the address.
-    #[error(transparent)]
-    Keys(#[from] KeysError),
-    /// This program was built without Zenoh.
-    #[cfg(not(feature = "zenoh"))]
-    #[error("{0}: {NO_ZENOH}")]
-    NoZenoh(Address),
 }
 
 impl PeerError {
@@ -83,17 +61,6 @@ impl PeerError {
             Self::Line { source, .. } => source.kind() != io::ErrorKind::PermissionDenied,
             Self::Silent(_) | Self::Closed => true,
             Self::Disconnected(reason) => reason == OVER,
-            _ => false,
-        }
-    }
-
-    /// True if the neighbour can never connect with these arguments.
-    #[must_use]
-    pub const fn is_usage(&self) -> bool {
-        match self {
-            Self::Keys(_) => true,
-            #[cfg(not(feature = "zenoh"))]
-            Self::NoZenoh(_) => true,
             _ => false,
         }
     }
@@ -108,19 +75,30 @@ pub enum Received {
     Pulse(u64),
 }
 
+/// A socket and its session.
+struct Connection {
+    address: Address,
+    line: Line,
+    session: Session,
+    /// The controller has not closed the connection.
+    is_open: bool,
+}
+
 /// A connection to the controller.
 pub struct Peer {
-    address: Address,
-    channel: Channel,
-    session: Session,
+    connection: Connection,
     role: Role,
     clock: ClockKind,
     incoming: Vec<Mailbox>,
-    /// The controller has not closed the connection.
-    open: bool,
-    /// The Zenoh tunnel of the connection, if there is one.
-    #[cfg(feature = "zenoh")]
-    _tunnel: Option<over_zenoh::Tunnel>,
+}
+
+/// Connect as an operator: the stream of its session, for [`Client::over`](crate::operator::Client::over).
+///
+/// # Errors
+/// [`PeerError`]; [`PeerError::Disconnected`] if it is refused.
+pub fn connect_operator(address: &Address) -> Result<UnixStream, PeerError> {
+    let (connection, _) = Connection::open(address, Role::Operator)?;
+    connection.line.into_stream().map_err(|source| PeerError::Line { address: address.clone(), source })
 }
 
 impl Peer {
@@ -128,76 +106,24 @@ impl Peer {
     ///
     /// # Errors
     /// [`PeerError`]; [`PeerError::Disconnected`] if it is refused.
-    pub fn connect(address: &Address, role: Role, keys: Option<&NeighbourKeys>) -> Result<Self, PeerError> {
-        Self::connect_within(Duration::ZERO, address, role, keys)
+    pub fn connect(address: &Address, role: Role) -> Result<Self, PeerError> {
+        Self::connect_within(Duration::ZERO, address, role)
     }
 
     /// Connect; try again for a while if there is no controller.
     ///
     /// # Errors
     /// The last [`PeerError`].
-    pub fn connect_within(
-        limit: Duration,
-        address: &Address,
-        role: Role,
-        keys: Option<&NeighbourKeys>,
-    ) -> Result<Self, PeerError> {
-        KeysError::check(address, keys.is_some())?;
+    pub fn connect_within(limit: Duration, address: &Address, role: Role) -> Result<Self, PeerError> {
         let until = Instant::now() + limit;
-        loop {
-            match Self::attempt(address, role, keys, until) {
+        let (connection, clock) = loop {
+            match Connection::open(address, role) {
                 Err(error) if error.is_passing() && Instant::now() < until => thread::sleep(PAUSE),
-                other => return other,
+                other => break other?,
             }
-        }
-    }
-
-    fn attempt(
-        address: &Address,
-        role: Role,
-        keys: Option<&NeighbourKeys>,
-        #[cfg_attr(not(feature = "zenoh"), expect(unused_variables, reason = "Zenoh waits itself"))]
-        until: Instant,
-    ) -> Result<Self, PeerError> {
-        let failed = |source| PeerError::Line { address: address.clone(), source };
-        #[cfg(feature = "zenoh")]
-        let mut tunnel = None;
-        let socket = match address {
-            Address::Unix(path) => UnixStream::connect(path).map(Socket::Unix),
-            Address::Tcp(place) => TcpStream::connect_timeout(place, NEIGHBOUR_LIMIT).map(Socket::Tcp),
-            #[cfg(not(feature = "zenoh"))]
-            Address::Zenoh(_) => return Err(PeerError::NoZenoh(address.clone())),
-            #[cfg(feature = "zenoh")]
-            Address::Zenoh(zenoh) => over_zenoh::Tunnel::open(zenoh, until).map(|(opened, socket)| {
-                tunnel = Some(opened);
-                Socket::Unix(socket)
-            }),
         };
-        let socket = socket.map_err(failed)?;
-        socket.check_user().map_err(failed)?;
-        let tls = keys.map(NeighbourKeys::connection).transpose();
-        let tls =
-            tls.map_err(|source| PeerError::Tls { address: address.clone(), source: Box::new(source) })?;
-        let mut peer = Self {
-            address: address.clone(),
-            channel: Channel::new(socket, tls.map(Into::into)).map_err(failed)?,
-            session: Session::neighbour(role, Instant::now()),
-            role,
-            clock: ClockKind::Real,
-            incoming: role.from_controller().iter().map(|&place| Mailbox::initialized(place)).collect(),
-            open: true,
-            #[cfg(feature = "zenoh")]
-            _tunnel: tunnel,
-        };
-        peer.clock = loop {
-            if let Some(Event::Welcome(clock)) =
-                peer.session.event(Instant::now()).map_err(broken(address))?
-            {
-                break clock;
-            }
-            peer.turn()?;
-        };
-        Ok(peer)
+        let incoming = role.from_controller().iter().map(|&place| Mailbox::initialized(place)).collect();
+        Ok(Self { connection, role, clock, incoming })
     }
 
     /// The clock of the controller.
@@ -216,28 +142,13 @@ impl Peer {
         mailbox.unwrap_or_else(|| panic!("{place} does not go to {}", self.role))
     }
 
-    /// The stream of an operator's session, admitted as [`Role::Operator`], and the carrier of its bytes. Drop the
-    /// carrier after the stream.
-    ///
-    /// # Errors
-    /// Errors of the system.
-    pub fn into_stream(mut self) -> io::Result<(UnixStream, Carrier)> {
-        let (ours, theirs) = UnixStream::pair()?;
-        let thread = thread::Builder::new().name("operator".into()).spawn(move || {
-            let unread = self.session.take_unread();
-            // The client sees only the end of its stream, not the reason.
-            let _ = carry(&mut self.channel, &theirs, unread, None);
-        })?;
-        Ok((ours, Carrier::of(thread)))
-    }
-
     /// Wait for the next message.
     ///
     /// # Errors
     /// [`PeerError`] if the connection ends.
     pub fn receive(&mut self) -> Result<Received, PeerError> {
         loop {
-            match self.session.event(Instant::now()).map_err(broken(&self.address))? {
+            match self.connection.event()? {
                 Some(Event::Mailgram(place, used)) => {
                     let mailbox = self.incoming.iter_mut().find(|mailbox| mailbox.place() == place);
                     mailbox.map_or(Ok(()), |mailbox| mailbox.receive(used))?;
@@ -245,7 +156,7 @@ impl Peer {
                 }
                 Some(Event::Pulse(tick)) => return Ok(Received::Pulse(tick)),
                 Some(Event::Hello(_) | Event::Welcome(_)) => {}
-                None => self.turn()?,
+                None => self.connection.turn()?,
             }
         }
     }
@@ -255,7 +166,7 @@ impl Peer {
     /// # Errors
     /// [`PeerError`] if the connection ends.
     pub fn pulse(&mut self, tick: u64) -> Result<(), PeerError> {
-        self.session.pulse(tick, Instant::now());
+        self.connection.session.pulse(tick, Instant::now());
         self.flush()
     }
 
@@ -264,7 +175,7 @@ impl Peer {
     /// # Errors
     /// [`PeerError`] if the connection ends.
     pub fn send(&mut self, mailbox: &Mailbox) -> Result<(), PeerError> {
-        self.session.send(mailbox);
+        self.connection.session.send(mailbox);
         self.flush()
     }
 
@@ -272,12 +183,13 @@ impl Peer {
     fn flush(&mut self) -> Result<(), PeerError> {
         let until = Instant::now() + NEIGHBOUR_LIMIT;
         loop {
-            match self.channel.send(&mut self.session) {
-                Ok(()) if self.channel.is_flushed() => return Ok(()),
+            let Connection { line, session, .. } = &mut self.connection;
+            match line.send(session.output()) {
+                Ok(()) if line.is_flushed() => return Ok(()),
                 Ok(()) if Instant::now() >= until => return Err(PeerError::Silent(NEIGHBOUR_LIMIT)),
-                Ok(()) => drop(self.channel.wait(None, Some(until)).map_err(|error| self.failed(error))?),
+                Ok(()) => drop(line.wait(None, Some(until)).map_err(|error| self.connection.failed(error))?),
                 Err(error) if is_end(&error) => return Err(self.reason()),
-                Err(error) => return Err(self.failed(error)),
+                Err(error) => return Err(self.connection.failed(error)),
             }
         }
     }
@@ -290,41 +202,61 @@ impl Peer {
             }
         }
     }
+}
 
-    /// Wait for more bytes.
+impl Connection {
+    /// Connect, and wait for the welcome; returns the clock of the controller.
+    fn open(address: &Address, role: Role) -> Result<(Self, ClockKind), PeerError> {
+        let failed = |source| PeerError::Line { address: address.clone(), source };
+        let line = UnixStream::connect(address.path()).and_then(Line::new).map_err(failed)?;
+        line.check_user().map_err(failed)?;
+        let session = Session::neighbour(role, Instant::now());
+        let mut connection = Self { address: address.clone(), line, session, is_open: true };
+        loop {
+            if let Some(Event::Welcome(clock)) = connection.event()? {
+                return Ok((connection, clock));
+            }
+            connection.turn()?;
+        }
+    }
+
+    fn event(&mut self) -> Result<Option<Event<'_>>, PeerError> {
+        self.session.event(Instant::now()).map_err(broken(&self.address))
+    }
+
+    /// Send, and wait for more bytes.
     fn turn(&mut self) -> Result<(), PeerError> {
-        if !self.open {
+        if !self.is_open {
             return Err(PeerError::Closed);
         }
-        match self.channel.send(&mut self.session) {
+        match self.line.send(self.session.output()) {
             // The reason can still be read.
             Err(error) if is_end(&error) => {}
             sent => sent.map_err(|error| self.failed(error))?,
         }
         self.session.check_time(Instant::now()).map_err(broken(&self.address))?;
-        let ready = self.channel.wait(None, self.session.deadline()).map_err(|error| self.failed(error))?;
+        let ready = self.line.wait(None, self.session.deadline()).map_err(|error| self.failed(error))?;
         if ready {
-            let received = self.channel.receive(&mut self.session, Instant::now());
-            self.open = received.map_err(|error| self.failed(error))?;
+            let session = &mut self.session;
+            let received = self.line.receive(|bytes| session.receive(bytes, Instant::now()));
+            self.is_open = received.map_err(|error| self.failed(error))?;
         }
         Ok(())
     }
 
-    fn failed(&self, error: io::Error) -> PeerError {
-        let address = self.address.clone();
-        if is_end(&error) {
-            return PeerError::Closed;
-        }
-        match error.downcast::<rustls::Error>() {
-            Ok(source) => PeerError::Tls { address, source: Box::new(source) },
-            Err(source) => PeerError::Line { address, source },
+    fn failed(&self, source: io::Error) -> PeerError {
+        if is_end(&source) {
+            PeerError::Closed
+        } else {
+            PeerError::Line { address: self.address.clone(), source }
         }
     }
 }
 
 impl Drop for Peer {
     fn drop(&mut self) {
-        self.channel.finish(&mut self.session, Instant::now() + CLOSING_LIMIT);
+        let Connection { line, session, .. } = &mut self.connection;
+        line.finish(session.output(), Instant::now() + CLOSING_LIMIT);
     }
 }
 

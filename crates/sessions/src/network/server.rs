@@ -8,14 +8,13 @@ use std::{
     time::Instant,
 };
 
+use sockets::Line;
+
 use super::{
-    ClockKind, ControllerKeys, Disconnect, NetEvent, Operators, Role,
+    ClockKind, Disconnect, NetEvent, Operators, Role,
     accept_queue::{AcceptQueue, SAFE},
-    channel::Channel,
-    operators::{SILENCE, carry},
     session::{Event, Session, SessionError},
     shared::{EndpointHandle, Link, OVER, Outgoing, locked},
-    socket::Socket,
 };
 
 /// Reason for refusing a connection when the accept queue has no free slot.
@@ -25,7 +24,6 @@ const CROWDED: &str = "too many connect at once";
 pub(super) struct Server {
     handles: Vec<EndpointHandle>,
     operators: Option<Operators>,
-    keys: Option<ControllerKeys>,
     clock: ClockKind,
     queue: AcceptQueue,
     /// Time of the last report of "too many connect".
@@ -34,25 +32,20 @@ pub(super) struct Server {
 
 /// A connection.
 struct Connection {
-    channel: Channel,
+    line: Line,
     session: Session,
 }
 
 impl Server {
-    pub fn new(
-        handles: Vec<EndpointHandle>,
-        operators: Option<Operators>,
-        keys: Option<ControllerKeys>,
-        clock: ClockKind,
-    ) -> Self {
-        Self { handles, operators, keys, clock, queue: AcceptQueue::default(), crowded: Mutex::default() }
+    pub fn new(handles: Vec<EndpointHandle>, operators: Option<Operators>, clock: ClockKind) -> Self {
+        Self { handles, operators, clock, queue: AcceptQueue::default(), crowded: Mutex::default() }
     }
 
     /// Serve a connection in a new thread if the accept queue has a free slot; otherwise close it.
-    pub fn enter(self: &Arc<Self>, socket: Socket) {
-        if let Ok(Some(ticket)) = self.queue.enter(&socket) {
+    pub fn enter(self: &Arc<Self>, stream: UnixStream) {
+        if let Ok(Some(ticket)) = self.queue.enter(&stream) {
             let server = Arc::clone(self);
-            thread::spawn(move || server.serve(socket, ticket));
+            thread::spawn(move || server.serve(stream, ticket));
             return;
         }
         let mut crowded = locked(&self.crowded);
@@ -71,11 +64,11 @@ impl Server {
     }
 
     /// Serve a connection from the hello to its end.
-    fn serve(&self, socket: Socket, ticket: u64) {
+    fn serve(&self, stream: UnixStream, ticket: u64) {
         let slot = self.queue.slot(ticket);
-        let mut connection = match self.open(socket) {
-            Ok(connection) => connection,
-            Err(why) => return self.refused(why),
+        let mut connection = match Line::new(stream) {
+            Ok(line) => Connection { line, session: Session::controller(self.clock, Instant::now()) },
+            Err(error) => return self.refused(said(error)),
         };
         match connection.greet(self) {
             Ok(Admitted::Neighbour(mut link)) => {
@@ -83,17 +76,13 @@ impl Server {
                 let why = connection.run(&mut link);
                 connection.finish();
                 link.handle.detach(why);
-                connection.channel.drain(Instant::now() + SAFE);
+                connection.line.drain(Instant::now() + SAFE);
             }
-            Ok(Admitted::Operator(operators, run)) => {
+            Ok(Admitted::Operator(operators)) => {
                 drop(slot);
-                operators.tell(NetEvent::Connected(Role::Operator));
-                let why = connection.carry(&run);
-                // The run sees the end of the session at once, even if the network is slow.
-                drop(run);
-                connection.finish();
-                operators.tell(NetEvent::Disconnected(Role::Operator, why));
-                connection.channel.drain(Instant::now() + SAFE);
+                if let Err(error) = connection.hand_over(operators) {
+                    self.refused(said(error));
+                }
             }
             Err(why) => {
                 // Send the reason, unless the session is closed already.
@@ -101,29 +90,20 @@ impl Server {
                 connection.finish();
                 self.refused(why);
                 let until = Instant::now() + SAFE;
-                connection.channel.drain(until);
+                connection.line.drain(until);
                 thread::sleep(until.saturating_duration_since(Instant::now()));
             }
         }
     }
 
-    fn open(&self, socket: Socket) -> Result<Connection, String> {
-        let tls = self.keys.as_ref().map(ControllerKeys::connection).transpose().map_err(said)?;
-        let channel = Channel::new(socket, tls.map(Into::into)).map_err(said)?;
-        Ok(Connection { channel, session: Session::controller(self.clock, Instant::now()) })
-    }
-
     /// Admit a client in the role that its hello names; the error is the reason for refusing it.
-    fn admit(&self, role: Role, channel: &Channel) -> Result<Admitted<'_>, String> {
-        if let Some(keys) = &self.keys {
-            let certificate = channel.certificate().ok_or("the neighbour has no certificate")?;
-            keys.check(certificate, role)?;
-        }
+    fn admit(&self, role: Role) -> Result<Admitted<'_>, String> {
         if role == Role::Operator {
             let operators = self.operators.as_ref();
             let operators = operators
-                .ok_or("the run takes no operator over the network; one with --operator network does")?;
-            return Ok(Admitted::Operator(operators, operators.enter().map_err(said)?));
+                .ok_or("the run takes no operator at its network; one with --operator network does")?;
+            operators.check_open()?;
+            return Ok(Admitted::Operator(operators));
         }
         let handle = self.handles.iter().find(|handle| handle.role() == role);
         let handle = handle.ok_or_else(|| format!("no {role} was expected in another process"))?;
@@ -134,21 +114,22 @@ impl Server {
 /// An admitted client.
 enum Admitted<'a> {
     Neighbour(Link),
-    /// An operator, with the stream that connects it to the run.
-    Operator(&'a Operators, UnixStream),
+    /// An operator.
+    Operator(&'a Operators),
 }
 
 impl Connection {
     /// Receive until the other side is admitted; the error is the reason for refusing it.
     fn greet<'a>(&mut self, server: &'a Server) -> Result<Admitted<'a>, String> {
-        self.channel.check_user().map_err(said)?;
+        self.line.check_user().map_err(said)?;
         loop {
-            self.channel.send(&mut self.session).map_err(said)?;
+            self.line.send(self.session.output()).map_err(said)?;
             self.session.check_time(Instant::now()).map_err(said)?;
-            let ready = self.channel.wait(None, self.session.deadline()).map_err(said)?;
-            let open = !ready || self.channel.receive(&mut self.session, Instant::now()).map_err(refusal)?;
+            let ready = self.line.wait(None, self.session.deadline()).map_err(said)?;
+            let open =
+                !ready || self.receive(Instant::now()).map_err(|error| format!("no hello: {error}"))?;
             if let Some(Event::Hello(role)) = self.session.event(Instant::now()).map_err(said)? {
-                let admitted = server.admit(role, &self.channel)?;
+                let admitted = server.admit(role)?;
                 self.session.admit();
                 return Ok(admitted);
             }
@@ -158,12 +139,22 @@ impl Connection {
         }
     }
 
-    /// Carry an operator's lines between its connection and the run until one of them ends; returns why it has ended.
-    fn carry(&mut self, run: &UnixStream) -> Disconnect {
+    /// Pass received bytes to the session; false if the other side has closed the connection.
+    fn receive(&mut self, now: Instant) -> io::Result<bool> {
+        let session = &mut self.session;
+        self.line.receive(|bytes| session.receive(bytes, now))
+    }
+
+    /// Send the welcome to an operator, and give its connection to the run.
+    fn hand_over(mut self, operators: &Operators) -> io::Result<()> {
+        let until = Instant::now() + SAFE;
+        self.line.send(self.session.output())?;
+        while !self.line.is_flushed() && Instant::now() < until {
+            self.line.wait(None, Some(until))?;
+            self.line.send(self.session.output())?;
+        }
         let unread = self.session.take_unread();
-        let sent = self.channel.send(&mut self.session);
-        let lost = |error: io::Error| Disconnect::Lost(error.to_string());
-        sent.map_err(lost).map_or_else(|why| why, |()| carry(&mut self.channel, run, unread, Some(SILENCE)))
+        operators.enter(self.line.into_stream()?, unread)
     }
 
     /// Run the session until it ends; returns why it has ended.
@@ -188,18 +179,18 @@ impl Connection {
         let lost = |error: io::Error| Disconnect::Lost(error.to_string());
         let now = Instant::now();
         // A neighbour that reads slowly gets the latest values only.
-        if self.channel.is_flushed() {
+        if self.line.is_flushed() {
             link.collect(|outgoing| match outgoing {
                 Outgoing::Mailbox(mailbox) => self.session.send(mailbox),
                 Outgoing::Pulse(tick) => self.session.pulse(tick, now),
             });
         }
-        self.channel.send(&mut self.session).map_err(lost)?;
+        self.line.send(self.session.output()).map_err(lost)?;
         self.session.check_time(now).map_err(ended)?;
-        let wake = self.channel.is_flushed().then(|| link.wake());
-        let ready = self.channel.wait(wake, self.session.deadline()).map_err(lost)?;
+        let wake = self.line.is_flushed().then(|| link.wake());
+        let ready = self.line.wait(wake, self.session.deadline()).map_err(lost)?;
         let now = Instant::now();
-        let received = if ready { self.channel.receive(&mut self.session, now) } else { Ok(true) };
+        let received = if ready { self.receive(now) } else { Ok(true) };
         while let Some(event) = self.session.event(now).map_err(ended)? {
             match event {
                 Event::Mailgram(place, used) => {
@@ -214,21 +205,12 @@ impl Connection {
     }
 
     fn finish(&mut self) {
-        self.channel.finish(&mut self.session, Instant::now() + SAFE);
+        self.line.finish(self.session.output(), Instant::now() + SAFE);
     }
 }
 
 fn said(error: impl fmt::Display) -> String {
     error.to_string()
-}
-
-/// As text: why a connection has ended before its hello.
-fn refusal(error: io::Error) -> String {
-    if error.kind() == io::ErrorKind::InvalidData {
-        format!("TLS: {error}")
-    } else {
-        format!("no hello: {error}")
-    }
 }
 
 /// The disconnect reason for an error of the session.

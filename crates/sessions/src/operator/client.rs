@@ -1,7 +1,6 @@
 //! The client's side of a session: a console or a script.
 
 use std::{
-    any::Any,
     io::{self, Read as _, Write as _},
     os::unix::net::UnixStream,
     path::Path,
@@ -65,8 +64,6 @@ pub struct Client {
     /// Name of the session; empty before the greeting.
     name: String,
     clock: Estimate,
-    /// Keeps the transport of the stream to another machine open; dropped after the stream.
-    _carrier: Option<Box<dyn Any + Send>>,
 }
 
 impl Client {
@@ -75,22 +72,14 @@ impl Client {
     /// # Errors
     /// [`ClientError`] if the run cannot be reached or refuses the session.
     pub fn connect(path: &Path, name: &Name) -> Result<Self, ClientError> {
-        Self::begin(UnixStream::connect(path).map_err(ClientError::Unreachable)?, None, name)
+        Self::over(UnixStream::connect(path).map_err(ClientError::Unreachable)?, name)
     }
 
-    /// Begins a session over a stream to a remote run, and keeps its transport `carrier` open until the session ends.
+    /// Begins a session over a stream that is connected to the run.
     ///
     /// # Errors
     /// [`ClientError`] if the run cannot be reached or refuses the session.
-    pub fn over(stream: UnixStream, carrier: impl Any + Send, name: &Name) -> Result<Self, ClientError> {
-        Self::begin(stream, Some(Box::new(carrier)), name)
-    }
-
-    fn begin(
-        stream: UnixStream,
-        carrier: Option<Box<dyn Any + Send>>,
-        name: &Name,
-    ) -> Result<Self, ClientError> {
+    pub fn over(stream: UnixStream, name: &Name) -> Result<Self, ClientError> {
         stream.set_write_timeout(Some(PATIENCE))?;
         let mut client = Self {
             stream,
@@ -99,7 +88,6 @@ impl Client {
             run: String::new(),
             name: String::new(),
             clock: Estimate::new(RunTime::default(), Instant::now()),
-            _carrier: carrier,
         };
         // A run that refuses at once can already have closed the connection; its reason can still be read.
         let sent = client.write(&format!("hello {name}\n"));

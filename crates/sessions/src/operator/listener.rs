@@ -1,13 +1,10 @@
 //! The run's side of the sessions.
 
 use std::{
-    fs, io,
+    io,
     io::Read as _,
-    os::unix::{
-        fs::PermissionsExt as _,
-        net::{UnixListener, UnixStream},
-    },
-    path::{Path, PathBuf},
+    os::unix::net::UnixStream,
+    path::Path,
     sync::{
         Arc, Mutex, PoisonError,
         atomic::{AtomicBool, AtomicU32, AtomicUsize, Ordering},
@@ -19,9 +16,9 @@ use std::{
 
 use rustix::{
     event::{PollFd, PollFlags, Timespec, poll},
-    net::{SendFlags, send, sockopt},
-    process::geteuid,
+    net::{SendFlags, send},
 };
+use sockets::{Acceptor, check_user};
 
 use crate::operator::{
     clock::{RunClock, RunTime},
@@ -92,7 +89,7 @@ fn is_open(stream: &UnixStream) -> bool {
 
 /// Accepts operators of a run until it is dropped.
 pub struct Listener {
-    path: PathBuf,
+    acceptor: Acceptor,
     events: Receiver<Given>,
     sessions: Arc<Sessions>,
 }
@@ -106,8 +103,6 @@ impl Listener {
     /// # Errors
     /// The error of the operating system if the socket or the thread cannot be created.
     pub fn start(path: &Path, run: &str) -> io::Result<Self> {
-        let socket = UnixListener::bind(path)?;
-        fs::set_permissions(path, fs::Permissions::from_mode(0o600))?;
         let (sender, events) = sync_channel(QUEUE);
         let sessions = Arc::new(Sessions {
             run: run.to_owned(),
@@ -120,8 +115,8 @@ impl Listener {
             entered: AtomicU32::new(0),
         });
         let admitting = Arc::clone(&sessions);
-        thread::Builder::new().name("operators".into()).spawn(move || admitting.accept(&socket))?;
-        Ok(Self { path: path.to_owned(), events, sessions })
+        let acceptor = Acceptor::start(path, "operators", move |stream| admitting.accept(stream))?;
+        Ok(Self { acceptor, events, sessions })
     }
 
     /// The entrance for operators from a network.
@@ -140,7 +135,7 @@ impl Listener {
     /// Path of the socket.
     #[must_use]
     pub fn path(&self) -> &Path {
-        &self.path
+        self.acceptor.path()
     }
 }
 
@@ -148,9 +143,6 @@ impl Drop for Listener {
     fn drop(&mut self) {
         self.sessions.stop.store(true, Ordering::Relaxed);
         lock(&self.sessions.streams).iter().for_each(|stream| end(stream));
-        // The thread checks `stop` at the next connection.
-        let _ = UnixStream::connect(&self.path);
-        let _ = fs::remove_file(&self.path);
     }
 }
 
@@ -176,19 +168,17 @@ pub struct Entrance {
 }
 
 impl Entrance {
-    /// Begins a session and returns the other end of its stream. The run sees its name with the prefix `netN.`, N
-    /// counted from 1, so that it is known as a session from the network.
+    /// Begins a session over a stream; `unread` was received from it already. The run sees its name with the prefix
+    /// `netN.`, N counted from 1, so that it is known as a session from the network.
     ///
     /// # Errors
     /// The error of the operating system, or an error if the run is over.
-    pub fn enter(&self) -> io::Result<UnixStream> {
+    pub fn enter(&self, stream: UnixStream, unread: &[u8]) -> io::Result<()> {
         if self.sessions.stop.load(Ordering::Relaxed) {
             return Err(io::Error::other("the run is over"));
         }
-        let (ours, theirs) = UnixStream::pair()?;
         let number = self.sessions.entered.fetch_add(1, Ordering::Relaxed).wrapping_add(1);
-        self.sessions.admit(Arc::new(ours), format!("net{number}."))?;
-        Ok(theirs)
+        self.sessions.admit(Arc::new(stream), format!("net{number}."), unread)
     }
 }
 
@@ -208,33 +198,24 @@ struct Sessions {
 }
 
 impl Sessions {
-    /// Accepts sessions; runs in its own thread.
-    fn accept(self: Arc<Self>, socket: &UnixListener) {
-        for stream in socket.incoming() {
-            if self.stop.load(Ordering::Relaxed) {
-                return;
-            }
-            // A client that disconnects early must not stop the listener.
-            let Ok(stream) = stream else {
-                thread::sleep(SILENCE);
-                continue;
-            };
-            // If the thread cannot start, the session is closed.
-            let stream = Arc::new(stream);
-            let _ = match check_user(&stream) {
-                Ok(()) => self.admit(stream, String::new()),
-                Err(why) => say(&stream, &refusal(&why.to_string())),
-            };
-        }
+    /// Accepts a session of this user.
+    fn accept(self: &Arc<Self>, stream: UnixStream) {
+        // If the thread cannot start, the session is closed.
+        let stream = Arc::new(stream);
+        let _ = match check_user(&stream) {
+            Ok(()) => self.admit(stream, String::new(), &[]),
+            Err(why) => say(&stream, &refusal(&why.to_string())),
+        };
     }
 
-    fn admit(self: &Arc<Self>, stream: Arc<UnixStream>, origin: String) -> io::Result<()> {
+    fn admit(self: &Arc<Self>, stream: Arc<UnixStream>, origin: String, unread: &[u8]) -> io::Result<()> {
         if self.open.load(Ordering::Relaxed) >= SESSIONS {
             let why = format!("{SESSIONS} operators are connected: end another session first");
             return say(&stream, &refusal(&why));
         }
-        let session =
-            Session { stream: stream.clone(), lines: Lines::default(), sessions: Arc::clone(self), origin };
+        let mut lines = Lines::default();
+        lines.push(unread);
+        let session = Session { stream: stream.clone(), lines, sessions: Arc::clone(self), origin };
         self.open.fetch_add(1, Ordering::Relaxed);
         lock(&self.streams).push(stream.clone());
         let sessions = Arc::clone(self);
@@ -266,16 +247,6 @@ impl Sessions {
 /// An answer with number 0, which belongs to no request.
 fn refusal(why: &str) -> String {
     format!("{}\n", Answer { number: 0, time: RunTime::default(), verdict: Err(why.to_owned()) })
-}
-
-/// Refuses sessions of other users.
-fn check_user(stream: &UnixStream) -> io::Result<()> {
-    let (expected, found) = (geteuid(), sockopt::socket_peercred(stream)?.uid);
-    if expected == found {
-        return Ok(());
-    }
-    let why = format!("user {} was expected, found user {}", expected.as_raw(), found.as_raw());
-    Err(io::Error::new(io::ErrorKind::PermissionDenied, why))
 }
 
 /// A session, which runs in its own thread.
