@@ -1,6 +1,10 @@
 //! Cells, endpoints, names and roles, as they appear on the command line.
 
-use std::{fmt, net::SocketAddr, path::PathBuf, str::FromStr};
+use std::{
+    fmt, io,
+    net::{SocketAddr, TcpListener},
+    str::FromStr,
+};
 
 use neighbours::line::Role;
 
@@ -19,9 +23,6 @@ pub enum AddressError {
     /// Not the address of a cell.
     #[error("expected CELL@tls/IP:PORT, as in t3@tls/10.0.0.1:7447, found {0:?}")]
     Cell(String),
-    /// Not the address of a socket in the file system.
-    #[error("expected unix:PATH, found {0:?}")]
-    Unix(String),
     /// Not a permission.
     #[error("expected ROLE=NAME or ROLE=NAME,NAME, as in workstation=hwsc-1, found {0:?}")]
     Allow(String),
@@ -66,6 +67,16 @@ impl fmt::Display for Name {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Endpoint(pub SocketAddr);
 
+impl Endpoint {
+    /// Checks that this process can listen there.
+    ///
+    /// # Errors
+    /// Errors of the system.
+    pub fn check_free(self) -> io::Result<()> {
+        TcpListener::bind(self.0).map(drop)
+    }
+}
+
 impl FromStr for Endpoint {
     type Err = AddressError;
 
@@ -102,25 +113,6 @@ impl FromStr for CellAddress {
 impl fmt::Display for CellAddress {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}@{}", self.cell, self.endpoint)
-    }
-}
-
-/// A socket in the file system: `unix:PATH`.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct UnixAddress(pub PathBuf);
-
-impl FromStr for UnixAddress {
-    type Err = AddressError;
-
-    fn from_str(text: &str) -> Result<Self, AddressError> {
-        let path = text.strip_prefix("unix:").filter(|path| !path.is_empty());
-        path.map(|path| Self(path.into())).ok_or_else(|| AddressError::Unix(text.to_owned()))
-    }
-}
-
-impl fmt::Display for UnixAddress {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "unix:{}", self.0.display())
     }
 }
 
@@ -181,12 +173,8 @@ mod tests {
     fn addresses_parse_and_print_as_typed() {
         let cell: CellAddress = "t3@tls/10.0.0.1:7447".parse().unwrap();
         assert_eq!(cell.to_string(), "t3@tls/10.0.0.1:7447");
-        assert_eq!("unix:/tmp/a".parse::<UnixAddress>().unwrap().to_string(), "unix:/tmp/a");
         for wrong in ["t3", "t3@", "t3@tcp/10.0.0.1:7447", "t3@tls/localhost:7447", "@tls/10.0.0.1:7447"] {
             assert!(wrong.parse::<CellAddress>().is_err(), "{wrong}");
-        }
-        for wrong in ["", "unix:", "/tmp/a"] {
-            assert!(wrong.parse::<UnixAddress>().is_err(), "{wrong}");
         }
     }
 

@@ -4,7 +4,9 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand};
 
-use crate::address::{Allow, CellAddress, Endpoint, Name, Right, UnixAddress};
+use neighbours::line::Address;
+
+use crate::address::{Allow, CellAddress, Endpoint, Name, Right};
 
 /// Carries the mailboxes of a controller between machines, over Zenoh with TLS.
 #[derive(Debug, Parser)]
@@ -25,6 +27,8 @@ Examples:
                                        on the other machine, for any program at its Unix socket
   rcs-neighbour workstation --network unix:/tmp/t3.sock linkbar
                                        such a program
+  rcs-gateway monitor tls/10.0.0.1:7447 --keys keys
+                                       a monitor
 
 Exit status: 0 ended by a signal; 2 usage, keys, or an address that cannot be used."
 )]
@@ -34,13 +38,54 @@ pub struct Cli {
     pub command: Command,
 }
 
-/// The two ends.
+/// The two ends, and what a shop of several cells needs.
 #[derive(Debug, Subcommand)]
 pub enum Command {
     /// Serve a cell: beside its run
     Serve(ServeArguments),
     /// Connect to the gateway of a cell: beside a neighbour or an operator
     Connect(ConnectArguments),
+    /// Route the status of several cells to monitors: one connection shows all
+    Router(RouterArguments),
+    /// Print the state of cells, a line each
+    Monitor(MonitorArguments),
+}
+
+/// Arguments of `router`.
+#[derive(Clone, Debug, Args)]
+pub struct RouterArguments {
+    /// Where gateways and monitors connect: tls/IP:PORT
+    #[arg(value_name = "ENDPOINT")]
+    pub endpoint: Endpoint,
+    /// Directory with ca.pem, NAME.pem and NAME.key
+    #[arg(long, value_name = "DIR")]
+    pub keys: PathBuf,
+    /// Name of the certificate; may be left out if the directory has only one
+    #[arg(long, value_name = "NAME")]
+    pub name: Option<Name>,
+    /// Names of the cells, each of which may write its own status
+    #[arg(long, value_name = "CELL", num_args = 1.., value_delimiter = ',', required = true)]
+    pub cells: Vec<Name>,
+    /// Names of the monitors, which may read the status of all cells
+    #[arg(long, value_name = "NAME", num_args = 1.., value_delimiter = ',', required = true)]
+    pub monitors: Vec<Name>,
+}
+
+/// Arguments of `monitor`.
+#[derive(Clone, Debug, Args)]
+pub struct MonitorArguments {
+    /// A router, or the gateways of all cells: tls/IP:PORT
+    #[arg(value_name = "ENDPOINT", required = true)]
+    pub endpoints: Vec<Endpoint>,
+    /// Directory with ca.pem, NAME.pem and NAME.key
+    #[arg(long, value_name = "DIR")]
+    pub keys: PathBuf,
+    /// Name of the certificate; may be left out if the directory has only one
+    #[arg(long, value_name = "NAME")]
+    pub name: Option<Name>,
+    /// Print N times, once a second, and end; without it until a signal
+    #[arg(long, value_name = "N")]
+    pub count: Option<u32>,
 }
 
 /// Arguments of `serve`.
@@ -54,7 +99,7 @@ pub struct ServeArguments {
     pub endpoint: Endpoint,
     /// Where the run listens, its --network: unix:PATH. The gateway may be started first
     #[arg(long, value_name = "ADDRESS")]
-    pub run: UnixAddress,
+    pub run: Address,
     /// Router that passes the status on to monitors: tls/IP:PORT. Commands never go through it
     #[arg(long, value_name = "ENDPOINT")]
     pub router: Option<Endpoint>,
@@ -78,7 +123,7 @@ pub struct ConnectArguments {
     pub role: Right,
     /// Where this program listens for the neighbour: unix:PATH
     #[arg(value_name = "ADDRESS")]
-    pub socket: UnixAddress,
+    pub socket: Address,
     /// Directory with ca.pem, NAME.pem and NAME.key
     #[arg(long, value_name = "DIR")]
     pub keys: PathBuf,

@@ -72,15 +72,15 @@ impl Rules {
         self.allow(to_gateway, &["declare_liveliness_subscriber", "liveliness_query"], cell.alive(ANY));
     }
 
-    /// A monitor reads the status. It may ask for that of all cells at once, and gets only that of this one.
-    fn monitor(&mut self, cell: &CellKeys) {
-        let every = CellKeys::of(ANY);
-        self.allow(Flow::Ingress, &["declare_subscriber"], every.status());
-        self.allow(Flow::Ingress, &["query"], every.run());
-        self.allow(Flow::Ingress, &["declare_liveliness_subscriber", "liveliness_query"], every.alive(ANY));
-        self.allow(Flow::Egress, &["put"], cell.status());
-        self.allow(Flow::Egress, &["declare_queryable", "reply"], cell.run());
-        self.allow(Flow::Egress, &["liveliness_token"], cell.alive(ANY));
+    /// A reader may ask for the status of all cells at once, and gets that of `cell`, which may be [`ANY`].
+    fn status(&mut self, cell: &CellKeys, to_reader: Flow) {
+        let (every, from_reader) = (CellKeys::of(ANY), to_reader.reverse());
+        self.allow(from_reader, &["declare_subscriber"], every.status());
+        self.allow(from_reader, &["query"], every.run());
+        self.allow(from_reader, &["declare_liveliness_subscriber", "liveliness_query"], every.alive(ANY));
+        self.allow(to_reader, &["put"], cell.status());
+        self.allow(to_reader, &["declare_queryable", "reply"], cell.run());
+        self.allow(to_reader, &["liveliness_token"], cell.alive(ANY));
     }
 }
 
@@ -162,15 +162,14 @@ pub fn gateway(
             let rules = &mut certificates[at].1;
             match allow.right {
                 Right::Claim(role) => rules.claim(&space, role, name, Flow::Ingress),
-                Right::Monitor => rules.monitor(&space),
+                Right::Monitor => rules.status(&space, Flow::Egress),
             }
         }
     }
     let mut config = common("peer", keys, &access_control(&certificates))?;
     // Nobody is scouted, so there is nothing to wait for.
     config.insert_json5("open/return_conditions/connect_scouted", "false")?;
-    let limited = format!("{endpoint}#tls_handshake_timeout_ms={HANDSHAKE}");
-    config.insert_json5("listen/endpoints", &json!([limited]).to_string())?;
+    listen(&mut config, endpoint)?;
     let routers: Vec<_> = router.iter().map(ToString::to_string).collect();
     config.insert_json5("connect/endpoints", &json!(routers).to_string())?;
     // The router may be started later, or restart.
@@ -180,6 +179,56 @@ pub fn gateway(
         "connect/retry",
         "{ period_init_ms: 100, period_max_ms: 1000, period_increase_factor: 2 }",
     )?;
+    Ok(config)
+}
+
+/// Listen at an endpoint.
+fn listen(config: &mut Config, endpoint: Endpoint) -> Result<(), zenoh::Error> {
+    let limited = format!("{endpoint}#tls_handshake_timeout_ms={HANDSHAKE}");
+    config.insert_json5("listen/endpoints", &json!([limited]).to_string())
+}
+
+/// Configuration of a router between gateways and monitors. Each cell writes its own status, and monitors read all.
+///
+/// # Errors
+/// If Zenoh does not accept it.
+pub fn router(
+    endpoint: Endpoint,
+    keys: &Keys,
+    cells: &[Name],
+    monitors: &[Name],
+) -> Result<Config, zenoh::Error> {
+    let cells = cells.iter().map(|cell| (cell, CellKeys::of(cell.as_str()), Flow::Ingress));
+    let monitors = monitors.iter().map(|name| (name, CellKeys::of(ANY), Flow::Egress));
+    let certificates: Vec<_> = cells
+        .chain(monitors)
+        .map(|(name, space, to_reader)| {
+            let mut rules = Rules::default();
+            rules.status(&space, to_reader);
+            (name, rules)
+        })
+        .collect();
+    let mut config = common("router", keys, &access_control(&certificates))?;
+    listen(&mut config, endpoint)?;
+    config.insert_json5("connect/endpoints", "[]")?;
+    Ok(config)
+}
+
+/// Configuration of a monitor: a client of one router or gateway, or a peer of several gateways, which keeps trying.
+///
+/// # Errors
+/// If Zenoh does not accept it.
+pub fn monitor(endpoints: &[Endpoint], keys: &Keys) -> Result<Config, zenoh::Error> {
+    let is_client = endpoints.len() == 1;
+    let mode = if is_client { "client" } else { "peer" };
+    // A monitor declares nothing that others could read.
+    let mut config = common(mode, keys, &json!({ "enabled": false }))?;
+    config.insert_json5("open/return_conditions/connect_scouted", "false")?;
+    config.insert_json5("listen/endpoints", "[]")?;
+    let endpoints: Vec<_> = endpoints.iter().map(ToString::to_string).collect();
+    config.insert_json5("connect/endpoints", &json!(endpoints).to_string())?;
+    config.insert_json5("connect/exit_on_failure", &json!(is_client).to_string())?;
+    config.insert_json5("connect/timeout_ms", if is_client { "0" } else { "-1" })?;
     Ok(config)
 }
 

@@ -4,12 +4,8 @@
 //! nothing of a former connection is left when the next one begins.
 
 use std::{
-    fs, io,
-    os::unix::{
-        fs::{MetadataExt as _, PermissionsExt as _},
-        net::{UnixListener, UnixStream},
-    },
-    path::Path,
+    io,
+    os::unix::net::UnixStream,
     sync::{
         Arc, Mutex, MutexGuard, PoisonError,
         atomic::{AtomicUsize, Ordering},
@@ -19,6 +15,7 @@ use std::{
 };
 
 use neighbours::line::{ClockKind, Role, Session as LineSession, session::Event};
+use sockets::{Acceptor, Line};
 use zenoh::{
     Session, Wait as _,
     liveliness::LivelinessToken,
@@ -37,7 +34,6 @@ use crate::{
     inbox::Inbox,
     keys::Keys,
     keyspace::{ANY, CellKeys, ClaimId},
-    line::Line,
     lines,
     refusal::Refusal,
     relay::{Admitted, Relay, Side},
@@ -66,14 +62,8 @@ struct Neighbourhood {
 pub fn connect(arguments: &ConnectArguments) -> Result<(), Error> {
     let ConnectArguments { cell, role, socket, keys, name } = arguments;
     let Right::Claim(role) = *role else { return Err(Error::Monitor(cell.clone())) };
-    let keys = name.as_ref().map_or_else(|| Keys::only(keys), |name| Keys::load(keys, name))?;
+    let keys = Keys::named_or_only(keys, name.as_ref())?;
     let signals = signals::receive()?;
-    let listener = listen(&socket.0).map_err(|source| match source.kind() {
-        io::ErrorKind::AddrInUse => Error::InUse(socket.clone()),
-        _ => Error::Socket { address: socket.clone(), source },
-    })?;
-    let file = fs::symlink_metadata(&socket.0)?;
-    say!("{role} of {cell} as {}: waits for a program at {socket}", keys.name);
     let near = Arc::new(Neighbourhood {
         address: cell.clone(),
         role,
@@ -81,38 +71,21 @@ pub fn connect(arguments: &ConnectArguments) -> Result<(), Error> {
         open: AtomicUsize::new(0),
         inboxes: Mutex::default(),
     });
+    let accepting = Arc::clone(&near);
+    let started = Acceptor::start(socket.path(), "programs", move |stream| accepting.accept(stream));
+    let acceptor = started.map_err(|source| match source.kind() {
+        io::ErrorKind::AddrInUse => Error::InUse(socket.clone()),
+        _ => Error::Socket { address: socket.clone(), source },
+    })?;
+    say!("{role} of {cell} as {}: waits for a program at {socket}", near.keys.name);
     // A first attempt, so that wrong keys and addresses are reported at once.
     if let Err(refusal) = near.open_session() {
         say!("{refusal}; the next program at {socket} tries again");
     }
-    let accepting = Arc::clone(&near);
-    thread::spawn(move || accepting.accept(&listener));
     signals::wait(signals);
+    drop(acceptor);
     near.stop();
-    // The path may belong to another program by now.
-    if fs::symlink_metadata(&socket.0)
-        .is_ok_and(|found| (found.dev(), found.ino()) == (file.dev(), file.ino()))
-    {
-        // It may be gone already.
-        let _ = fs::remove_file(&socket.0);
-    }
     Ok(())
-}
-
-/// Listen at a path. A socket at which nobody listens is replaced.
-fn listen(path: &Path) -> io::Result<UnixListener> {
-    let listener = UnixListener::bind(path).or_else(|error| {
-        let is_left = error.kind() == io::ErrorKind::AddrInUse
-            && UnixStream::connect(path).is_err_and(|error| error.kind() == io::ErrorKind::ConnectionRefused);
-        if is_left {
-            fs::remove_file(path)?;
-            UnixListener::bind(path)
-        } else {
-            Err(error)
-        }
-    })?;
-    fs::set_permissions(path, fs::Permissions::from_mode(0o600))?;
-    Ok(listener)
 }
 
 /// A claim at the gateway.
@@ -130,24 +103,17 @@ impl Neighbourhood {
         self.inboxes.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Accept programs, each in a thread of its own.
-    fn accept(self: Arc<Self>, listener: &UnixListener) {
-        for stream in listener.incoming() {
-            let Ok(stream) = stream else {
-                // The system has no descriptors left: wait for some.
-                thread::sleep(CLOSING);
-                continue;
-            };
-            if self.open.fetch_add(1, Ordering::AcqRel) >= PROGRAMS {
-                self.open.fetch_sub(1, Ordering::AcqRel);
-                continue;
-            }
-            let near = Arc::clone(&self);
-            thread::spawn(move || {
-                near.serve(stream);
-                near.open.fetch_sub(1, Ordering::AcqRel);
-            });
+    /// Serve a program in a thread of its own.
+    fn accept(self: &Arc<Self>, stream: UnixStream) {
+        if self.open.fetch_add(1, Ordering::AcqRel) >= PROGRAMS {
+            self.open.fetch_sub(1, Ordering::AcqRel);
+            return;
         }
+        let near = Arc::clone(self);
+        thread::spawn(move || {
+            near.serve(stream);
+            near.open.fetch_sub(1, Ordering::AcqRel);
+        });
     }
 
     fn stop(&self) {
@@ -234,9 +200,9 @@ impl Neighbourhood {
 
     /// Tell a program why it is refused.
     fn turn_away(&self, stream: UnixStream, reason: &str) {
-        if let Ok((mut session, line)) = self.greet(stream, ClockKind::Real) {
+        if let Ok((mut session, mut line)) = self.greet(stream, ClockKind::Real) {
             session.close(&reason);
-            line.finish(session.output(), Instant::now() + CLOSING);
+            close(&mut line, &mut session);
         }
     }
 
@@ -246,6 +212,7 @@ impl Neighbourhood {
             error.to_string()
         }
         let mut line = Line::new(stream).map_err(said)?;
+        line.check_user().map_err(said)?;
         let mut session = LineSession::controller(clock, Instant::now());
         loop {
             line.send(session.output()).map_err(said)?;
@@ -262,7 +229,7 @@ impl Neighbourhood {
                     Ok(_) => "the program has closed the connection".to_owned(),
                 };
                 session.close(&wrong);
-                line.finish(session.output(), Instant::now() + CLOSING);
+                close(&mut line, &mut session);
                 return Err(wrong);
             }
         }
@@ -299,6 +266,13 @@ impl Neighbourhood {
         self.inboxes().retain(|other| !Arc::ptr_eq(other, inbox));
         Some(end)
     }
+}
+
+/// Send what is left, and close the connection.
+fn close(line: &mut Line, session: &mut LineSession) {
+    let until = Instant::now() + CLOSING;
+    line.finish(session.output(), until);
+    line.drain(until);
 }
 
 /// Send a sample. One that cannot be sent is lost, as one on the way.

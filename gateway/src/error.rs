@@ -2,8 +2,10 @@
 
 use std::io;
 
+use neighbours::line::Address;
+
 use crate::{
-    address::{CellAddress, Endpoint, UnixAddress},
+    address::{CellAddress, Endpoint, Name},
     keys::KeysError,
 };
 
@@ -25,22 +27,39 @@ pub enum Error {
     #[error("{address}: {source}")]
     Socket {
         /// The socket.
-        address: UnixAddress,
+        address: Address,
         /// Error of the system.
         source: io::Error,
     },
     /// Another program listens at the socket.
     #[error("{0}: another program listens there: choose another path")]
-    InUse(UnixAddress),
+    InUse(Address),
     /// A monitor has no Unix socket.
     #[error("{0}: a monitor reads keys of Zenoh and has no mailboxes: see examples/fleet.py")]
     Monitor(CellAddress),
+    /// A monitor cannot connect.
+    #[error(
+        "{}: {reason} (is a router or gateway running there, and does it accept the certificate of {name}?)",
+        list(.endpoints)
+    )]
+    Unreachable {
+        /// The endpoints.
+        endpoints: Vec<Endpoint>,
+        /// Name of the certificate.
+        name: Name,
+        /// Error of Zenoh.
+        reason: String,
+    },
     /// Zenoh reports an error.
     #[error("zenoh: {0}")]
     Zenoh(String),
     /// The system reports an error.
     #[error(transparent)]
     System(#[from] io::Error),
+}
+
+fn list(endpoints: &[Endpoint]) -> String {
+    endpoints.iter().map(ToString::to_string).collect::<Vec<_>>().join(", ")
 }
 
 impl Error {

@@ -121,11 +121,19 @@ impl Keys {
         Ok(keys)
     }
 
+    /// The keys of `name` in a directory, or the only ones.
+    ///
+    /// # Errors
+    /// [`KeysError`].
+    pub fn named_or_only(directory: &Path, name: Option<&Name>) -> Result<Self, KeysError> {
+        name.map_or_else(|| Self::only(directory), |name| Self::load(directory, name))
+    }
+
     /// The only keys in a directory, apart from those of the authority.
     ///
     /// # Errors
     /// [`KeysError`]; [`KeysError::Which`] unless there is exactly one private key.
-    pub fn only(directory: &Path) -> Result<Self, KeysError> {
+    fn only(directory: &Path) -> Result<Self, KeysError> {
         let failed = |source| KeysError::File { path: directory.to_owned(), source };
         let mut found = Vec::new();
         for entry in fs::read_dir(directory).map_err(failed)? {

@@ -2,13 +2,17 @@
 //! whole lines; an empty one is the end. Nothing is sent on an operator's behalf: the run ends motion by hand 250 ms
 //! after the last line of the operator, not of a gateway.
 
-use std::{os::fd::AsFd as _, time::Instant};
+use std::{
+    os::fd::AsFd as _,
+    time::{Duration, Instant},
+};
+
+use sockets::Line;
 
 use crate::{
     address::Name,
     end::{CLOSING, End, GRACE},
     inbox::Inbox,
-    line::Line,
 };
 
 /// Greatest length of a line, bytes; the run refuses a line that is longer than 260.
@@ -16,9 +20,11 @@ const LONGEST: usize = 1024;
 /// Greatest length of an operator's name, bytes.
 const NAME: usize = 24;
 const HELLO: &str = "hello ";
+/// An operator that sends nothing for this time loses its claim, so that another one can command.
+const SILENCE: Duration = Duration::from_secs(10);
 
 /// Moves lines until the claim ends. `unread` are bytes of the socket that were received already; at the gateway `name`
-/// is put before the operator's.
+/// is put before the operator's, and an operator that is silent for 10 s loses its claim.
 pub fn relay(
     mut line: Line,
     mut unread: Vec<u8>,
@@ -27,8 +33,10 @@ pub fn relay(
     publish: &mut dyn FnMut(&[u8]),
 ) -> End {
     let (mut outgoing, mut gone) = (Vec::new(), None);
+    let mut heard = name.map(|_| Instant::now());
     let end = loop {
-        match turn(&mut line, &mut unread, &mut outgoing, &mut name, inbox, publish, &mut gone) {
+        match turn(&mut line, &mut unread, &mut outgoing, &mut name, inbox, publish, (&mut gone, &mut heard))
+        {
             Ok(()) => {}
             Err(end) => break end,
         }
@@ -36,7 +44,9 @@ pub fn relay(
     if !matches!(end, End::Network(_) | End::Gone) {
         publish(&[]);
     }
-    line.finish(&mut outgoing, Instant::now() + CLOSING);
+    let until = Instant::now() + CLOSING;
+    line.finish(&mut outgoing, until);
+    line.drain(until);
     end
 }
 
@@ -47,7 +57,7 @@ fn turn(
     name: &mut Option<&Name>,
     inbox: &Inbox,
     publish: &mut dyn FnMut(&[u8]),
-    gone: &mut Option<Instant>,
+    (gone, heard): (&mut Option<Instant>, &mut Option<Instant>),
 ) -> Result<(), End> {
     if inbox.is_stopped() {
         return Err(End::Stopped);
@@ -59,12 +69,17 @@ fn turn(
         if payload.is_empty() {
             return Err(End::Network(String::new()));
         }
+        if let Some(heard) = heard {
+            *heard = Instant::now();
+        }
         match name.take() {
             Some(name) => outgoing.extend(signed(&payload, name)),
             None => outgoing.extend(payload),
         }
     } else if inbox.is_gone() && gone.get_or_insert_with(Instant::now).elapsed() >= GRACE {
         return Err(End::Gone);
+    } else if heard.is_some_and(|heard| heard.elapsed() >= SILENCE) {
+        return Err(End::Silent);
     }
     let lost = |error: std::io::Error| End::Local(error.to_string());
     line.send(outgoing).map_err(lost)?;
@@ -76,7 +91,8 @@ fn turn(
         return Err(End::Violation(format!("expected a line of at most {LONGEST} bytes")));
     }
     let wake = line.is_flushed().then(|| inbox.as_fd());
-    let ready = line.wait(wake, gone.map(|since| since + GRACE)).map_err(lost)?;
+    let until = [gone.map(|since| since + GRACE), heard.map(|heard| heard + SILENCE)];
+    let ready = line.wait(wake, until.into_iter().flatten().min()).map_err(lost)?;
     if ready && !line.receive(|bytes| unread.extend_from_slice(bytes)).map_err(lost)? {
         publish(unread);
         return Err(End::Local(String::new()));

@@ -15,11 +15,13 @@ mod error;
 mod inbox;
 mod keys;
 mod keyspace;
-mod line;
 mod lines;
 mod log;
+mod monitor;
+mod pace;
 mod refusal;
 mod relay;
+mod router;
 mod sample;
 mod serve;
 mod signals;
@@ -48,6 +50,8 @@ fn main() -> ExitCode {
     let result = match &cli.command {
         Command::Serve(arguments) => serve::serve(arguments),
         Command::Connect(arguments) => connect::connect(arguments),
+        Command::Router(arguments) => router::route(arguments),
+        Command::Monitor(arguments) => monitor::monitor(arguments),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,

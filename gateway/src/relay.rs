@@ -18,10 +18,11 @@ use neighbours::line::{
     session::{Event, NEIGHBOUR_LIMIT, SessionError},
 };
 
+use sockets::Line;
+
 use crate::{
     end::{CLOSING, End, GRACE},
     inbox::Inbox,
-    line::Line,
     sample::State,
 };
 
@@ -108,7 +109,9 @@ impl<'a> Relay<'a> {
             (End::Local(reason) | End::Violation(reason), _) => (self.publish)(&self.outgoing, Some(reason)),
             (End::Network(_) | End::Gone | End::Silent | End::Stopped, _) => {}
         }
-        self.line.finish(self.session.output(), Instant::now() + CLOSING);
+        let until = Instant::now() + CLOSING;
+        self.line.finish(self.session.output(), until);
+        self.line.drain(until);
         end
     }
 

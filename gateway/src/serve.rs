@@ -2,7 +2,6 @@
 
 use std::{
     io,
-    net::TcpListener,
     os::unix::net::UnixStream,
     sync::{
         Arc, Mutex, PoisonError,
@@ -17,6 +16,7 @@ use neighbours::line::{
     Role, Session as LineSession,
     session::{Event, SessionError},
 };
+use sockets::Line;
 use zenoh::{
     Session, Wait as _,
     qos::{CongestionControl, Priority},
@@ -33,8 +33,8 @@ use crate::{
     inbox::Inbox,
     keys::Keys,
     keyspace::{CellKeys, ClaimId},
-    line::Line,
     lines,
+    pace::Pace,
     refusal::Refusal,
     relay::{Admitted, Relay, Side},
     sample::State,
@@ -59,6 +59,7 @@ struct Gateway {
     session: Session,
     board: Board,
     open: AtomicUsize,
+    pace: Pace,
     inboxes: Mutex<Vec<Arc<Inbox>>>,
 }
 
@@ -70,20 +71,20 @@ pub fn serve(arguments: &ServeArguments) -> Result<(), Error> {
     let ServeArguments { cell, endpoint, run, router, keys, allow } = arguments;
     let own = Keys::load(keys, cell)?;
     let signals = signals::receive()?;
-    let bound = TcpListener::bind(endpoint.0);
-    drop(bound.map_err(|source| Error::Endpoint { endpoint: *endpoint, source })?);
+    endpoint.check_free().map_err(|source| Error::Endpoint { endpoint: *endpoint, source })?;
     let config = config::gateway(cell, *endpoint, *router, &own, allow).map_err(Error::zenoh)?;
     let session = zenoh::open(config).wait().map_err(Error::zenoh)?;
     let space = CellKeys::of(cell.as_str());
     let token = session.liveliness().declare_token(space.alive(&session.zid().to_string()));
     let token = token.wait().map_err(Error::zenoh)?;
-    let board = Board::start(&session, &space, run.0.clone()).map_err(Error::zenoh)?;
+    let board = Board::start(&session, &space, run.path().to_owned()).map_err(Error::zenoh)?;
     let gateway = Arc::new(Gateway {
         cell: space,
-        run: run.0.clone(),
+        run: run.path().to_owned(),
         session,
         board,
         open: AtomicUsize::new(0),
+        pace: Pace::default(),
         inboxes: Mutex::default(),
     });
     let (requests, asked) = sync_channel(CLAIMS);
@@ -155,7 +156,15 @@ impl Gateway {
             refuse(&request, &Refusal::Refused("expected 32 hexadecimal digits for the claim".to_owned()));
             return;
         };
-        let admitted = match self.enter(request.role) {
+        let Some(wait) = self.pace.ask(&request.name, Instant::now()) else {
+            refuse(&request, &Refusal::Refused(format!("too many requests of {} wait", request.name)));
+            return;
+        };
+        thread::sleep(wait);
+        let entered = self.enter(request.role);
+        let is_refused = matches!(entered, Err(Refusal::Refused(_)));
+        self.pace.answered(&request.name, is_refused, Instant::now());
+        let admitted = match entered {
             Ok(admitted) => admitted,
             Err(refusal) => return refuse(&request, &refusal),
         };
@@ -172,6 +181,7 @@ impl Gateway {
             |error: io::Error| Refusal::Absent(format!("no run listens at {}: {error}", self.run.display()));
         let refused = |error: SessionError| Refusal::Refused(error.to_string());
         let mut line = UnixStream::connect(&self.run).and_then(Line::new).map_err(absent)?;
+        line.check_user().map_err(absent)?;
         let mut session = LineSession::neighbour(role, Instant::now());
         let clock = loop {
             let now = Instant::now();

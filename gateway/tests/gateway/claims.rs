@@ -2,7 +2,12 @@
 
 use std::time::{Duration, Instant};
 
-use crate::shop::{Hwsc, Shop, within};
+use zenoh::{Wait as _, query::ConsolidationMode};
+
+use crate::{
+    native,
+    shop::{Hwsc, Shop, free_port, within},
+};
 
 #[test]
 fn workstation_behind_a_gateway_commands_the_run() {
@@ -78,13 +83,16 @@ fn killed_client_is_noticed_within_a_second() {
     println!("killed client: the next one is admitted after {:?}", start.elapsed());
 }
 
+/// The robot finishes the motion that it was commanded.
 #[test]
-fn killed_gateway_does_not_end_the_run_and_the_next_one_admits_the_neighbour() {
+fn gateway_killed_in_a_motion_does_not_stop_it_and_the_next_one_admits_the_neighbour() {
     let shop = Shop::new(&["hwsc-1"]);
     let mut run = shop.real_run();
     let mut gateway = shop.serve(&["workstation=hwsc-1"]);
     let connect = shop.connect("workstation", "hwsc-1");
     let mut hwsc = shop.hwsc("hwsc-1").unwrap();
+    hwsc.pause().unwrap();
+    hwsc.start_move("SAFE").unwrap();
     gateway.kill();
     let start = Instant::now();
     while hwsc.tick().is_ok() {}
@@ -99,8 +107,48 @@ fn killed_gateway_does_not_end_the_run_and_the_next_one_admits_the_neighbour() {
         admitted.is_some()
     }));
     println!("next gateway: admitted after {:?}", start.elapsed());
-    admitted.unwrap().pause().unwrap();
+    let mut hwsc = admitted.unwrap();
+    hwsc.follow_last().unwrap();
+    hwsc.finish().unwrap();
+    hwsc.pause().unwrap();
     assert!(run.child.try_wait().unwrap().is_none(), "the run has ended: {}", run.errors());
+}
+
+/// Commands do not pass the router, so its end is seen by monitors only.
+#[test]
+fn router_killed_in_a_motion_disturbs_no_claim_and_the_next_one_has_the_status() {
+    let shop = Shop::new(&["hwsc-1", "router@127.0.0.1", "mes"]);
+    let _run = shop.real_run();
+    let endpoint = format!("tls/127.0.0.1:{}", free_port());
+    let mut router = shop.router(&endpoint);
+    let gateway = shop.serve(&["workstation=hwsc-1", "monitor=router", "--router", &endpoint]);
+    let _connect = shop.connect("workstation", "hwsc-1");
+    let sees_cell = |wait: f64| {
+        let monitor = native::connect(&shop.path("keys"), "mes", &endpoint).unwrap();
+        let seen = || {
+            let answer =
+                monitor.get("rcs/*/status/run").consolidation(ConsolidationMode::None).wait().unwrap();
+            answer.into_iter().any(|reply| reply.result().is_ok())
+        };
+        within(wait, seen)
+    };
+    assert!(sees_cell(5.0));
+    let mut hwsc = shop.hwsc("hwsc-1").unwrap();
+    hwsc.pause().unwrap();
+    hwsc.start_move("SAFE").unwrap();
+    let (mut longest, mut last) = (Duration::ZERO, Instant::now());
+    router.kill();
+    for _ in 0..25 {
+        hwsc.tick().unwrap();
+        longest = longest.max(last.elapsed());
+        last = Instant::now();
+    }
+    println!("killed router: longest gap of the claim {longest:?}");
+    assert!(longest < Duration::from_millis(500), "{longest:?}");
+    hwsc.finish().unwrap();
+    let _router = shop.router(&endpoint);
+    assert!(sees_cell(2.5), "the next router has no status");
+    assert!(!gateway.errors().contains("has disconnected"), "{}", gateway.errors());
 }
 
 /// The manual's shift, with all four neighbours behind gateways: the same bits.

@@ -12,8 +12,9 @@ use std::{
 };
 
 use os_io::stdout_line;
+use zenoh::Wait as _;
 
-use crate::shop::Shop;
+use crate::shop::{Hwsc, Shop};
 
 /// Number of bad clients; as many of them as this connect again in a second.
 const CROWD: usize = 300;
@@ -73,4 +74,41 @@ fn clients_that_send_garbage_do_not_delay_an_honest_one() {
         }
     });
     assert!(needed < Duration::from_secs(1), "{needed:?}");
+}
+
+/// The run keeps a refused connection for a second in one of eight places. A client that is refused and tries again
+/// without a pause would fill them.
+#[test]
+fn refused_client_that_hammers_keeps_no_other_client_out() {
+    let shop = Shop::new(&["eye"]);
+    // The run has a vision system of its own, and refuses another one.
+    let run = shop.real_run();
+    let gateway = shop.serve(&["vision=eye"]);
+    let is_over = AtomicBool::new(false);
+    let keys = shop.path("keys");
+    thread::scope(|scope| {
+        for _ in 0..THREADS {
+            scope.spawn(|| {
+                let session = crate::native::connect(&keys, "eye", &shop.endpoint()).unwrap();
+                while !is_over.load(Ordering::SeqCst) {
+                    let replies = session.get("rcs/t3/open/vision/eye").payload("0".repeat(32));
+                    // All of them are refused.
+                    replies.wait().unwrap().into_iter().for_each(drop);
+                }
+            });
+        }
+        // In the first second the places fill.
+        thread::sleep(Duration::from_secs(1));
+        let admitted: Result<Vec<_>, _> = (0..20)
+            .map(|_| {
+                thread::sleep(Duration::from_millis(100));
+                Hwsc::connect(&shop.run_socket()).map(drop)
+            })
+            .collect();
+        is_over.store(true, Ordering::SeqCst);
+        assert!(admitted.is_ok(), "{admitted:?}\n{}", run.errors());
+    });
+    let errors = gateway.errors();
+    assert!(errors.contains("vision eye was refused: no vision was expected in another process"), "{errors}");
+    assert!(errors.lines().count() < 30, "the log is flooded: {errors}");
 }

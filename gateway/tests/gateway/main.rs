@@ -10,5 +10,6 @@ mod cuts;
 mod line;
 mod native;
 mod operators;
+mod script;
 mod shop;
 mod status;

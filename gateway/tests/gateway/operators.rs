@@ -3,13 +3,14 @@
 use std::{
     io::{BufRead as _, BufReader, Write as _},
     os::unix::net::UnixStream,
+    process::{Command, Stdio},
     thread,
     time::{Duration, Instant},
 };
 
 use neighbours::line::{Role, Session, session::Event};
 
-use crate::shop::{Shop, within};
+use crate::shop::{Shop, program, within};
 
 /// An operator's session behind a gateway.
 struct Operator {
@@ -120,4 +121,56 @@ fn stick_behind_a_gateway_is_held_by_keep_alives_and_released_without() {
     assert!(within(20.0, || operator.holds(true)), "the stick was released in spite of keep-alives");
     drop(operator);
     gateway.wait_for("operator op-1 has disconnected");
+}
+
+/// `rcs-run send` at the socket of `rcs-gateway connect`.
+fn send(shop: &Shop, name: &str, more: &[&str]) -> (bool, String) {
+    let output = Command::new(program("rcs-run"))
+        .args(["send", "--connect", &shop.socket_address(name), "--name", "anna"])
+        .args(more)
+        .output()
+        .unwrap();
+    let said = [output.stdout, output.stderr].concat();
+    (output.status.success(), String::from_utf8_lossy(&said).into_owned())
+}
+
+#[test]
+fn rcs_run_send_operates_a_run_behind_a_gateway() {
+    let shop = Shop::new(&["op-1", "op-2"]);
+    let _run = shop.run(&["--stand-by", "--clock", "real", "--operator", "network"]);
+    let gateway = shop.serve(&["operator=op-1,op-2"]);
+    let (mut first, _second) = (shop.connect("operator", "op-1"), shop.connect("operator", "op-2"));
+    let mut last = String::new();
+    let answered = within(20.0, || {
+        let (is_taken, said) = send(&shop, "op-1", &["status"]);
+        last = said;
+        // A joystick box that is on would end the PAUSE of the start.
+        is_taken && last.contains("the job waits; nobody commands")
+    });
+    assert!(answered, "{last}");
+    gateway.wait_for("operator op-1 has connected");
+    // A motion by hand is held while `send` stays, and released when its end of the gateway is killed.
+    let held = Command::new(program("rcs-run"))
+        .args(["send", "--connect", &shop.socket_address("op-1"), "--name", "anna", "--stay", "60"])
+        .args(HELD)
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn();
+    let mut held = held.unwrap();
+    let commanded = within(5.0, || {
+        let (_, said) = send(&shop, "op-2", &["status"]);
+        last = said;
+        last.contains("op-1.anna")
+    });
+    assert!(commanded, "{last}");
+    thread::sleep(Duration::from_millis(600));
+    assert!(!send(&shop, "op-2", &["joystick velocity 100"]).0, "`send` does not hold the stick");
+    first.kill();
+    let freed = within(1.0, || {
+        let (is_taken, said) = send(&shop, "op-2", &["joystick velocity 100"]);
+        last = said;
+        is_taken
+    });
+    assert!(freed, "another operator cannot command: {last}");
+    assert!(!held.wait().unwrap().success(), "`send` has not noticed the end of its connection");
 }

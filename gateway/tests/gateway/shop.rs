@@ -17,6 +17,7 @@ use neighbours::{
     workstation::{command, player, status},
 };
 use os_io::stderr_line;
+use rcs_core::name::Name16;
 use tempfile::TempDir;
 
 pub const CELL: &str = "t3";
@@ -166,6 +167,11 @@ impl Shop {
         gateway
     }
 
+    /// A router for this cell and the monitor `mes`.
+    pub fn router(&self, endpoint: &str) -> Process {
+        start_router(self.directory.path(), endpoint, &[CELL])
+    }
+
     /// The gateway, which may not come up.
     pub fn start_serve(&self, allow: &[&str]) -> Process {
         let mut command = Command::new(env!("CARGO_BIN_EXE_rcs-gateway"));
@@ -216,6 +222,16 @@ impl Shop {
     }
 }
 
+/// A router with the certificate `router`, for cells and the monitor `mes`.
+pub fn start_router(directory: &Path, endpoint: &str, cells: &[&str]) -> Process {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_rcs-gateway"));
+    command.args(["router", endpoint, "--name", "router", "--monitors", "mes", "--keys"]);
+    command.arg(directory.join("keys")).arg("--cells").args(cells);
+    let router = Process::start(&mut command, directory.join("router.err"));
+    router.wait_for(" at tls/");
+    router
+}
+
 pub fn make_keys(directory: &Path, cell: &str, names: &[&str]) {
     let script = concat!(env!("CARGO_MANIFEST_DIR"), "/../tools/keys.sh");
     let made = Command::new(script).arg(directory).args([cell, "127.0.0.1"]).args(names).output().unwrap();
@@ -229,6 +245,8 @@ pub struct Hwsc {
     command: Mailbox,
     status: Mailbox,
     tick: u64,
+    /// Number of the last command.
+    number: u16,
 }
 
 impl Hwsc {
@@ -242,6 +260,7 @@ impl Hwsc {
             command: Mailbox::initialized(HWSC_COMMAND),
             status: Mailbox::initialized(HWSC_STATUS),
             tick: 0,
+            number: 0,
         };
         hwsc.read()?;
         Ok(hwsc)
@@ -289,26 +308,56 @@ impl Hwsc {
 
     /// Send PAUSE and wait until it is finished; returns how many ticks that took.
     pub fn pause(&mut self) -> Result<u64, String> {
+        self.send("PAUSE", None)?;
+        let start = self.tick;
+        self.finish()?;
+        Ok(self.tick - start)
+    }
+
+    /// Send a MOVE without an object to a location, and wait until Task executes it.
+    pub fn start_move(&mut self, location: &str) -> Result<(), String> {
+        self.send("MOVE", Some(location))?;
+        while !self.is_reported("executing") {
+            self.tick()?;
+        }
+        Ok(())
+    }
+
+    fn send(&mut self, verb: &str, location: Option<&str>) -> Result<(), String> {
         while self.status.data().is_empty() {
             self.tick()?;
         }
-        let number = self.status().echo.checked_add(1).unwrap_or(1);
-        let pause = neighbours_command(number);
-        self.command.write(&pause).unwrap();
+        self.number = self.status().echo.checked_add(1).unwrap_or(1);
+        let mut sent = player::pause();
+        sent.number = u32::from(self.number);
+        sent.command = Name16::clipped(verb);
+        sent.destination = location.map(Name16::clipped);
+        self.command.write(&command::encode(&sent).unwrap()).unwrap();
         self.session.send(&self.command);
-        let start = self.tick;
-        loop {
-            let tick = self.tick()?;
-            let status = self.status();
-            if status.echo == number && status.report.to_string() == "finished" {
-                return Ok(tick - start);
-            }
-        }
+        Ok(())
     }
-}
 
-fn neighbours_command(number: u16) -> Vec<u8> {
-    let mut pause = player::pause();
-    pause.number = u32::from(number);
-    command::encode(&pause).unwrap().to_vec()
+    /// True if the last command has this status.
+    pub fn is_reported(&self, report: &str) -> bool {
+        let status = self.status();
+        status.echo == self.number && status.report.to_string() == report
+    }
+
+    /// Take the command that the run executes, of an earlier connection, for the last one.
+    pub fn follow_last(&mut self) -> Result<(), String> {
+        while self.status.data().is_empty() {
+            self.tick()?;
+        }
+        self.number = self.status().echo;
+        Ok(())
+    }
+
+    /// Wait until the last command is finished.
+    pub fn finish(&mut self) -> Result<(), String> {
+        while !self.is_reported("finished") {
+            self.tick()?;
+            assert!(!self.is_reported("error"), "{}", self.status().reason);
+        }
+        Ok(())
+    }
 }

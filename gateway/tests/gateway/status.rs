@@ -10,8 +10,8 @@ use std::{
 use zenoh::{Wait as _, query::ConsolidationMode, sample::SampleKind};
 
 use crate::{
-    native::{connect, router},
-    shop::{CELL, Process, Shop, free_port, make_keys, within},
+    native::connect,
+    shop::{CELL, Process, Shop, free_port, make_keys, start_router, within},
 };
 
 #[test]
@@ -55,6 +55,34 @@ fn monitor_sees_the_run_its_mailboxes_and_the_end_of_the_gateway() {
     assert!(within(1.0, || *gone.lock().unwrap()), "the killed gateway is not missed");
 }
 
+#[test]
+fn router_lets_a_cell_write_its_own_status_only() {
+    let directory = tempfile::tempdir().unwrap();
+    let keys = directory.path().join("keys");
+    make_keys(&keys, "c1", &["c2@127.0.0.1", "router@127.0.0.1", "mes", "nobody"]);
+    let endpoint = format!("tls/127.0.0.1:{}", free_port());
+    let _router = start_router(directory.path(), &endpoint, &["c1", "c2"]);
+    let monitor = connect(&keys, "mes", &endpoint).unwrap();
+    let heard = Arc::new(Mutex::new(BTreeSet::new()));
+    let keys_of = Arc::clone(&heard);
+    let take = move |sample: zenoh::sample::Sample| {
+        keys_of.lock().unwrap().insert(sample.key_expr().to_string());
+    };
+    monitor.declare_subscriber("rcs/*/status/run").callback(take).background().wait().unwrap();
+    let writers: Vec<_> = ["c2", "mes", "nobody"].map(|name| connect(&keys, name, &endpoint).unwrap()).into();
+    let is_heard = within(5.0, || {
+        for writer in &writers {
+            for cell in ["c1", "c2"] {
+                writer.put(format!("rcs/{cell}/status/run"), "{}").wait().unwrap();
+            }
+        }
+        heard.lock().unwrap().contains("rcs/c2/status/run")
+    });
+    assert!(is_heard, "the status of c2 does not arrive");
+    std::thread::sleep(Duration::from_millis(300));
+    assert_eq!(*heard.lock().unwrap(), BTreeSet::from(["rcs/c2/status/run".to_owned()]));
+}
+
 /// A shop: each cell has a gateway of its own, and all connect to one router.
 #[test]
 fn monitor_sees_twenty_cells_through_a_router_and_misses_a_killed_one() {
@@ -67,7 +95,8 @@ fn monitor_sees_twenty_cells_through_a_router_and_misses_a_killed_one() {
     names.extend(["router@127.0.0.1", "mes"]);
     make_keys(&keys, CELL, &names);
     let endpoint = format!("tls/127.0.0.1:{}", free_port());
-    let first = router(&keys, "router", &endpoint).unwrap();
+    let names: Vec<_> = cells.iter().map(String::as_str).collect();
+    let mut first = start_router(directory.path(), &endpoint, &names);
     let mut gateways: Vec<_> = cells
         .iter()
         .map(|cell| {
@@ -103,8 +132,8 @@ fn monitor_sees_twenty_cells_through_a_router_and_misses_a_killed_one() {
     println!("killed cell missed after {:?}", start.elapsed());
     // A restarted router has all cells again within a second or two: gateways try once a second.
     drop(monitor);
-    first.close().wait().unwrap();
-    let _second = router(&keys, "router", &endpoint).unwrap();
+    first.kill();
+    let _second = start_router(directory.path(), &endpoint, &names);
     let start = Instant::now();
     let monitor = connect(&keys, "mes", &endpoint).unwrap();
     let here = watch(&monitor);

@@ -1,0 +1,24 @@
+//! `rcs-gateway router`: passes the status of several cells on to monitors. Any stock router of Zenoh can do that, too;
+//! this one lets each cell write its own status only.
+
+use zenoh::Wait as _;
+
+use crate::{cli::RouterArguments, config, error::Error, keys::Keys, say, signals};
+
+/// Routes until a signal arrives.
+///
+/// # Errors
+/// [`Error`] if the keys or the endpoint cannot be used.
+pub fn route(arguments: &RouterArguments) -> Result<(), Error> {
+    let RouterArguments { endpoint, keys, name, cells, monitors } = arguments;
+    let own = Keys::named_or_only(keys, name.as_ref())?;
+    let signals = signals::receive()?;
+    endpoint.check_free().map_err(|source| Error::Endpoint { endpoint: *endpoint, source })?;
+    let config = config::router(*endpoint, &own, cells, monitors).map_err(Error::zenoh)?;
+    let session = zenoh::open(config).wait().map_err(Error::zenoh)?;
+    say!("router {} at {endpoint}", own.name);
+    signals::wait(signals);
+    // If the network cannot be reached, the session need not be closed.
+    let _ = session.close().wait();
+    Ok(())
+}
