@@ -1,6 +1,11 @@
 //! `rcs-log info`: what ran, how long it took, its commands, and how it ended.
 
-use std::{collections::BTreeMap, fmt, path::PathBuf, process::ExitCode};
+use std::{
+    collections::BTreeMap,
+    fmt,
+    path::{Path, PathBuf},
+    process::ExitCode,
+};
 
 use closed_loop::account::Account;
 use interfaces::t3i::LinkCounters;
@@ -25,7 +30,7 @@ pub struct Arguments {
 
 /// Summary of a log.
 #[derive(Debug, Serialize)]
-struct Info {
+pub struct Info {
     file: String,
     bytes: usize,
     /// Facts that the run recorded at its start.
@@ -104,15 +109,19 @@ impl From<&LinkCounters> for Link {
 /// Prints the summary of a log.
 pub fn info(arguments: &Arguments) -> Result<ExitCode, Error> {
     let log = open(&arguments.file)?;
-    print(&look(&log, arguments)?, arguments.answer.json)?;
+    print(&summary(&log, &arguments.file)?, arguments.answer.json)?;
     Ok(ExitCode::SUCCESS)
 }
 
-fn look(log: &Log, arguments: &Arguments) -> Result<Info, Error> {
+/// The summary of a log.
+///
+/// # Errors
+/// [`Error::Read`] if the log cannot be read, [`Error::Empty`] without a tick.
+pub fn summary(log: &Log, path: &Path) -> Result<Info, Error> {
     let (mut chronicle, mut link) = (Chronicle::default(), Link::default());
     let (mut ticks, mut missing, mut last) = (0, 0, Tick::BEFORE_START);
     let (mut times, mut overruns) = (Vec::new(), 0);
-    walk(log, &arguments.file, |moment| {
+    walk(log, path, |moment| {
         chronicle.note(moment);
         link = Link::from(&moment.after.t3i.status.counters);
         missing += moment.gap;
@@ -125,13 +134,13 @@ fn look(log: &Log, arguments: &Arguments) -> Result<Info, Error> {
         true
     })?;
     if ticks == 0 {
-        return Err(Error::Empty(arguments.file.clone()));
+        return Err(Error::Empty(path.to_owned()));
     }
     let level = |level| log.lines().filter(|line| line.level == level).count();
     let end = |key: &str| log.end.as_ref().and_then(|end| end.get(key)).cloned();
     let account = chronicle.account(log);
     Ok(Info {
-        file: arguments.file.display().to_string(),
+        file: path.display().to_string(),
         bytes: log.size(),
         run: log.run.clone(),
         ticks,

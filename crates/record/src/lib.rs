@@ -35,7 +35,7 @@ pub mod file;
 pub mod golden;
 pub mod input;
 pub mod layout;
-mod names;
+pub mod names;
 mod operator;
 mod part;
 mod pieces;

@@ -66,7 +66,7 @@ pub struct Arguments {
 
 /// An explanation of a tick or a failure.
 #[derive(Debug, Serialize)]
-struct Explanation {
+pub struct Explanation {
     tick: u64,
     seconds: f64,
     /// What went wrong first in the world; `None` if a tick was requested.
@@ -146,20 +146,28 @@ struct Rung {
 /// Explains a tick and prints the explanation.
 pub fn why(arguments: &Arguments) -> Result<ExitCode, Error> {
     let log = open(&arguments.file)?;
-    let (chronicle, history) = read(&log, &arguments.file)?;
-    let account = chronicle.account(&log).filter(|_| arguments.tick.is_none());
+    print(&explanation(&log, &arguments.file, arguments.tick)?, arguments.answer.json)?;
+    Ok(ExitCode::SUCCESS)
+}
+
+/// The explanation of a tick; of the failure, if none is requested.
+///
+/// # Errors
+/// [`Error::Read`] if the log cannot be read, [`Error::NoTick`] if it does not have the tick.
+pub fn explanation(log: &Log, path: &Path, requested: Option<u64>) -> Result<Explanation, Error> {
+    let (chronicle, history) = read(log, path)?;
+    let account = chronicle.account(log).filter(|_| requested.is_none());
     let reported = match &account {
         Some(account) => account.of_process().cloned(),
-        None => chronicle.failure.filter(|_| arguments.tick.is_none()),
+        None => chronicle.failure.filter(|_| requested.is_none()),
     };
-    let told = reported.and_then(|failure| tell(&log, &history, &failure, account.as_ref()));
+    let told = reported.and_then(|failure| tell(log, &history, &failure, account.as_ref()));
     let failed_at = told.as_ref().map(|told| told.story.tick);
-    let world = account.map(|account| world::first(&log, &history, account));
+    let world = account.map(|account| world::first(log, &history, account));
     let first = world.as_ref().map(|world| world.account.first.tick.0);
-    let tick = arguments.tick.or(failed_at).or(first);
-    let moment = find(&log, arguments, tick)?;
-    print(&explain(&log, &moment, world, told), arguments.answer.json)?;
-    Ok(ExitCode::SUCCESS)
+    let tick = requested.or(failed_at).or(first);
+    let moment = find(log, path, tick)?;
+    Ok(explain(log, &moment, world, told))
 }
 
 /// Reads the commands of a log and the history of every process.
@@ -233,9 +241,9 @@ fn first_cause(history: &History, root: Root, since: u64, found: &evidence::Evid
 }
 
 /// The requested tick, or the last one.
-fn find(log: &Log, arguments: &Arguments, tick: Option<u64>) -> Result<Moment, Error> {
+fn find(log: &Log, path: &Path, tick: Option<u64>) -> Result<Moment, Error> {
     let (mut first, mut last, mut found) = (None, Tick::BEFORE_START, None);
-    walk(log, &arguments.file, |moment| {
+    walk(log, path, |moment| {
         first.get_or_insert(moment.tick.0);
         last = moment.tick;
         if tick.is_none_or(|tick| tick == moment.tick.0) {
@@ -243,7 +251,7 @@ fn find(log: &Log, arguments: &Arguments, tick: Option<u64>) -> Result<Moment, E
         }
         tick.is_none() || found.is_none()
     })?;
-    let path = || arguments.file.clone();
+    let path = || path.to_owned();
     let first = first.ok_or_else(|| Error::Empty(path()))?;
     found.ok_or_else(|| Error::NoTick { path: path(), tick: tick.unwrap_or_default(), first, last: last.0 })
 }
