@@ -1,0 +1,329 @@
+//! Joins the sources of the page into one HTML file.
+//!
+//! Modules cannot be imported from `file://`, so all of them become one script: each module is a function that returns
+//! its exports, in the order in which they depend on each other. The sources keep to a form that needs no parser: an
+//! import names its bindings in braces and a file beside it, a declaration is exported where it is made, and nothing
+//! that is exported changes later. A source that does not is refused by [`bundle`], and so by the tests.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use data_encoding::BASE64;
+use ring::digest::{SHA256, digest};
+
+/// The file that the browser reads first.
+const INDEX: &str = include_str!("../web/index.html");
+/// The module that starts the page.
+const START: &str = "app.js";
+/// The part of [`INDEX`] that loads style and modules while the page is developed.
+const LINKS: &str =
+    "<link rel=\"stylesheet\" href=\"style.css\">\n<script type=\"module\" src=\"app.js\"></script>";
+
+/// Style sheets in their order.
+const STYLES: &[(&str, &str)] = &[
+    ("style.css", ""),
+    ("view/base.css", include_str!("../web/view/base.css")),
+    ("view/bar.css", include_str!("../web/view/bar.css")),
+    ("view/cell.css", include_str!("../web/view/cell.css")),
+    ("view/hierarchy.css", include_str!("../web/view/hierarchy.css")),
+    ("view/table.css", include_str!("../web/view/table.css")),
+    ("view/lists.css", include_str!("../web/view/lists.css")),
+    ("view/side.css", include_str!("../web/view/side.css")),
+    ("view/why.css", include_str!("../web/view/why.css")),
+    ("view/time.css", include_str!("../web/view/time.css")),
+    ("view/layout.css", include_str!("../web/view/layout.css")),
+];
+/// The modules.
+const MODULES: &[(&str, &str)] = &[
+    ("app.js", include_str!("../web/app.js")),
+    ("cell/frames.js", include_str!("../web/cell/frames.js")),
+    ("cell/glb.js", include_str!("../web/cell/glb.js")),
+    ("cell/gpu.js", include_str!("../web/cell/gpu.js")),
+    ("cell/matrix.js", include_str!("../web/cell/matrix.js")),
+    ("cell/renderer.js", include_str!("../web/cell/renderer.js")),
+    ("cell/shaders.js", include_str!("../web/cell/shaders.js")),
+    ("log/bytes.js", include_str!("../web/log/bytes.js")),
+    ("log/cdr.js", include_str!("../web/log/cdr.js")),
+    ("log/explanation.js", include_str!("../web/log/explanation.js")),
+    ("log/job.js", include_str!("../web/log/job.js")),
+    ("log/lanes.js", include_str!("../web/log/lanes.js")),
+    ("log/log.js", include_str!("../web/log/log.js")),
+    ("log/mcap.js", include_str!("../web/log/mcap.js")),
+    ("log/messages.js", include_str!("../web/log/messages.js")),
+    ("log/processes.js", include_str!("../web/log/processes.js")),
+    ("log/protobuf.js", include_str!("../web/log/protobuf.js")),
+    ("log/rows.js", include_str!("../web/log/rows.js")),
+    ("log/run.js", include_str!("../web/log/run.js")),
+    ("log/series.js", include_str!("../web/log/series.js")),
+    ("log/state.js", include_str!("../web/log/state.js")),
+    ("log/tables.js", include_str!("../web/log/tables.js")),
+    ("log/units.js", include_str!("../web/log/units.js")),
+    ("view/actions.js", include_str!("../web/view/actions.js")),
+    ("view/bar.js", include_str!("../web/view/bar.js")),
+    ("view/cell.js", include_str!("../web/view/cell.js")),
+    ("view/dom.js", include_str!("../web/view/dom.js")),
+    ("view/hierarchy.js", include_str!("../web/view/hierarchy.js")),
+    ("view/icons.js", include_str!("../web/view/icons.js")),
+    ("view/lists.js", include_str!("../web/view/lists.js")),
+    ("view/pointer.js", include_str!("../web/view/pointer.js")),
+    ("view/score.js", include_str!("../web/view/score.js")),
+    ("view/side.js", include_str!("../web/view/side.js")),
+    ("view/table-rows.js", include_str!("../web/view/table-rows.js")),
+    ("view/table.js", include_str!("../web/view/table.js")),
+    ("view/timeline-paint.js", include_str!("../web/view/timeline-paint.js")),
+    ("view/timeline.js", include_str!("../web/view/timeline.js")),
+    ("view/ui.js", include_str!("../web/view/ui.js")),
+    ("view/why.js", include_str!("../web/view/why.js")),
+];
+
+/// The page as one file, with a packed log inside if one is given ([`crate::pack`]).
+///
+/// The file permits itself this one script and nothing from outside, whatever the texts of the log are. Without a log
+/// inside, the page fetches one from where it came from.
+#[must_use]
+pub fn document(title: &str, log: Option<&[u8]>) -> String {
+    let style: String = STYLES.iter().map(|(_, text)| *text).collect();
+    let script = match bundle(MODULES, START) {
+        Ok(script) => harmless(&script),
+        // The tests bundle the same sources, so that no program has this.
+        Err(error) => format!("document.body.textContent = {error:?};"),
+    };
+    let from = if log.is_some() { "'none'" } else { "'self'" };
+    let digest = BASE64.encode(digest(&SHA256, script.as_bytes()).as_ref());
+    let policy = format!(
+        "default-src 'none'; script-src 'sha256-{digest}'; style-src 'unsafe-inline'; img-src blob: data:; \
+         connect-src {from}; base-uri 'none'; form-action 'none'"
+    );
+    let log = log.map_or_else(String::new, |log| {
+        format!("<script type=\"application/octet-stream\" id=\"log-data\">{}</script>\n", BASE64.encode(log))
+    });
+    let head = format!(
+        "<meta http-equiv=\"Content-Security-Policy\" content=\"{policy}\">\n<style>\n{style}</style>"
+    );
+    let body = format!("{log}<script type=\"module\">{script}</script>\n</body>");
+    INDEX
+        .replace("<title>RCS-II/T3</title>", &format!("<title>{}</title>", escaped(title)))
+        .replace(LINKS, &head)
+        .replace("</body>", &body)
+}
+
+/// Joins modules into one script that starts with `start`.
+///
+/// # Errors
+/// A sentence that names the module and the line that is not in the expected form.
+pub fn bundle(modules: &[(&str, &str)], start: &str) -> Result<String, String> {
+    let known: BTreeMap<&str, &str> = modules.iter().map(|(path, text)| (file_name(path), *text)).collect();
+    if known.len() != modules.len() {
+        return Err("two modules have the same file name: rename one of them".to_owned());
+    }
+    let (mut script, mut done) = (String::new(), BTreeSet::new());
+    append(&known, start, &mut Vec::new(), &mut done, &mut script)?;
+    match known.keys().find(|name| !done.contains(**name)) {
+        Some(unused) => Err(format!("{unused}: no module imports it: import it or delete it")),
+        None => Ok(script),
+    }
+}
+
+/// Append a module after those that it imports.
+fn append(
+    known: &BTreeMap<&str, &str>,
+    name: &str,
+    open: &mut Vec<String>,
+    done: &mut BTreeSet<String>,
+    script: &mut String,
+) -> Result<(), String> {
+    if done.contains(name) {
+        return Ok(());
+    }
+    if open.iter().any(|waiting| waiting == name) {
+        return Err(format!("{name}: imports itself through {}: break the circle", open.join(", ")));
+    }
+    let text = known.get(name).ok_or_else(|| format!("{name}: no such module"))?;
+    let module = Module::read(text).map_err(|error| format!("{name}: {error}"))?;
+    open.push(name.to_owned());
+    for (_, from) in &module.imports {
+        append(known, from, open, done, script)?;
+    }
+    open.pop();
+    done.insert(name.to_owned());
+    let imports =
+        module.imports.iter().map(|(names, from)| format!("const {{{names}}} = {}();\n", getter(from)));
+    let imports: String = imports.collect();
+    let exports = module.exports.join(", ");
+    // A module is run at its place in the order, once.
+    script.push_str(&format!(
+        "const {getter} = ((exports) => () => exports)((() => {{\n{imports}{body}return {{ {exports} }};\n}})());\n",
+        getter = getter(name),
+        body = module.body,
+    ));
+    Ok(())
+}
+
+/// A module in parts.
+#[derive(Default)]
+struct Module {
+    /// Names of bindings, and the file name of the module that has them.
+    imports: Vec<(String, String)>,
+    exports: Vec<String>,
+    /// The text without its imports, and without the word `export`.
+    body: String,
+}
+
+impl Module {
+    fn read(text: &str) -> Result<Self, String> {
+        let mut module = Self::default();
+        let mut statement = String::new();
+        for (number, line) in (1..).zip(text.lines()) {
+            if statement.is_empty() && !line.starts_with("import ") {
+                let line = module.exported(line).map_err(|error| format!("line {number}: {error}"))?;
+                module.body.push_str(line);
+                module.body.push('\n');
+                continue;
+            }
+            statement.push_str(line);
+            if line.ends_with(';') {
+                let import = import(&statement).ok_or_else(|| {
+                    format!("line {number}: `import {{ names }} from './file.js';` was expected, found {statement}")
+                })?;
+                module.imports.push(import);
+                statement.clear();
+            }
+        }
+        Ok(module)
+    }
+
+    /// A line without the word `export`; its name is noted.
+    fn exported<'a>(&mut self, line: &'a str) -> Result<&'a str, String> {
+        let Some(declaration) = line.strip_prefix("export ") else { return Ok(line) };
+        let kinds = ["async function* ", "async function ", "function* ", "function ", "class ", "const "];
+        let named = kinds
+            .iter()
+            .find_map(|kind| declaration.strip_prefix(kind))
+            .ok_or_else(|| format!("an exported function, class or constant was expected, found {line}"))?;
+        let is_part = |letter: char| letter.is_ascii_alphanumeric() || letter == '_' || letter == '$';
+        let name: String = named.chars().take_while(|letter| is_part(*letter)).collect();
+        if name.is_empty() {
+            return Err(format!("an exported name was expected, found {line}"));
+        }
+        self.exports.push(name);
+        Ok(declaration)
+    }
+}
+
+/// The names of an import, and the file name of the module.
+fn import(statement: &str) -> Option<(String, String)> {
+    let (names, rest) = statement.strip_prefix("import {")?.split_once('}')?;
+    let path = rest.trim().strip_prefix("from '")?.strip_suffix("';")?;
+    // A binding with another name would need another word in the script.
+    (path.starts_with('.') && !names.contains(" as ")).then(|| (names.to_owned(), file_name(path).to_owned()))
+}
+
+fn file_name(path: &str) -> &str {
+    path.rsplit('/').next().unwrap_or(path)
+}
+
+/// Name of the function in the script that returns the exports of a module.
+fn getter(file: &str) -> String {
+    let stem = file.strip_suffix(".js").unwrap_or(file);
+    format!("module_{}", stem.replace('-', "_"))
+}
+
+/// A script without the text that would end its element.
+fn harmless(script: &str) -> String {
+    script.replace("</script", "<\\/script").replace("<!--", "<\\!--")
+}
+
+/// A text for HTML.
+fn escaped(text: &str) -> String {
+    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::{fs, path::Path};
+
+    #[test]
+    fn a_module_is_run_after_those_that_it_imports() {
+        let modules = [
+            ("app.js", "import { two } from './sub/two.js';\ntwo();\n"),
+            (
+                "sub/two.js",
+                "import {\n  one,\n} from '../one.js';\nexport function two() { return one + 1; }\n",
+            ),
+            ("one.js", "const half = 0.5;\nexport const one = 2 * half;\n"),
+        ];
+        let script = bundle(&modules, "app.js").unwrap();
+        let place = |text: &str| script.find(text).unwrap_or_else(|| panic!("{text} is not in\n{script}"));
+        assert!(place("const one = 2 * half;") < place("function two()"));
+        assert!(place("function two()") < place("two();\n"));
+        assert!(place("return { one };") < place("return { two };"));
+        assert!(!script.contains("import ") && !script.contains("export "), "{script}");
+    }
+
+    #[test]
+    fn sources_in_another_form_are_refused() {
+        let cases = [
+            ("import x from './one.js';", "line 1"),
+            ("import { a as b } from './one.js';", "line 1"),
+            ("import { a } from 'react';", "line 1"),
+            ("export default 1;", "exported function"),
+            ("export let a = 1;", "exported function"),
+            ("import { one } from './three.js';", "no such module"),
+            ("import { app } from './app.js';", "break the circle"),
+            ("", "no module imports it"),
+        ];
+        for (text, expected) in cases {
+            let error =
+                bundle(&[("app.js", text), ("one.js", "export const one = 1;")], "app.js").unwrap_err();
+            assert!(error.contains(expected), "{text}: {error}");
+        }
+    }
+
+    #[test]
+    fn the_sources_of_the_page_become_one_script() {
+        let script = bundle(MODULES, START).unwrap();
+        assert!(!script.contains("\nimport ") && !script.contains("\nexport "));
+    }
+
+    /// Paths of the files of the page that end with a text, but for the tests.
+    fn files(directory: &Path, ending: &str, found: &mut BTreeSet<String>) {
+        for entry in fs::read_dir(directory).unwrap() {
+            let path = entry.unwrap().path();
+            let name = path.file_name().unwrap().to_string_lossy().into_owned();
+            if path.is_dir() {
+                files(&path, ending, found);
+            } else if name.ends_with(ending) && !name.ends_with(".test.js") {
+                found.insert(name);
+            }
+        }
+    }
+
+    #[test]
+    fn every_source_is_embedded() {
+        let web = Path::new(env!("CARGO_MANIFEST_DIR")).join("web");
+        for (embedded, ending) in [(MODULES, ".js"), (STYLES, ".css")] {
+            let mut found = BTreeSet::new();
+            files(&web, ending, &mut found);
+            let embedded: BTreeSet<String> =
+                embedded.iter().map(|(path, _)| file_name(path).to_owned()).collect();
+            assert_eq!(embedded, found);
+        }
+        // The style sheets that the page loads while it is developed are those that are embedded.
+        let imported: String =
+            STYLES.iter().skip(1).map(|(path, _)| format!("@import '{path}';\n")).collect();
+        assert!(include_str!("../web/style.css").starts_with(&imported));
+    }
+
+    #[test]
+    fn a_document_needs_no_other_file_and_has_the_log_inside() {
+        let page = document("a < b", Some(b"\x89MCAP0\r\n"));
+        assert!(page.contains("<title>a &lt; b</title>"));
+        assert!(page.contains("connect-src 'none'") && document("t", None).contains("connect-src 'self'"));
+        assert!(page.contains(&format!("id=\"log-data\">{}</script>", BASE64.encode(b"\x89MCAP0\r\n"))));
+        for outside in ["src=", "href=\"style", "@import", "http://", "https://"] {
+            let lines: Vec<&str> = page.lines().filter(|line| line.contains(outside)).collect();
+            assert!(lines.iter().all(|line| line.contains("www.w3.org")), "{outside}: {lines:?}");
+        }
+        assert!(document("t", None).len() < 400_000, "{} bytes without a log", document("t", None).len());
+    }
+}

@@ -1,0 +1,17 @@
+//! The web page that shows a run: its sources, and how they become one file.
+//!
+//! The sources are plain HTML, CSS and JavaScript modules in `web/`. They are embedded in the programs, so that every
+//! program that shows a run serves or writes the same page. Browsers do not load modules from `file://`, so
+//! [`document`] writes style, modules and log into one HTML file ([`inline`]).
+//!
+//! Browsers cannot decompress zstd everywhere. [`pack`] copies a log with deflate, which all of them have, sorted by
+//! channel, and without the channels that the page does not show. [`tables`] and [`reasons`] are what a page has to
+//! know of the program: the decision tables, and the reasons with their remedies.
+
+mod inline;
+mod pack;
+mod tables;
+
+pub use inline::{bundle, document};
+pub use pack::pack;
+pub use tables::{reasons, tables};

@@ -1,0 +1,104 @@
+//! The decision tables and the reasons as JSON, so that the page can show a row with its meaning.
+
+use interfaces::Reason;
+use levels::ladder::Ladder;
+use rcs_core::{
+    Plain as _,
+    plain::{EnumSchema, Schema, VariantSchema},
+    table::{ActionText, Row, Table, Variable},
+};
+use serde_json::{Value, json};
+
+/// The decision tables of all processes: `[{process, tables: [{name, doc, source, steps, variables, actions, rows}]}]`.
+#[must_use]
+pub fn tables() -> Value {
+    let process = |process: &levels::ladder::ProcessInfo| {
+        let tables: Vec<Value> = process.tables.iter().map(|it| table(it)).collect();
+        json!({ "process": process.name, "tables": tables })
+    };
+    Ladder::processes().iter().map(process).collect()
+}
+
+/// The reasons of failures: `[{code, text, remedy}]`; no remedy if PAUSE and the same command may be enough.
+#[must_use]
+pub fn reasons() -> Value {
+    let Schema::Enum(schema) = Reason::SCHEMA else { return Value::Array(Vec::new()) };
+    let reason = |code: u8, text: &str| {
+        let remedy = rcs_core::plain::from_bytes::<Reason>(&[code]).ok().and_then(Reason::remedy);
+        json!({ "code": code, "text": text, "remedy": remedy })
+    };
+    let named = schema.variants.iter().filter(|variant| !variant.text.is_empty());
+    named.map(|variant| reason(variant.code, variant.text)).collect()
+}
+
+fn table(table: &'static Table) -> Value {
+    json!({
+        "name": table.name,
+        "doc": prose(table.doc.iter().copied()),
+        "source": format!("{}:{}", table.file, table.line),
+        "steps": table.steps.map_or(Value::Array(Vec::new()), values),
+        "variables": table.asked().map(variable).collect::<Value>(),
+        "actions": table.actions.iter().filter_map(|it| action(it, table.rows)).collect::<Value>(),
+        "rows": table.rows.iter().map(row).collect::<Value>(),
+    })
+}
+
+fn variable(variable: &'static Variable) -> Value {
+    json!({ "name": variable.name, "doc": prose([variable.doc]), "values": values(variable.values) })
+}
+
+/// An action with the arguments that the rows give it; `None` if no row names it.
+fn action(action: &ActionText, rows: &[Row]) -> Option<Value> {
+    let naming: Vec<&Row> = rows.iter().filter(|row| row.action == action.name).collect();
+    let given = |name: &str| naming.iter().any(|row| row.argument == Some(name));
+    let arguments = action.argument.iter().flat_map(|of| of.variants).filter(|it| given(it.name)).map(value);
+    let arguments: Value = arguments.collect();
+    let named = json!({ "name": action.name, "doc": prose([action.doc]), "arguments": arguments });
+    (!naming.is_empty()).then_some(named)
+}
+
+fn values(of: &EnumSchema) -> Value {
+    of.variants.iter().map(value).collect()
+}
+
+fn value(variant: &VariantSchema) -> Value {
+    json!({ "name": variant.name, "doc": prose([variant.doc]) })
+}
+
+fn row(row: &Row) -> Value {
+    let when: serde_json::Map<String, Value> =
+        row.when.iter().map(|condition| (condition.variable.to_owned(), json!(condition.values))).collect();
+    json!({ "steps": row.steps, "when": when, "action": row.call().to_string(), "next": row.next })
+}
+
+/// Lines of a doc comment as one text, without the marks of Rust's documentation.
+fn prose<'a>(lines: impl IntoIterator<Item = &'a str>) -> String {
+    let text: Vec<&str> = lines.into_iter().flat_map(str::lines).map(str::trim).collect();
+    text.join(" ").replace(['`', '[', ']'], "").trim().to_owned()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_row_of_every_process_is_there() {
+        let tables = tables();
+        for (process, shown) in Ladder::processes().iter().zip(tables.as_array().unwrap()) {
+            assert_eq!(shown["process"], process.name);
+            for (table, shown) in process.tables.iter().zip(shown["tables"].as_array().unwrap()) {
+                assert_eq!(shown["name"], table.name);
+                assert_eq!(shown["rows"].as_array().unwrap().len(), table.rows.len());
+            }
+        }
+    }
+
+    #[test]
+    fn reasons_have_their_remedies() {
+        let reasons = reasons();
+        let find =
+            |text: &str| reasons.as_array().unwrap().iter().find(|it| it["text"] == text).cloned().unwrap();
+        assert_eq!(find("vision sees no object")["remedy"], Value::Null);
+        assert_eq!(find("the joystick box is on")["remedy"], "switch the frame at the joystick box off");
+    }
+}

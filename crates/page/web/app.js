@@ -1,0 +1,363 @@
+// The page: finds a log, opens it, and draws what changed.
+
+import { openLog } from './log/log.js';
+import { Run } from './log/run.js';
+import { act, actionOf, follow, KEYS } from './view/actions.js';
+import { bar, tabs } from './view/bar.js';
+import { CellView } from './view/cell.js';
+import { byId, colours, h, isShown, patch, windowSize } from './view/dom.js';
+import { hierarchy, paintStrip } from './view/hierarchy.js';
+import { timePane } from './view/timeline.js';
+import { paintTimeline } from './view/timeline-paint.js';
+import { bufferTopics, fieldsPane, messagesPane } from './view/lists.js';
+import { followPointers } from './view/pointer.js';
+import { paintScore } from './view/score.js';
+import { side } from './view/side.js';
+import { consultation, tablePane } from './view/table.js';
+import { firstUi } from './view/ui.js';
+import { why } from './view/why.js';
+
+/** Ticks of a second. */
+const TICKS = 25;
+/** Element with the log of a page that `rcs-log page` wrote. */
+const INSIDE = 'log-data';
+
+class Page {
+  /** @param {Run} run */
+  constructor(run) {
+    this.run = run;
+    this.ui = firstUi(run);
+    /** @type {CellView | null} */
+    this.cell = null;
+    this.colour = colours();
+    this.dirty = true;
+    this.last = 0;
+    this.owed = 0;
+    this.read(location.hash);
+  }
+
+  /**
+   * Take choices from the address: `#view=explain&t=623&process=emove&theme=light&units=mm`.
+   * @param {string} hash
+   */
+  read(hash) {
+    const { ui, run } = this;
+    const wanted = new URLSearchParams(hash.slice(1));
+    const choose = (/** @type {string} */ name, /** @type {(value: string) => void} */ take) => {
+      const value = wanted.get(name);
+      if (value !== null) take(value);
+    };
+    choose('view', (value) => act(this, `view:${value}`, false));
+    choose('tab', (value) => (ui.tab = value));
+    choose('t', (value) => act(this, `seek:${value}`, false));
+    choose('process', (value) => act(this, `process:${value}`, false));
+    choose('panel', (value) => act(this, `panel:${value}`, false));
+    choose('camera', (value) => act(this, `camera:${value}`, false));
+    choose('theme', (value) => (ui.theme = value === 'light' ? 'light' : 'dark'));
+    choose('units', (value) => (ui.units = value === 'mm' ? 'mm' : 'in'));
+    choose('big', () => (ui.big = true));
+    choose('whole', () => act(this, 'whole', false));
+    document.title = `${run.log.name} · RCS-II/T3`;
+  }
+
+  start() {
+    const changed = () => (this.dirty = true);
+    document.addEventListener('click', (event) => this.click(/** @type {Element} */ (event.target)));
+    document.addEventListener('keydown', (event) => this.key(event));
+    document.addEventListener('input', (event) => {
+      if (/** @type {Element} */ (event.target).id !== 'find') return;
+      this.ui.filter = /** @type {HTMLInputElement} */ (event.target).value;
+      changed();
+    });
+    document.addEventListener('pointerover', (event) => {
+      const card = /** @type {HTMLElement | null} */ (
+        /** @type {Element} */ (event.target).closest('[data-process]')
+      );
+      const pointed = card?.dataset.process ?? null;
+      if (pointed !== this.ui.pointed) [this.ui.pointed, this.dirty] = [pointed, true];
+    });
+    followPointers(
+      () => this,
+      () => this.cell,
+      changed,
+    );
+    addEventListener('resize', changed);
+    addEventListener('hashchange', () => {
+      this.read(location.hash);
+      changed();
+    });
+    this.printLight();
+    this.draw();
+    requestAnimationFrame((time) => this.frame(time));
+  }
+
+  /** Paper is light. */
+  printLight() {
+    let { theme } = this.ui;
+    addEventListener('beforeprint', () => {
+      theme = this.ui.theme;
+      this.ui.theme = 'light';
+      this.draw();
+    });
+    addEventListener('afterprint', () => {
+      this.ui.theme = theme;
+      this.draw();
+    });
+  }
+
+  /** Large topics come after the first picture. */
+  async complete() {
+    await this.run.log.load(['/tf', '/joint_states']);
+    this.cell = new CellView(this.run);
+    this.dirty = true;
+  }
+
+  /** @param {Element} target */
+  click(target) {
+    const button = /** @type {HTMLElement | null} */ (target.closest('[data-do]'));
+    if (!target.closest('#popup') && button?.dataset.do !== 'help') byId('popup').hidden = true;
+    if (button?.dataset.do) this.act(button.dataset.do);
+  }
+
+  /** @param {KeyboardEvent} event */
+  key(event) {
+    if (event.key === 'Escape') {
+      byId('popup').hidden = true;
+      /** @type {HTMLElement} */ (document.activeElement)?.blur();
+      return;
+    }
+    const target = /** @type {HTMLElement} */ (event.target);
+    const action = actionOf(event.key);
+    // Space and Enter press the button that has the focus.
+    const presses = event.key === ' ' && target.tagName === 'BUTTON';
+    if (!action || event.ctrlKey || event.metaKey || event.altKey || target.tagName === 'INPUT' || presses)
+      return;
+    event.preventDefault();
+    this.act(action);
+  }
+
+  /** @param {string} action */
+  act(action) {
+    const { ui } = this;
+    const phone = windowSize() === 'phone';
+    if (!act(this, action, phone)) {
+      if (action === 'help') this.help();
+      if (action === 'find') [ui.panel, ui.view] = ['fields', ui.view === 'operate' ? 'trace' : ui.view];
+    }
+    if (action.startsWith('camera') || action === 'nextCamera') this.cell?.reset();
+    if (ui.panel === 'fields') this.loadFields();
+    this.draw();
+    if (action === 'find') document.getElementById('find')?.focus();
+  }
+
+  /** The fields need all topics. */
+  async loadFields() {
+    const topics = bufferTopics(this.run.log);
+    if (topics.every((topic) => this.run.log.has(topic))) return;
+    await this.run.log.load(topics);
+    this.dirty = true;
+  }
+
+  help() {
+    const popup = byId('popup');
+    patch(
+      popup,
+      h(
+        'table',
+        {},
+        h(
+          'tbody',
+          {},
+          KEYS.filter((key) => key[2]).map(([, , keys, text]) =>
+            h('tr', {}, h('td', { class: 'mono' }, keys), h('td', {}, text)),
+          ),
+        ),
+      ),
+    );
+    popup.hidden = !popup.hidden;
+  }
+
+  /** @param {number} time milliseconds */
+  frame(time) {
+    const { ui, run } = this;
+    const passed = Math.min(0.1, (time - this.last) / 1000);
+    this.last = time;
+    if (ui.playing) {
+      this.owed += passed * TICKS * ui.rate;
+      const ticks = Math.floor(this.owed);
+      if (ticks > 0) {
+        this.owed -= ticks;
+        ui.tick = Math.min(run.last, ui.tick + ticks);
+        ui.playing = ui.tick < run.last;
+        follow(ui);
+        this.dirty = true;
+      }
+    }
+    if (this.dirty) this.draw();
+    requestAnimationFrame((next) => this.frame(next));
+  }
+
+  draw() {
+    const { ui } = this;
+    const size = windowSize();
+    const root = document.documentElement;
+    if (root.dataset.theme !== ui.theme) {
+      root.dataset.theme = ui.theme;
+      this.colour = colours();
+    }
+    root.classList.toggle('big', ui.big && size === 'desk');
+    const app = byId('app');
+    [app.dataset.view, app.dataset.tab] = [ui.view, ui.tab];
+    app.setAttribute('aria-busy', 'false');
+    patch(byId('bar'), ...bar(this));
+    patch(byId('tabs'), ...tabs(this));
+    const panes = /** @type {[string, () => import('./view/dom.js').Children[]][]} */ ([
+      ['hierarchy', () => [hierarchy(this)]],
+      ['side', () => side(this)],
+      ['why', () => why(this)],
+      ['time', () => timePane(this, size)],
+    ]);
+    for (const [id, content] of panes) {
+      if (isShown(byId(id))) patch(byId(id), ...content());
+    }
+    if (isShown(byId('table'))) this.drawTable(size);
+    if (isShown(byId('hierarchy'))) {
+      for (const canvas of byId('hierarchy').querySelectorAll('canvas'))
+        paintStrip(this, canvas, canvas.dataset.strip ?? '', this.colour);
+    }
+    if (isShown(byId('time')))
+      paintTimeline(this, /** @type {HTMLCanvasElement} */ (byId('timeline')), size, this.colour);
+    this.cell?.draw(this, this.colour);
+    this.dirty = false;
+  }
+
+  /** @param {import('./view/dom.js').Size} size */
+  drawTable(size) {
+    const { ui } = this;
+    const pane = byId('table');
+    const panels = h(
+      'div',
+      { class: 'choice panels', role: 'group', 'aria-label': 'contents' },
+      [
+        ['table', 'Table'],
+        ['fields', 'Fields'],
+        ['messages', 'Messages'],
+      ].map(([panel, name]) =>
+        h('button', { 'data-do': `panel:${panel}`, 'aria-pressed': String(ui.panel === panel) }, name),
+      ),
+    );
+    const choice = ui.view === 'trace' || size === 'phone' ? panels : null;
+    pane.classList.remove('bad');
+    if (ui.panel === 'fields') return patch(pane, ...fieldsPane(this, panels));
+    if (ui.panel === 'messages') {
+      patch(pane, ...messagesPane(this, panels));
+      return showLast(pane);
+    }
+    const em = parseFloat(getComputedStyle(document.documentElement).fontSize) / 14;
+    patch(pane, ...tablePane(this, choice, { width: pane.clientWidth, height: pane.clientHeight, em }));
+    const shown = consultation(this);
+    if (!shown) return;
+    pane.classList.toggle('bad', shown.failed);
+    paintScore(this, pane, shown.table.name, shown.failed, this.colour);
+    showFired(pane);
+  }
+}
+
+/** Scroll so that the row that fired is in the pane. @param {HTMLElement} pane */
+function showFired(pane) {
+  const scroll = /** @type {HTMLElement | null} */ (pane.querySelector('.table-scroll'));
+  const fired = /** @type {HTMLElement | null} */ (pane.querySelector('tr.fired'));
+  if (!scroll || !fired) return;
+  const [top, bottom] = [fired.offsetTop - 34, fired.offsetTop + fired.offsetHeight + 6];
+  if (top < scroll.scrollTop || bottom > scroll.scrollTop + scroll.clientHeight) {
+    scroll.scrollTop = Math.max(0, fired.offsetTop - scroll.clientHeight * 0.45);
+  }
+}
+
+/** Scroll so that the last message up to the present tick is in the pane. @param {HTMLElement} pane */
+function showLast(pane) {
+  const list = /** @type {HTMLElement | null} */ (pane.querySelector('.list'));
+  const past = /** @type {NodeListOf<HTMLElement>} */ (pane.querySelectorAll('.log-line:not(.fut)'));
+  const last = past[past.length - 1];
+  if (!list || !last) return;
+  const top = last.offsetTop - list.offsetTop;
+  if (top < list.scrollTop || top + last.offsetHeight > list.scrollTop + list.clientHeight)
+    list.scrollTop = top - list.clientHeight * 0.7;
+}
+
+/** @param {string} name @param {Uint8Array} bytes */
+async function show(name, bytes) {
+  const page = new Page(new Run(await openLog(name, bytes)));
+  byId('start').hidden = true;
+  page.start();
+  await page.complete();
+}
+
+/** Say what went wrong, where the person looks. @param {unknown} error */
+function fail(error) {
+  const start = byId('start');
+  start.hidden = false;
+  const text = error instanceof Error ? error.message : String(error);
+  patch(
+    start,
+    h('div', { class: 'notice', role: 'alert' }, h('h1', {}, 'The log cannot be shown'), h('p', {}, text)),
+  );
+}
+
+/** Ask for a log. */
+function ask() {
+  const start = byId('start');
+  start.hidden = false;
+  patch(
+    start,
+    h(
+      'div',
+      { class: 'notice' },
+      h('h1', {}, 'No log is open'),
+      h('p', {}, 'Drop a log here, or choose one. It stays on this machine.'),
+      h('input', {
+        type: 'file',
+        accept: '.mcap',
+        id: 'choose',
+        'aria-label': 'a log, a file that ends with .mcap',
+      }),
+      h('p', { class: 'dim' }, 'rcs-log page LOG -o run.html writes a page with the log inside.'),
+    ),
+  );
+  const take = async (/** @type {File | undefined} */ file) => {
+    if (file) await show(file.name, new Uint8Array(await file.arrayBuffer())).catch(fail);
+  };
+  byId('choose').addEventListener('change', (event) =>
+    take(/** @type {HTMLInputElement} */ (event.target).files?.[0]),
+  );
+  addEventListener('dragover', (event) => event.preventDefault());
+  addEventListener('drop', (event) => {
+    event.preventDefault();
+    void take(event.dataTransfer?.files[0]);
+  });
+}
+
+/**
+ * The log inside the page, or that of the address (`?log=run.mcap`); null if there is none.
+ * @returns {Promise<[string, Uint8Array] | null>}
+ */
+async function find() {
+  const inside = document.getElementById(INSIDE);
+  if (inside) {
+    const text = atob(inside.textContent ?? '');
+    inside.remove();
+    return [document.title, Uint8Array.from(text, (letter) => letter.charCodeAt(0))];
+  }
+  const address = new URLSearchParams(location.search).get('log');
+  if (!address) return null;
+  const url = new URL(address, location.href);
+  if (url.origin !== location.origin)
+    throw new Error(`The log is at ${url.origin}: only a log of ${location.origin} is opened.`);
+  const answer = await fetch(url);
+  if (!answer.ok) throw new Error(`${address}: the server answers ${answer.status} ${answer.statusText}.`);
+  return [address.split('/').at(-1) ?? address, new Uint8Array(await answer.arrayBuffer())];
+}
+
+find()
+  .then((found) => (found ? show(...found) : ask()))
+  .catch(fail);

@@ -1,0 +1,76 @@
+// The lines of the job with the ticks in which they ran.
+//
+// The log has the text of the job and the commands that Task got. Lines of the workstation (`**`) leave no
+// message, so
+// their ticks are those between the commands around them.
+
+/**
+ * @typedef {{ text: string, station: boolean, start: number, end: number, status: string }} JobLine
+ *   `station`: a line that the workstation executes. `start` is Infinity for a line that did not begin.
+ * @typedef {{ text: string, first_tick: number, last_tick: number, status: string }} RunCommand
+ */
+
+/**
+ * @param {string} text the file of the job
+ * @param {RunCommand[]} commands what Task executed
+ * @returns {JobLine[]}
+ */
+export function jobLines(text, commands) {
+  const executed = commands.filter((command) => command.text !== 'PAUSE');
+  /** @type {JobLine[]} */
+  const lines = [];
+  let at = 0;
+  for (const line of text.split('\n').map((it) => it.trim())) {
+    const [, mark, rest] = /^(==|\*\*)\s+(.*)$/.exec(line) ?? [];
+    if (!mark) continue;
+    const before = lines.at(-1);
+    const reached = before === undefined || (before.end !== Infinity && before.status !== 'error');
+    if (mark === '**') {
+      const start = reached ? (before?.end ?? 0) : Infinity;
+      lines.push({ text: rest.replace(/\s*#.*$/, ''), station: true, start, end: start, status: '' });
+      continue;
+    }
+    const command = executed[at];
+    const begun = command !== undefined;
+    if (begun) at += 1;
+    lines.push({
+      text: begun ? command.text : inWords(rest),
+      station: false,
+      start: begun ? command.first_tick : Infinity,
+      end: begun ? command.last_tick : Infinity,
+      status: begun ? command.status : '',
+    });
+  }
+  return lines;
+}
+
+/**
+ * Index of the line that runs in a tick; -1 before the first.
+ * @param {JobLine[]} lines
+ * @param {number} tick
+ */
+export function lineAt(lines, tick) {
+  return lines.reduce((found, line, index) => (line.start <= tick ? index : found), -1);
+}
+
+/**
+ * `MOVE LINKBAR1_BH +2 UNIT_1 4 +2 PFIXTURE 0 -- 0` as `MOVE LINKBAR1_BH from UNIT_1:4 to PFIXTURE`.
+ * @param {string} line
+ */
+function inWords(line) {
+  const [verb, object, ...rest] = line.replace(/#.*$/, '').trim().split(/\s+/);
+  const places = rest.filter((word) => !/^\+/.test(word));
+  const place = (/** @type {number} */ at) => {
+    const [name, sector] = [places[at], places[at + 1]];
+    if (!name || name === '--') return '';
+    return sector && sector !== '0' ? `${name}:${sector}` : name;
+  };
+  const [source, destination] = [place(0), place(2)];
+  const words = [
+    verb,
+    object === '--' ? '' : object,
+    source && `from ${source}`,
+    destination && `to ${destination}`,
+  ];
+  return words.filter(Boolean).join(' ');
+}

@@ -1,0 +1,186 @@
+// The state bar: state, line of the job, hand, speed, time, and the choices of the view.
+
+import { seconds } from '../log/units.js';
+import { h } from './dom.js';
+import { icon } from './icons.js';
+import { VIEWS } from './ui.js';
+
+const ICON = { run: 'run', fault: 'fault', pause: 'pause', done: 'done' };
+/** Ticks of a second. */
+const TICKS = 25;
+/** Ticks of a line of the job that is drawn with the smallest width. */
+const SHORT = 420;
+
+/** @param {import('./ui.js').Context} context */
+export function bar({ run, ui }) {
+  const { mode, title, detail } = run.mode(ui.tick);
+  return [
+    h('h1', { class: 'hidden' }, run.log.name),
+    h(
+      'div',
+      { class: 'state past', 'data-k': mode, role: 'status' },
+      icon(ICON[mode]),
+      h('div', {}, h('b', {}, title), h('small', {}, detail)),
+    ),
+    job(run, ui, mode),
+    h('div', { class: 'fact' }, h('small', {}, 'In hand'), hand(run.held(ui.tick))),
+    h(
+      'div',
+      { class: 'fact sp' },
+      h('small', {}, 'Speed'),
+      h('b', {}, `${run.knob(ui.tick)} `, h('em', {}, '%')),
+    ),
+    h(
+      'div',
+      { class: 'fact tk' },
+      h(
+        'div',
+        { class: 'factrow' },
+        ring(ui.tick),
+        h('div', {}, h('small', {}, `Tick ${ui.tick} of ${run.last}`), h('b', {}, seconds(ui.tick))),
+      ),
+    ),
+    tools(ui),
+  ];
+}
+
+/** @param {{ kind: string, name: string, grip: number | null }} held */
+function hand(held) {
+  if (held.kind !== 'object')
+    return h('b', {}, held.kind === 'nothing' ? 'nothing' : held.kind.replace(/-/g, ' '));
+  return h('b', {}, held.name, held.grip === null ? null : h('em', {}, ` grip ${held.grip}`));
+}
+
+/** @param {import('../log/run.js').Run} run @param {import('./ui.js').Ui} ui @param {string} mode */
+function job(run, ui, mode) {
+  const at = run.line(ui.tick);
+  const line = run.job[at];
+  const place = at < 0 ? 'Before the job' : `Line ${at + 1} of ${run.job.length}`;
+  const reason = mode === 'fault' ? run.cause?.title : undefined;
+  return h(
+    'div',
+    { class: 'job' },
+    h(
+      'div',
+      { class: 'l' },
+      h('b', {}, run.job.length ? place : 'No job'),
+      reason && h('span', { class: 'reason' }, reason),
+      h('span', {}, line?.text ?? ''),
+    ),
+    h(
+      'div',
+      { class: 'segments', role: 'img', 'aria-label': place },
+      run.job.map((it, index) => segment(it, index, at, ui.tick, mode)),
+    ),
+  );
+}
+
+/**
+ * @param {import('../log/job.js').JobLine} line
+ * @param {number} index
+ * @param {number} at
+ * @param {number} tick
+ * @param {string} mode
+ */
+function segment(line, index, at, tick, mode) {
+  const length = line.start === Infinity ? SHORT * 2 : line.end - line.start;
+  const width = line.station ? 0.4 : Math.max(1, Math.min(6, length / SHORT));
+  const done = index < at ? 'd' : index === at ? `c ${mode}` : '';
+  const share = index === at && length > 0 ? Math.min(1, (tick - line.start) / length) : 1;
+  return h('i', { class: done, style: `flex:${width.toFixed(2)};--f:${(share * 100).toFixed(1)}%` });
+}
+
+/** A mark for each tick of the second. @param {number} tick */
+function ring(tick) {
+  const now = tick % TICKS;
+  const marks = Array.from({ length: TICKS }, (_, index) => {
+    const turn = (index / TICKS) * 2 * Math.PI - Math.PI / 2;
+    const [x, y] = [Math.cos(turn), Math.sin(turn)];
+    const point = (/** @type {number} */ radius) =>
+      `${(18 + x * radius).toFixed(1)} ${(18 + y * radius).toFixed(1)}`;
+    const colour = index === now ? '--acc' : index < now ? '--t3' : '--line2';
+    return h('path', {
+      d: `M${point(13.4)}L${point(17)}`,
+      stroke: `var(${colour})`,
+      'stroke-width': index === now ? 2.6 : 1.5,
+    });
+  });
+  const number = {
+    x: 18,
+    y: 21.6,
+    'text-anchor': 'middle',
+    'font-size': 10,
+    'font-weight': 600,
+    fill: 'var(--t2)',
+  };
+  return h(
+    'svg',
+    { class: 'ring', viewBox: '0 0 36 36', role: 'img', 'aria-label': `tick ${now} of this second` },
+    marks,
+    h('text', number, String(now)),
+  );
+}
+
+/** @param {import('./ui.js').Ui} ui */
+function tools(ui) {
+  const views = VIEWS.map(([view, name, text], index) =>
+    h(
+      'button',
+      {
+        'data-do': `view:${view}`,
+        'aria-pressed': String(ui.view === view),
+        title: `${text} (${index + 1})`,
+      },
+      icon(name),
+      h('span', {}, text),
+    ),
+  );
+  return h(
+    'div',
+    { class: 'tools' },
+    h('span', { class: 'recorded' }, 'LOG'),
+    h('div', { class: 'choice views', role: 'group', 'aria-label': 'View' }, views),
+    h(
+      'button',
+      {
+        class: 'icon-button mono',
+        'data-do': 'units',
+        title: 'inches and pounds, or millimetres and newtons (u)',
+        'aria-label': ui.units === 'in' ? 'in: inches and pounds' : 'mm: millimetres and newtons',
+      },
+      ui.units,
+    ),
+    h(
+      'button',
+      { class: 'icon-button', 'data-do': 'theme', title: 'dark or light (d)', 'aria-label': 'dark or light' },
+      icon('theme'),
+    ),
+    h(
+      'button',
+      { class: 'icon-button', 'data-do': 'help', title: 'keys (?)', 'aria-label': 'keys' },
+      icon('help'),
+    ),
+  );
+}
+
+const TABS = [
+  ['cell', 'cell', 'Cell'],
+  ['hierarchy', 'hierarchy', 'Processes'],
+  ['table', 'table', 'Table'],
+  ['time', 'time', 'Why'],
+];
+
+/** The tabs of a phone. @param {import('./ui.js').Context} context */
+export function tabs({ run, ui }) {
+  return TABS.map(([id, name, text]) =>
+    h(
+      'button',
+      {
+        'data-do': `tab:${id}`,
+        'aria-current': ui.tab === id ? 'page' : null,
+      },
+      icon(name),
+      id === 'time' && !run.cause ? 'Time' : text,
+    ),
+  );
+}

@@ -1,0 +1,400 @@
+// The cell: bodies at their places, names, contacts, the picture of the camera, and instruments.
+
+import { Frames, WORLD } from '../cell/frames.js';
+import { IDENTITY, transform } from '../cell/matrix.js';
+import { Renderer } from '../cell/renderer.js';
+import { processOf } from '../log/processes.js';
+import { lastUpTo } from '../log/series.js';
+import { stateOf } from '../log/state.js';
+import { bareLength, duration, force, length, speed } from '../log/units.js';
+import { byId, h, isShown, patch } from './dom.js';
+import { fingers, jointAngles, nearestLimit, speedAt } from './side.js';
+
+/** @typedef {import('../cell/matrix.js').Point} Point */
+
+const TOOL_POINT = 'tool_point';
+/** Ticks of the trail, and ticks between its points. */
+const TRAIL = { ticks: 500, step: 5 };
+/** Ticks for which a picture of the camera stays in the cell. */
+const PICTURE_TICKS = 250;
+/** Radius of a mark at a contact, metres: from far, from near, and of a permitted one. */
+const BALL = { far: 0.05, near: 0.022, permitted: 0.012 };
+
+/**
+ * Where the buttons put the camera: radians, metres. Without a target it follows the tool point, or a
+ * contact.
+ * @typedef {{ name: string, azimuth: number, elevation: number, distance: number, target: Point | null }} Preset
+ * @type {Record<string, Preset>}
+ */
+export const CAMERAS = {
+  cell: { name: 'Cell', azimuth: -1.6, elevation: 0.46, distance: 6.5, target: [0.42, -0.62, -0.34] },
+  gripper: { name: 'Gripper', azimuth: -1.2, elevation: 0.3, distance: 1.9, target: null },
+  top: { name: 'Top', azimuth: -Math.PI / 2, elevation: 1.5, distance: 8.2, target: [0.35, -0.6, -0.6] },
+  contact: { name: 'Contact', azimuth: -1.05, elevation: 0.34, distance: 1.75, target: null },
+};
+const DISTANCE = { least: 0.4, most: 14 };
+
+export class CellView {
+  /** @param {import('../log/run.js').Run} run */
+  constructor(run) {
+    this.run = run;
+    this.canvas = /** @type {HTMLCanvasElement} */ (byId('gl'));
+    this.frames = new Frames(run.log.series('/tf'), run.log.series('/tf_static'));
+    this.turn = { azimuth: 0, elevation: 0, distance: 1 };
+    /** @type {Renderer | null} */
+    this.renderer = null;
+    this.trouble = '';
+    try {
+      this.renderer = new Renderer(this.canvas, run.log.series('/meshes').latest(run.last)?.entities ?? []);
+    } catch (error) {
+      this.trouble = error instanceof Error ? error.message : String(error);
+    }
+    this.names = (run.log.series('/names').latest(run.last)?.entities ?? []).flatMap(
+      (/** @type {any} */ entity) => {
+        const [text] = entity.texts;
+        return text
+          ? [
+              {
+                text: text.text,
+                frame: entity.frame_id,
+                place: [text.pose.position.x, text.pose.position.y, text.pose.position.z],
+              },
+            ]
+          : [];
+      },
+    );
+    this.pictures = run.log.series('/camera');
+    /** @type {Map<number, string>} */
+    this.urls = new Map();
+  }
+
+  /**
+   * Turn the camera by a drag, or move it nearer.
+   * @param {number} right
+   * @param {number} down
+   * @param {number} nearer
+   */
+  move(right, down, nearer) {
+    this.turn.azimuth -= right;
+    this.turn.elevation += down;
+    this.turn.distance *= nearer;
+  }
+
+  /** Put the camera where its button puts it. */
+  reset() {
+    this.turn = { azimuth: 0, elevation: 0, distance: 1 };
+  }
+
+  /** @param {import('./ui.js').Context} context @param {Record<string, string>} colour */
+  draw(context, colour) {
+    if (!isShown(byId('cell'))) return;
+    const { ui, run } = context;
+    const contacts = run.contactsAt(ui.tick);
+    const collision = contacts.filter((it) => !it.permitted).sort((a, b) => b.depth - a.depth)[0];
+    if (this.renderer) {
+      this.renderer.draw(this.picture(context, contacts, colour));
+      patch(byId('labels'), ...this.labels(context, collision));
+    }
+    patch(byId('cell-overlay'), this.overlay(context));
+    const room =
+      innerWidth > 700 && ui.view !== 'operate' && !ui.big && !(innerWidth < 1200 && ui.view === 'explain');
+    byId('instruments').hidden = !room;
+    if (room) patch(byId('instruments'), ...this.instruments(context));
+  }
+
+  /**
+   * @param {import('./ui.js').Context} context
+   * @param {import('../log/run.js').Contact[]} contacts
+   * @param {Record<string, string>} colour
+   * @returns {import('../cell/renderer.js').Picture}
+   */
+  picture({ ui }, contacts, colour) {
+    const renderer = /** @type {Renderer} */ (this.renderer);
+    const near = ui.camera === 'contact' || ui.camera === 'gripper';
+    const tints = new Map();
+    for (const name of ui.pointed ? processOf(ui.pointed).meshes : [])
+      tints.set(name, { colour: rgb(colour.acc), amount: 0.55 });
+    for (const { mover, permitted } of contacts) {
+      if (!permitted) tints.set(mover, { colour: rgb(colour.flt), amount: 0.5 });
+    }
+    const trail = [];
+    for (let tick = Math.max(0, ui.tick - TRAIL.ticks); tick <= ui.tick; tick += TRAIL.step) {
+      const place = this.frames.place(TOOL_POINT, tick);
+      if (place) trail.push(place);
+    }
+    return {
+      matrices: renderer.bodies.map(({ frame }) =>
+        frame === WORLD ? IDENTITY : this.frames.matrix(frame, ui.tick),
+      ),
+      tints,
+      trail,
+      trailColour: rgb(colour.acc),
+      balls: contacts.map(({ point, permitted }) => ({
+        place: point,
+        radius: permitted ? BALL.permitted : near ? BALL.near : BALL.far,
+        colour: rgb(permitted ? colour.run : colour.flt),
+        glow: !permitted,
+      })),
+      light: ui.theme === 'light',
+      camera: this.camera(ui, contacts.find((it) => !it.permitted)?.point ?? null),
+    };
+  }
+
+  /**
+   * @param {import('./ui.js').Ui} ui
+   * @param {Point | null} contact
+   * @returns {import('../cell/renderer.js').Camera}
+   */
+  camera(ui, contact) {
+    const preset = CAMERAS[ui.camera];
+    const { clientWidth, clientHeight } = this.canvas;
+    const aspect = clientWidth / Math.max(1, clientHeight);
+    const followed = (ui.camera === 'contact' && (contact ?? this.causePlace())) ||
+      this.frames.place(TOOL_POINT, ui.tick) || [0, 0, 0];
+    const target = /** @type {Point} */ (preset.target ?? [followed[0], followed[1], followed[2] + 0.12]);
+    // A narrow picture of the whole cell needs more distance, and looks more from above.
+    const wide = preset.target ? Math.max(1, 1.38 / aspect) : 1;
+    const steeper = preset.target && preset.elevation < 1.2 ? Math.max(0, 1 - aspect) * 0.62 : 0;
+    return {
+      target,
+      azimuth: preset.azimuth + this.turn.azimuth,
+      elevation: Math.max(0.02, Math.min(1.55, preset.elevation + steeper + this.turn.elevation)),
+      distance: Math.max(
+        DISTANCE.least,
+        Math.min(DISTANCE.most, preset.distance * wide * this.turn.distance),
+      ),
+    };
+  }
+
+  /** The place of the first collision. @returns {Point | null} */
+  causePlace() {
+    return this.run.contacts.flatMap((it) => it.contacts).find((it) => !it.permitted)?.point ?? null;
+  }
+
+  /**
+   * @param {import('./ui.js').Context} context
+   * @param {import('../log/run.js').Contact | undefined} collision
+   */
+  labels({ run, ui }, collision) {
+    const renderer = /** @type {Renderer} */ (this.renderer);
+    const labels = new Labels(renderer.size);
+    if (collision) {
+      const where = collision.point.map((value) => bareLength(ui.units, value / 0.0254)).join(' ');
+      labels.add(
+        'label hit',
+        renderer.project(collision.point),
+        [
+          `${collision.mover} in ${collision.obstacle}`,
+          `${length(ui.units, collision.depth, 3)} deep at ${where} ${ui.units}`,
+        ],
+        [70, -74],
+        true,
+      );
+    }
+    const place = this.frames.place(TOOL_POINT, ui.tick);
+    const point = run.toolPoint(ui.tick);
+    if (place && point && !collision) {
+      labels.add(
+        'label tp',
+        renderer.project(place),
+        [`${point.map((value) => bareLength(ui.units, value, 1)).join(' ')} ${ui.units}`],
+        [0, -16],
+        true,
+      );
+    }
+    if (!CAMERAS[ui.camera].target) return labels.shown;
+    const command = stateOf(run, 'emove', ui.tick).command;
+    for (const { text, frame, place: at } of this.names) {
+      const matrix = frame === WORLD ? IDENTITY : this.frames.matrix(frame, ui.tick);
+      if (!matrix || text === 'T3') continue;
+      const isGoal =
+        text.split(' ').some((/** @type {string} */ word) => command.includes(word)) &&
+        !command.startsWith('E-PAUSE');
+      labels.add(
+        `label ${isGoal ? 'hot' : ''}`,
+        renderer.project(transform(matrix, at)),
+        [text],
+        [0, 0],
+        false,
+      );
+    }
+    return labels.shown;
+  }
+
+  /**
+   * Buttons of the camera, and the last picture that vision took.
+   * @param {import('./ui.js').Context} context
+   */
+  overlay({ run, ui }) {
+    const cameras = Object.entries(CAMERAS).filter(([id]) => id !== 'contact' || this.causePlace());
+    return [
+      this.trouble ? h('p', { class: 'trouble' }, this.trouble) : null,
+      this.cameraPicture(run, ui),
+      h(
+        'div',
+        { class: 'camera-choice' },
+        h(
+          'div',
+          { class: 'choice', role: 'group', 'aria-label': 'camera' },
+          cameras.map(([id, { name }]) =>
+            h(
+              'button',
+              { 'data-do': `camera:${id}`, 'aria-pressed': String(ui.camera === id && !ui.turned) },
+              name,
+            ),
+          ),
+        ),
+      ),
+    ];
+  }
+
+  /** @param {import('../log/run.js').Run} run @param {import('./ui.js').Ui} ui */
+  cameraPicture(run, ui) {
+    // The picture is written in the tick after the answer.
+    const index = this.pictures.index(ui.tick + 1);
+    const vision = run.vision[lastUpTo(run.vision, ui.tick, (it) => it.tick)]?.status ?? 'idle';
+    const failed = !/^(idle|busy|done)$/.test(vision);
+    if (index < 0 || byId('stage').clientHeight < 240) return null;
+    const age = ui.tick - this.pictures.tick(index);
+    if (age > PICTURE_TICKS && !failed) return null;
+    const title = failed ? vision.replace(/-/g, ' ') : 'camera';
+    return h(
+      'figure',
+      { class: `picture ${failed ? 'bad' : ''}` },
+      h('img', { alt: `what the camera saw: ${title}`, src: this.url(index) }),
+      h('figcaption', {}, h('b', {}, title), h('span', {}, `tick ${this.pictures.tick(index)}`)),
+    );
+  }
+
+  /** The address of a picture of the camera. @param {number} index */
+  url(index) {
+    const known = this.urls.get(index);
+    if (known) return known;
+    const { data, format } = this.pictures.get(index);
+    const url = URL.createObjectURL(new Blob([data], { type: `image/${format === 'png' ? 'png' : 'jpeg'}` }));
+    this.urls.set(index, url);
+    return url;
+  }
+
+  /** @param {import('./ui.js').Context} context */
+  instruments({ run, ui }) {
+    const grip = run.log.series('/grip/status').latest(ui.tick);
+    const held = run.held(ui.tick);
+    const point = run.toolPoint(ui.tick);
+    const angles = jointAngles(run, ui.tick);
+    const near = angles ? nearestLimit(angles) : null;
+    const instrument = (/** @type {import('./dom.js').Children[]} */ ...content) =>
+      h('div', { class: 'instrument' }, content.flat());
+    return [
+      instrument(
+        grip ? fingers(grip, held.kind === 'object') : null,
+        h(
+          'div',
+          {},
+          h('small', {}, 'Hand'),
+          h('b', {}, held.kind === 'object' ? held.name : held.kind.replace(/-/g, ' ')),
+          grip ? h('span', {}, `${length(ui.units, grip.position / 100)} apart`) : null,
+          grip
+            ? h('span', {}, `${force(ui.units, grip.left_force)} · ${force(ui.units, grip.right_force)}`)
+            : null,
+        ),
+      ),
+      instrument(
+        h(
+          'div',
+          {},
+          h('small', {}, `Tool point, ${ui.units}`),
+          h(
+            'b',
+            { class: 'mono' },
+            point ? point.map((value) => bareLength(ui.units, value)).join('  ') : '–',
+          ),
+          h(
+            'span',
+            {},
+            `${speed(ui.units, speedAt(run, ui.tick))}${near ? ` · ${near[0]} ${near[1].toFixed(1)}° from its limit` : ''}`,
+          ),
+        ),
+      ),
+      ui.view === 'explain' ? this.visionInstrument(run, ui, instrument) : null,
+    ];
+  }
+
+  /**
+   * @param {import('../log/run.js').Run} run
+   * @param {import('./ui.js').Ui} ui
+   * @param {(...content: import('./dom.js').Children[]) => import('./dom.js').Element} instrument
+   */
+  visionInstrument(run, ui, instrument) {
+    const state = stateOf(run, 'vision', ui.tick);
+    const answers = run.vision.filter((it) => it.tick <= ui.tick && !/^(idle|busy)$/.test(it.status));
+    const last = answers.at(-1);
+    return instrument(
+      h(
+        'div',
+        {},
+        h('small', {}, 'Vision'),
+        h('b', {}, state.status.replace(/-/g, ' ')),
+        last
+          ? h(
+              'span',
+              {},
+              `${answers.length} ${answers.length === 1 ? 'answer' : 'answers'}, the last at tick ${last.tick},`,
+            )
+          : null,
+        last ? h('span', {}, `${duration(ui.tick - last.tick)} ago`) : null,
+      ),
+    );
+  }
+}
+
+/** Labels that do not cover each other. */
+class Labels {
+  /** @param {number[]} size of the picture, pixels */
+  constructor([width, height]) {
+    this.width = width;
+    this.height = height;
+    /** @type {{ left: number, top: number, right: number, bottom: number }[]} */
+    this.used = [];
+    /** @type {import('./dom.js').Element[]} */
+    this.shown = [];
+  }
+
+  /**
+   * @param {string} kind
+   * @param {[number, number] | null} at
+   * @param {string[]} lines
+   * @param {[number, number]} offset
+   * @param {boolean} always show it even where another label is
+   */
+  add(kind, at, lines, [right, down], always) {
+    if (!at || at[0] < 0 || at[0] > this.width || at[1] < 0 || at[1] > this.height) return;
+    const half = (Math.max(...lines.map((line) => line.length)) * 6.7 + 18) / 2;
+    const x = Math.max(half + 4, Math.min(this.width - half - 4, at[0] + right));
+    const tall = 9 * lines.length;
+    const y = Math.max(tall + 4, Math.min(this.height - tall - 4, at[1] + down));
+    const box = { left: x - half, top: y - tall, right: x + half, bottom: y + tall };
+    const covers = this.used.some(
+      (it) =>
+        box.left < it.right + 4 && box.right + 4 > it.left && box.top < it.bottom && box.bottom > it.top,
+    );
+    if (covers && !always) return;
+    this.used.push(box);
+    const style = `transform:translate(${x.toFixed(1)}px,${y.toFixed(1)}px) translate(-50%,-50%)`;
+    const [first, ...rest] = lines;
+    this.shown.push(
+      h(
+        'span',
+        { class: kind, style },
+        first,
+        rest.map((line) => h('small', {}, line)),
+      ),
+    );
+  }
+}
+
+/** `#rrggbb` as numbers from 0 to 1. @param {string} colour @returns {[number, number, number]} */
+function rgb(colour) {
+  const value = parseInt(colour.slice(1), 16);
+  return [(value >> 16) / 255, ((value >> 8) & 255) / 255, (value & 255) / 255];
+}

@@ -1,0 +1,80 @@
+// What the person at the page has chosen. Nothing of it is in the log.
+
+/**
+ * @typedef {'operate' | 'explain' | 'trace'} View
+ * @typedef {'table' | 'fields' | 'messages'} Panel
+ * @typedef {import('../log/units.js').Units} Units
+ *
+ * @typedef {object} Ui
+ * @property {View} view
+ * @property {string} tab part that a phone shows
+ * @property {Panel} panel
+ * @property {string} process whose table is shown
+ * @property {string | null} consulted another table of the same tick; null for the one that decided
+ * @property {number} tick
+ * @property {boolean} playing
+ * @property {number} rate
+ * @property {[number, number]} window first and last tick of the timeline
+ * @property {string} camera
+ * @property {boolean} turned the camera is no longer where its button puts it
+ * @property {boolean} allRows
+ * @property {string} filter of the fields
+ * @property {string[]} watched fields that are curves
+ * @property {string | null} pointed process under the pointer
+ * @property {Units} units
+ * @property {'dark' | 'light'} theme
+ * @property {boolean} big letters for a projector
+ */
+
+/** @typedef {{ run: import('../log/run.js').Run, ui: Ui }} Context */
+
+export const VIEWS = /** @type {[View, string, string][]} */ ([
+  ['operate', 'cell', 'Operate'],
+  ['explain', 'hierarchy', 'Explain'],
+  ['trace', 'time', 'Trace'],
+]);
+
+/**
+ * The window of the timeline that shows a failure with the command that led to it.
+ * @param {import('../log/run.js').Run} run
+ * @returns {[number, number]}
+ */
+export function windowOf(run) {
+  const cause = run.cause?.tick;
+  if (cause === undefined) return wholeRun(run);
+  const command = run.lanes.find((lane) => lane.id === 'subtask')?.bars.findLast((bar) => bar.start <= cause);
+  const begin = Math.max(command?.start ?? 0, cause - 420);
+  const end = Math.min(run.last, cause + 40);
+  const width = Math.max(200, end - begin);
+  return [Math.max(0, begin - width * 0.32), end + width * 0.12];
+}
+
+/** The window with all ticks. @param {import('../log/run.js').Run} run @returns {[number, number]} */
+export function wholeRun(run) {
+  return [0, Math.max(25, run.last * 1.02)];
+}
+
+/** @param {import('../log/run.js').Run} run @returns {Ui} */
+export function firstUi(run) {
+  const cause = run.cause;
+  return {
+    view: cause ? 'trace' : 'explain',
+    tab: cause ? 'time' : 'cell',
+    panel: 'table',
+    process: cause?.process ?? (cause?.kind === 'contact' ? 'prim' : 'emove'),
+    consulted: null,
+    tick: cause?.tick ?? run.last,
+    playing: false,
+    rate: 1,
+    window: windowOf(run),
+    camera: cause?.kind === 'contact' ? 'contact' : 'cell',
+    turned: false,
+    allRows: false,
+    filter: '',
+    watched: [],
+    pointed: null,
+    units: 'in',
+    theme: matchMedia('(prefers-color-scheme: light)').matches ? 'light' : 'dark',
+    big: false,
+  };
+}

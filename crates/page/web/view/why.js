@@ -1,0 +1,219 @@
+// Why it failed: orders go down, the cause is the deepest card, reports come up. Or, if it did not fail, what
+// was done.
+
+import { chainOf, remedyOf } from '../log/explanation.js';
+import { idOf, processOf } from '../log/processes.js';
+import { amount, clock, duration, seconds, TICK_S } from '../log/units.js';
+import { h } from './dom.js';
+import { icon } from './icons.js';
+
+/** Indentation of an event in the cell, in levels. */
+const CELL_LEVEL = 0;
+
+/** @param {import('./ui.js').Context} context */
+export function why(context) {
+  return context.run.cause ? failure(context) : finished(context);
+}
+
+/** @param {import('./ui.js').Context} context */
+function failure({ run, ui }) {
+  const cause = /** @type {import('../log/explanation.js').Cause} */ (run.cause);
+  const process = cause.process ? processOf(cause.process).name : '';
+  const evidence = run.why?.failure?.evidence ?? [];
+  const data = run.why?.world?.data ?? [];
+  const ended = run.why?.ended;
+  return [
+    h(
+      'div',
+      { class: 'why-head' },
+      h(
+        'div',
+        { class: 'kick' },
+        `${cause.kind === 'contact' ? 'CONTACT' : 'FAILED'} · TICK ${cause.tick} · ${seconds(cause.tick)}`,
+      ),
+      h('h2', {}, process ? `${process}: ${cause.title}` : sentence(cause.title)),
+      cause.detail ? h('p', {}, cause.detail) : null,
+      remedy(run),
+      h(
+        'div',
+        { class: 'why-tools' },
+        h(
+          'button',
+          {
+            class: `text-button key ${ui.tick === cause.tick ? 'on' : ''}`,
+            'data-do': 'cause',
+            'data-key': 'c',
+          },
+          'first cause',
+        ),
+        h('button', { class: 'text-button key', 'data-do': 'trouble', 'data-key': 't' }, 'next trouble'),
+      ),
+    ),
+    h(
+      'div',
+      { class: 'scroll', tabindex: 0 },
+      part('Commands down, reports up', null),
+      chainOf(run).map((link) => line(link, ui)),
+      evidence.length
+        ? part(
+            `What ${process} sensed while it tried`,
+            evidence.map((/** @type {string} */ text) => plain(text)),
+          )
+        : null,
+      data.length
+        ? part(
+            'Data of the last command',
+            data.map((/** @type {string} */ text) => plain(text)),
+          )
+        : null,
+      ended && ended !== 'finished' ? part('How the run ended', [plain(ended)]) : null,
+      part('Try a remedy in the log', [
+        h(
+          'div',
+          { class: 'plain mono' },
+          `rcs-log fork ${run.log.name} --tick ${Math.max(1, cause.tick - 100)} --set '…'`,
+        ),
+      ]),
+    ),
+  ];
+}
+
+/** @param {import('../log/run.js').Run} run */
+function remedy(run) {
+  const next = remedyOf(run);
+  return next ? h('p', { class: 'remedy' }, h('b', {}, 'Next: '), next) : null;
+}
+
+/** @param {import('../log/explanation.js').Link} link @param {import('./ui.js').Ui} ui */
+function line(link, ui) {
+  const kind = { command: '', cause: 'first-cause', report: 'up', cell: 'world' }[link.kind];
+  const selected =
+    ui.tick === link.tick && (link.process === null || link.process === ui.process) ? 'sel' : '';
+  const target = link.process === 'workstation' ? 'task' : link.process;
+  const row = link.row ? link.row.split(' ') : null;
+  return h(
+    'button',
+    {
+      class: `link ${kind} ${selected}`,
+      style: `--lv:${levelOf(link)}`,
+      'data-do': `seek:${link.tick}${target ? `:${target}` : ''}`,
+    },
+    h('span', { class: 't' }, String(link.tick)),
+    h(
+      'span',
+      { class: 'x' },
+      h(
+        'span',
+        { class: 'pr' },
+        link.kind === 'cell' ? icon('flag') : null,
+        h('b', {}, link.from),
+        link.to ? [h('span', { class: 'ar' }, 'orders'), h('b', {}, link.to)] : null,
+        link.kind === 'cause' ? h('span', { class: 'badge' }, 'FIRST CAUSE') : null,
+      ),
+      h('span', { class: 'cm' }, link.text.replace(/^reports /, '')),
+      row
+        ? h('span', { class: 'rw' }, h('b', {}, `${row[0]} ${row[1]}`), ` ${row.slice(2).join(' ')}`)
+        : null,
+      link.news ? h('span', { class: 'rw' }, 'new in this tick: ', h('b', {}, link.news)) : null,
+    ),
+  );
+}
+
+/**
+ * Depth of a link: that of the process which got the command, or which reports.
+ * @param {import('../log/explanation.js').Link} link
+ */
+function levelOf(link) {
+  const id = link.to ? idOf(link.to) : link.process;
+  if (link.kind === 'cell' || id === null) return CELL_LEVEL;
+  return processOf(id).level + 1;
+}
+
+/** @param {import('./ui.js').Context} context */
+function finished({ run, ui }) {
+  const facts = run.info.facts ?? {};
+  const link = run.info.link;
+  const clearance = facts.clearance ?? '';
+  const [, closest] = /tick (\d+)/.exec(clearance) ?? [];
+  const ended = run.result === 'finished' || run.result === '';
+  return [
+    h(
+      'div',
+      { class: 'why-head okk' },
+      h(
+        'div',
+        { class: 'kick' },
+        run.log.file.complete ? (run.result === 'finished' ? 'FINISHED' : 'ENDED') : 'NO END',
+      ),
+      h(
+        'h2',
+        {},
+        ended
+          ? `${amount(run.job.length, 'line')} in ${duration(run.last)}, no failure`
+          : sentence(run.result),
+      ),
+      h(
+        'p',
+        {},
+        [
+          amount(run.commands.length, 'command'),
+          amount(run.last, 'tick'),
+          amount(run.info.warnings ?? 0, 'warning'),
+          amount(run.info.errors ?? 0, 'error'),
+        ].join(' · '),
+      ),
+    ),
+    h(
+      'div',
+      { class: 'scroll', tabindex: 0 },
+      facts.parts ? part('Where the parts are', facts.parts.split('; ').map(plain)) : null,
+      clearance
+        ? part('Closest clearance', [
+            h('button', { class: 'plain seek', 'data-do': `seek:${closest}` }, clearance),
+          ])
+        : null,
+      link
+        ? part('Link', [
+            plain(
+              [
+                amount(link.frames, 'frame'),
+                amount(link.naks, 'NAK'),
+                amount(link.checksum_errors, 'checksum error'),
+                amount(link.restarts, 'restart'),
+              ].join(', '),
+            ),
+          ])
+        : null,
+      part(
+        'Commands',
+        run.commands.map((command) =>
+          h(
+            'button',
+            {
+              class: `command ${ui.tick >= command.first_tick && ui.tick <= command.last_tick ? 'sel' : ''}`,
+              'data-do': `seek:${command.first_tick}`,
+            },
+            h('span', { class: 't' }, clock(command.first_tick * TICK_S, 0)),
+            h('span', { class: 'cm' }, command.text),
+            h('span', { class: 'dim' }, duration(command.last_tick - command.first_tick)),
+          ),
+        ),
+      ),
+    ),
+  ];
+}
+
+/** @param {string} title @param {import('./dom.js').Child[] | null} content */
+function part(title, content) {
+  return h('div', { class: 'why-part' }, h('h2', {}, title), content);
+}
+
+/** @param {string} text */
+function plain(text) {
+  return h('div', { class: 'plain' }, text);
+}
+
+/** @param {string} text */
+function sentence(text) {
+  return text[0] && !text.includes('_', 1) ? text[0].toUpperCase() + text.slice(1) : text;
+}
