@@ -207,6 +207,21 @@ fn diff_tells_when_two_cells_begin_to_differ() {
 }
 
 #[test]
+fn page_writes_one_file_with_the_log_inside() {
+    let scratch = Scratch::new();
+    let log = scratch.log("run.mcap", 1000);
+    let output = rcs_log(&["page"], &[&log]);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let page = fs::read_to_string(log.with_extension("html")).expect("the page is there");
+    assert!(page.contains("<title>run.mcap</title>"));
+    // The log begins with the magic of an MCAP file, in base64.
+    assert!(page.contains("id=\"log-data\">iU1DQVAwDQo"));
+    assert!(page.contains("default-src 'none'"), "the page loads nothing");
+    let output = rcs_log(&["page", "--output", "/nowhere/page.html"], &[&log]);
+    assert_eq!(output.status.code(), Some(2));
+}
+
+#[test]
 fn a_report_is_one_page_with_the_failure_on_it() {
     let scratch = Scratch::new();
     let log = scratch.log("run.mcap", 1000);
