@@ -291,10 +291,16 @@ class Painter {
     to.lineWidth = 1.2;
     to.beginPath();
     to.moveTo(clip(0), y(0));
+    // Of the values in a pixel the greatest is drawn: a run of 20 minutes has 25 in each.
+    let [drawn, peak] = [-Infinity, 0];
     points.forEach(({ tick, value }, index) => {
       const next = points[index + 1]?.tick ?? run.last;
       if (next < scale.first || tick > scale.last) return;
-      to.lineTo(clip(tick), y(value));
+      peak = Math.max(peak, value);
+      const x = clip(tick);
+      if (x - drawn < 0.6 && next - tick <= hold && hold !== Infinity) return;
+      to.lineTo(x, y(hold === Infinity ? value : peak));
+      [drawn, peak] = [x, 0];
       if (next - tick > hold) {
         to.lineTo(clip(tick + hold), y(0));
         to.lineTo(clip(next - 1), y(0));
