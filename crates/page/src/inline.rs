@@ -8,7 +8,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use data_encoding::BASE64;
-use ring::digest::{SHA256, digest};
+use sha2::{Digest as _, Sha256};
 
 /// The file that the browser reads first.
 const INDEX: &str = include_str!("../web/index.html");
@@ -88,7 +88,7 @@ pub fn document(title: &str, log: Option<&[u8]>) -> String {
         Err(error) => format!("document.body.textContent = {error:?};"),
     };
     let from = if log.is_some() { "'none'" } else { "'self'" };
-    let digest = BASE64.encode(digest(&SHA256, script.as_bytes()).as_ref());
+    let digest = BASE64.encode(&Sha256::digest(script.as_bytes()));
     let policy = format!(
         "default-src 'none'; script-src 'sha256-{digest}'; style-src 'unsafe-inline'; img-src blob: data:; \
          connect-src {from}; base-uri 'none'; form-action 'none'"
