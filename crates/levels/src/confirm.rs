@@ -101,26 +101,26 @@ decision_table! {
     /// CONFIRM: a command is done only if the sensors confirm its goal in this tick. Readings that are older than the
     /// end of the command are given the time to arrive; then the command fails.
     pub CONFIRM: fn confirm(Claim) -> Doubt or () {
-        1:  evidence: Holds | Unsensed          => consult;
-        2:  reading: Awaited                    => Wait;
-        3:  evidence: Elsewhere | Moving        => Fail(NotAtGoal);
-        4:  evidence: NotHeld | NotPlaced       => Fail(ObjectLost);
-        5:  evidence: OtherGrip                 => Fail(RegripNeeded);
-        6:  evidence: StillHeld                 => Fail(ReleaseNotEnded);
-        7:  evidence: Unknown                   => Fail(UnknownHeld);
-        8:  evidence: NotKnown                  => Fail(HeldNotKnown);
-        9:  evidence: GripperOff                => Fail(NotAttached);
-        10: evidence: GripperOn                 => Fail(NotDetached);
-        11: evidence: Ring                      => Fail(RingNotLocked);
-        12: evidence: InHolster                 => Fail(InHolster);
-        13: evidence: OutsideDrum               => Fail(NotPrepared);
-        14: evidence: InsideDrum                => Fail(InDrum);
-        15: evidence: InPedestal                => Fail(PartInPedestal);
-        16: evidence: HandEmpty                 => Fail(HandMissed);
-        17: evidence: HandNarrow                => Fail(HandTimeout);
-        18: evidence: TableElsewhere            => Fail(TableStuck);
-        19: evidence: NoAnswer                  => Fail(DataBaseSilent);
-        20: evidence: PinsDiffer                => Fail(PinsFail);
+        1:  evidence: Holds | Unsensed     => consult;
+        2:  reading: Awaited               => Wait;
+        3:  evidence: Elsewhere | Moving   => Fail(NotAtGoal);
+        4:  evidence: NotHeld | NotPlaced  => Fail(ObjectLost);
+        5:  evidence: OtherGrip            => Fail(RegripNeeded);
+        6:  evidence: StillHeld            => Fail(ReleaseNotEnded);
+        7:  evidence: Unknown              => Fail(UnknownHeld);
+        8:  evidence: NotKnown             => Fail(HeldNotKnown);
+        9:  evidence: GripperOff           => Fail(NotAttached);
+        10: evidence: GripperOn            => Fail(NotDetached);
+        11: evidence: Ring                 => Fail(RingNotLocked);
+        12: evidence: InHolster            => Fail(InHolster);
+        13: evidence: OutsideDrum          => Fail(NotPrepared);
+        14: evidence: InsideDrum           => Fail(InDrum);
+        15: evidence: InPedestal           => Fail(PartInPedestal);
+        16: evidence: HandEmpty            => Fail(HandMissed);
+        17: evidence: HandNarrow           => Fail(HandTimeout);
+        18: evidence: TableElsewhere       => Fail(TableStuck);
+        19: evidence: NoAnswer             => Fail(DataBaseSilent);
+        20: evidence: PinsDiffer           => Fail(PinsFail);
     }
 }
 

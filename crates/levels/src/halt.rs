@@ -195,9 +195,9 @@ decision_table! {
     /// EFFECT: an order that has changed no state variable of its table, nor advanced the command, is not given again by
     /// the same row. The command fails.
     pub EFFECT: fn effect(Fired) -> Futile or () {
-        1: order: None | New                => consult;
-        2: order: Repeated, advance: Made   => consult;
-        3: order: Repeated, advance: None   => Fail(NoEffect);
+        1: order: None | New               => consult;
+        2: order: Repeated, advance: Made  => consult;
+        3: order: Repeated, advance: None  => Fail(NoEffect);
     }
 }
 

@@ -142,9 +142,9 @@
 //! decision_table! {
 //!     /// AWAIT-DOOR: for the example.
 //!     pub AWAIT_DOOR: fn await_door(struct of Senses) -> Action {
-//!         1: order: On            => Wait;
-//!         2: door: Off            => Wait;
-//!         3: door: On             => Finish;
+//!         1: order: On  => Wait;
+//!         2: door: Off  => Wait;
+//!         3: door: On   => Finish;
 //!     }
 //! }
 //! # }

@@ -102,8 +102,8 @@ decision_table! {
 decision_table! {
     /// LOOK: look at the door.
     pub LOOK: fn look(Situation) -> Action {
-        1: door: Open | Shut    => Finish;
-        2: door: Stuck          => Wait;
+        1: door: Open | Shut  => Finish;
+        2: door: Stuck        => Wait;
     }
 }
 

@@ -7,10 +7,10 @@ decision_table! {
     /// the joystick box may take the robot and give it back (V.1.1 PAUSE), and `.R` lets Prim initialize the
     /// link once more (IV.3.3 steps 2 and 12). No header names its rows.
     pub ATTEND: fn attend(super::Watch) -> super::Action or () {
-        1: pause: Standing, outcome: Done | Joystick, initialization: None  => consult;
-        2: pause: Standing, outcome: Idle | Executing | Error               => Wait;
-        3: pause: Other | UnderWay                                          => Wait;
-        4: pause: Standing, outcome: Done | Joystick, initialization: Asked => RobotInit;
-        5: pause: Standing, outcome: Done | Joystick, initialization: Over  => StopRobot;
+        1: pause: Standing, outcome: Done | Joystick, initialization: None   => consult;
+        2: pause: Standing, outcome: Idle | Executing | Error                => Wait;
+        3: pause: Other | UnderWay                                           => Wait;
+        4: pause: Standing, outcome: Done | Joystick, initialization: Asked  => RobotInit;
+        5: pause: Standing, outcome: Done | Joystick, initialization: Over   => StopRobot;
     }
 }

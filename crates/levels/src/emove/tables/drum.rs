@@ -69,10 +69,10 @@ decision_table! {
     /// there. One whose fingers have closed on a tool in the drum stands there, also if the command did not
     /// come to that. Preprocess consults it while a tool command is half done; no header names its rows.
     pub DRUM: fn drum(self::AtTheDrum) -> self::Belief {
-        1: at: Off                                                                        => Leave;
-        2: at: Inside, tool: Grasped, outcome: Idle | Done | Error | Joystick             => Stand;
-        3: at: Inside, tool: Grasped, outcome: Executing                                  => Keep;
-        4: at: Inside, tool: Loose                                                        => Keep;
-        5: at: Before | Entering | Sliding | Beside                                       => Keep;
+        1: at: Off                                                             => Leave;
+        2: at: Inside, tool: Grasped, outcome: Idle | Done | Error | Joystick  => Stand;
+        3: at: Inside, tool: Grasped, outcome: Executing                       => Keep;
+        4: at: Inside, tool: Loose                                             => Keep;
+        5: at: Before | Entering | Sliding | Beside                            => Keep;
     }
 }

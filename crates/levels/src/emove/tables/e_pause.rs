@@ -39,24 +39,24 @@ decision_table! {
     /// the robot back, the processes below pause again: jaws keep their air, and may have begun to close.
     pub STANDING: fn standing(self::EPauseStep, struct of super::Senses) -> super::Action or () {
         any {
-            1:  work: Busy                       => Wait;
+            1:  work: Busy                        => Wait;
         }
         Start | Awaiting | Initializing | Pausing | Resting | InitializingAgain | PausingAgain {
-            2:                                   otherwise => consult;
+            2:  otherwise                         => consult;
         }
         any {
-            3:  button: Open                     => OpenByHand;
-            4:  button: Close                    => CloseByHand;
-            5:  prim: Joystick                   => Manual -> Led;
-            6:  prim: Pending | Executing | Lost => Wait;
+            3:  button: Open                      => OpenByHand;
+            4:  button: Close                     => CloseByHand;
+            5:  prim: Joystick                    => Manual  -> Led;
+            6:  prim: Pending | Executing | Lost  => Wait;
         }
         Standing {
-            7:  prim: Done | Error               => Finish;
+            7:  prim: Done | Error                => Finish;
         }
         Led {
-            8:  prim: Error                      => Finish -> Standing;
-            9:  prim: Done, motion: Moving       => Wait;
-            10: prim: Done, motion: AtRest       => Pause  -> Resting;
+            8:  prim: Error                       => Finish  -> Standing;
+            9:  prim: Done, motion: Moving        => Wait;
+            10: prim: Done, motion: AtRest        => Pause   -> Resting;
         }
     }
 }
@@ -69,37 +69,37 @@ decision_table! {
     /// decides after that.
     pub E_PAUSE: fn e_pause(self::EPauseStep, struct of super::Senses) -> super::Action {
         Start {
-            1:  link: Down                             => RobotInit -> Initializing;
+            1:  link: Down                              => RobotInit  -> Initializing;
         }
         Start | Initializing {
-            2:  motion: Moving                         => StopRobot -> Awaiting;
+            2:  motion: Moving                          => StopRobot  -> Awaiting;
         }
         Awaiting {
-            3:  motion: Moving                         => Wait;
+            3:  motion: Moving                          => Wait;
         }
         Start | Initializing | Awaiting {
-            4:  motion: AtRest                         => Pause     -> Pausing;
+            4:  motion: AtRest                          => Pause      -> Pausing;
         }
         InitializingAgain {
-            5:                                         otherwise => Pause     -> PausingAgain;
+            5:  otherwise                               => Pause      -> PausingAgain;
         }
         any {
-            6:  prim: Pending | Executing              => Wait;
-            7:  prim: Joystick                         => Manual    -> Led;
+            6:  prim: Pending | Executing               => Wait;
+            7:  prim: Joystick                          => Manual     -> Led;
         }
         Pausing {
-            8:  prim: Error                            => RobotInit -> InitializingAgain;
+            8:  prim: Error                             => RobotInit  -> InitializingAgain;
         }
         Resting {
-            9:  prim: Error                            => Finish    -> Standing;
+            9:  prim: Error                             => Finish     -> Standing;
         }
         any {
-            10: prim: Error | Lost                     => PassUp;
-            11: tooling: Busy                          => Wait;
-            12: tooling: RingFaulty                    => FailRing;
-            13: tooling: GripFaulty                    => FailGrip;
-            14: tooling: Ready, place: Searching       => Wait;
-            15: tooling: Ready, place: Known | Unknown => Finish    -> Standing;
+            10: prim: Error | Lost                      => PassUp;
+            11: tooling: Busy                           => Wait;
+            12: tooling: RingFaulty                     => FailRing;
+            13: tooling: GripFaulty                     => FailGrip;
+            14: tooling: Ready, place: Searching        => Wait;
+            15: tooling: Ready, place: Known | Unknown  => Finish     -> Standing;
         }
     }
 }

@@ -9,20 +9,20 @@ decision_table! {
     /// not ended comes first.
     pub FINGERS: fn fingers(super::motion::MotionStep, struct of super::Senses) -> super::Action or () {
         any {
-            1:  work: Busy                                                                  => consult;
+            1:  work: Busy                                                          => consult;
         }
         Moving {
-            2:  release: UnderWay, ahead: Through | Stop | Beside                           => Fail(ReleaseNotEnded);
-            3:  opening: Free | Reached                                                     => consult;
-            4:  opening: Sent, gripper: Pending | Executing, ahead: Stop | Nothing          => Wait;
-            5:  opening: Sent                                                               => consult;
-            6:  departure: UnderWay                                                         => consult;
-            7:  calibration: Missing, held: Nothing, departure: Over                        => Calibrate;
-            8:  calibration: Missing, held: Nothing, departure: AtPlace, ahead: Through     => consult;
-            9:  opening: Due                                                                => Open;
+            2:  release: UnderWay, ahead: Through | Stop | Beside                   => Fail(ReleaseNotEnded);
+            3:  opening: Free | Reached                                             => consult;
+            4:  opening: Sent, gripper: Pending | Executing, ahead: Stop | Nothing  => Wait;
+            5:  opening: Sent                                                       => consult;
+            6:  departure: UnderWay                                                 => consult;
+            7:  calibration: Missing, held: Nothing, departure: Over                => Calibrate;
+            8:  calibration: Missing, held: Nothing, departure: AtPlace, ahead: Through => consult;
+            9:  opening: Due                                                        => Open;
         }
         Stopping | Rejoining {
-            10: otherwise                                                                  => consult;
+            10: otherwise                                                           => consult;
         }
     }
 }

@@ -9,30 +9,30 @@ decision_table! {
     /// back there first, and one that is lost closes on nothing.
     pub GRASP_OBJ: fn grasp_obj(enum GraspObjStep, struct of super::Senses) -> super::Action {
         any {
-            1: work: Busy                                => Wait;
+            1:  work: Busy                                        => Wait;
         }
         /// Nothing done yet.
         Start {
-            2: held: Right, fingers: Gripping            => Finish;
+            2:  held: Right, fingers: Gripping                    => Finish;
         }
         /// The robot is going back to its place.
         Correcting {}
         Start | Correcting {
-            3: held: Other                               => Fail(AlreadyHolding);
+            3:  held: Other                                       => Fail(AlreadyHolding);
         }
         Start {
-            4: held: Something, at: Elsewhere | Before | InDrum   => Fail(AlreadyHolding);
-            5: held: NotKnown, at: Elsewhere | Before | InDrum    => Fail(HeldNotKnown);
-            6: place: Searching | Unknown                => Fail(UnknownStart);
-            7: ahead: Beside                             => GotoPt -> Correcting;
+            4:  held: Something, at: Elsewhere | Before | InDrum  => Fail(AlreadyHolding);
+            5:  held: NotKnown,  at: Elsewhere | Before | InDrum  => Fail(HeldNotKnown);
+            6:  place: Searching | Unknown                        => Fail(UnknownStart);
+            7:  ahead: Beside                                     => GotoPt  -> Correcting;
         }
         Start | Correcting {
-            8: held: Right | Nothing | Something | NotKnown => Close -> Closing;
+            8:  held: Right | Nothing | Something | NotKnown      => Close   -> Closing;
         }
         /// The gripper is closing.
         Closing {
-            9: fingers: Gripping                         => Grasped;
-            10: fingers: Empty                           => Fail(GraspMissed);
+            9:  fingers: Gripping                                 => Grasped;
+            10: fingers: Empty                                    => Fail(GraspMissed);
         }
     }
 }

@@ -12,38 +12,38 @@ decision_table! {
     /// there, and the weight on the sensor has the same direction as at the drum.
     pub INSERT_TOOL: fn insert_tool(enum InsertToolStep, struct of super::Senses) -> super::Action {
         any {
-            1:  work: Busy                                 => Wait;
+            1:  work: Busy                                       => Wait;
         }
         /// Nothing done yet.
         Start {
-            2:  held: Nothing | Other | Something          => Fail(NothingHeld);
-            3:  held: NotKnown                             => Fail(HeldNotKnown);
-            4:  held: Right, fingers: Empty                => Fail(ReleaseNotEnded);
-            5:  at: InDrum                                 => Finish;
-            6:  at: Before                                 => CalSensor(Safe)    -> Calibrating;
-            7:  at: There, bias: Missing | AtDrum          => Fail(ForceUncalibrated);
-            8:  at: There, bias: AtSafe                    => DeltaMove(InsFar)  -> Approaching;
-            9:  drum: Before, bias: Missing | AtDrum       => Fail(ForceUncalibrated);
-            10: drum: Before, bias: AtSafe                 => DeltaMove(InsFar)  -> Approaching;
-            11: drum: Entering | Inside, bias: Missing     => Fail(ForceUncalibrated);
-            12: drum: Entering | Inside, bias: AtDrum | AtSafe => GoWhile(InsIn) -> Inserting;
-            13: drum: Off | Sliding | Beside               => Fail(NotPrepared);
+            2:  held: Nothing | Other | Something                => Fail(NothingHeld);
+            3:  held: NotKnown                                   => Fail(HeldNotKnown);
+            4:  held: Right, fingers: Empty                      => Fail(ReleaseNotEnded);
+            5:  at: InDrum                                       => Finish;
+            6:  at: Before                                       => CalSensor(Safe)    -> Calibrating;
+            7:  at: There, bias: Missing | AtDrum                => Fail(ForceUncalibrated);
+            8:  at: There, bias: AtSafe                          => DeltaMove(InsFar)  -> Approaching;
+            9:  drum: Before,            bias: Missing | AtDrum  => Fail(ForceUncalibrated);
+            10: drum: Before,            bias: AtSafe            => DeltaMove(InsFar)  -> Approaching;
+            11: drum: Entering | Inside, bias: Missing           => Fail(ForceUncalibrated);
+            12: drum: Entering | Inside, bias: AtDrum | AtSafe   => GoWhile(InsIn)     -> Inserting;
+            13: drum: Off | Sliding | Beside                     => Fail(NotPrepared);
         }
         /// The force sensor is being calibrated.
         Calibrating {
-            14: otherwise                                 => DeltaMove(InsFar)  -> Approaching;
+            14: otherwise                                        => DeltaMove(InsFar)  -> Approaching;
         }
         /// The tool is moving to the last point at which it touches nothing.
         Approaching {
-            15: otherwise                                 => GoWhile(InsNear)   -> Nearing;
+            15: otherwise                                        => GoWhile(InsNear)   -> Nearing;
         }
         /// The tool is moving to the fingers of the drum.
         Nearing {
-            16: otherwise                                 => GoWhile(InsIn)     -> Inserting;
+            16: otherwise                                        => GoWhile(InsIn)     -> Inserting;
         }
         /// The tool is moving into the drum.
         Inserting {
-            17: otherwise                                 => StandInDrum;
+            17: otherwise                                        => StandInDrum;
         }
     }
 }

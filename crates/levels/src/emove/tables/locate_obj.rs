@@ -9,50 +9,50 @@ decision_table! {
     /// its tray that the open fingers would meet the wall is not gone to.
     pub LOCATE_OBJ: fn locate_obj(enum LocateObjStep, struct of super::Senses) -> super::Action {
         any {
-            1: work: Busy                                                    => Wait;
+            1:  work: Busy                                                => Wait;
         }
         /// Nothing done yet.
         Start {
-            2: held: Nothing, ahead: Beside                                  => GotoPt  -> Correcting;
+            2:  held: Nothing, ahead: Beside                              => GotoPt   -> Correcting;
         }
         /// The robot is going back to where pictures are taken.
         Correcting {
-            3: otherwise                                                    => Flood   -> Flooding;
+            3:  otherwise                                                 => Flood    -> Flooding;
         }
         Start {
-            4: held: Nothing                                                 => Flood   -> Flooding;
+            4:  held: Nothing                                             => Flood    -> Flooding;
         }
         Flooding | Measuring {
-            5: sight: Seen, aim: Unknown                                     => Fail(BadRecord);
-            6: sight: Implausible, tries: Spent                              => Fail(VisionImplausible);
-            7: sight: Missing, tries: Spent                                  => Fail(NothingSeen);
+            5:  sight: Seen, aim: Unknown                                 => Fail(BadRecord);
+            6:  sight: Implausible, tries: Spent                          => Fail(VisionImplausible);
+            7:  sight: Missing, tries: Spent                              => Fail(NothingSeen);
         }
         /// The fast flood picture is being taken.
         Flooding {
-            8: sight: Seen, aim: Known                                       => Centre  -> Centring;
-            9: sight: Missing | Unrecognised | Implausible, tries: Left      => FloodAgain;
-            10: sight: Unrecognised, tries: Spent                            => Fail(NothingSeen);
+            8:  sight: Seen, aim: Known                                   => Centre   -> Centring;
+            9:  sight: Missing | Unrecognised | Implausible, tries: Left  => FloodAgain;
+            10: sight: Unrecognised, tries: Spent                         => Fail(NothingSeen);
         }
         /// The camera is moving over the centroid.
         Centring {
-            11: otherwise                                                   => Precise -> Measuring;
+            11: otherwise                                                 => Precise  -> Measuring;
         }
         /// The second picture is being taken.
         Measuring {
-            12: sight: Seen, aim: Known, reach: Inside                       => Align   -> Aligning;
-            13: sight: Missing | Unrecognised | Implausible, tries: Left     => PreciseAgain;
-            14: sight: Unrecognised, tries: Spent                            => Fail(NotRecognised);
+            12: sight: Seen, aim: Known, reach: Inside                    => Align    -> Aligning;
+            13: sight: Missing | Unrecognised | Implausible, tries: Left  => PreciseAgain;
+            14: sight: Unrecognised, tries: Spent                         => Fail(NotRecognised);
         }
         /// The camera is moving over the part, and turning with it.
         Aligning {
-            15: otherwise                                                   => Located;
+            15: otherwise                                                 => Located;
         }
         Start {
-            16: held: Right | Other | Something                              => Fail(AlreadyHolding);
-            17: held: NotKnown                                               => Fail(HeldNotKnown);
+            16: held: Right | Other | Something                           => Fail(AlreadyHolding);
+            17: held: NotKnown                                            => Fail(HeldNotKnown);
         }
         Measuring {
-            18: sight: Seen, aim: Known, reach: Outside                      => Fail(AtTrayEdge);
+            18: sight: Seen, aim: Known, reach: Outside                   => Fail(AtTrayEdge);
         }
     }
 }

@@ -7,23 +7,23 @@ decision_table! {
     /// move, and whether the final motion waits for them.
     pub MOTION: fn motion(enum MotionStep, struct of super::Senses) -> super::Action {
         any {
-            1: work: Busy       => Wait;
+            1: work: Busy      => Wait;
         }
         /// On the way through points; nothing commanded yet at first.
         Moving {
-            2: ahead: Through   => GoThru;
-            3: ahead: Missing   => Fail(BadRecord);
-            4: ahead: Stop      => GotoPt -> Stopping;
-            5: ahead: Nothing   => Arrive;
-            6: ahead: Beside    => GotoPt -> Rejoining;
+            2: ahead: Through  => GoThru;
+            3: ahead: Missing  => Fail(BadRecord);
+            4: ahead: Stop     => GotoPt  -> Stopping;
+            5: ahead: Nothing  => Arrive;
+            6: ahead: Beside   => GotoPt  -> Rejoining;
         }
         /// On the final motion.
         Stopping {
-            7: otherwise        => Arrive;
+            7: otherwise       => Arrive;
         }
         /// Back to the way beside which a person has left the robot.
         Rejoining {
-            8: otherwise        => Wait -> Moving;
+            8: otherwise       => Wait    -> Moving;
         }
     }
 }

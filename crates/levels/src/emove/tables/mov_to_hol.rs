@@ -7,10 +7,10 @@ decision_table! {
     /// of the holster object on the way. A gripper that holds an object cannot do that. A gripper that is to be put
     /// away must find its holster empty: the approach already leads it between the cheeks.
     pub MOV_TO_HOL: fn mov_to_hol(struct of super::Senses) -> super::Action or () {
-        1: held: Right | Other | Something                          => Fail(AlreadyHolding);
-        2: held: NotKnown                                           => Fail(HeldNotKnown);
-        3: held: Nothing, mate: Right, holster: Empty               => consult;
-        4: held: Nothing, mate: Right, holster: Partial | Full      => Fail(HolsterOccupied);
-        5: held: Nothing, mate: None | Wrong                        => consult;
+        1: held: Right | Other | Something                      => Fail(AlreadyHolding);
+        2: held: NotKnown                                       => Fail(HeldNotKnown);
+        3: held: Nothing, mate: Right, holster: Empty           => consult;
+        4: held: Nothing, mate: Right, holster: Partial | Full  => Fail(HolsterOccupied);
+        5: held: Nothing, mate: None | Wrong                    => consult;
     }
 }

@@ -7,12 +7,12 @@ decision_table! {
     /// it, once it stands at the goal; one that is elsewhere with it, or holds anything else, or may hold it, must not
     /// open the fingers.
     pub MOV_TO_OBJ: fn mov_to_obj(struct of super::Senses) -> super::Action or () {
-        1: held: Nothing                                     => consult;
-        2: held: Other | Something                           => Fail(AlreadyHolding);
-        3: held: NotKnown                                    => Fail(HeldNotKnown);
-        4: held: Right, work: Busy                           => consult;
-        5: held: Right, ahead: Beside                        => consult;
-        6: held: Right, ahead: Nothing                       => Finish;
-        7: held: Right, ahead: Through | Stop | Missing      => Fail(AlreadyHolding);
+        1: held: Nothing                                 => consult;
+        2: held: Other | Something                       => Fail(AlreadyHolding);
+        3: held: NotKnown                                => Fail(HeldNotKnown);
+        4: held: Right, work: Busy                       => consult;
+        5: held: Right, ahead: Beside                    => consult;
+        6: held: Right, ahead: Nothing                   => Finish;
+        7: held: Right, ahead: Through | Stop | Missing  => Fail(AlreadyHolding);
     }
 }

@@ -43,50 +43,50 @@ decision_table! {
     /// lift, up, calibrate if required. Done at once if the gripper is locked on and clear of its holster.
     pub QC_LIFT: fn qc_lift(self::QcAttachStep, struct of super::Senses) -> super::Action or () {
         any {
-            1:  mate: None | Wrong                                   => consult;
+            1:  mate: None | Wrong                                    => consult;
         }
         Start {
-            2:  at: There, holster: Empty, lock: Locked              => Finish;
-            3:  along: Off, holster: Empty, lock: Locked             => Finish;
-            4:  along: Off, holster: Empty, lock: Unlocked | Between => Fail(RingNotLocked);
+            2:  at: There, holster: Empty, lock: Locked               => Finish;
+            3:  along: Off, holster: Empty, lock: Locked              => Finish;
+            4:  along: Off, holster: Empty, lock: Unlocked | Between  => Fail(RingNotLocked);
         }
         any {
-            5:  along: Off | Above | Out                             => Fail(NotPrepared);
+            5:  along: Off | Above | Out                              => Fail(NotPrepared);
         }
         Mating {
-            6:  along: Seat                                          => Lock               -> Locking;
+            6:  along: Seat                                           => Lock                -> Locking;
         }
         Locking {
-            7:  along: Seat, lock: Unlocked | Between                => FailRing;
+            7:  along: Seat, lock: Unlocked | Between                 => FailRing;
         }
         any {
             8:  along: Lifting | Raising | Clear, lock: Unlocked | Between => Fail(RingNotLocked);
             // EXCHANGE passes no faulty ring on.
-            9:  along: Coming, lock: Locked | Between | Faulty       => Fail(RingNotLocked);
+            9:  along: Coming, lock: Locked | Between | Faulty        => Fail(RingNotLocked);
             // Near the seat is not at it, and the ring would catch nothing.
-            10: lock: Unlocked | Between                             => DeltaMove(QcaSlow) -> Mating;
+            10: lock: Unlocked | Between                              => DeltaMove(QcaSlow)  -> Mating;
         }
         Closing | Backing {
-            11: along: Seat | Sliding                                => DeltaMove(QcaBack) -> Backing;
+            11: along: Seat | Sliding                                 => DeltaMove(QcaBack)  -> Backing;
         }
         any {
-            12: along: Seat | Sliding, shut: Open                    => CloseForHolster    -> Closing;
-            13: along: Seat | Sliding                                => DeltaMove(QcaBack) -> Backing;
+            12: along: Seat | Sliding, shut: Open                     => CloseForHolster     -> Closing;
+            13: along: Seat | Sliding                                 => DeltaMove(QcaBack)  -> Backing;
         }
         Lifting | Raising {
-            14: along: Lifting                                       => DeltaMove(QcaUp)   -> Raising;
+            14: along: Lifting                                        => DeltaMove(QcaUp)    -> Raising;
         }
         any {
-            15: along: Low | Lifting                                 => DeltaMove(QcaLift) -> Lifting;
-            16: along: Raising                                       => DeltaMove(QcaUp)   -> Raising;
+            15: along: Low | Lifting                                  => DeltaMove(QcaLift)  -> Lifting;
+            16: along: Raising                                        => DeltaMove(QcaUp)    -> Raising;
         }
         Calibrating {
-            17: readiness: Uncalibrated                              => FailGrip;
+            17: readiness: Uncalibrated                               => FailGrip;
         }
         any {
-            18: readiness: Uncalibrated                              => Calibrate          -> Calibrating;
-            19: readiness: Ready                                     => Stand;
-            20: readiness: Faulty                                    => FailGrip;
+            18: readiness: Uncalibrated                               => Calibrate           -> Calibrating;
+            19: readiness: Ready                                      => Stand;
+            20: readiness: Faulty                                     => FailGrip;
         }
     }
 }
@@ -100,18 +100,18 @@ decision_table! {
     /// found no gripper leaves upward.
     pub QC_ATTACH: fn qc_attach(self::QcAttachStep, struct of super::Senses) -> super::Action {
         Start {
-            1:  mate: Wrong                                      => Fail(WrongGripper);
+            1:  mate: Wrong                                       => Fail(WrongGripper);
         }
         any {
-            2:  mate: Wrong                                      => Fail(WrongGripperId);
-            3:  along: Off                                       => Fail(NotPrepared);
+            2:  mate: Wrong                                       => Fail(WrongGripperId);
+            3:  along: Off                                        => Fail(NotPrepared);
         }
         Start | Leaving {
-            4:  along: Above, holster: Empty | Partial           => Leave(HolsterEmpty);
+            4:  along: Above, holster: Empty | Partial            => Leave(HolsterEmpty);
         }
         Start {
-            5:  along: Out, holster: Partial                     => DeltaMove(QcdOut)  -> Leaving;
-            6:  along: Out | Coming | Seat, holster: Empty       => DeltaMove(QcdOut)  -> Leaving;
+            5:  along: Out, holster: Partial                      => DeltaMove(QcdOut)   -> Leaving;
+            6:  along: Out | Coming | Seat, holster: Empty        => DeltaMove(QcdOut)   -> Leaving;
         }
         Unlocking {
             7:  along: Above | Out | Coming | Seat, lock: Locked | Between => FailRing;
@@ -121,20 +121,20 @@ decision_table! {
             8:  along: Above | Out | Coming | Seat, lock: Locked | Between => Unlock -> Unlocking;
         }
         Approaching | Mating {
-            9:  along: Above | Out                               => DeltaMove(QcaSlow) -> Mating;
+            9:  along: Above | Out                                => DeltaMove(QcaSlow)  -> Mating;
         }
         Undoing {
-            10: along: Out | Coming                              => DeltaMove(QcdOut)  -> Leaving;
+            10: along: Out | Coming                               => DeltaMove(QcdOut)   -> Leaving;
         }
         Leaving {
-            11: along: Above                                     => Leave(NotAttached);
-            12: along: Out | Coming | Seat                       => Fail(NoEffect);
+            11: along: Above                                      => Leave(NotAttached);
+            12: along: Out | Coming | Seat                        => Fail(NoEffect);
         }
         any {
-            13: along: Above | Out                               => DeltaMove(QcaFast) -> Approaching;
-            14: along: Coming                                    => DeltaMove(QcaSlow) -> Mating;
-            15: along: Seat                                      => DeltaMove(QcaFast) -> Undoing;
-            16: along: Sliding | Low | Lifting | Raising | Clear => Fail(NotAttached);
+            13: along: Above | Out                                => DeltaMove(QcaFast)  -> Approaching;
+            14: along: Coming                                     => DeltaMove(QcaSlow)  -> Mating;
+            15: along: Seat                                       => DeltaMove(QcaFast)  -> Undoing;
+            16: along: Sliding | Low | Lifting | Raising | Clear  => Fail(NotAttached);
         }
     }
 }

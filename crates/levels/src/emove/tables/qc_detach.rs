@@ -30,37 +30,37 @@ decision_table! {
     /// its holster and the robot clear.
     pub QC_LEAVE: fn qc_leave(self::QcDetachStep, struct of super::Senses) -> super::Action or () {
         any {
-            1:  mate: Right | Wrong                                => consult;
+            1:  mate: Right | Wrong                                 => consult;
         }
         Start {
-            2:  holster: Full, at: There | Before | InDrum         => Finish;
-            3:  holster: Full, along: Off                          => Finish;
+            2:  holster: Full, at: There | Before | InDrum          => Finish;
+            3:  holster: Full, along: Off                           => Finish;
         }
         Start | Leaving {
-            4:  along: Above | Clear                               => Stand;
+            4:  along: Above | Clear                                => Stand;
         }
         Start {
-            5:  holster: Empty, along: Out | Coming | Seat         => DeltaMove(QcdOut) -> Leaving;
+            5:  holster: Empty, along: Out | Coming | Seat          => DeltaMove(QcdOut)  -> Leaving;
             6:  holster: Partial, along: Out | Coming | Seat, lock: Unlocked => DeltaMove(QcdOut) -> Leaving;
-            7:  holster: Empty | Partial                           => Fail(WrongGripper);
+            7:  holster: Empty | Partial                            => Fail(WrongGripper);
         }
         Leaving {
-            8:  along: Out | Coming | Seat                         => Fail(NoEffect);
+            8:  along: Out | Coming | Seat                          => Fail(NoEffect);
         }
         any {
-            9:  holster: Empty | Partial                           => Fail(NotDetached);
+            9:  holster: Empty | Partial                            => Fail(NotDetached);
         }
         Rising {
-            10: lock: Locked | Between                             => FailRing;
-            11: lock: Unlocked | Faulty                            => Stand;
+            10: lock: Locked | Between                              => FailRing;
+            11: lock: Unlocked | Faulty                             => Stand;
         }
         Unlocking {
-            12: along: Out | Coming | Seat, lock: Locked | Between => FailRing;
+            12: along: Out | Coming | Seat, lock: Locked | Between  => FailRing;
         }
         any {
-            13: along: Out | Coming | Seat, lock: Locked | Between => Unlock            -> Unlocking;
-            14: along: Out | Coming | Seat                         => DeltaMove(QcdOut) -> Rising;
-            15:                                                    otherwise => Fail(NotDetached);
+            13: along: Out | Coming | Seat, lock: Locked | Between  => Unlock             -> Unlocking;
+            14: along: Out | Coming | Seat                          => DeltaMove(QcdOut)  -> Rising;
+            15: otherwise                                           => Fail(NotDetached);
         }
     }
 }
@@ -73,38 +73,38 @@ decision_table! {
     /// QC-LEAVE, which is consulted before, does the rest once the robot is bare.
     pub QC_DETACH: fn qc_detach(self::QcDetachStep, struct of super::Senses) -> super::Action {
         Rising {
-            1:                                                           otherwise => Fail(NotDetached);
+            1:  otherwise                                                 => Fail(NotDetached);
         }
         any {
-            2:  mate: Wrong                                              => Fail(WrongGripper);
+            2:  mate: Wrong                                               => Fail(WrongGripper);
         }
         Lowering {
-            3:  lock: Locked | Between                                   => Unlock           -> Unlocking;
+            3:  lock: Locked | Between                                    => Unlock            -> Unlocking;
         }
         Seating {
-            4:  lock: Unlocked                                           => DeltaMove(QcdUp) -> Rising;
+            4:  lock: Unlocked                                            => DeltaMove(QcdUp)  -> Rising;
         }
         any {
-            5:  along: Off                                               => Fail(NotPrepared);
-            6:  along: Above | Out                                       => Fail(NotDetached);
-            7:  along: Coming, lock: Locked | Between                    => Fail(NotDetached);
+            5:  along: Off                                                => Fail(NotPrepared);
+            6:  along: Above | Out                                        => Fail(NotDetached);
+            7:  along: Coming, lock: Locked | Between                     => Fail(NotDetached);
         }
         Unlocking {
-            8:  lock: Locked | Between                                   => FailRing;
-            9:  lock: Unlocked                                           => GoUntil(QcdSeat) -> Seating;
+            8:  lock: Locked | Between                                    => FailRing;
+            9:  lock: Unlocked                                            => GoUntil(QcdSeat)  -> Seating;
         }
         any {
-            10: along: Raising | Clear, lock: Unlocked | Between         => Fail(RingNotLocked);
-            11: along: Lifting, holster: Empty, lock: Unlocked | Between => Fail(RingNotLocked);
+            10: along: Raising | Clear, lock: Unlocked | Between          => Fail(RingNotLocked);
+            11: along: Lifting, holster: Empty, lock: Unlocked | Between  => Fail(RingNotLocked);
             12: along: Lifting | Raising | Clear, lock: Locked, held: Right | Other | Something
-                                                                         => Fail(AlreadyHolding);
+                                                                          => Fail(AlreadyHolding);
             13: along: Lifting | Raising | Clear, lock: Locked, held: NotKnown => Fail(HeldNotKnown);
-            14: along: Raising | Clear, holster: Partial | Full          => Fail(HolsterOccupied);
-            15: along: Lifting | Raising | Clear, lock: Locked           => GoUntil(QcdDown) -> Lowering;
-            16: along: Low, holster: Empty, lock: Locked                 => GoUntil(QcdDown) -> Lowering;
-            17: along: Coming | Seat, holster: Full, lock: Unlocked      => DeltaMove(QcdUp) -> Rising;
-            18: lock: Unlocked                                           => GoUntil(QcdSeat) -> Seating;
-            19:                                                          otherwise => Unlock           -> Unlocking;
+            14: along: Raising | Clear, holster: Partial | Full           => Fail(HolsterOccupied);
+            15: along: Lifting | Raising | Clear, lock: Locked            => GoUntil(QcdDown)  -> Lowering;
+            16: along: Low, holster: Empty, lock: Locked                  => GoUntil(QcdDown)  -> Lowering;
+            17: along: Coming | Seat, holster: Full, lock: Unlocked       => DeltaMove(QcdUp)  -> Rising;
+            18: lock: Unlocked                                            => GoUntil(QcdSeat)  -> Seating;
+            19: otherwise                                                 => Unlock            -> Unlocking;
         }
     }
 }

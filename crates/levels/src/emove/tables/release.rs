@@ -8,22 +8,22 @@ decision_table! {
     /// that a person has moved off its place goes back there first: an object is let go only there.
     pub RELEASE: fn release(enum ReleaseStep, struct of super::Senses) -> super::Action {
         any {
-            1: work: Busy                        => Wait;
+            1: work: Busy                   => Wait;
         }
         /// Nothing done yet.
         Start {
-            2: held: Nothing, spread: Open       => Finish;
-            3: ahead: Beside                     => GotoPt       -> Correcting;
+            2: held: Nothing, spread: Open  => Finish;
+            3: ahead: Beside                => GotoPt        -> Correcting;
         }
         /// The robot is going back to its place.
         Correcting {}
         Start | Correcting {
-            4: spread: Unknown                   => OpenFully    -> Opening;
-            5: spread: Narrow | Open             => OpenToDepart -> Opening;
+            4: spread: Unknown              => OpenFully     -> Opening;
+            5: spread: Narrow | Open        => OpenToDepart  -> Opening;
         }
         /// The gripper is opening.
         Opening {
-            6: otherwise                        => Finish;
+            6: otherwise                    => Finish;
         }
     }
 }

@@ -10,28 +10,28 @@ decision_table! {
     /// half out only if its calibration has been lost with its power: no other command leads out.
     pub REMOVE_TOOL: fn remove_tool(enum RemoveToolStep, struct of super::Senses) -> super::Action {
         any {
-            1:  work: Busy                                 => Wait;
+            1:  work: Busy                                        => Wait;
         }
         /// Nothing done yet.
         Start {
-            2:  held: Nothing | Other | Something          => Fail(NothingHeld);
-            3:  held: NotKnown                             => Fail(HeldNotKnown);
-            4:  held: Right, fingers: Empty                => Fail(ReleaseNotEnded);
-            5:  at: There                                  => Finish;
-            6:  at: Before                                 => Fail(NotPrepared);
-            7:  at: InDrum                                 => CalSensor(Drum)    -> Calibrating;
-            8:  drum: Inside | Entering | Sliding, bias: Missing => CalSensor(Drum) -> Calibrating;
+            2:  held: Nothing | Other | Something                 => Fail(NothingHeld);
+            3:  held: NotKnown                                    => Fail(HeldNotKnown);
+            4:  held: Right, fingers: Empty                       => Fail(ReleaseNotEnded);
+            5:  at: There                                         => Finish;
+            6:  at: Before                                        => Fail(NotPrepared);
+            7:  at: InDrum                                        => CalSensor(Drum)    -> Calibrating;
+            8:  drum: Inside | Entering | Sliding, bias: Missing  => CalSensor(Drum)    -> Calibrating;
             9:  drum: Inside | Entering | Sliding, bias: AtDrum | AtSafe => GoWhile(RemOutOn) -> Removing;
-            10: drum: Before                               => Stand;
-            11: drum: Off | Beside                         => Fail(NotPrepared);
+            10: drum: Before                                      => Stand;
+            11: drum: Off | Beside                                => Fail(NotPrepared);
         }
         /// The force sensor is being calibrated.
         Calibrating {
-            12: otherwise                                 => GoWhile(RemOut)    -> Removing;
+            12: otherwise                                         => GoWhile(RemOut)    -> Removing;
         }
         /// The tool is being pulled out.
         Removing {
-            13: otherwise                                 => Stand;
+            13: otherwise                                         => Stand;
         }
     }
 }

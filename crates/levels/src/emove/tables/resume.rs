@@ -78,13 +78,13 @@ decision_table! {
     /// RESUME: from where a motion command begins (docs/design/recovery.md "On the way"). A robot that is lost has
     /// come back before, as RETURN says. Planning consults it when a motion command comes; no header names its rows.
     pub RESUME: fn resume(self::Start) -> self::Beginning {
-        1: robot: AtPlace, goal: Way | Another                             => Depart;
-        2: robot: AtPlace, goal: Place                                     => Settle;
-        3: robot: Lost                                                     => RefuseStart;
-        4: robot: OnWay, goal: Way                                         => GoOn;
-        5: robot: OnWay, goal: Place | Another, leg: Depart                => GoOut;
-        6: robot: OnWay, goal: Place | Another, leg: Later, back: Free     => GoBack;
-        7: robot: OnWay, goal: Place | Another, leg: Later, back: Closed   => RefuseBack;
+        1: robot: AtPlace, goal: Way | Another                              => Depart;
+        2: robot: AtPlace, goal: Place                                      => Settle;
+        3: robot: Lost                                                      => RefuseStart;
+        4: robot: OnWay,   goal: Way                                        => GoOn;
+        5: robot: OnWay,   goal: Place | Another, leg: Depart               => GoOut;
+        6: robot: OnWay,   goal: Place | Another, leg: Later, back: Free    => GoBack;
+        7: robot: OnWay,   goal: Place | Another, leg: Later, back: Closed  => RefuseBack;
     }
 }
 
@@ -126,9 +126,9 @@ decision_table! {
     /// STANCE: a robot at its place, seen by its resolvers, before a command that ends there (MOV-…) or does its work
     /// there (LOCATE-OBJ, GRASP-OBJ, RELEASE). Planning consults it when such a command comes; no header names its rows.
     pub STANCE: fn stance(self::Standing) -> self::Stance {
-        1: offset: There     => Stay;
-        2: offset: Beside    => Correct;
-        3: offset: Clamped   => RefuseOff;
-        4: offset: Unseen    => RefuseStart;
+        1: offset: There    => Stay;
+        2: offset: Beside   => Correct;
+        3: offset: Clamped  => RefuseOff;
+        4: offset: Unseen   => RefuseStart;
     }
 }

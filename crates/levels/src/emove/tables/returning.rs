@@ -73,13 +73,13 @@ decision_table! {
     /// the joystick box has moved it, else on a short straight line that the task data allow. Planning consults it
     /// when a motion command comes; no header names its rows.
     pub RETURN: fn returning(self::Lost) -> self::Return {
-        1: resolvers: Unknown                          => Refuse;
-        2: course: Adrift                              => Refuse;
-        3: origin: Drum                                => Refuse;
-        4: freight: Clampable                          => Refuse;
-        5: course: Tracked, origin: Place | Way        => Retrace;
-        6: near: Resting                               => Straight;
-        7: near: Nest                                  => Out;
-        8: near: Nothing                               => Refuse;
+        1: resolvers: Unknown                    => Refuse;
+        2: course: Adrift                        => Refuse;
+        3: origin: Drum                          => Refuse;
+        4: freight: Clampable                    => Refuse;
+        5: course: Tracked, origin: Place | Way  => Retrace;
+        6: near: Resting                         => Straight;
+        7: near: Nest                            => Out;
+        8: near: Nothing                         => Refuse;
     }
 }

@@ -16,10 +16,10 @@ decision_table! {
     /// robot stands. Preprocess consults it every tick, because the tables ask for what it finds; no header
     /// names its rows.
     pub SEARCH: fn search(super::Watch) -> Look {
-        1: place: Known | Unknown                                              => Rest;
-        2: place: Searching, pause: Other                                      => Rest;
-        3: place: Searching, pause: UnderWay | Standing, resolvers: Unknown    => Rest;
-        4: place: Searching, pause: UnderWay | Standing, outcome: Idle | Error => Rest;
-        5: place: Searching, outcome: Executing | Done | Joystick              => Look;
+        1: place: Known | Unknown                                               => Rest;
+        2: place: Searching, pause: Other                                       => Rest;
+        3: place: Searching, pause: UnderWay | Standing, resolvers: Unknown     => Rest;
+        4: place: Searching, pause: UnderWay | Standing, outcome: Idle | Error  => Rest;
+        5: place: Searching, outcome: Executing | Done | Joystick               => Look;
     }
 }

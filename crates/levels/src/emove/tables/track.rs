@@ -75,16 +75,16 @@ decision_table! {
     /// so that the robot can go back on it (docs/design/recovery.md "Return"). Preprocess consults it every tick;
     /// no header names its rows.
     pub TRACK: fn track(self::Tracking) -> self::Record {
-        1:  place: Known                                            => Note;
-        2:  course: None | Adrift                                   => Keep;
-        3:  line: Failed                                            => Drift;
-        4:  course: Broken                                          => Keep;
-        5:  course: Known, mover: Emove | Hold                      => Drift;
-        6:  course: Known, mover: Box, step: Near                   => Begin;
-        7:  course: Known, mover: Box, step: Back | Far             => Break;
-        8:  course: Tracked, mover: Emove                           => Keep;
-        9:  course: Tracked, mover: Box | Hold, step: Near          => Add;
-        10: course: Tracked, mover: Box | Hold, step: Back          => Shorten;
-        11: course: Tracked, mover: Box | Hold, step: Far           => Break;
+        1:  place: Known                                          => Note;
+        2:  course: None | Adrift                                 => Keep;
+        3:  line: Failed                                          => Drift;
+        4:  course: Broken                                        => Keep;
+        5:  course: Known,   mover: Emove | Hold                  => Drift;
+        6:  course: Known,   mover: Box,        step: Near        => Begin;
+        7:  course: Known,   mover: Box,        step: Back | Far  => Break;
+        8:  course: Tracked, mover: Emove                         => Keep;
+        9:  course: Tracked, mover: Box | Hold, step: Near        => Add;
+        10: course: Tracked, mover: Box | Hold, step: Back        => Shorten;
+        11: course: Tracked, mover: Box | Hold, step: Far         => Break;
     }
 }

@@ -6,15 +6,15 @@ decision_table! {
     /// WITHDRAW (V.2.1): a DELTA-MOVE from above E-move.
     pub WITHDRAW: fn withdraw(enum WithdrawStep, struct of super::Senses) -> super::Action {
         any {
-            1: work: Busy => Wait;
+            1: work: Busy  => Wait;
         }
         /// Nothing done yet.
         Start {
-            2: otherwise => DeltaMove(Withdraw) -> Moving;
+            2: otherwise   => DeltaMove(Withdraw)  -> Moving;
         }
         /// The robot is on its way.
         Moving {
-            3: otherwise => Stand;
+            3: otherwise   => Stand;
         }
     }
 }

@@ -8,32 +8,32 @@ decision_table! {
     /// consulted after it, begins both.
     pub UP_INIT: fn up_init(super::Phase, super::Situation) -> super::Action or () {
         Missing | Deferred | Adopting | Valid | Failed {
-            1:                                      otherwise => consult;
+            1:  otherwise                            => consult;
         }
         any {
             2:  gripper: Detached, command: UpInit | Motion | OpenWide => Fail(WrongGripper) -> Deferred;
-            3:  gripper: Detached                   => GiveUp                  -> Deferred;
+            3:  gripper: Detached                    => GiveUp                   -> Deferred;
             4:  readings: Late | Implausible, command: Nothing | Refused => GiveUp -> Failed;
-            5:  readings: Late | Implausible        => Fail(GripNotCalibrated) -> Failed;
+            5:  readings: Late | Implausible         => Fail(GripNotCalibrated)  -> Failed;
         }
         Closing {
-            6:  readings: Unsteady                  => CloseFully;
-            7:  readings: Steady                    => NoteClosed              -> Opening;
+            6:  readings: Unsteady                   => CloseFully;
+            7:  readings: Steady                     => NoteClosed               -> Opening;
         }
         Opening | Widening {
-            8:  readings: Unsteady                  => OpenFully;
+            8:  readings: Unsteady                   => OpenFully;
         }
         Opening {
-            9:  readings: Steady                    => NoteOpen                -> Venting;
+            9:  readings: Steady                     => NoteOpen                 -> Venting;
         }
         Venting {
-            10: readings: Unsteady                  => Vent;
-            11: readings: Steady, command: UpInit   => CalibrateAndFinish      -> Valid;
-            12: readings: Steady                    => Calibrate               -> Valid;
+            10: readings: Unsteady                   => Vent;
+            11: readings: Steady, command: UpInit    => CalibrateAndFinish       -> Valid;
+            12: readings: Steady                     => Calibrate                -> Valid;
         }
         Widening {
-            13: readings: Steady, command: OpenWide => Finish                  -> Deferred;
-            14: readings: Steady                    => GiveUp                  -> Deferred;
+            13: readings: Steady, command: OpenWide  => Finish                   -> Deferred;
+            14: readings: Steady                     => GiveUp                   -> Deferred;
         }
     }
 }
@@ -45,21 +45,21 @@ decision_table! {
     /// calibration can be released.
     pub CALIBRATION: fn calibration(super::Phase, super::Situation) -> super::Action or super::Duty {
         Missing {
-            1: gripper: Attached, command: Nothing         => Begin  -> Closing;
+            1: gripper: Attached, command: Nothing          => Begin   -> Closing;
         }
         Missing | Deferred | Failed {
-            2: gripper: Attached, command: Motion          => Fail(GripNotCalibrated);
-            3: gripper: Attached, command: OpenWide        => Widen  -> Widening;
+            2: gripper: Attached, command: Motion           => Fail(GripNotCalibrated);
+            3: gripper: Attached, command: OpenWide         => Widen   -> Widening;
         }
         Adopting {
-            4: gripper: Attached, sensors: Plausible       => Adopt  -> Valid;
-            5: gripper: Attached, sensors: Implausible     => Forget -> Deferred;
+            4: gripper: Attached, sensors: Plausible        => Adopt   -> Valid;
+            5: gripper: Attached, sensors: Implausible      => Forget  -> Deferred;
         }
         any {
-            6: gripper: Attached, command: UpInit          => Begin  -> Closing;
-            7: command: Pause | UpInit | Motion | OpenWide => consult(Command);
-            8: command: Refused                            => consult(Refused);
-            9: command: Nothing                            => consult(Nothing);
+            6: gripper: Attached, command: UpInit           => Begin   -> Closing;
+            7: command: Pause | UpInit | Motion | OpenWide  => consult(Command);
+            8: command: Refused                             => consult(Refused);
+            9: command: Nothing                             => consult(Nothing);
         }
     }
 }

@@ -40,29 +40,29 @@ decision_table! {
     /// is next depends on who has the part, on the angle of the table and on where the robot is.
     pub AT_PEDESTAL: fn at_pedestal(self::FixGripStep, super::Situation) -> super::Action or () {
         any {
-            1:  work: Busy                                                  => Wait;
+            1:  work: Busy                                          => Wait;
             2:  part: Robot | Neither | Other | Unknown | NotKnown | Unsure => consult;
         }
         Grasping {
-            3:  part: Hand | Touched                                        => Fail(GraspMissed);
+            3:  part: Hand | Touched                                => Fail(GraspMissed);
         }
         any {
-            4:  part: Both | Touched, robot: First, table: Receive          => ReleaseAtPed   -> Releasing;
-            5:  part: Both, robot: Third, table: Turned                     => PedRelease     -> LettingGo;
-            6:  part: Hand | Touched, robot: Third, table: Turned           => GraspObjAtPed  -> Grasping;
-            7:  part: Both | Touched                                        => Fail(PartInPedestal);
+            4:  part: Both | Touched, robot: First, table: Receive  => ReleaseAtPed    -> Releasing;
+            5:  part: Both, robot: Third, table: Turned             => PedRelease      -> LettingGo;
+            6:  part: Hand | Touched, robot: Third, table: Turned   => GraspObjAtPed   -> Grasping;
+            7:  part: Both | Touched                                => Fail(PartInPedestal);
             // The pedestal alone has it.
-            8:  robot: First | Third                                        => MovToPedSafe   -> Clearing;
+            8:  robot: First | Third                                => MovToPedSafe    -> Clearing;
         }
         Flipping {
-            9:  table: Receive | Between | Unknown                          => Fail(TableStuck);
+            9:  table: Receive | Between | Unknown                  => Fail(TableStuck);
         }
         any {
-            10: table: Turned                                               => MovToObjAtPed  -> Approaching;
-            11: robot: Away                                                 => MovToPedSafe   -> Clearing;
-            12: table: Receive                                              => PedFlip(Whole) -> Flipping;
-            13: table: Between                                              => PedFlip(Rest)  -> Flipping;
-            14: table: Unknown                                              => Fail(TableAngleUnknown);
+            10: table: Turned                                       => MovToObjAtPed   -> Approaching;
+            11: robot: Away                                         => MovToPedSafe    -> Clearing;
+            12: table: Receive                                      => PedFlip(Whole)  -> Flipping;
+            13: table: Between                                      => PedFlip(Rest)   -> Flipping;
+            14: table: Unknown                                      => Fail(TableAngleUnknown);
         }
     }
 }
@@ -76,35 +76,35 @@ decision_table! {
     /// AT-PEDESTAL, which is consulted before, does the rest once the pedestal's hand has it.
     pub FIX_GRIP: fn fix_grip(self::FixGripStep, super::Situation) -> super::Action {
         any {
-            1:  part: Other                                            => Fail(PedestalHoldsOther);
-            2:  part: Unknown                                          => Fail(UnknownHeld);
-            3:  part: NotKnown                                         => Fail(HeldNotKnown);
-            4:  part: Unsure                                           => Fail(HandUncertain);
+            1:  part: Other                                             => Fail(PedestalHoldsOther);
+            2:  part: Unknown                                           => Fail(UnknownHeld);
+            3:  part: NotKnown                                          => Fail(HeldNotKnown);
+            4:  part: Unsure                                            => Fail(HandUncertain);
         }
         Start {
-            5:  part: Neither                                          => Fail(NothingHeld);
+            5:  part: Neither                                           => Fail(NothingHeld);
         }
         any {
-            6:  part: Neither                                          => Fail(ObjectLost);
+            6:  part: Neither                                           => Fail(ObjectLost);
             // The robot has the part.
-            7:  grip: Destination                                      => Finish;
-            8:  grip: Neither                                          => Fail(RegripNeeded);
+            7:  grip: Destination                                       => Finish;
+            8:  grip: Neither                                           => Fail(RegripNeeded);
         }
         Start {
-            9:  robot: Safe | Away                                     => PedPreGrip   -> Preparing;
+            9:  robot: Safe | Away                                      => PedPreGrip    -> Preparing;
         }
         Preparing {
-            10: table: Turned | Between | Unknown                      => Fail(TableStuck);
-            11: hand: Narrow                                           => Fail(PedestalError);
+            10: table: Turned | Between | Unknown                       => Fail(TableStuck);
+            11: hand: Narrow                                            => Fail(PedestalError);
         }
         Gripping {
-            12:                                                        otherwise => Fail(GraspMissed);
+            12: otherwise                                               => Fail(GraspMissed);
         }
         any {
-            13: robot: First, table: Receive, hand: Open               => PedGrip      -> Gripping;
-            14: robot: Third | Safe | Away, table: Receive, hand: Open => MovObjToPed  -> Bringing;
-            15: robot: First | Third                                   => MovToPedSafe -> Clearing;
-            16: robot: Safe | Away                                     => PedPreGrip   -> Preparing;
+            13: robot: First,               table: Receive, hand: Open  => PedGrip       -> Gripping;
+            14: robot: Third | Safe | Away, table: Receive, hand: Open  => MovObjToPed   -> Bringing;
+            15: robot: First | Third                                    => MovToPedSafe  -> Clearing;
+            16: robot: Safe | Away                                      => PedPreGrip    -> Preparing;
         }
     }
 }
