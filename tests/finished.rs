@@ -85,12 +85,16 @@ fn a_part_that_was_pushed_out_of_the_fingers_is_named_with_where_it_lies() {
             &outcome,
             &["LINKBAR1_BH is ", " from PFIXTURE was to leave it at PFIXTURE, within 0.25 in"],
         );
-        // Earlier faults come first: the part moved in the fingers, or met a jaw, before it fell.
-        let (first, later) = outcome.last_words.rsplit_once("; later, ").unwrap_or_default();
+        // The part moved in the fingers, or met a jaw, before it fell.
+        let failure = &outcome.result["failure"];
         let causes = ["a confirmation is false: E-move reports MOV-OBJ-TO", "the robot ran into movable_jaw"];
-        assert!(causes.iter().any(|cause| first.contains(cause)), "{}", outcome.last_words);
-        assert!(later.starts_with("LINKBAR1_BH is "), "{later}");
-        assert!(!later.starts_with("LINKBAR1_BH is at PFIXTURE"), "{later}");
+        let first = failure["text"].as_str().expect("a failure has a text");
+        assert!(causes.iter().any(|cause| first.contains(cause)), "{first}");
+        let followed = failure["followed"].as_array().expect("a failure has a list of what followed");
+        let misplaced = followed.iter().find(|later| later["kind"] == "misplaced");
+        let place = misplaced.and_then(|later| later["text"].as_str()).expect("the part is misplaced");
+        assert!(place.starts_with("LINKBAR1_BH is "), "{place}");
+        assert!(!place.starts_with("LINKBAR1_BH is at PFIXTURE"), "{place}");
     }
 }
 

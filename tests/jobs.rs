@@ -86,7 +86,11 @@ fn assert_fails_for(job: &str, name: &str, reason: Reason, prepare: impl FnOnce(
     assert_eq!(outcome.status, Some(1), "{said}");
     assert!(said.contains(reason.text()), "{said} does not say: {}", reason.text());
     let failure = &outcome.result["failure"];
-    assert!(failure["table"].is_string() && failure["row"].as_u64().is_some(), "{failure}");
+    let later = failure["followed"].as_array().into_iter().flatten();
+    let of_process = std::iter::once(failure).chain(later).find(|failure| failure["table"].is_string());
+    let of_process = of_process.unwrap_or_else(|| panic!("no process has failed: {failure}"));
+    assert!(of_process["row"].as_u64().is_some(), "{failure}");
+    assert!(of_process["text"].as_str().is_some_and(|text| text.contains(reason.text())), "{failure}");
     assert_eq!(outcome.result["allocations_after_start"], 0, "also on the way of the error");
     assert_replays(&outcome);
 }

@@ -94,7 +94,7 @@ fn a_pulled_cable() {
     let outcome = run_with("linkbar", 1, "why-cable", &["--faults", plan], |_| {});
     assert_explained(
         &outcome,
-        "T3 Interface at tick 201, ",
+        "a warning of the robot controller at tick 200: ",
         &["HWSC", "Task", "Subtask", "E-move", "Prim"],
         &[
             "not responding",

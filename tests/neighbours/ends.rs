@@ -160,7 +160,7 @@ fn a_robot_that_is_switched_off_is_a_lost_link() {
     workstation.in_cell("panel power off");
     workstation.run_to(workstation.tick + 50);
     drop(workstation);
-    assert_ended(&controller.end(), STOPPED, "T3I: the link to the robot is lost: not responding");
+    assert_ended(&controller.end(), STOPPED, "the controller has no power");
 }
 
 /// Lines that bring the robot to HOME from wherever it stands (IV.3.3).

@@ -157,8 +157,8 @@ impl Chronicle {
     /// What went wrong first in the run of the log, and what followed: as the run has written it at its end, or as its
     /// lines show it if the run was killed. `None` if nothing did.
     pub fn account(&self, log: &Log) -> Option<Account> {
-        if let Some(facts) = &log.end {
-            return Account::of_facts(facts);
+        if let Some(account) = log.end.as_ref().and_then(Account::of_facts) {
+            return account;
         }
         let mut alarms = self.alarms.clone();
         for line in log.lines() {

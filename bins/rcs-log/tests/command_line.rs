@@ -90,7 +90,12 @@ fn info_tells_commands_and_failure() {
     assert!(text.contains("job nothing, seed 7"), "{text}");
     assert!(text.contains("120 ticks, 4.8 s; 0 ticks missing"), "{text}");
     assert!(text.contains("TRANSFER NOBODY"), "{text}");
-    assert!(text.contains("failure    Task: the object is not in the task data"), "{text}");
+    assert!(
+        text.contains(
+            "First, at tick 50 (2.00 s), a process error: Task: the object is not in the task data"
+        ),
+        "{text}"
+    );
 
     let output = rcs_log(&["info", "--json"], &[&log]);
     let json: serde_json::Value = serde_json::from_slice(&output.stdout).expect("one JSON object");
@@ -105,7 +110,9 @@ fn why_finds_the_tick_of_the_failure_and_names_the_row() {
     let log = scratch.log("run.mcap", 1000);
     let text = stdout(&rcs_log(&["why"], &[&log]));
     assert!(
-        text.starts_with("Failure at tick 50 (2.00 s). Task: the object is not in the task data"),
+        text.starts_with(
+            "First, at tick 50 (2.00 s), a process error: Task: the object is not in the task data"
+        ),
         "{text}"
     );
     assert!(

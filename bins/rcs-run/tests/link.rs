@@ -530,7 +530,8 @@ fn a_pulled_cable_ends_the_run_with_its_reason() {
         assert_eq!(output.status.code(), Some(3), "{result}");
         let words = last_words(&output);
         assert!(
-            words.contains("has disappeared; T3 Interface") && words.contains("not responding"),
+            words.contains("has disappeared; then, at tick ")
+                && words.contains("T3 Interface: not responding"),
             "{words}"
         );
         assert_eq!(result["port"]["losses"], 1, "{result}");

@@ -157,10 +157,14 @@ impl Account {
         facts.iter().filter(|(key, _)| *key != FACT)
     }
 
-    /// The account in the metadata at the end of a log; `None` if the run did not fail.
+    /// The account in the metadata at the end of a log: `Some(None)` for a run that finished, `None` if the metadata do
+    /// not say what went wrong.
     #[must_use]
-    pub fn of_facts(facts: &BTreeMap<String, String>) -> Option<Self> {
-        serde_json::from_str(facts.get(FACT)?).ok()
+    pub fn of_facts(facts: &BTreeMap<String, String>) -> Option<Option<Self>> {
+        match facts.get(FACT) {
+            Some(json) => serde_json::from_str(json).ok().map(Some),
+            None => facts.get("result").is_some_and(|result| result == "finished").then_some(None),
+        }
     }
 
     /// The account as a fact for the metadata at the end of a log.

@@ -66,8 +66,8 @@ impl Recorded {
             before = Some(picture);
         }
         story.tell(log.lines());
-        if let Some(facts) = &log.end {
-            story.end(Account::of_facts(facts));
+        if let Some(account) = log.end.as_ref().and_then(Account::of_facts) {
+            story.end(account);
         }
         if deltas.range().is_none() {
             return Err(ConsoleError::Empty(path.to_owned()));

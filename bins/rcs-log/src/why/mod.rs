@@ -313,7 +313,10 @@ impl fmt::Display for Explanation {
             for sentence in world.account.sentences() {
                 writeln!(f, "{sentence}.")?;
             }
-            links("The commands that led there:", &world.commands, f)?;
+            let told = self.failure.as_ref().is_some_and(|story| story.text == world.account.first.text);
+            if !told {
+                links("The commands that led there:", &world.commands, f)?;
+            }
             list("The data that the last of them used:", &world.data, f)?;
             writeln!(f)?;
         }

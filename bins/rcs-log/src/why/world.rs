@@ -52,7 +52,7 @@ impl Motion {
 pub fn first(log: &Log, history: &History, account: Account) -> World {
     let Failure { tick, kind, .. } = account.first;
     let mut world = World { account: account.clone(), commands: Vec::new(), data: Vec::new() };
-    if account.first.table.is_some() || !is_commanded(kind) {
+    if !is_commanded(kind) {
         return world;
     }
     let (mut motion, mut last) = (Motion::default(), None);
