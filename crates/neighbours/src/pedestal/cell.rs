@@ -26,7 +26,8 @@ crate::layout! {
     /// Orders to valves and motor.
     OrdersLayout: Orders = "a set of orders";
     "valves"  (0.bits)    U16,          "command bits to the eight air valves of the hand";
-    "order#"  (1.number)  U32,          "number of the order to the rotary table controller, 0 for none: another than the last is a new order";
+    "order#"  (1.number)  U32,          "number of the order to the rotary table controller, 0 for none: a different \
+         number is a new order";
     "order"   (1.order)   Spelled<12>,  "turn, set-counter, stop; blank for none";
     "steps"   (1.steps)   I32,          "";
 }

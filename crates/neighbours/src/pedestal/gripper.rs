@@ -16,7 +16,7 @@ pub type HandAndCommand = (GripOutputs, GripCommand);
 crate::layout! {
     /// The status of the gripper.
     GripperLayout: HandAndCommand = "a status of the gripper";
-    "incr-cmnd#-echo"  (0.status.echo)         U32,            "the number that `status` belongs to";
+    "incr-cmnd#-echo"  (0.status.echo)         U32,            "number of the command that `status` reports";
     "status"           (0.status.report)       Spelled<WORD>,  "executing, done, paused, serror; also idle";
     "status-code"      (0.status.reason)       Coded<4>,       "why the command failed, 0 if it did not";
     "initialized-?"    (0.status.initialized)  Flag,           "1: its sensors are calibrated";
@@ -36,24 +36,24 @@ crate::layout! {
     "force"            (1.force)               I32,            "lb";
     "position"         (1.position)            I32,            "0.01 in";
     "velocity"         (1.velocity)            I32,            "0.01 in/s; 0 is full speed";
-    "end-effector"     (1.end_effector_id)     Given<U16>,     "0: it is on no quick change";
+    "end-effector"     (1.end_effector_id)     Given<U16>,     "0: not on a quick change";
     "felt"             (0.status.felt)         Coded<2>,
-        "what is between the fingers: 0 not known, 1 nothing, 2 something";
+        "contents of the fingers: 0 not known, 1 empty, 2 not empty";
     "scales-known"  [|s| s.0.calibration.is_some(),
                      |s, known: bool| s.0.calibration = known.then(Calibration::default)]  Flag,
-        "1: the numbers behind are those of a calibration";
+        "1: the numbers below are those of a calibration";
     "zero of pos"      [|s| scales(s).potentiometer.zero, |s, found| set(s, |c| c.potentiometer.zero = found)]  U64,
         "counts at opening 0, as the bits of a 64-bit floating-point number";
     "gain of pos"      [|s| scales(s).potentiometer.gain, |s, found| set(s, |c| c.potentiometer.gain = found)]  U64,
-        "inches a count, likewise";
+        "inches per count, likewise";
     "zero of l-force"  [|s| scales(s).left.zero, |s, found| set(s, |c| c.left.zero = found)]  U64,
         "counts of the left strain gage at no force";
     "gain of l-force"  [|s| scales(s).left.gain, |s, found| set(s, |c| c.left.gain = found)]  U64,
-        "pounds a count";
+        "pounds per count";
     "zero of r-force"  [|s| scales(s).right.zero, |s, found| set(s, |c| c.right.zero = found)]  U64,
         "counts of the right strain gage at no force";
     "gain of r-force"  [|s| scales(s).right.gain, |s, found| set(s, |c| c.right.gain = found)]  U64,
-        "pounds a count";
+        "pounds per count";
 }
 
 fn scales(sent: &HandAndCommand) -> Calibration {

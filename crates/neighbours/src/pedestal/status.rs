@@ -47,9 +47,9 @@ crate::layout! {
     "cycle-cnt-echo"   (status.cycle_echo)  U64,
         "`cycle-cnt` of the command that is echoed";
     "incr-cmnd#-echo"  (status.echo)  U32,
-        "the number that `status` belongs to";
+        "number of the command that `status` reports";
     "status"  (status.report)  Spelled<WORD>,
-        "executing, done, can't-do, error; idle (CHOSEN) with the number 0 alone, when nothing was commanded yet";
+        "executing, done, can't-do, error; idle (CHOSEN) only with the number 0, before the first command";
     "status-code"  (status.reason)  Coded<4>,
         "CHOSEN: why it failed, 0 if it did not: [its code](reasons.md); another number makes the status \
          unreadable";
@@ -66,14 +66,14 @@ crate::layout! {
     "mailgram-echo"  (mailgram_echo)  U16,
         "CHOSEN: mailgram number of the command mailbox that was read last";
     "verdict"  (verdict)  Coded<2>,
-        "CHOSEN: of that mailgram, whatever `status` says of its number: 0 it was taken, 1 it is no command, \
-         2 the words of the sensors cannot be read";
+        "CHOSEN: of that mailgram, independent of `status`: 0 accepted, 1 not a command, 2 the words of the sensors \
+         cannot be read";
     "reason"   (reason)   Text<REASON>, "CHOSEN: the same in a sentence";
     "angle-known"  [|s| s.status.table_position.is_some(), set_known]  Flag,
         "CHOSEN: 1: `table-position` is an angle; 0: it is not known (not calibrated, or the potentiometer of \
          the table disagrees), and `table-position` is 0";
     "felt"     (status.felt)     Coded<2>,
-        "CHOSEN: what is in the hand by its sensors: 0 not known, 1 nothing, 2 something";
+        "CHOSEN: contents of the hand by its sensors: 0 not known, 1 empty, 2 not empty";
     "gripped"  (status.gripped)  Flag,
         "CHOSEN: 1: GRIP was ordered, and no opening since";
 }

@@ -12,7 +12,7 @@ pub type TableAndCommand = (TableOutputs, TableCommand);
 crate::layout! {
     /// The status of the table.
     TableLayout: TableAndCommand = "a status of the table";
-    "incr-cmnd#-echo"  (0.status.echo)        U32,            "the number that `status` belongs to";
+    "incr-cmnd#-echo"  (0.status.echo)        U32,            "number of the command that `status` reports";
     "status"           (0.status.report)      Spelled<WORD>,  "executing, done, can't-do, error; also idle";
     "status-code"      (0.status.reason)      Coded<4>,       "why the command failed, 0 if it did not";
     "calibrated"       (0.status.calibrated)  Flag,           "1: the counter was set at the + limit";

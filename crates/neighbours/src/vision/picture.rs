@@ -13,7 +13,7 @@ crate::layout! {
     HeadLayout: Head = "the head of a picture";
     "request-#"    (number)  U16,  "request for which the picture was taken";
     "parts"        (parts)   U16,
-        "parts of which something is seen, 0 to 38, the nearest to the optical axis if there are more";
+        "number of visible parts, 0 to 38; if there are more, those nearest to the optical axis";
     "seed"         (seed)    U64,  "seed of the run";
     "fingerprint"  (cell)    U64,  "of camera and parts in the cell description of the run";
 }
@@ -26,7 +26,7 @@ crate::layout! {
     "length 1"     (edges[0].1)   Number,  "of that edge";
     "edge 2"       (edges[1].0)   Vector,  "direction of its second edge";
     "length 2"     (edges[1].1)   Number,  "of that edge";
-    "reflectance"  (reflectance)  Number,  "share of the light that it throws back";
+    "reflectance"  (reflectance)  Number,  "share of the light that it reflects";
     "points"       (seen)         Points,
         "which of 9 by 9 points of it, the middles of equal fields, are seen: bit n % 8 of byte n / 8 for the nth, \
          those along the second edge first";

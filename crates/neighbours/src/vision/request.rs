@@ -13,15 +13,15 @@ crate::layout! {
     RequestLayout: VisionRequest = "a request";
     "request-byte-count"  ()           ByteCount,  "12";
     "request-#"           (number)     Number,
-        "another one than the last is a new request; 1 to 65535, then 1 again";
+        "a different number is a new request; 1 to 65535, then 1 again";
     "picture"             (picture)    Coded<2>,
         "1 fast flood: approximate centroid; 2 precise: centroid, angle, recognition";
-    "object-id"           (object_id)  U16,        "what is to be recognised (VII.7.6)";
+    "object-id"           (object_id)  U16,        "the object to recognise (VII.7.6)";
     "grip-#"              (grip)       I16,
         "signed; 1 across the widest dimension, 2 across the shortest";
     "range"               (range_mm)   U16,        "expected, mm";
     "variation"           (variation)  U16,
-        "of the system's parameters: 0 first, another for each picture that is taken again";
+        "of the system's parameters: 0 first, another value for each repeated picture";
 }
 
 /// Encode a request. Its number is reduced to the range of the mailbox, 1 to 65535.

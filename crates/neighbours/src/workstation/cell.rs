@@ -45,7 +45,7 @@ crate::layout! {
     /// A line for the cell.
     LineLayout: NumberedLine<'_> = "a line";
     "number"  (0)  U16,
-        "1 to 65535: another one than the last is a new line, the last one again changes nothing. 0 is refused";
+        "1 to 65535: a different number is a new line, a repeated number has no effect. 0 is refused";
     "line"    (1)  Text<TEXT>, "as in a job without its asterisks: `vise close PFIXTURE`";
 }
 
@@ -53,12 +53,12 @@ crate::layout! {
     /// The status of the cell.
     CellStatusLayout: CellStatus<'_> = "a status of the cell";
     "echo"     (echo)     U16,
-        "number of the line that was begun last, or refused; a mailgram of less than 2 bytes has none, and is \
-         refused without one";
+        "number of the last line that was started or refused; a mailgram of less than 2 bytes is refused without a \
+         number";
     "busy"     (busy)     Flag,        "1 while the cell is busy with a line";
     "trouble"  (trouble)  Coded<2>,
-        "0 all is well; 1 the line was refused; 2 the cell has a fault; 3 an emergency has stopped the robot";
-    "text"     (text)     Text<TEXT>,  "what is wrong";
+        "0 none; 1 the line was refused; 2 the cell has a fault; 3 an emergency has stopped the robot";
+    "text"     (text)     Text<TEXT>,  "the trouble, as a sentence";
 }
 
 /// Encodes a line; a text longer than [`TEXT`] is cut off.

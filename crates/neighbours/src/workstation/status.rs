@@ -58,24 +58,25 @@ crate::layout! {
     "echo>w"               ()               Unused<16>,    "blanks";
     "status-length>w"      ()               Length,        "238";
     "time-stamp-status>w"  ()               Unused<12>,    "blanks";
-    "command-echo"         (command)        Chars<16>,     "the command that Task has";
+    "command-echo"         (command)        Chars<16>,     "Task's present command";
     "status"               (report)         Spelled<16>,
         "executing, finished; CHOSEN: also idle, error, joystick-on";
-    "command-#-echo"       (echo)           U16,           "CHOSEN: the number that `status` belongs to";
+    "command-#-echo"       (echo)           U16,           "CHOSEN: number of the command that `status` reports";
     "mailgram-echo"        (mailgram_echo)  U16,
         "CHOSEN: mailgram number of the command mailbox that was read last";
     "verdict"              (verdict)        U16,
-        "CHOSEN: 0 it was taken; 1 no command, 2 the number was given to another command, 3 another number comes \
+        "CHOSEN: 0 accepted; refused: 1 not a command, 2 the number belongs to another command, 3 another number is \
          next";
     "status-code"          (code)           Coded<2>,
         "CHOSEN: why the command failed, 0 if it did not: [its code](reasons.md)";
     "task-state"           (task)           Coded<2>,
         "CHOSEN: 0 Task runs, 1 its switch on the joystick box holds it (III.3.3), 2 it is lost";
     "unconfirmed"          (unconfirmed)    Coded<2>,
-        "CHOSEN: with finished, what no sensor confirms: 0 nothing, 1 the grasp force, 2 the tool in the drum, 3 the robot's position, 4 the part's place in the fingers";
+        "CHOSEN: with finished, the condition that no sensor confirms: 0 none, 1 the grasp force, 2 the tool in the \
+         drum, 3 the robot's position, 4 the part's place in the fingers";
     "reason"               (reason)         Text<REASON>,
-        "CHOSEN: why the mailgram was refused, or else what is wrong with the command, or why it failed, with names \
-         and distances, or what no sensor confirms";
+        "CHOSEN: the reason of a refused mailgram; else the error in the command, the reason of its failure with \
+         names and distances, or the unconfirmed condition";
 }
 
 /// `status-length>w`; decoding ignores it.
