@@ -156,11 +156,11 @@ fn main() -> ExitCode {
         rows.extend(part.rows(extent));
     }
     print!("{}", table::plain(&rows));
-    if let Some(file) = &arguments.markdown {
-        if let Err(error) = fs::write(file, table::markdown(&rows)) {
-            eprintln!("{}: {error}", file.display());
-            return ExitCode::from(2);
-        }
+    if let Some(file) = &arguments.markdown
+        && let Err(error) = fs::write(file, table::markdown(&rows))
+    {
+        eprintln!("{}: {error}", file.display());
+        return ExitCode::from(2);
     }
     let findings: Vec<&String> = rows.iter().flat_map(|row| &row.findings).collect();
     findings.iter().for_each(|finding| eprintln!("not held: {finding}"));
