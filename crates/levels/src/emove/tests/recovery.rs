@@ -1,5 +1,5 @@
 //! Motions that are interrupted and sent again, or followed by another command (docs/design/recovery.md
-//! "On the way", "Halt", "Beliefs").
+//! "On the way", "Replaced", "Beliefs").
 
 use geometry::frame::{Frame, Vector};
 use interfaces::{
