@@ -230,7 +230,7 @@ decision_table! {
         );
         let lines = |number: &str, what| {
             let mutants =
-                mutants(&table).into_iter().filter(|mutant| mutant.row == number && mutant.what == what);
+                mutants(table).into_iter().filter(|mutant| mutant.row == number && mutant.what == what);
             mutants.map(|mutant| mutant.apply(TEXT)).collect::<Vec<_>>()
         };
         let changed = |texts: &[String]| {

@@ -20,8 +20,11 @@ fn pairs<A: Copy, B: Copy>(all: &[A], with: &'static [B]) -> Vec<(A, B)> {
     all.iter().flat_map(|&a| with.iter().map(move |&b| (a, b))).collect()
 }
 
+/// What the tables of both commands test.
+type Exchange = ((((Mate, Lock), Holster), Along), At);
+
 /// The values of what the tables of both commands test.
-fn exchanges() -> Vec<((((Mate, Lock), Holster), Along), At)> {
+fn exchanges() -> Vec<Exchange> {
     pairs(&pairs(&pairs(&pairs(Mate::ALL, Lock::ALL), Holster::ALL), Along::ALL), At::ALL)
 }
 
