@@ -5,64 +5,16 @@
 import { idOf } from './processes.js';
 
 /**
- * @typedef {object} Cause
- * @property {number} tick
- * @property {string | null} process id of the process that failed first; null for an event in the cell
- * @property {string} title what went wrong
- * @property {string} detail
- * @property {'failure' | 'contact' | 'ended'} kind
- *
  * @typedef {object} Link
  * @property {number} tick
- * @property {'command' | 'cause' | 'report' | 'cell'} kind
+ * @property {'command' | 'cause' | 'report' | 'cell' | 'then'} kind `then`: a failure that followed
  * @property {string | null} process id; null for the cell
- * @property {string} from name of the process
+ * @property {string} from name of the process, or of the kind of failure
  * @property {string} to name of the commanded process; empty for reports
  * @property {string} text
  * @property {string} row table, row and action, such as `LOCATE-OBJ 7 Fail(NothingSeen)`
  * @property {string} news what is new in this tick
  */
-
-/**
- * What went wrong first; null if the run finished.
- * @param {import('./run.js').Run} run
- * @returns {Cause | null}
- */
-export function causeOf(run) {
-  const { why } = run;
-  if (!why) return null;
-  const failure = why.failure;
-  const world = why.world;
-  if (failure && (!world || world.tick >= failure.causes.at(-1)?.tick)) {
-    const first = failure.causes.at(-1) ?? failure;
-    const sentence = split(first.text);
-    const title = reasonIn(run, first.text) ?? reasonIn(run, failure.text) ?? sentence.head;
-    const [, executing] = /while it executed (.*?) \(table/.exec(failure.text) ?? [];
-    return {
-      tick: first.tick,
-      process: idOf(first.process ?? ''),
-      title,
-      detail: executing ?? '',
-      kind: 'failure',
-    };
-  }
-  if (world && (failure || why.ended !== 'finished')) {
-    const [title, ...rest] = world.text.replace(/^HWSC: /, 'Workstation: ').split(', ');
-    const kind = /runs into/.test(title) ? 'contact' : 'failure';
-    return { tick: world.tick, process: null, title, detail: rest.join(', '), kind };
-  }
-  return null;
-}
-
-/**
- * The text of the reason in a sentence; null if it has none.
- * @param {import('./run.js').Run} run
- * @param {string} sentence
- */
-function reasonIn(run, sentence) {
-  const found = run.reasons.filter((reason) => sentence.includes(reason.text));
-  return found.sort((a, b) => b.text.length - a.text.length)[0]?.text ?? null;
-}
 
 /**
  * What to do next after the failure of a process; null for an event in the cell, of which the program has no
@@ -76,37 +28,47 @@ export function remedyOf(run) {
 }
 
 /**
- * The chain of the failure, from the first command to the last report.
+ * The chain of the failures, from the first command to the last report.
  * @param {import('./run.js').Run} run
  * @returns {Link[]}
  */
 export function chainOf(run) {
   const { why, cause } = run;
   if (!why || !cause) return [];
-  const source = cause.process || !why.world ? why.failure : why.world;
-  const events = run.lines
+  const faults = run.lines
     .filter((line) => line.source === 'fault' && line.tick <= cause.tick)
-    .map((line) => cell(line.tick, line.text));
-  const commands = source.commands.map((/** @type {any} */ it) => command(it));
-  const down = [...events, ...commands].sort((a, b) => a.tick - b.tick);
-  if (source !== why.failure) {
-    const first = {
-      ...cell(cause.tick, why.world.text.replace(/^HWSC: /, 'Workstation: ')),
-      kind: /** @type {const} */ ('cause'),
-    };
-    return [...down, first, ...(why.failure ? reports(why.failure.causes.toReversed(), 'report') : [])];
-  }
-  const [first, ...rest] = why.failure.causes.toReversed();
-  return [
-    ...down,
-    ...reports([first], 'cause'),
-    ...reports([...rest, ...why.failure.consequences], 'report'),
-  ];
+    .map((line) => event(line.tick, 'cell', 'In the cell', line.text));
+  const commands = (cause.explained ? why.failure : why.world).commands;
+  const down = [...faults, ...commands.map((/** @type {any} */ it) => command(it))];
+  const links = run.failures.flatMap((failure, index) => linksOf(why, failure, index === 0));
+  return [...down.sort((a, b) => a.tick - b.tick), ...links.sort((a, b) => a.tick - b.tick)];
 }
 
-/** @param {number} tick @param {string} text @returns {Link} */
-function cell(tick, text) {
-  return { tick, kind: 'cell', process: null, from: 'In the cell', to: '', text, row: '', news: '' };
+/**
+ * A failure with the reports that it led to.
+ * @param {any} why
+ * @param {import('./account.js').Failure} failure
+ * @param {boolean} first
+ * @returns {Link[]}
+ */
+function linksOf(why, { tick, name, title, detail, explained }, first) {
+  const kind = first ? 'cause' : 'then';
+  // The head of the pane has the details of the first failure.
+  if (!explained) return [event(tick, kind, name, first || !detail ? title : `${title}: ${detail}`)];
+  const [root, ...rest] = why.failure.causes.toReversed();
+  return [...reports([root], kind), ...reports([...rest, ...why.failure.consequences], 'report')];
+}
+
+/**
+ * Something that no process reports.
+ * @param {number} tick
+ * @param {Link['kind']} kind
+ * @param {string} from
+ * @param {string} text
+ * @returns {Link}
+ */
+function event(tick, kind, from, text) {
+  return { tick, kind, process: null, from, to: '', text, row: '', news: '' };
 }
 
 /** @param {{ tick: number, process: string, text: string }} link @returns {Link} */
@@ -119,7 +81,7 @@ function command({ tick, process, text }) {
 
 /**
  * @param {{ tick: number, process: string, text: string }[]} links
- * @param {'cause' | 'report'} kind
+ * @param {Link['kind']} kind
  * @returns {Link[]}
  */
 function reports(links, kind) {
@@ -134,15 +96,8 @@ function reports(links, kind) {
  * @param {string} text
  */
 function split(text) {
-  const [, head, table, row, action, news] =
-    /^(.*?) \(table (\S+) row (\d+): (.*?)\)(?:; new in this tick: (.*))?$/s.exec(text) ?? [
-      '',
-      text,
-      '',
-      '',
-      '',
-      '',
-    ];
+  const parts = /^(.*?) \(table (\S+) row (\d+): (.*?)\)(?:; new in this tick: (.*))?$/s.exec(text);
+  const [, head, table, row, action, news] = parts ?? ['', text, '', '', '', ''];
   const short = action.replace(/,? (because|in step|then) .*$/s, '').replace(/,$/, '');
   return { head, row: table ? `${table} ${row} ${short}` : '', news: news ?? '' };
 }

@@ -1,76 +1,90 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { causeOf, chainOf, remedyOf } from './explanation.js';
+import { failuresOf } from './account.js';
+import { chainOf, remedyOf } from './explanation.js';
 
 const reasons = [
   { code: 23, text: 'vision sees no object', remedy: null },
   { code: 4, text: 'the joystick box is on', remedy: 'switch it off' },
 ];
-const first = {
-  tick: 623,
-  process: 'E-move',
-  text: 'reports error-state: vision sees no object (table LOCATE-OBJ row 7: Fail(NothingSeen), because step is Flooding, sight is Missing); new in this tick: sight is Missing',
-};
+const commands = [
+  {
+    tick: 78,
+    process: 'HWSC',
+    text: 'commands Task: MOVE LINKBAR1_BH at UNIT_1 sector 4 to PFIXTURE, number 5',
+  },
+  {
+    tick: 80,
+    process: 'Task',
+    text:
+      'commands Subtask: GET-OBJECT LINKBAR1_BH at UNIT_1, number 6 ' +
+      '(table MOVE row 7: GetObject, then Object, because step is Gripper)',
+  },
+];
 const failure = {
   tick: 623,
-  text: 'E-move: vision sees no object, while it executed LOCATE-OBJ LINKBAR1_BH at UNIT_1 (table LOCATE-OBJ row 7: Flooding => Fail(NothingSeen))',
-  commands: [
+  text:
+    'E-move: vision sees no object, while it executed LOCATE-OBJ LINKBAR1_BH at UNIT_1 ' +
+    '(table LOCATE-OBJ row 7: Flooding => Fail(NothingSeen))',
+  commands,
+  causes: [
     {
-      tick: 78,
-      process: 'HWSC',
-      text: 'commands Task: MOVE LINKBAR1_BH at UNIT_1 sector 4 to PFIXTURE, number 5',
-    },
-    {
-      tick: 80,
-      process: 'Task',
-      text: 'commands Subtask: GET-OBJECT LINKBAR1_BH at UNIT_1, number 6 (table MOVE row 7: GetObject, then Object, because step is Gripper)',
+      tick: 623,
+      process: 'E-move',
+      text:
+        'reports error-state: vision sees no object (table LOCATE-OBJ row 7: Fail(NothingSeen), ' +
+        'because step is Flooding, sight is Missing); new in this tick: sight is Missing',
     },
   ],
-  causes: [first],
   consequences: [
     {
       tick: 624,
       process: 'Subtask',
-      text: 'reports error-state: vision sees no object (table ORDERED row 4: PassUp in step locating, because emove is Error)',
+      text:
+        'reports error-state: vision sees no object ' +
+        '(table ORDERED row 4: PassUp in step locating, because emove is Error)',
     },
   ],
 };
-const world = {
+const report = { tick: 623, kind: 'process', process: 'E-move', table: 'LOCATE-OBJ', text: failure.text };
+const hit = {
   tick: 332,
-  text: 'right_finger runs into pot_2_near, 0.007 in deep, during MOV-TO-VU',
-  commands: failure.commands,
-  data: [],
+  kind: 'collision',
+  process: 'cell',
+  table: null,
+  text: 'the robot ran into pot_2_near: right_finger was 0.568 in deep at (-54.94, -18.89, -13.02 in)',
 };
+const lost = { ...hit, tick: 700, kind: 'lost', text: 'the part is lost; it is on the floor' };
 
+/** @param {any} why */
 function run(why) {
   const lines = [{ tick: 73, source: 'fault', text: 'fault 1 begins', level: 'warning', code: '' }];
-  const made = { why, reasons, lines, cause: null };
-  made.cause = causeOf(made);
-  return made;
+  const failures = failuresOf(why, reasons);
+  return /** @type {any} */ ({ why, reasons, lines, failures, cause: failures[0] ?? null });
 }
 
-test('a_failure_is_told_from_the_first_command_to_the_last_report', () => {
-  const failed = run({ world: { ...world, tick: 623 }, failure, ended: null });
-  assert.deepEqual(failed.cause, {
-    tick: 623,
-    process: 'emove',
-    title: 'vision sees no object',
-    detail: 'LOCATE-OBJ LINKBAR1_BH at UNIT_1',
-    kind: 'failure',
-  });
-  const chain = chainOf(failed);
+/** @param {any} why */
+function chain(why) {
+  return chainOf(run(why)).map((it) => [it.tick, it.kind, it.from, it.to]);
+}
+
+test('chain_leads_from_the_first_command_to_the_last_report', () => {
+  const why = { world: { ...report, followed: [], commands: [], data: [] }, failure, ended: null };
+  const failed = run(why);
   assert.deepEqual(
-    chain.map((it) => [it.tick, it.kind, it.from, it.to]),
-    [
-      [73, 'cell', 'In the cell', ''],
-      [78, 'command', 'Workstation', 'Task'],
-      [80, 'command', 'Task', 'Subtask'],
-      [623, 'cause', 'E-move', ''],
-      [624, 'report', 'Subtask', ''],
-    ],
+    [failed.cause.tick, failed.cause.process, failed.cause.title, failed.cause.detail],
+    [623, 'emove', 'vision sees no object', 'while it executed LOCATE-OBJ LINKBAR1_BH at UNIT_1'],
   );
+  assert.deepEqual(chain(why), [
+    [73, 'cell', 'In the cell', ''],
+    [78, 'command', 'Workstation', 'Task'],
+    [80, 'command', 'Task', 'Subtask'],
+    [623, 'cause', 'E-move', ''],
+    [624, 'report', 'Subtask', ''],
+  ]);
+  const links = chainOf(failed);
   assert.deepEqual(
-    [chain[2].text, chain[2].row, chain[3].row, chain[3].news],
+    [links[2].text, links[2].row, links[3].row, links[3].news],
     [
       'GET-OBJECT LINKBAR1_BH at UNIT_1',
       'MOVE 7 GetObject',
@@ -81,17 +95,26 @@ test('a_failure_is_told_from_the_first_command_to_the_last_report', () => {
   assert.equal(remedyOf(failed), 'PAUSE and the same command may be enough.');
 });
 
-test('a_contact_before_any_failure_is_the_cause', () => {
-  const hit = run({ world, failure: null, ended: 'the robot ran into pot_2_near' });
+test('failures_that_followed_are_steps_of_the_chain_in_their_order', () => {
+  const why = { world: { ...hit, followed: [report, lost], commands, data: [] }, failure, ended: null };
+  assert.deepEqual(chain(why), [
+    [73, 'cell', 'In the cell', ''],
+    [78, 'command', 'Workstation', 'Task'],
+    [80, 'command', 'Task', 'Subtask'],
+    [332, 'cause', 'Collision', ''],
+    [623, 'then', 'E-move', ''],
+    [624, 'report', 'Subtask', ''],
+    [700, 'then', 'Lost part', ''],
+  ]);
+  const texts = chainOf(run(why)).map((it) => it.text);
   assert.deepEqual(
-    [hit.cause?.kind, hit.cause?.title, hit.cause?.process],
-    ['contact', 'right_finger runs into pot_2_near', null],
+    [texts[3], texts[6]],
+    ['the robot ran into pot_2_near', 'the part is lost: it is on the floor'],
   );
-  assert.equal(chainOf(hit).at(-1)?.kind, 'cause');
-  assert.equal(remedyOf(hit), null);
+  assert.equal(remedyOf(run(why)), null);
 });
 
-test('a_run_that_finished_has_no_cause', () => {
-  assert.equal(run({ world: null, failure: null, ended: 'finished' }).cause, null);
-  assert.equal(run(null).cause, null);
+test('finished_run_has_no_chain', () => {
+  assert.deepEqual(chain({ world: null, failure: null, ended: 'finished' }), []);
+  assert.deepEqual(chain(null), []);
 });

@@ -1,9 +1,9 @@
 // What a log says about the run as a whole: commands, events, the failure, the state of the robot.
 
+import { failuresOf } from './account.js';
 import { jobLines, lineAt } from './job.js';
 import { lanesOf } from './lanes.js';
 import { commandsOf, linesOf } from './messages.js';
-import { causeOf } from './explanation.js';
 import { TABLED } from './processes.js';
 import { changesOf } from './rows.js';
 import { lastUpTo } from './series.js';
@@ -17,7 +17,7 @@ import { TICK_S } from './units.js';
  * @typedef {{ mover: string, obstacle: string, point: Point, depth: number, permitted: boolean }} Contact
  *   `point`: metres in the world; `depth`: inches
  * @typedef {{ tick: number, contacts: Contact[] }} Contacts
- * @typedef {'run' | 'fault' | 'pause' | 'done'} Mode
+ * @typedef {'run' | 'fault' | 'estop' | 'pause' | 'done'} Mode
  */
 
 export class Run {
@@ -38,7 +38,9 @@ export class Run {
     this.job = jobLines(log.text('job'), this.commands);
     this.contacts = contactsOf(log);
     this.vision = visionOf(log);
-    this.cause = causeOf(this);
+    this.failures = failuresOf(this.why, this.reasons);
+    /** What went wrong first; null if the run finished. */
+    this.cause = this.failures[0] ?? null;
     this.events = eventsOf(this);
     this.lanes = lanesOf(this);
     /** @type {{ tick: number, value: number }[] | null} */
@@ -61,6 +63,11 @@ export class Run {
   /** What touches in a tick: the log has it in the tick after. @param {number} tick */
   contactsAt(tick) {
     return this.contacts[lastUpTo(this.contacts, tick + 1, (it) => it.tick)]?.contacts ?? [];
+  }
+
+  /** The place of the first collision, metres in the world; null if there is none. */
+  get collision() {
+    return this.contacts.flatMap((it) => it.contacts).find((it) => !it.permitted)?.point ?? null;
   }
 
   /** The velocity knob, in percent. @param {number} tick */
@@ -93,10 +100,12 @@ export class Run {
    */
   mode(tick) {
     const task = this.log.series('/task/status').latest(tick);
-    if ((this.cause && tick >= this.cause.tick) || word(task?.report) === 'error') {
-      const since = this.cause ? `recorded, since tick ${this.cause.tick}` : 'recorded';
-      return { mode: 'fault', title: 'FAULT', detail: since };
+    const { cause } = this;
+    if (cause && tick >= cause.tick) {
+      const mode = cause.kind === 'emergency-stop' ? 'estop' : 'fault';
+      return { mode, title: cause.name.toUpperCase(), detail: `recorded, since tick ${cause.tick}` };
     }
+    if (word(task?.report) === 'error') return { mode: 'fault', title: 'FAULT', detail: 'recorded' };
     if (tick >= this.last && this.result === 'finished') {
       return { mode: 'done', title: 'FINISHED', detail: `${this.job.length} lines in the job` };
     }

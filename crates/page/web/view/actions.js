@@ -197,7 +197,7 @@ export function act(context, action, phone) {
       [ui.camera, ui.turned] = [first, false];
       break;
     case 'nextCamera': {
-      const shown = CAMERAS.filter((it) => it !== 'contact' || run.cause?.kind === 'contact');
+      const shown = CAMERAS.filter((it) => it !== 'contact' || run.collision);
       [ui.camera, ui.turned] = [shown[(shown.indexOf(ui.camera) + 1) % shown.length], false];
       break;
     }

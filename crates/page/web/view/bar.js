@@ -5,7 +5,9 @@ import { h } from './dom.js';
 import { icon } from './icons.js';
 import { VIEWS } from './ui.js';
 
-const ICON = { run: 'run', fault: 'fault', pause: 'pause', done: 'done' };
+const ICON = { run: 'run', fault: 'fault', estop: 'estop', pause: 'pause', done: 'done' };
+/** A title of the state with more letters is set smaller. */
+const LONG = 9;
 /** Ticks of a second. */
 const TICKS = 25;
 /** Ticks of a line of the job that is drawn with the smallest width. */
@@ -20,7 +22,7 @@ export function bar({ run, ui }) {
       'div',
       { class: 'state past', 'data-k': mode, role: 'status' },
       icon(ICON[mode]),
-      h('div', {}, h('b', {}, title), h('small', {}, detail)),
+      h('div', {}, h('b', { class: title.length > LONG ? 'long' : '' }, title), h('small', {}, detail)),
     ),
     job(run, ui, mode),
     h('div', { class: 'fact' }, h('small', {}, 'In hand'), hand(run.held(ui.tick))),
@@ -56,7 +58,8 @@ function job(run, ui, mode) {
   const at = run.line(ui.tick);
   const line = run.job[at];
   const place = at < 0 ? 'Before the job' : `Line ${at + 1} of ${run.job.length}`;
-  const reason = mode === 'fault' ? run.cause?.title : undefined;
+  const { cause } = run;
+  const reason = cause && ui.tick >= cause.tick ? cause.title : undefined;
   return h(
     'div',
     { class: 'job' },

@@ -6,9 +6,9 @@ import { Renderer } from '../cell/renderer.js';
 import { processOf } from '../log/processes.js';
 import { lastUpTo } from '../log/series.js';
 import { stateOf } from '../log/state.js';
-import { bareLength, duration, force, length, speed } from '../log/units.js';
+import { bareLength, length } from '../log/units.js';
 import { byId, h, isShown, patch } from './dom.js';
-import { fingers, jointAngles, nearestLimit, speedAt } from './side.js';
+import { instruments } from './instruments.js';
 
 /** @typedef {import('../cell/matrix.js').Point} Point */
 
@@ -23,7 +23,8 @@ const BALL = { far: 0.05, near: 0.022, permitted: 0.012 };
 /**
  * Where the buttons put the camera: radians, metres. Without a target it follows the tool point, or a
  * contact.
- * @typedef {{ name: string, azimuth: number, elevation: number, distance: number, target: Point | null }} Preset
+ * @typedef {{ azimuth: number, elevation: number, distance: number, target: Point | null }} Place
+ * @typedef {{ name: string } & Place} Preset
  * @type {Record<string, Preset>}
  */
 export const CAMERAS = {
@@ -99,7 +100,7 @@ export class CellView {
     const room =
       innerWidth > 700 && ui.view !== 'operate' && !ui.big && !(innerWidth < 1200 && ui.view === 'explain');
     byId('instruments').hidden = !room;
-    if (room) patch(byId('instruments'), ...this.instruments(context));
+    if (room) patch(byId('instruments'), ...instruments(context));
   }
 
   /**
@@ -149,7 +150,7 @@ export class CellView {
     const preset = CAMERAS[ui.camera];
     const { clientWidth, clientHeight } = this.canvas;
     const aspect = clientWidth / Math.max(1, clientHeight);
-    const followed = (ui.camera === 'contact' && (contact ?? this.causePlace())) ||
+    const followed = (ui.camera === 'contact' && (contact ?? this.run.collision)) ||
       this.frames.place(TOOL_POINT, ui.tick) || [0, 0, 0];
     const target = /** @type {Point} */ (preset.target ?? [followed[0], followed[1], followed[2] + 0.12]);
     // A narrow picture of the whole cell needs more distance, and looks more from above.
@@ -164,11 +165,6 @@ export class CellView {
         Math.min(DISTANCE.most, preset.distance * wide * this.turn.distance),
       ),
     };
-  }
-
-  /** The place of the first collision. @returns {Point | null} */
-  causePlace() {
-    return this.run.contacts.flatMap((it) => it.contacts).find((it) => !it.permitted)?.point ?? null;
   }
 
   /**
@@ -226,7 +222,7 @@ export class CellView {
    * @param {import('./ui.js').Context} context
    */
   overlay({ run, ui }) {
-    const cameras = Object.entries(CAMERAS).filter(([id]) => id !== 'contact' || this.causePlace());
+    const cameras = Object.entries(CAMERAS).filter(([id]) => id !== 'contact' || run.collision);
     return [
       this.trouble ? h('p', { class: 'trouble' }, this.trouble) : null,
       this.cameraPicture(run, ui),
@@ -257,12 +253,13 @@ export class CellView {
     if (index < 0 || byId('stage').clientHeight < 240) return null;
     const age = ui.tick - this.pictures.tick(index);
     if (age > PICTURE_TICKS && !failed) return null;
-    const title = failed ? vision.replace(/-/g, ' ') : 'camera';
+    const title = failed ? `camera: ${vision.replace(/-/g, ' ')}` : 'camera';
+    const tick = `tick ${this.pictures.tick(index)}`;
     return h(
       'figure',
       { class: `picture ${failed ? 'bad' : ''}` },
-      h('img', { alt: `what the camera saw: ${title}`, src: this.url(index) }),
-      h('figcaption', {}, h('b', {}, title), h('span', {}, `tick ${this.pictures.tick(index)}`)),
+      h('img', { alt: `picture of the ${title}`, src: this.url(index) }),
+      h('figcaption', {}, h('b', {}, title), h('span', {}, tick)),
     );
   }
 
@@ -274,77 +271,6 @@ export class CellView {
     const url = URL.createObjectURL(new Blob([data], { type: `image/${format === 'png' ? 'png' : 'jpeg'}` }));
     this.urls.set(index, url);
     return url;
-  }
-
-  /** @param {import('./ui.js').Context} context */
-  instruments({ run, ui }) {
-    const grip = run.log.series('/grip/status').latest(ui.tick);
-    const held = run.held(ui.tick);
-    const point = run.toolPoint(ui.tick);
-    const angles = jointAngles(run, ui.tick);
-    const near = angles ? nearestLimit(angles) : null;
-    const instrument = (/** @type {import('./dom.js').Children[]} */ ...content) =>
-      h('div', { class: 'instrument' }, content.flat());
-    return [
-      instrument(
-        grip ? fingers(grip, held.kind === 'object') : null,
-        h(
-          'div',
-          {},
-          h('small', {}, 'Hand'),
-          h('b', {}, held.kind === 'object' ? held.name : held.kind.replace(/-/g, ' ')),
-          grip ? h('span', {}, `${length(ui.units, grip.position / 100)} apart`) : null,
-          grip
-            ? h('span', {}, `${force(ui.units, grip.left_force)} · ${force(ui.units, grip.right_force)}`)
-            : null,
-        ),
-      ),
-      instrument(
-        h(
-          'div',
-          {},
-          h('small', {}, `Tool point, ${ui.units}`),
-          h(
-            'b',
-            { class: 'mono' },
-            point ? point.map((value) => bareLength(ui.units, value)).join('  ') : '–',
-          ),
-          h(
-            'span',
-            {},
-            `${speed(ui.units, speedAt(run, ui.tick))}${near ? ` · ${near[0]} ${near[1].toFixed(1)}° from its limit` : ''}`,
-          ),
-        ),
-      ),
-      ui.view === 'explain' ? this.visionInstrument(run, ui, instrument) : null,
-    ];
-  }
-
-  /**
-   * @param {import('../log/run.js').Run} run
-   * @param {import('./ui.js').Ui} ui
-   * @param {(...content: import('./dom.js').Children[]) => import('./dom.js').Element} instrument
-   */
-  visionInstrument(run, ui, instrument) {
-    const state = stateOf(run, 'vision', ui.tick);
-    const answers = run.vision.filter((it) => it.tick <= ui.tick && !/^(idle|busy)$/.test(it.status));
-    const last = answers.at(-1);
-    return instrument(
-      h(
-        'div',
-        {},
-        h('small', {}, 'Vision'),
-        h('b', {}, state.status.replace(/-/g, ' ')),
-        last
-          ? h(
-              'span',
-              {},
-              `${answers.length} ${answers.length === 1 ? 'answer' : 'answers'}, the last at tick ${last.tick},`,
-            )
-          : null,
-        last ? h('span', {}, `${duration(ui.tick - last.tick)} ago`) : null,
-      ),
-    );
   }
 }
 

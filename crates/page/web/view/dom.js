@@ -1,8 +1,7 @@
 // A small view layer: trees of plain objects, compared with the page.
 //
 // Texts reach the page as text nodes only, so a text of a log is never read as HTML. An element that stays at
-// its place
-// in the tree stays in the page, and keeps its focus and its scroll position.
+// its place in the tree stays in the page, and keeps its focus and its scroll position.
 
 /**
  * @typedef {Record<string, string | number | boolean | null | undefined>} Props
@@ -110,6 +109,11 @@ export function context2d(canvas, width, height) {
   context.setTransform(ratio, 0, 0, ratio, 0, 0);
   context.clearRect(0, 0, width, height);
   return context;
+}
+
+/** A text with a capital letter; a name with an underscore stays as it is. @param {string} text */
+export function sentence(text) {
+  return /^[^ ]*_/.test(text) ? text : text.slice(0, 1).toUpperCase() + text.slice(1);
 }
 
 /** @typedef {'phone' | 'tablet' | 'desk'} Size */

@@ -130,15 +130,9 @@ function showTip(event, context) {
       : null;
   tip.hidden = !bar && !found;
   if (bar) {
-    patch(
-      tip,
-      h('b', {}, bar.text),
-      h(
-        'div',
-        {},
-        `${strip?.name} · tick ${bar.start} to ${bar.done} · ${duration(bar.done - bar.start)}${bar.failed ? ' · failed' : ''}`,
-      ),
-    );
+    const facts = [strip?.name, `tick ${bar.start} to ${bar.done}`, duration(bar.done - bar.start)];
+    if (bar.failed) facts.push('failed');
+    patch(tip, h('b', {}, bar.text), h('div', {}, facts.join(' · ')));
   } else if (found)
     patch(tip, h('b', {}, `tick ${found.tick} · ${seconds(found.tick)}`), h('div', {}, found.text));
   tip.style.left = `${Math.min(event.clientX + 12, innerWidth - 320)}px`;

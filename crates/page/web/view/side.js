@@ -3,7 +3,7 @@
 import { processOf } from '../log/processes.js';
 import { remedyOf } from '../log/explanation.js';
 import { bareLength, duration, force, length, seconds, speed } from '../log/units.js';
-import { h } from './dom.js';
+import { h, sentence } from './dom.js';
 import { icon } from './icons.js';
 
 /**
@@ -39,23 +39,14 @@ function failureCard(run, ui) {
   const { cause } = run;
   if (!cause || ui.tick < cause.tick) return null;
   const next = remedyOf(run);
-  const process = cause.process ? processOf(cause.process).name : 'In the cell';
+  const process = cause.process ? processOf(cause.process).name : 'in the cell';
+  const kick = [cause.name.toUpperCase(), process, `tick ${cause.tick}`, seconds(cause.tick)];
   return h(
     'div',
     { class: 'failure-card' },
-    h(
-      'div',
-      { class: 'kick' },
-      `${cause.kind === 'contact' ? 'CONTACT' : 'FAULT'} · ${process} · tick ${cause.tick} · ${seconds(cause.tick)}`,
-    ),
-    h('h2', {}, cause.title),
-    cause.detail
-      ? h(
-          'div',
-          { class: 'who' },
-          cause.kind === 'failure' ? `while it executed ${cause.detail}` : cause.detail,
-        )
-      : null,
+    h('div', { class: 'kick' }, kick.join(' · ')),
+    h('h2', {}, sentence(cause.title)),
+    cause.detail ? h('div', { class: 'who' }, cause.detail) : null,
     next ? h('div', { class: 'who' }, h('b', {}, 'Next: '), next) : null,
     h('button', { class: 'text-button key', 'data-do': 'cause', 'data-key': 'c' }, 'why'),
   );

@@ -21,7 +21,7 @@ import { columnHeads, fold, ruler, tableRow } from './table-rows.js';
  * @property {boolean} failed
  */
 
-/** Widths of a letter, the rest of a column, the number, the error of the estimate, the score: pixels at 14. */
+/** Pixels at letters of 14: letter, rest of a column, number, error of the estimate, score. */
 const WIDTH = { letter: 5.9, column: 22, number: 40, spare: 26, score: [54, 92, 190] };
 /**
  * Heights of a line of the matrix, of the list, of the list on a phone, and of all else; pixels at letters
@@ -133,7 +133,11 @@ function layoutOf(table, { width, em }) {
   };
 }
 
-/** Values of a variable that rows name. @param {import('../log/tables.js').Table} table @param {string} name */
+/**
+ * Values of a variable that rows name.
+ * @param {import('../log/tables.js').Table} table
+ * @param {string} name
+ */
 function valuesOf(table, name) {
   return table.rows.flatMap((row) => row.when[name]?.slice(0, 1) ?? []);
 }
@@ -211,9 +215,8 @@ function sentence({ ui }, { table, row, values, step, decision, decides, failed 
   }
   for (const variable of Object.keys(fired.when)) {
     const { answer } = valueDoc(table, variable, values[variable]);
-    reasons.push(
-      h('span', {}, h('b', {}, `${variable} ${values[variable] ?? ''}`), answer ? ` – ${lower(answer)}` : ''),
-    );
+    const value = h('b', {}, `${variable} ${values[variable] ?? ''}`);
+    reasons.push(h('span', {}, value, answer ? ` – ${lower(answer)}` : ''));
   }
   const ago = ((ui.tick - decision.fired) * TICK_S).toFixed(1);
   return h(
@@ -229,7 +232,7 @@ function sentence({ ui }, { table, row, values, step, decision, decides, failed 
     h(
       'div',
       { class: 'b' },
-      reasons.length ? ['because ', reasons.flatMap((it, at) => (at ? [' · ', it] : [it]))].flat() : 'always',
+      reasons.length ? ['because ', ...reasons.flatMap((it, at) => (at ? [' · ', it] : [it]))] : 'always',
       decides && decision.resting
         ? h('span', { class: 'dim' }, ` — in tick ${decision.fired}, ${ago} s ago`)
         : null,

@@ -4,7 +4,7 @@
 import { chainOf, remedyOf } from '../log/explanation.js';
 import { idOf, processOf } from '../log/processes.js';
 import { amount, clock, duration, seconds, TICK_S } from '../log/units.js';
-import { h } from './dom.js';
+import { h, sentence } from './dom.js';
 import { icon } from './icons.js';
 
 /** Indentation of an event in the cell, in levels. */
@@ -17,11 +17,11 @@ export function why(context) {
 
 /** @param {import('./ui.js').Context} context */
 function failure({ run, ui }) {
-  const cause = /** @type {import('../log/explanation.js').Cause} */ (run.cause);
+  const cause = /** @type {import('../log/account.js').Failure} */ (run.cause);
   const process = cause.process ? processOf(cause.process).name : '';
-  const evidence = run.why?.failure?.evidence ?? [];
+  const reporter = run.failures.find((it) => it.explained)?.process;
+  const evidence = (reporter && run.why?.failure?.evidence) || [];
   const data = run.why?.world?.data ?? [];
-  const ended = run.why?.ended;
   return [
     h(
       'div',
@@ -29,7 +29,7 @@ function failure({ run, ui }) {
       h(
         'div',
         { class: 'kick' },
-        `${cause.kind === 'contact' ? 'CONTACT' : 'FAILED'} · TICK ${cause.tick} · ${seconds(cause.tick)}`,
+        `${cause.name.toUpperCase()} · TICK ${cause.tick} · ${seconds(cause.tick)}`,
       ),
       h('h2', {}, process ? `${process}: ${cause.title}` : sentence(cause.title)),
       cause.detail ? h('p', {}, cause.detail) : null,
@@ -56,7 +56,7 @@ function failure({ run, ui }) {
       chainOf(run).map((link) => line(link, ui)),
       evidence.length
         ? part(
-            `What ${process} sensed while it tried`,
+            `What ${processOf(reporter ?? '').name} sensed while it tried`,
             evidence.map((/** @type {string} */ text) => plain(text)),
           )
         : null,
@@ -66,7 +66,6 @@ function failure({ run, ui }) {
             data.map((/** @type {string} */ text) => plain(text)),
           )
         : null,
-      ended && ended !== 'finished' ? part('How the run ended', [plain(ended)]) : null,
       part('Try a remedy in the log', [
         h(
           'div',
@@ -86,7 +85,7 @@ function remedy(run) {
 
 /** @param {import('../log/explanation.js').Link} link @param {import('./ui.js').Ui} ui */
 function line(link, ui) {
-  const kind = { command: '', cause: 'first-cause', report: 'up', cell: 'world' }[link.kind];
+  const kind = { command: '', cause: 'first-cause', report: 'up', cell: 'world', then: 'then' }[link.kind];
   const selected =
     ui.tick === link.tick && (link.process === null || link.process === ui.process) ? 'sel' : '';
   const target = link.process === 'workstation' ? 'task' : link.process;
@@ -109,6 +108,7 @@ function line(link, ui) {
         h('b', {}, link.from),
         link.to ? [h('span', { class: 'ar' }, 'orders'), h('b', {}, link.to)] : null,
         link.kind === 'cause' ? h('span', { class: 'badge' }, 'FIRST CAUSE') : null,
+        link.kind === 'then' ? h('span', { class: 'badge' }, 'THEN') : null,
       ),
       h('span', { class: 'cm' }, link.text.replace(/^reports /, '')),
       row
@@ -125,7 +125,7 @@ function line(link, ui) {
  */
 function levelOf(link) {
   const id = link.to ? idOf(link.to) : link.process;
-  if (link.kind === 'cell' || id === null) return CELL_LEVEL;
+  if (id === null) return CELL_LEVEL;
   return processOf(id).level + 1;
 }
 
@@ -211,9 +211,4 @@ function part(title, content) {
 /** @param {string} text */
 function plain(text) {
   return h('div', { class: 'plain' }, text);
-}
-
-/** @param {string} text */
-function sentence(text) {
-  return text[0] && !text.includes('_', 1) ? text[0].toUpperCase() + text.slice(1) : text;
 }
