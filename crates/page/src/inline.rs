@@ -26,11 +26,13 @@ const STYLES: &[(&str, &str)] = &[
     ("view/cell.css", include_str!("../web/view/cell.css")),
     ("view/hierarchy.css", include_str!("../web/view/hierarchy.css")),
     ("view/table.css", include_str!("../web/view/table.css")),
+    ("view/rows.css", include_str!("../web/view/rows.css")),
     ("view/lists.css", include_str!("../web/view/lists.css")),
     ("view/side.css", include_str!("../web/view/side.css")),
     ("view/why.css", include_str!("../web/view/why.css")),
     ("view/time.css", include_str!("../web/view/time.css")),
     ("view/layout.css", include_str!("../web/view/layout.css")),
+    ("view/print.css", include_str!("../web/view/print.css")),
 ];
 /// The modules.
 const MODULES: &[(&str, &str)] = &[
