@@ -253,12 +253,12 @@ export class CellView {
     if (index < 0 || byId('stage').clientHeight < 240) return null;
     const age = ui.tick - this.pictures.tick(index);
     if (age > PICTURE_TICKS && !failed) return null;
-    const title = failed ? `camera: ${vision.replace(/-/g, ' ')}` : 'camera';
-    const tick = `tick ${this.pictures.tick(index)}`;
+    const title = failed ? vision.replace(/-/g, ' ') : 'camera';
+    const tick = `${failed ? 'camera, ' : ''}tick ${this.pictures.tick(index)}`;
     return h(
       'figure',
       { class: `picture ${failed ? 'bad' : ''}` },
-      h('img', { alt: `picture of the ${title}`, src: this.url(index) }),
+      h('img', { alt: `picture of the camera: ${title}`, src: this.url(index) }),
       h('figcaption', {}, h('b', {}, title), h('span', {}, tick)),
     );
   }

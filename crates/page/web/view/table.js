@@ -171,7 +171,7 @@ function head({ ui }, shown, panels, folds) {
       shown.table.name,
       h('small', {}, `table ${shown.number}`),
     ),
-    h('div', { class: 'chips' }, chips),
+    chips.length ? h('div', { class: 'chips' }, h('small', {}, 'also'), chips) : null,
     h('div', { class: 'sp' }),
     folds || ui.allRows
       ? h(

@@ -12,6 +12,11 @@ const MOST = { speed: 14, force: 50 };
 /** @type {Record<string, string>} Names of the colours of the kinds of commands. */
 const KIND = { move: 'k-move', hand: 'k-hand', look: 'k-look', change: 'k-chg', pause: 'k-pau' };
 
+/**
+ * @typedef {{ line: string, fill: string, ink: string }} Look colours
+ * @typedef {{ x: number, text: string, look: Look, left: number, width: number }} Flag
+ */
+
 /** Where ticks are in the timeline. */
 export class Scale {
   /** @param {[number, number]} window @param {number} width */
@@ -47,7 +52,8 @@ export function paintTimeline(context, canvas, size, colour) {
   painter.textBaseline = 'middle';
   const overview = overviewHeight(context, size);
   if (overview) paint.overview(overview);
-  paint.ruler(overview);
+  const flags = paint.flags();
+  paint.ruler(overview, flags);
   let top = overview + RULER;
   for (const strip of strips(context, size)) {
     painter.fillStyle = colour.line;
@@ -57,7 +63,7 @@ export function paintTimeline(context, canvas, size, colour) {
     else paint.curve(strip.id, top, strip.height);
     top += strip.height + 1;
   }
-  paint.flags(overview);
+  paint.paintFlags(flags, overview);
 }
 
 class Painter {
@@ -103,8 +109,8 @@ class Painter {
     to.fillRect(all.x(ui.tick) - 1, top - 2, 2, inner + 4);
   }
 
-  /** @param {number} top */
-  ruler(top) {
+  /** @param {number} top @param {Flag[]} flags that cover times */
+  ruler(top, flags) {
     const { to, scale, colour } = this;
     const span = (scale.last - scale.first) * TICK_S;
     const step = STEPS.find((it) => (it / span) * scale.width > 72) ?? 300;
@@ -114,7 +120,10 @@ class Painter {
       to.fillStyle = colour.line;
       to.fillRect(x, top + RULER - 2, 1, this.height);
       to.fillStyle = colour.t3;
-      to.fillText(clock(at * step, step < 1 ? 2 : 0), x + 4, top + RULER / 2);
+      const text = clock(at * step, step < 1 ? 2 : 0);
+      const [left, right] = [x + 4, x + 4 + to.measureText(text).width];
+      const covered = flags.some((flag) => left < flag.left + flag.width + 3 && right > flag.left - 3);
+      if (right < scale.width && !covered) to.fillText(text, left, top + RULER / 2);
     }
   }
 
@@ -309,58 +318,52 @@ class Painter {
     to.stroke();
   }
 
-  /** The flag of the present tick, and that of the first cause. @param {number} top */
-  flags(top) {
-    const { run, ui, to, scale, colour } = this;
+  /**
+   * The flags of the first cause and of the present tick, where there is room for them.
+   * @returns {Flag[]}
+   */
+  flags() {
+    const { run, ui, scale, colour } = this;
     const now = scale.x(ui.tick);
+    const red = { line: colour.flt, fill: colour['flt-bg'], ink: colour['on-flt'] };
+    const blue = { line: colour.acc, fill: colour.acc, ink: colour['on-acc'] };
+    if (run.cause?.tick === ui.tick) return [this.flag(now, `first cause · ${seconds(ui.tick)}`, red, 0)];
     const cause = run.cause ? scale.x(run.cause.tick) : -Infinity;
-    const same = run.cause?.tick === ui.tick;
-    const close = Math.abs(now - cause) < 74;
-    if (!same && cause > -9 && cause < scale.width + 9) {
-      to.fillStyle = colour.flt;
-      to.fillRect(cause - 0.75, top + RULER - 3, 1.5, this.height);
-      this.flag(
-        cause,
-        top,
-        'first cause',
-        colour['flt-bg'],
-        colour['on-flt'],
-        close ? Math.sign(cause - now) : 0,
-      );
-    }
-    to.fillStyle = same ? colour.flt : colour.acc;
-    to.fillRect(now - 0.75, top + RULER - 4, 1.5, this.height);
-    const text = same ? `first cause · ${seconds(ui.tick)}` : seconds(ui.tick);
-    this.flag(
-      now,
-      top,
-      text,
-      same ? colour['flt-bg'] : colour.acc,
-      same ? colour['on-flt'] : colour['on-acc'],
-      close && !same && cause > 0 ? Math.sign(now - cause) : 0,
-    );
+    if (!run.cause || cause < -9 || cause > scale.width + 9)
+      return [this.flag(now, seconds(ui.tick), blue, 0)];
+    const side = Math.abs(now - cause) < 74 ? Math.sign(ui.tick - run.cause.tick) : 0;
+    return [this.flag(cause, 'first cause', red, -side), this.flag(now, seconds(ui.tick), blue, side)];
   }
 
   /**
    * @param {number} x
-   * @param {number} top
    * @param {string} text
-   * @param {string} fill
-   * @param {string} ink
-   * @param {number} side
+   * @param {Look} look
+   * @param {number} side of the line: -1 left of it, 1 right of it
+   * @returns {Flag}
    */
-  flag(x, top, text, fill, ink, side) {
+  flag(x, text, look, side) {
     const { to, scale } = this;
     to.font = this.font(600, 10.5);
     const width = to.measureText(text).width + 12;
     const left = side < 0 ? x - width : side > 0 ? x : x - width / 2;
-    const at = Math.max(2, Math.min(scale.width - width - 2, left));
-    to.fillStyle = fill;
-    to.beginPath();
-    to.roundRect(at, top + 2, width, RULER - 5, 3);
-    to.fill();
-    to.fillStyle = ink;
-    to.fillText(text, at + 6, top + RULER / 2);
+    return { x, text, look, width, left: Math.max(2, Math.min(scale.width - width - 2, left)) };
+  }
+
+  /** @param {Flag[]} flags @param {number} top */
+  paintFlags(flags, top) {
+    const { to } = this;
+    to.font = this.font(600, 10.5);
+    for (const { x, text, look, width, left } of flags) {
+      to.fillStyle = look.line;
+      to.fillRect(x - 0.75, top + RULER - 4, 1.5, this.height);
+      to.fillStyle = look.fill;
+      to.beginPath();
+      to.roundRect(left, top + 2, width, RULER - 5, 3);
+      to.fill();
+      to.fillStyle = look.ink;
+      to.fillText(text, left + 6, top + RULER / 2);
+    }
   }
 }
 
