@@ -98,6 +98,7 @@ class Page {
       theme = this.ui.theme;
       this.ui.theme = 'light';
       this.draw();
+      this.cell?.copy();
     });
     addEventListener('afterprint', () => {
       this.ui.theme = theme;

@@ -217,6 +217,14 @@ export class CellView {
     return labels.shown;
   }
 
+  /** Copy the picture for paper: a browser prints the frame before the present one. */
+  copy() {
+    if (!this.renderer) return;
+    const paper = /** @type {HTMLImageElement} */ (byId('paper'));
+    paper.src = this.canvas.toDataURL();
+    paper.hidden = false;
+  }
+
   /**
    * Buttons of the camera, and the last picture that vision took.
    * @param {import('./ui.js').Context} context
