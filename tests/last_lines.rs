@@ -49,7 +49,7 @@ fn finished_run_ends_with_the_place_of_the_part_and_the_next_commands() {
     let scratch = Scratch::new("last-finished");
     let output = run(&scratch, "linkbar");
     let lines: Vec<_> = output.lines().collect();
-    let [.., part, empty, watch, open, why] = lines[..] else { panic!("{output}") };
+    let [.., part, empty, watch, look, open, why] = lines[..] else { panic!("{output}") };
     assert!(part.starts_with("LINKBAR1 is at UNIT_1 sector 1, "), "{output}");
     assert_eq!(empty, "");
     assert!(watch.starts_with("watch ") && why.starts_with("ask why "), "{output}");
@@ -60,6 +60,9 @@ fn finished_run_ends_with_the_place_of_the_part_and_the_next_commands() {
     }
     let (screen, is_shown) = shown(&scratch, &format!("{} --once ladder", command(&output, "watch")));
     assert!(is_shown && screen.contains("E-move"), "{screen}");
+    assert!(look.starts_with("look "), "{output}");
+    let (page, is_written) = shown(&scratch, command(&output, "look"));
+    assert!(is_written && scratch.file("runs/linkbar.html").is_file(), "{page}");
     let (why, is_answered) = shown(&scratch, command(&output, "ask why"));
     assert!(is_answered && !why.is_empty(), "{why}");
 }
