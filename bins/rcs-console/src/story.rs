@@ -204,7 +204,7 @@ impl Story {
         begun.last().filter(|trouble| is_told || tick < trouble.tick)
     }
 
-    /// What went wrong first, and what followed; `None` if nothing that has not been mended did.
+    /// What went wrong first, and what followed; `None` if there is no failure, or work has continued after it.
     #[must_use]
     pub fn account(&self) -> Option<Account> {
         self.ended.clone().unwrap_or_else(|| self.alarms.account())

@@ -97,8 +97,8 @@ enum Command {
     Report(report::Arguments),
     /// Write the log as one page for a browser: cell, decisions, and the chain of a failure
     ///
-    /// The page needs no other file and no network, and shows every tick. It holds a copy of the log without the channel
-    /// `/replay`, so keep the log if you want to replay the run.
+    /// The page needs no other file and no network, and shows every tick. It holds a copy of the log without the
+    /// channel `/replay`, so keep the log if you want to replay the run.
     Page(page::Arguments),
     /// Play a log in Foxglove or Lichtblick on this machine, as rcs-run --live shows a run
     ///

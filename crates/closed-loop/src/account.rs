@@ -1,8 +1,8 @@
 //! What went wrong first in a run, and what followed: the one account that all programs give.
 //!
-//! A run that ends badly has often gone wrong more than once: the robot runs into the tray, the part slides in the
-//! fingers, and 5,000 ticks later a process reports that it holds nothing. [`Account`] puts these failures in order. The
-//! first one is the cause in the world; the others followed.
+//! A failed run often has several failures: the robot runs into the tray, the part slides in the fingers, and
+//! 5,000 ticks later a process reports that it holds nothing. [`Account`] puts them in order. The first one is
+//! the cause in the world; the others followed.
 //!
 //! The run makes its account when it ends, and writes it into the log. Where nobody has made one, in a live view or in
 //! the log of a killed run, [`Alarms`] collects the same failures from what can be seen.
@@ -212,7 +212,7 @@ impl fmt::Display for Account {
     }
 }
 
-/// True if a command other than PAUSE has finished between two statuses of Task: the work goes on.
+/// True if a command other than PAUSE has finished between two statuses of Task.
 #[must_use]
 pub fn has_worked(before: &HwsStatus, now: &HwsStatus) -> bool {
     let finished = |status: &HwsStatus| status.report == HwsReport::Finished;
@@ -241,17 +241,17 @@ impl Alarms {
         self.failures.push(failure);
     }
 
-    /// Note that a command other than PAUSE has finished in a tick: what stopped the work before has been mended.
+    /// Note the tick in which a command other than PAUSE finished. Earlier stops no longer explain a failure.
     pub fn worked(&mut self, tick: Tick) {
         self.worked = self.worked.max(tick);
     }
 
-    /// What went wrong and has not been mended, in the order in which it was noted.
+    /// The failures in the order in which they were noted, without stops after which a command has finished.
     pub fn failures(&self) -> impl Iterator<Item = &Failure> {
         self.failures.iter().filter(|failure| failure.tick > self.worked || !failure.kind.passes())
     }
 
-    /// What went wrong first, and what followed; `None` if nothing that has not been mended went wrong.
+    /// The account of these failures; `None` if there are none.
     #[must_use]
     pub fn account(&self) -> Option<Account> {
         Account::of(self.failures().cloned())

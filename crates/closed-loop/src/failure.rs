@@ -4,7 +4,7 @@
 //! reason which arrived at Task. When it arrives there, the lower processes may be doing something else. Therefore
 //! [`Watch`] keeps, for each process, common memory as it was in the tick when the process began to report its reason.
 //!
-//! What a process reports is often not what went wrong first. [`Account`](crate::account::Account) puts it in order with
+//! What a process reports is often not what went wrong first. [`Account`](crate::account::Account) orders it with
 //! collisions, lost parts and emergency stops.
 
 use interfaces::{CommonMemory, Detail, ExternalInputs, Fault, Header, HwsCommand, Reason};

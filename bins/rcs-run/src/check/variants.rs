@@ -1,5 +1,5 @@
-//! Wrong variants of the shipped data (variants.toml), and the findings of `rcs-run check` for each (variants.txt). Each
-//! variant is refused before anything moves, or gives a reason why it is harmless.
+//! Wrong variants of the shipped data (variants.toml), and the findings of `rcs-run check` for each
+//! (variants.txt). Each variant is refused before anything moves, or gives a reason why it is harmless.
 //!
 //! `RCS_VARIANTS=write cargo test --release -p programs --lib variants` writes variants.txt again.
 

@@ -24,9 +24,13 @@
 //! * [`motion`]: the route of the command, and the commands to Prim;
 //! * [`vision`]: pictures, and from a picture to a part frame.
 //!
-//! Besides there are [`senses`] with the state variables of the commands, [`plan`] with what a new command needs, [`goals`] with what a command that is done has reached,
-//! [`robot_place`] and [`grasp`] with conversions of places and objects, and [`tables`] with the decision tables, one
-//! file per command.
+//! The other modules are:
+//!
+//! * [`senses`]: the state variables of the commands;
+//! * [`plan`]: what a new command needs;
+//! * [`goals`]: what a finished command has reached;
+//! * [`robot_place`] and [`grasp`]: conversions of places and objects;
+//! * [`tables`]: the decision tables, one file per command.
 
 pub mod act;
 pub mod goals;

@@ -22,7 +22,7 @@ use super::{
 };
 use crate::{execution::Work, held::Held};
 
-/// What the state variables of a command are sensed from.
+/// The sources of the state variables of a command: state, command, inputs and subordinates.
 pub struct Senses<'a> {
     state: &'a State,
     command: &'a EmoveCommand,
@@ -117,7 +117,7 @@ impl Senses<'_> {
         Held::of(self.holding(), self.command.object)
     }
 
-    /// What the fingers have between them.
+    /// Whether something of the object's size is between the fingers.
     #[must_use]
     pub fn fingers(&self) -> Fingers {
         let state = self.state;
@@ -150,7 +150,7 @@ impl Senses<'_> {
         }
     }
 
-    /// What is mated.
+    /// The gripper that is mated with the quick change.
     #[must_use]
     pub fn mate(&self) -> Mate {
         match self.memory().quick_change.status.end_effector_id {
@@ -190,13 +190,13 @@ impl Senses<'_> {
         self.state.localization.at(self.command)
     }
 
-    /// Is it half way at the drum?
+    /// The position of the robot in a tool command at the drum.
     #[must_use]
     pub fn drum(&self) -> AtDrum {
         self.state.drum.at(self.command, self.inputs)
     }
 
-    /// What the force sensor reads without a force.
+    /// The zero reading of the force sensor.
     #[must_use]
     pub const fn bias(&self) -> Bias {
         self.state.drum.bias(self.memory())
@@ -260,7 +260,7 @@ impl Senses<'_> {
         }
     }
 
-    /// Is it known where the robot is?
+    /// Knowledge of the place of the robot.
     #[must_use]
     pub fn place(&self) -> PlaceKnowledge {
         self.state.place_knowledge(self.inputs)

@@ -116,7 +116,7 @@ pub struct StateVariables {
     pub advance: Advance,
     /// A new command and the state of the robot.
     pub request: Request,
-    /// What it finds in the task data.
+    /// The records of the command in the task data.
     pub records: Records,
     /// What goes on whatever the command.
     pub watch: Watch,
