@@ -110,7 +110,7 @@ const RESTART: &str = "** after 60 estop terminals\n\
      ** panel cycle-start\n\
      ** wait 25\n";
 
-/// Look for the place at which the robot stands, with the link begun anew.
+/// Restart the link, and find the place at which the robot stands.
 const PAUSE: &str = "== PAUSE -- +0 -- 0 +0 -- 0 -- 0\n";
 
 #[test]

@@ -25,7 +25,7 @@ fn job(name: &str, text: &str) -> Outcome {
 
 #[test]
 fn a_part_in_another_sector_than_the_command_said_has_not_arrived() {
-    // While the robot runs, the sectors of the tray are taught anew, 5.2 in beside their places.
+    // While the robot runs, the sectors of the tray are taught again, 5.2 in beside their places.
     let taught = fs::read_to_string(whole_system_tests::root().join("data/movetables.blk"))
         .expect("the movetables can be read");
     let block =

@@ -92,7 +92,7 @@ fn program(name: &str, built: &'static OnceLock<PathBuf>) -> &'static Path {
         build
             .args(["build", "--quiet", "--release", "--workspace", "--bin", name, "--target-dir"])
             .arg(target);
-        // What cargo tells a test about its package: crates that read it would be built anew, and all above them.
+        // Cargo's variables about the package of a test: crates that read them would be built again, with all above.
         let told = env::vars_os().map(|(variable, _)| variable).filter(|variable| {
             let variable = variable.to_string_lossy();
             ["CARGO_PKG_", "CARGO_MANIFEST_", "CARGO_CRATE_"].iter().any(|front| variable.starts_with(front))

@@ -494,7 +494,7 @@ fn table_without_a_known_angle_is_calibrated_after_the_part_is_taken_out() {
     it.does(&[HOME]).please(&["pedestal release by hand"]);
     it.until("the hand is open", |memory| !memory.subtask.status.pedestal_part);
     it.please(&["run clevis"]).until_it_waits();
-    // The counter was set anew at a wrong angle: the table stops at its limit, and PRE-GRIP calibrates it.
+    // The counter was set again, at a wrong angle: the table stops at its limit, and PRE-GRIP calibrates it.
     assert_eq!(it.memory().task.status.reason, Reason::TableStuck);
     it.go();
     it.finishes_without_the_part();

@@ -16,7 +16,7 @@ use whole_system_tests::{rcs_neighbour, root};
 
 use super::bench::{Controller, Workstation, bare, run_alone};
 
-/// The job of the controller's own emulator and that of one in another process are the same to the bit.
+/// The controller's own emulator and one in another process execute a job bit for bit alike.
 #[test]
 fn a_job_from_another_process_has_the_same_bits() {
     let own = run_alone(&["linkbar"]);

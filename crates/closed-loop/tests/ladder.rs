@@ -646,7 +646,7 @@ fn a_lost_process_below_is_an_error() {
     assert_eq!(rig.finish(&without_emove, 100), (HwsReport::Error, Reason::NeighbourLost));
 }
 
-/// Its processes are those of another ladder, in lock step: the outputs are the same to the bit as with the
+/// Its processes are those of another ladder, in lock step: the outputs are bit for bit the same as with the
 /// pedestal inside.
 #[test]
 fn a_pedestal_of_another_system_is_adopted_and_lost_when_it_does_not_answer() {

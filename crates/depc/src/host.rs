@@ -63,7 +63,7 @@ pub enum HostState {
     Waiting,
     /// A cancel is outstanding.
     Cancelling,
-    /// The function was cancelled. A report, when the program comes to the function again, begins anew; so does a
+    /// The function was cancelled. A report, when the program comes to the function again, begins again; so does a
     /// restart, when DTR is on for as long as an answer may take and no report comes.
     Ended,
 }

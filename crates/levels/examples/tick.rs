@@ -13,7 +13,7 @@ fn main() {
     let external = ExternalInputs { hws: pause, ..ExternalInputs::default() };
     let mut before = CommonMemory::default();
     for tick in (1..=2).map(Tick) {
-        // Each process reads what the tick before has written, and writes its own buffers anew.
+        // Each process reads the buffers of the tick before, and writes its own.
         let mut after = before;
         ladder.step(tick, &before, &external, &TaskData::default(), &mut after);
         let task = &after.task.status;

@@ -71,7 +71,7 @@ impl From<Failure> for Ending {
 impl Run {
     /// The ending with the verdicts on the cell: collisions of the robot, parts that are not at their
     /// places, and false confirmations. A run that failed also has the
-    /// emergencies that nobody has mended, what fell, and which devices failed.
+    /// emergencies that are still in force, what fell, and which devices failed.
     pub(super) fn checked(&self, ending: Ending) -> Ending {
         let parts = self.closed.workstation.cell.parts();
         let mut verdicts: Vec<Failure> = self

@@ -3,7 +3,7 @@
 //! | event                                          | effect                                                        |
 //! |------------------------------------------------|---------------------------------------------------------------|
 //! | E-move has a new request                       | written if `vision-ready-output` is 2, else as soon as it is  |
-//! | vision is not connected, or has connected anew | "not ready" until it writes; an open request is written again |
+//! | vision is not connected, or has connected again | "not ready" until it writes; an open request is written again |
 //! | a response while `vision-ready-input` is 2     | E-move reads it if it echoes the present request              |
 //! | a response to another request                  | not read: it would pass for the answer to the present request |
 //! | a response while `vision-ready-input` is 1     | not read                                                      |

@@ -2,11 +2,11 @@
 //!
 //! Two states that differ in nothing else go on alike, but for these same values:
 //!
-//! - the numbers of commands and pose records: they are only compared with each other, so they are counted anew, from
+//! - the numbers of commands and pose records: they are only compared with each other, so they are counted again, from
 //!   the newest one;
 //! - the rows in the headers, and the counters of the line: no process acts on them;
 //! - times that are over: of a command that is echoed, of an old RESTART, of a table that stands;
-//! - readings of a calibration that has ended: the next one takes them anew.
+//! - readings of a calibration that has ended: the next one takes them again.
 
 use std::collections::BTreeSet;
 

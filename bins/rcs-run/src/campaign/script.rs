@@ -87,7 +87,7 @@ pub enum ScriptStep {
     Rise,
     /// Button E, until the robot is almost back at the height at which it rose.
     Sink,
-    /// Stick and buttons, until the robot is led over a way.
+    /// Stick and buttons, which move the robot along a path.
     Lead(Lead),
     /// A change of the parts in the cell.
     Change(What),

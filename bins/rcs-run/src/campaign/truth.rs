@@ -23,7 +23,7 @@ use super::{
 
 /// One branch in so many runs to the end of the job.
 pub const WHOLE: usize = 10;
-/// Least and greatest way by which the robot is led aside, in.
+/// Least and greatest way by which the joystick moves the robot aside, in.
 const JOG: [f64; 2] = [0.05, 6.0];
 /// Least and greatest way by which a part is moved, in.
 const MOVED: [f64; 2] = [0.05, 4.0];

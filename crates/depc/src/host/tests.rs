@@ -120,7 +120,7 @@ fn a_start_without_answer_is_tried_once_a_second_and_blamed_at_the_end_of_patien
     }
     assert_eq!(sent[..4], [4, 29, 54, 79]);
     assert_eq!((host.fault(), host.counters().restarts), (LinkFault::NotResponding, 60));
-    // RESTART begins the time limit anew, but the silence continues; the answer to the previous 05 is sufficient.
+    // RESTART restarts the time limit, but the silence continues; the answer to the previous 05 is sufficient.
     host.forgive();
     assert_eq!(tick(&mut host, &[], &Intent::Restart).1, []);
     assert_eq!((host.fault(), host.is_silent()), (LinkFault::None, true));

@@ -118,7 +118,7 @@ impl HeldObject {
     /// it is not let go any more.
     pub(super) const fn close(&mut self, on: Option<Grasped>, seat: Seat) {
         if on.is_some() {
-            // What is closed on anew is held when the fingers have closed on it.
+            // An object that is grasped again is held once the fingers have closed on it.
             (self.held, self.carrying, self.grasping) = (None, false, on);
         } else {
             self.grasping = self.held;

@@ -28,7 +28,7 @@ use super::{
 
 /// Ticks after which vision counts as silent (4 s).
 const VISION_LIMIT: u64 = 100;
-/// Pictures of a kind that are taken in vain before LOCATE-OBJ gives up.
+/// Pictures of a kind without a result after which LOCATE-OBJ fails.
 const MAX_TRIES: u8 = 3;
 /// A picture says where a part is if the robot is within this of where it was sent, in …
 const STANDS_INCHES: f64 = 0.1;
@@ -175,7 +175,7 @@ pub(super) struct View {
 pub struct Vision {
     /// Requests to vision: number and tick of the last one.
     commander: Commander,
-    /// Pictures taken in vain in this step.
+    /// Pictures without a result in this step.
     tries: u8,
     /// What vision has located.
     located: Option<Located>,

@@ -70,7 +70,7 @@ impl DataSystem {
         }
     }
 
-    /// Once a tick, before anything else: an update that is taken is owed no longer.
+    /// First in each tick: an acknowledged update is no longer pending.
     pub fn observe(&mut self, status: &DataBaseStatus, tick: Tick) {
         let [first, second] = self.beliefs.owed;
         let told = self.request.command == DataBaseVerb::Update
@@ -258,7 +258,7 @@ impl DataSystem {
         }
     }
 
-    /// The Data System is disconnected, and what was owed to it is dropped.
+    /// The Data System is disconnected, and pending updates are dropped.
     pub fn disconnect(&mut self, tick: Tick, outputs: &mut TaskOutputs) {
         (self.beliefs.owed, self.beliefs.taking, self.beliefs.carried) = ([None; KEPT_UPDATES], None, None);
         self.reconfigure(DataBaseVerb::Abort, tick, outputs);

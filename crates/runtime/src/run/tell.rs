@@ -47,7 +47,7 @@ impl Run {
         self.runner.show_cell(|| self.view.look(tick, cell, warning, job, &self.pace));
     }
 
-    /// A command that finishes shows that what stopped the work before has been mended.
+    /// A command that finishes shows that the cause of an earlier stop is gone.
     pub(super) fn note_work(&mut self, tick: Tick, memory: &CommonMemory) {
         let before = std::mem::replace(&mut self.task, memory.task.status);
         if account::has_worked(&before, &memory.task.status) {

@@ -94,7 +94,7 @@ impl Store {
     /// An entry with the key of an existing entry (a pose of the same name, the same grip of the same object at
     /// the same location …) replaces it and keeps its record number; other entries are appended. Nothing is
     /// removed, except the locations of an object, which its newer object location entries replace together.
-    /// Paths, their points and their parameters, which have no names, and object locations are numbered anew.
+    /// Paths, their points and their parameters, which have no names, and object locations get new numbers.
     ///
     /// All blocks of the texts are loaded, as by `load` at a terminal, unless the texts have a root directory
     /// block; a directory may also name blocks that these data have. The whole new generation is checked, not

@@ -95,7 +95,7 @@ fn moves(memory: &CommonMemory) -> bool {
 }
 
 /// Does a commanded pose belong to the way? It is a tick of motion from the one before. It is farther along the
-/// segment after ticks in which E-move was held, and after a link that has begun anew where the arm was.
+/// segment after ticks in which E-move was held, and after a link that has restarted where the arm was.
 fn follows(commanded: &Pose, way: &Way, data: &TaskData<'_>) -> bool {
     let (Ok(now), Ok(before)) = (commanded.to_frame(), way.rest.to_frame()) else { return false };
     let within = |ticks: f64| near(&now, &before, ticks * STEP_INCHES, ticks * STEP_RADIANS);
@@ -105,7 +105,7 @@ fn follows(commanded: &Pose, way: &Way, data: &TaskData<'_>) -> bool {
 
 impl Localization {
     /// Follow the commanded pose while the robot moves, and note what may have moved it meanwhile: the operator,
-    /// or a link that has failed or begun anew.
+    /// or a link that has failed or restarted.
     pub(in crate::emove) fn sense_path(&mut self, memory: &CommonMemory, data: &TaskData<'_>) {
         let Some(way) = &mut self.way else { return };
         let prim = &memory.prim;

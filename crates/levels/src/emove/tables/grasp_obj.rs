@@ -4,7 +4,7 @@ use rcs_core::decision_table;
 
 decision_table! {
     /// GRASP-OBJ (V.2.1): close the gripper on the object; done at once if it is held and between the
-    /// fingers. What is felt at the object is grasped anew: it may be half gripped. So is what
+    /// fingers. An object that the fingers sense is grasped again: it may be half gripped. So is what
     /// counts as held since a release of it has not ended well. A robot that a person has moved off its place goes
     /// back there first, and one that is lost closes on nothing.
     pub GRASP_OBJ: fn grasp_obj(enum GraspObjStep, struct of super::Senses) -> super::Action {

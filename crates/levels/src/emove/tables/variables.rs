@@ -44,7 +44,7 @@ pub enum Ordered {
     Nothing,
     /// Prim. Fingers that open on the way are not waited for here.
     Prim,
-    /// Prim, with a GO-UNTIL that may be in vain.
+    /// Prim, with a GO-UNTIL that may end without contact.
     GoUntil,
     /// Prim, with the GO-WHILE up to the fingers of the drum.
     Nearing,

@@ -166,7 +166,7 @@ impl Motion {
         self.plan(&Along::default(), knob);
     }
 
-    /// Plan the current profile anew if the velocity is another than it was planned for.
+    /// Plan the current profile again if the velocity differs from the one it was planned for.
     fn follow(&mut self, knob: u16) {
         let current = self.current.as_ref().filter(|current| {
             !current.profile.is_braking() && self.velocity(&current.order, knob) != current.velocity

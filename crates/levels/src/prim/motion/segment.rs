@@ -106,7 +106,7 @@ impl Segment {
 
     /// What is still missing to the goal: the frame on the line is the goal less this.
     ///
-    /// Nothing once the profile has ended at the goal, so that the last point is the goal to the bit.
+    /// Nothing once the profile has ended at the goal, so that the last point is exactly the goal.
     #[must_use]
     pub fn missing(&self) -> Displacement {
         let over = self.profile.to_goal && self.profile.remaining() <= 0.0;

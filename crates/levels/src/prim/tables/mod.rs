@@ -85,7 +85,7 @@ pub enum Restarts {
 pub enum Way {
     /// It is under way, or has ended.
     Kept,
-    /// The link was restarted: the robot rests, and the path begins anew.
+    /// The link was restarted: the robot rests, and the path starts again.
     Lost,
 }
 
@@ -313,7 +313,7 @@ pub enum Action {
     Restart,
     /// The same, because the link has failed; RESTARTs of this kind are counted.
     Recover,
-    /// Take the frame that T3I feeds back as the commanded one; the path to the goal is to begin anew.
+    /// Take the frame that T3I feeds back as the commanded one; the path to the goal is planned again.
     Resume,
     /// Take the frame that T3I feeds back as the commanded one; report done.
     TakePosition,

@@ -36,7 +36,7 @@ pub enum FixGripStep {
 
 decision_table! {
     /// AT-PEDESTAL: second part of FIX-GRIP (V.3.1), with the part in the pedestal's hand: the robot
-    /// releases it and moves to PED-SAFE, the table turns, the robot grasps it anew, the hand opens. What
+    /// releases it and moves to PED-SAFE, the table turns, the robot grasps it again, the hand opens. What
     /// is next depends on who has the part, on the angle of the table and on where the robot is.
     pub AT_PEDESTAL: fn at_pedestal(self::FixGripStep, super::Situation) -> super::Action or () {
         any {

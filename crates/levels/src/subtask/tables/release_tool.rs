@@ -3,8 +3,8 @@
 use rcs_core::decision_table;
 
 decision_table! {
-    /// RELEASE-TOOL (V.3.1): let go of a tool that is in the tool drum. Fingers that have let go and are
-    /// still around the tool, or on their way out, are led out: E-move knows where they are.
+    /// RELEASE-TOOL (V.3.1): let go of a tool that is in the tool drum. Open fingers
+    /// that are still around the tool, or on their way out, move out: E-move knows where they are.
     pub RELEASE_TOOL: fn release_tool(enum ReleaseToolStep, super::Situation) -> super::Action {
         any {
             1:  work: Busy                                 => Wait;

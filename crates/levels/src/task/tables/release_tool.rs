@@ -4,8 +4,8 @@ use rcs_core::decision_table;
 
 decision_table! {
     /// RELEASE-TOOL (V.4.1): let go of a tool in the transfer location, then go to the end-at location; done
-    /// at once if the tool gripper is free and there. Sent again after an interruption it goes on: fingers
-    /// that have let go are led out of the drum, and a robot with a free gripper that stands before the drum
+    /// at once if the tool gripper is free and there. Sent again after an interruption it goes on: open
+    /// fingers move out of the drum, and a robot with a free gripper that stands before the drum
     /// has only to leave. Without an end-at location the robot stays there, and one that has been sent
     /// away since cannot be finished. The data base is told of a tool that it knows as the robot's (an
     /// extension: SPECNOTES.md).

@@ -9,6 +9,8 @@ use std::{
 use whole_system_tests::root;
 
 mod columns;
+mod paths;
+mod words;
 
 /// Where pages are.
 const PLACES: [&str; 9] = [".", "docs", "docs/design", "data", "crates", "bins", "benches", "fuzz", "tests"];
@@ -116,56 +118,25 @@ fn prose_is_within_110_columns() {
     assert!(wide.is_empty(), "lines of more than {WIDEST} columns:\n{}", wide.join("\n"));
 }
 
-/// Words for persons: a reader stumbles over them where programs are meant.
-const AVOIDED: [&str; 7] = ["somebody", "someone", "whoever", "himself", "hers", "his", "he"];
+/// Most lines of a source, without comments, blank lines and tests.
+const LONGEST: usize = 400;
 
-/// Idioms: the behaviour can be said as it is.
-const IDIOMS: [&str; 13] = [
-    "slip of the pen",
-    "slips of the pen",
-    "in vain",
-    "refused in words",
-    "end in words",
-    "is led",
-    "without telling anybody",
-    "cannot be had",
-    "to the bit",
-    "as one says",
-    "comes upon",
-    "no process writes",
-    "stands in no ",
-];
-
-#[test]
-fn behaviour_is_said_without_idioms() {
-    let mut found = Vec::new();
-    for page in &pages() {
-        let text = prose(&fs::read_to_string(page).expect("the page can be read")).to_lowercase();
-        let text = text.split_whitespace().collect::<Vec<_>>().join(" ");
-        let there = IDIOMS.iter().filter(|idiom| text.contains(*idiom));
-        found.extend(there.map(|idiom| format!("{}: {idiom}", page.display())));
-    }
-    assert!(found.is_empty(), "say what happens instead:\n{}", found.join("\n"));
-}
-
-#[test]
-fn programs_are_no_persons() {
-    let mut found = Vec::new();
-    for page in &pages() {
-        let text = prose(&fs::read_to_string(page).expect("the page can be read")).to_lowercase();
-        for (number, line) in text.lines().enumerate() {
-            let words: Vec<_> = line.split(|c: char| !c.is_alphanumeric() && c != '\'').collect();
-            let avoided: Vec<_> = AVOIDED.iter().filter(|avoided| words.contains(*avoided)).collect();
-            if !avoided.is_empty() {
-                found.push(format!("{}: line {} of the prose: {avoided:?}", page.display(), number + 1));
+/// Every source of crates and programs, without their tests and benchmarks.
+fn sources() -> Vec<PathBuf> {
+    let (mut open, mut sources) = (vec![root().join("crates"), root().join("bins")], Vec::new());
+    while let Some(directory) = open.pop() {
+        let entries = fs::read_dir(&directory).expect("the directory is there");
+        for path in entries.map(|entry| entry.expect("it can be listed").path()) {
+            let is_of_tests = path.file_stem().is_some_and(|name| name == "tests" || name == "benches");
+            if path.is_dir() && !is_of_tests {
+                open.push(path);
+            } else if path.extension().is_some_and(|extension| extension == "rs") && !is_of_tests {
+                sources.push(path);
             }
         }
     }
-    assert!(found.is_empty(), "use the field's terms instead:\n{}", found.join("\n"));
+    sources
 }
-
-/// Most lines of a source, without comments, blank lines and tests.
-const LONGEST: usize = 400;
 
 /// Lines of code of a source. What stands under `#[cfg(test)]` ends with a `;` or a brace at its own indentation.
 fn lines_of_code(text: &str) -> usize {
@@ -194,20 +165,16 @@ fn no_source_is_long() {
         ),
         4
     );
-    let (mut open, mut long, mut count) = (vec![root().join("crates"), root().join("bins")], Vec::new(), 0);
-    while let Some(directory) = open.pop() {
-        let entries = fs::read_dir(&directory).expect("the directory is there");
-        for path in entries.map(|entry| entry.expect("it can be listed").path()) {
-            let is_of_tests = path.file_stem().is_some_and(|name| name == "tests" || name == "benches");
-            if path.is_dir() && !is_of_tests {
-                open.push(path);
-            } else if path.extension().is_some_and(|extension| extension == "rs") && !is_of_tests {
-                count += 1;
-                let lines = lines_of_code(&fs::read_to_string(&path).expect("the source can be read"));
-                long.extend((lines > LONGEST).then(|| format!("{}: {lines} lines", path.display())));
-            }
-        }
-    }
+    let sources = sources();
+    let count = sources.len();
+    let lengths = sources.into_iter().map(|path| {
+        let lines = lines_of_code(&fs::read_to_string(&path).expect("the source can be read"));
+        (path, lines)
+    });
+    let long: Vec<_> = lengths
+        .filter(|(_, lines)| *lines > LONGEST)
+        .map(|(path, lines)| format!("{}: {lines} lines", path.display()))
+        .collect();
     assert!(count > 300, "{count} sources were found");
     assert!(long.is_empty(), "split these by meaning, {LONGEST} lines at most:\n{}", long.join("\n"));
 }
