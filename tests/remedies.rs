@@ -325,7 +325,8 @@ fn object_in_a_vise_is_released_after_a_confirmation() {
 
 fn is_held_at_home(memory: &CommonMemory) -> bool {
     let status = &memory.emove.status;
-    matches!(status.held, Holding::Object(_)) && status.at.is_some_and(|at| at.location.as_str() == "HOME")
+    matches!(status.held, Holding::Object(_))
+        && status.at.is_some_and(|at| at.site.location.as_str() == "HOME")
 }
 
 /// The name of what the gripper holds is lost.
@@ -378,7 +379,7 @@ fn tool_command_waits_for_the_command_before_it() {
 ",
     );
     it.until("the tool is near the drum", |memory| {
-        memory.emove.status.at.is_some_and(|at| at.location.as_str() == "TOOL-SAFE")
+        memory.emove.status.at.is_some_and(|at| at.site.location.as_str() == "TOOL-SAFE")
             && memory.task.status.report == HwsReport::Finished
     });
     it.does(&[HOME]).go().fails(Reason::NotPrepared);

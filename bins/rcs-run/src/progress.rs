@@ -127,7 +127,7 @@ mod tests {
         let mut memory = CommonMemory::default();
         let hws = HwsCommand { command: Name16::clipped("MOVE"), ..HwsCommand::default() };
         memory.subtask.emove.command = EmoveVerb::MovToLoc;
-        memory.subtask.emove.location = Name10::clipped("HOME");
+        memory.subtask.emove.site.location = Name10::clipped("HOME");
         memory.emove.prim.command = PrimVerb::GoThru;
         assert_eq!(levels(&hws, &memory), "Task: MOVE | E-move: MOV-TO-LOC at HOME | Prim: GO-THRU");
     }

@@ -212,6 +212,7 @@ mod tests {
         emove::{EmoveVerb, RobotPlace},
         grip::GripVerb,
         jaws::{JawsCommand, JawsVerb, TOOL_GRIPPER},
+        location::Site,
         pedestal::{PedestalVerb, TableCommand, TableVerb},
         subtask::SubtaskVerb,
         t3i::LinkFault,
@@ -329,7 +330,7 @@ mod tests {
             |memory| memory.grip.status.reason = Reason::None,
             |memory| {
                 memory.task.subtask.command = SubtaskVerb::GetObject;
-                memory.task.subtask.location = Name10::new("UNIT_1").unwrap();
+                memory.task.subtask.site.location = Name10::new("UNIT_1").unwrap();
             },
             |memory| memory.subtask.status.reason = Reason::UnknownGrip,
             |memory| memory.task.status.reason = Reason::UnknownGrip,
@@ -347,8 +348,9 @@ mod tests {
         let watch = watched(&[
             |memory| {
                 memory.subtask.emove.command = EmoveVerb::MovToLoc;
-                memory.subtask.emove.location = Name10::new("VISE").unwrap();
-                let from = RobotPlace { location: Name10::new("BENCH").unwrap(), ..RobotPlace::default() };
+                memory.subtask.emove.site.location = Name10::new("VISE").unwrap();
+                let site = Site { location: Name10::new("BENCH").unwrap(), ..Site::default() };
+                let from = RobotPlace { site, ..RobotPlace::default() };
                 memory.emove.beliefs.place = Some(from);
             },
             |memory| memory.emove.status.reason = Reason::NoTrajectory,

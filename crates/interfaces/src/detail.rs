@@ -40,7 +40,10 @@ impl Detail {
                 let believed = &memory.emove.beliefs;
                 let from = believed.place.or(believed.way.map(|way| way.from));
                 from.map_or(Self::None, |from| {
-                    Self::Pair(from.location, Name16::clipped(memory.subtask.emove.location.as_str()))
+                    Self::Pair(
+                        from.site.location,
+                        Name16::clipped(memory.subtask.emove.site.location.as_str()),
+                    )
                 })
             }
             (ProcessId::Emove, Fault::Reason(Reason::OffPlace)) => {
@@ -54,7 +57,7 @@ impl Detail {
             // The POSITION of Task refuses by itself: V.4.1.
             (ProcessId::Task, Fault::Reason(Reason::NoTrajectory)) => {
                 let ends = memory.subtask.status.at.zip(hws.source.or(hws.destination));
-                ends.map_or(Self::None, |(at, to)| Self::Pair(at.location, to))
+                ends.map_or(Self::None, |(at, to)| Self::Pair(at.site.location, to))
             }
             _ => Self::None,
         }
@@ -75,7 +78,7 @@ impl Detail {
 fn off_place(memory: &CommonMemory) -> Option<NearPlace> {
     let place = memory.emove.beliefs.place?;
     let present = memory.changing_pose(memory.prim.status.sensor_pose?)?.to_frame().ok()?;
-    Some(NearPlace::seen(place.location, &place.pose.to_frame().ok()?, &present))
+    Some(NearPlace::seen(place.site.location, &place.pose.to_frame().ok()?, &present))
 }
 
 /// Location of the tool drum (V.4.1).
@@ -143,8 +146,15 @@ impl fmt::Display for NearPlace {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::emove::{RobotPlace, Standing};
+    use crate::{
+        emove::{RobotPlace, Standing},
+        location::Site,
+    };
     use std::string::ToString as _;
+
+    fn named(location: &str) -> Site {
+        Site { location: Name10::clipped(location), ..Site::default() }
+    }
 
     fn said(
         process: ProcessId,
@@ -158,15 +168,15 @@ mod tests {
     #[test]
     fn a_trajectory_that_is_missing_is_named_by_its_ends() {
         let mut memory = CommonMemory::default();
-        let from = RobotPlace { location: Name10::clipped("BENCH"), ..RobotPlace::default() };
+        let from = RobotPlace { site: named("BENCH"), ..RobotPlace::default() };
         memory.emove.beliefs.place = Some(from);
-        memory.subtask.emove.location = Name10::clipped("VISE");
+        memory.subtask.emove.site = named("VISE");
         let mut hws = HwsCommand { destination: Some(Name16::clipped("TRAY")), ..HwsCommand::default() };
         let text = said(ProcessId::Emove, Reason::NoTrajectory, &hws, &memory);
         assert!(text.starts_with(": none leads from BENCH to VISE ("), "{text}");
         assert!(text.contains("trajectory BENCH-VISE"), "{text}");
         assert_eq!(said(ProcessId::Task, Reason::NoTrajectory, &hws, &memory), "");
-        let at = Standing { location: Name10::clipped("SAFE"), ..Standing::default() };
+        let at = Standing { site: named("SAFE"), ..Standing::default() };
         memory.subtask.status.at = Some(at);
         let text = said(ProcessId::Task, Reason::NoTrajectory, &hws, &memory);
         assert!(text.starts_with(": none leads from SAFE to TRAY ("), "{text}");
@@ -194,9 +204,9 @@ mod tests {
     #[test]
     fn a_reason_that_emove_reports_has_the_detail_of_emove() {
         let mut memory = CommonMemory::default();
-        let from = RobotPlace { location: Name10::clipped("BENCH"), ..RobotPlace::default() };
+        let from = RobotPlace { site: named("BENCH"), ..RobotPlace::default() };
         memory.emove.beliefs.place = Some(from);
-        memory.subtask.emove.location = Name10::clipped("VISE");
+        memory.subtask.emove.site = named("VISE");
         let hws = HwsCommand::default();
         let said = |memory: &CommonMemory| Detail::of_command(Reason::NoTrajectory, &hws, memory);
         assert_eq!(said(&memory), Detail::None);

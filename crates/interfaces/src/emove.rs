@@ -10,8 +10,14 @@ use rcs_core::{
 
 use super::words::{location, name};
 use crate::{
-    ChangingPose, Header, Reason, StatusReport, Unconfirmed, grip::GripCommand, jaws::JawsCommand,
-    location::LocationKind, prim::PrimCommand, quick_change::QuickChangeCommand, track::Track,
+    ChangingPose, Header, Reason, StatusReport, Unconfirmed,
+    grip::GripCommand,
+    jaws::JawsCommand,
+    location::Site,
+    prim::PrimCommand,
+    quick_change::QuickChangeCommand,
+    record_number::{EndEffId, ObjGripsId, VisionId},
+    track::Track,
     vision::VisionRequest,
 };
 
@@ -69,21 +75,13 @@ pub struct EmoveCommand {
     /// Grip number of the object (extension: the manual has it only in the records that `obj-para-^` names).
     pub grip: i32,
     /// `obj-para-^`: record of END-EFF-PARA, if the object has that grip.
-    pub object_parameters: Option<u32>,
+    pub object_parameters: EndEffId,
     /// `obj-grip-loc-^`: record of OBJ-GRIPS, if an object is named.
-    pub object_grips: Option<u32>,
+    pub object_grips: ObjGripsId,
     /// `obj-vision-para-^`: record of VISION-PARA, if vision is used.
-    pub object_vision: Option<u32>,
-    /// `locpt-name`.
-    pub location: Name10,
-    /// `locpt-type`.
-    pub location_kind: LocationKind,
-    /// `locpt-^-in`: record of LOCPT; a static array has none.
-    pub location_record: Option<u32>,
-    /// Record of ARRAY-TABLE if the location is a sector (extension).
-    pub location_array: Option<u32>,
-    /// The sector, from 1, if the location is one (extension).
-    pub location_sector: Option<i32>,
+    pub object_vision: VisionId,
+    /// `locpt-name`, `locpt-type` and `locpt-^-in`.
+    pub site: Site,
     /// `pose-^-in`: the goal pose, if a location is named.
     pub pose: Option<u32>,
     /// `endeff-id#-in`; none if any gripper will do.
@@ -136,14 +134,8 @@ pub struct PlacedObject {
     pub object: Name16,
     /// Grip number with which it was held.
     pub grip: i32,
-    /// Name of the location.
-    pub location: Name10,
-    /// Its record of LOCPT; a static array has none.
-    pub record: Option<u32>,
-    /// Its record of ARRAY-TABLE if it is a sector.
-    pub array: Option<u32>,
-    /// The sector, from 1, if it is one.
-    pub sector: Option<i32>,
+    /// The location.
+    pub site: Site,
 }
 
 /// An object that vision has found (extension).
@@ -151,25 +143,15 @@ pub struct PlacedObject {
 pub struct LocatedObject {
     /// The object.
     pub object: Name16,
-    /// Record of LOCPT where it is; a static array has none.
-    pub record: Option<u32>,
-    /// Record of ARRAY-TABLE where it is, if it lies in a sector.
-    pub array: Option<u32>,
-    /// The sector, from 1, if it lies in one.
-    pub sector: Option<i32>,
+    /// Where it is.
+    pub site: Site,
 }
 
 /// Where the robot stands: the end of its last completed move (extension).
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct Standing {
-    /// Name of the location.
-    pub location: Name10,
-    /// Its record of LOCPT; a static array has none.
-    pub record: Option<u32>,
-    /// Its record of ARRAY-TABLE if it is a sector.
-    pub array: Option<u32>,
-    /// The sector, from 1, if it is one.
-    pub sector: Option<i32>,
+    /// The location.
+    pub site: Site,
     /// Grip of the object that was gone to, for MOV-TO-OBJ, MOV-OBJ-TO and MOV-TO-HOL.
     pub grip: Option<i32>,
 }
@@ -264,16 +246,8 @@ pub enum GoneTo {
 pub struct RobotPlace {
     /// What is gone to.
     pub gone_to: GoneTo,
-    /// Name of the location.
-    pub location: Name10,
-    /// What the location is.
-    pub kind: LocationKind,
-    /// Its record of LOCPT; a static array has none.
-    pub record: Option<u32>,
-    /// Its record of ARRAY-TABLE if it is a sector.
-    pub array: Option<u32>,
-    /// The sector, from 1, if it is one.
-    pub sector: Option<i32>,
+    /// The location.
+    pub site: Site,
     /// Where the tool is there.
     pub pose: Pose,
 }
@@ -327,7 +301,7 @@ pub struct Grasped {
     /// The object and its grip.
     pub object: ObjectGrip,
     /// Its record of END-EFF-PARA.
-    pub parameters: Option<u32>,
+    pub parameters: EndEffId,
     /// `endeff-id#` of the gripper that holds it.
     pub gripper: Option<u8>,
     /// Grasp size of the object, 0.01 in.
@@ -343,12 +317,8 @@ pub struct Grasped {
 pub struct Located {
     /// The object.
     pub object: Name16,
-    /// Record of LOCPT where it is; a static array has none.
-    pub record: Option<u32>,
-    /// Record of ARRAY-TABLE where it is, if it lies in a sector.
-    pub array: Option<u32>,
-    /// The sector, from 1, if it lies in one.
-    pub sector: Option<i32>,
+    /// Where it is.
+    pub site: Site,
     /// Its part frame.
     pub pose: Pose,
 }
@@ -482,6 +452,6 @@ impl fmt::Display for EmoveCommand {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(self.command.text())?;
         name(f, self.object.as_ref())?;
-        location(f, "at", Some(&self.location).filter(|name| !name.is_empty()), None)
+        location(f, "at", self.site.name(), None)
     }
 }

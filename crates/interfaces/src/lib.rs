@@ -34,6 +34,7 @@ pub mod prim;
 pub mod process;
 pub mod processes;
 pub mod quick_change;
+pub mod record_number;
 mod remedy;
 pub mod station;
 pub mod subtask;

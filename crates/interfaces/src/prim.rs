@@ -5,7 +5,11 @@ use core::fmt;
 use rcs_core::{Plain, handshake::Lower, name::Name10};
 
 use super::words::name;
-use crate::{ChangingPose, Header, Reason, t3i::T3iCommand};
+use crate::{
+    ChangingPose, Header, Reason,
+    record_number::{MovtabId, TrajParaId},
+    t3i::T3iCommand,
+};
 
 /// Commands of Prim (V.1.1).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
@@ -44,9 +48,9 @@ pub struct PrimCommand {
     /// `^-pose`: record of POSE, or a changing record.
     pub pose: u32,
     /// `^-movtab`: record of MOVTAB applied to the pose, if there is one.
-    pub movetable: Option<u32>,
+    pub movetable: MovtabId,
     /// `^-traj-para`: record of TRAJ-PARA.
-    pub trajectory_parameters: u32,
+    pub trajectory_parameters: TrajParaId,
     /// `endeff-id#-in`, if a gripper is on.
     pub end_effector_id: Option<u8>,
 }

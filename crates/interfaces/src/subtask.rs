@@ -2,18 +2,15 @@
 
 use core::fmt;
 
-use rcs_core::{
-    Plain,
-    name::{Name10, Name16},
-};
-
-pub use super::location::LocationKind;
+use rcs_core::{Plain, name::Name16};
 
 use super::words::{location, name};
 use crate::{
     ChangingPose, Header, Reason, StatusReport, Unconfirmed,
     emove::{EmoveCommand, Holding, Offset, Pins, PlacedObject, Seat, Standing},
+    location::Site,
     pedestal::PedestalCommand,
+    record_number::EndEffId,
 };
 
 /// Commands of Subtask (V.3.1).
@@ -72,17 +69,9 @@ pub struct SubtaskCommand {
     /// `dst-grip-#-in`.
     pub destination_grip: i32,
     /// `obj-para-^`: record of END-EFF-PARA, if the object has that grip.
-    pub object_parameters: Option<u32>,
-    /// `locpt-name-in`.
-    pub location: Name10,
-    /// `locpt-type-in`.
-    pub location_kind: LocationKind,
-    /// `locpt-^-in`: record of LOCPT; a static array has none.
-    pub location_record: Option<u32>,
-    /// Record of ARRAY-TABLE if the location is a sector (extension).
-    pub location_array: Option<u32>,
-    /// The sector, from 1, if the location is one (extension).
-    pub location_sector: Option<i32>,
+    pub object_parameters: EndEffId,
+    /// `locpt-name-in`, `locpt-type-in` and `locpt-^-in`.
+    pub site: Site,
     /// `pose-^-in`: the goal, a T-POSE of Task, if a location is named.
     pub pose: Option<u32>,
 }
@@ -153,6 +142,6 @@ impl fmt::Display for SubtaskCommand {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(self.command.text())?;
         name(f, self.object.as_ref())?;
-        location(f, "at", Some(&self.location).filter(|name| !name.is_empty()), None)
+        location(f, "at", self.site.name(), None)
     }
 }

@@ -10,7 +10,7 @@ use levels::{
 };
 use rcs_core::name::{Name10, Name16};
 use taskdata::{
-    files::{Location, MovtabId, TaskData},
+    files::{EndEffId, Location, MovtabId, TaskData, VisionId},
     load::Store,
 };
 
@@ -38,13 +38,9 @@ fn command(verb: EmoveVerb, object: &str, grip: i32, at: &Location) -> EmoveComm
         command: verb,
         object: Some(object).filter(|object| !object.is_empty()),
         grip,
-        object_parameters: data().object(&object, grip).map(|(id, _)| id.number()),
-        object_vision: data().view(&object, &at.place).map(|(id, _)| id.number()),
-        location: at.name,
-        location_kind: at.place.kind,
-        location_record: at.place.locpt.to_option(),
-        location_array: at.place.array.to_option(),
-        location_sector: at.sector,
+        object_parameters: data().object(&object, grip).map_or(EndEffId::NULL, |(id, _)| id),
+        object_vision: data().view(&object, &at.place).map_or(VisionId::NULL, |(id, _)| id),
+        site: at.site(),
         ..EmoveCommand::default()
     }
 }
@@ -61,12 +57,10 @@ fn legs(mut route: Route) -> Vec<(String, i32)> {
     let mut all = Vec::new();
     while route.ahead(&data) != Ahead::Nothing {
         let leg = route.leg(&data).unwrap();
-        let name = |id: Option<u32>| {
-            MovtabId::from_option(id).of(data.movetables).map_or(String::new(), |m| format!(" {}", m.name))
-        };
+        let name = |id: MovtabId| id.of(data.movetables).map_or(String::new(), |m| format!(" {}", m.name));
         let text = match leg.at {
             LegGoal::Record { pose: 1_000_001, movetable } => format!("departure{}", name(movetable)),
-            LegGoal::Record { pose: 1_000_002, movetable: None } => "goal".to_owned(),
+            LegGoal::Record { pose: 1_000_002, movetable: MovtabId::NULL } => "goal".to_owned(),
             LegGoal::Record { pose: 1_000_002, movetable } => format!("goal{}", name(movetable)),
             LegGoal::Record { pose, .. } => data.poses[pose as usize - 1].name.to_string(),
             LegGoal::Computed(_) => "computed".to_owned(),

@@ -1,7 +1,6 @@
 //! The entries of the task data that a walk uses, and the names of the points of its routes.
 
 use interfaces::emove::{EmoveCommand, EmoveVerb};
-use levels::places::LocationKey;
 use taskdata::{
     files::{Location, MovtabId, PathId, PathPoint, Target},
     load::At,
@@ -74,7 +73,7 @@ impl Walk<'_> {
     /// The record that gives the goal of a command: the movetable of the grip there, or else the pose of the location.
     pub(crate) fn end_datum(&self, command: &EmoveCommand) -> Option<Datum> {
         let data = &self.data;
-        let place = LocationKey::of(command).place(command.location_kind);
+        let place = command.site.place();
         let grip = command.object.and_then(|object| data.grip_movetable(&object, command.grip, &place));
         match grip.filter(|_| command.command != EmoveVerb::MovToVu) {
             Some(movetable) => self.datum(Target::Movetable(movetable)),
@@ -160,7 +159,7 @@ impl Walk<'_> {
         approach: PathId,
     ) {
         let (data, origins) = (&self.data, self.store.origins());
-        let place = LocationKey::of(command).place(command.location_kind);
+        let place = command.site.place();
         match command.command {
             EmoveVerb::MovToVu => {
                 let view = command

@@ -14,7 +14,7 @@ use plant::{
     room::{Layout, Room},
 };
 use taskdata::{
-    files::{Direction, LocptId, PathPoint, RefType, Reference, Target, TaskData, TrajPara},
+    files::{Direction, LocptId, PathPoint, Place, RefType, Reference, Target, TaskData, TrajPara},
     load::{At, Store},
 };
 
@@ -98,7 +98,7 @@ const FREE: TrajPara = TrajPara { acc_fac: 4, vel_max: 100, smooth: 8, brk_dst: 
 /// The end of a trajectory if it is a location point: the last point of its depart, or the first of its approach.
 fn end_of(data: &TaskData<'_>, end: Reference, direction: Direction, at: At) -> Option<Fixed> {
     let id = (end.kind == RefType::LocationPoint).then(|| LocptId::new(end.number))?;
-    let (point, place) = (data.locpt(id)?, data.place_of(id));
+    let (point, place) = (data.locpt(id)?, Place::point(id));
     let path = match direction {
         Direction::Depart => data.depart_location(&place).and_then(|path| data.path(path).last()),
         Direction::Approach => data.approach_location(&place).and_then(|path| data.path(path).first()),

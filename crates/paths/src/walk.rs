@@ -17,7 +17,7 @@ use levels::{
         robot_place::is_same_pose,
         tables::{Action, Records, records::records},
     },
-    places::{LocationKey, robot_at},
+    places::robot_at,
 };
 use rcs_core::{
     name::Name16,
@@ -25,7 +25,7 @@ use rcs_core::{
     tick::TICK_S,
 };
 use taskdata::{
-    files::{Location, MovtabId, PoseId, Target, TaskData, TrajParaId},
+    files::{EndEffId, Location, PoseId, Target, TaskData, TrajParaId, VisionId},
     load::{
         Store,
         guarded::{Beginning, relative_move_named},
@@ -95,7 +95,7 @@ impl<'a> Walk<'a> {
     /// MOV-TO-OBJ uses this frame.
     pub fn find(&mut self, object: &Frame, looked_at: &Frame) -> Phase {
         let mut phase =
-            Phase { start: self.place.location.to_string(), ..Phase::standing(LOCATE.to_owned()) };
+            Phase { start: self.place.site.location.to_string(), ..Phase::standing(LOCATE.to_owned()) };
         self.found = Some(*object);
         let Ok(here) = self.place.pose.to_frame() else { return phase };
         // The camera keeps its orientation and moves by the distance of the object from the middle of the picture.
@@ -163,7 +163,8 @@ impl<'a> Walk<'a> {
                 (goal.gone_to, goal.frame)
             }
             Err(planning) => {
-                let from = if self.place.location.is_empty() { "?" } else { self.place.location.as_str() };
+                let from =
+                    if self.place.site.location.is_empty() { "?" } else { self.place.site.location.as_str() };
                 phase.missing = Some(format!("from {from}: {}", refusal(planning).text()));
                 let gone_to =
                     object.map_or(GoneTo::Location, |object| GoneTo::Object(ObjectGrip { object, grip }));
@@ -187,14 +188,14 @@ impl<'a> Walk<'a> {
     /// Parameters of the last motion to a view point.
     fn view_stop(&self) -> Option<TrajParaId> {
         let GoneTo::View(ObjectGrip { object, grip }) = self.place.gone_to else { return None };
-        let place = LocationKey::of(&self.place).place(self.place.kind);
+        let place = self.place.site.place();
         Some(self.data.path(self.data.view_approach(&object, grip, &place)?).last()?.para)
     }
 
     /// A phase that starts at the robot's position.
     fn moving(&self, what: String) -> Phase {
         let from = self.place.pose.to_frame().unwrap_or_else(|_| Frame::identity());
-        Phase { start: self.place.location.to_string(), from, ..Phase::standing(what) }
+        Phase { start: self.place.site.location.to_string(), from, ..Phase::standing(what) }
     }
 
     fn command(&self, verb: EmoveVerb, object: Option<Name16>, grip: i32, at: &Location) -> EmoveCommand {
@@ -204,15 +205,11 @@ impl<'a> Walk<'a> {
             grip,
             object_parameters: object
                 .and_then(|object| self.data.object(&object, grip))
-                .map(|(id, _)| id.number()),
+                .map_or(EndEffId::NULL, |(id, _)| id),
             object_vision: object
                 .and_then(|object| self.data.view(&object, &at.place))
-                .map(|(id, _)| id.number()),
-            location: at.name,
-            location_kind: at.place.kind,
-            location_record: at.place.locpt.to_option(),
-            location_array: at.place.array.to_option(),
-            location_sector: at.sector,
+                .map_or(VisionId::NULL, |(id, _)| id),
+            site: at.site(),
             ..EmoveCommand::default()
         }
     }
@@ -246,7 +243,7 @@ impl<'a> Walk<'a> {
                         GOAL => Some(goal.frame),
                         number => self.data.pose(PoseId::new(number)).map(|record| record.frame),
                     };
-                    base.map(|base| self.data.moved(&base, MovtabId::from_option(movetable)))
+                    base.map(|base| self.data.moved(&base, movetable))
                 }
                 LegGoal::Computed(frame) => Some(frame),
             };

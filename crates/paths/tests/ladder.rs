@@ -9,12 +9,9 @@ use levels::places::pose_of;
 use neighbours::workstation::player::{Hwsc, Progress, TIME_LIMIT};
 use paths::job::walk_job_once;
 use plant::{CellDescription, Ideal, room::Room};
-use taskdata::{
-    files::MovtabId,
-    load::{
-        Job, Step, Store,
-        job::{Offset, Workstation},
-    },
+use taskdata::load::{
+    Job, Step, Store,
+    job::{Offset, Workstation},
 };
 
 /// Greatest distance of a planned point from that of an order to Prim, inches and radians: that of vision.
@@ -60,7 +57,7 @@ fn ordered(job: &Job, store: &Store, room: &Room) -> Vec<(&'static str, Frame)> 
         let (command, order) = (memory.subtask.emove, memory.emove.prim);
         if order.number != last && has_route(command.command) && memory.emove.status.echo == command.number {
             let base = pose_of(order.pose, memory, &data).expect("the order has a pose");
-            let movetable = MovtabId::from_option(order.movetable);
+            let movetable = order.movetable;
             points.push((command.command.text(), data.moved(&base, movetable)));
         }
         last = order.number;

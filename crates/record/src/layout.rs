@@ -68,13 +68,11 @@ impl Leaf {
 }
 
 /// Names of the fields that hold record numbers.
-const RECORD_NUMBERS: [&str; 16] = [
+const RECORD_NUMBERS: [&str; 14] = [
     "approach",
     "array",
     "between",
     "depart",
-    "location_array",
-    "location_record",
     "movetable",
     "object_grips",
     "object_parameters",

@@ -196,7 +196,7 @@ fn bench(c: &mut Criterion) {
     let data = store.view();
     let (even, odd) = (shuffled(0), shuffled(1));
     let place =
-        |name| -> Place { data.place_of(data.locpt_named(&Name16::clipped(name)).expect("it is there")) };
+        |name| -> Place { Place::point(data.locpt_named(&Name16::clipped(name)).expect("it is there")) };
     let (f, g) = (place("F"), place("G"));
     look_up(c, "object by name", &even, |name| data.object_named(name).expect("it is there").number());
     look_up(c, "grip by object name, grip and place", &even, |name| {

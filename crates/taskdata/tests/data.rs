@@ -5,7 +5,7 @@ use std::path::Path;
 use geometry::{frame::Frame, units::radians};
 use rcs_core::name::Name16;
 use taskdata::{
-    files::{Location, Target, TaskData},
+    files::{Location, Place, Target, TaskData},
     load::{Diagnostics, Job, Step, Store, Workstation},
 };
 
@@ -159,7 +159,7 @@ fn every_leg_of_the_linkbar_has_its_paths() {
     let blank = name("LINKBAR1_BH");
     let (unit, vise) =
         (at(&data, "UNIT_1", 4, "LINKBAR1_BH").place, at(&data, "PFIXTURE", 0, "LINKBAR1_BH").place);
-    let plain = |text| data.place_of(data.locpt_named(&name(text)).unwrap());
+    let plain = |text| Place::point(data.locpt_named(&name(text)).unwrap());
     let (home, safe) = (plain("HOME"), plain("SAFE"));
     for (from, to, vias) in [
         (home, unit, 2),

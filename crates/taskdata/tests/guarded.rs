@@ -2,7 +2,7 @@
 
 use rcs_core::name::{Name10, Name16};
 use taskdata::{
-    files::{SensorSource, TaskData},
+    files::{Place, SensorSource, TaskData},
     load::{Source, Store},
 };
 
@@ -41,7 +41,7 @@ fn said(lines: &str) -> Vec<String> {
 
 fn move_at(data: &TaskData<'_>, name: &str, location: &str) -> Option<(i32, Name10)> {
     let locpt = data.locpt_named(&Name16::clipped(location))?;
-    let found = data.relative_move(&Name16::clipped(name), &data.place_of(locpt))?;
+    let found = data.relative_move(&Name16::clipped(name), &Place::point(locpt))?;
     Some((data.traj_para(found.para)?.vel_max, found.sensor))
 }
 

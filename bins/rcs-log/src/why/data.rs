@@ -9,11 +9,11 @@ use interfaces::{
     prim::{PrimCommand, PrimVerb},
 };
 use levels::{
-    emove::{localization::path::route_of, motion::relative::Relative, robot_place::place_named},
+    emove::{localization::path::route_of, motion::relative::Relative},
     ladder::ProcessId,
 };
 use taskdata::{
-    files::{ArrayId, EndEffId, LocptId, MovtabId, PathPoint, PoseId, RelativeMove, TaskData, VisionId},
+    files::{MovtabId, PathPoint, PoseId, RelativeMove, TaskData},
     load::{At, Store},
 };
 
@@ -57,7 +57,7 @@ impl Found<'_> {
             let name = pose.of(view.poses).map_or_else(String::new, |pose| pose.name.to_string());
             self.add(&format!("pose {name}"), &origins.poses, pose.index());
         }
-        self.movetable("", MovtabId::from_option(motion.movetable));
+        self.movetable("", motion.movetable);
         match motion.command {
             PrimVerb::GoUntil | PrimVerb::GoWhile | PrimVerb::DeltaMove => {
                 let record = relative_move(&view, order, motion);
@@ -77,15 +77,15 @@ impl Found<'_> {
     fn grip(&mut self, order: &EmoveCommand) {
         let Some(object) = order.object else { return };
         let (view, origins) = (self.view, self.store.origins());
-        let place = place_named(order);
+        let place = order.site.place();
         if matches!(order.command, EmoveVerb::MovToVu | EmoveVerb::LocateObj) {
-            let id = VisionId::from_option(order.object_vision);
-            self.add(&format!("view of {object} at {}", order.location), &origins.visions, id.index());
+            let id = order.object_vision;
+            self.add(&format!("view of {object} at {}", order.site.location), &origins.visions, id.index());
             self.movetable(" of the view", id.of(view.visions).map_or(MovtabId::NULL, |view| view.movetable));
             return;
         }
         let id = view.grip_loc(&object, order.grip, &place);
-        let what = format!("grip {} of {object} at {}", order.grip, order.location);
+        let what = format!("grip {} of {object} at {}", order.grip, order.site.location);
         self.add(&what, &origins.grip_locs, id.and_then(|id| id.index()));
         let movetable = view.grip_movetable(&object, order.grip, &place);
         self.movetable(" of the grip", movetable.unwrap_or(MovtabId::NULL));
@@ -94,7 +94,7 @@ impl Found<'_> {
 
     /// The record of END-EFF-PARA.
     fn sizes(&mut self, order: &EmoveCommand) {
-        let id = EndEffId::from_option(order.object_parameters);
+        let id = order.object_parameters;
         if let (Some(object), Some(grip)) = (order.object, id.of(self.view.end_effs)) {
             let what = format!("sizes and force of grip {} of {object}, {} lb", grip.grip, grip.grasp_force);
             self.add(&what, &self.store.origins().end_effs, id.index());
@@ -104,9 +104,8 @@ impl Found<'_> {
     /// The location point, and the array of a sector.
     fn location(&mut self, order: &EmoveCommand) {
         let origins = self.store.origins();
-        let (point, array) =
-            (LocptId::from_option(order.location_record), ArrayId::from_option(order.location_array));
-        self.add(&format!("location {}", order.location), &origins.locpts, point.index());
+        let (point, array) = (order.site.record, order.site.array);
+        self.add(&format!("location {}", order.site.location), &origins.locpts, point.index());
         let name = array.of(self.view.arrays).map_or_else(String::new, |array| array.name.to_string());
         self.add(&format!("array {name}"), &origins.arrays, array.index());
     }
@@ -122,7 +121,7 @@ impl Found<'_> {
 fn path_point<'a>(data: &TaskData<'a>, way: &Way, motion: &PrimCommand) -> Option<&'a PathPoint> {
     let written = route_of(way, data).ok()?.written(way.next, data)?;
     // A command that belongs to no path, such as PAUSE, has other parameters.
-    (written.para.number() == motion.trajectory_parameters).then_some(written)
+    (written.para == motion.trajectory_parameters).then_some(written)
 }
 
 /// The relative move of a command to Prim.
@@ -132,11 +131,11 @@ fn relative_move<'a>(
     motion: &PrimCommand,
 ) -> Option<&'a RelativeMove> {
     let is_meant = |record: &&RelativeMove| {
-        record.movetable.to_option() == motion.movetable
-            && record.para.number() == motion.trajectory_parameters
+        record.movetable == motion.movetable
+            && record.para == motion.trajectory_parameters
             && motion.sensor.is_none_or(|sensor| sensor == record.sensor)
     };
-    Relative::ALL.iter().filter_map(|relative| relative.record(order, data)).find(is_meant)
+    Relative::ALL.iter().filter_map(|relative| relative.record(&order.site, data)).find(is_meant)
 }
 
 /// The number of a record of a file: records with the same contents are different.

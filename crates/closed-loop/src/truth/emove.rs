@@ -1,8 +1,6 @@
 //! Goals of E-move's commands (V.2.1).
 
 use interfaces::emove::{EmoveCommand, EmoveVerb};
-use levels::emove::robot_place::place_named;
-use taskdata::files::{EndEffId, VisionId};
 
 use super::{
     Scene,
@@ -13,23 +11,23 @@ use super::{
 /// What must be true when a command is finished.
 pub fn claims(command: &EmoveCommand, scene: &Scene<'_>) -> Vec<Claim> {
     let data = scene.data;
-    let (place, object) = (place_named(command), command.object);
+    let (place, object) = (command.site.place(), command.object);
     let base = pose(command.pose, scene);
     let held = || holds(object, command.grip, Some(&place), scene);
     let at_grip = || {
-        let name = command.location;
+        let name = command.site.location;
         at(grip_goal(data, base, object.as_ref(), command.grip, &place), name)
     };
-    let view = data.vision_para(VisionId::from_option(command.object_vision));
+    let view = data.vision_para(command.object_vision);
     let open = || {
-        let sizes = data.end_eff(EndEffId::from_option(command.object_parameters))?;
+        let sizes = data.end_eff(command.object_parameters)?;
         Some(Claim::Open(f64::from(sizes.appr_size) / 100.0))
     };
     let found = match command.command {
         // WITHDRAW is sent by nobody (V.2.1 "not currently used").
         EmoveVerb::None | EmoveVerb::Withdraw => vec![],
         EmoveVerb::Pause => vec![Some(Claim::RobotStops), Some(Claim::FingersStill)],
-        EmoveVerb::MovToLoc => vec![at(base, command.location)],
+        EmoveVerb::MovToLoc => vec![at(base, command.site.location)],
         EmoveVerb::MovToObj if view.is_some_and(|view| view.enabled) => {
             let movetable = object.and_then(|object| data.grip_movetable(&object, command.grip, &place));
             let claim = base.zip(movetable).zip(object).map(|((near, movetable), object)| Claim::AtPart {

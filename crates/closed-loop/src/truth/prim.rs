@@ -1,7 +1,6 @@
 //! Goals of Prim's commands (V.1.1).
 
 use interfaces::prim::{PrimCommand, PrimVerb};
-use taskdata::files::{MovtabId, TrajParaId};
 
 use super::{
     Scene,
@@ -13,7 +12,7 @@ pub fn claims(command: &PrimCommand, scene: &Scene<'_>) -> Vec<Claim> {
     let data = scene.data;
     let goal = || {
         let base = pose(Some(command.pose), scene)?;
-        Some(data.moved(&base, MovtabId::from_option(command.movetable)))
+        Some(data.moved(&base, command.movetable))
     };
     let claim = match command.command {
         // A sensor may be calibrated in contact, and nothing moves: no claim about the cell.
@@ -22,7 +21,7 @@ pub fn claims(command: &PrimCommand, scene: &Scene<'_>) -> Vec<Claim> {
         PrimVerb::RobotInit => Some(Claim::Linked),
         PrimVerb::GotoPt | PrimVerb::DeltaMove | PrimVerb::GoWhile => at(goal(), "its goal"),
         PrimVerb::GoThru => {
-            let para = data.traj_para(TrajParaId::new(command.trajectory_parameters));
+            let para = data.traj_para(command.trajectory_parameters);
             let inches = para.map_or(0.0, |para| f64::from(para.brk_dst) / 100.0);
             goal().map(|goal| Claim::Near { goal, inches })
         }

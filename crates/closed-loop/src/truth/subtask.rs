@@ -1,7 +1,6 @@
 //! Goals of Subtask's commands (V.3.1).
 
 use interfaces::subtask::{SubtaskCommand, SubtaskVerb};
-use levels::places::LocationKey;
 
 use super::{
     Scene,
@@ -11,7 +10,7 @@ use super::{
 /// What must be true when a command is finished.
 pub fn claims(command: &SubtaskCommand, scene: &Scene<'_>) -> Vec<Claim> {
     let data = scene.data;
-    let place = LocationKey::of(command).place(command.location_kind);
+    let place = command.site.place();
     let (object, base) = (command.object, pose(command.pose, scene));
     let goal = |grip: i32| grip_goal(data, base, object.as_ref(), grip, &place);
     let held = |grip: i32| holds(object, grip, Some(&place), scene);
@@ -25,10 +24,10 @@ pub fn claims(command: &SubtaskCommand, scene: &Scene<'_>) -> Vec<Claim> {
             let placed = object.zip(goal(destination));
             vec![Some(Claim::HoldsNothing), placed.map(|(object, goal)| Claim::Placed { object, goal })]
         }
-        SubtaskVerb::GotoEndpt | SubtaskVerb::GotoDest => vec![at(base, command.location)],
-        SubtaskVerb::MoveObjToDest => vec![held(destination), at(goal(destination), command.location)],
-        SubtaskVerb::Position if object.is_some() => vec![at(goal(source), command.location)],
-        SubtaskVerb::Position => vec![at(base, command.location)],
+        SubtaskVerb::GotoEndpt | SubtaskVerb::GotoDest => vec![at(base, command.site.location)],
+        SubtaskVerb::MoveObjToDest => vec![held(destination), at(goal(destination), command.site.location)],
+        SubtaskVerb::Position if object.is_some() => vec![at(goal(source), command.site.location)],
+        SubtaskVerb::Position => vec![at(base, command.site.location)],
         SubtaskVerb::Release => vec![Some(Claim::HoldsNothing)],
         SubtaskVerb::FixGrip => vec![held(destination), Some(Claim::HoldsAlone)],
         SubtaskVerb::InsertTool | SubtaskVerb::AcquireTool => {

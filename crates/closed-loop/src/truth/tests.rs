@@ -325,8 +325,8 @@ fn going_to(location: &str, number: u32) -> Bench {
         .expect("the location is in the task data");
     let record = data.locpt(found.place.locpt).expect("it is a location point");
     let command = &mut bench.memory.subtask.emove;
-    (command.number, command.command, command.location) = (number, EmoveVerb::MovToLoc, found.name);
-    command.pose = record.pose.to_option();
+    (command.number, command.command, command.site) = (number, EmoveVerb::MovToLoc, found.site());
+    command.pose = Some(record.pose.number());
     bench
 }
 

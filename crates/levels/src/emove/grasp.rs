@@ -5,7 +5,7 @@ use interfaces::{
     grip::Felt,
 };
 use rcs_core::name::Name16;
-use taskdata::files::{EndEffId, EndEffPara, TaskData};
+use taskdata::files::{EndEffPara, TaskData};
 
 use super::{EmoveInputs, gripper::Gripper, robot_place::commanded_pose};
 
@@ -20,7 +20,7 @@ pub(super) fn gripper_on<'d>(command: &EmoveCommand, data: &TaskData<'d>) -> Opt
 
 /// Parameters of the object of a command.
 pub(super) fn sizes<'d>(command: &EmoveCommand, data: &TaskData<'d>) -> Option<&'d EndEffPara> {
-    data.end_eff(EndEffId::from_option(command.object_parameters))
+    data.end_eff(command.object_parameters)
 }
 
 /// The grasp that a command asks for.
@@ -44,11 +44,7 @@ pub(super) fn named_grasp(object: Name16, grip: i32, inputs: &EmoveInputs<'_>) -
         return None;
     }
     gripper.opening(inputs.memory)?;
-    let command = EmoveCommand {
-        object: Some(object),
-        grip,
-        object_parameters: parameters.to_option(),
-        ..EmoveCommand::default()
-    };
+    let command =
+        EmoveCommand { object: Some(object), grip, object_parameters: parameters, ..EmoveCommand::default() };
     Some(grasp_of(&command, inputs))
 }

@@ -18,6 +18,7 @@ use geometry::{
 use interfaces::{
     CommonMemory, EmoveOutputs, Reason,
     emove::{Beliefs, EmoveCommand, EmoveVerb, Exchange},
+    location::Site,
     quick_change::{QuickChangeCommand, QuickChangeReport, QuickChangeVerb, RingPosition},
 };
 use rcs_core::{
@@ -33,7 +34,7 @@ use super::{
     gripper::{Gripper, is_open},
     localization::{ASIDE_INCHES, LOST_RADIANS, path::beside},
     motion::relative::Relative,
-    robot_place::{base, command_at, gone_to, is_led, present_frame, robot_at},
+    robot_place::{base, gone_to, is_led, present_frame, robot_at},
     tables::{Along, Holster, Lock, Ring, Shut},
 };
 
@@ -59,11 +60,10 @@ struct Points {
 }
 
 impl Points {
-    /// The points for a command that names a holster, whose pose is `base`.
-    fn of(command: &EmoveCommand, base: &Frame, data: &TaskData<'_>) -> Option<Self> {
-        let moved = |from: &Frame, relative: Relative| {
-            Some(data.moved(from, relative.record(command, data)?.movetable))
-        };
+    /// The points in a holster with the pose `base`.
+    fn of(site: &Site, base: &Frame, data: &TaskData<'_>) -> Option<Self> {
+        let moved =
+            |from: &Frame, relative: Relative| Some(data.moved(from, relative.record(site, data)?.movetable));
         let slow = moved(base, Relative::QcaSlow)?;
         Some(Self {
             above: moved(&slow, Relative::QcdUp)?,
@@ -135,7 +135,7 @@ pub(super) fn along(command: &EmoveCommand, inputs: &EmoveInputs<'_>) -> Along {
         return Along::Off;
     }
     let base = base(command, inputs.memory, inputs.data);
-    let points = base.and_then(|base| Points::of(command, &base, inputs.data));
+    let points = base.and_then(|base| Points::of(&command.site, &base, inputs.data));
     match (points, present_frame(inputs.memory)) {
         (Some(points), Some(present)) => points.along(&present),
         _ => Along::Off,
@@ -156,7 +156,7 @@ pub(super) fn shut(command: &EmoveCommand, inputs: &EmoveInputs<'_>) -> Shut {
 /// Where a gripper is left in the holster of a command.
 pub(super) fn seat_pose(command: &EmoveCommand, memory: &CommonMemory, data: &TaskData<'_>) -> Option<Pose> {
     let base = base(command, memory, data)?;
-    Some(Pose::from_frame(&Points::of(command, &base, data)?.slow))
+    Some(Pose::from_frame(&Points::of(&command.site, &base, data)?.slow))
 }
 
 /// The quick change, and the gripper on it.
@@ -273,9 +273,8 @@ impl GripperExchange {
         let (Some(exchange), Some(present)) = (self.holster, present_frame(inputs.memory)) else {
             return;
         };
-        let command = command_at(&exchange.place);
         let base = exchange.place.pose.to_frame().ok();
-        let points = base.and_then(|base| Points::of(&command, &base, inputs.data));
+        let points = base.and_then(|base| Points::of(&exchange.place.site, &base, inputs.data));
         let along = points.map_or(Along::Off, |points| points.along(&present));
         if along == Along::Off && !is_led(inputs.memory) {
             self.holster = None;

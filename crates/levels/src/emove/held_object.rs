@@ -9,7 +9,6 @@ use interfaces::{
     prim::PrimReport,
 };
 use rcs_core::{Plain, handshake::Lower};
-use taskdata::files::EndEffId;
 
 use super::{
     EmoveInputs,
@@ -21,10 +20,7 @@ use super::{
     robot_place::{is_led, may_push, near, present_frame},
     tables::{Fingers, Load},
 };
-use crate::{
-    execution::{Execution, Outcome},
-    places::LocationKey,
-};
+use crate::execution::{Execution, Outcome};
 
 /// Ticks in which neither finger may feel what is held (0.2 s): longer than it takes to push a part from one
 /// finger to the other.
@@ -240,14 +236,13 @@ impl HeldObject {
 
     /// Has an object been released at a place?
     fn is_placed_at(&self, at: Option<&RobotPlace>) -> bool {
-        self.placed.zip(at).is_some_and(|(placed, at)| LocationKey::of(&placed) == LocationKey::of(at))
+        self.placed.zip(at).is_some_and(|(placed, at)| placed.site == at.site)
     }
 
     /// The seat of what the fingers are to close on. An object that may have been pushed, or that has slid before it was
     /// let go, is not known to be at its place, unless a picture shows where it is.
     pub(super) fn next_seat(&self, command: &EmoveCommand, is_located: bool) -> Seat {
-        let is_disturbed =
-            self.disturbed.is_some_and(|at| LocationKey::of(&at).has_location_of(LocationKey::of(command)));
+        let is_disturbed = self.disturbed.is_some_and(|at| at.site.has_location_of(&command.site));
         match (self.empty, is_located, is_disturbed) {
             (false, ..) => self.seat,
             (true, false, true) => Seat::NotKnown,
@@ -258,9 +253,7 @@ impl HeldObject {
     /// The robot has grasped an object where it stands, or has let one go there that has not slid: it is not disturbed
     /// any more.
     fn forget_disturbance(&mut self, here: Option<&RobotPlace>) {
-        let is_here = |at: &RobotPlace| {
-            here.is_some_and(|here| LocationKey::of(at).has_location_of(LocationKey::of(here)))
-        };
+        let is_here = |at: &RobotPlace| here.is_some_and(|here| at.site.has_location_of(&here.site));
         self.disturbed = self.disturbed.filter(|at| !is_here(at));
     }
 
@@ -294,10 +287,7 @@ impl HeldObject {
             let let_go = |at: &RobotPlace| PlacedObject {
                 object: held.object.object,
                 grip: held.object.grip,
-                location: at.location,
-                record: at.record,
-                array: at.array,
-                sector: at.sector,
+                site: at.site,
             };
             let put = at.filter(|_| has_let_go && !gone);
             self.placed = put.map(let_go);
@@ -365,7 +355,7 @@ impl HeldObject {
         inputs: &EmoveInputs<'_>,
     ) -> i32 {
         let EmoveInputs { data, memory, .. } = inputs;
-        let held = self.held.and_then(|held| data.end_eff(EndEffId::from_option(held.parameters)));
+        let held = self.held.and_then(|held| data.end_eff(held.parameters));
         let size = held.or_else(|| sizes(command, data)).map_or(FULL_OPENING, |sizes| sizes.depart_size);
         let now = match holding {
             Holding::Something | Holding::NotKnown => Gripper::attached(memory).opening(memory),

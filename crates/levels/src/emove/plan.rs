@@ -5,7 +5,6 @@ use interfaces::{
     emove::{EmoveCommand, EmoveVerb},
     quick_change::RingPosition,
 };
-use rcs_core::name::Name10;
 use taskdata::files::TaskData;
 
 use super::{
@@ -17,7 +16,6 @@ use super::{
         relative::{self, Relative},
         route::{Goal, Planning},
     },
-    robot_place::place_named,
     tables::{
         Attached, CommandClass, Coupling, ExchangeWork, HolsterData, Knowledge, Ordered, Pause, Record,
         Records, Request, Target, ToolWork,
@@ -77,8 +75,7 @@ const fn coupling(memory: &CommonMemory) -> Coupling {
 
 /// The location of a motion command that is no gripper change.
 fn target(command: &EmoveCommand, data: &TaskData<'_>) -> Target {
-    let relative = Name10::clipped(Relative::QcaBack.text());
-    match data.relative_move(&relative, &place_named(command)) {
+    match Relative::QcaBack.record(&command.site, data) {
         Some(_) if command.command == EmoveVerb::MovToLoc => Target::Holster,
         _ => Target::Plain,
     }

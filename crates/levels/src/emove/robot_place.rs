@@ -7,9 +7,9 @@ use interfaces::{
     emove::{EmoveCommand, EmoveVerb, GoneTo, ObjectGrip, Offset, RobotPlace, Standing},
     prim::PrimReport,
 };
-use taskdata::files::{Place, TaskData};
+use taskdata::files::TaskData;
 
-use crate::places::{LocationKey, pose_of};
+use crate::places::pose_of;
 
 /// True if two frames are the same for a robot that is at rest.
 #[must_use]
@@ -44,15 +44,7 @@ pub const fn gone_to(command: &EmoveCommand) -> GoneTo {
 /// The robot at the location of a command.
 #[must_use]
 pub const fn robot_at(command: &EmoveCommand, gone_to: GoneTo, pose: Pose) -> RobotPlace {
-    RobotPlace {
-        gone_to,
-        location: command.location,
-        kind: command.location_kind,
-        record: command.location_record,
-        array: command.location_array,
-        sector: command.location_sector,
-        pose,
-    }
+    RobotPlace { gone_to, site: command.site, pose }
 }
 
 /// Does the operator have the robot? Where it is counts again when it is given back.
@@ -70,29 +62,6 @@ pub const fn is_cut_off(memory: &CommonMemory) -> bool {
     status.restarting || failed
 }
 
-/// The place as task data know it.
-#[must_use]
-pub fn place(at: &RobotPlace) -> Place {
-    LocationKey::of(at).place(at.kind)
-}
-
-/// The place that a command names.
-#[must_use]
-pub fn place_named(command: &EmoveCommand) -> Place {
-    LocationKey::of(command).place(command.location_kind)
-}
-
-/// A command that names a place.
-#[must_use]
-pub fn command_at(place: &RobotPlace) -> EmoveCommand {
-    EmoveCommand {
-        location_kind: place.kind,
-        location_record: place.record,
-        location_array: place.array,
-        ..EmoveCommand::default()
-    }
-}
-
 /// The pose of the location that a command names.
 #[must_use]
 pub fn base(command: &EmoveCommand, memory: &CommonMemory, data: &TaskData<'_>) -> Option<Frame> {
@@ -106,7 +75,7 @@ pub const fn standing(at: &RobotPlace) -> Standing {
         GoneTo::Object(ObjectGrip { grip, .. }) | GoneTo::Brought(ObjectGrip { grip, .. }) => Some(grip),
         GoneTo::Location | GoneTo::View(_) | GoneTo::Drum => None,
     };
-    Standing { location: at.location, record: at.record, array: at.array, sector: at.sector, grip }
+    Standing { site: at.site, grip }
 }
 
 /// Where the resolvers say that the robot is.
@@ -164,11 +133,10 @@ pub fn offset(pose: &Pose, present: Option<&Frame>) -> Offset {
 #[must_use]
 pub fn is_same_pose(a: &RobotPlace, b: &RobotPlace) -> bool {
     let (Ok(a_frame), Ok(b_frame)) = (a.pose.to_frame(), b.pose.to_frame()) else { return false };
-    LocationKey::of(a).has_location_of(LocationKey::of(b))
-        && near(&a_frame, &b_frame, THERE_INCHES, THERE_RADIANS)
+    a.site.has_location_of(&b.site) && near(&a_frame, &b_frame, THERE_INCHES, THERE_RADIANS)
 }
 
 /// Is it the same goal: same kind, place, object and grip, and the same pose?
 pub(super) fn is_same_goal(a: &RobotPlace, b: &RobotPlace) -> bool {
-    a.gone_to == b.gone_to && place(a) == place(b) && is_same_pose(a, b)
+    a.gone_to == b.gone_to && a.site.place() == b.site.place() && is_same_pose(a, b)
 }

@@ -17,22 +17,23 @@ use geometry::{
 use interfaces::{
     CommonMemory,
     emove::{Beliefs, CalibratedAt, EmoveCommand, EmoveVerb, GoneTo, RobotPlace},
+    location::Site,
 };
 use rcs_core::Plain;
-use taskdata::files::{LocptId, TaskData};
+use taskdata::files::TaskData;
 
 use super::{
     EmoveInputs,
     localization::{ASIDE_INCHES, LOST_RADIANS},
     motion::relative::Relative,
-    robot_place::{base, command_at, commanded_pose, is_led, near, present_frame, robot_at},
+    robot_place::{base, commanded_pose, is_led, near, present_frame, robot_at},
     tables::{
         AtDrum, Bias,
         drum::{AtTheDrum, Belief, Tool, drum},
         number,
     },
 };
-use crate::{execution::Execution, places::LocationKey};
+use crate::execution::Execution;
 
 /// A tool is in its place within this along the way in: the fingers of the drum close on it there, in.
 const SEATED: f64 = 0.15;
@@ -60,11 +61,10 @@ struct Points {
 }
 
 impl Points {
-    /// The points for a command that names the drum, whose pose is `base`.
-    fn of(command: &EmoveCommand, base: &Frame, data: &TaskData<'_>) -> Option<Self> {
-        let moved = |from: &Frame, relative: Relative| {
-            Some(data.moved(from, relative.record(command, data)?.movetable))
-        };
+    /// The points at a drum with the pose `base`.
+    fn of(site: &Site, base: &Frame, data: &TaskData<'_>) -> Option<Self> {
+        let moved =
+            |from: &Frame, relative: Relative| Some(data.moved(from, relative.record(site, data)?.movetable));
         let inside = moved(base, Relative::InsIn)?;
         let aside = moved(base, Relative::AcqNear)?;
         Some(Self {
@@ -123,7 +123,7 @@ const fn is_tool_command(verb: EmoveVerb) -> bool {
 
 /// Where a frame is at a drum.
 fn locate(drum: &RobotPlace, memory: &CommonMemory, data: &TaskData<'_>) -> AtDrum {
-    let points = drum.pose.to_frame().ok().and_then(|base| Points::of(&command_at(drum), &base, data));
+    let points = drum.pose.to_frame().ok().and_then(|base| Points::of(&drum.site, &base, data));
     match (points, present_frame(memory)) {
         (Some(points), Some(present)) => points.locate(&present),
         _ => AtDrum::Off,
@@ -138,9 +138,9 @@ pub(super) fn start_of(
     memory: &CommonMemory,
     data: &TaskData<'_>,
 ) -> Option<Pose> {
-    let points = Points::of(command, &base(command, memory, data)?, data)?;
+    let points = Points::of(&command.site, &base(command, memory, data)?, data)?;
     let start = if relative == Relative::AcqSlideOn { points.aside } else { points.inside };
-    let end = data.moved(&start, relative.record(command, data)?.movetable);
+    let end = data.moved(&start, relative.record(&command.site, data)?.movetable);
     let stand = commanded_pose(memory)?.to_frame().ok()?;
     let way = end.position - start.position;
     let square = way.dot(&way);
@@ -174,7 +174,7 @@ impl ToolDrum {
     /// Where the robot is at the drum of the command, if it is half way there.
     pub(super) fn at(&self, command: &EmoveCommand, inputs: &EmoveInputs<'_>) -> AtDrum {
         match &self.half_way {
-            Some(drum) if LocationKey::of(drum).has_location_of(LocationKey::of(command)) => {
+            Some(drum) if drum.site.has_location_of(&command.site) => {
                 locate(drum, inputs.memory, inputs.data)
             }
             _ => AtDrum::Off,
@@ -227,7 +227,7 @@ impl ToolDrum {
     pub(super) fn sense_moved_tool(&mut self, at: Option<&RobotPlace>, inputs: &EmoveInputs<'_>) -> bool {
         let Some(at) = at.filter(|at| at.gone_to == GoneTo::Drum) else { return false };
         let Some(present) = present_frame(inputs.memory) else { return false };
-        let base = inputs.data.locpt(LocptId::from_option(at.record)).map(|locpt| locpt.frame);
+        let base = inputs.data.locpt(at.site.record).map(|locpt| locpt.frame);
         let is_there = at.pose.to_frame().is_ok_and(|pose| near(&pose, &present, UNMOVED, LOST_RADIANS));
         if let (Some(base), false) = (base, is_there) {
             self.half_way = Some(RobotPlace { pose: Pose::from_frame(&base), ..*at });

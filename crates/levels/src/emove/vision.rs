@@ -17,12 +17,12 @@ use interfaces::{
     prim::PrimReport,
 };
 use rcs_core::{Plain, handshake::Commander};
-use taskdata::files::{MovtabId, PoseId, TaskData, TrajParaId, VisionId, VisionPara};
+use taskdata::files::{MovtabId, PoseId, TaskData, TrajParaId, VisionPara};
 
 use super::{
     EmoveInputs,
     motion::route::{Goal, Planning},
-    robot_place::{is_led, may_push, near, place_named, present_frame},
+    robot_place::{is_led, may_push, near, present_frame},
     tables::{Action, Reach, Sight, Tries, VisionAnswer},
 };
 
@@ -40,7 +40,7 @@ const MM_PER_INCH: f64 = 25.4;
 /// View parameters that a command names (VII.7.6).
 #[must_use]
 pub(super) fn view_of<'a>(command: &EmoveCommand, data: &TaskData<'a>) -> Option<&'a VisionPara> {
-    data.vision_para(VisionId::from_option(command.object_vision))
+    data.vision_para(command.object_vision)
 }
 
 /// The place in the middle of a picture taken with the tool at `tool`.
@@ -123,7 +123,7 @@ fn aim(command: &EmoveCommand, inputs: &EmoveInputs<'_>) -> Option<Aim> {
         return None;
     }
     let data = inputs.data;
-    let approach = data.view_approach(&command.object?, command.grip, &place_named(command))?;
+    let approach = data.view_approach(&command.object?, command.grip, &command.site.place())?;
     Some(Aim {
         tool: present_frame(inputs.memory)?,
         view: view_of(command, data)?.movetable,
@@ -204,12 +204,7 @@ impl Vision {
     }
 
     pub(super) fn located(&self) -> Option<LocatedObject> {
-        self.located.map(|Located { object, record, array, sector, .. }| LocatedObject {
-            object,
-            record,
-            array,
-            sector,
-        })
+        self.located.map(|Located { object, site, .. }| LocatedObject { object, site })
     }
 
     /// The pictures no longer count after a robot controller was switched off, because the arm has sunk, perhaps onto
@@ -252,9 +247,7 @@ impl Vision {
         let located = self.located.filter(|located| {
             command.command == EmoveVerb::MovToObj
                 && Some(located.object) == command.object
-                && located.record == command.location_record
-                && located.array == command.location_array
-                && located.sector == command.location_sector
+                && located.site == command.site
         });
         let pose = match (located, command.pose) {
             (Some(located), _) => located.pose,
@@ -274,7 +267,7 @@ impl Vision {
         let data = inputs.data;
         let inside = || {
             let Aim { tool, view, .. } = aim(command, inputs)?;
-            let place = place_named(command);
+            let place = command.site.place();
             let array = data.array(place.array)?;
             let corner = data.locpt(place.locpt).map(|corner| corner.frame);
             let base = corner.or_else(|| Some(data.pose(array.pose)?.frame))?;
@@ -323,13 +316,7 @@ impl Vision {
         let (target, part) = if action == Action::Align {
             let part = part_frame(&middle, seen);
             let pose = Pose::from_frame(&part);
-            self.located = Some(Located {
-                object,
-                record: command.location_record,
-                array: command.location_array,
-                sector: command.location_sector,
-                pose,
-            });
+            self.located = Some(Located { object, site: command.site, pose });
             (part, Some(pose))
         } else {
             (centred(&middle, seen), None)

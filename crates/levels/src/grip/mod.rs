@@ -40,7 +40,7 @@
 //! calibration under way is void and all valves go off; one that was finished is kept. PAUSE leaves the valves as they
 //! are, literally (VI.3.1): sent while a flow is on, the flow stays on, and PAUSE is done when the fingers rest.
 //!
-//! * [`site`]: where a gripper that is servoed has its buffers and sensor words;
+//! * [`servoed`]: the command buffer and the sensor words of each servoed gripper;
 //! * [`state`]: the state;
 //! * [`goal`]: what a command asks of the fingers;
 //! * [`calibration`]: from counts to inches and pounds;
@@ -55,7 +55,7 @@ pub mod goal;
 pub mod goals;
 pub mod postprocess;
 pub mod preprocess;
-pub mod site;
+pub mod servoed;
 pub mod state;
 pub mod tables;
 #[cfg(test)]
@@ -71,7 +71,7 @@ use interfaces::{
 use rcs_core::table::{Choice, Table, Verdict};
 
 use self::{
-    site::{PartsGripper, Site},
+    servoed::{PartsGripper, Servoed},
     state::State,
     tables::{
         Action, Duty, Phase, Situation, StateVariables, Step, accept::accept, number, of_command, up_init,
@@ -79,11 +79,11 @@ use self::{
 };
 use crate::execution::Course;
 
-/// The process that servoes a gripper at some site.
+/// The process that servoes a gripper.
 #[derive(Clone, Debug, Default)]
 pub struct Servo<S> {
     state: State,
-    site: PhantomData<S>,
+    gripper: PhantomData<S>,
 }
 
 /// Consult UP-INIT and CALIBRATION: what they leave to decide.
@@ -107,7 +107,7 @@ impl<S> crate::goal::Goals for Servo<S> {
     const GOALS: &'static [crate::goal::Declared] = tables::GOALS;
 }
 
-impl<S: Site, Data: ?Sized> Process<Data> for Servo<S> {
+impl<S: Servoed, Data: ?Sized> Process<Data> for Servo<S> {
     type State = State;
     type Outputs = GripOutputs;
     type StateVariables = StateVariables;

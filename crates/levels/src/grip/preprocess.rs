@@ -15,7 +15,7 @@ use super::{
     calibration::{Steady, is_plausible, value},
     felt::{self, CONTACT, MISSED_AT_END},
     goal::{CLOSED_END, Goal},
-    site::Site,
+    servoed::Servoed,
     state::{Sensed, State, WINDOW},
     tables::{
         Addressee, Calibrating, Clock, Command, Flow, Grasp, Gripper, Measured, Motion, Opening, Phase,
@@ -63,7 +63,7 @@ const STEADY_TICKS: u32 = 12;
 
 impl State {
     /// Read the inputs of a tick. A process whose outputs were republished was dormant in the tick before.
-    pub(super) fn sense<S: Site, Data: ?Sized>(
+    pub(super) fn sense<S: Servoed, Data: ?Sized>(
         &mut self,
         inputs: &Inputs<'_, Data>,
         outputs: &GripOutputs,
@@ -260,7 +260,7 @@ impl State {
     }
 }
 
-fn addressee<S: Site>(command: &GripCommand) -> Addressee {
+fn addressee<S: Servoed>(command: &GripCommand) -> Addressee {
     if command.end_effector_id.is_none_or(|id| id == S::END_EFFECTOR_ID) {
         Addressee::This
     } else {

@@ -6,14 +6,14 @@ use interfaces::{
     grip::GripCommand,
 };
 
-use crate::grip::{Servo, site::Site, tables::Gripper};
+use crate::grip::{Servo, servoed::Servoed, tables::Gripper};
 
 /// The gripper on the rotary table. It has finger position and force sensing and nothing else, and is always
 /// there.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct PedestalHand;
 
-impl Site for PedestalHand {
+impl Servoed for PedestalHand {
     const NAME: &'static str = "Pedestal Hand";
     const END_EFFECTOR_ID: u8 = 0;
 

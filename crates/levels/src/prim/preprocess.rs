@@ -16,7 +16,7 @@ use interfaces::{
     t3i::{Following, LinkFault, ReportCheck, T3iCommand, T3iReport, T3iStatus, T3iVerb},
 };
 use rcs_core::handshake::{Lower, successor};
-use taskdata::files::{MovtabId, SensorPara, TaskData, TrajParaId};
+use taskdata::files::{SensorPara, TaskData};
 
 use super::{
     manual::{Coordinates, Manual, is_moved},
@@ -256,11 +256,11 @@ fn target(command: &PrimCommand, inputs: &Inputs<'_, TaskData<'_>>) -> Result<Ta
 /// Goal and limits of a motion.
 fn goal(command: &PrimCommand, inputs: &Inputs<'_, TaskData<'_>>) -> Result<Goal, Missing> {
     let pose = pose_of(command.pose, inputs.memory, inputs.data).ok_or(Missing::Pose)?;
-    let by = MovtabId::from_option(command.movetable);
+    let by = command.movetable;
     if !by.is_null() && inputs.data.movetable(by).is_none() {
         return Err(Missing::Movetable);
     }
-    let id = TrajParaId::new(command.trajectory_parameters);
+    let id = command.trajectory_parameters;
     let para = inputs.data.traj_para(id).ok_or(Missing::Parameters)?;
     let limits = Limits::from_counts(para.acc_fac, para.vel_max, para.smooth).ok_or(Missing::Limits)?;
     Ok(Goal {

@@ -6,15 +6,16 @@
 use geometry::pose::Pose;
 use interfaces::{
     emove::{EmoveCommand, EmoveVerb, Holding},
-    subtask::{LocationKind, SubtaskCommand, SubtaskVerb},
+    location::Site,
+    subtask::{SubtaskCommand, SubtaskVerb},
 };
 use rcs_core::{
     Plain,
     name::{Name10, Name16},
 };
-use taskdata::files::{Location, LocptId, RefType, TaskData};
+use taskdata::files::{EndEffId, Location, LocptId, RefType, TaskData, VisionId};
 
-use crate::places::{LocationKey, Missing, named};
+use crate::places::{Missing, named};
 
 /// Grip of a holster's object with which the gripper that is on the robot is put in (VII.7 by convention).
 const PUT_IN: i32 = 1;
@@ -31,19 +32,11 @@ pub struct Aim {
     /// Its grip.
     pub grip: i32,
     /// Its record of END-EFF-PARA, if it has that grip.
-    pub parameters: Option<u32>,
+    pub parameters: EndEffId,
     /// Gripper that is needed.
     pub end_effector_id: Option<u8>,
-    /// Name of the location.
-    pub location: Name10,
-    /// Its type.
-    pub kind: LocationKind,
-    /// Record of LOCPT; a static array has none.
-    pub record: Option<u32>,
-    /// Record of ARRAY-TABLE, if it is a sector.
-    pub array: Option<u32>,
-    /// The sector, from 1, if it is one.
-    pub sector: Option<i32>,
+    /// The location.
+    pub site: Site,
     /// Record number of its pose, once it is given.
     pub pose: Option<u32>,
 }
@@ -77,35 +70,20 @@ impl Aim {
             grip,
             parameters: command.object_parameters,
             end_effector_id: command.end_effector_id,
-            location: command.location,
-            kind: command.location_kind,
-            record: command.location_record,
-            array: command.location_array,
-            sector: command.location_sector,
+            site: command.site,
             pose: command.pose,
         }
     }
 
     /// A location as such; its pose record is not given yet.
-    const fn at(location: &Location, end_effector_id: Option<u8>) -> Self {
-        Self {
-            object: None,
-            grip: 0,
-            parameters: None,
-            end_effector_id,
-            location: location.name,
-            kind: location.place.kind,
-            record: location.place.locpt.to_option(),
-            array: location.place.array.to_option(),
-            sector: location.sector,
-            pose: None,
-        }
+    const fn at(site: Site, end_effector_id: Option<u8>) -> Self {
+        Self { object: None, grip: 0, parameters: EndEffId::NULL, end_effector_id, site, pose: None }
     }
 
     /// The same location with an object in a grip.
     fn with_object(self, object: Option<Name16>, grip: i32, data: &TaskData<'_>) -> Result<Self, Missing> {
         let (id, _) = object.and_then(|object| data.object(&object, grip)).ok_or(Missing::Grip)?;
-        Ok(Self { object, grip, parameters: id.to_option(), ..self })
+        Ok(Self { object, grip, parameters: id, ..self })
     }
 
     /// The same in the grip in which the object is held.
@@ -120,20 +98,18 @@ impl Aim {
     /// A command to E-move with this aim, its number still 0.
     #[must_use]
     pub fn command(&self, verb: EmoveVerb, data: &TaskData<'_>) -> EmoveCommand {
-        let (object, place) = (self.object.as_ref(), LocationKey::of(self).place(self.kind));
+        let (object, place) = (self.object.as_ref(), self.site.place());
         EmoveCommand {
             number: 0,
             command: verb,
             object: self.object,
             grip: self.grip,
             object_parameters: self.parameters,
-            object_grips: object.and_then(|object| data.obj_grips_id(object)).map(|id| id.number()),
-            object_vision: object.and_then(|object| data.view(object, &place)).map(|(id, _)| id.number()),
-            location: self.location,
-            location_kind: self.kind,
-            location_record: self.record,
-            location_array: self.array,
-            location_sector: self.sector,
+            object_grips: object.and_then(|object| data.obj_grips_id(object)).unwrap_or_default(),
+            object_vision: object
+                .and_then(|object| data.view(object, &place))
+                .map_or(VisionId::NULL, |(id, _)| id),
+            site: self.site,
             pose: self.pose,
             end_effector_id: self.end_effector_id,
         }
@@ -196,10 +172,10 @@ impl Aims {
     /// FIX-GRIP: the object at the pedestal in both grips, and the place where the robot waits.
     fn pedestal(command: &SubtaskCommand, data: &TaskData<'_>) -> Result<Self, Missing> {
         let (pedestal, safe) = (point(named::PEDESTAL, data)?, point(named::PED_SAFE, data)?);
-        let at = Aim::at(&pedestal, command.end_effector_id);
+        let at = Aim::at(pedestal.site(), command.end_effector_id);
         Ok(Self {
             first: at.with_object(command.object, command.source_grip, data)?,
-            second: Aim::at(&safe, command.end_effector_id),
+            second: Aim::at(safe.site(), command.end_effector_id),
             third: at.with_object(command.object, command.destination_grip, data)?,
             poses: [Pose::from_frame(&pedestal.frame), Pose::from_frame(&safe.frame)],
         })
@@ -208,7 +184,7 @@ impl Aims {
     /// Tool commands: the transfer location, with the object as Task gave it.
     fn drum(command: &SubtaskCommand, data: &TaskData<'_>) -> Result<Self, Missing> {
         let location = point(named::TOOL_TRNS, data)?;
-        let at = Aim::at(&location, command.end_effector_id);
+        let at = Aim::at(location.site(), command.end_effector_id);
         let first = Aim {
             object: command.object,
             grip: command.source_grip,
@@ -229,11 +205,10 @@ fn holster(id: u8, grip: i32, data: &TaskData<'_>, pose: &mut Pose) -> Result<Ai
         .object_locations(record)
         .find(|assigned| assigned.kind == RefType::LocationPoint)
         .ok_or(Missing::Holster)?;
-    let locpt = data.locpt(LocptId::new(assigned.number)).ok_or(Missing::Holster)?;
+    let point = LocptId::new(assigned.number);
+    let locpt = data.locpt(point).ok_or(Missing::Holster)?;
     *pose = Pose::from_frame(&locpt.frame);
-    let place = data.place_of(LocptId::new(assigned.number));
-    let location = Location { name: locpt.name, place, sector: None, frame: locpt.frame };
-    Aim::at(&location, Some(id)).with_object(Some(object), grip, data)
+    Aim::at(Site::point(locpt.name, point), Some(id)).with_object(Some(object), grip, data)
 }
 
 /// A location point by name.

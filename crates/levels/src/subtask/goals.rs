@@ -16,7 +16,6 @@ use crate::{
     emove::gripper::Gripper as Attached,
     goal::{AT_PLACE, Goal, Sensor},
     held::Held,
-    places::LocationKey,
 };
 
 /// Tolerance of a grasp, as E-move states it.
@@ -189,7 +188,7 @@ pub(crate) const fn is_free(held: Holding) -> Proof {
 /// The robot is at the location of a command.
 fn at(emove: &EmoveStatus, command: &SubtaskCommand) -> Proof {
     match emove.at {
-        Some(at) if LocationKey::of(&at) == LocationKey::of(command) => Proof::at(emove.offset),
+        Some(at) if at.site == command.site => Proof::at(emove.offset),
         Some(_) | None => Proof::of(Evidence::Elsewhere),
     }
 }

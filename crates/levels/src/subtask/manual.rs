@@ -116,7 +116,8 @@ pub(super) fn robot_there(memory: &CommonMemory, data: &TaskData<'_>) -> RobotTh
         return RobotThere::Clear;
     }
     let regrip = memory.subtask.regrip.map(|regrip| regrip.object);
-    let at_object = emove.at.is_some_and(|at| at.location.as_str() == named::PEDESTAL && at.grip.is_some());
+    let at_object =
+        emove.at.is_some_and(|at| at.site.location.as_str() == named::PEDESTAL && at.grip.is_some());
     match emove.held {
         Holding::Object(held) if at_object && regrip.is_none_or(|part| part == held.object) => {
             RobotThere::Grips
@@ -130,7 +131,7 @@ pub(super) fn robot_there(memory: &CommonMemory, data: &TaskData<'_>) -> RobotTh
 fn is_clear(emove: &EmoveStatus, memory: &CommonMemory, data: &TaskData<'_>) -> bool {
     let pedestal = data.locpt_named(&Name10::clipped(named::PEDESTAL));
     match emove.at {
-        Some(at) => at.record != pedestal.map(|id| id.number()),
+        Some(at) => Some(at.site.record) != pedestal,
         None if emove.report == StatusReport::Executing => false,
         None => pedestal
             .and_then(|id| data.locpt(id))

@@ -169,7 +169,7 @@ impl State {
         for ((slot, pose), aim) in
             outputs.poses.iter_mut().zip(&aims.poses).zip([&mut aims.first, &mut aims.second])
         {
-            if !aim.location.is_empty() {
+            if aim.site.name().is_some() {
                 self.last_pose = pose_range::next(pose_range::SUBTASK, self.last_pose);
                 aim.pose = Some(self.last_pose);
                 *slot = ChangingPose { number: aim.pose, pose: *pose };

@@ -26,7 +26,7 @@ use crate::{
     execution::{Asked, Work},
     halt::{Above, Below, BoxState, Intake, Kind, Replaced},
     held::Held,
-    places::{LocationKey, Missing, pose_of},
+    places::{Missing, pose_of},
 };
 
 impl State {
@@ -195,11 +195,10 @@ pub(super) fn location_pose(command: &SubtaskCommand, inputs: &Inputs<'_, TaskDa
 
 /// Must vision find the object of a command? `is_at` is true if the last pictures were taken at its location.
 fn vision(emove: &EmoveStatus, is_at: bool, command: &SubtaskCommand, data: &TaskData<'_>) -> Vision {
-    let location = LocationKey::of(command);
     let located = emove.located.is_some_and(|located| {
-        is_at && Some(located.object) == command.object && LocationKey::of(&located) == location
+        is_at && Some(located.object) == command.object && located.site == command.site
     });
-    let view = command.object.and_then(|object| data.view(&object, &location.place(command.location_kind)));
+    let view = command.object.and_then(|object| data.view(&object, &command.site.place()));
     if !view.is_some_and(|(_, view)| view.enabled) {
         Vision::NotNeeded
     } else if located {
@@ -212,11 +211,7 @@ fn vision(emove: &EmoveStatus, is_at: bool, command: &SubtaskCommand, data: &Tas
 /// Does the robot stand at the object of a command?
 fn station(emove: &EmoveStatus, command: &SubtaskCommand) -> Where {
     match emove.at {
-        Some(at)
-            if at.grip == Some(command.source_grip) && LocationKey::of(&at) == LocationKey::of(command) =>
-        {
-            Where::There
-        }
+        Some(at) if at.grip == Some(command.source_grip) && at.site == command.site => Where::There,
         _ => Where::Elsewhere,
     }
 }
@@ -225,11 +220,7 @@ fn station(emove: &EmoveStatus, command: &SubtaskCommand) -> Where {
 fn placed(emove: &EmoveStatus, command: &SubtaskCommand) -> Where {
     let what = (command.object, command.destination_grip);
     match emove.placed {
-        Some(it)
-            if (Some(it.object), it.grip) == what && LocationKey::of(&it) == LocationKey::of(command) =>
-        {
-            Where::There
-        }
+        Some(it) if (Some(it.object), it.grip) == what && it.site == command.site => Where::There,
         _ => Where::Elsewhere,
     }
 }
@@ -237,7 +228,7 @@ fn placed(emove: &EmoveStatus, command: &SubtaskCommand) -> Where {
 /// Where the robot is, for FIX-GRIP.
 fn robot(emove: &EmoveStatus, aims: &Aims) -> Robot {
     let Some(at) = emove.at else { return Robot::Away };
-    let is_at = |aim: &Aim| !aim.location.is_empty() && (at.record, at.array) == (aim.record, aim.array);
+    let is_at = |aim: &Aim| aim.site.name().is_some() && at.site == aim.site;
     if is_at(&aims.first) && at.grip == Some(aims.first.grip) {
         Robot::First
     } else if is_at(&aims.third) && at.grip == Some(aims.third.grip) {

@@ -185,8 +185,8 @@ impl DataSystem {
             }
         }
         if matches!(action, Taking::Note | Taking::Replace) {
-            let site = plan.source.location.unwrap_or_default();
-            let (serial, location, sector) = (plan.serial, site.name, site.sector);
+            let site = plan.source.site().unwrap_or_default();
+            let (serial, location, sector) = (plan.serial, site.location, site.sector);
             self.beliefs.taking = Some(Carried { item, serial, location, sector, told: true });
         }
     }
@@ -208,8 +208,8 @@ impl DataSystem {
         let (location, sector) = if plan.from_elsewhere {
             before.map_or_else(Default::default, |carried| (carried.location, carried.sector))
         } else {
-            let site = plan.destination.location.or(plan.source.location).unwrap_or_default();
-            (site.name, site.sector)
+            let site = plan.destination.site().or(plan.source.site()).unwrap_or_default();
+            (site.location, site.sector)
         };
         let known = before.filter(|carried| carried.told && !told);
         let serial = known.map_or(plan.serial, |carried| carried.serial);
@@ -219,8 +219,8 @@ impl DataSystem {
 
     /// REPORT-ITEM (IX.2): write where the object of a command now is, and keep it until it is taken.
     pub fn tell(&mut self, plan: &Plan, in_hand: bool, tick: Tick, outputs: &mut TaskOutputs) {
-        let (position, sector) = match &plan.destination.location {
-            Some(location) if !in_hand => (location.name, location.sector),
+        let (position, sector) = match plan.destination.site() {
+            Some(site) if !in_hand => (site.location, site.sector),
             _ => (Name10::clipped(IN_HAND), None),
         };
         if in_hand {
@@ -236,7 +236,7 @@ impl DataSystem {
     /// REPORT-ITEM: keep the update of what the robot carried and has let go, until it is taken.
     pub fn owe_released(&mut self, placed: &PlacedObject) {
         if let Some(Carried { item, serial, .. }) = self.beliefs.carried.take() {
-            self.owe(item, serial, placed.location, placed.sector);
+            self.owe(item, serial, placed.site.location, placed.site.sector);
         }
     }
 

@@ -7,14 +7,13 @@ use interfaces::{
 };
 
 use super::{
-    plan::{Handling, Plan, Site, TOOL_GRIPPER, TaskVerb},
+    plan::{Handling, Plan, PlanSite, TOOL_GRIPPER, TaskVerb},
     tables::DataBase,
 };
 use crate::{
     confirm::{Evidence, Proof},
     goal::{AT_PLACE, Goal, Sensor},
     held::Held,
-    places::LocationKey,
     subtask::goals::{force, is_free},
 };
 
@@ -176,17 +175,15 @@ pub(super) fn proof(plan: &Plan, below: &SubtaskStatus, data_base: DataBase) -> 
 
 /// The object was released at the destination.
 fn is_placed(plan: &Plan, below: &SubtaskStatus) -> bool {
-    let destination = plan.destination.key();
-    below.placed.is_some_and(|placed| {
-        plan.object == Some(placed.object) && destination == Some(LocationKey::of(&placed))
-    })
+    let destination = plan.destination.site();
+    below.placed.is_some_and(|placed| plan.object == Some(placed.object) && destination == Some(placed.site))
 }
 
 /// The robot is at a location, if one is named.
-fn at(site: &Site, below: &SubtaskStatus) -> Proof {
-    let Some(location) = site.key() else { return Proof::HOLDS };
+fn at(site: &PlanSite, below: &SubtaskStatus) -> Proof {
+    let Some(location) = site.site() else { return Proof::HOLDS };
     match below.at {
-        Some(at) if LocationKey::of(&at) == location => Proof::at(below.offset),
+        Some(at) if at.site == location => Proof::at(below.offset),
         Some(_) | None => Proof::of(Evidence::Elsewhere),
     }
 }

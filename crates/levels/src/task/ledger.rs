@@ -15,7 +15,6 @@ use interfaces::{
 use rcs_core::{Plain, name::Name16};
 
 use super::plan::{Plan, Resumed, TaskVerb};
-use crate::places::LocationKey;
 
 /// Has the command placed its object already?
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
@@ -67,14 +66,13 @@ pub fn placed(plan: &Plan, below: &SubtaskStatus, ledger: Option<&Ledger>) -> Pl
         ledger.map(|ledger| ledger.last),
         Some(SubtaskVerb::PlaceObj | SubtaskVerb::Position | SubtaskVerb::GotoEndpt)
     );
-    let destination = plan.destination.key();
+    let destination = plan.destination.site();
     let at_destination = below.placed.is_some_and(|placed| {
         plan.object == Some(placed.object)
             && plan.destination.grip == placed.grip
-            && destination == Some(LocationKey::of(&placed))
+            && destination == Some(placed.site)
     });
-    let stands =
-        |at: Standing| destination == Some(LocationKey::of(&at)) && at.grip == Some(plan.destination.grip);
+    let stands = |at: Standing| destination == Some(at.site) && at.grip == Some(plan.destination.grip);
     match (at_destination && placing && plan.resumed != Resumed::Not, below.at.is_some_and(stands)) {
         (false, _) => Placed::Not,
         (true, true) => Placed::AtDestination,
@@ -94,9 +92,9 @@ pub fn is_from_elsewhere(
     let source = |command: &HwsCommand| (command.source, command.source_sector);
     match ledger.map(|ledger| (&ledger.command, ledger.told)).filter(|(last, _)| last.object == plan.object) {
         Some((last, told)) => told || source(last) != source(command),
-        None => !plan.source.location.zip(carried).is_some_and(|(location, carried)| {
+        None => !plan.source.site().zip(carried).is_some_and(|(site, carried)| {
             Some(carried.item) == plan.object
-                && (carried.location, carried.sector) == (location.name, location.sector)
+                && (carried.location, carried.sector) == (site.location, site.sector)
         }),
     }
 }

@@ -2,18 +2,18 @@
 //! IV.1.
 
 use geometry::pose::Pose;
-use interfaces::{ChangingPose, HwsCommand, emove::ObjectGrip, subtask::LocationKind};
+use interfaces::{ChangingPose, HwsCommand, emove::ObjectGrip, location::Site};
 use rcs_core::{
     Plain,
     name::{Name10, Name16},
 };
-use taskdata::files::TaskData;
+use taskdata::files::{EndEffId, TaskData};
 
 use super::tables::{
     Destination, Regrip, SiteData, ToolData, WayOut,
     item::{Origin, Takes},
 };
-use crate::places::{LocationKey, Missing, is_in_mbd, named, same_location};
+use crate::places::{Missing, is_in_mbd, named};
 
 /// Commands of Task (V.4.1).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
@@ -94,29 +94,21 @@ pub enum Gripper {
 /// A location, looked up.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct Location {
-    /// Name.
-    pub name: Name10,
-    /// Its type.
-    pub kind: LocationKind,
-    /// Record of LOCPT; a static array has none.
-    pub record: Option<u32>,
-    /// Record of ARRAY-TABLE, if it is a sector.
-    pub array: Option<u32>,
-    /// Sector from 1, if it is one.
-    pub sector: Option<i32>,
+    /// Its name and records.
+    pub site: Site,
     /// Its T-POSE.
     pub pose: ChangingPose,
 }
 
 /// One of the three locations of a command, with the grip there.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
-pub struct Site {
+pub struct PlanSite {
     /// The location, if the command names it.
     pub location: Option<Location>,
     /// Grip of the object there.
     pub grip: i32,
     /// Record of END-EFF-PARA, if the object has that grip.
-    pub parameters: Option<u32>,
+    pub parameters: EndEffId,
 }
 
 /// A command, looked up.
@@ -131,11 +123,11 @@ pub struct Plan {
     /// `obj-endeff-id#` for Subtask (V.3.2): gripper for the object; none if any will do.
     pub end_effector_id: Option<u8>,
     /// Where the object is.
-    pub source: Site,
+    pub source: PlanSite,
     /// Where it, or the robot, is to go.
-    pub destination: Site,
+    pub destination: PlanSite,
     /// Where the robot is to be at the end.
-    pub end_at: Site,
+    pub end_at: PlanSite,
     /// The data base is still to be told that the object is moved from or to the MBD.
     pub update_due: bool,
     /// An ACQUIRE of an object that is held already, and was not taken from the source.
@@ -210,7 +202,7 @@ impl Plan {
             |location: Option<Location>| location.is_some_and(|location| location.is_in_mbd(data));
         let site = |location, grip| {
             let parameters = object.and_then(|object| data.object(&object, grip));
-            Site { location, grip, parameters: parameters.map(|(id, _)| id.number()) }
+            PlanSite { location, grip, parameters: parameters.map_or(EndEffId::NULL, |(id, _)| id) }
         };
         let plan = Self {
             object,
@@ -238,8 +230,8 @@ impl Plan {
         let Some(drum) = data.place_named::<10, 16>(&Name10::clipped(named::TOOL_TRNS), None) else {
             return WayOut::Leads;
         };
-        let to = LocationKey::of(&end_at).place(end_at.kind);
-        if same_location(&drum, &to) || data.trajectory(&drum, &to).is_some() {
+        let to = end_at.site.place();
+        if drum.has_location_of(&to) || data.trajectory(&drum, &to).is_some() {
             WayOut::Leads
         } else {
             WayOut::NoTrajectory
@@ -282,7 +274,7 @@ impl Plan {
 
     /// A location of the command, with the grip of the object there.
     #[must_use]
-    pub const fn site(&self, site: &Site) -> SiteData {
+    pub const fn site(&self, site: &PlanSite) -> SiteData {
         if site.location.is_none() {
             SiteData::Null
         } else if self.has_grip(site) {
@@ -293,8 +285,8 @@ impl Plan {
     }
 
     /// The object has the grip of a site, or no object is named.
-    const fn has_grip(&self, site: &Site) -> bool {
-        self.object.is_none() || site.parameters.is_some()
+    const fn has_grip(&self, site: &PlanSite) -> bool {
+        self.object.is_none() || !site.parameters.is_null()
     }
 
     /// The location to which the command goes.
@@ -320,7 +312,7 @@ impl Plan {
     /// The site to which POSITION goes: the source, or the destination if the source is null (SPECNOTES.md,
     /// contradiction 24).
     #[must_use]
-    pub const fn position_site(&self) -> &Site {
+    pub const fn position_site(&self) -> &PlanSite {
         if self.source.location.is_some() { &self.source } else { &self.destination }
     }
 
@@ -333,8 +325,8 @@ impl Plan {
     /// The site with the grip of a tool command's tool: the source if the tool has its grip, else the
     /// destination.
     #[must_use]
-    pub const fn tool_site(&self) -> &Site {
-        if self.source.parameters.is_some() { &self.source } else { &self.destination }
+    pub const fn tool_site(&self) -> &PlanSite {
+        if self.source.parameters.is_null() { &self.destination } else { &self.source }
     }
 }
 
@@ -351,17 +343,17 @@ fn gripper(verb: TaskVerb, object: Option<&Name16>, data: &TaskData<'_>) -> (Opt
     }
 }
 
-impl Site {
+impl PlanSite {
     /// Its location, if the command names one.
     #[must_use]
-    pub fn key(&self) -> Option<LocationKey> {
-        self.location.as_ref().map(LocationKey::of)
+    pub fn site(&self) -> Option<Site> {
+        self.location.map(|location| location.site)
     }
 
     /// Where the location is, as a destination.
     #[must_use]
     pub fn destination(&self) -> Destination {
-        match self.location.as_ref().map(|location| location.name.as_str()) {
+        match self.location.as_ref().map(|location| location.site.location.as_str()) {
             Some(named::TOOL_SAFE) => Destination::NearDrum,
             Some(named::PEDESTAL) => Destination::Pedestal,
             Some(_) | None => Destination::Elsewhere,
@@ -380,17 +372,13 @@ impl Location {
         let Some(name) = name else { return Ok(None) };
         let found = data.resolve_location(&name, sector, object)?;
         Ok(Some(Self {
-            name: found.name,
-            kind: found.place.kind,
-            record: found.place.locpt.to_option(),
-            array: found.place.array.to_option(),
-            sector: found.sector,
+            site: found.site(),
             pose: ChangingPose { number: None, pose: Pose::from_frame(&found.frame) },
         }))
     }
 
     /// True if the location is one of the MBD's.
     fn is_in_mbd(&self, data: &TaskData<'_>) -> bool {
-        is_in_mbd(LocationKey::of(self).point, data)
+        is_in_mbd(self.site.record, data)
     }
 }

@@ -13,7 +13,7 @@ use taskdata::files::TaskData;
 use super::{
     data_system::DataSystem,
     ledger::opened,
-    plan::{Plan, Site, TaskVerb},
+    plan::{Plan, PlanSite, TaskVerb},
     state::State,
     tables::{Action, Ordered, StateVariables, Takeover, joystick::Control},
 };
@@ -56,7 +56,7 @@ impl State {
             Takeover::Clear => self.execution.outcome = Outcome::Idle,
             Takeover::Interrupt | Takeover::Pause => {}
         }
-        self.send(SubtaskVerb::Pause, &Site::default(), inputs, outputs);
+        self.send(SubtaskVerb::Pause, &PlanSite::default(), inputs, outputs);
     }
 
     /// Set the outputs that a row asks for.
@@ -70,7 +70,7 @@ impl State {
         let (plan, tick) = (self.plan, inputs.tick);
         match action {
             Action::Wait => {}
-            Action::Pause => self.send(SubtaskVerb::Pause, &Site::default(), inputs, outputs),
+            Action::Pause => self.send(SubtaskVerb::Pause, &PlanSite::default(), inputs, outputs),
             Action::GetEndeff => self.send(SubtaskVerb::GetEndeff, &plan.source, inputs, outputs),
             Action::GetObject => self.send(SubtaskVerb::GetObject, &plan.source, inputs, outputs),
             Action::FixGrip => self.send(SubtaskVerb::FixGrip, &plan.source, inputs, outputs),
@@ -164,7 +164,7 @@ impl State {
     fn send(
         &mut self,
         verb: SubtaskVerb,
-        site: &Site,
+        site: &PlanSite,
         inputs: &Inputs<'_, TaskData<'_>>,
         outputs: &mut TaskOutputs,
     ) {
@@ -182,11 +182,7 @@ impl State {
             source_grip: plan.source.grip,
             destination_grip: plan.destination.grip,
             object_parameters: site.parameters,
-            location: location.name,
-            location_kind: location.kind,
-            location_record: location.record,
-            location_array: location.array,
-            location_sector: location.sector,
+            site: location.site,
             pose: location.pose.number,
         };
     }
@@ -194,8 +190,8 @@ impl State {
     /// A tool command to Subtask, which names the location itself. A tool that the command does not name is
     /// the one that is held.
     fn send_tool(&mut self, verb: SubtaskVerb, inputs: &Inputs<'_, TaskData<'_>>, outputs: &mut TaskOutputs) {
-        let Site { grip, parameters, .. } = *self.plan.tool_site();
-        self.send(verb, &Site { location: None, grip, parameters }, inputs, outputs);
+        let PlanSite { grip, parameters, .. } = *self.plan.tool_site();
+        self.send(verb, &PlanSite { location: None, grip, parameters }, inputs, outputs);
         (outputs.subtask.source_grip, outputs.subtask.destination_grip) = (grip, grip);
         if self.plan.object.is_none() {
             outputs.subtask.object = inputs.memory.subtask.status.held.object();

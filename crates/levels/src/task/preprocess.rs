@@ -12,7 +12,7 @@ use taskdata::files::TaskData;
 use super::{
     goals::proof,
     ledger::{Part, is_from_elsewhere, is_taken, placed, resumed},
-    plan::{Found, Plan, Resumed, Site, TOOL_GRIPPER, TaskVerb},
+    plan::{Found, Plan, PlanSite, Resumed, TOOL_GRIPPER, TaskVerb},
     state::State,
     support::Support,
     tables::{
@@ -28,7 +28,7 @@ use crate::{
     execution::{Asked, Work},
     halt::{Above, Below, BoxState, Intake, Kind, Replaced},
     held::Held,
-    places::{LocationKey, is_in_mbd, named},
+    places::{is_in_mbd, named},
 };
 
 impl State {
@@ -134,7 +134,7 @@ impl State {
     fn follow_object(&mut self, verb: TaskVerb, replaces: bool, inputs: &Inputs<'_, TaskData<'_>>) {
         let memory = inputs.memory;
         let Some(placed) = memory.subtask.status.placed else { return };
-        let in_mbd = is_in_mbd(LocationKey::of(&placed).point, inputs.data);
+        let in_mbd = is_in_mbd(placed.site.record, inputs.data);
         let is_taken = is_taken(memory.task.ledger.as_ref(), &placed.object);
         let place = Place {
             carrying: self.data_system.carrying(placed.object),
@@ -175,7 +175,7 @@ impl State {
                 Holding::Object(_) => Tool::None,
                 Holding::Something | Holding::NotKnown => Tool::Unsure,
             },
-            station: station(below.at.map(|at| at.location)),
+            station: station(below.at.map(|at| at.site.location)),
             drum: if below.drum { Drum::Inside } else { Drum::Outside },
             way: way(below.at, plan, inputs.data),
             support: Support::sense(below, plan, self.confirmed.as_ref(), inputs.external, inputs.data),
@@ -212,12 +212,12 @@ fn preconditions(found: &Found, checked: Checked) -> Preconditions {
 
 /// Where the robot is to be at the end. A sector is not known by its location's name alone. A robot that was moved
 /// away from its place, however little, has to go there.
-fn ends(end_at: &Site, below: &SubtaskStatus) -> Ends {
+fn ends(end_at: &PlanSite, below: &SubtaskStatus) -> Ends {
     let is_there = matches!(below.offset, Offset::None | Offset::NotSensed);
-    let at = below.at.filter(|_| is_there).map(|at| at.location);
-    match &end_at.location {
+    let at = below.at.filter(|_| is_there).map(|at| at.site.location);
+    match end_at.site() {
         None => Ends::Here,
-        Some(location) if Some(location.name) == at && location.array.is_none() => Ends::There,
+        Some(site) if Some(site.location) == at && site.array.is_null() => Ends::There,
         Some(_) => Ends::Elsewhere,
     }
 }
@@ -235,12 +235,12 @@ fn station(at: Option<Name10>) -> Station {
 /// The way from where the robot is to the position of a POSITION, as far as the names of the locations tell.
 fn way(at: Option<Standing>, plan: &Plan, data: &TaskData<'_>) -> Way {
     let Some(at) = at else { return Way::NoStart };
-    let Some(goal) = plan.position_site().location else { return Way::Here };
-    let (from, to) = (LocationKey::of(&at), LocationKey::of(&goal));
-    if from.has_location_of(to) {
+    let Some(to) = plan.position_site().site() else { return Way::Here };
+    let from = at.site;
+    if from.has_location_of(&to) {
         // Between the sectors of a tray no trajectory is needed.
         if (from.array, from.sector) == (to.array, to.sector) { Way::Here } else { Way::Leads }
-    } else if data.trajectory(&from.place(goal.kind), &to.place(goal.kind)).is_some() {
+    } else if data.trajectory(&from.place(), &to.place()).is_some() {
         Way::Leads
     } else {
         Way::NoTrajectory

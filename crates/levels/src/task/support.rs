@@ -9,10 +9,10 @@ use interfaces::{
     subtask::SubtaskStatus,
 };
 use rcs_core::{Plain, name::Name10};
-use taskdata::files::{LocptId, Reference, TaskData};
+use taskdata::files::{LocptId, Place, Reference, TaskData};
 
 use super::plan::Plan;
-use crate::places::{LocationKey, named, place_of};
+use crate::places::named;
 
 /// What keeps an object from falling when the gripper opens.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
@@ -43,7 +43,7 @@ impl Support {
         }
         let support = Self::of_place(below, plan.object_at_position(), data);
         let clamping = external.devices.clamping;
-        let reported = clamping.is_some() && clamping == below.at.map(|at| at.location);
+        let reported = clamping.is_some() && clamping == below.at.map(|at| at.site.location);
         match (support, by) {
             (Self::Jaws, Some(operator::Support::Clamped)) => Self::Secured,
             (Self::Jaws, _) if reported => Self::Secured,
@@ -62,30 +62,30 @@ impl Support {
             Holding::Object(held) => Some(held),
             Holding::Nothing | Holding::Something | Holding::NotKnown => named,
         };
-        if [named::PEDESTAL, named::TOOL_TRNS].contains(&at.location.as_str()) {
+        if [named::PEDESTAL, named::TOOL_TRNS].contains(&at.site.location.as_str()) {
             return Self::None;
         }
         let is_unknown = below.held.object().is_none();
         let is_fixture = object.is_some_and(|object| has_place(&object, &at, data));
-        match (at.array, is_nest(&at, data), is_fixture) {
-            (Some(_), _, _) | (None, true, true) => Self::Place,
-            (None, true, false) if is_unknown => Self::Place,
-            (None, false, true) => Self::Jaws,
-            (None, true | false, false) => Self::None,
+        match (!at.site.array.is_null(), is_nest(&at, data), is_fixture) {
+            (true, _, _) | (false, true, true) => Self::Place,
+            (false, true, false) if is_unknown => Self::Place,
+            (false, false, true) => Self::Jaws,
+            (false, true | false, false) => Self::None,
         }
     }
 }
 
 /// An object has grip data of its own at the location point of a place: those for `$$$` say nothing of a fixture.
 fn has_place(object: &ObjectGrip, at: &Standing, data: &TaskData<'_>) -> bool {
-    let [here, anywhere] = [LocationKey::of(at).point, LocptId::NULL]
-        .map(|point| data.grip_loc(&object.object, object.grip, &place_of(point)));
+    let [here, anywhere] = [at.site.record, LocptId::NULL]
+        .map(|point| data.grip_loc(&object.object, object.grip, &Place::point(point)));
     here.is_some() && here != anywhere
 }
 
 /// The place is one of the fixtures in which a part stays by its weight (VII.5: owner VFIXTURE).
 fn is_nest(at: &Standing, data: &TaskData<'_>) -> bool {
     let owner = data.owner_named(&Name10::clipped(named::NESTS));
-    let point = Reference::location_point(LocptId::from_option(at.record));
+    let point = Reference::location_point(at.site.record);
     owner.is_some_and(|owner| data.is_member(owner, point))
 }

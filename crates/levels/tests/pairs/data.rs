@@ -11,7 +11,7 @@ use interfaces::{
 };
 use rcs_core::name::Name16;
 use taskdata::{
-    files::{Location, TaskData},
+    files::{EndEffId, Location, TaskData, VisionId},
     load::{Step, Store, job::own_command},
 };
 
@@ -48,14 +48,10 @@ pub fn emove_command(verb: EmoveVerb, object: &str, grip: i32, location: &str) -
         command: verb,
         object: Some(object),
         grip,
-        object_parameters: data().object(&object, grip).map(|(id, _)| id.number()),
-        object_grips: data().obj_grips_id(&object).map(|id| id.number()),
-        object_vision: None,
-        location: at.name,
-        location_kind: at.place.kind,
-        location_record: at.place.locpt.to_option(),
-        location_array: at.place.array.to_option(),
-        location_sector: at.sector,
+        object_parameters: data().object(&object, grip).map_or(EndEffId::NULL, |(id, _)| id),
+        object_grips: data().obj_grips_id(&object).unwrap_or_default(),
+        object_vision: VisionId::NULL,
+        site: at.site(),
         pose: None,
         end_effector_id: Some(1),
     }
@@ -94,12 +90,10 @@ pub fn subtask_command(
         end_effector_id: object.map(|_| 1),
         source_grip: grip,
         destination_grip: grip,
-        object_parameters: object.and_then(|object| data().object(&object, grip)).map(|(id, _)| id.number()),
-        location: at.name,
-        location_kind: at.place.kind,
-        location_record: at.place.locpt.to_option(),
-        location_array: at.place.array.to_option(),
-        location_sector: at.sector,
+        object_parameters: object
+            .and_then(|object| data().object(&object, grip))
+            .map_or(EndEffId::NULL, |(id, _)| id),
+        site: at.site(),
         pose: number,
     };
     (command, ChangingPose { number, pose: Pose::from_frame(&at.frame) })

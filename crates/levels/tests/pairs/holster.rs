@@ -75,8 +75,8 @@ pub fn judge_order(command: &EmoveCommand, order: &PrimCommand, ring: Ring) -> R
         return Ok(());
     }
     let is = |relative: Relative| {
-        let record = relative.record(command, &data());
-        record.is_some_and(|record| order.movetable == record.movetable.to_option())
+        let record = relative.record(&command.site, &data());
+        record.is_some_and(|record| order.movetable == record.movetable)
     };
     match ring {
         Ring::Locked => Ok(()),

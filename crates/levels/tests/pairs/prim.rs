@@ -202,17 +202,9 @@ impl Pair {
         let (object, grip, _) = TOOL;
         let pose = Some(pose_of_point(location));
         let of_object = EmoveCommand { number, pose, ..emove_command(verb, object, grip, location) };
-        let EmoveCommand { location, location_kind, location_record, .. } = of_object;
+        let site = of_object.site;
         self.command = if verb == EmoveVerb::MovToLoc {
-            EmoveCommand {
-                number,
-                command: verb,
-                location,
-                location_kind,
-                location_record,
-                pose,
-                ..EmoveCommand::default()
-            }
+            EmoveCommand { number, command: verb, site, pose, ..EmoveCommand::default() }
         } else {
             EmoveCommand { end_effector_id: Some(GRIPPER), ..of_object }
         };
@@ -373,7 +365,7 @@ impl World for Pair {
         let status = &self.emove_out.status;
         let ended = status.echo == self.command.number && status.report != StatusReport::Executing;
         if motions > 0 || !self.interrupts() {
-            let last = (self.command.command, self.command.location);
+            let last = (self.command.command, self.command.site.location);
             let may = self
                 .commands
                 .iter()

@@ -10,7 +10,6 @@ use interfaces::{
 };
 use levels::places::pose_of;
 use rcs_core::tick::Tick;
-use taskdata::files::MovtabId;
 
 use crate::{data::data, image::Image, search::Wrong};
 
@@ -111,7 +110,7 @@ impl Robot {
             (self.goal, self.far, self.there) = (None, self.at, 0);
             if moves(order.command) {
                 let base = pose_of(order.pose, memory, &data()).ok_or("Prim is sent to no record")?;
-                let goal = data().moved(&base, MovtabId::from_option(order.movetable));
+                let goal = data().moved(&base, order.movetable);
                 self.far = Pose::from_frame(&goal);
                 self.goal = Some(self.far);
             }

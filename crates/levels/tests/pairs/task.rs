@@ -133,13 +133,7 @@ impl Pair {
         let object = command.object.expect("a command about an object");
         let place = emove_command(EmoveVerb::Release, object.as_str(), command.source_grip, "PFIXTURE");
         self.emove.held = Holding::Object(ObjectGrip { object, grip: place.grip });
-        self.emove.at = Some(Standing {
-            location: place.location,
-            record: place.location_record,
-            array: place.location_array,
-            sector: place.location_sector,
-            grip: Some(place.grip),
-        });
+        self.emove.at = Some(Standing { site: place.site, grip: Some(place.grip) });
         let carried = Some(Carried { item: object, told: true, ..Carried::default() });
         self.task_out.beliefs.carried = carried;
         self.connected(IN_HAND)
@@ -226,10 +220,7 @@ impl Pair {
             EmoveVerb::Release => self.let_go(),
             verb if moves(verb) => {
                 emove.at = Some(Standing {
-                    location: order.location,
-                    record: order.location_record,
-                    array: order.location_array,
-                    sector: order.location_sector,
+                    site: order.site,
                     grip: Some(order.grip).filter(|_| verb != EmoveVerb::MovToLoc),
                 });
             }
@@ -241,8 +232,7 @@ impl Pair {
     fn let_go(&mut self) {
         let (at, emove) = (self.emove.at.unwrap_or_default(), &mut self.emove);
         if let Holding::Object(ObjectGrip { object, grip }) = emove.held {
-            let Standing { location, record, array, sector, .. } = at;
-            emove.placed = Some(PlacedObject { object, grip, location, record, array, sector });
+            emove.placed = Some(PlacedObject { object, grip, site: at.site });
         }
         emove.held = Holding::Nothing;
     }
@@ -260,7 +250,7 @@ impl Pair {
         if !ended(self) || ended(before) {
             return Ok(());
         }
-        let (emove, at) = (&before.emove, before.emove.at.map(|at| at.location));
+        let (emove, at) = (&before.emove, before.emove.at.map(|at| at.site.location));
         let is_at = |name: Option<_>| at.map(|at| at.as_str().to_owned()) == name;
         let name = |name: Option<rcs_core::name::Name16>| name.map(|name| name.as_str().to_owned());
         let is_placed = emove.placed.is_some_and(|placed| {
@@ -512,7 +502,7 @@ impl Pair {
 
     /// Has the Data System an object elsewhere than where it was let go, if that is known?
     fn is_untold(&self, before: &Self) -> bool {
-        let placed = before.emove.placed.map(|placed| placed.location).filter(|at| !at.is_empty());
+        let placed = before.emove.placed.map(|placed| placed.site.location).filter(|at| !at.is_empty());
         self.task_out.beliefs.connected
             && placed.zip(before.recorded).is_some_and(|(at, recorded)| at != recorded)
     }

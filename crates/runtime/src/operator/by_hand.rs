@@ -100,15 +100,15 @@ pub fn check_confirmation(by: Support, memory: &CommonMemory, data: &TaskData<'_
         below.held.object().map_or_else(|| "what the gripper may hold".to_owned(), |held| held.to_string());
     match (by, support::Support::of_place(below, None, data)) {
         (Support::Clamped, support::Support::Jaws) => {
-            Ok(format!("{held} counts as clamped at {} as long as the robot stands there", at.location))
+            Ok(format!("{held} counts as clamped at {} as long as the robot stands there", at.site.location))
         }
         (Support::Clamped, _) => Err(format!(
             "the robot does not hold an object at a vise: {held} at {}; hold it and send `confirm by hand`",
-            at.location
+            at.site.location
         )),
         (Support::ByHand, _) => Ok(format!(
             "{held} counts as held by hand as long as the robot stands at {}: POSITION opens the gripper",
-            at.location
+            at.site.location
         )),
     }
 }

@@ -150,9 +150,9 @@ fn old_value(variable: Variable, memory: &CommonMemory) -> String {
         }
         Variable::Regrip => memory.subtask.regrip.map(|regrip| regrip.object.to_string()),
         Variable::Held => beliefs.held.map(|held| format!("{} {}", held.object.object, held.object.grip)),
-        Variable::Placed => {
-            beliefs.placed.map(|placed| format!("{} {} at {}", placed.object, placed.grip, placed.location))
-        }
+        Variable::Placed => beliefs
+            .placed
+            .map(|placed| format!("{} {} at {}", placed.object, placed.grip, placed.site.location)),
         Variable::Located => beliefs.located.map(|located| located.object.to_string()),
         Variable::Calibration => memory.grip.calibration.map(|_| "known".to_owned()),
     };

@@ -1,13 +1,13 @@
 //! All files together, by record number and by name.
 
 use geometry::{frame::Frame, movetable::Movetable};
+use interfaces::record_number::{
+    ArrayId, EndEffId, LocptId, MovtabId, ObjGripsId, ObjectId, OwnerId, PathId, PedParaId, PoseId, SensorId,
+    TrajId, TrajParaId,
+};
 use rcs_core::name::Name;
 
 use super::{
-    ids::{
-        ArrayId, EndEffId, LocptId, MovtabId, ObjGripsId, ObjectId, OwnerId, PathId, PedParaId, PoseId,
-        SensorId, TrajId, TrajParaId,
-    },
     index::{Index, PlaceIndex, grip_key, name_key},
     records::{
         ApprDept, Array, EndEffPara, FoundEndEff, FoundPedPara, GripLoc, Locpt, Member, MovtabRecord,

@@ -13,10 +13,10 @@
 //! owners, the wild card. All such entries of one name and grip are in one slot of a [`PlaceIndex`]: one cache line
 //! shows which of the locations have an entry.
 
+use interfaces::record_number::ObjectId;
 use rcs_core::name::Name;
 
 use super::{
-    ids::ObjectId,
     records::Direction,
     reference::{RefType, Reference},
 };

@@ -8,32 +8,18 @@
 use core::fmt;
 
 use geometry::frame::{Frame, Vector};
-use interfaces::subtask::LocationKind;
-use rcs_core::{
-    Plain,
-    name::{Name, Name10, Name16},
+use interfaces::{
+    location::{LocationKind, Place, Site},
+    record_number::{ArrayId, LocptId, MovtabId, ObjLocId, ObjectId, OwnerId},
 };
+use rcs_core::name::{Name, Name10, Name16};
 
 use super::{
     data::TaskData,
-    ids::{ArrayId, LocptId, MovtabId, ObjLocId, ObjectId, OwnerId},
     index::{object_key, reference_key},
     records::Array,
     reference::{RefType, Reference},
 };
-
-/// The location point and the array on it, which select grips, approaches and trajectories.
-///
-/// It fits into a buffer (`locpt-type-in`, `locpt-^-in`; V.2.2).
-#[derive(Clone, Copy, Debug, PartialEq, Plain)]
-pub struct Place {
-    /// Kind of the command's location: a location point, a static array, or a sector at an owner.
-    pub kind: LocationKind,
-    /// The location point; null for a static array.
-    pub locpt: LocptId,
-    /// The array in which the sector lies; null for a location point.
-    pub array: ArrayId,
-}
 
 /// A location of a command, resolved.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -46,6 +32,15 @@ pub struct Location {
     pub sector: Option<i32>,
     /// Frame of the location. World, inches.
     pub frame: Frame,
+}
+
+impl Location {
+    /// The location as buffers name it.
+    #[must_use]
+    pub const fn site(&self) -> Site {
+        let Place { kind, locpt, array } = self.place;
+        Site { location: self.name, kind, record: locpt, array, sector: self.sector }
+    }
 }
 
 /// Why a location of a command, or a grip at it, is not known.
@@ -171,7 +166,7 @@ impl<'a> TaskData<'a> {
 
     fn point<const N: usize>(&self, id: LocptId, name: &Name<N>) -> Result<Location, LookupError> {
         let locpt = self.locpt(id).ok_or(LookupError::UnknownLocation { name: wide(name) })?;
-        let place = Place { kind: LocationKind::Point, locpt: id, array: ArrayId::NULL };
+        let place = Place::point(id);
         Ok(Location { name: locpt.name, place, sector: None, frame: locpt.frame })
     }
 
@@ -326,16 +321,10 @@ impl<'a> TaskData<'a> {
         });
         match (locpt, array, self.array_named(name)) {
             (Some(locpt), Some(array), _) => Some(Place { kind: LocationKind::Owner, locpt, array }),
-            (Some(locpt), None, _) => Some(Place { kind: LocationKind::Point, locpt, array: ArrayId::NULL }),
+            (Some(locpt), None, _) => Some(Place::point(locpt)),
             (None, _, Some(array)) => Some(Place { kind: LocationKind::Array, locpt: LocptId::NULL, array }),
             (None, _, None) => None,
         }
-    }
-
-    /// The place of a location point.
-    #[must_use]
-    pub const fn place_of(&self, locpt: LocptId) -> Place {
-        Place { kind: LocationKind::Point, locpt, array: ArrayId::NULL }
     }
 
     /// The references with which forms can name a place, the most exact first: the location point, the array on it, and

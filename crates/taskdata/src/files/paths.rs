@@ -5,13 +5,16 @@
 //! no wild card; it is used only in its direction, from start to end.
 
 use geometry::frame::Frame;
+use interfaces::{
+    location::Place,
+    record_number::{GripLocId, MovtabId, ObjectId, PathId, RelativeMoveId, TrajId, VisionId},
+};
 use rcs_core::name::{Name, Name16};
 
 use super::{
     data::TaskData,
-    ids::{GripLocId, MovtabId, ObjectId, PathId, RelativeMoveId, TrajId, VisionId},
     index::{EntryAt, Key, PlaceIndex, approach_key, grip_at_key, name_at_key, pair_key, plain_key},
-    locations::{Location, LookupError, Place},
+    locations::{Location, LookupError},
     records::{Direction, PathPoint, RelativeMove, Target, VisionPara},
     reference::{RefType, Reference},
 };

@@ -1,15 +1,15 @@
 //! The record of each file. The manual names the files and their variables but not their layouts (SPECNOTES).
 
 use geometry::{frame::Frame, movetable::Movetable, pose::Pose};
+use interfaces::record_number::{
+    EndEffId, LocptId, MovtabId, ObjectId, OwnerId, PathId, PedParaId, PoseId, TrajParaId,
+};
 use rcs_core::{
     Plain,
     name::{Name10, Name16},
 };
 
-use super::{
-    ids::{EndEffId, LocptId, MovtabId, ObjectId, OwnerId, PathId, PedParaId, PoseId, TrajParaId},
-    reference::{RefType, Reference},
-};
+use super::reference::{RefType, Reference};
 
 /// POSE: a pose form entry (VII.1).
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,8 +1,7 @@
 //! What a name in a form refers to (VII.4 to VII.7).
 
+use interfaces::record_number::{ArrayId, LocptId, ObjectId, OwnerId, PoseId};
 use rcs_core::Plain;
-
-use super::ids::{ArrayId, LocptId, ObjectId, OwnerId, PoseId};
 
 /// The kind of record to which a name in a form refers: the words of the "type" columns (VII.4 to VII.7). The manual
 /// passes them as integers (`locpt-type`, `pose-type`) without giving values; these codes are ASSUMED.

@@ -4,10 +4,7 @@
 use geometry::{movetable::System, pose::Pose};
 use interfaces::{CommonMemory, pose_range};
 use paths::stand::movetable_form;
-use taskdata::files::{
-    TaskData,
-    ids::{EndEffId, LocptId, MovtabId, ObjGripsId, PoseId, TrajParaId, VisionId},
-};
+use taskdata::files::{EndEffId, LocptId, MovtabId, ObjGripsId, PoseId, TaskData, TrajParaId, VisionId};
 
 use super::library::Library;
 use crate::rcs_console::{model::buffers, picture::Picture};
@@ -34,7 +31,7 @@ const POINTERS: [(&str, File); 12] = [
     ("recorded_pose", File::Pose),
     ("movetable", File::Movetable),
     ("trajectory_parameters", File::Parameters),
-    ("location_record", File::Location),
+    ("record", File::Location),
     ("object_parameters", File::Grip),
     ("object_grips", File::Gripper),
     ("object_vision", File::View),

@@ -351,6 +351,7 @@ mod tests {
     use interfaces::{ChangingPose, CommonMemory, ExternalInputs, pose_range};
     use rcs_core::{name::Name10, tick::Tick};
     use std::path::Path;
+    use taskdata::files::TrajParaId;
 
     struct Bench {
         board: Board,
@@ -478,13 +479,13 @@ mod tests {
         let store = bench.library.store().unwrap();
         let data = store.view();
         let pose = data.pose_named(&Name10::clipped("TOOL-TRNS")).unwrap().number();
-        let movetable = data.movetable_named(&Name10::clipped("LK-GRP-1")).unwrap().number();
-        let place = data.locpt_named(&Name10::clipped("PFIXTURE")).unwrap().number();
+        let movetable = data.movetable_named(&Name10::clipped("LK-GRP-1")).unwrap();
+        let place = data.locpt_named(&Name10::clipped("PFIXTURE")).unwrap();
         let mut bench = Bench::new(2);
         bench.picture.memory.emove.prim.pose = pose;
-        bench.picture.memory.emove.prim.movetable = Some(movetable);
-        bench.picture.memory.emove.prim.trajectory_parameters = 1;
-        bench.picture.memory.subtask.emove.location_record = Some(place);
+        bench.picture.memory.emove.prim.movetable = movetable;
+        bench.picture.memory.emove.prim.trajectory_parameters = TrajParaId::new(1);
+        bench.picture.memory.subtask.emove.site.record = place;
         for (line, found) in [
             (":S ^-pose", "   6497    -2366     1569"),
             ("^-movtab", "to     -300        0      0      -mtb-   LK-GRP-1"),

@@ -14,7 +14,7 @@ use geometry::{frame::Frame, pose::Pose};
 use interfaces::{
     CommonMemory,
     emove::{Beliefs, EmoveCommand, GoneTo, RobotPlace, Way},
-    subtask::LocationKind,
+    location::Site,
     track::{Course, Track},
 };
 use rcs_core::Plain;
@@ -26,7 +26,7 @@ use super::{
     robot_place::{commanded_pose, near, robot_at},
     tables::{At, PlaceKnowledge},
 };
-use crate::places::{LocationKey, named, place_of};
+use crate::places::named;
 
 /// The robot is no longer where its last move ended if it is more than this many inches …
 /// (docs/design/motion.md "Where the robot is")
@@ -97,11 +97,11 @@ impl Localization {
     /// Where the robot is, seen from the command's location.
     pub(super) fn at(&self, command: &EmoveCommand) -> At {
         match self.place() {
-            Some(at) if LocationKey::of(at).has_location_of(LocationKey::of(command)) => match at.gone_to {
+            Some(at) if at.site.has_location_of(&command.site) => match at.gone_to {
                 GoneTo::Drum => At::InDrum,
                 GoneTo::Location | GoneTo::Object(_) | GoneTo::View(_) | GoneTo::Brought(_) => At::There,
             },
-            Some(at) if at.location.as_str() == named::TOOL_SAFE => At::Before,
+            Some(at) if at.site.location.as_str() == named::TOOL_SAFE => At::Before,
             _ => At::Elsewhere,
         }
     }
@@ -160,18 +160,11 @@ impl Localization {
             let next = LocptId::new(self.searched.saturating_add(1));
             let Some(locpt) = data.locpt(next) else { return };
             self.searched = next.number();
-            let place = place_of(next);
-            let plain = is_plain(&locpt.name, &place, data);
+            let site = Site::point(locpt.name, next);
+            let plain = is_plain(&site, data);
             if plain && near(&locpt.frame, present, LOST_INCHES, LOST_RADIANS) {
-                self.place = Some(RobotPlace {
-                    gone_to: GoneTo::Location,
-                    location: locpt.name,
-                    kind: LocationKind::Point,
-                    record: next.to_option(),
-                    array: None,
-                    sector: None,
-                    pose: Pose::from_frame(present),
-                });
+                self.place =
+                    Some(RobotPlace { gone_to: GoneTo::Location, site, pose: Pose::from_frame(present) });
                 (self.way, self.away) = (None, false);
                 return;
             }

@@ -13,7 +13,7 @@ use geometry::{
 };
 use interfaces::{
     emove::{GoneTo, Holding, Offset as Deviation, RobotPlace, Way},
-    subtask::LocationKind,
+    location::Site,
 };
 use taskdata::files::{Locpt, LocptId, Target, TaskData, TrajParaId};
 
@@ -30,14 +30,14 @@ use crate::{
             flight::{Flight, Rejoin},
             route::{Planning, approach_to},
         },
-        robot_place::{self, THERE_INCHES, THERE_RADIANS, commanded_pose, near, place, present_frame},
+        robot_place::{self, THERE_INCHES, THERE_RADIANS, commanded_pose, near, present_frame},
         tables::{
             Knowledge,
             resume::{Offset, Stance, Standing, stance},
             returning::{Freight, Lost, Near, Origin, Return, returning},
         },
     },
-    places::{LocationKey, is_in_mbd, place_of},
+    places::is_in_mbd,
 };
 
 /// A vise or the pedestal that closes on a part shifts the hand that holds it by this much at most, in: the part has
@@ -73,7 +73,7 @@ pub(in crate::emove) struct Origination {
 fn parameters_at(at: &RobotPlace, data: &TaskData<'_>) -> Option<TrajParaId> {
     let last = |path| Some(data.path(path).last()?.para);
     approach_to(at, data).and_then(last).or_else(|| {
-        let leads_there = |end| data.aliases(&place(at)).any(|alias| alias == end);
+        let leads_there = |end| data.aliases(&at.site.place()).any(|alias| alias == end);
         data.trajectories.iter().filter(|trajectory| leads_there(trajectory.end)).find_map(|it| last(it.path))
     })
 }
@@ -81,15 +81,15 @@ fn parameters_at(at: &RobotPlace, data: &TaskData<'_>) -> Option<TrajParaId> {
 /// May a part that has been brought to a place, or is gripped there, be clamped? A tray does not clamp what lies in its
 /// sectors. No sensor reads the vises, nor the pedestal's hand to the hundredth of an inch.
 fn clamps(at: &RobotPlace, data: &TaskData<'_>) -> bool {
-    let is_tray = at.sector.is_some() || is_in_mbd(LocationKey::of(at).point, data);
+    let is_tray = at.site.sector.is_some() || is_in_mbd(at.site.record, data);
     matches!(at.gone_to, GoneTo::Object(_) | GoneTo::Brought(_)) && !is_tray
 }
 
 /// A robot may go straight to a resting place: a location whose approach, as such, has no points.
 fn is_resting(id: LocptId, locpt: &Locpt, data: &TaskData<'_>) -> bool {
-    let at = place_of(id);
-    let approach = data.approach_location(&at).map(|path| data.path(path));
-    is_plain(&locpt.name, &at, data) && approach.is_some_and(|path| path.len() == 1)
+    let site = Site::point(locpt.name, id);
+    let approach = data.approach_location(&site.place()).map(|path| data.path(path));
+    is_plain(&site, data) && approach.is_some_and(|path| path.len() == 1)
 }
 
 /// The resting place to which a robot may go straight: it is near, and no other location is nearer. So the robot comes
@@ -101,11 +101,7 @@ fn resting_place(present: &Frame, data: &TaskData<'_>) -> Option<RobotPlace> {
     let is_near = near(&nearest.frame, present, RESTING_INCHES, RESTING_RADIANS);
     (is_near && is_resting(id, nearest, data)).then(|| RobotPlace {
         gone_to: GoneTo::Location,
-        location: nearest.name,
-        kind: LocationKind::Point,
-        record: id.to_option(),
-        array: None,
-        sector: None,
+        site: Site::point(nearest.name, id),
         pose: Pose::from_frame(&nearest.frame),
     })
 }

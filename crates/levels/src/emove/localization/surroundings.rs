@@ -1,14 +1,11 @@
 //! The known places nearest to a robot that is at no known place.
 
 use geometry::frame::Frame;
-use interfaces::emove::NearPlace;
-use rcs_core::{Plain, name::Name10};
-use taskdata::files::{LocptId, Place, TaskData};
+use interfaces::{emove::NearPlace, location::Site};
+use rcs_core::Plain;
+use taskdata::files::{LocptId, TaskData};
 
-use crate::{
-    emove::motion::relative::Relative,
-    places::{named, place_of},
-};
+use crate::{emove::motion::relative::Relative, places::named};
 
 /// Location points that are looked at in a tick for the nearest ones.
 const NEAREST_PER_TICK: u32 = 16;
@@ -34,7 +31,7 @@ impl Surroundings {
                 return;
             };
             self.looked = next.number();
-            if is_plain(&locpt.name, &place_of(next), data) {
+            if is_plain(&Site::point(locpt.name, next), data) {
                 self.insert(NearPlace::seen(locpt.name, &locpt.frame, present));
             }
         }
@@ -54,7 +51,7 @@ impl Surroundings {
 
 /// Can a robot that stands at a location point be there as such? Not in a holster, at the tool drum, or at
 /// the pedestal: there it depends on gripper, tool and part how it may leave.
-pub(super) fn is_plain(name: &Name10, place: &Place, data: &TaskData<'_>) -> bool {
-    let has = |relative: Relative| data.relative_move(&Name10::clipped(relative.text()), place).is_some();
-    !has(Relative::QcaBack) && !has(Relative::InsIn) && name.as_str() != named::PEDESTAL
+pub(super) fn is_plain(site: &Site, data: &TaskData<'_>) -> bool {
+    let has = |relative: Relative| relative.record(site, data).is_some();
+    !has(Relative::QcaBack) && !has(Relative::InsIn) && site.location.as_str() != named::PEDESTAL
 }

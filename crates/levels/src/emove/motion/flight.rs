@@ -21,16 +21,13 @@ use rcs_core::Plain;
 use taskdata::files::{TaskData, TrajParaId};
 
 use super::route::{Ahead, Goal, Leg, LegGoal, Planning, Route, slower};
-use crate::{
-    emove::{
-        localization::{
-            path::route_of,
-            returning::{Origination, settle_at},
-        },
-        robot_place::{is_same_goal, is_same_pose},
-        tables::resume::{Beginning, GoalOf, LegNow, Robot, Start, WayBack, resume},
+use crate::emove::{
+    localization::{
+        path::route_of,
+        returning::{Origination, settle_at},
     },
-    places::LocationKey,
+    robot_place::{is_same_goal, is_same_pose},
+    tables::resume::{Beginning, GoalOf, LegNow, Robot, Start, WayBack, resume},
 };
 
 /// The motion of a command.
@@ -164,7 +161,7 @@ fn start(goal: &RobotPlace, begin: &Origination, data: &TaskData<'_>) -> Start {
     };
     let route = route_of(way, data).unwrap_or_default();
     let departs = way.next < route.depart_points(data);
-    let here = LocationKey::of(&way.from).has_location_of(LocationKey::of(&way.to));
+    let here = way.from.site.has_location_of(&way.to.site);
     let closed = here
         && !way.straight
         && route.depart_points(data) == 0

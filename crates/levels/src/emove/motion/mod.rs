@@ -20,7 +20,7 @@ use rcs_core::{
     Plain,
     handshake::{Commander, Lower},
 };
-use taskdata::files::TrajParaId;
+use taskdata::files::{MovtabId, TrajParaId};
 
 use self::{flight::Flight, relative::Relative, route::LegGoal};
 use super::{
@@ -180,8 +180,8 @@ impl Motion {
             command: verb,
             sensor: None,
             pose: 0,
-            movetable: None,
-            trajectory_parameters: TrajParaId::NULL.number(),
+            movetable: MovtabId::NULL,
+            trajectory_parameters: TrajParaId::NULL,
             end_effector_id: inputs.memory.quick_change.status.end_effector_id,
         };
     }
@@ -206,13 +206,13 @@ impl Motion {
         let (pose, movetable) = match leg.at {
             LegGoal::Record { pose, movetable } => (pose, movetable),
             LegGoal::Computed(frame) => {
-                (self.publish(Slot::Between, Pose::from_frame(&frame), outputs), None)
+                (self.publish(Slot::Between, Pose::from_frame(&frame), outputs), MovtabId::NULL)
             }
         };
         self.send(verb, inputs, outputs);
         outputs.prim.pose = pose;
         outputs.prim.movetable = movetable;
-        outputs.prim.trajectory_parameters = leg.parameters.number();
+        outputs.prim.trajectory_parameters = leg.parameters;
         path
     }
 
@@ -227,7 +227,7 @@ impl Motion {
         let record = self.publish(Slot::Goal, goal, outputs);
         self.send(PrimVerb::GotoPt, inputs, outputs);
         outputs.prim.pose = record;
-        outputs.prim.trajectory_parameters = parameters.number();
+        outputs.prim.trajectory_parameters = parameters;
     }
 
     /// DELTA-MOVE, GO-UNTIL or GO-WHILE to Prim from a record of POSE. False if the task data lack the move.
@@ -240,11 +240,11 @@ impl Motion {
         inputs: &EmoveInputs<'_>,
         outputs: &mut EmoveOutputs,
     ) -> bool {
-        let Some(found) = relative.record(command, inputs.data) else { return false };
+        let Some(found) = relative.record(&command.site, inputs.data) else { return false };
         self.send(verb, inputs, outputs);
         outputs.prim.pose = pose;
-        outputs.prim.movetable = found.movetable.to_option();
-        outputs.prim.trajectory_parameters = found.para.number();
+        outputs.prim.movetable = found.movetable;
+        outputs.prim.trajectory_parameters = found.para;
         if relative.is_guarded() {
             outputs.prim.sensor = Some(found.sensor);
         }

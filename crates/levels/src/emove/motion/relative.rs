@@ -7,12 +7,11 @@
 use interfaces::{
     CommonMemory,
     emove::{EmoveCommand, EmoveVerb},
+    location::Site,
     pose_range,
 };
 use rcs_core::{Plain, name::Name10};
 use taskdata::files::{PoseId, RelativeMove, TaskData};
-
-use crate::emove::robot_place::place_named;
 
 /// The relative moves by their names in task data.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
@@ -131,10 +130,10 @@ impl Relative {
         )
     }
 
-    /// The move's record for the place of a command.
+    /// The move's record for a location.
     #[must_use]
-    pub fn record<'d>(self, command: &EmoveCommand, data: &TaskData<'d>) -> Option<&'d RelativeMove> {
-        data.relative_move(&Name10::clipped(self.text()), &place_named(command))
+    pub fn record<'d>(self, site: &Site, data: &TaskData<'d>) -> Option<&'d RelativeMove> {
+        data.relative_move(&Name10::clipped(self.text()), &site.place())
     }
 }
 
@@ -186,7 +185,7 @@ pub fn look_up(command: &EmoveCommand, memory: &CommonMemory, data: &TaskData<'_
         0..pose_range::CHANGING => data.pose(PoseId::new(pose)).is_some(),
         pose_range::CHANGING.. => memory.changing_pose(pose).is_some(),
     });
-    let of_move = |relative: &Relative| match relative.record(command, data) {
+    let of_move = |relative: &Relative| match relative.record(&command.site, data) {
         None => RelativeMoves::Missing,
         Some(found) if relative.is_guarded() && data.sensor(&found.sensor).is_none() => {
             RelativeMoves::Unguarded

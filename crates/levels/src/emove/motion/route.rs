@@ -10,12 +10,9 @@
 use geometry::{frame::Frame, pose::Pose};
 use interfaces::emove::{EmoveCommand, EmoveVerb, GoneTo, Leg as Part, ObjectGrip, RobotPlace};
 use rcs_core::Plain;
-use taskdata::files::{EndEffId, MovtabId, PathId, PathPoint, Target, TaskData, TrajParaId, VisionId};
+use taskdata::files::{MovtabId, PathId, PathPoint, Target, TaskData, TrajParaId};
 
-use crate::{
-    emove::robot_place::{gone_to, place, place_named, robot_at},
-    places::same_location,
-};
+use crate::emove::robot_place::{gone_to, robot_at};
 
 /// Opening, 0.01 in, when pictures are taken: the camera looks between the open fingers (V.2.1 MOV-TO-VU).
 /// The parts gripper opens as wide; the others open to their stop.
@@ -114,7 +111,7 @@ pub enum LegGoal {
         /// Record of POSE, or changing record.
         pose: u32,
         /// Record of MOVTAB, if there is one.
-        movetable: Option<u32>,
+        movetable: MovtabId,
     },
     /// A frame that no record holds: a movetable on the trajectory point before it.
     Computed(Frame),
@@ -137,7 +134,7 @@ impl Goal {
     /// # Errors
     /// What is missing.
     pub fn new(command: &EmoveCommand, base: &Frame, data: &TaskData<'_>) -> Result<Self, Planning> {
-        let (place, gone_to) = (place_named(command), gone_to(command));
+        let (place, gone_to) = (command.site.place(), gone_to(command));
         let object = command.object.as_ref();
         let grip_frame = || {
             let movetable = object.and_then(|object| data.grip_movetable(object, command.grip, &place));
@@ -146,15 +143,12 @@ impl Goal {
         let grip_approach = || object.and_then(|object| data.approach(object, command.grip, &place));
         let (frame, opening, approach) = match command.command {
             EmoveVerb::MovToObj | EmoveVerb::MovToHol => {
-                let sizes = data
-                    .end_eff(EndEffId::from_option(command.object_parameters))
-                    .ok_or(Planning::NoSizes)?;
+                let sizes = data.end_eff(command.object_parameters).ok_or(Planning::NoSizes)?;
                 (grip_frame()?, Some(sizes.appr_size), grip_approach())
             }
             EmoveVerb::MovObjTo => (grip_frame()?, None, grip_approach()),
             EmoveVerb::MovToVu => {
-                let view =
-                    data.vision_para(VisionId::from_option(command.object_vision)).ok_or(Planning::NoView)?;
+                let view = data.vision_para(command.object_vision).ok_or(Planning::NoView)?;
                 let approach = object.and_then(|object| data.view_approach(object, command.grip, &place));
                 (data.moved(base, view.movetable), Some(FULL_OPENING), approach)
             }
@@ -174,7 +168,7 @@ impl Goal {
 /// The approach to a place, if one is written.
 #[must_use]
 pub fn approach_to(at: &RobotPlace, data: &TaskData<'_>) -> Option<PathId> {
-    let there = place(at);
+    let there = at.site.place();
     match at.gone_to {
         GoneTo::Location | GoneTo::Drum => data.approach_location(&there),
         GoneTo::Object(ObjectGrip { object, grip }) | GoneTo::Brought(ObjectGrip { object, grip }) => {
@@ -189,7 +183,9 @@ pub fn approach_to(at: &RobotPlace, data: &TaskData<'_>) -> Option<PathId> {
 fn takes_out(from: &RobotPlace, data: &TaskData<'_>) -> bool {
     match from.gone_to {
         GoneTo::Brought(_) => true,
-        GoneTo::Object(ObjectGrip { object, grip }) => data.depart(&object, grip, &place(from)).is_none(),
+        GoneTo::Object(ObjectGrip { object, grip }) => {
+            data.depart(&object, grip, &from.site.place()).is_none()
+        }
         GoneTo::Location | GoneTo::View(_) | GoneTo::Drum => false,
     }
 }
@@ -218,7 +214,7 @@ impl Route {
     /// # Errors
     /// Why there is none.
     pub fn between(from: &RobotPlace, to: &RobotPlace, data: &TaskData<'_>) -> Result<Self, Planning> {
-        let (start, end) = (place(from), place(to));
+        let (start, end) = (from.site.place(), to.site.place());
         let depart = match from.gone_to {
             GoneTo::Drum => return Err(Planning::InDrum),
             GoneTo::Location => data.depart_location(&start),
@@ -234,7 +230,7 @@ impl Route {
             GoneTo::View(ObjectGrip { object, grip }) => data.view_depart(&object, grip, &start),
         };
         let between =
-            if same_location(&start, &end) { Some(PathId::NULL) } else { data.trajectory(&start, &end) };
+            if start.has_location_of(&end) { Some(PathId::NULL) } else { data.trajectory(&start, &end) };
         let mut route = Self {
             from: *from,
             to: *to,
@@ -339,8 +335,7 @@ impl Route {
     /// The next leg. `None` if a record is missing or the route is complete.
     #[must_use]
     pub fn leg(&self, data: &TaskData<'_>) -> Option<Leg> {
-        let record =
-            |pose: u32, movetable: MovtabId| LegGoal::Record { pose, movetable: movetable.to_option() };
+        let record = |pose: u32, movetable: MovtabId| LegGoal::Record { pose, movetable };
         let Some((part, point)) = self.next_point(data) else {
             let at = record(self.goal, MovtabId::NULL);
             return (!self.complete).then_some(Leg { at, parameters: self.stop });

@@ -6,14 +6,14 @@ use geometry::{frame::Frame, pose::Pose};
 use interfaces::{
     CommonMemory, ExternalInputs, Reason, StatusReport,
     emove::{EmoveCommand, EmoveVerb},
+    location::Site,
     pose_range,
     prim::JoystickGrip,
     process::{Inputs, Process},
-    subtask::LocationKind,
 };
 use rcs_core::{handshake::successor, name::Name16, tick::Tick};
 use taskdata::{
-    files::TaskData,
+    files::{EndEffId, TaskData, VisionId},
     load::{Source, Store},
 };
 
@@ -141,7 +141,7 @@ impl Bench {
         assert_eq!(bench.pause(), DONE);
         // A robot in a holster or at the tool drum may be there in more than one way.
         let plain = !location.starts_with("HOLSTER") && location != "TOOL-TRNS";
-        let found = bench.memory.emove.status.at.unwrap_or_default().location;
+        let found = bench.memory.emove.status.at.unwrap_or_default().site.location;
         assert_eq!(found.as_str(), if plain { location } else { "" });
         bench.world.log.clear();
         bench
@@ -216,18 +216,17 @@ impl Bench {
             command: verb,
             object: Some(object).filter(|object| !object.is_empty()),
             grip,
-            object_parameters: data.object(&object, grip).map(|(id, _)| id.number()),
+            object_parameters: data.object(&object, grip).map_or(EndEffId::NULL, |(id, _)| id),
             end_effector_id: given(gripper),
             ..EmoveCommand::default()
         };
         if let Some((id, locpt)) = found {
             pose.number = Some(pose_range::next(pose_range::SUBTASK, pose.number.unwrap_or_default()));
             pose.pose = Pose::from_frame(&locpt.frame);
-            command.location = locpt.name;
-            command.location_kind = LocationKind::Point;
-            command.location_record = id.to_option();
+            command.site = Site::point(locpt.name, id);
             command.pose = pose.number;
-            command.object_vision = data.view(&object, &data.place_of(id)).map(|(id, _)| id.number());
+            command.object_vision =
+                data.view(&object, &command.site.place()).map_or(VisionId::NULL, |(id, _)| id);
         }
         self.memory.subtask.emove = command;
     }

@@ -18,7 +18,7 @@ use rcs_core::{
     handshake::{Arrival, Receiver},
     tick::Tick,
 };
-use taskdata::files::{MovtabId, TaskData};
+use taskdata::files::TaskData;
 
 use super::bench::given;
 use crate::places::pose_of;
@@ -199,7 +199,7 @@ pub struct Prim {
 impl Prim {
     fn text(memory: &CommonMemory, data: &TaskData<'_>) -> String {
         let command = &memory.emove.prim;
-        let table = MovtabId::from_option(command.movetable).of(data.movetables).map(|record| record.name);
+        let table = command.movetable.of(data.movetables).map(|record| record.name);
         let words = [
             command.command.text().to_owned(),
             table.map_or(String::new(), |n| n.to_string()),
@@ -211,7 +211,7 @@ impl Prim {
     fn goal(memory: &CommonMemory, data: &TaskData<'_>) -> Option<Frame> {
         let command = &memory.emove.prim;
         let base = pose_of(command.pose, memory, data)?;
-        Some(data.moved(&base, MovtabId::from_option(command.movetable)))
+        Some(data.moved(&base, command.movetable))
     }
 
     pub fn step(

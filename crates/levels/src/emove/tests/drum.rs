@@ -95,7 +95,7 @@ fn a_tool_is_put_into_the_drum_and_left() {
     assert_eq!(run(&mut bench, InsertTool), DONE);
     assert_eq!(bench.log(), INSERTION);
     assert!(bench.off(&moved(frame_of("TOOL-TRNS"), &["INS-IN"])) < 0.02);
-    assert_eq!(bench.memory.emove.status.at.unwrap_or_default().location.as_str(), "TOOL-TRNS");
+    assert_eq!(bench.memory.emove.status.at.unwrap_or_default().site.location.as_str(), "TOOL-TRNS");
     assert_eq!(run(&mut bench, InsertTool), DONE, "it is in");
     assert!(bench.log().is_empty());
     assert_eq!(run(&mut bench, ReleaseTool), DONE);

@@ -79,7 +79,7 @@ fn grippers_are_exchanged_in_the_manuals_order() {
             let end = moved(frame_of(old_holster), &["QCD-DOWN", "QCD-SEAT", "QCD-UP"]);
             assert!(bench.off(&end) < 0.05, "each from where the one before ended");
             assert_eq!((bench.world.mated, bench.world.locked), (0, false));
-            assert_eq!(bench.memory.emove.status.at.unwrap_or_default().location.as_str(), old_holster);
+            assert_eq!(bench.memory.emove.status.at.unwrap_or_default().site.location.as_str(), old_holster);
             assert_eq!(bench.run(MovToHol, new, 2, new_holster, to), DONE);
             assert_eq!(bench.log(), ["GO-THRU", "GOTO-PT"], "a bare robot commands no gripper");
             assert_eq!(bench.run(QcAttach, new, 2, new_holster, to), DONE);

@@ -14,7 +14,7 @@ use interfaces::{
     process::Process as _,
 };
 use rcs_core::name::Name16;
-use taskdata::files::{ArrayId, LocptId, PathPoint, Target};
+use taskdata::files::{LocptId, PathPoint, Target};
 
 use super::{
     bench::{Bench, DONE, data, error, frame_of, moved},
@@ -58,7 +58,7 @@ fn a_robot_moves_with_any_gripper_and_with_none() {
         assert!(bench.off(&frame_of("VISE")) < 0.02);
         assert_eq!(bench.run(MovToLoc, "", 0, "HOME", 0), DONE);
         assert!(bench.off(&frame_of("HOME")) < 0.02);
-        assert_eq!(bench.memory.emove.status.at.unwrap_or_default().location.as_str(), "HOME");
+        assert_eq!(bench.memory.emove.status.at.unwrap_or_default().site.location.as_str(), "HOME");
     }
 }
 
@@ -397,7 +397,7 @@ fn an_object_at_the_edge_of_its_tray_is_not_gone_to() {
         bench.world.claims = vec![(y, z, 0, 0), (y, z, angle, 17)];
         bench.command(LocateObj, "BLOCK", 1, "BENCH", 1);
         let array_id = data().array_named(&Name16::clipped(array));
-        bench.memory.subtask.emove.location_array = array_id.map(ArrayId::number);
+        bench.memory.subtask.emove.site.array = array_id.unwrap_or_default();
         assert_eq!(bench.finish(), end, "{array} {y} {z} {angle}");
         assert_eq!(bench.memory.emove.beliefs.located.is_some(), end == DONE, "the next command looks again");
     }
@@ -407,11 +407,11 @@ fn an_object_at_the_edge_of_its_tray_is_not_gone_to() {
 #[test]
 fn what_was_located_in_one_sector_is_not_gone_to_for_another() {
     let mut bench = Bench::ready("HOME", 1);
-    let array = data().array_named(&Name16::clipped("SLOTS")).map(ArrayId::number);
+    let array = data().array_named(&Name16::clipped("SLOTS")).unwrap_or_default();
     assert_eq!(bench.run(MovToVu, "BLOCK", 1, "BENCH", 1), DONE);
     bench.command(LocateObj, "BLOCK", 1, "BENCH", 1);
     let told = &mut bench.memory.subtask.emove;
-    (told.location_array, told.location_sector) = (array, Some(1));
+    (told.site.array, told.site.sector) = (array, Some(1));
     assert_eq!(bench.finish(), DONE);
     bench.command(MovToObj, "BLOCK", 1, "BENCH", 1);
     let mut there = frame_of("BENCH");
@@ -420,7 +420,7 @@ fn what_was_located_in_one_sector_is_not_gone_to_for_another() {
     pose.number = Some(pose_range::next(pose_range::SUBTASK, pose.number.unwrap_or_default()));
     pose.pose = Pose::from_frame(&there);
     let told = &mut bench.memory.subtask.emove;
-    (told.location_array, told.location_sector, told.pose) = (array, Some(2), pose.number);
+    (told.site.array, told.site.sector, told.pose) = (array, Some(2), pose.number);
     assert_eq!(bench.finish(), DONE);
     let off = bench.world.frame.distance(&moved(there, &["GRASP-MTB"])).inches;
     assert!(off < 0.1, "{off} in from where the command leads");
@@ -510,7 +510,7 @@ fn the_robot_withdraws() {
     assert_eq!(bench.run(Withdraw, "", 0, "BENCH", 0), DONE);
     assert_eq!(bench.log(), ["DELTA-MOVE WITHDRAW"]);
     assert!(bench.off(&moved(frame_of("BENCH"), &["WITHDRAW"])) < 0.02);
-    assert_eq!(bench.memory.emove.status.at.unwrap_or_default().location.as_str(), "BENCH");
+    assert_eq!(bench.memory.emove.status.at.unwrap_or_default().site.location.as_str(), "BENCH");
     bench.command(Withdraw, "", 0, "BENCH", 0);
     bench.steps(3);
     bench.grip.opening = 60;

@@ -209,7 +209,7 @@ fn the_robot_is_found_where_it_stands() {
     assert!(bench.memory.emove.status.at.is_none(), "a holster is no plain location");
     bench.world.frame = frame_of("BENCH");
     assert_eq!(bench.pause(), DONE);
-    assert_eq!(bench.memory.emove.status.at.unwrap_or_default().location.as_str(), "BENCH");
+    assert_eq!(bench.memory.emove.status.at.unwrap_or_default().site.location.as_str(), "BENCH");
     bench.world.frame = moved(frame_of("HOME"), &["300ty"]);
     assert_eq!(bench.pause(), DONE, "it need not be anywhere");
     assert!(bench.memory.emove.status.at.is_none());
@@ -301,7 +301,7 @@ fn the_operator_moves_the_robot_and_the_fingers() {
         bench.steps(10);
         let status = bench.memory.emove.status;
         assert_eq!(
-            (status.report, status.reason, status.at.unwrap_or_default().location.as_str()),
+            (status.report, status.reason, status.at.unwrap_or_default().site.location.as_str()),
             (StatusReport::Done, Reason::None, "VISE")
         );
     }

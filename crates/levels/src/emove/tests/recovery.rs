@@ -109,7 +109,7 @@ fn a_motion_goes_on_to_the_same_goal_from_every_tick() {
             assert_eq!(again, rest, "no point twice, {told} told");
             assert!(fork.off(&moved(frame_of("VISE"), &["GRASP-MTB"])) < 0.02);
             let status = fork.memory.emove.status;
-            assert_eq!(status.at.unwrap_or_default().location.as_str(), "VISE");
+            assert_eq!(status.at.unwrap_or_default().site.location.as_str(), "VISE");
             assert_eq!(status.held.object().unwrap_or_default().as_str(), "BLOCK");
             seen[told] += 1;
         });
@@ -386,7 +386,7 @@ fn a_nudge_in_the_corridor_leaves_the_robot_on_its_way() {
         bench.world.joystick = false;
         bench.steps(8);
         paused(&mut bench);
-        assert_eq!(bench.memory.emove.status.at.unwrap_or_default().location.as_str(), "BENCH");
+        assert_eq!(bench.memory.emove.status.at.unwrap_or_default().site.location.as_str(), "BENCH");
         assert_eq!(bench.run(MovToLoc, "", 0, "VISE", 0), DONE, "{by_hand}");
     }
 }

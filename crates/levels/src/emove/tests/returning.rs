@@ -122,7 +122,7 @@ fn a_release_beside_the_place_corrects_first() {
     assert_eq!(bench.motions(), ["GOTO-PT"]);
     assert!(at("GOTO-PT") < at("OPEN-GRIP") && at("OPEN-GRIP").is_some(), "{log:?}");
     assert!(bench.off(&there) < 0.01);
-    assert_eq!(bench.memory.emove.status.placed.unwrap_or_default().location.as_str(), "BENCH");
+    assert_eq!(bench.memory.emove.status.placed.unwrap_or_default().site.location.as_str(), "BENCH");
 }
 
 #[test]
@@ -224,7 +224,7 @@ fn a_robot_that_was_moved_away_goes_back_as_it_came() {
     let near = passed(&mut fork, TO_HOME, [first, second]);
     assert!(near.iter().all(|inches| *inches < 0.15), "{near:?}");
     assert!(fork.off(&frame_of("HOME")) < 0.02);
-    assert_eq!(fork.memory.emove.status.at.unwrap_or_default().location.as_str(), "HOME");
+    assert_eq!(fork.memory.emove.status.at.unwrap_or_default().site.location.as_str(), "HOME");
     // To another place it goes by way of the place that it has left.
     let near = passed(&mut bench, TO_VISE, [second, first, frame_of("HOME")]);
     assert!(near.iter().all(|inches| *inches < 0.15), "{near:?}");

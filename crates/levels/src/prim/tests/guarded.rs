@@ -264,7 +264,7 @@ fn all_three_motions_take_a_movetable_and_delta_move_ends_as_goto_pt_does() {
     for verb in [PrimVerb::DeltaMove, PrimVerb::GoWhile, PrimVerb::GoUntil] {
         let mut rig = Rig::initialized();
         rig.guard(verb, 1, "NEAR-R");
-        rig.memory.emove.prim.movetable = Some(1);
+        rig.memory.emove.prim.movetable = MovtabId::new(1);
         let over = rig.finish();
         let expected = if verb == PrimVerb::GoUntil { PrimReport::NotDetected } else { PrimReport::Done };
         let mut goal = shifted(10.0, 0.0);

@@ -28,7 +28,7 @@ use rcs_core::{
     tick::Tick,
 };
 use taskdata::{
-    files::{MovtabId, MovtabRecord, PoseRecord, TaskData, TrajPara},
+    files::{MovtabId, MovtabRecord, PoseRecord, TaskData, TrajPara, TrajParaId},
     load::{Source, Store},
 };
 
@@ -147,7 +147,13 @@ impl<W: World<Prim>> bench::Bench<Prim, W, TaskData<'static>> {
     /// What E-move writes in a tick.
     fn command(&mut self, command: PrimVerb, pose: u32) {
         let before = self.memory.emove.prim;
-        self.send(PrimCommand { command, pose, movetable: None, trajectory_parameters: 1, ..before });
+        self.send(PrimCommand {
+            command,
+            pose,
+            movetable: MovtabId::NULL,
+            trajectory_parameters: TrajParaId::new(1),
+            ..before
+        });
     }
 
     fn run(&mut self, verb: PrimVerb, pose: u32) -> PrimReport {
@@ -320,7 +326,7 @@ fn the_knob_stops_the_path() {
 fn movetables_and_changing_poses_make_the_goal() {
     let mut rig = Rig::initialized();
     rig.command(PrimVerb::GotoPt, 1);
-    rig.memory.emove.prim.movetable = Some(1);
+    rig.memory.emove.prim.movetable = MovtabId::new(1);
     assert_eq!(rig.finish(), PrimReport::Done);
     let mut goal = shifted(10.0, 0.0);
     goal.position.z += 3.0;
@@ -344,14 +350,14 @@ fn missing_records_and_bad_parameters_are_refused_and_stop_the_robot() {
     assert_ne!(rig.world.t3i.output, WireFrame::from_frame(&shifted(40.0, 3.0)));
     rig.check_path(&start());
     for (pose, movetable, parameters, reason) in [
-        (pose_range::EMOVE | 77, None, 1, Reason::BadRecord),
-        (1, Some(2), 1, Reason::BadRecord),
-        (1, None, 0, Reason::BadRecord),
-        (1, None, 2, Reason::BadParameters),
+        (pose_range::EMOVE | 77, 0, 1, Reason::BadRecord),
+        (1, 2, 1, Reason::BadRecord),
+        (1, 0, 0, Reason::BadRecord),
+        (1, 0, 2, Reason::BadParameters),
     ] {
         rig.command(PrimVerb::GoThru, pose);
-        rig.memory.emove.prim.movetable = movetable;
-        rig.memory.emove.prim.trajectory_parameters = parameters;
+        rig.memory.emove.prim.movetable = MovtabId::new(movetable);
+        rig.memory.emove.prim.trajectory_parameters = TrajParaId::new(parameters);
         assert_eq!(rig.finish(), PrimReport::Error);
         assert_eq!(rig.memory.prim.status.reason, reason);
     }

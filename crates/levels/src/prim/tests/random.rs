@@ -135,7 +135,7 @@ impl Rig {
         let sensor = ["NEAR-R", "SEATED-R", "PUSH-X"][self.below(3) as usize];
         let pose = 1 + self.below(3) as u32;
         self.guard(verb, pose, sensor);
-        self.memory.emove.prim.trajectory_parameters = [1, 3, 4][self.below(3) as usize];
+        self.memory.emove.prim.trajectory_parameters = TrajParaId::new([1, 3, 4][self.below(3) as usize]);
     }
 }
 

@@ -15,7 +15,7 @@ use rcs_core::{
     name::Name16,
     tick::Tick,
 };
-use taskdata::files::TaskData;
+use taskdata::files::{EndEffId, TaskData};
 
 use super::data::data;
 use crate::{
@@ -116,14 +116,8 @@ impl EmoveDouble {
             EmoveVerb::RemoveTool => self.outputs.status.drum = false,
             EmoveVerb::Release => {
                 if let Some(held) = self.outputs.status.held.object() {
-                    self.outputs.status.placed = Some(PlacedObject {
-                        object: held,
-                        grip: command.grip,
-                        location: command.location,
-                        record: command.location_record,
-                        array: command.location_array,
-                        sector: command.location_sector,
-                    });
+                    self.outputs.status.placed =
+                        Some(PlacedObject { object: held, grip: command.grip, site: command.site });
                 }
                 self.hold("", 0);
             }
@@ -132,12 +126,8 @@ impl EmoveDouble {
                 self.outputs.status.drum = false;
             }
             EmoveVerb::LocateObj => {
-                self.outputs.status.located = command.object.map(|object| LocatedObject {
-                    object,
-                    record: command.location_record,
-                    array: command.location_array,
-                    sector: command.location_sector,
-                });
+                self.outputs.status.located =
+                    command.object.map(|object| LocatedObject { object, site: command.site });
             }
             EmoveVerb::QcDetach => {
                 (self.outputs.status.end_effector_id, self.outputs.status.exchange) = (None, None);
@@ -148,10 +138,7 @@ impl EmoveDouble {
             }
             EmoveVerb::MovToLoc | EmoveVerb::MovToObj | EmoveVerb::MovObjTo | EmoveVerb::MovToHol => {
                 self.outputs.status.at = Some(Standing {
-                    location: command.location,
-                    record: command.location_record,
-                    array: command.location_array,
-                    sector: command.location_sector,
+                    site: command.site,
                     grip: Some(command.grip).filter(|_| command.command != EmoveVerb::MovToLoc),
                 });
             }
@@ -319,15 +306,13 @@ impl<'d> Bench<'d> {
                 .filter(|id| *id != 0),
             source_grip: grips.0,
             destination_grip: grips.1,
-            object_parameters: self.data.object(&object, grips.0).map(|(id, _)| id.number()),
+            object_parameters: self.data.object(&object, grips.0).map_or(EndEffId::NULL, |(id, _)| id),
             ..SubtaskCommand::default()
         };
         if let Some(place) = place {
             poses[0].number = Some(0x8100_0000 + number);
             poses[0].pose = Pose::from_frame(&place.frame);
-            command.location = place.name;
-            command.location_kind = place.place.kind;
-            command.location_record = place.place.locpt.to_option();
+            command.site = place.site();
             command.pose = poses[0].number;
         }
         self.memory.task.poses = poses;

@@ -9,9 +9,10 @@ use interfaces::{
     Reason, StatusReport, SubtaskOutputs,
     emove::{EmoveVerb, Holding},
     grip::Felt,
+    location::LocationKind,
     pedestal::{PedestalReport, PedestalVerb},
     pose_range,
-    subtask::{LocationKind, SubtaskVerb},
+    subtask::SubtaskVerb,
 };
 use rcs_core::name::Name16;
 use taskdata::files::TaskData;
@@ -21,7 +22,7 @@ use self::{
     data::without,
 };
 use super::Subtask;
-use crate::{coverage::silent, places::LocationKey};
+use crate::coverage::silent;
 
 fn error(reason: Reason) -> (StatusReport, Reason) {
     (StatusReport::Error, reason)
@@ -65,18 +66,23 @@ fn a_wrong_gripper_is_left_in_its_holster_and_the_right_one_fetched() {
         .received
         .iter()
         .map(|c| {
-            (c.object.as_ref().map_or("", Name16::as_str), c.grip, c.location.as_str(), c.end_effector_id)
+            (
+                c.object.as_ref().map_or("", Name16::as_str),
+                c.grip,
+                c.site.location.as_str(),
+                c.end_effector_id,
+            )
         })
         .collect();
     let (own, wanted) = (("GRIPPER-1", 1, "HOLSTER-R", Some(1)), ("GRIPPER-2", 2, "HOLSTER-L", Some(2)));
     assert_eq!(aims, [own, own, wanted, wanted]);
     for command in &bench.world.emove.received {
         assert_eq!(command.pose.unwrap() & pose_range::WRITER, pose_range::SUBTASK);
-        let locpt = bench.data.locpt(bench.data.locpt_named(&command.location).unwrap()).unwrap();
+        let locpt = bench.data.locpt(bench.data.locpt_named(&command.site.location).unwrap()).unwrap();
         let expected = geometry::pose::Pose::from_frame(&locpt.frame);
-        assert_eq!(pose_of(&bench, command.pose.unwrap()), Some(expected), "{}", command.location);
+        assert_eq!(pose_of(&bench, command.pose.unwrap()), Some(expected), "{}", command.site.location);
         let (id, _) = bench.data.object(&command.object.unwrap(), command.grip).unwrap();
-        assert_eq!(command.object_parameters, Some(id.number()));
+        assert_eq!(command.object_parameters, id);
     }
 }
 
@@ -157,13 +163,13 @@ fn an_object_is_regripped_on_the_pedestal() {
         .emove
         .received
         .iter()
-        .map(|c| (c.object.as_ref().map_or("", Name16::as_str), c.grip, c.location.as_str()))
+        .map(|c| (c.object.as_ref().map_or("", Name16::as_str), c.grip, c.site.location.as_str()))
         .collect();
     let (bring, take) = (("PART", 1, "PEDESTAL"), ("PART", -1, "PEDESTAL"));
     assert_eq!(aims, [bring, bring, ("", 0, "PED-SAFE"), take, take]);
     for command in bench.world.emove.received.iter().filter(|c| c.object.is_some()) {
         let (id, _) = bench.data.object(&command.object.unwrap(), command.grip).unwrap();
-        assert_eq!(command.object_parameters, Some(id.number()));
+        assert_eq!(command.object_parameters, id);
     }
     let told: Vec<_> = bench
         .world
@@ -344,13 +350,13 @@ fn the_tool_commands_go_down_with_the_transfer_location() {
         assert_eq!(bench.sent(), [word]);
         let command = bench.world.emove.received[0];
         assert_eq!(
-            (command.object.unwrap_or_default().as_str(), command.location.as_str()),
+            (command.object.unwrap_or_default().as_str(), command.site.location.as_str()),
             ("TOOL-1", "TOOL-TRNS")
         );
         assert_eq!((command.grip, command.end_effector_id), (1, Some(3)));
         assert_eq!(command.pose.unwrap() & pose_range::WRITER, pose_range::SUBTASK);
         let tool = Name16::new("TOOL-1").unwrap();
-        assert_eq!(command.object_parameters, bench.data.object(&tool, 1).map(|(id, _)| id.number()));
+        assert_eq!(command.object_parameters, bench.data.object(&tool, 1).unwrap().0);
         assert_eq!(bench.memory.emove.status.held.is_held(), verb != SubtaskVerb::ReleaseTool);
     }
 }
@@ -415,14 +421,10 @@ fn an_object_is_found_by_vision_if_the_data_ask_for_it() {
     assert_eq!(bench.run(SubtaskVerb::GetObject, "BAR", (1, 1), "UNIT_1"), DONE);
     assert_eq!(bench.sent(), ["MOV-TO-VU", "LOCATE-OBJ", "MOV-TO-OBJ", "GRASP-OBJ"]);
     let (told, bar) = (bench.memory.task.subtask, Name16::new("BAR").unwrap());
-    let place = LocationKey::of(&told).place(told.location_kind);
     for command in &bench.world.emove.received {
-        assert_eq!(
-            (command.location_kind, command.location_record),
-            (LocationKind::Point, told.location_record)
-        );
-        assert_eq!(command.object_vision, Some(bench.data.view(&bar, &place).unwrap().0.number()));
-        assert_eq!(command.object_grips, Some(bench.data.obj_grips_id(&bar).unwrap().number()));
+        assert_eq!((command.site.kind, command.site), (LocationKind::Point, told.site));
+        assert_eq!(command.object_vision, bench.data.view(&bar, &told.site.place()).unwrap().0);
+        assert_eq!(command.object_grips, bench.data.obj_grips_id(&bar).unwrap());
     }
     assert_eq!(bench.run(SubtaskVerb::GetObject, "BAR", (1, 1), "UNIT_1"), DONE);
     assert_eq!(bench.sent(), ["GRASP-OBJ"], "it is held already");
@@ -538,7 +540,7 @@ fn where_the_robot_is_and_what_it_holds_are_passed_up() {
     let status = bench.memory.subtask.status;
     assert_eq!(status.reference_pose, Some(0x8300_0007));
     assert_eq!(
-        (status.at.unwrap().location.as_str(), status.held.object()),
+        (status.at.unwrap().site.location.as_str(), status.held.object()),
         ("SAFE", Name16::new("PART").ok())
     );
     assert_eq!(status.end_effector_id, Some(1));

@@ -6,6 +6,7 @@ use interfaces::{
     ChangingPose, Reason, StatusReport, Unconfirmed,
     emove::{EmoveVerb, Holding, LocatedObject, ObjectGrip, PlacedObject, Seat, Standing},
     grip::Felt,
+    location::Site,
     operator::HandOrder,
     pedestal::{PedestalReport, PedestalVerb},
     subtask::{Regrip, SubtaskVerb},
@@ -205,8 +206,8 @@ fn holding(held: &str) -> Holding {
 fn standing(bench: &Bench<'_>, at: Option<(&str, Option<i32>)>) -> Option<Standing> {
     at.map(|(name, grip)| {
         let location = Name10::new(name).unwrap();
-        let record = bench.data.locpt_named(&location).map(|id| id.number());
-        Standing { location, record, array: None, sector: None, grip }
+        let record = bench.data.locpt_named(&location).unwrap();
+        Standing { site: Site::point(location, record), grip }
     })
 }
 
@@ -387,7 +388,7 @@ fn what_counts_as_held_is_grasped_again_in_its_grip() {
         assert_eq!(bench.run(SubtaskVerb::GetObject, "PART", (1, -1), "PFIXTURE"), DONE);
         assert_eq!(bench.sent(), ["GRASP-OBJ"]);
         let sent = bench.world.emove.received[0];
-        let part = bench.data.object(&Name16::new("PART").unwrap(), grip).map(|(id, _)| id.number());
+        let part = bench.data.object(&Name16::new("PART").unwrap(), grip).unwrap().0;
         assert_eq!((sent.grip, sent.object_parameters), (grip, part));
         // A release that has not ended well has left nothing between the fingers.
         bench.world.emove.mishap = Some((EmoveVerb::GraspObj, Mishap::Error(Reason::GraspMissed)));
@@ -404,7 +405,7 @@ fn an_object_that_is_placed_is_not_placed_again() {
     assert!(bench.sent().is_empty());
     let placed = bench.memory.subtask.status.placed.unwrap();
     let expected = PlacedObject { object: Name16::new("PART").unwrap(), grip: 1, ..placed };
-    assert_eq!((placed.location.as_str(), placed), ("SAFE", expected));
+    assert_eq!((placed.site.location.as_str(), placed), ("SAFE", expected));
     for (object, grips, location) in
         [("PART", (1, 1), "HOME"), ("PART", (1, 2), "SAFE"), ("BAR", (1, 1), "SAFE")]
     {
@@ -416,10 +417,10 @@ fn an_object_that_is_placed_is_not_placed_again() {
 #[test]
 fn what_vision_has_found_is_not_looked_for_again() {
     let mut bench = Bench::default();
-    let record = bench.data.locpt_named(&Name10::new("UNIT_1").unwrap()).map(|id| id.number());
+    let name = Name10::new("UNIT_1").unwrap();
+    let site = Site::point(name, bench.data.locpt_named(&name).unwrap());
     let object = Name16::new("BAR").unwrap();
-    bench.world.emove.outputs.status.located =
-        Some(LocatedObject { object, record, array: None, sector: None });
+    bench.world.emove.outputs.status.located = Some(LocatedObject { object, site });
     bench.step();
     assert_eq!(bench.run(SubtaskVerb::GetObject, "BAR", (1, 1), "UNIT_1"), DONE);
     assert_eq!(bench.sent(), ["MOV-TO-OBJ", "GRASP-OBJ"]);
@@ -595,10 +596,10 @@ fn leaves_only_empty_and_clear(bench: &mut Bench<'_>) {
             assert_eq!(bench.run(verb, "", (0, 0), "SAFE"), error(Reason::PartInPedestal), "{verb}: {why}");
             assert!(bench.sent().is_empty());
         };
-        let pedestal = bench.data.locpt_named(&Name10::clipped("PEDESTAL")).unwrap();
+        let name = Name10::clipped("PEDESTAL");
+        let site = Site::point(name, bench.data.locpt_named(&name).unwrap());
         bench.memory.prim.status.sensor_pose = None;
-        bench.world.emove.outputs.status.at =
-            safe.map(|at| Standing { record: Some(pedestal.number()), ..at });
+        bench.world.emove.outputs.status.at = safe.map(|at| Standing { site, ..at });
         refused(bench, "at the pedestal");
         bench.world.emove.outputs.status.at = None;
         refused(bench, "at no place, and it is not known where");

@@ -6,6 +6,7 @@ use interfaces::{
     data_base::{DataBaseReport, DataBaseVerb},
     emove::{Holding, ObjectGrip, PlacedObject, Standing},
     hws::HwsReport,
+    location::Site,
     subtask::{SubtaskCommand, SubtaskVerb},
 };
 use rcs_core::{
@@ -126,10 +127,7 @@ impl SubtaskDouble {
                 self.outputs.status.placed = Some(PlacedObject {
                     object: command.object.unwrap_or_default(),
                     grip: command.destination_grip,
-                    location: command.location,
-                    record: command.location_record,
-                    array: command.location_array,
-                    sector: command.location_sector,
+                    site: command.site,
                 });
                 self.stand_at(command, Some(command.destination_grip));
             }
@@ -150,16 +148,14 @@ impl SubtaskDouble {
         let (held, at) = (self.outputs.status.held, self.outputs.status.at.unwrap_or_default());
         self.hold("");
         if let Holding::Object(ObjectGrip { object, grip }) = held {
-            let Standing { location, record, array, sector, .. } = at;
-            self.outputs.status.placed = Some(PlacedObject { object, grip, location, record, array, sector });
+            self.outputs.status.placed = Some(PlacedObject { object, grip, site: at.site });
         }
     }
 
     fn stand_at(&mut self, command: &SubtaskCommand, grip: Option<i32>) {
-        self.stand(command.location.as_str());
+        self.stand(command.site.location.as_str());
         if let Some(at) = &mut self.outputs.status.at {
-            (at.record, at.array, at.grip) = (command.location_record, command.location_array, grip);
-            at.sector = command.location_sector;
+            (at.site, at.grip) = (command.site, grip);
         }
     }
 
@@ -184,8 +180,8 @@ impl SubtaskDouble {
     /// known.
     pub fn stand(&mut self, location: &str) {
         let location = Name10::new(location).unwrap();
-        let at = Standing { location, ..Standing::default() };
-        self.outputs.status.at = Some(at).filter(|at| !at.location.is_empty());
+        let site = Site { location, ..Site::default() };
+        self.outputs.status.at = site.name().map(|_| Standing { site, grip: None });
         self.outputs.status.drum = location.as_str() == "TOOL-TRNS";
     }
 }
@@ -354,7 +350,8 @@ impl<'d> Bench<'d> {
         self.world.subtask.hold(object);
         self.world.subtask.stand(at);
         if let Some(at) = &mut self.world.subtask.outputs.status.at {
-            at.record = self.data.locpt_named(&at.location).map(|id| id.number());
+            let location = at.site.location;
+            at.site = Site::point(location, self.data.locpt_named(&location).unwrap_or_default());
             at.grip = (!object.is_empty()).then_some(1);
         }
         self.step();

@@ -665,7 +665,7 @@ fn the_sector_is_that_in_which_the_part_was_let_go() {
     // A MOVE from one sector to another, abandoned where it ends.
     let mut bench = Bench::connected();
     order(&mut bench, "MOVE PART +1 UNIT_1 2 +1 UNIT_1 1 -- 0", "A");
-    until(&mut bench, |below| below.at.is_some_and(|at| at.sector == Some(1)));
+    until(&mut bench, |below| below.at.is_some_and(|at| at.site.sector == Some(1)));
     assert_eq!(bench.run(PAUSE), FINISHED);
     perform(&mut bench, "POSITION PART +1 UNIT_1 2 0 -- 0 -- 0", "A");
     assert!(bench.sent().ends_with(&["RELEASE", ">POSITION"]), "the sector in which it stands supports it");

@@ -67,9 +67,9 @@ fn transfer_fetches_places_and_leaves() {
     assert_eq!(bench.run("TRANSFER PART +1 PFIXTURE 0 +1 UNIT_1 2 SAFE 0"), FINISHED);
     assert_eq!(bench.sent(), ["GET-ENDEFF", "GET-OBJECT", "PLACE-OBJ", "GOTO-ENDPT"]);
     let [_, get, place, leave] = bench.world.subtask.received[..] else { panic!() };
-    assert_eq!((get.location.as_str(), place.location.as_str()), ("PFIXTURE", "UNIT_1"));
-    assert_eq!(leave.location.as_str(), "SAFE");
-    assert_eq!((place.location_array, place.source_grip, place.destination_grip), (Some(1), 1, 1));
+    assert_eq!((get.site.location.as_str(), place.site.location.as_str()), ("PFIXTURE", "UNIT_1"));
+    assert_eq!(leave.site.location.as_str(), "SAFE");
+    assert_eq!((place.site.array.number(), place.source_grip, place.destination_grip), (1, 1, 1));
     assert_eq!(bench.run("TRANSFER PART +1 PFIXTURE 0 +1 UNIT_1 2 -- 0"), FINISHED);
     assert_eq!(bench.sent(), ["GET-ENDEFF", "GET-OBJECT", "PLACE-OBJ"]);
 }
@@ -81,7 +81,7 @@ fn an_object_is_regripped_when_the_grips_differ() {
     assert_eq!(bench.sent(), ["GET-ENDEFF", "GET-OBJECT", "FIX-GRIP", "PLACE-OBJ", "GOTO-ENDPT"]);
     let [_, get, fix, place, _] = bench.world.subtask.received[..] else { panic!() };
     assert_eq!((fix.source_grip, fix.destination_grip), (1, -1));
-    let grip = |grip| bench.data.object(&Name16::new("PART").unwrap(), grip).map(|(id, _)| id.number());
+    let grip = |grip| bench.data.object(&Name16::new("PART").unwrap(), grip).unwrap().0;
     assert_eq!((get.object_parameters, place.object_parameters), (grip(1), grip(-1)));
     assert_eq!(bench.run("MOVE PART +1 PFIXTURE 0 -1 SAFE 0 -- 0"), FINISHED);
     assert_eq!(bench.sent(), ["GET-ENDEFF", "GET-OBJECT", "FIX-GRIP", "MOVE-OBJ>D"]);
@@ -109,7 +109,7 @@ fn position_releases_what_is_held_first() {
     }
     assert_eq!(bench.run("POSITION -- 0 -- 0 0 SAFE 0 -- 0"), FINISHED);
     assert_eq!(bench.sent(), [">POSITION"]);
-    assert_eq!(bench.world.subtask.outputs.status.at.unwrap().location.as_str(), "SAFE");
+    assert_eq!(bench.world.subtask.outputs.status.at.unwrap().site.location.as_str(), "SAFE");
 }
 
 #[test]
@@ -145,7 +145,7 @@ fn a_tool_is_inserted_and_released() {
     assert_eq!(bench.run(INSERT), FINISHED);
     assert_eq!(bench.sent(), ["INSERT-TOOL"]);
     let command = bench.world.subtask.received[0];
-    let parameters = bench.data.object(&Name16::new("TOOL-1").unwrap(), 1).map(|(id, _)| id.number());
+    let (parameters, _) = bench.data.object(&Name16::new("TOOL-1").unwrap(), 1).unwrap();
     assert_eq!(
         (command.end_effector_id, command.object_parameters, command.source_grip),
         (Some(3), parameters, 1)
@@ -162,7 +162,7 @@ fn a_tool_is_acquired_and_removed() {
     assert_eq!(bench.run(ACQUIRE), FINISHED);
     assert_eq!(bench.sent(), ["GET-ENDEFF", "GOTO-DEST", "ACQUIRE-TOOL"]);
     let [gripper, near, acquire] = bench.world.subtask.received[..] else { panic!() };
-    assert_eq!((gripper.end_effector_id, near.location.as_str()), (Some(3), "TOOL-SAFE"));
+    assert_eq!((gripper.end_effector_id, near.site.location.as_str()), (Some(3), "TOOL-SAFE"));
     assert_eq!((acquire.object.unwrap_or_default().as_str(), acquire.source_grip), ("TOOL-1", 1));
     assert_eq!((bench.run(ACQUIRE), bench.sent()), (FINISHED, vec![]), "it is held already");
     assert_eq!(bench.run(REMOVE), FINISHED);

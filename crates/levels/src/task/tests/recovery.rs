@@ -224,7 +224,7 @@ fn a_transfer_that_stays_goes_back_to_its_object() {
         assert_eq!(bench.sent(), [">POSITION"]);
         let at = bench.memory.subtask.status.at.unwrap();
         assert_eq!(
-            (at.location.as_str(), at.grip),
+            (at.site.location.as_str(), at.grip),
             ("UNIT_1", Some(bench.memory.task.subtask.destination_grip))
         );
     }

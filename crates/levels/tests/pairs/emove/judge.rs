@@ -86,7 +86,7 @@ impl<G: Fingered> Pair<G> {
 
     /// A motion is done: the robot is there, and E-move knows that.
     fn judge_arrival(&self, before: &Self) -> Result<(), Wrong> {
-        let named = place(self.command.location.as_str());
+        let named = place(self.command.site.location.as_str());
         let at_object = matches!(self.command.command, EmoveVerb::MovToObj | EmoveVerb::MovObjTo);
         let goal = if at_object { self.object_at } else { Pose::from_frame(&named.frame) };
         let status = &self.emove_out.status;
@@ -97,7 +97,7 @@ impl<G: Fingered> Pair<G> {
         if !is_at(&goal, &before.robot.at) {
             return Err("done, and the robot is not there");
         }
-        if status.at.is_none_or(|at| at.location != self.command.location) {
+        if status.at.is_none_or(|at| at.site.location != self.command.site.location) {
             return Err("done, and E-move does not know that the robot is there");
         }
         match self.command.command {

@@ -86,9 +86,9 @@ impl Pair {
             _ if before.awaits_arrival() => Err("done, and the fingers move, or the ring turns"),
             EmoveVerb::Pause => Ok(()),
             EmoveVerb::MovToLoc => {
-                let goal = place(self.command.location.as_str()).frame;
+                let goal = place(self.command.site.location.as_str()).frame;
                 let there = goal.distance(&stands).inches <= THERE;
-                let known = status.at.is_some_and(|at| at.location == self.command.location);
+                let known = status.at.is_some_and(|at| at.site.location == self.command.site.location);
                 match (there, known) {
                     (false, _) => Err("done, and the robot is not there"),
                     (true, false) => Err("done, and E-move does not know that the robot is there"),
@@ -118,7 +118,7 @@ impl Pair {
             return Ok(());
         }
         let safe = before.is_at_safe();
-        let near = Relative::InsNear.record(&self.command, &data()).map(|near| near.sensor);
+        let near = Relative::InsNear.record(&self.command.site, &data()).map(|near| near.sensor);
         match order.command {
             PrimVerb::CalSensor if !safe => Err("INSERT-TOOL calibrates where it may touch something"),
             PrimVerb::GoWhile if order.sensor == near && before.biased_at_safe == Some(false) => {
@@ -156,7 +156,7 @@ impl Pair {
     fn judge_tool(&self, before: &Self, stands: &Frame) -> Result<(), Wrong> {
         let base = place(super::DRUM).frame;
         let moved = |from: &Frame, relative: Relative| {
-            let record = relative.record(&self.command, &data()).expect("the data have the move");
+            let record = relative.record(&self.command.site, &data()).expect("the data have the move");
             data().moved(from, record.movetable)
         };
         let seat = moved(&base, Relative::InsIn);
@@ -165,7 +165,7 @@ impl Pair {
         let is_out = (stands.position - seat.position).dot(&out);
         let leads = |relative| (moved(&seat, relative).position - seat.position).dot(&out);
         let (status, tool) = (&self.emove_out.status, before.tool.unwrap_or_else(super::Tool::new));
-        let at_drum = status.at.is_some_and(|at| at.location == self.command.location);
+        let at_drum = status.at.is_some_and(|at| at.site.location == self.command.site.location);
         let holds = tool.holds() && status.held.object() == self.command.object;
         match self.command.command {
             EmoveVerb::InsertTool | EmoveVerb::AcquireTool if is_out > DEEP + THERE => {

@@ -83,7 +83,7 @@ impl Tool {
     pub fn new() -> Self {
         let (object, grip, _) = TOOL;
         let command = emove_command(EmoveVerb::InsertTool, object, grip, DRUM);
-        let seat = Relative::InsIn.record(&command, &data()).expect("the data have the move");
+        let seat = Relative::InsIn.record(&command.site, &data()).expect("the data have the move");
         let at = data().moved(&place(DRUM).frame, seat.movetable);
         Self { echo: 0, report: JawsReport::Idle, size: open(), closes: false, at, force: NEUTRAL }
     }

@@ -6,7 +6,7 @@ use interfaces::{
     grip::GripVerb,
     subtask::{SubtaskCommand, SubtaskVerb},
 };
-use levels::{execution::Outcome, places::LocationKey};
+use levels::execution::Outcome;
 
 use super::{Event, LATE, Pair};
 use crate::{
@@ -22,7 +22,7 @@ impl Pair {
             return false;
         };
         let base = pose.pose.to_frame().expect("commands have frames");
-        let place = LocationKey::of(command).place(command.location_kind);
+        let place = command.site.place();
         let grip =
             command.object.and_then(|object| data().grip_movetable(&object, command.source_grip, &place));
         let goal = grip.map_or(base, |grip| data().moved(&base, grip));
@@ -103,7 +103,9 @@ impl Pair {
             SubtaskVerb::GotoDest | SubtaskVerb::MoveObjToDest if !there => {
                 Err("done, and the robot is not there")
             }
-            SubtaskVerb::GotoDest if status.at.is_none_or(|at| at.location != self.command.location) => {
+            SubtaskVerb::GotoDest
+                if status.at.is_none_or(|at| at.site.location != self.command.site.location) =>
+            {
                 Err("done, and E-move does not know that the robot is there")
             }
             SubtaskVerb::None => Err("an unknown command is done"),

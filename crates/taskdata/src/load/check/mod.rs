@@ -20,7 +20,7 @@ use crate::files::{
     ArrayId, Location, LocptId, ObjectId, OwnerId, Place, RefType, Reference, TaskData, index::reference_key,
 };
 use diagnostics::{At, Problems, Severity};
-use interfaces::subtask::LocationKind;
+use interfaces::location::LocationKind;
 
 use super::origins::Origins;
 
@@ -121,7 +121,7 @@ fn shown(location: &Location) -> String {
 fn at_point(data: &TaskData<'_>, at: Reference) -> Option<Location> {
     let id = LocptId::new(at.number);
     let point = data.locpt(id).filter(|_| at.kind == RefType::LocationPoint)?;
-    Some(Location { name: point.name, place: data.place_of(id), sector: None, frame: point.frame })
+    Some(Location { name: point.name, place: Place::point(id), sector: None, frame: point.frame })
 }
 
 /// The owners of a member.

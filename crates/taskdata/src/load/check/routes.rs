@@ -2,7 +2,7 @@
 //! (VII.6).
 
 use crate::files::{ArrayId, LocptId, OwnerId, Place, RefType, Reference, TaskData, TrajId};
-use interfaces::subtask::LocationKind;
+use interfaces::location::LocationKind;
 
 use super::{Findings, Origins, at_point, origin, owners_of};
 
@@ -27,7 +27,7 @@ pub(super) fn check(data: &TaskData<'_>, origins: &Origins, findings: &mut Findi
                 format!("no command can reach the trajectory {name}: nothing is at one of its ends"),
                 "an array is a location through an owner or by a pose of its own (VII.4)".to_owned(),
             );
-        } else if pairs().all(|(from, to)| same_location(from, to)) {
+        } else if pairs().all(|(from, to)| from.has_location_of(to)) {
             findings.warning(
                 "trajectory.unused",
                 at,
@@ -37,7 +37,7 @@ pub(super) fn check(data: &TaskData<'_>, origins: &Origins, findings: &mut Findi
                 "within one location only depart and approach are flown".to_owned(),
             );
         } else if !pairs()
-            .any(|(from, to)| !same_location(from, to) && data.trajectory_id(from, to) == Some(id))
+            .any(|(from, to)| !from.has_location_of(to) && data.trajectory_id(from, to) == Some(id))
         {
             findings.warning(
                 "trajectory.unused",
@@ -48,11 +48,6 @@ pub(super) fn check(data: &TaskData<'_>, origins: &Origins, findings: &mut Findi
             );
         }
     }
-}
-
-/// True if a motion between the two uses no trajectory (docs/design/motion.md "Same location").
-fn same_location(a: &Place, b: &Place) -> bool {
-    a.locpt == b.locpt && (!a.locpt.is_null() || a.array == b.array)
 }
 
 /// The places to which the name of an end refers, at most about [`TRIED`].
@@ -71,7 +66,7 @@ fn places(data: &TaskData<'_>, end: Reference) -> Vec<Place> {
                     RefType::Pose => {
                         let points = data.locpts.iter().enumerate();
                         let at_pose = points.filter(|(_, p)| p.pose.number() == member.member.number);
-                        found.extend(at_pose.take(TRIED).map(|(i, _)| data.place_of(LocptId::at(i))));
+                        found.extend(at_pose.take(TRIED).map(|(i, _)| Place::point(LocptId::at(i))));
                     }
                     _ => {}
                 }

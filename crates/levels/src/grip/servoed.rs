@@ -11,7 +11,7 @@ use super::tables::Gripper;
 /// The sensor words and the command of a servoed gripper.
 ///
 /// The hand of the Active Pedestal is nearly identical to the parts gripper (III.9.2): one servo serves both.
-pub trait Site {
+pub trait Servoed {
     /// The name of the process.
     const NAME: &'static str;
     /// `endeff-id#` of the gripper; 0 for one that is not on the quick change.
@@ -32,7 +32,7 @@ pub trait Site {
 #[derive(Clone, Copy, Debug, Default)]
 pub struct PartsGripper;
 
-impl Site for PartsGripper {
+impl Servoed for PartsGripper {
     const NAME: &'static str = "Grip";
     const END_EFFECTOR_ID: u8 = 1;
 

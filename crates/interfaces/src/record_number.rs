@@ -1,4 +1,7 @@
 //! Record numbers: the values of the manual's variables ending in `-^` (V.1.2 `traj-para-^`, V.2.2 `pose-^-in` …).
+//!
+//! Each file of chapter VII has a type of its own. In a buffer the null number is an absent value, so that logs show
+//! `none` instead of 0.
 
 use rcs_core::{
     Plain,
@@ -26,21 +29,6 @@ macro_rules! record_numbers {
             #[must_use]
             pub const fn number(self) -> u32 {
                 self.0
-            }
-
-            /// The number; `None` if null.
-            #[must_use]
-            pub const fn to_option(self) -> Option<u32> {
-                if self.is_null() { None } else { Some(self.0) }
-            }
-
-            /// The record with a number; null without one.
-            #[must_use]
-            pub const fn from_option(number: Option<u32>) -> Self {
-                match number {
-                    Some(number) => Self(number),
-                    None => Self::NULL,
-                }
             }
 
             /// True if there is no record.
@@ -75,15 +63,19 @@ macro_rules! record_numbers {
         }
 
         impl Plain for $name {
-            const SCHEMA: Schema = Schema::U32;
+            const SCHEMA: Schema = Option::<u32>::SCHEMA;
             const ZERO: Self = Self::NULL;
 
             fn encode(&self, w: &mut Writer<'_>) {
-                self.0.encode(w);
+                (!self.is_null()).then_some(self.0).encode(w);
             }
 
             fn decode(r: &mut Reader<'_>) -> Result<Self, DecodeError> {
-                Ok(Self(u32::decode(r)?))
+                match Option::<u32>::decode(r)? {
+                    None => Ok(Self::NULL),
+                    Some(0) => Err(DecodeError::BadFlag(1)),
+                    Some(number) => Ok(Self(number)),
+                }
             }
         }
     )+};
@@ -131,15 +123,24 @@ record_numbers! {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use rcs_core::plain::{from_bytes, to_bytes};
 
     #[test]
     fn numbers_count_from_one_and_zero_is_null() {
         assert_eq!(PoseId::NULL.index(), None);
         assert_eq!(PoseId::at(0), PoseId::new(1));
-        assert_eq!([PoseId::NULL, PoseId::new(3)].map(PoseId::to_option), [None, Some(3)]);
-        assert_eq!([None, Some(3)].map(PoseId::from_option), [PoseId::NULL, PoseId::new(3)]);
         assert_eq!(PoseId::new(3).index(), Some(2));
         assert_eq!(PoseId::new(3).of(&['a', 'b', 'c']), Some(&'c'));
         assert_eq!(PoseId::new(4).of(&['a', 'b', 'c']), None);
+    }
+
+    #[test]
+    fn a_null_number_in_a_buffer_is_an_absent_value() {
+        assert_eq!(to_bytes::<5, _>(&PoseId::NULL), to_bytes::<5, _>(&None::<u32>));
+        assert_eq!(to_bytes::<5, _>(&PoseId::new(3)), to_bytes::<5, _>(&Some(3_u32)));
+        for id in [PoseId::NULL, PoseId::new(3)] {
+            assert_eq!(from_bytes(&to_bytes::<5, _>(&id)), Ok(id));
+        }
+        assert_eq!(from_bytes::<PoseId>(&to_bytes::<5, _>(&Some(0_u32))), Err(DecodeError::BadFlag(1)));
     }
 }
