@@ -447,11 +447,31 @@ pub struct EmoveOutputs {
     pub poses: [ChangingPose; EMOVE_POSES],
 }
 
-/// `MOV-TO-OBJ LINKBAR1 at TRAY`.
+/// `MOV-TO-OBJ LINKBAR1 at TRAY`, `MOV-TO-LOC at SAFE`: the verb with the fields that it uses.
 impl fmt::Display for EmoveCommand {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(self.command.text())?;
-        name(f, self.object.as_ref())?;
-        location(f, "at", self.site.name(), None)
+        let (object, at) = (self.object.as_ref(), self.site.name());
+        match self.command {
+            EmoveVerb::None | EmoveVerb::Pause => Ok(()),
+            EmoveVerb::MovToLoc | EmoveVerb::Withdraw => location(f, "at", at, None),
+            // The fingers open where the robot is.
+            EmoveVerb::Release => name(f, object),
+            EmoveVerb::MovToObj
+            | EmoveVerb::MovObjTo
+            | EmoveVerb::MovToVu
+            | EmoveVerb::LocateObj
+            | EmoveVerb::GraspObj
+            | EmoveVerb::MovToHol
+            | EmoveVerb::QcDetach
+            | EmoveVerb::QcAttach
+            | EmoveVerb::InsertTool
+            | EmoveVerb::ReleaseTool
+            | EmoveVerb::AcquireTool
+            | EmoveVerb::RemoveTool => {
+                name(f, object)?;
+                location(f, "at", at, None)
+            }
+        }
     }
 }

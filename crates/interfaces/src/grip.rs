@@ -145,12 +145,42 @@ pub struct GripOutputs {
     pub valves: GripValves,
 }
 
-/// `CLOSE-GRIP (opening 1.20 in, force 30 lb)`.
+/// `CLOSE-GRIP (opening 1.20 in, force 30 lb)`, `POSITION (opening 1.20 in)`: the verb with the fields that it uses.
 impl fmt::Display for GripCommand {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self.command {
-            GripVerb::None => Ok(()),
-            verb => write!(f, "{verb} (opening {}, force {} lb)", Inches(self.position), self.force),
+            verb @ (GripVerb::None | GripVerb::Pause | GripVerb::UpInit) => verb.fmt(f),
+            verb @ (GripVerb::Position | GripVerb::OpenGrip) => {
+                write!(f, "{verb} (opening {})", Inches(self.position))
+            }
+            verb @ GripVerb::CloseGrip => {
+                write!(f, "{verb} (opening {}, force {} lb)", Inches(self.position), self.force)
+            }
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::jaws::{JawsCommand, JawsVerb};
+
+    #[test]
+    fn command_text_has_only_the_fields_of_its_verb() {
+        let full = GripCommand { force: 30, position: 120, ..GripCommand::default() };
+        for (command, text) in [
+            (GripVerb::Pause, "PAUSE"),
+            (GripVerb::UpInit, "UP-INIT"),
+            (GripVerb::OpenGrip, "OPEN-GRIP (opening 1.20 in)"),
+            (GripVerb::CloseGrip, "CLOSE-GRIP (opening 1.20 in, force 30 lb)"),
+        ] {
+            assert_eq!(GripCommand { command, ..full }.to_string(), text);
+        }
+        let full = JawsCommand { size: 120, ..JawsCommand::default() };
+        for (command, text) in [(JawsVerb::Pause, "VG-PAUSE"), (JawsVerb::Pose, "VGRIP-POSE (size 1.20 in)")]
+        {
+            assert_eq!(JawsCommand { command, ..full }.to_string(), text);
+        }
+        assert_eq!(JawsCommand { command: JawsVerb::Release, size: 0, ..full }.to_string(), "VG-RELEASE");
     }
 }

@@ -108,16 +108,17 @@ pub struct JawsOutputs {
 }
 
 /// V-Grip's VG-GRASP, VG-RELEASE, VGRIP-POSE, VG-PAUSE, and Tool-Grip's with TG (VI.4.1, VI.5): `TG-GRASP
-/// (size 1.20 in)`.
+/// (size 1.20 in)`. Size 0 commands no size.
 impl fmt::Display for JawsCommand {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let prefix = if self.end_effector_id == Some(TOOL_GRIPPER) { "TG" } else { "VG" };
         match self.command {
-            JawsVerb::None => Ok(()),
-            JawsVerb::Pose => write!(f, "{prefix}RIP-{}", self.command),
-            JawsVerb::Pause => write!(f, "{prefix}-{}", self.command),
-            verb => write!(f, "{prefix}-{verb} (size {})", Inches(self.size)),
+            JawsVerb::None => return Ok(()),
+            JawsVerb::Pause => return write!(f, "{prefix}-{}", self.command),
+            JawsVerb::Pose => write!(f, "{prefix}RIP-{}", self.command)?,
+            JawsVerb::Grasp | JawsVerb::Release => write!(f, "{prefix}-{}", self.command)?,
         }
+        if self.size == 0 { Ok(()) } else { write!(f, " (size {})", Inches(self.size)) }
     }
 }
 

@@ -182,10 +182,19 @@ pub struct PrimOutputs {
     pub bias: Option<[f64; FORCE_AXES]>,
 }
 
-/// `GO-UNTIL SEAT-F`.
+/// `GO-UNTIL SEAT-F`: only guarded moves name a sensor.
 impl fmt::Display for PrimCommand {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(self.command.text())?;
-        name(f, self.sensor.as_ref())
+        match self.command {
+            PrimVerb::GoUntil | PrimVerb::GoWhile => name(f, self.sensor.as_ref()),
+            PrimVerb::None
+            | PrimVerb::Pause
+            | PrimVerb::RobotInit
+            | PrimVerb::GoThru
+            | PrimVerb::GotoPt
+            | PrimVerb::DeltaMove
+            | PrimVerb::CalSensor => Ok(()),
+        }
     }
 }

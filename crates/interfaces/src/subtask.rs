@@ -137,11 +137,63 @@ pub struct SubtaskOutputs {
     pub poses: [ChangingPose; SUBTASK_POSES],
 }
 
-/// `GET-OBJECT LINKBAR1 at TRAY`.
+/// `GET-OBJECT LINKBAR1 at TRAY`, `GET-ENDEFF gripper 1`: the verb with the fields that it uses.
 impl fmt::Display for SubtaskCommand {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(self.command.text())?;
-        name(f, self.object.as_ref())?;
-        location(f, "at", self.site.name(), None)
+        let (object, at) = (self.object.as_ref(), self.site.name());
+        match self.command {
+            SubtaskVerb::None | SubtaskVerb::Pause => Ok(()),
+            SubtaskVerb::GetEndeff => self.end_effector_id.map_or(Ok(()), |id| write!(f, " gripper {id}")),
+            SubtaskVerb::GotoEndpt | SubtaskVerb::GotoDest => location(f, "at", at, None),
+            SubtaskVerb::Release
+            | SubtaskVerb::FixGrip
+            | SubtaskVerb::InsertTool
+            | SubtaskVerb::ReleaseTool
+            | SubtaskVerb::AcquireTool
+            | SubtaskVerb::RemoveTool => name(f, object),
+            SubtaskVerb::GetObject
+            | SubtaskVerb::PlaceObj
+            | SubtaskVerb::MoveObjToDest
+            | SubtaskVerb::Position => {
+                name(f, object)?;
+                location(f, "at", at, None)
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::emove::EmoveVerb;
+    use rcs_core::name::Name10;
+
+    #[test]
+    fn command_text_has_only_the_fields_of_its_verb() {
+        let full = SubtaskCommand {
+            object: Some(Name16::clipped("LINKBAR1")),
+            end_effector_id: Some(2),
+            site: Site { location: Name10::clipped("TRAY"), ..Site::default() },
+            ..SubtaskCommand::default()
+        };
+        for (command, text) in [
+            (SubtaskVerb::Pause, "S-PAUSE"),
+            (SubtaskVerb::GetEndeff, "GET-ENDEFF gripper 2"),
+            (SubtaskVerb::GotoEndpt, "GOTO-ENDPT at TRAY"),
+            (SubtaskVerb::Release, "RELEASE LINKBAR1"),
+            (SubtaskVerb::PlaceObj, "PLACE-OBJ LINKBAR1 at TRAY"),
+        ] {
+            assert_eq!(SubtaskCommand { command, ..full }.to_string(), text);
+        }
+        let full = EmoveCommand { object: full.object, site: full.site, ..EmoveCommand::default() };
+        for (command, text) in [
+            (EmoveVerb::Pause, "E-PAUSE"),
+            (EmoveVerb::MovToLoc, "MOV-TO-LOC at TRAY"),
+            (EmoveVerb::Release, "RELEASE LINKBAR1"),
+            (EmoveVerb::GraspObj, "GRASP-OBJ LINKBAR1 at TRAY"),
+        ] {
+            assert_eq!(EmoveCommand { command, ..full }.to_string(), text);
+        }
     }
 }

@@ -261,7 +261,7 @@ mod tests {
         assert_eq!(
             told,
             [
-                ("E-move", "-> V-Grip: VG-GRASP (size 0.00 in)"),
+                ("E-move", "-> V-Grip: VG-GRASP"),
                 ("Subtask", "-> Active Pedestal: FLIP by 0.0 degrees"),
                 ("Active Pedestal", "-> Rotary Table: TURN to 0.0 degrees")
             ]
