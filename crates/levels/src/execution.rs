@@ -229,10 +229,10 @@ impl Execution {
     }
 
     /// True in the tick in which a command was accepted: `asked` is that of the tick, HALT has let the command pass, and
-    /// no row of ACCEPT has refused it.
+    /// none of the tables that check a new command has refused it. `checks` are the numbers of these tables.
     #[must_use]
-    pub fn accepted(&self, asked: Asked) -> bool {
-        let is_refused = self.rows.decided.is_some_and(|decided| decided.table == ACCEPT_NUMBER);
+    pub fn accepted(&self, asked: Asked, checks: &[u8]) -> bool {
+        let is_refused = self.rows.decided.is_some_and(|decided| checks.contains(&decided.table));
         asked == Asked::Now && !self.waiting && !is_refused
     }
 
@@ -313,7 +313,8 @@ mod tests {
         assert!(!e.accepts(Verdict::Decided(refusal)));
         assert_eq!((e.outcome, e.reason), (Outcome::Error, Reason::UnknownCommand));
         assert_eq!(e.rows.decided, Some(Decided { table: ACCEPT_NUMBER, row: 2 }));
-        assert!(!e.accepted(Asked::Now));
+        assert!(!e.accepted(Asked::Now, &[ACCEPT_NUMBER]));
+        assert!(e.accepted(Asked::Now, &[ACCEPT_NUMBER + 1]), "another table decided");
     }
 
     #[test]

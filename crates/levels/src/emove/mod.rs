@@ -142,8 +142,7 @@ impl<'d> Process<TaskData<'d>> for Emove {
         outputs: &mut EmoveOutputs,
     ) {
         let state = &mut self.state;
-        let is_refused = state.execution.rows.decided.is_some_and(|row| row.table == number::RECORDS);
-        if state.execution.accepted(seen.asked) && !is_refused {
+        if state.execution.accepted(seen.asked, &[number::ACCEPT, number::RECORDS]) {
             state.motion.publish_route(outputs);
         }
         state.act(action, seen, inputs, outputs);

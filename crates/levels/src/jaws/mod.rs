@@ -59,7 +59,7 @@ use rcs_core::table::Table;
 
 use self::{
     state::State,
-    tables::{Action, StateVariables},
+    tables::{Action, StateVariables, number},
 };
 
 /// The process of a gripper that opens and closes.
@@ -103,7 +103,7 @@ impl<K: JawsKind, Data: ?Sized> Process<Data> for Jaws<K> {
         outputs: &mut JawsOutputs,
     ) {
         let state = &mut self.state;
-        if state.execution.accepted(seen.request.asked) {
+        if state.execution.accepted(seen.request.asked, &[number::ACCEPT]) {
             state.size = seen.size;
         }
         state.act(action, seen);

@@ -95,7 +95,7 @@ impl<'d> Process<TaskData<'d>> for Prim {
         outputs: &mut PrimOutputs,
     ) {
         let state = &mut self.state;
-        if state.execution.accepted(seen.request.asked) {
+        if state.execution.accepted(seen.request.asked, &[number::ACCEPT]) {
             state.begin(outputs);
         }
         state.act(action, seen, inputs, outputs);

@@ -93,7 +93,7 @@ impl<'d> Process<TaskData<'d>> for Subtask {
         outputs: &mut SubtaskOutputs,
     ) {
         let state = &mut self.state;
-        if state.execution.accepted(seen.asked) {
+        if state.execution.accepted(seen.asked, &[number::ACCEPT]) {
             state.publish_poses(outputs);
         }
         state.act(action, seen, inputs, outputs);

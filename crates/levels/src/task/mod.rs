@@ -90,8 +90,7 @@ impl<'d> Process<TaskData<'d>> for Task {
         outputs: &mut TaskOutputs,
     ) {
         let state = &mut self.state;
-        let is_refused = state.execution.rows.decided.is_some_and(|row| row.table == number::PRECONDITION);
-        if state.execution.accepted(seen.asked) && !is_refused {
+        if state.execution.accepted(seen.asked, &[number::ACCEPT, number::PRECONDITION]) {
             state.begin(&seen.plan, inputs, outputs);
         }
         outputs.confirmed = state.confirmed;

@@ -128,7 +128,7 @@ impl<Data: ?Sized> Process<Data> for Table {
         outputs: &mut TableOutputs,
     ) {
         let (state, sensors) = (&mut self.state, &inputs.external.devices.pedestal);
-        if state.execution.accepted(seen.request.asked) {
+        if state.execution.accepted(seen.request.asked, &[number::ACCEPT]) {
             state.since = inputs.tick;
         }
         state.act(action, sensors, inputs.tick);

@@ -87,7 +87,7 @@ pub(super) fn look_up(
         return None;
     }
     let mut names = Names { data, findings };
-    let [source, destination, end_at] = sites(command);
+    let [source, destination, end_at] = named_locations(command);
     Some(Visits {
         source: names.visit(&source),
         destination: names.visit(&destination),
@@ -103,13 +103,13 @@ pub(super) fn names(command: &HwsCommand, data: &TaskData<'_>, findings: &mut Ve
         findings.push(unfound.of(object, [Field::Object; 2]));
     }
     let mut names = Names { data, findings };
-    for site in sites(command) {
-        names.location(&site);
+    for named in named_locations(command) {
+        names.location(&named);
     }
 }
 
 /// A location of a command, with the object that is handled there.
-struct Site {
+struct NamedLocation {
     name: Option<Name16>,
     sector: Option<i32>,
     object: Option<Name16>,
@@ -118,16 +118,16 @@ struct Site {
     fields: [Field; 3],
 }
 
-fn sites(command: &HwsCommand) -> [Site; 3] {
+fn named_locations(command: &HwsCommand) -> [NamedLocation; 3] {
     [
-        Site {
+        NamedLocation {
             name: command.source,
             sector: command.source_sector,
             object: command.object,
             grip: command.source_grip,
             fields: [Field::Source, Field::SourceSector, Field::SourceGrip],
         },
-        Site {
+        NamedLocation {
             name: command.destination,
             sector: command.destination_sector,
             object: command.object,
@@ -135,7 +135,7 @@ fn sites(command: &HwsCommand) -> [Site; 3] {
             fields: [Field::Destination, Field::DestinationSector, Field::DestinationGrip],
         },
         // The robot ends there without the object.
-        Site {
+        NamedLocation {
             name: command.end_at,
             sector: command.end_at_sector,
             object: None,
@@ -152,16 +152,16 @@ struct Names<'c, 'd> {
 
 impl Names<'_, '_> {
     /// A location with its sector.
-    fn location(&mut self, site: &Site) -> Option<Location> {
-        let [field, of_sector, _] = site.fields;
-        let Some(name) = &site.name else {
-            if let Some(sector) = site.sector {
+    fn location(&mut self, named: &NamedLocation) -> Option<Location> {
+        let [field, of_sector, _] = named.fields;
+        let Some(name) = &named.name else {
+            if let Some(sector) = named.sector {
                 let message = format!("sector {sector} of no location");
                 self.findings.push(finding(of_sector, "job.sector", message, None));
             }
             return None;
         };
-        match find_location(self.data, name, site.sector, site.object.as_ref()) {
+        match find_location(self.data, name, named.sector, named.object.as_ref()) {
             Ok(location) => Some(location),
             Err(unfound) => {
                 self.findings.push(unfound.of(name, [field, of_sector]));
@@ -171,12 +171,12 @@ impl Names<'_, '_> {
     }
 
     /// A location with its sector, and with the object if its grip is known there.
-    fn visit(&mut self, site: &Site) -> Option<Visit> {
-        let location = self.location(site)?;
-        let [field, _, of_grip] = site.fields;
-        let given = site.object.filter(|_| site.grip != 0);
-        let object = given.filter(|object| self.has_grip(object, site.grip, &location, of_grip));
-        Some(Visit { location, object: object.map(|object| (object, site.grip)), field })
+    fn visit(&mut self, named: &NamedLocation) -> Option<Visit> {
+        let location = self.location(named)?;
+        let [field, _, of_grip] = named.fields;
+        let given = named.object.filter(|_| named.grip != 0);
+        let object = given.filter(|object| self.has_grip(object, named.grip, &location, of_grip));
+        Some(Visit { location, object: object.map(|object| (object, named.grip)), field })
     }
 
     /// True if an object has a grip at a location; otherwise it is reported.
