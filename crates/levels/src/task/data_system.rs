@@ -2,16 +2,16 @@
 //!
 //! While no Data System is connected, Task sends no updates and does not wait. Once connected, Task sends an update
 //! after each completed move from or to the MBD, and after the release of an object that the data base has as held by
-//! the robot. An update that is not accepted is kept, also when another command replaces the one that sent it. So is
-//! one of an object whose release has outlived its command. What is kept is sent before the next object is moved, at
+//! the robot. An update that is not accepted is pending, also when another command replaces the one that sent it, and
+//! when the object was released after its command had ended. Pending updates are sent before the next object is moved, at
 //! the end of a POSITION or RELEASE-TOOL, or at the end of the next STARTUP, so that the data base is never more than
-//! one command behind. With DB-DONE (Figure IV.1) each command is sent once and taken as done: the data base may lack
+//! one command behind. With DB-DONE (Figure IV.1) each command is sent once and counts as done: the data base may lack
 //! it.
 
 use interfaces::{
     DataBaseCommand, DataBaseStatus, ExternalInputs, TaskOutputs,
     data_base::{Carried, Connection, DataBaseBeliefs, DataBaseReport, DataBaseVerb, KEPT_UPDATES},
-    emove::PlacedObject,
+    emove::{Holding, PlacedObject},
     hws::Ledger,
     subtask::{SubtaskStatus, SubtaskVerb},
 };
@@ -27,6 +27,8 @@ use super::{
     tables::{
         DataBase, Update,
         item::{Carrying, Following, Notice, Released, Taken, Taking, follow, take},
+        load::{Carry, Grasp, Load, Occasion, Order, PickUp, carry, pick_up},
+        pending::{Change, Event, Pending, Queue, Unsent, queue, update},
     },
 };
 use crate::held::Held;
@@ -70,16 +72,25 @@ impl DataSystem {
         }
     }
 
-    /// First in each tick: an acknowledged update is no longer pending.
+    /// Each tick, before anything else: remove an accepted update from the queue.
     pub fn observe(&mut self, status: &DataBaseStatus, tick: Tick) {
+        let [first, _] = self.beliefs.owed;
+        let is_first_sent = first
+            .is_some_and(|first| DataBaseCommand { number: self.request.number, ..first } == self.request);
+        let is_accepted = is_first_sent && self.status(status, tick) == DataBase::Done;
+        self.change(if is_accepted { Event::Accepted } else { Event::None }, None);
+    }
+
+    /// Consult QUEUE; `new` is the update of [`Event::New`].
+    fn change(&mut self, event: Event, new: Option<DataBaseCommand>) {
         let [first, second] = self.beliefs.owed;
-        let told = self.request.command == DataBaseVerb::Update
-            && first.is_some_and(|first| {
-                DataBaseCommand { number: self.request.number, ..first } == self.request
-            });
-        if told && self.status(status, tick) == DataBase::Done {
-            self.beliefs.owed = [second, None];
-        }
+        self.beliefs.owed = match queue((), &Change { event, pending: self.pending() }).action {
+            Queue::Keep => [first, second],
+            Queue::RemoveFirst => [second, None],
+            Queue::StoreFirst => [new, None],
+            Queue::StoreSecond => [first, new],
+            Queue::Clear => [None; KEPT_UPDATES],
+        };
     }
 
     /// What the Data System makes of the last command.
@@ -106,18 +117,24 @@ impl DataSystem {
         }
     }
 
-    /// The pending update.
+    /// The number of pending updates.
+    const fn pending(&self) -> Pending {
+        match self.beliefs.owed {
+            [None, _] => Pending::None,
+            [Some(_), None] => Pending::One,
+            [Some(_), Some(_)] => Pending::Two,
+        }
+    }
+
+    /// Consult UPDATE.
     #[must_use]
     pub fn update(&self, plan: &Plan) -> Update {
-        let connecting = plan.verb == TaskVerb::Startup;
-        let [owed, _] = self.beliefs.owed;
-        if owed.is_some() && (self.beliefs.connected || connecting) {
-            Update::Owed
-        } else if self.beliefs.connected && plan.update_due {
-            Update::Due
-        } else {
-            Update::None
-        }
+        let unsent = Unsent {
+            pending: self.pending(),
+            connection: self.connection(Some(plan.verb)),
+            due: if plan.update_due { Notice::Tell } else { Notice::Omit },
+        };
+        update((), &unsent).action
     }
 
     /// What the robot carried last, compared with an object.
@@ -130,24 +147,24 @@ impl DataSystem {
         }
     }
 
-    /// Write a command for the first time.
-    fn ask(&mut self, request: DataBaseCommand, tick: Tick, outputs: &mut TaskOutputs) {
+    /// Send a command for the first time.
+    fn send(&mut self, request: DataBaseCommand, tick: Tick, outputs: &mut TaskOutputs) {
         self.tries = 0;
         self.request = request;
-        self.ask_again(tick, outputs);
+        self.send_again(tick, outputs);
     }
 
-    /// Write the last command again, with a new number.
-    pub fn ask_again(&mut self, tick: Tick, outputs: &mut TaskOutputs) {
+    /// Send the last command again, with a new number.
+    pub fn send_again(&mut self, tick: Tick, outputs: &mut TaskOutputs) {
         self.tries = self.tries.saturating_add(1);
         self.request.number = self.commander.send(tick);
         outputs.data_base = self.request;
     }
 
-    /// Write a reconfiguration command: one without an item.
+    /// Send a reconfiguration command: one without an item.
     pub fn reconfigure(&mut self, command: DataBaseVerb, tick: Tick, outputs: &mut TaskOutputs) {
         (self.beliefs.connected, self.beliefs.connecting) = (false, true);
-        self.ask(DataBaseCommand { command, ..DataBaseCommand::default() }, tick, outputs);
+        self.send(DataBaseCommand { command, ..DataBaseCommand::default() }, tick, outputs);
     }
 
     /// The Data System takes commands.
@@ -191,76 +208,80 @@ impl DataSystem {
         }
     }
 
-    /// Once a tick: what the robot was sent to take is what it holds, from the order to get it on.
-    pub fn hold(&mut self, held: Option<Name16>, ledger: Option<&Ledger>) {
-        let is_sent =
-            ledger.is_some_and(|ledger| !matches!(ledger.last, SubtaskVerb::None | SubtaskVerb::GetEndeff));
-        if is_sent && held.is_some() && held == self.beliefs.taking.map(|taking| taking.item) {
-            self.beliefs.carried = self.beliefs.taking.take();
+    /// Each tick: consult PICK-UP.
+    pub fn observe_grasp(&mut self, held: Holding, ledger: Option<&Ledger>) {
+        let grasp = Grasp {
+            order: match ledger.map(|ledger| ledger.last) {
+                None | Some(SubtaskVerb::None | SubtaskVerb::GetEndeff) => Order::Before,
+                Some(_) => Order::Given,
+            },
+            held: Held::of(held, self.beliefs.taking.map(|taking| taking.item)),
+        };
+        match pick_up((), &grasp).action {
+            PickUp::Keep => {}
+            PickUp::Carry => self.beliefs.carried = self.beliefs.taking.take(),
         }
     }
 
-    /// The robot holds the object of a MOVE or an ACQUIRE, of which the data base is `told`, or is not. An ACQUIRE that
-    /// found it in the hand, taken elsewhere, leaves where that was; and without an update it keeps its serial number.
-    pub fn carry(&mut self, plan: &Plan, told: bool) {
-        let item = plan.object.unwrap_or_default();
-        let before = self.beliefs.carried.filter(|carried| carried.item == item);
-        let (location, sector) = if plan.from_elsewhere {
-            before.map_or_else(Default::default, |carried| (carried.location, carried.sector))
-        } else {
-            let site = plan.destination.site().or(plan.source.site()).unwrap_or_default();
-            (site.location, site.sector)
+    /// A command has ended or sends its update: consult CARRY about its object.
+    pub fn carry(&mut self, occasion: Occasion, plan: &Plan, held: Held) {
+        let load = Load {
+            occasion,
+            verb: plan.verb,
+            held,
+            origin: plan.origin(),
+            carrying: plan.object.map_or(Carrying::Other, |object| self.carrying(object)),
         };
-        let known = before.filter(|carried| carried.told && !told);
-        let serial = known.map_or(plan.serial, |carried| carried.serial);
-        self.beliefs.carried =
-            Some(Carried { item, serial, location, sector, told: told || known.is_some() });
+        let (item, serial) = (plan.object.unwrap_or_default(), plan.serial);
+        let site = plan.destination.site().or(plan.source.site()).unwrap_or_default();
+        let here = Carried { item, serial, location: site.location, sector: site.sector, told: false };
+        let before = self.beliefs.carried.filter(|carried| carried.item == item);
+        let there = before.unwrap_or_default();
+        self.beliefs.carried = match carry((), &load).action {
+            Carry::Keep => return,
+            Carry::Drop => self.beliefs.carried.filter(|_| before.is_none()),
+            Carry::Note => Some(here),
+            Carry::Follow => Some(Carried { told: true, ..here }),
+            Carry::KeepSerial => Some(Carried { serial: there.serial, told: true, ..here }),
+            Carry::KeepPlace => Some(Carried { location: there.location, sector: there.sector, ..here }),
+        };
     }
 
-    /// REPORT-ITEM (IX.2): write where the object of a command now is, and keep it until it is taken.
-    pub fn tell(&mut self, plan: &Plan, in_hand: bool, tick: Tick, outputs: &mut TaskOutputs) {
+    /// REPORT-ITEM (IX.2): send where the object of a command now is; the update is pending until it is accepted.
+    pub fn report_item(&mut self, plan: &Plan, held: Held, tick: Tick, outputs: &mut TaskOutputs) {
+        self.carry(Occasion::Update, plan, held);
         let (position, sector) = match plan.destination.site() {
-            Some(site) if !in_hand => (site.location, site.sector),
+            Some(site) if held != Held::Right => (site.location, site.sector),
             _ => (Name10::clipped(IN_HAND), None),
         };
-        if in_hand {
-            self.carry(plan, true);
-        } else {
-            self.beliefs.carried = self.beliefs.carried.filter(|carried| Some(carried.item) != plan.object);
-        }
-        let item = plan.object.unwrap_or_default();
-        self.owe(item, plan.serial, position, sector);
-        self.tell_owed(tick, outputs);
+        self.append(plan.object.unwrap_or_default(), plan.serial, position, sector);
+        self.send_pending(tick, outputs);
     }
 
-    /// REPORT-ITEM: keep the update of what the robot carried and has let go, until it is taken.
-    pub fn owe_released(&mut self, placed: &PlacedObject) {
+    /// REPORT-ITEM: append an update about what the robot has carried and released.
+    pub fn append_released(&mut self, placed: &PlacedObject) {
         if let Some(Carried { item, serial, .. }) = self.beliefs.carried.take() {
-            self.owe(item, serial, placed.site.location, placed.site.sector);
+            self.append(item, serial, placed.site.location, placed.site.sector);
         }
     }
 
-    /// Keep an update. A full queue keeps the oldest and the newest.
-    fn owe(&mut self, item: Name16, serial: Name16, position: Name10, sector: Option<i32>) {
+    fn append(&mut self, item: Name16, serial: Name16, position: Name10, sector: Option<i32>) {
         let command = DataBaseVerb::Update;
-        let update = Some(DataBaseCommand { number: 0, command, item, serial, position, sector });
-        self.beliefs.owed = match self.beliefs.owed {
-            [None, _] => [update, None],
-            [first, _] => [first, update],
-        };
+        self.change(Event::New, Some(DataBaseCommand { number: 0, command, item, serial, position, sector }));
     }
 
-    /// Write the oldest update that has not been taken.
-    pub fn tell_owed(&mut self, tick: Tick, outputs: &mut TaskOutputs) {
+    /// Send the oldest pending update.
+    pub fn send_pending(&mut self, tick: Tick, outputs: &mut TaskOutputs) {
         let [first, _] = self.beliefs.owed;
         if let Some(update) = first {
-            self.ask(update, tick, outputs);
+            self.send(update, tick, outputs);
         }
     }
 
-    /// The Data System is disconnected, and pending updates are dropped.
+    /// The Data System is disconnected; pending updates are dropped.
     pub fn disconnect(&mut self, tick: Tick, outputs: &mut TaskOutputs) {
-        (self.beliefs.owed, self.beliefs.taking, self.beliefs.carried) = ([None; KEPT_UPDATES], None, None);
+        self.change(Event::Discard, None);
+        (self.beliefs.taking, self.beliefs.carried) = (None, None);
         self.reconfigure(DataBaseVerb::Abort, tick, outputs);
         self.beliefs.connecting = false;
     }

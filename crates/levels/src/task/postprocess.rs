@@ -15,9 +15,12 @@ use super::{
     ledger::opened,
     plan::{Plan, PlanSite, TaskVerb},
     state::State,
-    tables::{Action, Ordered, StateVariables, Takeover, joystick::Control},
+    tables::{Action, Ordered, StateVariables, Takeover, joystick::Control, load::Occasion},
 };
-use crate::execution::{Outcome, Report};
+use crate::{
+    execution::{Outcome, Report},
+    held::Held,
+};
 
 impl State {
     /// Take over a command that was accepted, and give its poses new record numbers: T-POSE-1 source,
@@ -101,17 +104,17 @@ impl State {
             }
             Action::ConnectAndTell => {
                 self.data_system.connect();
-                self.order().tell_owed(tick, outputs);
+                self.order().send_pending(tick, outputs);
             }
-            Action::TellOwed => self.order().tell_owed(tick, outputs),
-            Action::AskAgain => self.order().ask_again(tick, outputs),
-            Action::Update => self.tell(inputs, outputs),
+            Action::TellOwed => self.order().send_pending(tick, outputs),
+            Action::AskAgain => self.order().send_again(tick, outputs),
+            Action::Update => self.report_item(inputs, outputs),
             Action::UpdateAndGotoEndpt => {
-                self.tell(inputs, outputs);
+                self.report_item(inputs, outputs);
                 self.send(SubtaskVerb::GotoEndpt, &plan.end_at, inputs, outputs);
             }
             Action::TellOwedAndPosition => {
-                self.data_system.tell_owed(tick, outputs);
+                self.data_system.send_pending(tick, outputs);
                 self.send(SubtaskVerb::Position, plan.position_site(), inputs, outputs);
             }
             Action::AwaitUpdate => self.ordered = Ordered::DataSystem,
@@ -125,11 +128,9 @@ impl State {
 
     /// The command is finished.
     fn finish(&mut self, inputs: &Inputs<'_, TaskData<'_>>, outputs: &mut TaskOutputs) {
-        let (plan, below) = (self.plan, &inputs.memory.subtask.status);
-        let carries = matches!(plan.verb, TaskVerb::Move | TaskVerb::Acquire);
-        if carries && plan.object.is_some() && plan.object == below.held.object() {
-            self.data_system.carry(&plan, false);
-        }
+        let plan = self.plan;
+        let held = Held::of(inputs.memory.subtask.status.held, plan.object);
+        self.data_system.carry(Occasion::Finish, &plan, held);
         if self.is_in_ledger(outputs) {
             outputs.ledger = None;
             self.data_system.beliefs.taking = None;
@@ -148,16 +149,15 @@ impl State {
         &mut self.data_system
     }
 
-    /// Tell the data base where the object now is.
-    fn tell(&mut self, inputs: &Inputs<'_, TaskData<'_>>, outputs: &mut TaskOutputs) {
-        let below = &inputs.memory.subtask.status;
-        let in_hand = below.held.is_held() && self.plan.object == below.held.object();
+    /// REPORT-ITEM: send where the object now is.
+    fn report_item(&mut self, inputs: &Inputs<'_, TaskData<'_>>, outputs: &mut TaskOutputs) {
+        let held = Held::of(inputs.memory.subtask.status.held, self.plan.object);
         self.plan.update_due = false;
         if let Some(ledger) = &mut outputs.ledger {
             ledger.told = true;
         }
         let plan = self.plan;
-        self.order().tell(&plan, in_hand, inputs.tick, outputs);
+        self.order().report_item(&plan, held, inputs.tick, outputs);
     }
 
     /// A command to Subtask for the object of the plan at one of its locations.

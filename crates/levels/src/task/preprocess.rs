@@ -40,7 +40,7 @@ impl State {
         self.data_system.observe(data_base, inputs.tick);
         let (arrival, asked) = self.execution.observe(inputs.tick, command.number);
         let (below, ledger) = (&inputs.memory.subtask.status, inputs.memory.task.ledger.as_ref());
-        self.data_system.hold(below.held.object(), ledger);
+        self.data_system.observe_grasp(below.held, ledger);
         self.note_support(inputs);
         let (plan, request, preconditions) = if asked == Asked::Now {
             self.ordered = Ordered::Nothing;
@@ -149,7 +149,7 @@ impl State {
         };
         match released((), &place).action {
             Release::Keep => {}
-            Release::Append => self.data_system.owe_released(&placed),
+            Release::Append => self.data_system.append_released(&placed),
         }
     }
 

@@ -7,9 +7,11 @@ pub mod acquire_tool;
 pub mod insert_tool;
 pub mod item;
 pub mod joystick;
+pub mod load;
 pub mod mov;
 pub mod ordered;
 pub mod pause;
+pub mod pending;
 pub mod position;
 pub mod precondition;
 pub mod refixture;
@@ -270,7 +272,8 @@ commands! {
     /// Consult the table of a command.
     pub fn of_command(TaskVerb, enum Step, Situation) -> Action {
         others: EXECUTE, accept::ACCEPT, HALT, joystick::JOYSTICK, ordered::ORDERED, CONFIRM,
-            precondition::PRECONDITION, item::UPDATE_DUE, item::FOLLOW, item::TAKE, item::RELEASED;
+            precondition::PRECONDITION, item::UPDATE_DUE, item::FOLLOW, item::TAKE, item::RELEASED,
+            load::PICK_UP, load::CARRY, pending::QUEUE, pending::UPDATE;
         before: EXECUTE, JOYSTICK by joystick, HALT, ACCEPT(request), PRECONDITION(preconditions),
             ORDERED(subordinates -> situation.work);
         after: CONFIRM;

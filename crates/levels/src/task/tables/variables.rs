@@ -1,6 +1,6 @@
 //! The values of the state variables of Task.
 
-use rcs_core::Plain;
+use rcs_core::{Actions, Plain};
 
 /// Where the robot is to be at the end.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
@@ -28,15 +28,15 @@ pub enum DataBase {
     Silent,
 }
 
-/// Pending update of the data base.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+/// The update that the next order to the Data System contains.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain, Actions)]
 pub enum Update {
-    /// None: the object is not moved from or to the MBD, its move has been told, or no Data System is
-    /// connected (DB-DONE, IV.3.2).
+    /// None: the object is not moved from or to the MBD, its move was reported, or no Data System is connected (DB-DONE,
+    /// IV.3.2).
     None,
-    /// The move of this command, from or to the MBD, is to be told once it is made.
+    /// The move of this command, from or to the MBD, when it is completed.
     Due,
-    /// An update was told and has not been taken yet.
+    /// An earlier update, which is not accepted yet.
     Owed,
 }
 

@@ -1,0 +1,161 @@
+//! The object that the robot carries, as the data base knows it (docs/design/recovery.md "Data base"): when an object
+//! counts as carried, and what is noted of it when its command ends. No header names the rows.
+
+use rcs_core::{Actions, Plain, Variables, decision_table};
+
+use super::item::{Carrying, Origin};
+use crate::{held::Held, task::plan::TaskVerb};
+
+/// The orders of the command in the ledger.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Order {
+    /// None, or only GET-ENDEFF: what the gripper holds was taken by an earlier command.
+    Before,
+    /// The order to take the object, or a later one.
+    Given,
+}
+
+/// The event after which CARRY is consulted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Occasion {
+    /// The update of the command is sent.
+    Update,
+    /// The command is finished.
+    Finish,
+}
+
+/// What is done with the noted object in each tick.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Actions)]
+pub enum PickUp {
+    /// Nothing.
+    Keep,
+    /// It counts as carried.
+    Carry,
+}
+
+/// What is noted of the object of a command when the command ends.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Actions)]
+pub enum Carry {
+    /// What the robot carries stays noted.
+    Keep,
+    /// The object is no longer carried.
+    Drop,
+    /// It is carried, with the place and the serial number of the command.
+    Note,
+    /// The same, and an update follows wherever it is released.
+    Follow,
+    /// It is at the place of the command. It keeps its serial number, and an update follows wherever it is released.
+    KeepSerial,
+    /// It is carried with the serial number of the command, and keeps its place.
+    KeepPlace,
+}
+
+/// The state variables of [`PICK_UP`].
+#[derive(Clone, Copy, Debug, Variables)]
+pub struct Grasp {
+    /// The orders of the command in the ledger.
+    pub order: Order,
+    /// What the gripper holds, compared with the noted object.
+    pub held: Held,
+}
+
+/// The state variables of [`CARRY`].
+#[derive(Clone, Copy, Debug, Variables)]
+pub struct Load {
+    /// The event.
+    pub occasion: Occasion,
+    /// The command.
+    pub verb: TaskVerb,
+    /// What the gripper holds.
+    pub held: Held,
+    /// Where the object was taken.
+    pub origin: Origin,
+    /// What the robot carried last.
+    pub carrying: Carrying,
+}
+
+decision_table! {
+    /// PICK-UP: the object that TAKE has noted counts as carried when it is held, but not before the order to take it.
+    pub PICK_UP: fn pick_up(self::Grasp) -> self::PickUp {
+        1: order: Given, held: Right    => Carry;
+        2: otherwise                    => Keep;
+    }
+}
+
+decision_table! {
+    /// CARRY: what is noted of the object of a command when its update is sent, or when a MOVE or an ACQUIRE ends with the
+    /// object in the gripper. Without an update a followed object keeps its serial number. An object that an ACQUIRE found
+    /// in the gripper keeps the place where it was taken.
+    pub CARRY: fn carry(self::Load) -> self::Carry {
+        1: occasion: Update, held: Right    => Follow;
+        2: occasion: Update    => Drop;
+        3: verb: Move | Acquire, held: Right, origin: Source, carrying: Followed    => KeepSerial;
+        4: verb: Move | Acquire, held: Right, origin: Source    => Note;
+        5: verb: Move | Acquire, held: Right, carrying: Known | Other    => KeepPlace;
+        6: otherwise    => Keep;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn noted_object_is_carried_only_if_held_after_the_order() {
+        for &held in Held::ALL {
+            for &order in Order::ALL {
+                let carried = pick_up((), &Grasp { order, held }).action == PickUp::Carry;
+                assert_eq!(carried, held == Held::Right && order == Order::Given, "{held} {order}");
+            }
+        }
+    }
+
+    /// The update says that the object is released or held: its number and its place are those of the command.
+    #[test]
+    fn update_sets_the_carried_object_whatever_was_carried() {
+        for &carrying in Carrying::ALL {
+            for &held in Held::ALL {
+                let load = Load {
+                    occasion: Occasion::Update,
+                    verb: TaskVerb::Transfer,
+                    held,
+                    origin: Origin::Source,
+                    carrying,
+                };
+                let expected = if held == Held::Right { Carry::Follow } else { Carry::Drop };
+                assert_eq!(carry((), &load).action, expected, "{held} {carrying}");
+            }
+        }
+    }
+
+    #[test]
+    fn finished_command_without_its_object_in_the_gripper_changes_nothing() {
+        for &verb in TaskVerb::ALL {
+            for &held in Held::ALL {
+                let load = Load {
+                    occasion: Occasion::Finish,
+                    verb,
+                    held,
+                    origin: Origin::Source,
+                    carrying: Carrying::Known,
+                };
+                let takes = held == Held::Right && matches!(verb, TaskVerb::Move | TaskVerb::Acquire);
+                assert_eq!(carry((), &load).action == Carry::Keep, !takes, "{verb} {held}");
+            }
+        }
+    }
+
+    #[test]
+    fn followed_object_keeps_its_serial_number_and_an_acquired_one_its_place() {
+        let load = |origin, carrying| {
+            let (occasion, verb, held) = (Occasion::Finish, TaskVerb::Acquire, Held::Right);
+            carry((), &Load { occasion, verb, held, origin, carrying }).action
+        };
+        assert_eq!(load(Origin::Source, Carrying::Followed), Carry::KeepSerial);
+        assert_eq!(load(Origin::Source, Carrying::Known), Carry::Note);
+        assert_eq!(load(Origin::Source, Carrying::Other), Carry::Note);
+        assert_eq!(load(Origin::Elsewhere, Carrying::Followed), Carry::Keep);
+        assert_eq!(load(Origin::Elsewhere, Carrying::Known), Carry::KeepPlace);
+        assert_eq!(load(Origin::Elsewhere, Carrying::Other), Carry::KeepPlace);
+    }
+}

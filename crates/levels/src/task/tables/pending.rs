@@ -1,0 +1,131 @@
+//! The updates that the Data System has not accepted (IV.4.2, IX.2; docs/design/recovery.md "Data base"). No header names
+//! the rows.
+
+use interfaces::data_base::Connection;
+use rcs_core::{Actions, Plain, Variables, decision_table};
+
+use super::item::Notice;
+
+/// The number of pending updates.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Pending {
+    /// None.
+    None,
+    /// One.
+    One,
+    /// Two: the queue is full.
+    Two,
+}
+
+/// An event that changes the queue.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Event {
+    /// Nothing happens in this tick.
+    None,
+    /// The last command to the Data System contains the first update, and is done.
+    Accepted,
+    /// A new update.
+    New,
+    /// SHUTDOWN: the Data System is disconnected.
+    Discard,
+}
+
+/// A change of the queue.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Actions)]
+pub enum Queue {
+    /// None.
+    Keep,
+    /// Remove the first update; the second one becomes the first.
+    RemoveFirst,
+    /// The new update becomes the first.
+    StoreFirst,
+    /// The new update becomes the second, and replaces the one that is there.
+    StoreSecond,
+    /// Remove all updates.
+    Clear,
+}
+
+/// The state variables of [`QUEUE`].
+#[derive(Clone, Copy, Debug, Variables)]
+pub struct Change {
+    /// The event.
+    pub event: Event,
+    /// The pending updates before it.
+    pub pending: Pending,
+}
+
+/// The state variables of [`UPDATE`].
+#[derive(Clone, Copy, Debug, Variables)]
+pub struct Unsent {
+    /// The pending updates.
+    pub pending: Pending,
+    /// Is the Data System connected?
+    pub connection: Connection,
+    /// The update of the current command.
+    pub due: Notice,
+}
+
+decision_table! {
+    /// QUEUE: the pending updates. A full queue keeps the oldest one, which may have been sent, and the newest one, which
+    /// says where the object is now.
+    pub QUEUE: fn queue(self::Change) -> self::Queue {
+        1: event: None                       => Keep;
+        2: event: Accepted                   => RemoveFirst;
+        3: event: New, pending: None         => StoreFirst;
+        4: event: New, pending: One | Two    => StoreSecond;
+        5: event: Discard                    => Clear;
+    }
+}
+
+decision_table! {
+    /// UPDATE: the update that the next order to the Data System contains. Pending updates come first, also at the end of a
+    /// STARTUP.
+    pub UPDATE: fn update(self::Unsent) -> super::Update {
+        1: pending: One | Two, connection: Open | Opening    => Owed;
+        2: connection: Open, due: Tell                       => Due;
+        3: otherwise                                         => None;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A queue of any length is the model: of it, Task keeps the oldest and the newest update.
+    #[test]
+    fn full_queue_keeps_the_oldest_and_the_newest_update() {
+        let (mut kept, mut model) = ([None; 2], Vec::new());
+        let events =
+            [Event::New, Event::New, Event::New, Event::None, Event::Accepted, Event::New, Event::Accepted];
+        for (number, event) in
+            events.into_iter().cycle().take(70).chain([Event::New, Event::Discard]).enumerate()
+        {
+            let pending = match kept.iter().flatten().count() {
+                0 => Pending::None,
+                1 => Pending::One,
+                _ => Pending::Two,
+            };
+            match event {
+                Event::None => {}
+                Event::New => model.push(number),
+                Event::Accepted => drop(model.remove(0)),
+                Event::Discard => model.clear(),
+            }
+            if model.len() > 2 {
+                model.remove(1);
+            }
+            kept = match (queue((), &Change { event, pending }).action, kept) {
+                (Queue::Keep, kept) => kept,
+                (Queue::RemoveFirst, [_, second]) => [second, None],
+                (Queue::StoreFirst, [first, _]) => {
+                    assert_eq!(first, None);
+                    [Some(number), None]
+                }
+                (Queue::StoreSecond, [first, _]) => [first, Some(number)],
+                (Queue::Clear, _) => [None; 2],
+            };
+            assert_eq!(kept.into_iter().flatten().collect::<Vec<_>>(), model, "{number}: {event:?}");
+        }
+        assert_eq!(kept, [None; 2]);
+    }
+}
