@@ -2,7 +2,7 @@
 
 use core::fmt;
 
-use rcs_core::{Plain, handshake::Lower};
+use rcs_core::{Actions, Plain, handshake::Lower};
 
 use super::words::Inches;
 use crate::{Header, Reason, device::GripValves};
@@ -75,7 +75,7 @@ impl GripReport {
 ///
 /// While a process is dormant it stays what it was, and the header says that the outputs were republished: it
 /// counts only for the gripper that is on the robot.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain, Actions)]
 pub enum Felt {
     /// The sensors cannot tell: they are not calibrated, implausible, or have not settled. Counts as held.
     NotKnown,

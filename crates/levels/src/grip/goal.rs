@@ -4,7 +4,10 @@ use geometry::units::inches;
 use interfaces::grip::{GripCommand, GripVerb};
 use rcs_core::Plain;
 
-use super::tables::{Command, Flow};
+use super::tables::{
+    Command, Flow,
+    command::{Acceptance, Commanded, TargetOpening, command},
+};
 use crate::execution::Course;
 
 /// Opening at the closed end of travel, in (VIII.9.1: a closed gripper has 0.10 in).
@@ -62,18 +65,14 @@ impl Goal {
         }
     }
 
-    /// What EXECUTE and ACCEPT leave of the command.
+    /// Consult COMMAND.
     pub(super) fn command(&self, course: Course, accepted: bool) -> Command {
-        match course {
-            Course::Rest => Command::Nothing,
-            Course::Begin | Course::Continue if accepted => match self.verb {
-                GripVerb::OpenGrip if self.opening >= OPEN_END => Command::OpenWide,
-                GripVerb::None => Command::Refused,
-                GripVerb::Pause => Command::Pause,
-                GripVerb::UpInit => Command::UpInit,
-                GripVerb::Position | GripVerb::OpenGrip | GripVerb::CloseGrip => Command::Motion,
-            },
-            Course::Refuse | Course::Begin | Course::Continue => Command::Refused,
-        }
+        let commanded = Commanded {
+            course,
+            acceptance: if accepted { Acceptance::Accepted } else { Acceptance::Refused },
+            verb: self.verb,
+            target: if self.opening >= OPEN_END { TargetOpening::OpenEnd } else { TargetOpening::Narrower },
+        };
+        command((), &commanded).action
     }
 }

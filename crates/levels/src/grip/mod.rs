@@ -44,17 +44,17 @@
 //! * [`state`]: the state;
 //! * [`goal`]: what a command asks of the fingers;
 //! * [`calibration`]: from counts to inches and pounds;
-//! * [`felt`]: what is between the fingers, as the sensors tell it;
+//! * [`presence`]: what is between the fingers;
 //! * [`preprocess`]: the state variables;
 //! * [`tables`]: the decision tables, one file per command;
 //! * [`postprocess`]: valves and status.
 
 pub mod calibration;
-pub mod felt;
 pub mod goal;
 pub mod goals;
 pub mod postprocess;
 pub mod preprocess;
+pub mod presence;
 pub mod servoed;
 pub mod state;
 pub mod tables;

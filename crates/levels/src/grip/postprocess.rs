@@ -90,7 +90,7 @@ impl State {
     fn calibrate(&mut self) {
         let free = self.take_readings();
         self.calibration = Some(calibration(&self.closed, &self.open, &free));
-        self.feel_nothing();
+        self.set_empty();
     }
 
     /// The outputs of this tick.

@@ -13,13 +13,14 @@ use rcs_core::{
 
 use super::{
     calibration::{Steady, is_plausible, value},
-    felt::{self, CONTACT, MISSED_AT_END},
     goal::{CLOSED_END, Goal},
+    presence::{self, CONTACT, MISSED_AT_END},
     servoed::Servoed,
     state::{Sensed, State, WINDOW},
     tables::{
         Addressee, Calibrating, Clock, Command, Flow, Grasp, Gripper, Measured, Motion, Opening, Phase,
         Reach, Request, Rest, Sensors, Situation, StateVariables, Step,
+        command::{Adoption, Beginning, StartBuffer, Started, Written, start},
     },
 };
 use crate::execution::{Asked, Outcome};
@@ -78,7 +79,7 @@ impl State {
         let before = self.sensed.map(|sensed| sensed.last);
         self.sample(gripper, &sensors);
         let measured = self.measure();
-        self.feel(before.as_ref(), &measured);
+        self.detect(before.as_ref(), &measured);
         let step = if arrival == Arrival::New { Step::Start } else { self.step };
         self.count(arrival, step, &measured, inputs.tick);
         StateVariables {
@@ -106,8 +107,7 @@ impl State {
         }
     }
 
-    /// Read the command number, and find out where the calibration begins with a process that starts or
-    /// wakes: one that has written a calibration before a restart adopts it.
+    /// Read the command number. When the process starts or wakes, consult START.
     fn observe(
         &mut self,
         (tick, number): (Tick, u32),
@@ -121,19 +121,23 @@ impl State {
         }
         let starting = !self.execution.receiver.started;
         let (arrival, asked) = self.execution.observe(tick, number);
-        if starting && self.phase != Phase::Valid {
-            let attached = gripper == Gripper::Attached;
-            self.phase = if let Some(calibration) = outputs.calibration {
-                self.calibration = Some(calibration);
-                Phase::Adopting
-            } else if woken && attached && self.is_calibrating() {
-                // It became dormant before E-move knew which gripper is on: begin again.
-                Phase::Missing
-            } else if woken || !attached || self.execution.receiver.adopted {
-                Phase::Deferred
-            } else {
-                self.phase
+        if starting {
+            let started = Started {
+                beginning: if woken { Beginning::Wake } else { Beginning::Start },
+                written: if outputs.calibration.is_some() { Written::Calibration } else { Written::Nothing },
+                gripper,
+                buffer: if self.execution.receiver.adopted {
+                    StartBuffer::Command
+                } else {
+                    StartBuffer::Empty
+                },
             };
+            let decision = start(self.phase, &started);
+            self.phase = decision.next;
+            match decision.action {
+                Adoption::Keep => {}
+                Adoption::Adopt => self.calibration = outputs.calibration,
+            }
         }
         (arrival, asked)
     }
@@ -191,7 +195,7 @@ impl State {
     /// Do the sensors agree with the calibration?
     fn sensors(&self, measured: &Measured) -> Sensors {
         match (&self.calibration, &self.sensed) {
-            (Some(_), Some(sensed)) if felt::is_plausible(&sensed.last, measured) => Sensors::Plausible,
+            (Some(_), Some(sensed)) if presence::is_plausible(&sensed.last, measured) => Sensors::Plausible,
             _ => Sensors::Implausible,
         }
     }

@@ -4,7 +4,7 @@ use interfaces::{
     device::GripSensors,
     grip::{Calibration, Felt},
 };
-use rcs_core::{Plain, tick::Tick};
+use rcs_core::{Actions, Plain, tick::Tick};
 
 use super::{
     calibration::{Readings, Steady},
@@ -26,9 +26,9 @@ pub struct Sensed {
 }
 
 /// What the fingers touch in a tick.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain, Actions)]
 pub enum Touch {
-    /// Nothing can be said: one finger touches, or both do and move.
+    /// Not certain: one finger touches, or both do while they move.
     Unclear,
     /// Neither finger touches anything, or they touch each other.
     Free,

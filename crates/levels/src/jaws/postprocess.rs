@@ -10,36 +10,44 @@ use rcs_core::tick::Tick;
 
 use super::{
     state::State,
-    tables::{Action, Gripper, StateVariables},
+    tables::{
+        Action, Gripper, StateVariables,
+        valves::{Air, Supply, valves},
+    },
 };
 use crate::execution::Outcome;
 
 impl State {
-    /// Carry out what a row asks for. Air stays on when the fingers have arrived: a part is held as long as
-    /// they press. Without the gripper there is none; id pins that have lost their contact leave it as it is.
+    /// Carry out the action of a row, and consult VALVES.
     pub(super) fn act(&mut self, action: Action, seen: &StateVariables) {
-        const NONE: JawValves = JawValves { open: false, close: false };
-        match action {
-            Action::Close | Action::Open | Action::Wait => {}
+        let set = match action {
+            Action::Close => Air::Close,
+            Action::Open => Air::Open,
+            Action::Wait => Air::Keep,
             Action::Report(report) => {
                 self.found = Some(report);
                 self.execution.finish();
+                Air::Keep
             }
             Action::Wrong(report) => {
                 self.found = Some(report);
                 self.execution.fail(Reason::JawsStuck);
+                Air::Keep
             }
-            Action::Refuse(reason) | Action::Fail(reason) => self.execution.fail(reason),
-        }
-        let air = match (seen.situation.gripper, action) {
-            _ if seen.has_gone => NONE,
-            (Gripper::Attached, Action::Fail(_)) => NONE,
-            (Gripper::Attached, Action::Close) => JawValves { close: true, ..NONE },
-            (Gripper::Attached, Action::Open) => JawValves { open: true, ..NONE },
-            (Gripper::Detached, _)
-            | (Gripper::Attached, Action::Wait | Action::Report(_) | Action::Wrong(_) | Action::Refuse(_)) => {
-                self.valves
+            Action::Refuse(reason) => {
+                self.execution.fail(reason);
+                Air::Keep
             }
+            Action::Fail(reason) => {
+                self.execution.fail(reason);
+                Air::Off
+            }
+        };
+        let air = match valves((), &Supply { mated: seen.mated, set }).action {
+            Air::Keep => self.valves,
+            Air::Off => JawValves { open: false, close: false },
+            Air::Close => JawValves { open: false, close: true },
+            Air::Open => JawValves { open: true, close: false },
         };
         if air != self.valves {
             (self.valves, self.air_ticks) = (air, 0);

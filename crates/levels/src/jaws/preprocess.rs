@@ -10,7 +10,11 @@ use rcs_core::{
 use super::{
     kind::{JawsKind, Parameters},
     state::{State, WINDOW},
-    tables::{Addressee, Gripper, Motion, Request, Situation, Size, StateVariables, Stop},
+    tables::{
+        Addressee, Gripper, Motion, Request, Situation, Size, StateVariables, Stop,
+        presence::{Closing, JawReading, JawTravel, Settling, presence},
+        valves::Mated,
+    },
 };
 
 /// Counts of the potentiometer at opening 0. ASSUMED; all grippers use the same connections (III.3.7,
@@ -76,7 +80,7 @@ impl State {
                 gripper,
             },
             situation: Situation { gripper, motion, stop, size: self::size(opening, size) },
-            has_gone: has_gone(&devices.quick_change, &K::PARAMETERS),
+            mated: mated(&devices.quick_change, &K::PARAMETERS),
             felt: self.felt(motion, stop, opening, &K::PARAMETERS),
             size,
             opening,
@@ -111,22 +115,18 @@ impl State {
             Motion::Moving
         }
     }
-}
 
-impl State {
-    /// What is between the fingers, by the potentiometer alone (VI.4 has no force sensors): something, if the fingers
-    /// rest between the ends of their travel. At an end they hold nothing, although an object as small as the opening
-    /// of closed fingers reads the same. Fingers that seem to rest open while the valves close them have no air, or
-    /// their potentiometer is stuck: they may close on something at any time.
+    /// Consult PRESENCE.
     fn felt(&self, motion: Motion, stop: Stop, opening: f64, parameters: &Parameters) -> Felt {
         let settled = motion == Motion::Stopped && self.attached_ticks >= SETTLED_TICKS;
-        match stop {
-            _ if !settled => Felt::NotKnown,
-            Stop::Opened if self.valves.close => Felt::NotKnown,
-            Stop::Closed | Stop::Opened => Felt::Nothing,
-            Stop::Between if (parameters.closed..=parameters.opened).contains(&opening) => Felt::Something,
-            Stop::Between => Felt::NotKnown,
-        }
+        let is_within = (parameters.closed..=parameters.opened).contains(&opening);
+        let reading = JawReading {
+            readings: if settled { Settling::Settled } else { Settling::Unsettled },
+            stop,
+            travel: if is_within { JawTravel::Within } else { JawTravel::Beyond },
+            closing: Closing::from(self.valves),
+        };
+        presence((), &reading).action
     }
 }
 
@@ -143,10 +143,10 @@ fn gripper(quick_change: &QuickChangeSensors, parameters: &Parameters) -> Grippe
     }
 }
 
-/// The ring is not locked, or on another gripper. Id pins without contact on a locked ring say nothing of the gripper.
-fn has_gone(quick_change: &QuickChangeSensors, parameters: &Parameters) -> bool {
+fn mated(quick_change: &QuickChangeSensors, parameters: &Parameters) -> Mated {
     let id = quick_change.end_effector_id;
-    !quick_change.locked || quick_change.unlocked || (matches!(id, 1..=3) && id != parameters.end_effector_id)
+    let is_other = matches!(id, 1..=3) && id != parameters.end_effector_id;
+    if !quick_change.locked || quick_change.unlocked || is_other { Mated::Gone } else { Mated::Possible }
 }
 
 fn addressee(command: &JawsCommand, parameters: &Parameters) -> Addressee {

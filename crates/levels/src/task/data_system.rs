@@ -27,7 +27,7 @@ use super::{
     tables::{
         DataBase, Update,
         item::{Carrying, Following, Notice, Released, Taken, Taking, follow, take},
-        load::{Carry, Grasp, Load, Occasion, Order, PickUp, carry, pick_up},
+        load::{Carry, Load, NotedObject, Occasion, PickUp, TakeOrder, carry, pick_up},
         pending::{Change, Event, Pending, Queue, Unsent, queue, update},
     },
 };
@@ -210,14 +210,14 @@ impl DataSystem {
 
     /// Each tick: consult PICK-UP.
     pub fn observe_grasp(&mut self, held: Holding, ledger: Option<&Ledger>) {
-        let grasp = Grasp {
+        let noted = NotedObject {
             order: match ledger.map(|ledger| ledger.last) {
-                None | Some(SubtaskVerb::None | SubtaskVerb::GetEndeff) => Order::Before,
-                Some(_) => Order::Given,
+                None | Some(SubtaskVerb::None | SubtaskVerb::GetEndeff) => TakeOrder::Before,
+                Some(_) => TakeOrder::Given,
             },
             held: Held::of(held, self.beliefs.taking.map(|taking| taking.item)),
         };
-        match pick_up((), &grasp).action {
+        match pick_up((), &noted).action {
             PickUp::Keep => {}
             PickUp::Carry => self.beliefs.carried = self.beliefs.taking.take(),
         }

@@ -3,8 +3,10 @@
 
 pub mod accept;
 pub mod close_grip;
+pub mod command;
 pub mod pause;
 pub mod position;
+pub mod presence;
 pub mod servo;
 pub mod up_init;
 
@@ -80,7 +82,7 @@ pub enum Gripper {
 }
 
 /// The command that is being executed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain, Actions)]
 pub enum Command {
     /// None: nothing was commanded yet, or it has ended.
     Nothing,
@@ -327,7 +329,8 @@ pub enum Action {
 commands! {
     /// Consult the table of a command.
     pub fn of_command(GripVerb, Step, Situation) -> Action {
-        others: EXECUTE, accept::ACCEPT, up_init::UP_INIT, up_init::CALIBRATION;
+        others: EXECUTE, accept::ACCEPT, up_init::UP_INIT, up_init::CALIBRATION, command::COMMAND,
+            command::START, presence::TOUCH, presence::PRESENCE;
         Position | OpenGrip: goals::OPENING => servo::servo then position::position;
         CloseGrip: goals::FORCE             => servo::servo then close_grip::close_grip;
         None | Pause: goals::REST           => pause::pause;

@@ -3,11 +3,11 @@
 use rcs_core::decision_table;
 
 decision_table! {
-    /// AIR: fingers that have air are waited for until they stop. Without the gripper, or if they never stop,
-    /// there is no air.
+    /// AIR: the command waits until fingers with air stop. It fails without the gripper, and if the fingers never stop;
+    /// then there is no air.
     pub AIR: fn air(super::Step, super::Situation) -> super::Action or () {
         any {
-            1: gripper: Detached  => Fail(WrongGripper);
+            1: gripper: Detached  => Refuse(WrongGripper);
         }
         Start {
             2: otherwise          => consult;

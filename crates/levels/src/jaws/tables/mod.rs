@@ -5,7 +5,9 @@ pub mod accept;
 pub mod air;
 pub mod grasp;
 pub mod pause;
+pub mod presence;
 pub mod release;
+pub mod valves;
 
 use interfaces::{
     Reason,
@@ -14,6 +16,7 @@ use interfaces::{
 };
 use rcs_core::{Actions, Plain, Variables, commands, handshake::Arrival};
 
+use self::valves::Mated;
 use super::goals;
 use crate::execution::{Asked, EXECUTE};
 
@@ -112,8 +115,8 @@ pub struct StateVariables {
     pub request: Request,
     /// The state variables of the command's table.
     pub situation: Situation,
-    /// The ring is open, or on another gripper: there is no use for air.
-    pub has_gone: bool,
+    /// The gripper on the ring.
+    pub mated: Mated,
     /// What is between the fingers.
     pub felt: Felt,
     /// `commanded-size` that counts once the command is accepted, 0.01 in.
@@ -147,7 +150,7 @@ pub enum Action {
 commands! {
     /// Consult the table of a command.
     pub fn of_command(JawsVerb, Step, Situation) -> Action {
-        others: EXECUTE, accept::ACCEPT;
+        others: EXECUTE, accept::ACCEPT, presence::PRESENCE, valves::VALVES;
         before: EXECUTE, ACCEPT(request);
         Grasp: goals::CLOSED            => air::air then grasp::grasp;
         Release | Pose: goals::OPENED   => air::air then release::release;

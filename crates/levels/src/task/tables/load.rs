@@ -8,7 +8,7 @@ use crate::{held::Held, task::plan::TaskVerb};
 
 /// The orders of the command in the ledger.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
-pub enum Order {
+pub enum TakeOrder {
     /// None, or only GET-ENDEFF: what the gripper holds was taken by an earlier command.
     Before,
     /// The order to take the object, or a later one.
@@ -52,9 +52,9 @@ pub enum Carry {
 
 /// The state variables of [`PICK_UP`].
 #[derive(Clone, Copy, Debug, Variables)]
-pub struct Grasp {
+pub struct NotedObject {
     /// The orders of the command in the ledger.
-    pub order: Order,
+    pub order: TakeOrder,
     /// What the gripper holds, compared with the noted object.
     pub held: Held,
 }
@@ -76,9 +76,9 @@ pub struct Load {
 
 decision_table! {
     /// PICK-UP: the object that TAKE has noted counts as carried when it is held, but not before the order to take it.
-    pub PICK_UP: fn pick_up(self::Grasp) -> self::PickUp {
-        1: order: Given, held: Right    => Carry;
-        2: otherwise                    => Keep;
+    pub PICK_UP: fn pick_up(self::NotedObject) -> self::PickUp {
+        1: order: Given, held: Right  => Carry;
+        2: otherwise                  => Keep;
     }
 }
 
@@ -87,12 +87,12 @@ decision_table! {
     /// object in the gripper. Without an update a followed object keeps its serial number. An object that an ACQUIRE found
     /// in the gripper keeps the place where it was taken.
     pub CARRY: fn carry(self::Load) -> self::Carry {
-        1: occasion: Update, held: Right    => Follow;
-        2: occasion: Update    => Drop;
-        3: verb: Move | Acquire, held: Right, origin: Source, carrying: Followed    => KeepSerial;
-        4: verb: Move | Acquire, held: Right, origin: Source    => Note;
-        5: verb: Move | Acquire, held: Right, carrying: Known | Other    => KeepPlace;
-        6: otherwise    => Keep;
+        1: occasion: Update, held: Right                                          => Follow;
+        2: occasion: Update                                                       => Drop;
+        3: verb: Move | Acquire, held: Right, origin: Source, carrying: Followed  => KeepSerial;
+        4: verb: Move | Acquire, held: Right, origin: Source                      => Note;
+        5: verb: Move | Acquire, held: Right, carrying: Known | Other             => KeepPlace;
+        6: otherwise                                                              => Keep;
     }
 }
 
@@ -103,9 +103,9 @@ mod tests {
     #[test]
     fn noted_object_is_carried_only_if_held_after_the_order() {
         for &held in Held::ALL {
-            for &order in Order::ALL {
-                let carried = pick_up((), &Grasp { order, held }).action == PickUp::Carry;
-                assert_eq!(carried, held == Held::Right && order == Order::Given, "{held} {order}");
+            for &order in TakeOrder::ALL {
+                let carried = pick_up((), &NotedObject { order, held }).action == PickUp::Carry;
+                assert_eq!(carried, held == Held::Right && order == TakeOrder::Given, "{held} {order}");
             }
         }
     }

@@ -69,11 +69,11 @@ decision_table! {
     /// QUEUE: the pending updates. A full queue keeps the oldest one, which may have been sent, and the newest one, which
     /// says where the object is now.
     pub QUEUE: fn queue(self::Change) -> self::Queue {
-        1: event: None                       => Keep;
-        2: event: Accepted                   => RemoveFirst;
-        3: event: New, pending: None         => StoreFirst;
-        4: event: New, pending: One | Two    => StoreSecond;
-        5: event: Discard                    => Clear;
+        1: event: None                     => Keep;
+        2: event: Accepted                 => RemoveFirst;
+        3: event: New, pending: None       => StoreFirst;
+        4: event: New, pending: One | Two  => StoreSecond;
+        5: event: Discard                  => Clear;
     }
 }
 
@@ -81,9 +81,9 @@ decision_table! {
     /// UPDATE: the update that the next order to the Data System contains. Pending updates come first, also at the end of a
     /// STARTUP.
     pub UPDATE: fn update(self::Unsent) -> super::Update {
-        1: pending: One | Two, connection: Open | Opening    => Owed;
-        2: connection: Open, due: Tell                       => Due;
-        3: otherwise                                         => None;
+        1: pending: One | Two, connection: Open | Opening  => Owed;
+        2: connection: Open, due: Tell                     => Due;
+        3: otherwise                                       => None;
     }
 }
 

@@ -1,0 +1,96 @@
+//! Part presence between the fingers of Grip, by strain gages and potentiometer alone.
+//!
+//! A part is between the fingers if both strain gages read a force and the fingers are above the closed end of travel,
+//! where fingers that press on each other read a force too. Nothing is between them if neither reads a force. Contact of
+//! one finger alone is not enough: a part that is held with little force may touch only one of them. A value counts after
+//! `FELT_TICKS`.
+
+use interfaces::{
+    device::{ADC_FULL_SCALE, GripSensors},
+    grip::Felt,
+};
+
+use super::{
+    goal::{CLOSED_END, OPEN_END},
+    state::{Sensed, State, Touch},
+    tables::{
+        Measured, Phase,
+        presence::{ClosedEnd, Contact, Contacts, Count, Pads, Period, Stillness, Validity, presence, touch},
+    },
+};
+
+/// A finger that feels more than this touches something, lb.
+pub(super) const CONTACT: f64 = 1.0;
+/// The same near the closed end, where no opening is below: in above the closed end.
+pub(super) const MISSED_AT_END: f64 = 0.02;
+/// Ticks for which the sensors must say the same (0.2 s): longer than it takes to push a part from one finger
+/// to the other.
+pub(super) const FELT_TICKS: u8 = 5;
+/// Validity of the potentiometer that differ by more than this from the last are those of fingers that move,
+/// counts: the noise, and less than a fine flow.
+const STILL_COUNTS: u16 = 6;
+/// So far beyond an end of travel no fingers are: the potentiometer fails, in.
+const BEYOND: f64 = 0.15;
+/// A finger that feels less than this has a strain gage that fails, lb.
+const LEAST_PLAUSIBLE_FORCE: f64 = -5.0;
+
+impl State {
+    /// Consult TOUCH and PRESENCE; `before` are the readings of the tick before.
+    pub(super) fn detect(&mut self, before: Option<&GripSensors>, measured: &Measured) {
+        let still = match (before, &self.sensed) {
+            (Some(before), Some(Sensed { last, .. })) => {
+                last.potentiometer.abs_diff(before.potentiometer) <= STILL_COUNTS
+            }
+            _ => false,
+        };
+        self.still_ticks = if still { self.still_ticks.saturating_add(1) } else { 0 };
+        let is_valid = before.is_some()
+            && self.phase == Phase::Valid
+            && self.sensed.is_some_and(|sensed| is_plausible(&sensed.last, measured));
+        let touch = touch(self.felt, &pads(measured, still)).action;
+        self.touch_ticks = if touch == self.touch { self.touch_ticks.saturating_add(1) } else { 1 };
+        self.touch = touch;
+        let contact = Contact {
+            readings: if is_valid { Validity::Valid } else { Validity::Invalid },
+            touch,
+            period: if self.touch_ticks >= FELT_TICKS { Period::Long } else { Period::Short },
+        };
+        let decision = presence(self.felt, &contact);
+        self.felt = decision.next;
+        match decision.action {
+            Count::Continue => {}
+            Count::Restart => (self.touch, self.touch_ticks) = (Touch::Unclear, 0),
+        }
+    }
+
+    /// The calibration has opened the fingers and read them without force: there is nothing between them.
+    pub(super) fn set_empty(&mut self) {
+        (self.felt, self.touch, self.touch_ticks) = (Felt::Nothing, Touch::Free, FELT_TICKS);
+    }
+}
+
+fn pads(measured: &Measured, still: bool) -> Pads {
+    Pads {
+        contact: match (measured.left > CONTACT, measured.right > CONTACT) {
+            (false, false) => Contacts::None,
+            (true, false) | (false, true) => Contacts::One,
+            (true, true) => Contacts::Both,
+        },
+        closed_end: if measured.opening <= CLOSED_END + MISSED_AT_END {
+            ClosedEnd::Reached
+        } else {
+            ClosedEnd::Above
+        },
+        potentiometer: if still { Stillness::Still } else { Stillness::Changed },
+    }
+}
+
+/// Can the fingers of a gripper read so?
+pub(super) fn is_plausible(counts: &GripSensors, measured: &Measured) -> bool {
+    let inside = |counts: u16| counts > 0 && counts < ADC_FULL_SCALE;
+    inside(counts.potentiometer)
+        && inside(counts.strain_left)
+        && inside(counts.strain_right)
+        && (CLOSED_END - BEYOND..=OPEN_END + BEYOND).contains(&measured.opening)
+        && measured.left.min(measured.right) >= LEAST_PLAUSIBLE_FORCE
+}

@@ -1,0 +1,166 @@
+//! What EXECUTE and ACCEPT leave of the command, and where the calibration begins. No header names the rows.
+
+use interfaces::grip::GripVerb;
+use rcs_core::{Actions, Plain, Variables, decision_table};
+
+use super::Gripper;
+use crate::execution::Course;
+
+/// The verdict of ACCEPT.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Acceptance {
+    /// The command is accepted.
+    Accepted,
+    /// It is refused.
+    Refused,
+}
+
+/// The commanded opening.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum TargetOpening {
+    /// The open end of travel.
+    OpenEnd,
+    /// Less.
+    Narrower,
+}
+
+/// The event after which START is consulted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Beginning {
+    /// The process starts.
+    Start,
+    /// It was dormant.
+    Wake,
+}
+
+/// The calibration in the output buffers, from before a restart.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Written {
+    /// There is one.
+    Calibration,
+    /// There is none.
+    Nothing,
+}
+
+/// The command buffer of a process that starts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum StartBuffer {
+    /// It is empty.
+    Empty,
+    /// It has a command: the system was started before.
+    Command,
+}
+
+/// What is done with the calibration in the output buffers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Actions)]
+pub enum Adoption {
+    /// Nothing.
+    Keep,
+    /// It counts when the sensors agree.
+    Adopt,
+}
+
+/// The state variables of [`COMMAND`].
+#[derive(Clone, Copy, Debug, Variables)]
+pub struct Commanded {
+    /// The decision of EXECUTE.
+    pub course: Course,
+    /// The verdict of ACCEPT.
+    pub acceptance: Acceptance,
+    /// The verb.
+    pub verb: GripVerb,
+    /// The commanded opening.
+    pub target: TargetOpening,
+}
+
+/// The state variables of [`START`].
+#[derive(Clone, Copy, Debug, Variables)]
+pub struct Started {
+    /// The event.
+    pub beginning: Beginning,
+    /// The calibration in the output buffers.
+    pub written: Written,
+    /// Is the gripper there?
+    pub gripper: Gripper,
+    /// The command buffer.
+    pub buffer: StartBuffer,
+}
+
+decision_table! {
+    /// COMMAND: the command that the tables below execute.
+    pub COMMAND: fn command(self::Commanded) -> super::Command {
+        1: course: Rest                           => Nothing;
+        2: course: Refuse                         => Refused;
+        3: acceptance: Refused                    => Refused;
+        4: verb: None                             => Refused;
+        5: verb: Pause                            => Pause;
+        6: verb: UpInit                           => UpInit;
+        7: verb: OpenGrip, target: OpenEnd        => OpenWide;
+        8: verb: Position | OpenGrip | CloseGrip  => Motion;
+    }
+}
+
+decision_table! {
+    /// START: where the calibration begins with a process that starts or wakes. A process that became dormant during a
+    /// calibration, before E-move knew the gripper, begins again. A gripper that is attached later may hold a part, and so
+    /// may one that is attached when the process is restarted: UP-INIT calibrates it.
+    pub START: fn start(super::Phase, self::Started) -> self::Adoption {
+        Valid {
+            1: otherwise                           => Keep;
+        }
+        any {
+            2: written: Calibration                => Adopt  -> Adopting;
+        }
+        Closing | Opening | Venting | Widening {
+            3: beginning: Wake, gripper: Attached  => Keep   -> Missing;
+        }
+        any {
+            4: beginning: Wake                     => Keep   -> Deferred;
+            5: gripper: Detached                   => Keep   -> Deferred;
+            6: buffer: Command                     => Keep   -> Deferred;
+            7: otherwise                           => Keep;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::grip::tables::{Command, Phase};
+
+    #[test]
+    fn only_open_grip_to_the_open_end_needs_no_calibration() {
+        for &verb in GripVerb::ALL {
+            for &target in TargetOpening::ALL {
+                let commanded =
+                    Commanded { course: Course::Continue, acceptance: Acceptance::Accepted, verb, target };
+                let is_wide = verb == GripVerb::OpenGrip && target == TargetOpening::OpenEnd;
+                assert_eq!(command((), &commanded).action == Command::OpenWide, is_wide, "{verb} {target}");
+                let refused = Commanded { acceptance: Acceptance::Refused, ..commanded };
+                assert_eq!(command((), &refused).action, Command::Refused);
+            }
+        }
+    }
+
+    #[test]
+    fn only_a_gripper_that_is_attached_at_boot_is_calibrated_by_itself() {
+        for &beginning in Beginning::ALL {
+            for &gripper in Gripper::ALL {
+                for &buffer in StartBuffer::ALL {
+                    let started = Started { beginning, written: Written::Nothing, gripper, buffer };
+                    let is_boot = (beginning, gripper, buffer)
+                        == (Beginning::Start, Gripper::Attached, StartBuffer::Empty);
+                    let expected = if is_boot { Phase::Missing } else { Phase::Deferred };
+                    assert_eq!(
+                        start(Phase::Missing, &started).next,
+                        expected,
+                        "{beginning} {gripper} {buffer}"
+                    );
+                    assert_eq!(start(Phase::Valid, &started).next, Phase::Valid);
+                    let written = Started { written: Written::Calibration, ..started };
+                    assert_eq!(start(Phase::Missing, &written).next, Phase::Adopting);
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,65 @@
+//! Part presence between the fingers, by the potentiometer alone. No header names the rows.
+
+use interfaces::device::JawValves;
+use rcs_core::{Plain, Variables, decision_table};
+
+use super::Stop;
+
+/// The readings of the potentiometer.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Settling {
+    /// The fingers have stopped, and the gripper has been attached for 0.2 s.
+    Settled,
+    /// One of these is not so.
+    Unsettled,
+}
+
+/// The opening by the potentiometer.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum JawTravel {
+    /// Within the travel of the fingers.
+    Within,
+    /// Beyond an end.
+    Beyond,
+}
+
+/// The closing side.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Closing {
+    /// It has air.
+    On,
+    /// It has none.
+    Off,
+}
+
+/// The state variables of [`PRESENCE`].
+#[derive(Clone, Copy, Debug, Variables)]
+pub struct JawReading {
+    /// The readings.
+    pub readings: Settling,
+    /// The position of the fingers.
+    pub stop: Stop,
+    /// The opening.
+    pub travel: JawTravel,
+    /// The closing side.
+    pub closing: Closing,
+}
+
+impl From<JawValves> for Closing {
+    fn from(valves: JawValves) -> Self {
+        if valves.close { Self::On } else { Self::Off }
+    }
+}
+
+decision_table! {
+    /// PRESENCE: what is between the fingers (VI.4 has no force sensors). At an end of their travel they hold nothing,
+    /// although an object as small as the opening of closed fingers reads the same. Fingers that seem to rest open while
+    /// air closes them have no air, or their potentiometer is stuck: they may close on something at any time.
+    pub PRESENCE: fn presence(self::JawReading) -> interfaces::grip::Felt {
+        1: readings: Unsettled        => NotKnown;
+        2: stop: Opened, closing: On  => NotKnown;
+        3: stop: Closed | Opened      => Nothing;
+        4: travel: Within             => Something;
+        5: travel: Beyond             => NotKnown;
+    }
+}

@@ -1,0 +1,46 @@
+//! Air of the fingers, whether a command is executing or not. No header names the rows.
+
+use rcs_core::{Actions, Plain, Variables, decision_table};
+
+/// The gripper on the ring.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Mated {
+    /// It may be that of this process. Id pins without contact on a locked ring say nothing of the gripper.
+    Possible,
+    /// The ring is not locked, or on another gripper.
+    Gone,
+}
+
+/// Air to the fingers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain, Actions)]
+pub enum Air {
+    /// As it is.
+    Keep,
+    /// None.
+    Off,
+    /// To the side that closes.
+    Close,
+    /// To the side that opens.
+    Open,
+}
+
+/// The state variables of [`VALVES`].
+#[derive(Clone, Copy, Debug, Variables)]
+pub struct Supply {
+    /// The gripper on the ring.
+    pub mated: Mated,
+    /// The air that the row of the command sets.
+    pub set: Air,
+}
+
+decision_table! {
+    /// VALVES: air stays on after the end of a command, because a part is held only while the fingers press. Without the
+    /// gripper there is none.
+    pub VALVES: fn valves(self::Supply) -> self::Air {
+        1: mated: Gone  => Off;
+        2: set: Keep    => Keep;
+        3: set: Off     => Off;
+        4: set: Close   => Close;
+        5: set: Open    => Open;
+    }
+}
