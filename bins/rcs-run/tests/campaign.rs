@@ -91,7 +91,7 @@ fn what_searches_have_found_hurts_nothing_any_more() {
 
 /// Interruptions that a job must survive in 97 of 100 branches, without harm.
 const REQUIRED: &str =
-    "pause,pause-twice,refused,replaced,answer-lost,answer-late,answer-damaged,hold,nudge,held,restart";
+    "pause,pause-twice,refused,replaced,answer-lost,answer-late,answer-damaged,hold,nudge,held,restart,power";
 
 /// A sample of the campaign: all jobs, all required kinds and the E-stop, at ticks that follow from the
 /// number of the job.

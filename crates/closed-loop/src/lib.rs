@@ -40,6 +40,7 @@ use depc::Plate;
 use interfaces::{
     CommonMemory, DeviceInputs, DeviceOutputs, ExternalInputs, Header, HwsCommand, device::LinkBytes,
 };
+use levels::ladder::ProcessId;
 use neighbours::{
     data_system::{ANSWER_TICKS, DataSystem, InMemory},
     workstation::{Gate, TaskState},
@@ -170,13 +171,21 @@ impl<L, W: World> ClosedLoop<L, W> {
         act(&mut self.course, &self.generations.current().view())
     }
 
-    /// The device outputs of the last tick. The last frame of a lost T3 Interface goes out only once.
+    /// The device outputs of the last tick. The last frame of a lost T3 Interface goes out only once. All
+    /// outputs are zero while no process runs: the controller has no power.
     #[must_use]
     pub fn outputs(&self) -> DeviceOutputs {
         let memory = self.course.memory();
         let outputs = memory.device_outputs();
-        let runs = memory.t3i.header.stamp == self.course.tick();
-        if runs { outputs } else { DeviceOutputs { link_tx: LinkBytes::default(), ..outputs } }
+        let runs = |process| memory.header(process).stamp == self.course.tick();
+        if !ProcessId::ALL.iter().copied().any(runs) {
+            return DeviceOutputs::default();
+        }
+        if runs(ProcessId::T3i) {
+            outputs
+        } else {
+            DeviceOutputs { link_tx: LinkBytes::default(), ..outputs }
+        }
     }
 
     /// The second part of a tick: advance the cell, and judge what has happened in it. With a robot elsewhere the cell

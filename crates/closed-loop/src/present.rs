@@ -39,6 +39,20 @@ impl Present {
         self.ladder.restart(process);
     }
 
+    /// Switch the controller off: no process runs, and [`ClosedLoop::outputs`](crate::ClosedLoop::outputs) are zero.
+    pub fn switch_off(&mut self) {
+        self.processes.clear();
+    }
+
+    /// Switch the controller on: all processes start without state. They adopt the buffers in common memory, as a
+    /// journal that has lost no record would restore them.
+    pub fn switch_on(&mut self) {
+        self.processes = ProcessId::ALL.to_vec();
+        for process in ProcessId::ALL.iter().copied() {
+            self.ladder.restart(process);
+        }
+    }
+
     /// Lose a process: it writes nothing from now on.
     pub fn lose(&mut self, process: ProcessId) {
         self.processes.retain(|present| *present != process);

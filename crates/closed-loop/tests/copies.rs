@@ -4,6 +4,7 @@ use std::{path::Path, sync::Arc};
 
 use closed_loop::{ClosedLoop, JobPlayer, Present};
 use depc::fault::{FaultKind, Plan, Rule};
+use interfaces::DeviceOutputs;
 use neighbours::workstation::player::{Hwsc, TIME_LIMIT};
 use plant::{Cell, CellDescription};
 use rcs_core::tick::Tick;
@@ -74,4 +75,20 @@ fn faults_on_the_line_of_a_copy_do_not_reach_the_original() {
     assert_ne!(cut.bits(), original.bits());
     assert!(!cut.closed.memory().t3i.status.link_running);
     assert!(original.closed.memory().t3i.status.link_running);
+}
+
+#[test]
+fn a_controller_without_power_has_zero_outputs_and_starts_from_its_buffers() {
+    let mut run = Run::start();
+    run.run_to(1350);
+    assert_ne!(run.closed.outputs(), DeviceOutputs::default(), "the gripper holds the part");
+    let held = run.closed.memory().emove;
+    run.closed.course_mut().levels_mut().switch_off();
+    run.run_to(1400);
+    assert_eq!(run.closed.outputs(), DeviceOutputs::default());
+    assert_eq!(run.closed.memory().emove, held, "no process writes its buffer");
+    run.closed.course_mut().levels_mut().switch_on();
+    run.run_to(1401);
+    assert_ne!(run.closed.outputs(), DeviceOutputs::default());
+    assert_eq!(run.closed.memory().emove.status.held, held.status.held);
 }

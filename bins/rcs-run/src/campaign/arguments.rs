@@ -24,10 +24,10 @@ pub struct CampaignArguments {
     #[arg(long, value_name = "N", default_value_t = 1)]
     pub seed: u64,
     /// Interruptions, separated by commas: pause, pause-twice, refused, replaced, answer-lost, answer-late,
-    /// answer-damaged, hold, nudge, away, estop, held or held:PROCESS, restart or restart:PROCESS, fault or fault:FILE,
-    /// none or all; jog:X:Y:Z (0.01 in), take:PART, move:PART:X:Y, swap:PART:KIND,
-    /// add:KIND:PLACE:SECTOR, each with :next or :again for the next command or the one before; with --judge rest also cut, lost or lost:PROCESS; hold+35:pause is hold, and pause 35 ticks after
-    /// it [with --random: all]
+    /// answer-damaged, hold, nudge, away, estop, power, held or held:PROCESS, restart or restart:PROCESS, fault or
+    /// fault:FILE, none or all; jog:X:Y:Z (0.01 in), take:PART, move:PART:X:Y, swap:PART:KIND, add:KIND:PLACE:SECTOR,
+    /// each with :next or :again for the next command or the one before; with --judge rest also cut, lost or
+    /// lost:PROCESS; hold+35:pause is hold, and pause 35 ticks after it [with --random: all]
     #[arg(
         long,
         value_name = "KIND",

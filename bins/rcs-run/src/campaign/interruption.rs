@@ -22,6 +22,10 @@ use crate::rcs_run::error::Error;
 const HOLD: u64 = 75;
 /// Ticks for which the box holds a process.
 const HELD: u64 = 50;
+/// Ticks without power: 2 s.
+const OUTAGE: u64 = 50;
+/// Ticks between power and the first action of the operator.
+const RESTART: u64 = 25;
 /// Ticks between the emergency stop and its release: the time to walk there.
 const STOPPED: u64 = 100;
 
@@ -56,6 +60,8 @@ pub enum Kind {
     Restart(ProcessId),
     /// A process writes nothing from now on.
     Lost(ProcessId),
+    /// The controller loses its power, and everything but its buffers.
+    Power,
     /// The cable to the robot controller is cut.
     Cut,
     /// Emergency stop, and the start-up at the panel.
@@ -67,7 +73,7 @@ pub enum Kind {
 }
 
 /// Kinds without a parameter, with their names.
-const PLAIN: [(&str, Kind); 13] = [
+const PLAIN: [(&str, Kind); 14] = [
     ("none", Kind::None),
     ("pause", Kind::Pause),
     ("pause-twice", Kind::PauseTwice),
@@ -80,6 +86,7 @@ const PLAIN: [(&str, Kind); 13] = [
     ("nudge", Kind::Nudge),
     ("away", Kind::Away),
     ("estop", Kind::Estop),
+    ("power", Kind::Power),
     ("cut", Kind::Cut),
 ];
 /// Interruptions of a process, `WORD:PROCESS`.
@@ -217,6 +224,14 @@ impl Kind {
             Self::Restart(process) => vec![ScriptStep::Restart(*process)],
             Self::Lost(process) => vec![ScriptStep::Lose(*process)],
             Self::Cut => vec![ScriptStep::Cut],
+            Self::Power => vec![
+                ScriptStep::PowerOff,
+                ScriptStep::Wait(OUTAGE),
+                ScriptStep::PowerOn,
+                ScriptStep::Wait(RESTART),
+                ScriptStep::Enter,
+                ScriptStep::StartUp,
+            ],
             Self::Estop => {
                 let mut steps = vec![ScriptStep::key(Key::Press(EStop::Pedestal)), ScriptStep::Wait(STOPPED)];
                 steps.push(ScriptStep::key(Key::Release(EStop::Pedestal)));

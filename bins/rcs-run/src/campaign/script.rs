@@ -75,6 +75,10 @@ pub enum ScriptStep {
     Restart(ProcessId),
     Lose(ProcessId),
     Cut,
+    /// The controller loses its power.
+    PowerOff,
+    /// The controller starts again.
+    PowerOn,
     Answer(FaultKind),
     Faults(Arc<FaultFile>),
     /// ENTER, if the robot controller shows a warning.
@@ -223,6 +227,8 @@ impl Script {
                 }
                 ScriptStep::Restart(process) => branch.closed.course_mut().levels_mut().restart(process),
                 ScriptStep::Lose(process) => branch.closed.course_mut().levels_mut().lose(process),
+                ScriptStep::PowerOff => branch.closed.course_mut().levels_mut().switch_off(),
+                ScriptStep::PowerOn => branch.closed.course_mut().levels_mut().switch_on(),
                 ScriptStep::Cut => {
                     let now = branch.at();
                     branch.closed.line_mut().cut(now);
