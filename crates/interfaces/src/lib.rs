@@ -30,6 +30,7 @@ pub mod jaws;
 pub mod location;
 pub mod operator;
 pub mod pedestal;
+pub mod point;
 pub mod prim;
 pub mod process;
 pub mod processes;

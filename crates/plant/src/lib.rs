@@ -67,6 +67,7 @@ pub mod jaws;
 pub mod joystick;
 pub mod linkage;
 pub mod look;
+mod named;
 pub mod noise;
 pub mod part;
 pub mod pedestal;

@@ -3,7 +3,10 @@
 //! Each fault has its own stream of random numbers, so that the faults of one device do not depend on the others. Its
 //! state is plain data: a restored cell continues with its faults.
 
-use interfaces::device::{DeviceInputs, DeviceOutputs};
+use interfaces::{
+    device::{DeviceInputs, DeviceOutputs},
+    point::Input,
+};
 use rcs_core::tick::TICK_S;
 use serde::{Deserialize, Serialize};
 
@@ -11,11 +14,7 @@ use super::{
     Disorder, Fault, FaultPlan, Mishap, What,
     valve::{cut_air, hold_ring},
 };
-use crate::{
-    description::CellDescription,
-    noise::Noise,
-    sensor::{DelayLine, Sensor},
-};
+use crate::{description::CellDescription, noise::Noise, sensor::DelayLine};
 
 /// First random stream of faults; devices use lower ones ([`crate::noise::Stream`]).
 const STREAMS: u64 = 1000;
@@ -144,7 +143,7 @@ impl Injector {
         let mut arrives = *outputs;
         for what in self.active() {
             match what {
-                What::Valve(valve, open) => valve.stick(&mut arrives, *open),
+                What::Valve(valve, open) => valve.write(&mut arrives, i64::from(*open)),
                 What::RingStuck => hold_ring(&mut arrives),
                 _ => {}
             }
@@ -289,7 +288,7 @@ impl Running {
     }
 
     /// Apply an error to a sensor word.
-    fn disturb(&mut self, sensor: Sensor, disorder: Disorder, tick: u64, inputs: &mut DeviceInputs) {
+    fn disturb(&mut self, sensor: Input, disorder: Disorder, tick: u64, inputs: &mut DeviceInputs) {
         let shown = sensor.read(inputs);
         let counts = |by: f64| libm::round(by) as i64;
         let value = match disorder {
@@ -308,7 +307,8 @@ impl Running {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::fault::{Valve, When};
+    use crate::fault::When;
+    use interfaces::point::Output;
 
     fn injector(whats: Vec<(What, When)>) -> Injector {
         let faults = whats.into_iter().enumerate();
@@ -317,14 +317,14 @@ mod tests {
     }
 
     fn sensor(name: &str, disorder: Disorder) -> What {
-        What::Sensor(Sensor::named(name).unwrap(), disorder)
+        What::Sensor(Input::named(name).unwrap(), disorder)
     }
 
     /// The values shown, from tick 1, for a word that counts up by 10 every tick.
     fn shown(disorder: Disorder, when: When, ticks: u16) -> Vec<i64> {
         let what = sensor("grip.potentiometer", disorder);
         let mut injector = injector(vec![(what, when)]);
-        let word = Sensor::named("grip.potentiometer").unwrap();
+        let word = Input::named("grip.potentiometer").unwrap();
         (1..=ticks)
             .map(|tick| {
                 injector.next();
@@ -387,7 +387,7 @@ mod tests {
 
     #[test]
     fn valves_stick_and_no_air_passes_them() {
-        let open = What::Valve(Valve::named("grip.open-fine").unwrap(), true);
+        let open = What::Valve(Output::named("grip.open-fine").unwrap(), true);
         let late = When { from: 2, ..When::ALWAYS };
         let mut injector = injector(vec![(open, When::ALWAYS), (What::AirLost, late)]);
         injector.next();

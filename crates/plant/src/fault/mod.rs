@@ -19,9 +19,9 @@ use serde::{Deserialize, Serialize};
 
 pub(crate) use inject::Change;
 pub use inject::{Delivery, Injector, Struck};
-pub use valve::Valve;
+use interfaces::point::{Input, Output};
 
-use crate::{description::CellDescription, sensor::Sensor};
+use crate::description::CellDescription;
 
 /// Faults and their seed.
 #[derive(Clone, Debug, Default, Deserialize, PartialEq, Serialize)]
@@ -71,9 +71,9 @@ impl When {
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 pub enum What {
     /// A sensor shows a wrong value.
-    Sensor(Sensor, Disorder),
+    Sensor(#[serde(with = "crate::named")] Input, Disorder),
     /// A valve is stuck open (true) or closed.
-    Valve(Valve, bool),
+    Valve(#[serde(with = "crate::named")] Output, bool),
     /// The air supply is lost.
     AirLost,
     /// The hydraulics of the robot have failed, and can be switched on again only after the end of the fault (III.6).

@@ -2,10 +2,12 @@
 
 use std::collections::VecDeque;
 
-use interfaces::device::DeviceInputs;
+use interfaces::{
+    device::DeviceInputs,
+    point::{Input, Kind},
+};
 use serde::{Deserialize, Serialize};
 
-use super::{Group, Sensor};
 use crate::description::SensorModels;
 
 /// Words that are being delayed.
@@ -30,26 +32,36 @@ impl DelayLine {
 
 /// The dead times of a cell's sensors; sensors without dead time are not in it.
 #[derive(Clone, Debug, Default, Deserialize, Serialize)]
-pub struct DeadTimes(Vec<(Sensor, u16, DelayLine)>);
+pub struct DeadTimes(Vec<Late>);
+
+/// A sensor with dead time.
+#[derive(Clone, Debug, Deserialize, Serialize)]
+struct Late {
+    #[serde(with = "crate::named")]
+    sensor: Input,
+    ticks: u16,
+    line: DelayLine,
+}
 
 impl DeadTimes {
     /// The dead times of a description.
     #[must_use]
     pub fn new(models: &SensorModels) -> Self {
-        let ticks = |sensor: Sensor| match sensor.group() {
-            Group::Resolver => models.resolver_delay,
-            Group::Converter => models.converter_delay,
-            Group::Force => models.force_delay,
-            Group::Switch => models.switch_delay,
-            Group::Other => 0,
+        let ticks = |sensor: Input| match sensor.kind() {
+            Kind::Resolver => models.resolver_delay,
+            Kind::Converter => models.converter_delay,
+            Kind::Force => models.force_delay,
+            Kind::Switch => models.switch_delay,
+            Kind::Contact | Kind::Knob | Kind::Number | Kind::Supply | Kind::Cable | Kind::Camera => 0,
         };
-        let late = Sensor::all().map(|sensor| (sensor, ticks(sensor), DelayLine::default()));
-        Self(late.filter(|(_, ticks, _)| *ticks > 0).collect())
+        let late =
+            Input::all().map(|sensor| Late { sensor, ticks: ticks(sensor), line: DelayLine::default() });
+        Self(late.filter(|late| late.ticks > 0).collect())
     }
 
     /// Once a tick: delay the sensor words.
     pub fn hold_back(&mut self, inputs: &mut DeviceInputs) {
-        for (sensor, ticks, line) in &mut self.0 {
+        for Late { sensor, ticks, line } in &mut self.0 {
             let word = line.pass(sensor.read(inputs), *ticks);
             sensor.write(inputs, word);
         }

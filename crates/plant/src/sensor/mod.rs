@@ -1,4 +1,4 @@
-//! Sensors: names of their words, and models from the true value to the word.
+//! Sensors: models from the true value to the word. The words have the names of [`interfaces::point`].
 //!
 //! A device gives the true value (an opening, a force, a distance), and a chain of small models turns it into a word:
 //!
@@ -12,13 +12,9 @@
 
 mod analog;
 mod delay;
-mod name;
 pub mod resolver;
 mod switch;
-mod word;
 
 pub use analog::Analog;
 pub use delay::{DeadTimes, DelayLine};
-pub use name::{Group, Sensor};
 pub use switch::Switch;
-pub(crate) use word::Word;

@@ -1,13 +1,13 @@
 //! Entries for faults of the cell.
 
 use diagnostics::Problem;
+use interfaces::point::{Input, Output};
 use rcs_core::tick::TICK_S;
 
 use super::{Entry, Value};
 use crate::{
     description::CellDescription,
-    fault::{Disorder, Fault, Mishap, Valve, What, When},
-    sensor::Sensor,
+    fault::{Disorder, Fault, Mishap, What, When},
 };
 
 /// A kind of fault, and its keys except those for the time.
@@ -142,8 +142,9 @@ fn stuck(entry: &Entry<'_>) -> Result<What, Box<Problem>> {
     let form = entry.form;
     match (&form.valve, &form.device) {
         (Some(valve), None) => {
-            let known = || Valve::all().map(Valve::name).collect::<Vec<_>>();
-            let named = Valve::named(valve).ok_or_else(|| entry.unknown("valve", valve, &known()))?;
+            let known = || Output::valves().map(Output::name).collect::<Vec<_>>();
+            let found = Output::valves().find(|known| known.name() == valve);
+            let named = found.ok_or_else(|| entry.unknown("valve", valve, &known()))?;
             match &form.value {
                 Some(Value::Word(word)) if word == "open" => Ok(What::Valve(named, true)),
                 Some(Value::Word(word)) if word == "closed" => Ok(What::Valve(named, false)),
@@ -161,9 +162,9 @@ fn stuck(entry: &Entry<'_>) -> Result<What, Box<Problem>> {
     }
 }
 
-fn sensor(entry: &Entry<'_>, name: &str) -> Result<Sensor, Box<Problem>> {
-    let known = || Sensor::all().map(Sensor::name).collect::<Vec<_>>();
-    Sensor::named(name).ok_or_else(|| entry.unknown("sensor", name, &known()))
+fn sensor(entry: &Entry<'_>, name: &str) -> Result<Input, Box<Problem>> {
+    let known = || Input::all().map(Input::name).collect::<Vec<_>>();
+    Input::named(name).ok_or_else(|| entry.unknown("sensor", name, &known()))
 }
 
 fn part(entry: &Entry<'_>, key: &str, name: &str, cell: &CellDescription) -> Result<String, Box<Problem>> {
