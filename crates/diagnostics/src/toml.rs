@@ -138,17 +138,17 @@ impl<'a> Document<'a> {
 
     fn bytes(&self, path: &str) -> Range<usize> {
         let mut at = 0..0;
-        let mut table = Some(self.root.get_ref());
-        for step in path.split('.') {
-            let (key, indices) = step.split_once('[').unwrap_or((step, ""));
-            let Some((name, found)) = table.and_then(|table| table.get_key_value(key)) else { break };
+        let (mut table, mut rest) = (Some(self.root.get_ref()), path);
+        while let Some((name, found)) = table.and_then(|table| first_key(table, rest)) {
+            rest = rest.get(name.get_ref().len()..).unwrap_or_default();
             let mut value = Some(found);
             at = if is_in_one_place(found.get_ref()) { found.span() } else { name.span() };
-            for index in indices.split('[').filter_map(|index| index.trim_end_matches(']').parse().ok()) {
-                let index: usize = index;
-                value = value.and_then(|value| value.get_ref().get(index));
-                at = value.map_or(at, Spanned::span);
+            while let Some((index, after)) = rest.strip_prefix('[').and_then(|rest| rest.split_once(']')) {
+                let element = index.parse().ok().and_then(|index: usize| value?.get_ref().get(index));
+                at = element.map_or(at, Spanned::span);
+                (value, rest) = (element, after);
             }
+            rest = rest.strip_prefix('.').unwrap_or_default();
             table = value.and_then(|value| value.get_ref().as_table());
         }
         at
@@ -195,6 +195,19 @@ impl<'a> Document<'a> {
             }
         }
     }
+}
+
+/// The key of a table with which a path begins, and its value. A key in quotes can contain dots, so the longest one
+/// that fits is meant.
+fn first_key<'t, 'a>(
+    table: &'t DeTable<'a>,
+    path: &str,
+) -> Option<(&'t Spanned<std::borrow::Cow<'a, str>>, &'t Spanned<DeValue<'a>>)> {
+    let fits = |key: &str| {
+        path.strip_prefix(key).is_some_and(|rest| rest.is_empty() || rest.starts_with(['.', '[']))
+    };
+    let fitting = table.iter().filter(|(key, _)| fits(key.get_ref()));
+    fitting.max_by_key(|(key, _)| key.get_ref().len())
 }
 
 /// True if a value is not a table or an array of tables, which can be spread over the text.
@@ -317,6 +330,31 @@ mod tests {
             "motors.toml: line 2, column 1: motor[0] has no key name, which it needs"
         );
         assert_eq!(at(""), "motors.toml: line 1, column 1: the file has no key motor, which it needs");
+    }
+
+    #[derive(Debug, Deserialize)]
+    struct Named {
+        valve: std::collections::BTreeMap<String, Motor>,
+    }
+
+    #[test]
+    fn table_of_names_is_read_and_a_key_with_dots_has_its_line() {
+        let text = "[valve]\n\"a.b\" = { name = \"x\", speed = 1 }\n\"a.c\" = { name = 7, sped = 2 }\na = { name = \"y\", speed = 0 }\n";
+        let source = Source { name: "valves.toml".to_owned(), text: text.into() };
+        let report = Document::load(&source, KIND, |_: &Named, _, _| {}).unwrap_err();
+        let said: Vec<_> =
+            report.diagnostics().iter().map(|one| format!("{}: {}", one.place(), one.message())).collect();
+        assert_eq!(
+            said,
+            [
+                "valves.toml: line 3, column 18: valve.a.c.name: expected a text in quotes, found 7",
+                "valves.toml: line 3, column 21: valve.a.c has no key sped; expected one of name, speed, poles",
+            ]
+        );
+        let source =
+            Source { name: "valves.toml".to_owned(), text: text.replace("7, sped", "\"z\", speed").into() };
+        let file = Document::load(&source, KIND, |_: &Named, _, _| {}).unwrap();
+        assert_eq!(file.valve.keys().collect::<Vec<_>>(), ["a", "a.b", "a.c"]);
     }
 
     #[test]

@@ -187,7 +187,7 @@ impl<'n, 'a> Reader<'n, 'a> {
     }
 
     /// The entries of a structure: its existing keys, and stand-ins for missing keys that it needs.
-    fn entries(&self, fields: &'static [&'static str]) -> Vec<(&'static str, Node<'a>)> {
+    fn entries(&self, fields: &'static [&'static str]) -> Vec<(&'a str, Node<'a>)> {
         let Some(table) = self.table() else {
             self.unfit("a table", &[]);
             return fields.iter().map(|field| (*field, Node::StandIn)).collect();
@@ -321,6 +321,20 @@ impl<'de> de::Deserializer<'de> for Reader<'_, 'de> {
         })
     }
 
+    /// A table whose keys are names: every key is an entry.
+    fn deserialize_map<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Stop> {
+        let entries: Vec<_> = match self.table() {
+            Some(table) => {
+                table.iter().map(|(key, value)| (&**key.get_ref(), Node::Value(value.get_ref()))).collect()
+            }
+            None => {
+                self.unfit("a table", &[]);
+                Vec::new()
+            }
+        };
+        visitor.visit_map(Entries { reader: self, entries: entries.into_iter(), value: None })
+    }
+
     fn deserialize_enum<V: Visitor<'de>>(
         self,
         _name: &'static str,
@@ -348,15 +362,15 @@ impl<'de> de::Deserializer<'de> for Reader<'_, 'de> {
     }
 
     forward_to_deserialize_any! {
-        i128 u128 f32 char bytes byte_buf unit unit_struct tuple_struct map identifier ignored_any
+        i128 u128 f32 char bytes byte_buf unit unit_struct tuple_struct identifier ignored_any
     }
 }
 
 /// The entries of a table.
 struct Entries<'n, 'a> {
     reader: Reader<'n, 'a>,
-    entries: std::vec::IntoIter<(&'static str, Node<'a>)>,
-    value: Option<(&'static str, Node<'a>)>,
+    entries: std::vec::IntoIter<(&'a str, Node<'a>)>,
+    value: Option<(&'a str, Node<'a>)>,
 }
 
 impl<'a> MapAccess<'a> for Entries<'_, 'a> {
