@@ -1,0 +1,328 @@
+//! An emulated coupler: process data, settings and a watchdog, as in the manual of the BK9000. No coupler was at hand:
+//! SPECNOTES.md lists what the manual leaves open.
+
+use modbus::{Bits, Error, Exception, Request, Tables, Words, server};
+
+use crate::{
+    MS,
+    kind::{Kind, bk9000},
+};
+
+/// Number of registers of process data in each direction.
+const WORDS: usize = 256;
+/// Text in the registers of the identity.
+const IDENTITY: &[u8; 14] = b"BK9000 emulate";
+
+/// A fault of a coupler.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum CouplerFault {
+    /// None.
+    #[default]
+    None,
+    /// Its answers are good, but its inputs stand still.
+    Freeze,
+    /// Its answers are those to the previous request.
+    Stale,
+    /// Its terminals report this status word.
+    Terminals(u16),
+}
+
+/// State of the watchdog.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Watchdog {
+    /// No output was written since the start, or since the reset.
+    Idle,
+    /// It fires at this time.
+    Active { until: u64 },
+    /// It has fired; the first word of the reset was written, or not.
+    Fired { is_resetting: bool },
+}
+
+/// An emulated coupler.
+#[derive(Clone, Debug)]
+pub struct Emulated {
+    kind: Kind,
+    unit: u8,
+    inputs: [u16; WORDS],
+    outputs: [u16; WORDS],
+    /// Inputs at the time at which they froze.
+    frozen: [u16; WORDS],
+    /// Numbers of registers in the process data: inputs, outputs.
+    lengths: (u16, u16),
+    watchdog: Watchdog,
+    watchdog_ms: u16,
+    watchdog_type: u16,
+    fault: CouplerFault,
+    now: u64,
+    /// Number of writes of outputs that were carried out.
+    writes: u64,
+    /// Number of times that the watchdog has fired.
+    fallbacks: u32,
+    previous: Answer,
+}
+
+/// An answer that is sent again by [`CouplerFault::Stale`].
+#[derive(Clone, Debug)]
+struct Answer {
+    bytes: [u8; modbus::MOST_FRAME_BYTES],
+    length: usize,
+}
+
+impl Emulated {
+    /// A coupler as delivered, with so many registers of inputs and outputs; all are 0.
+    #[must_use]
+    pub const fn new(kind: Kind, unit: u8, inputs: u16, outputs: u16) -> Self {
+        Self {
+            kind,
+            unit,
+            inputs: [0; WORDS],
+            outputs: [0; WORDS],
+            frozen: [0; WORDS],
+            lengths: (inputs, outputs),
+            watchdog: Watchdog::Idle,
+            watchdog_ms: bk9000::DELIVERED_MS,
+            watchdog_type: bk9000::ANY_TELEGRAM,
+            fault: CouplerFault::None,
+            now: 0,
+            writes: 0,
+            fallbacks: 0,
+            previous: Answer { bytes: [0; modbus::MOST_FRAME_BYTES], length: 0 },
+        }
+    }
+
+    /// The registers of the inputs, which the devices write.
+    pub const fn inputs_mut(&mut self) -> &mut [u16; WORDS] {
+        &mut self.inputs
+    }
+
+    /// The registers of the outputs, at the time of the last call of [`Self::advance`] or [`Self::answer`].
+    #[must_use]
+    pub const fn outputs(&self) -> &[u16; WORDS] {
+        &self.outputs
+    }
+
+    /// The registers of the outputs: as if another controller had left them so.
+    pub const fn outputs_mut(&mut self) -> &mut [u16; WORDS] {
+        &mut self.outputs
+    }
+
+    /// Number of writes of outputs that were carried out.
+    #[must_use]
+    pub const fn writes(&self) -> u64 {
+        self.writes
+    }
+
+    /// Number of times that the watchdog has fired.
+    #[must_use]
+    pub const fn fallbacks(&self) -> u32 {
+        self.fallbacks
+    }
+
+    /// Begins a fault, or ends it.
+    pub const fn set_fault(&mut self, fault: CouplerFault) {
+        self.frozen = self.inputs;
+        self.fault = fault;
+    }
+
+    /// Switches the coupler off and on: the outputs become 0, and the settings are those of the delivery.
+    pub const fn restart(&mut self) {
+        self.outputs = [0; WORDS];
+        self.watchdog = Watchdog::Idle;
+        (self.watchdog_ms, self.watchdog_type) = (bk9000::DELIVERED_MS, bk9000::ANY_TELEGRAM);
+    }
+
+    /// Advances the time of the coupler, ns: its watchdog may fire.
+    pub fn advance(&mut self, now: u64) {
+        self.now = self.now.max(now);
+        if let Watchdog::Active { until } = self.watchdog
+            && self.now >= until
+        {
+            self.outputs = [0; WORDS];
+            self.watchdog = Watchdog::Fired { is_resetting: false };
+            self.fallbacks = self.fallbacks.saturating_add(1);
+        }
+    }
+
+    /// Answers a frame at the time `now`, ns. Returns the length of the answer in `buffer`.
+    ///
+    /// # Errors
+    /// [`Error`]: the coupler closes the connection.
+    pub fn answer(
+        &mut self,
+        now: u64,
+        frame: &[u8],
+        buffer: &mut [u8; modbus::MOST_FRAME_BYTES],
+    ) -> Result<usize, Error> {
+        self.advance(now);
+        let length = server::answer(frame, self, buffer)?;
+        let current = Answer { bytes: *buffer, length };
+        let previous = std::mem::replace(&mut self.previous, current);
+        if self.fault == CouplerFault::Stale && previous.length > 0 {
+            *buffer = previous.bytes;
+            return Ok(previous.length);
+        }
+        Ok(length)
+    }
+
+    fn rearm(&mut self) {
+        if self.kind == Kind::Bk9000 && self.watchdog_ms > 0 {
+            self.watchdog = Watchdog::Active { until: self.now + u64::from(self.watchdog_ms) * MS };
+        }
+    }
+
+    /// Index of a register in the process data, which begin at `start`.
+    fn index(address: u16, start: u16, length: u16) -> Option<usize> {
+        address.checked_sub(start).filter(|offset| *offset < length).map(usize::from)
+    }
+
+    fn input(&self, index: usize) -> u16 {
+        if self.fault == CouplerFault::Freeze { self.frozen[index] } else { self.inputs[index] }
+    }
+
+    fn setting(&self, address: u16) -> Option<u16> {
+        if self.kind != Kind::Bk9000 {
+            return None;
+        }
+        let bits = |words: u16| words.saturating_mul(16);
+        Some(match address.wrapping_sub(bk9000::LENGTHS) {
+            0 => bits(self.lengths.1),
+            1 => bits(self.lengths.0),
+            2 | 3 => 0,
+            _ => match address {
+                bk9000::IDENTITY..=0x1006 => {
+                    let place = 2 * usize::from(address - bk9000::IDENTITY);
+                    u16::from_be_bytes([IDENTITY[place], IDENTITY[place + 1]])
+                }
+                bk9000::STATUS => {
+                    if let CouplerFault::Terminals(status) = self.fault {
+                        status
+                    } else {
+                        0
+                    }
+                }
+                bk9000::WATCHDOG_LEFT => match self.watchdog {
+                    Watchdog::Active { until } => {
+                        u16::try_from(until.saturating_sub(self.now) / MS).unwrap_or(u16::MAX)
+                    }
+                    Watchdog::Idle => self.watchdog_ms,
+                    Watchdog::Fired { .. } => 0,
+                },
+                bk9000::WATCHDOG_MS => self.watchdog_ms,
+                bk9000::WATCHDOG_RESET => 0,
+                bk9000::WATCHDOG_TYPE => self.watchdog_type,
+                _ => return None,
+            },
+        })
+    }
+
+    fn write_setting(&mut self, address: u16, value: u16) -> Result<(), Exception> {
+        if self.kind != Kind::Bk9000 {
+            return Err(Exception::IllegalDataAddress);
+        }
+        match (address, self.watchdog) {
+            (bk9000::WATCHDOG_RESET, Watchdog::Fired { is_resetting }) => {
+                self.watchdog = match (is_resetting, value) {
+                    (_, first) if first == bk9000::RESET[0] => Watchdog::Fired { is_resetting: true },
+                    (true, second) if second == bk9000::RESET[1] => Watchdog::Idle,
+                    _ => Watchdog::Fired { is_resetting: false },
+                };
+            }
+            (bk9000::WATCHDOG_RESET, _) => {}
+            (bk9000::WATCHDOG_MS, Watchdog::Idle) => self.watchdog_ms = value,
+            (bk9000::WATCHDOG_TYPE, Watchdog::Idle) => self.watchdog_type = value,
+            (bk9000::WATCHDOG_MS | bk9000::WATCHDOG_TYPE, _) => return Err(Exception::ServerDeviceFailure),
+            _ => return Err(Exception::IllegalDataAddress),
+        }
+        Ok(())
+    }
+
+    fn outputs_start(&self) -> u16 {
+        *self.kind.facts().outputs.start()
+    }
+
+    /// Checks that outputs can be written now.
+    const fn check_writable(&self) -> Result<(), Exception> {
+        match self.watchdog {
+            Watchdog::Fired { .. } => Err(Exception::ServerDeviceFailure),
+            Watchdog::Idle | Watchdog::Active { .. } => Ok(()),
+        }
+    }
+
+    fn written(&mut self) {
+        self.writes += 1;
+        self.rearm();
+    }
+}
+
+/// Bit of process data at the address of a coil or discrete input.
+fn bit_place(address: u16) -> (u16, u16) {
+    (address / 16, 1 << (address % 16))
+}
+
+impl Tables for Emulated {
+    fn admit(&mut self, unit: u8, _: &Request<'_>) -> Result<(), Exception> {
+        if unit != self.unit {
+            return Err(Exception::GatewayTargetFailed);
+        }
+        if self.watchdog_type == bk9000::ANY_TELEGRAM && matches!(self.watchdog, Watchdog::Active { .. }) {
+            self.rearm();
+        }
+        Ok(())
+    }
+
+    fn coil(&mut self, address: u16) -> Result<bool, Exception> {
+        let (word, mask) = bit_place(address);
+        let index = Self::index(word, 0, self.lengths.1).ok_or(Exception::IllegalDataAddress)?;
+        Ok(self.outputs[index] & mask != 0)
+    }
+
+    fn discrete_input(&mut self, address: u16) -> Result<bool, Exception> {
+        let (word, mask) = bit_place(address);
+        let index = Self::index(word, 0, self.lengths.0).ok_or(Exception::IllegalDataAddress)?;
+        Ok(self.input(index) & mask != 0)
+    }
+
+    fn holding_register(&mut self, address: u16) -> Result<u16, Exception> {
+        if let Some(index) = Self::index(address, self.outputs_start(), self.lengths.1) {
+            return Ok(self.outputs[index]);
+        }
+        self.input_register(address)
+    }
+
+    fn input_register(&mut self, address: u16) -> Result<u16, Exception> {
+        match Self::index(address, 0, self.lengths.0) {
+            Some(index) => Ok(self.input(index)),
+            None => self.setting(address).ok_or(Exception::IllegalDataAddress),
+        }
+    }
+
+    fn write_coils(&mut self, first: u16, bits: Bits<'_>) -> Result<(), Exception> {
+        self.check_writable()?;
+        let last = usize::from(first) + bits.len();
+        if last > 16 * usize::from(self.lengths.1) {
+            return Err(Exception::IllegalDataAddress);
+        }
+        for (address, bit) in (first..).zip(bits.iter()) {
+            let (word, mask) = bit_place(address);
+            let word = &mut self.outputs[usize::from(word)];
+            *word = if bit { *word | mask } else { *word & !mask };
+        }
+        self.written();
+        Ok(())
+    }
+
+    fn write_registers(&mut self, first: u16, words: Words<'_>) -> Result<(), Exception> {
+        let Some(index) = Self::index(first, self.outputs_start(), self.lengths.1) else {
+            return (first..)
+                .zip(words.iter())
+                .try_for_each(|(address, word)| self.write_setting(address, word));
+        };
+        self.check_writable()?;
+        if index + words.len() > usize::from(self.lengths.1) {
+            return Err(Exception::IllegalDataAddress);
+        }
+        words.copy_to(&mut self.outputs[index..index + words.len()]);
+        self.written();
+        Ok(())
+    }
+}

@@ -1,0 +1,98 @@
+//! The connection that a session needs, and its faults.
+
+use modbus::{Error, MOST_FRAME_BYTES, Request, Response};
+use rcs_core::Plain;
+
+/// A connection to a device, with one request at a time.
+pub trait Link {
+    /// The time, ns of one monotonic clock.
+    fn now(&mut self) -> u64;
+
+    /// Connects.
+    ///
+    /// # Errors
+    /// [`Fault`] if the device does not accept the connection in time.
+    fn connect(&mut self) -> Result<(), Fault>;
+
+    /// Sends a request and waits for its answer, with a limit. While an earlier request is unanswered, it waits for that
+    /// answer first, and drops it: two requests are never under way.
+    ///
+    /// # Errors
+    /// [`Fault`].
+    fn exchange<'a>(
+        &mut self,
+        request: &Request<'_>,
+        buffer: &'a mut [u8; MOST_FRAME_BYTES],
+    ) -> Result<Response<'a>, Fault>;
+
+    /// Ends the connection at once: data that have not left this machine are dropped.
+    fn reset(&mut self);
+}
+
+/// What went wrong on a connection.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Fault {
+    /// The device has not answered in time.
+    NoAnswer,
+    /// The device has still not answered an earlier request; no further one was sent.
+    Unanswered,
+    /// The device does not accept a connection.
+    NoConnection,
+    /// The connection has ended.
+    Disconnected,
+    /// The device refused the request with this exception code.
+    Exception(u8),
+    /// Bytes that are no answer to the request.
+    Frame(FrameFault),
+}
+
+/// What is wrong with an answer.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum FrameFault {
+    /// Protocol identifier.
+    Protocol,
+    /// Length.
+    Length,
+    /// Transaction identifier: the answer belongs to another request.
+    Transaction,
+    /// Unit.
+    Unit,
+    /// Function.
+    Function,
+    /// Address, quantity or value that an answer repeats.
+    Echo,
+    /// The request itself: it was not sent.
+    Request,
+}
+
+impl Fault {
+    /// True if the connection must be closed. False if a later request may succeed.
+    #[must_use]
+    pub const fn ends_connection(self) -> bool {
+        match self {
+            Self::NoAnswer | Self::Unanswered | Self::Exception(_) => false,
+            Self::NoConnection | Self::Disconnected | Self::Frame(_) => true,
+        }
+    }
+}
+
+impl From<Error> for Fault {
+    fn from(error: Error) -> Self {
+        Self::Frame(match error {
+            Error::Refused(exception) => return Self::Exception(exception.code()),
+            Error::BadProtocol { .. } => FrameFault::Protocol,
+            Error::BadLength { .. } | Error::BadSize { .. } | Error::BadByteCount { .. } => {
+                FrameFault::Length
+            }
+            Error::BadTransaction { .. } => FrameFault::Transaction,
+            Error::BadUnit { .. } => FrameFault::Unit,
+            Error::BadFunction { .. } => FrameFault::Function,
+            Error::BadEcho { .. } => FrameFault::Echo,
+            Error::BadQuantity { .. }
+            | Error::BadAddress { .. }
+            | Error::BadCoil { .. }
+            | Error::UnknownFunction { .. }
+            | Error::NoRoom { .. } => FrameFault::Request,
+        })
+    }
+}

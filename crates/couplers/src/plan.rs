@@ -1,0 +1,273 @@
+//! What a session needs to know of a device: registers, safe values, time limits.
+
+use std::ops::RangeInclusive;
+
+use rcs_core::Plain;
+
+use crate::kind::{Fallback, Kind};
+
+/// Greatest number of words of an input image: one request reads them (function 23).
+pub const MOST_IN: usize = 125;
+/// Greatest number of words of an output image: one request writes them (function 23).
+pub const MOST_OUT: usize = 121;
+
+/// Words of all spans of a direction, one after the other. Bits are packed 16 per word, the first one lowest.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub struct InWords {
+    /// The words.
+    pub words: [u16; MOST_IN],
+}
+
+/// Words of all spans of outputs, as [`InWords`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub struct OutWords {
+    /// The words.
+    pub words: [u16; MOST_OUT],
+}
+
+impl OutWords {
+    /// Combines two images word by word.
+    #[must_use]
+    pub fn with(&self, other: &Self, combine: impl Fn(u16, u16) -> u16) -> Self {
+        Self { words: std::array::from_fn(|index| combine(self.words[index], other.words[index])) }
+    }
+
+    /// The bits that are on here and off in `mask`.
+    #[must_use]
+    pub fn outside(&self, mask: &Self) -> Self {
+        self.with(mask, |word, mask| word & !mask)
+    }
+
+    /// True if no bit is on.
+    #[must_use]
+    pub fn is_zero(&self) -> bool {
+        *self == Self::ZERO
+    }
+}
+
+/// One of the four tables of a Modbus device.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Area {
+    /// Outputs of one bit.
+    Coil,
+    /// Inputs of one bit.
+    Discrete,
+    /// Input registers.
+    Input,
+    /// Registers that can be written.
+    Holding,
+}
+
+impl Area {
+    /// True for tables of bits.
+    #[must_use]
+    pub const fn has_bits(self) -> bool {
+        matches!(self, Self::Coil | Self::Discrete)
+    }
+
+    /// True for tables that can be written.
+    #[must_use]
+    pub const fn is_writable(self) -> bool {
+        matches!(self, Self::Coil | Self::Holding)
+    }
+}
+
+/// Consecutive registers, or bits for [`Area::Coil`] and [`Area::Discrete`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub struct Span {
+    /// The table.
+    pub area: Area,
+    /// First address.
+    pub first: u16,
+    /// Number of addresses.
+    pub count: u16,
+}
+
+impl Span {
+    /// Number of words of the image.
+    #[must_use]
+    pub const fn words(&self) -> usize {
+        let count = self.count as usize;
+        if self.area.has_bits() { count.div_ceil(16) } else { count }
+    }
+}
+
+/// Description of a device for its session.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Plan {
+    /// Unit number in each request.
+    pub unit: u8,
+    /// Kind of coupler.
+    pub kind: Kind,
+    /// What the outputs do when the watchdog fires.
+    pub fallback: Fallback,
+    /// Time of the watchdog, ms; not used without one.
+    pub watchdog_ms: u16,
+    /// Age at which inputs are stale, ms: the least one of all points.
+    pub stale_ms: u16,
+    /// What is read; the input image consists of these spans.
+    pub reads: Vec<Span>,
+    /// What is written; the output image consists of these spans.
+    pub writes: Vec<Span>,
+    /// The safe output image.
+    pub safe: OutWords,
+    /// Bits of outputs that may be on while nothing moves.
+    pub rest: OutWords,
+    /// A register that the device's program counts up; `None` without one.
+    pub alive: Option<Span>,
+}
+
+/// Why a session cannot follow a plan.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum PlanError {
+    /// An image has too many words, or too many bits for a request.
+    #[error("{found} words in an image, at most {most} were expected")]
+    TooLong {
+        /// Greatest number of words.
+        most: usize,
+        /// Number of words found.
+        found: usize,
+    },
+    /// A span of outputs cannot be written.
+    #[error("outputs are coils or holding registers, found {found}")]
+    NotWritable {
+        /// Table of the span.
+        found: Area,
+    },
+    /// A span is empty, or ends beyond 65535.
+    #[error("{count} addresses from {first:#06x}: between 1 and the last address 0xffff were expected")]
+    BadSpan {
+        /// First address.
+        first: u16,
+        /// Number of addresses.
+        count: u16,
+    },
+    /// Registers are not process data of the kind.
+    #[error("registers {first:#06x} to {last:#06x} are not {direction} of a {kind}")]
+    NotProcessData {
+        /// Kind of coupler.
+        kind: Kind,
+        /// `inputs` or `outputs`.
+        direction: &'static str,
+        /// First address.
+        first: u16,
+        /// Last address.
+        last: u16,
+    },
+    /// Nothing is read, so that the device could be lost without notice.
+    #[error("a device needs at least one input")]
+    NoInputs,
+    /// The kind cannot fall back in this way.
+    #[error("a {kind} cannot fall back to {fallback}")]
+    NoFallback {
+        /// Kind of coupler.
+        kind: Kind,
+        /// Fallback that was asked for.
+        fallback: Fallback,
+    },
+    /// The watchdog cannot be set to this time, or not be set above the time after which data are stale.
+    #[error("a watchdog of {found} ms, expected at least {least} ms")]
+    BadWatchdog {
+        /// Least time, ms.
+        least: u16,
+        /// Time found, ms.
+        found: u16,
+    },
+    /// The safe image is not what the fallback gives.
+    #[error("safe values differ from what the fallback {fallback} gives")]
+    UnsafeFallback {
+        /// What the outputs do when the watchdog fires.
+        fallback: Fallback,
+    },
+    /// A device without a fallback has an output that may not be on at rest.
+    #[error("without a fallback, all outputs must be permitted at rest")]
+    NotAtRest,
+}
+
+fn check_process_data(
+    kind: Kind,
+    spans: &[Span],
+    direction: &'static str,
+    addresses: &RangeInclusive<u16>,
+) -> Result<(), PlanError> {
+    for span in spans.iter().filter(|span| !span.area.has_bits()) {
+        let (first, last) = (span.first, span.first.saturating_add(span.count - 1));
+        if !addresses.contains(&first) || !addresses.contains(&last) {
+            return Err(PlanError::NotProcessData { kind, direction, first, last });
+        }
+    }
+    Ok(())
+}
+
+impl Plan {
+    /// Checks the plan.
+    ///
+    /// # Errors
+    /// [`PlanError`], the first one found.
+    pub fn check(&self) -> Result<(), PlanError> {
+        if self.reads.is_empty() {
+            return Err(PlanError::NoInputs);
+        }
+        for (spans, most) in [(&self.reads, MOST_IN), (&self.writes, MOST_OUT)] {
+            let found = spans.iter().map(Span::words).sum();
+            if found > most {
+                return Err(PlanError::TooLong { most, found });
+            }
+        }
+        for &Span { first, count, .. } in self.reads.iter().chain(&self.writes).chain(&self.alive) {
+            if count == 0 || first.checked_add(count - 1).is_none() {
+                return Err(PlanError::BadSpan { first, count });
+            }
+        }
+        if let Some(span) = self.writes.iter().find(|span| !span.area.is_writable()) {
+            return Err(PlanError::NotWritable { found: span.area });
+        }
+        let facts = self.kind.facts();
+        check_process_data(self.kind, &self.reads, "inputs", &facts.inputs)?;
+        check_process_data(self.kind, &self.writes, "outputs", &facts.outputs)?;
+        self.check_fallback()
+    }
+
+    fn check_fallback(&self) -> Result<(), PlanError> {
+        let (kind, fallback, facts) = (self.kind, self.fallback, self.kind.facts());
+        if !facts.fallbacks.contains(&fallback) {
+            return Err(PlanError::NoFallback { kind, fallback });
+        }
+        if let Some(times) = facts.watchdog_ms {
+            let least = *times.start().max(&self.stale_ms.saturating_add(1));
+            if !(least..=*times.end()).contains(&self.watchdog_ms) {
+                return Err(PlanError::BadWatchdog { least, found: self.watchdog_ms });
+            }
+        }
+        if fallback == Fallback::Zero && !self.safe.is_zero() {
+            return Err(PlanError::UnsafeFallback { fallback });
+        }
+        let all = self.written();
+        if fallback == Fallback::Hold && !all.outside(&self.rest).is_zero() {
+            return Err(PlanError::NotAtRest);
+        }
+        Ok(())
+    }
+
+    /// All bits of the output image.
+    #[must_use]
+    pub fn written(&self) -> OutWords {
+        let mut all = OutWords::ZERO;
+        let mut start = 0;
+        for span in &self.writes {
+            for (index, word) in all.words.iter_mut().skip(start).take(span.words()).enumerate() {
+                let bits = if span.area.has_bits() { usize::from(span.count) - 16 * index } else { 16 };
+                *word = if bits >= 16 { u16::MAX } else { (1 << bits) - 1 };
+            }
+            start += span.words();
+        }
+        all
+    }
+
+    /// The outputs at the end of a run: those that may be on at rest keep their value.
+    #[must_use]
+    pub fn at_end(&self, outputs: &OutWords) -> OutWords {
+        let kept = outputs.with(&self.rest, |word, rest| word & rest);
+        kept.with(&self.safe.outside(&self.rest), |kept, safe| kept | safe)
+    }
+}

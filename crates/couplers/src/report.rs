@@ -1,0 +1,168 @@
+//! Orders to a session, and its state.
+
+use rcs_core::Plain;
+
+use crate::{
+    MS,
+    link::Fault,
+    plan::{InWords, OutWords},
+};
+
+/// What the run wants of a device.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Mode {
+    /// Connect, set up and read; write nothing.
+    Watch,
+    /// Write the outputs.
+    Run,
+    /// Write the safe outputs. The device is tripped until it is released.
+    Safe,
+    /// Write the outputs of the end, read them back, and disconnect.
+    End,
+}
+
+/// Orders of a tick.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub struct Orders {
+    /// Number of the tick. A session whose orders keep their number is without a controller.
+    pub tick: u64,
+    /// What to do.
+    pub mode: Mode,
+    /// Number of releases so far: a change releases a tripped device.
+    pub go: u32,
+    /// The outputs, for [`Mode::Run`].
+    pub words: OutWords,
+}
+
+/// State of a device.
+///
+/// ```text
+///   Starting ──setup──► Running ◄──back in time── Stale
+///                        │   └──stale_ms──────────►│
+///                   trip ▼                         ▼ trip
+///                     Tripped ──released──► Running
+///   no orders: any ──► Silent ──orders──► Tripped
+///   Mode::End: any ──► Ended
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum State {
+    /// Not set up yet; nothing has been written.
+    Starting,
+    /// The outputs of the orders are written.
+    Running,
+    /// No answer for the plan's `stale_ms`.
+    Stale,
+    /// The safe outputs are written until an operator releases the device.
+    Tripped(Trip),
+    /// No orders for three ticks: the safe outputs were written once.
+    Silent,
+    /// The run has ended. True if the outputs were read back as written.
+    Ended(bool),
+}
+
+/// Why a device is tripped.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Trip {
+    /// It was not written for so many ms: its watchdog has fired, or another limit has passed.
+    Gap(u32),
+    /// Its outputs are not those that were written last.
+    Outputs,
+    /// Its settings are not those that were made.
+    Settings,
+    /// It refused a write with this exception code.
+    Refused(u8),
+    /// Its terminals report an error, with this status word.
+    Terminals(u16),
+    /// The counter of its program stands still.
+    Frozen,
+    /// The controller gave no orders for three ticks.
+    NoOrders,
+    /// An operator, or the safety circuit, asked for the safe outputs.
+    Ordered,
+}
+
+/// Why a device is not set up.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Refusal {
+    /// An output is on that may not be on at rest: a bit of `acknowledged` outside of the plan's `rest`.
+    OutputsOn,
+    /// A register does not have the expected value.
+    Register(RegisterFault),
+    /// It has fewer bits of inputs or outputs than the plan needs.
+    Lengths(Lengths),
+}
+
+/// A register with another value than expected.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub struct RegisterFault {
+    /// Address of the register.
+    pub address: u16,
+    /// Value expected.
+    pub expected: u16,
+    /// Value found.
+    pub found: u16,
+}
+
+/// Lengths of the process data, bits.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub struct Lengths {
+    /// Inputs that the plan reads.
+    pub inputs_expected: u32,
+    /// Inputs of the device.
+    pub inputs_found: u32,
+    /// Outputs that the plan writes.
+    pub outputs_expected: u32,
+    /// Outputs of the device.
+    pub outputs_found: u32,
+}
+
+/// Counters since the start.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub struct Counters {
+    /// Exchanges of process data that succeeded.
+    pub exchanges: u32,
+    /// Requests and connections that failed; each is counted once.
+    pub failures: u32,
+    /// Connections.
+    pub connections: u32,
+    /// Connections after which the device continued without a trip.
+    pub returns: u32,
+    /// Trips.
+    pub trips: u32,
+    /// Releases that were refused: an output was asked for that may not be on at rest, or the device was absent.
+    pub refused_releases: u32,
+}
+
+/// State of a session.
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct Report {
+    /// State of the device.
+    pub state: State,
+    /// Why it is not set up.
+    pub refusal: Option<Refusal>,
+    /// Time before which the inputs were not sampled, ns: when their request was sent. `None` before the first answer.
+    pub read_at: Option<u64>,
+    /// The newest inputs.
+    pub inputs: InWords,
+    /// The outputs that the device acknowledged last, or had at the start.
+    pub acknowledged: OutWords,
+    /// The last fault of the connection.
+    pub fault: Option<Fault>,
+    /// Counters.
+    pub counters: Counters,
+}
+
+impl Report {
+    /// Age of the inputs at the time `now`, ns; `None` before the first answer.
+    #[must_use]
+    pub fn age(&self, now: u64) -> Option<u64> {
+        self.read_at.map(|read_at| now.saturating_sub(read_at))
+    }
+
+    /// True if inputs may be used at the time `now` that are valid for `stale_ms`.
+    #[must_use]
+    pub fn is_valid(&self, now: u64, stale_ms: u16) -> bool {
+        let stands = matches!(self.state, State::Tripped(Trip::Frozen | Trip::Terminals(_)));
+        !stands && self.age(now).is_some_and(|age| age <= u64::from(stale_ms) * MS)
+    }
+}

@@ -1,0 +1,368 @@
+//! The contract of a device: when its outputs are safe, when its inputs are valid, and when a person must release it.
+//!
+//! | event | what the session does |
+//! |---|---|
+//! | connected for the first time | reads the outputs back, refuses those that may not be on; sets the watchdog, reads it back |
+//! | a request fails | counts it; the next exchange carries the newest outputs, and no request is repeated |
+//! | no answer for `stale_ms` | resets the connection and connects again, after 20 to 320 ms |
+//! | back in time, outputs and settings as left | continues |
+//! | back later, or not as left | trips |
+//! | tripped | writes the safe outputs until an operator releases the device |
+//! | no orders for three ticks | writes the safe outputs once, then nothing, so that the watchdog fires too |
+//! | end | writes the outputs of the end, reads them back, disconnects |
+//!
+//! The image is a state, not a list of events: a device may carry it out twice.
+
+mod setup;
+mod transfer;
+
+use modbus::MOST_FRAME_BYTES;
+use rcs_core::Plain;
+
+use crate::{
+    MS,
+    link::{Fault, Link},
+    plan::{InWords, OutWords, Plan, PlanError},
+    report::{Counters, Mode, Orders, Refusal, Report, State, Trip},
+};
+
+/// A device that returns later than this is tripped, also if its watchdog has more time: it may have none.
+const MOST_GAP_MS: u64 = 500;
+/// Time without new orders after which the outputs become safe: three ticks, less the jitter of the exchanges. The
+/// third image is missing in the first exchange after it is due.
+const MOST_SILENCE: u64 = 116 * MS;
+/// First and longest pause before a new connection; with it, inputs are valid ten ticks after a cut at the latest.
+const PAUSES: (u64, u64) = (20 * MS, 320 * MS);
+/// Period in which outputs, settings and status of the device are read back.
+const CHECKED_EVERY: u64 = 1000 * MS;
+/// Time within which the outputs of the end must be confirmed.
+const MOST_ENDING: u64 = 150 * MS;
+/// Time in which the counter of a device's program must change.
+const MOST_STILL: u64 = 2000 * MS;
+
+/// Phase of the connection.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Phase {
+    /// Not connected; the next attempt may begin at this time.
+    Closed { next: u64 },
+    /// Connected; the device must be set up.
+    Setup,
+    /// Connected again; the device must be as it was left.
+    Back,
+    /// Process data are exchanged.
+    Open,
+}
+
+/// The counter of a device's program, and the time of its last change.
+#[derive(Clone, Copy, Debug)]
+struct Alive {
+    value: u16,
+    since: u64,
+}
+
+/// State of a device and of its connection.
+#[derive(Clone, Debug)]
+pub struct Session {
+    plan: Plan,
+    phase: Phase,
+    report: Report,
+    /// The last image that was sent; the device has carried it out, or not.
+    sent: OutWords,
+    /// When the last write began that the device acknowledged.
+    written_at: Option<u64>,
+    /// When the device answered last, or was connected.
+    heard_at: u64,
+    /// Pause before the next attempt to connect.
+    pause: u64,
+    /// Number of the newest orders, and when they were first seen. `None` until the run writes outputs.
+    orders: Option<(u64, u64)>,
+    go: u32,
+    checked_at: u64,
+    alive: Option<Alive>,
+    /// When the end was first asked for.
+    ending: Option<u64>,
+}
+
+/// A device is not ready: it stays in its phase, and no connection has failed.
+enum Stop {
+    Fault(Fault),
+    Refused(Refusal),
+    Trip(Trip),
+}
+
+impl From<Fault> for Stop {
+    fn from(fault: Fault) -> Self {
+        Self::Fault(fault)
+    }
+}
+
+impl Session {
+    /// A session that has not connected yet.
+    ///
+    /// # Errors
+    /// [`PlanError`] if the plan cannot be followed.
+    pub fn new(plan: Plan) -> Result<Self, PlanError> {
+        plan.check()?;
+        Ok(Self {
+            plan,
+            phase: Phase::Closed { next: 0 },
+            report: Report {
+                state: State::Starting,
+                refusal: None,
+                read_at: None,
+                inputs: InWords::ZERO,
+                acknowledged: OutWords::ZERO,
+                fault: None,
+                counters: Counters::ZERO,
+            },
+            sent: OutWords::ZERO,
+            written_at: None,
+            heard_at: 0,
+            pause: PAUSES.0,
+            orders: None,
+            go: 0,
+            checked_at: 0,
+            alive: None,
+            ending: None,
+        })
+    }
+
+    /// The plan of the device.
+    #[must_use]
+    pub const fn plan(&self) -> &Plan {
+        &self.plan
+    }
+
+    /// The state of the device.
+    #[must_use]
+    pub const fn report(&self) -> &Report {
+        &self.report
+    }
+
+    /// Carries out one exchange. Does nothing after the end. Does not allocate.
+    pub fn exchange(&mut self, link: &mut impl Link, orders: &Orders) {
+        if matches!(self.report.state, State::Ended(_)) {
+            return;
+        }
+        self.watch(link, orders);
+        if self.report.state == State::Silent {
+            return;
+        }
+        if let Err(stop) = self.advance(link, orders) {
+            self.stopped(link, stop);
+        }
+        self.check_age(link);
+        self.check_end(link, orders);
+    }
+
+    /// Checks that the orders are new. Without new ones, writes the safe outputs once.
+    fn watch(&mut self, link: &mut impl Link, orders: &Orders) {
+        let now = link.now();
+        match self.orders {
+            None if matches!(orders.mode, Mode::Run | Mode::Safe) => {
+                (self.orders, self.go) = (Some((orders.tick, now)), orders.go);
+            }
+            Some((tick, _)) if tick != orders.tick => {
+                self.orders = Some((orders.tick, now));
+                if self.report.state == State::Silent {
+                    self.trip(Trip::NoOrders);
+                }
+            }
+            Some((_, since))
+                if now.saturating_sub(since) > MOST_SILENCE
+                    && orders.mode != Mode::End
+                    && !matches!(self.report.state, State::Silent | State::Starting) =>
+            {
+                let is_safe = self.phase == Phase::Open && self.write_safe(link).is_ok();
+                if !is_safe {
+                    self.close(link);
+                }
+                self.report.state = State::Silent;
+            }
+            _ => {}
+        }
+    }
+
+    fn write_safe(&mut self, link: &mut impl Link) -> Result<(), Fault> {
+        let safe = self.plan.safe;
+        self.transfer(link, Some(&safe))
+    }
+
+    /// Advances the connection by one exchange.
+    fn advance(&mut self, link: &mut impl Link, orders: &Orders) -> Result<(), Stop> {
+        if let Phase::Closed { next } = self.phase {
+            if link.now() < next {
+                self.refuse_release(orders);
+                return Ok(());
+            }
+            link.connect()?;
+            self.heard_at = link.now();
+            self.report.counters.connections = self.report.counters.connections.wrapping_add(1);
+            let is_known = matches!(self.report.state, State::Running | State::Stale);
+            self.phase = if is_known { Phase::Back } else { Phase::Setup };
+        }
+        match self.phase {
+            Phase::Setup => self.set_up(link, orders)?,
+            Phase::Back => self.come_back(link)?,
+            Phase::Open | Phase::Closed { .. } => {}
+        }
+        self.phase = Phase::Open;
+        self.report.refusal = None;
+        match (self.report.state, orders.mode) {
+            (State::Starting, Mode::Safe) | (State::Running | State::Stale, Mode::Safe) => {
+                self.trip(Trip::Ordered);
+                self.phase = Phase::Open;
+            }
+            (State::Starting | State::Stale, _) => self.report.state = State::Running,
+            _ => {}
+        }
+        self.release(orders);
+        match (orders.mode, self.report.state) {
+            (Mode::End, _) => return self.finish(link).map_err(Stop::Fault),
+            (Mode::Watch, State::Running) => self.transfer(link, None)?,
+            (Mode::Run, State::Running) => self.transfer(link, Some(&orders.words)).map_err(refused_write)?,
+            _ => self.write_safe(link).map_err(refused_write)?,
+        }
+        self.check_device(link)
+    }
+
+    /// Releases a tripped device if an operator has asked for it.
+    fn release(&mut self, orders: &Orders) {
+        if orders.go == self.go || !matches!(self.report.state, State::Tripped(_)) {
+            self.go = orders.go;
+            return;
+        }
+        if orders.mode == Mode::Run && orders.words.outside(&self.plan.rest).is_zero() {
+            self.go = orders.go;
+            self.report.state = State::Running;
+        } else {
+            self.refuse_release(orders);
+        }
+    }
+
+    fn refuse_release(&mut self, orders: &Orders) {
+        if orders.go != self.go && self.orders.is_some() {
+            self.go = orders.go;
+            self.report.counters.refused_releases = self.report.counters.refused_releases.wrapping_add(1);
+        }
+    }
+
+    /// Handles an exchange that was not completed.
+    fn stopped(&mut self, link: &mut impl Link, stop: Stop) {
+        match stop {
+            Stop::Refused(refusal) => self.report.refusal = Some(refusal),
+            Stop::Trip(cause) => self.trip(cause),
+            Stop::Fault(fault) => {
+                self.report.fault = Some(fault);
+                self.report.counters.failures = self.report.counters.failures.wrapping_add(1);
+                if fault.ends_connection() {
+                    self.close(link);
+                }
+            }
+        }
+    }
+
+    /// Resets a connection without an answer, and marks the inputs as stale.
+    fn check_age(&mut self, link: &mut impl Link) {
+        let now = link.now();
+        let limit = u64::from(self.plan.stale_ms) * MS;
+        if !matches!(self.phase, Phase::Closed { .. }) && now.saturating_sub(self.heard_at) > limit {
+            self.close(link);
+        }
+        if self.report.state == State::Running && self.report.age(now).is_some_and(|age| age > limit) {
+            self.report.state = State::Stale;
+        }
+    }
+
+    /// Makes the outputs safe until the device is released.
+    fn trip(&mut self, cause: Trip) {
+        if !matches!(self.report.state, State::Tripped(_)) {
+            self.report.state = State::Tripped(cause);
+            self.report.counters.trips = self.report.counters.trips.wrapping_add(1);
+        }
+        if !matches!(self.phase, Phase::Closed { .. }) {
+            self.phase = Phase::Setup;
+        }
+    }
+
+    fn close(&mut self, link: &mut impl Link) {
+        link.reset();
+        self.phase = Phase::Closed { next: link.now().saturating_add(self.pause) };
+        self.pause = (self.pause * 2).min(PAUSES.1);
+    }
+
+    /// Writes the outputs of the end, reads them back, and disconnects.
+    fn finish(&mut self, link: &mut impl Link) -> Result<(), Fault> {
+        let confirmed = if self.written_at.is_none() {
+            // Nothing was written.
+            true
+        } else {
+            let last =
+                if self.report.state == State::Running { self.report.acknowledged } else { self.plan.safe };
+            let outputs = self.plan.at_end(&last);
+            self.transfer(link, Some(&outputs))?;
+            self.read_outputs(link)? == outputs
+        };
+        self.end(link, confirmed);
+        Ok(())
+    }
+
+    /// Ends without confirmation if the device does not answer: its watchdog makes the outputs safe.
+    fn check_end(&mut self, link: &mut impl Link, orders: &Orders) {
+        if orders.mode == Mode::End && !matches!(self.report.state, State::Ended(_)) {
+            let now = link.now();
+            let since = *self.ending.get_or_insert(now);
+            if now.saturating_sub(since) >= MOST_ENDING {
+                self.end(link, false);
+            }
+        }
+    }
+
+    fn end(&mut self, link: &mut impl Link, confirmed: bool) {
+        self.close(link);
+        self.report.state = State::Ended(confirmed);
+    }
+
+    /// Compares outputs, settings, status and the counter of the program with the expected values, once per second.
+    fn check_device(&mut self, link: &mut impl Link) -> Result<(), Stop> {
+        let now = link.now();
+        if now.saturating_sub(self.checked_at) < CHECKED_EVERY {
+            return Ok(());
+        }
+        if self.read_outputs(link)? != self.report.acknowledged && self.written_at.is_some() {
+            return Err(Stop::Trip(Trip::Outputs));
+        }
+        if !self.is_set_up(link)? {
+            return Err(Stop::Trip(Trip::Settings));
+        }
+        if let Some(status) = self.read_status(link)?.filter(|status| *status != 0) {
+            return Err(Stop::Trip(Trip::Terminals(status)));
+        }
+        if let Some(span) = self.plan.alive {
+            let value = self.read_register(link, span)?;
+            match &mut self.alive {
+                Some(alive) if alive.value == value => {
+                    if now.saturating_sub(alive.since) >= MOST_STILL {
+                        return Err(Stop::Trip(Trip::Frozen));
+                    }
+                }
+                alive => *alive = Some(Alive { value, since: now }),
+            }
+        }
+        self.checked_at = now;
+        Ok(())
+    }
+}
+
+/// A device that refuses a write does not do what it is told: it trips.
+fn refused_write(fault: Fault) -> Stop {
+    match fault {
+        Fault::Exception(code) => Stop::Trip(Trip::Refused(code)),
+        fault => Stop::Fault(fault),
+    }
+}
+
+/// A buffer for an answer.
+const fn buffer() -> [u8; MOST_FRAME_BYTES] {
+    [0; MOST_FRAME_BYTES]
+}

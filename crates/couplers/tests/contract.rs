@@ -1,0 +1,431 @@
+//! The contract of a device, with an emulated coupler in simulated time.
+
+use couplers::{
+    Area, Emulated, Fallback, Fault, InWords, Kind, MS, Mode, Orders, OutWords, Plan, Refusal, Simulated,
+    Span, State, Trip, emulated::CouplerFault, kind::bk9000, link::FrameFault,
+};
+use proptest::prelude::*;
+use rcs_core::Plain;
+
+const TICK: u64 = 40 * MS;
+/// The valve that may not be on at rest, and the one that may.
+const VALVE: u16 = 0x01;
+const CLAMP: u16 = 0x02;
+/// Word of the output image that holds the number of the tick.
+const CLOCK: usize = 1;
+
+fn words(first: u16) -> OutWords {
+    let mut image = OutWords::ZERO;
+    image.words[0] = first;
+    image
+}
+
+fn plan() -> Plan {
+    let mut rest = words(CLAMP);
+    rest.words[CLOCK] = u16::MAX;
+    Plan {
+        unit: 1,
+        kind: Kind::Bk9000,
+        fallback: Fallback::Zero,
+        watchdog_ms: 500,
+        stale_ms: 100,
+        reads: vec![Span { area: Area::Input, first: 0, count: 4 }],
+        writes: vec![Span { area: Area::Holding, first: 0x800, count: 2 }],
+        safe: OutWords::ZERO,
+        rest,
+        alive: None,
+    }
+}
+
+/// A run with a device: two exchanges per tick, 1 ms after its beginning and 8 ms before the next one.
+struct Run {
+    device: Simulated,
+    now: u64,
+    orders: Orders,
+    /// The run writes new orders in each tick.
+    is_alive: bool,
+}
+
+impl Run {
+    fn of(plan: Plan) -> Self {
+        let coupler = Emulated::new(Kind::Bk9000, 1, 4, 2);
+        let device = Simulated::new(plan, coupler, 15).expect("a sound plan");
+        let orders = Orders { tick: 0, mode: Mode::Run, go: 0, words: words(VALVE | CLAMP) };
+        Self { device, now: 0, orders, is_alive: true }
+    }
+
+    /// A run whose device has been set up and written.
+    fn running() -> Self {
+        let mut run = Self::of(plan());
+        run.ticks(5);
+        assert_eq!((run.state(), run.outputs()), (State::Running, VALVE | CLAMP));
+        run
+    }
+
+    fn tick(&mut self) {
+        if self.is_alive {
+            self.orders.tick += 1;
+            self.orders.words.words[CLOCK] = u16::try_from(self.orders.tick).expect("a short run");
+        }
+        for offset in [1, 32] {
+            self.device.exchange(self.now + offset * MS, &self.orders);
+        }
+        self.now += TICK;
+        self.device.coupler_mut().advance(self.now);
+    }
+
+    fn ticks(&mut self, count: u64) {
+        for _ in 0..count {
+            self.tick();
+        }
+    }
+
+    fn cut_for(&mut self, ticks: u64) {
+        self.device.cut(true);
+        self.ticks(ticks);
+        self.device.cut(false);
+    }
+
+    fn state(&self) -> State {
+        self.device.report().state
+    }
+
+    fn outputs(&self) -> u16 {
+        self.device.coupler().outputs()[0]
+    }
+}
+
+#[test]
+fn start_sets_the_watchdog_before_the_first_write() {
+    let mut run = Run::of(plan());
+    run.orders.mode = Mode::Watch;
+    run.device.coupler_mut().inputs_mut()[3] = 77;
+    run.ticks(3);
+    let report = run.device.report();
+    assert_eq!((report.state, report.inputs.words[3]), (State::Running, 77));
+    assert!(report.is_valid(run.now, 100));
+    assert_eq!(run.device.coupler().writes(), 0);
+    run.orders.mode = Mode::Run;
+    run.ticks(2);
+    assert_eq!(run.outputs(), VALVE | CLAMP);
+    // Without writes it fires after the time that was set; reading does not keep it.
+    run.orders.mode = Mode::Watch;
+    run.ticks(12);
+    assert_eq!(run.device.coupler().fallbacks(), 0);
+    run.ticks(2);
+    assert_eq!((run.device.coupler().fallbacks(), run.outputs()), (1, 0));
+}
+
+#[test]
+fn outputs_that_are_on_at_the_start_are_refused_by_name() {
+    let mut run = Run::of(plan());
+    run.device.coupler_mut().outputs_mut()[0] = VALVE | CLAMP;
+    run.ticks(10);
+    assert_eq!(run.state(), State::Starting);
+    let report = run.device.report();
+    assert_eq!(report.refusal, Some(Refusal::OutputsOn));
+    assert_eq!(report.acknowledged.outside(&plan().rest), words(VALVE));
+    assert_eq!(run.device.coupler().writes(), 0);
+    run.orders.mode = Mode::Safe;
+    run.ticks(2);
+    assert_eq!((run.state(), run.outputs()), (State::Tripped(Trip::Ordered), 0));
+}
+
+#[test]
+fn output_that_may_be_on_at_rest_is_adopted() {
+    let mut run = Run::of(plan());
+    run.device.coupler_mut().outputs_mut()[0] = CLAMP;
+    run.orders.mode = Mode::Watch;
+    run.ticks(3);
+    assert_eq!((run.state(), run.device.report().acknowledged), (State::Running, words(CLAMP)));
+    assert_eq!(run.outputs(), CLAMP);
+}
+
+#[test]
+fn image_longer_than_that_of_the_device_is_refused() {
+    let mut longer = plan();
+    longer.reads[0].count = 5;
+    let mut run = Run::of(longer);
+    run.ticks(3);
+    let Some(Refusal::Lengths(lengths)) = run.device.report().refusal else {
+        panic!("{:?}", run.device.report())
+    };
+    assert_eq!((lengths.inputs_expected, lengths.inputs_found), (80, 64));
+    assert_eq!((lengths.outputs_expected, lengths.outputs_found), (32, 32));
+}
+
+/// An active watchdog of an earlier run refuses other settings; the session waits until it has fired.
+#[test]
+fn watchdog_of_an_earlier_run_delays_the_start() {
+    let mut earlier = Run::running();
+    earlier.orders.words = OutWords::ZERO;
+    earlier.ticks(1);
+    let mut other = plan();
+    other.watchdog_ms = 300;
+    let mut run = Run {
+        device: Simulated::new(other, earlier.device.coupler().clone(), 15).expect("a sound plan"),
+        now: earlier.now,
+        ..earlier
+    };
+    run.ticks(2);
+    let Some(Refusal::Register(register)) = run.device.report().refusal else { panic!("{:?}", run.state()) };
+    assert_eq!((register.address, register.expected, register.found), (bk9000::WATCHDOG_MS, 300, 500));
+    run.ticks(12);
+    assert_eq!(run.state(), State::Running);
+}
+
+#[test]
+fn short_cut_changes_nothing() {
+    let mut run = Run::running();
+    run.cut_for(1);
+    run.ticks(2);
+    let report = run.device.report();
+    assert_eq!((report.state, report.counters.connections, report.counters.trips), (State::Running, 1, 0));
+    assert!(report.counters.failures > 0);
+}
+
+#[test]
+fn cut_shorter_than_the_watchdog_is_stale_and_continues() {
+    let mut run = Run::running();
+    run.device.coupler_mut().inputs_mut()[0] = 5;
+    run.ticks(1);
+    run.device.cut(true);
+    run.ticks(5);
+    let report = *run.device.report();
+    assert_eq!((report.state, report.inputs.words[0]), (State::Stale, 5));
+    assert!(
+        !report.is_valid(run.now, 100) && report.is_valid(run.now, 500),
+        "a point may have a longer limit"
+    );
+    run.device.cut(false);
+    run.ticks(2);
+    let report = run.device.report();
+    assert_eq!((report.state, report.counters.returns, report.counters.trips), (State::Running, 1, 0));
+    assert!(report.is_valid(run.now, 100));
+    assert_eq!(run.outputs(), VALVE | CLAMP);
+}
+
+#[test]
+fn cut_longer_than_the_watchdog_trips_until_released() {
+    let mut run = Run::running();
+    run.cut_for(25);
+    assert_eq!((run.device.coupler().fallbacks(), run.outputs()), (1, 0));
+    run.ticks(25);
+    let State::Tripped(Trip::Gap(gap)) = run.state() else { panic!("{:?}", run.state()) };
+    assert!((1000..1700).contains(&gap), "{gap} ms");
+    assert!(run.device.report().is_valid(run.now, 100), "the inputs are read");
+    // Refused while an output is asked for that may not be on at rest.
+    run.orders.go = 1;
+    run.ticks(3);
+    assert_eq!((run.outputs(), run.device.report().counters.refused_releases), (0, 1));
+    assert!(matches!(run.state(), State::Tripped(_)));
+    run.orders.words = words(CLAMP);
+    run.ticks(3);
+    assert_eq!(run.outputs(), 0, "a refused release is not remembered");
+    run.orders.go = 2;
+    run.ticks(1);
+    assert_eq!((run.state(), run.outputs()), (State::Running, CLAMP));
+    assert_eq!(run.device.report().counters.trips, 1);
+}
+
+#[test]
+fn release_of_an_absent_device_is_refused() {
+    let mut run = Run::running();
+    run.cut_for(25);
+    run.ticks(25);
+    run.orders.words = words(CLAMP);
+    run.device.cut(true);
+    run.ticks(10);
+    run.orders.go = 1;
+    run.ticks(1);
+    assert_eq!(run.device.report().counters.refused_releases, 1);
+    run.device.cut(false);
+    run.ticks(20);
+    assert!(matches!(run.state(), State::Tripped(_)));
+}
+
+/// With outputs on the coupler forgets them; without, only its settings show it.
+#[test]
+fn restarted_coupler_trips_before_an_output_is_on() {
+    for (asked, cause) in [(VALVE | CLAMP, Trip::Outputs), (0, Trip::Settings)] {
+        let mut run = Run::running();
+        run.orders.words = words(asked);
+        // The clock would show the restart, too.
+        run.is_alive = false;
+        run.orders.words.words[CLOCK] = 0;
+        run.orders.tick += 1;
+        run.tick();
+        run.device.restart();
+        run.is_alive = true;
+        let written = run.device.coupler().writes();
+        for _ in 0..25 {
+            run.orders.words = words(asked);
+            run.tick();
+            assert_eq!(run.outputs(), 0);
+        }
+        assert_eq!(run.state(), State::Tripped(cause));
+        assert!(run.device.coupler().writes() > written, "the safe image is written");
+        // The watchdog is set again: it fires after 500 ms.
+        run.device.cut(true);
+        run.ticks(13);
+        assert_eq!(run.device.coupler().fallbacks(), 1);
+    }
+}
+
+#[test]
+fn lost_controller_makes_the_outputs_safe_once() {
+    let mut run = Run::running();
+    run.is_alive = false;
+    run.ticks(2);
+    assert_eq!(run.outputs(), VALVE | CLAMP);
+    let written = run.device.coupler().writes();
+    // 121 ms after the last orders; writes of the same orders go on until then.
+    run.device.exchange(run.now + MS, &run.orders);
+    assert_eq!((run.state(), run.outputs()), (State::Silent, 0));
+    assert_eq!(run.device.coupler().writes(), written + 1);
+    run.ticks(14);
+    assert_eq!(run.device.coupler().writes(), written + 1);
+    assert_eq!(run.device.coupler().fallbacks(), 1, "the watchdog fires as well");
+    run.is_alive = true;
+    run.ticks(3);
+    assert_eq!((run.state(), run.outputs()), (State::Tripped(Trip::NoOrders), 0));
+}
+
+#[test]
+fn safe_orders_trip_at_once() {
+    let mut run = Run::running();
+    run.orders.mode = Mode::Safe;
+    run.ticks(1);
+    assert_eq!((run.state(), run.outputs()), (State::Tripped(Trip::Ordered), 0));
+    run.orders.mode = Mode::Run;
+    run.ticks(5);
+    assert_eq!(run.outputs(), 0, "only a release ends it");
+}
+
+#[test]
+fn end_keeps_what_may_be_on_at_rest_and_is_confirmed() {
+    let mut run = Run::running();
+    run.orders.mode = Mode::End;
+    run.ticks(1);
+    assert_eq!((run.state(), run.outputs()), (State::Ended(true), CLAMP));
+    let written = run.device.coupler().writes();
+    run.ticks(5);
+    assert_eq!(run.device.coupler().writes(), written);
+}
+
+#[test]
+fn end_without_an_answer_is_not_confirmed_within_200_ms() {
+    let mut run = Run::running();
+    run.device.cut(true);
+    run.orders.mode = Mode::End;
+    run.ticks(5);
+    assert_eq!(run.state(), State::Ended(false));
+}
+
+#[test]
+fn frozen_inputs_trip_by_the_counter_of_the_program() {
+    let mut counted = plan();
+    counted.alive = Some(Span { area: Area::Input, first: 2, count: 1 });
+    let mut run = Run::of(counted);
+    let count = |run: &mut Run, ticks| {
+        for _ in 0..ticks {
+            run.device.coupler_mut().inputs_mut()[2] += 1;
+            run.tick();
+        }
+    };
+    count(&mut run, 100);
+    assert_eq!(run.state(), State::Running);
+    run.device.coupler_mut().set_fault(CouplerFault::Freeze);
+    count(&mut run, 80);
+    assert_eq!(run.state(), State::Tripped(Trip::Frozen));
+    assert!(!run.device.report().is_valid(run.now, 100));
+}
+
+#[test]
+fn terminals_with_an_error_trip_and_make_the_inputs_invalid() {
+    let mut run = Run::running();
+    run.device.coupler_mut().set_fault(CouplerFault::Terminals(4));
+    run.ticks(26);
+    assert_eq!(run.state(), State::Tripped(Trip::Terminals(4)));
+    assert!(!run.device.report().is_valid(run.now, 100));
+}
+
+#[test]
+fn late_answers_are_not_used() {
+    let mut run = Run::running();
+    run.device.coupler_mut().set_fault(CouplerFault::Stale);
+    run.device.coupler_mut().inputs_mut()[0] = 9;
+    run.ticks(20);
+    let report = *run.device.report();
+    assert_eq!(report.fault, Some(Fault::Frame(FrameFault::Transaction)));
+    assert_eq!(report.inputs.words[0], 0, "no value of a late answer is used");
+    run.device.coupler_mut().set_fault(CouplerFault::None);
+    run.ticks(30);
+    assert_eq!(run.device.report().inputs.words[0], 9);
+}
+
+#[test]
+fn bits_and_registers_share_an_image() {
+    let mut mixed = plan();
+    mixed.kind = Kind::Plain;
+    mixed.fallback = Fallback::Hold;
+    mixed.reads = vec![
+        Span { area: Area::Discrete, first: 3, count: 18 },
+        Span { area: Area::Input, first: 2, count: 2 },
+    ];
+    mixed.writes = vec![Span { area: Area::Coil, first: 0, count: 20 }];
+    mixed.rest = mixed.written();
+    assert_eq!(mixed.rest.words[..3], [0xFFFF, 0x000F, 0]);
+    let coupler = Emulated::new(Kind::Plain, 1, 4, 2);
+    let mut run = Run::of(plan());
+    run.device = Simulated::new(mixed, coupler, 15).expect("a sound plan");
+    *run.device.coupler_mut().inputs_mut() =
+        std::array::from_fn(|index| [0x8008, 0x0014, 7, 8, 0][index.min(4)]);
+    run.ticks(3);
+    let mut expected = InWords::ZERO;
+    expected.words[..4].copy_from_slice(&[0x9001, 0x0002, 7, 8]);
+    assert_eq!(run.device.report().inputs, expected);
+    assert_eq!(run.outputs(), VALVE | CLAMP);
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(200))]
+
+    /// Whatever is cut when: an image that is carried out is not older than `stale_ms` + 20 ms, and no output is on
+    /// between a trip and the release. Once joined and released, the device runs.
+    #[test]
+    fn no_old_image_is_carried_out(cuts in prop::collection::vec((1..40_u64, 1..40_u64, any::<bool>()), 1..12)) {
+        let mut run = Run::running();
+        for (joined, cut, restart) in cuts {
+            for (is_cut, ticks) in [(true, cut), (false, joined)] {
+                run.device.cut(is_cut);
+                if !is_cut && restart {
+                    run.device.restart();
+                }
+                for _ in 0..ticks {
+                    let written = run.device.coupler().writes();
+                    run.tick();
+                    let is_written = run.device.coupler().writes() > written;
+                    let outputs = *run.device.coupler().outputs();
+                    if is_written && outputs[0] != 0 {
+                        let age = run.now - (u64::from(outputs[CLOCK]) - 1) * TICK;
+                        prop_assert!(age <= 120 * MS, "{} ms", age / MS);
+                    }
+                    if matches!(run.state(), State::Tripped(_)) {
+                        prop_assert_eq!(outputs[0], 0);
+                        run.orders.words = OutWords::ZERO;
+                        run.orders.go += u32::from(!is_cut);
+                    } else {
+                        run.orders.words = words(VALVE | CLAMP);
+                    }
+                }
+            }
+        }
+        run.orders.words = OutWords::ZERO;
+        for _ in 0..30 {
+            run.orders.go += 1;
+            run.tick();
+        }
+        prop_assert_eq!(run.state(), State::Running, "joined and released");
+    }
+}
