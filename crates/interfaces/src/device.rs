@@ -250,6 +250,50 @@ pub struct MotorCommand {
     pub steps: i32,
 }
 
+/// How the controller is connected with devices behind field I/O, from best to worst (extension).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Plain)]
+pub enum Connection {
+    /// Their words are new, or they are not behind field I/O.
+    Fresh,
+    /// Their words are new. Their outputs are safe until an operator releases them.
+    Tripped,
+    /// Their words are old, and keep their values.
+    Stale,
+    /// Their words are older than a second.
+    Lost,
+}
+
+impl Connection {
+    /// The words are older than they may be.
+    #[must_use]
+    pub const fn is_old(self) -> bool {
+        matches!(self, Self::Stale | Self::Lost)
+    }
+}
+
+/// How old the words of the devices are, by groups (extension, docs/design/field.md "Stale").
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct FieldHealth {
+    /// Parts gripper, and the potentiometer of all grippers.
+    pub grip: Connection,
+    /// Quick change.
+    pub quick_change: Connection,
+    /// Holsters.
+    pub holsters: Connection,
+    /// Force sensor.
+    pub force: Connection,
+    /// Hand of the pedestal.
+    pub hand: Connection,
+    /// Rotary table.
+    pub table: Connection,
+    /// Joystick box.
+    pub joystick: Connection,
+    /// Resolvers.
+    pub resolvers: Connection,
+    /// The worst of all devices.
+    pub any: Connection,
+}
+
 /// Everything that the controller reads from its devices in a tick.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct DeviceInputs {
@@ -285,6 +329,8 @@ pub struct DeviceInputs {
     /// Location of the vise whose jaws have closed on a part, as the vise reports it (extension); none if it reports
     /// nothing.
     pub clamping: Option<Name10>,
+    /// Age of the words from devices behind field I/O.
+    pub field: FieldHealth,
 }
 
 /// Everything that the controller writes to its devices in a tick.

@@ -1,0 +1,231 @@
+//! Between the records of the controller and the words of the devices, in both directions.
+
+use couplers::{InWords, OutWords};
+use interfaces::{
+    device::{Connection, DeviceInputs, DeviceOutputs, FieldHealth},
+    point::{Group, Input},
+};
+
+use crate::{
+    mapping::{InPoint, Mapping, Origin, OutPoint, Slot, Target},
+    scale::Format,
+};
+
+/// What a connection knows of its device before a tick.
+#[derive(Clone, Copy, Debug)]
+pub struct Seen<'w> {
+    /// The words that were read last.
+    pub words: &'w InWords,
+    /// Their age, ms; `None` if none were read yet.
+    pub age_ms: Option<u32>,
+    /// Its outputs are safe until an operator releases them.
+    pub is_tripped: bool,
+}
+
+impl Seen<'_> {
+    /// The connection of a point that is stale after so many ms.
+    fn connection(&self, stale_ms: u16) -> Connection {
+        match self.age_ms {
+            Some(age) if age <= u32::from(stale_ms) => {
+                if self.is_tripped {
+                    Connection::Tripped
+                } else {
+                    Connection::Fresh
+                }
+            }
+            Some(age) if age <= LOST_MS => Connection::Stale,
+            Some(_) | None => Connection::Lost,
+        }
+    }
+}
+
+/// Age after which a device counts as lost, ms: 25 ticks.
+pub const LOST_MS: u32 = 1000;
+
+impl Mapping {
+    /// Writes the words of the devices, in their order, into the inputs of the controller. The words of a device that
+    /// does not answer are those that it gave last, so its inputs keep their values, except those with `then`. While any
+    /// device is not fresh, the velocity knob is at 0 and the robot ramps to rest.
+    pub fn apply(&self, devices: &[Seen<'_>], inputs: &mut DeviceInputs) {
+        let mut health = FieldHealth::default();
+        // The id pins come first: the gripper decides on the line of the potentiometer.
+        for point in self.inputs.iter().filter(|point| point.group == Group::QuickChange) {
+            point.apply(devices, inputs, &mut health);
+        }
+        for point in self.inputs.iter().filter(|point| point.group != Group::QuickChange) {
+            point.apply(devices, inputs, &mut health);
+        }
+        for (seen, device) in devices.iter().zip(&self.devices) {
+            // A device without inputs is watched by its answers all the same.
+            let stale_ms = device.plan.stale_ms.min(u16::MAX - 1);
+            health.any = health.any.max(seen.connection(stale_ms));
+        }
+        if health.resolvers.is_old() {
+            inputs.resolvers.valid = false;
+        }
+        if health.any != Connection::Fresh {
+            inputs.joystick.velocity = 0;
+        }
+        inputs.field = health;
+    }
+
+    /// Writes the outputs of the controller into the words of the devices. Outputs of the workstation keep their safe
+    /// value.
+    pub fn collect(&self, outputs: &DeviceOutputs, images: &mut [OutWords]) {
+        for point in &self.outputs {
+            let Some(image) = images.get_mut(point.slot.device) else { continue };
+            let value = match point.target {
+                Target::Word(output) => output.read(outputs),
+                Target::Station => point.safe,
+            };
+            point.slot.put(&mut image.words, value);
+        }
+    }
+
+    /// The other end of [`collect`](Self::collect): what the words of the devices make the valves do.
+    pub fn spread(&self, images: &[OutWords], outputs: &mut DeviceOutputs) {
+        for point in &self.outputs {
+            if let (Target::Word(output), Some(image)) = (point.target, images.get(point.slot.device)) {
+                output.write(outputs, point.slot.get(&image.words));
+            }
+        }
+    }
+
+    /// The other end of [`apply`](Self::apply): what the sensors put into the words of the devices.
+    pub fn sample(&self, inputs: &DeviceInputs, images: &mut [InWords]) {
+        let gripper = inputs.quick_change.end_effector_id;
+        for point in &self.inputs {
+            let (Target::Word(input), Origin::Slot(slot)) = (point.target, point.from) else { continue };
+            let Some(image) = images.get_mut(slot.device) else { continue };
+            let counts = input.read(inputs);
+            let raw = point.line_of(gripper).map_or(counts, |line| line.raw(counts));
+            slot.put(&mut image.words, raw);
+        }
+    }
+
+    /// The first output that is not safe in the images and may not be on while nothing moves.
+    #[must_use]
+    pub fn first_on(&self, images: &[OutWords]) -> Option<&OutPoint> {
+        let is_on = |point: &&OutPoint| {
+            images.get(point.slot.device).is_some_and(|image| point.slot.get(&image.words) != point.safe)
+        };
+        self.outputs.iter().filter(|point| !point.rest).find(is_on)
+    }
+}
+
+impl InPoint {
+    fn apply(&self, devices: &[Seen<'_>], inputs: &mut DeviceInputs, health: &mut FieldHealth) {
+        let (connection, raw) = match self.from {
+            Origin::Fixed(value) => (Connection::Fresh, value),
+            Origin::Slot(slot) => {
+                let Some(seen) = devices.get(slot.device) else { return };
+                (seen.connection(self.stale_ms), slot.get(&seen.words.words))
+            }
+        };
+        self.note(connection, health);
+        let Target::Word(input) = self.target else { return };
+        let value = match (self.then, self.from) {
+            (Some(then), _) if connection.is_old() => then,
+            (_, Origin::Fixed(value)) => value,
+            _ => self.value(input, raw, inputs.quick_change.end_effector_id),
+        };
+        input.write(inputs, value);
+    }
+
+    /// The counts of a raw value.
+    fn value(&self, input: Input, raw: i64, gripper: u8) -> i64 {
+        let range = input.range();
+        let value = self.line_of(gripper).map_or(raw, |line| line.counts(raw, self.ends()));
+        value.clamp(*range.start(), *range.end())
+    }
+
+    /// The line of the gripper that is on.
+    fn line_of(&self, gripper: u8) -> Option<crate::scale::Line> {
+        let own = usize::from(gripper).checked_sub(1).and_then(|index| *self.by_gripper.get(index)?);
+        own.or(self.line)
+    }
+
+    /// A group is as old as the oldest of its points.
+    fn note(&self, connection: Connection, health: &mut FieldHealth) {
+        health.any = health.any.max(connection);
+        let group = match self.group {
+            Group::Grip => &mut health.grip,
+            Group::Tool => &mut health.force,
+            Group::QuickChange => &mut health.quick_change,
+            Group::Holsters => &mut health.holsters,
+            Group::Joystick => &mut health.joystick,
+            Group::Pedestal => &mut health.hand,
+            Group::Table => &mut health.table,
+            Group::Resolvers => &mut health.resolvers,
+            Group::V
+            | Group::Vision
+            | Group::Vise
+            | Group::Machine
+            | Group::Drum
+            | Group::Trays
+            | Group::Supply => return,
+        };
+        *group = (*group).max(connection);
+    }
+}
+
+impl Slot {
+    /// The value in an image.
+    pub(crate) fn get(&self, image: &[u16]) -> i64 {
+        let word = |offset: usize| image.get(self.word + offset).copied().unwrap_or_default();
+        let wide = || {
+            let (high, low) = if self.low_first { (word(1), word(0)) } else { (word(0), word(1)) };
+            u32::from(high) << 16 | u32::from(low)
+        };
+        match (self.format, self.bit) {
+            (Format::Bit, bit) => (word(0) >> bit.unwrap_or(0) & 1 == 1) as i64 ^ i64::from(self.invert),
+            (Format::U16, _) => word(0).into(),
+            (Format::I16, _) => word(0).cast_signed().into(),
+            (Format::U32, _) => wide().into(),
+            (Format::I32, _) => wide().cast_signed().into(),
+        }
+    }
+
+    /// Puts the nearest value that the format has into an image.
+    pub(crate) fn put(&self, image: &mut [u16], value: i64) {
+        let range = self.format.range();
+        let value = value.clamp(*range.start(), *range.end());
+        if self.format == Format::Bit {
+            let mask = 1 << self.bit.unwrap_or(0);
+            let on = (value != 0) != self.invert;
+            if let Some(word) = image.get_mut(self.word) {
+                *word = *word & !mask | if on { mask } else { 0 };
+            }
+            return;
+        }
+        let [.., high, low] = be_words(value);
+        let words = match (self.format.registers(), self.low_first) {
+            (1, _) => [low, 0],
+            (_, true) => [low, high],
+            (_, false) => [high, low],
+        };
+        let there = image.iter_mut().skip(self.word).take(self.format.registers().into());
+        there.zip(words).for_each(|(word, value)| *word = value);
+    }
+
+    /// Sets all its bits in an image.
+    pub(crate) fn mark(&self, image: &mut [u16]) {
+        let mask = self.bit.map_or(u16::MAX, |bit| 1 << bit);
+        let there = image.iter_mut().skip(self.word).take(self.format.registers().into());
+        there.for_each(|word| *word |= mask);
+    }
+}
+
+/// The words of a number, the highest first.
+const fn be_words(value: i64) -> [u16; 4] {
+    let [a, b, c, d, e, f, g, h] = value.to_be_bytes();
+    [
+        u16::from_be_bytes([a, b]),
+        u16::from_be_bytes([c, d]),
+        u16::from_be_bytes([e, f]),
+        u16::from_be_bytes([g, h]),
+    ]
+}
+
+#[cfg(test)]
+mod tests;

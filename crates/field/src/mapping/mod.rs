@@ -1,0 +1,253 @@
+//! The mapping file: at which word of which device each point is.
+//!
+//! ```toml
+//! form = 1
+//!
+//! [device.arm]
+//! address = "192.168.10.20:502"       # numeric: resolving a name would allocate
+//! unit = 1
+//! kind = "bk9000"                     # or plain: a device without a watchdog
+//! fallback = "zero"                   # what its outputs do when its watchdog fires
+//! watchdog_ms = 500
+//!
+//! [in]
+//! "grip.potentiometer"  = { at = "arm input 0", raw = [0, 32767], counts = [0, 4095] }
+//! "quick-change.locked" = { at = "arm input 8.8" }           # bit 8 of register 8
+//! "beam.1"              = { fixed = 0 }                      # there is no such sensor
+//!
+//! [out]
+//! "tool.close"          = { at = "arm holding 0x800.11", safe = 0, rest = true }
+//!
+//! [groups]
+//! pedestal = "absent"                 # or "simulated", which is what a group without points is
+//! ```
+//!
+//! A group of devices is mapped whole or not at all. Parsing reports all mistakes of a file at once.
+
+mod check;
+mod form;
+mod place;
+
+use std::{net::SocketAddr, ops::RangeInclusive};
+
+use couplers::Plan;
+use diagnostics::{
+    Diagnostics, Source,
+    toml::{Document, FileKind},
+};
+use interfaces::point::{Group, Input, Kind, Output};
+
+use self::form::Sheet;
+use crate::scale::{Format, Line};
+
+pub(crate) const KIND: FileKind = FileKind {
+    whole: "the file",
+    syntax: "field.syntax",
+    key: "field.key",
+    missing: "field.missing",
+    value: "field.value",
+    magnitudes: [1e-6, 1e10],
+};
+
+/// The form of the file that this version reads.
+const FORM: u32 = 1;
+
+/// A mapping that was checked.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Mapping {
+    /// Name of the cell.
+    pub name: String,
+    /// The devices, in the order of their names.
+    pub devices: Vec<Device>,
+    /// The points that are read.
+    pub inputs: Vec<InPoint>,
+    /// The points that are written.
+    pub outputs: Vec<OutPoint>,
+    /// How each group of devices is present, in the order of [`Group::ALL`].
+    presence: [Presence; Group::ALL.len()],
+}
+
+/// A device.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Device {
+    /// Its name.
+    pub name: String,
+    /// Where it is.
+    pub address: SocketAddr,
+    /// Time between two exchanges, ms.
+    pub exchange_ms: u16,
+    /// Time for an answer, ms.
+    pub timeout_ms: u16,
+    /// What the connection has to know.
+    pub plan: Plan,
+}
+
+/// How a group of devices is present.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Presence {
+    /// Its points are mapped.
+    Mapped,
+    /// All its inputs have a fixed value.
+    Fixed,
+    /// It is not there: jobs that need it are refused.
+    Absent,
+    /// The simulated cell has it.
+    Simulated,
+}
+
+impl Presence {
+    /// Its word in mapping files and messages.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Mapped => "mapped",
+            Self::Fixed => "fixed",
+            Self::Absent => "absent",
+            Self::Simulated => "simulated",
+        }
+    }
+}
+
+/// Where the value of a point is in the image of a device.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Slot {
+    /// Index of the device.
+    pub device: usize,
+    /// Index of the word in its image; of the first one of two.
+    pub word: usize,
+    /// Bit of the word.
+    pub bit: Option<u8>,
+    pub format: Format,
+    /// Of two words the low one is first.
+    pub low_first: bool,
+    pub invert: bool,
+}
+
+/// What has the value of a point.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Target<T> {
+    /// A word of the controller.
+    Word(T),
+    /// A device of the workstation.
+    Station,
+}
+
+/// A point that is read.
+#[derive(Clone, Debug, PartialEq)]
+pub struct InPoint {
+    /// Its name.
+    pub name: String,
+    /// What gets the value.
+    pub target: Target<Input>,
+    /// Age after which it is stale, ms.
+    pub stale_ms: u16,
+    pub(crate) group: Group,
+    pub(crate) from: Origin,
+    /// Its values.
+    pub(crate) range: RangeInclusive<i64>,
+    pub(crate) line: Option<Line>,
+    /// The lines of the grippers 1 to 3, where they differ.
+    pub(crate) by_gripper: [Option<Line>; 3],
+    pub(crate) then: Option<i64>,
+}
+
+/// Where the value of an input comes from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Origin {
+    /// A device.
+    Slot(Slot),
+    /// It never changes.
+    Fixed(i64),
+}
+
+impl InPoint {
+    /// The device that has it; none for a fixed value.
+    #[must_use]
+    pub const fn device(&self) -> Option<usize> {
+        match self.from {
+            Origin::Slot(slot) => Some(slot.device),
+            Origin::Fixed(_) => None,
+        }
+    }
+
+    /// The ends of a converter, which mean a broken wire.
+    pub(crate) fn ends(&self) -> Option<&RangeInclusive<i64>> {
+        match self.target {
+            Target::Word(input) if matches!(input.kind(), Kind::Converter | Kind::Force) => Some(&self.range),
+            _ => None,
+        }
+    }
+}
+
+/// A point that is written.
+#[derive(Clone, Debug, PartialEq)]
+pub struct OutPoint {
+    /// Its name.
+    pub name: String,
+    /// What has the value.
+    pub target: Target<Output>,
+    /// What is written at the start, at the end, and when the controller is lost.
+    pub safe: i64,
+    /// It may be on while nothing moves.
+    pub rest: bool,
+    pub(crate) group: Group,
+    pub(crate) slot: Slot,
+}
+
+impl OutPoint {
+    /// The device that has it.
+    #[must_use]
+    pub const fn device(&self) -> usize {
+        self.slot.device
+    }
+}
+
+impl Mapping {
+    /// Reads a mapping.
+    ///
+    /// # Errors
+    /// All mistakes of the file, each with its line.
+    pub fn parse(source: &Source) -> Result<Self, Diagnostics> {
+        let mut built = None;
+        Document::load(source, KIND, |sheet: &Sheet, stand_ins, problems| {
+            built = Some(check::build(sheet, stand_ins, problems));
+        })?;
+        // Without a problem the check has run.
+        Ok(built.unwrap_or_else(Self::nothing))
+    }
+
+    /// Nothing is mapped.
+    fn nothing() -> Self {
+        Self {
+            name: String::new(),
+            devices: Vec::new(),
+            inputs: Vec::new(),
+            outputs: Vec::new(),
+            presence: [Presence::Simulated; Group::ALL.len()],
+        }
+    }
+
+    /// How a group is present.
+    #[must_use]
+    pub fn presence(&self, group: Group) -> Presence {
+        let all = Group::ALL.iter().zip(self.presence);
+        all.filter(|(one, _)| **one == group)
+            .map(|(_, presence)| presence)
+            .next()
+            .unwrap_or(Presence::Simulated)
+    }
+
+    /// The groups that are present in this way.
+    pub fn groups(&self, presence: Presence) -> impl Iterator<Item = Group> {
+        Group::ALL.into_iter().filter(move |group| self.presence(*group) == presence)
+    }
+
+    /// The device with a name.
+    #[must_use]
+    pub fn device(&self, name: &str) -> Option<usize> {
+        self.devices.iter().position(|device| device.name == name)
+    }
+}
+
+#[cfg(test)]
+mod tests;
