@@ -288,6 +288,10 @@ pub enum Reason {
     PedestalOnly,
     /// The vise is not known to clamp the object.
     NotClamped,
+    /// A device of the field I/O does not answer.
+    DeviceSilent,
+    /// The outputs of a device were made safe, and nobody has released them.
+    DeviceTripped,
 }
 
 /// Which process a changing pose record belongs to: part of its record number.

@@ -41,6 +41,7 @@ impl Reason {
             | Self::HandTimeout
             | Self::HandUnattainable
             | Self::PinsFail
+            | Self::DeviceSilent
             | Self::NoEffect => return None,
             Self::UnknownCommand
             | Self::NoDestination
@@ -91,6 +92,7 @@ impl Reason {
             Self::HeldElsewhere => {
                 "place the object with TRANSFER, or hold it, send `confirm by hand`, and send POSITION again"
             }
+            Self::DeviceTripped => "look at the device, then send `io go DEVICE`",
             Self::NotClamped => {
                 "close the vise; if it reports nothing, look at it and send `confirm clamped`"
             }

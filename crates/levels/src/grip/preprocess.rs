@@ -5,7 +5,12 @@
 //! in or 4 lb, a fine one 0.01 in or 1 lb. Each band is wider than two ticks of the flow used in it, so no
 //! flow overshoots the next finer band.
 
-use interfaces::{GripOutputs, device::GripSensors, grip::GripCommand, process::Inputs};
+use interfaces::{
+    GripOutputs,
+    device::{Connection, GripSensors},
+    grip::{Felt, GripCommand},
+    process::Inputs,
+};
 use rcs_core::{
     handshake::Arrival,
     tick::{TICK_S, Tick},
@@ -16,7 +21,7 @@ use super::{
     goal::{CLOSED_END, Goal},
     presence::{self, CONTACT, MISSED_AT_END},
     servoed::Servoed,
-    state::{Sensed, State, WINDOW},
+    state::{Sensed, State, Touch, WINDOW},
     tables::{
         Addressee, Calibrating, Clock, Command, Flow, Grasp, Gripper, Measured, Motion, Opening, Phase,
         Reach, Request, Rest, Sensors, Situation, StateVariables, Step,
@@ -71,6 +76,7 @@ impl State {
     ) -> StateVariables {
         let command = S::command(inputs.memory);
         let (gripper, sensors) = S::sensors(&inputs.external.devices);
+        let connection = S::connection(&inputs.external.devices);
         let (arrival, asked) = self.observe((inputs.tick, command.number), gripper, outputs);
         let goal = Goal::from(command);
         if arrival == Arrival::New {
@@ -79,7 +85,11 @@ impl State {
         let before = self.sensed.map(|sensed| sensed.last);
         self.sample(gripper, &sensors);
         let measured = self.measure();
-        self.detect(before.as_ref(), &measured);
+        if connection.is_old() {
+            self.await_readings();
+        } else {
+            self.detect(before.as_ref(), &measured);
+        }
         let step = if arrival == Arrival::New { Step::Start } else { self.step };
         self.count(arrival, step, &measured, inputs.tick);
         StateVariables {
@@ -98,7 +108,7 @@ impl State {
                 clock: self.clock(inputs.tick),
                 motion: if self.still_ticks >= STILL_TICKS { Motion::Still } else { Motion::Moving },
                 felt: self.felt,
-                sensors: self.sensors(&measured),
+                sensors: self.sensors(connection, &measured),
                 rest: if self.settled >= SETTLE_TICKS { Rest::Rested } else { Rest::Waiting },
                 opening: self.opening(step, &measured),
                 grasp: self.grasp(step, &measured),
@@ -192,9 +202,19 @@ impl State {
         self.missed = if missing { self.missed.saturating_add(1) } else { 0 };
     }
 
+    /// The words of the sensors are old: what is held is unknown, and readings settle anew.
+    fn await_readings(&mut self) {
+        (self.felt, self.touch, self.touch_ticks) = (Felt::NotKnown, Touch::Unclear, 0);
+        (self.still_ticks, self.settled, self.missed) = (0, 0, 0);
+        self.steady = Steady::default();
+    }
+
     /// Do the sensors agree with the calibration?
-    fn sensors(&self, measured: &Measured) -> Sensors {
+    fn sensors(&self, connection: Connection, measured: &Measured) -> Sensors {
         match (&self.calibration, &self.sensed) {
+            _ if connection == Connection::Stale => Sensors::Stale,
+            _ if connection == Connection::Lost => Sensors::Lost,
+            _ if connection == Connection::Tripped => Sensors::Tripped,
             (Some(_), Some(sensed)) if presence::is_plausible(&sensed.last, measured) => Sensors::Plausible,
             _ => Sensors::Implausible,
         }

@@ -2,7 +2,7 @@
 
 use interfaces::{
     CommonMemory, Reason,
-    device::{DeviceInputs, GripSensors},
+    device::{Connection, DeviceInputs, GripSensors},
     grip::GripCommand,
 };
 
@@ -26,6 +26,8 @@ pub trait Servoed {
     fn command(memory: &CommonMemory) -> &GripCommand;
     /// The sensor words, and whether their gripper is attached.
     fn sensors(devices: &DeviceInputs) -> (Gripper, GripSensors);
+    /// How the controller is connected with them.
+    fn connection(devices: &DeviceInputs) -> Connection;
 }
 
 /// The parts gripper, end effector 1, on the quick change (III.3.6).
@@ -45,5 +47,9 @@ impl Servoed for PartsGripper {
         let locked = quick_change.locked && !quick_change.unlocked;
         let attached = locked && quick_change.end_effector_id == Self::END_EFFECTOR_ID;
         (if attached { Gripper::Attached } else { Gripper::Detached }, devices.grip)
+    }
+
+    fn connection(devices: &DeviceInputs) -> Connection {
+        devices.field.grip
     }
 }

@@ -69,7 +69,14 @@ impl State {
         let [newest, second, third, oldest] = window.map(f64::from);
         let opening = opening_at((newest + second + third + oldest) / 4.0);
         let stop = stop(opening, &K::PARAMETERS);
-        let motion = self.motion(&window, stop, inputs.tick);
+        let connection = devices.field.grip;
+        let motion = if connection.is_old() {
+            // The fingers may move, and their time stands.
+            (self.since, self.gripping_ticks) = (self.since.next(), 0);
+            Motion::Moving
+        } else {
+            self.motion(&window, stop, inputs.tick)
+        };
         StateVariables {
             arrival,
             verb: self.verb,
@@ -79,7 +86,7 @@ impl State {
                 addressee: addressee(command, &K::PARAMETERS),
                 gripper,
             },
-            situation: Situation { gripper, motion, stop, size: self::size(opening, size) },
+            situation: Situation { gripper, motion, stop, size: self::size(opening, size), connection },
             mated: mated(&devices.quick_change, &K::PARAMETERS),
             felt: self.felt(motion, stop, opening, &K::PARAMETERS),
             size,

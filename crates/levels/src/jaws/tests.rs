@@ -3,7 +3,7 @@
 use geometry::units::hundredths;
 use interfaces::{
     CommonMemory, ExternalInputs, JawsOutputs, Reason,
-    device::JawValves,
+    device::{Connection, JawValves},
     grip::Felt,
     jaws::{JawsCommand, JawsReport, JawsVerb},
     process::Process,
@@ -311,6 +311,27 @@ fn a_process_that_starts_or_wakes_adopts_the_command_and_gives_no_air() {
 }
 
 #[test]
+fn fingers_are_waited_for_while_their_device_is_late() {
+    let mut bench = VBench::new(3.5);
+    bench.world.object = Some(2.0);
+    bench.send(order(JawsVerb::Grasp, 2.0));
+    bench.wait(3);
+    bench.external.devices.field.grip = Connection::Stale;
+    let outputs = bench.wait(LIMIT_TICKS as u32 + 10);
+    assert_eq!((outputs.status.report, outputs.status.felt), (JawsReport::Executing, Felt::NotKnown));
+    assert!(outputs.valves.close, "the air stays as it is");
+    bench.external.devices.field.grip = Connection::Fresh;
+    assert_eq!(bench.finish(), CLOSED);
+    for (connection, reason) in
+        [(Connection::Lost, Reason::DeviceSilent), (Connection::Tripped, Reason::DeviceTripped)]
+    {
+        bench.external.devices.field.grip = connection;
+        assert_eq!(bench.execute(order(JawsVerb::Release, 3.0)), (JawsReport::Stuck, reason));
+        assert_eq!(bench.memory.v_grip.valves, JawValves::default());
+    }
+}
+
+#[test]
 fn every_row_fires() {
     let mut silent = silent::<VGrip, ()>(&[
         every_command_reports_where_its_fingers_stopped,
@@ -320,6 +341,7 @@ fn every_row_fires() {
         without_the_gripper_commands_fail_and_there_is_no_air,
         the_air_stays_on_without_the_id_and_after_a_restart,
         a_process_that_starts_or_wakes_adopts_the_command_and_gives_no_air,
+        fingers_are_waited_for_while_their_device_is_late,
     ]);
     silent.retain(|row| !["PRESENCE ", "VALVES "].iter().any(|table| row.starts_with(table)));
     assert_eq!(silent, [""; 0]);

@@ -2,7 +2,7 @@
 
 use interfaces::{
     CommonMemory, Reason,
-    device::{DeviceInputs, GripSensors},
+    device::{Connection, DeviceInputs, GripSensors},
     grip::GripCommand,
 };
 
@@ -40,6 +40,10 @@ impl Servoed for PedestalHand {
             beams: 0,
         };
         (Gripper::Attached, sensors)
+    }
+
+    fn connection(devices: &DeviceInputs) -> Connection {
+        devices.field.hand
     }
 }
 

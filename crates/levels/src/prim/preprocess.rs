@@ -10,7 +10,7 @@ use geometry::{
 };
 use interfaces::{
     PrimOutputs, ProcessId,
-    device::{JoystickBox, single_step},
+    device::{DeviceInputs, JoystickBox, single_step},
     prim::{PrimCommand, PrimVerb},
     process::Inputs,
     t3i::{Following, LinkFault, ReportCheck, T3iCommand, T3iReport, T3iStatus, T3iVerb},
@@ -24,8 +24,8 @@ use super::{
     sensors::Reading,
     state::{Goal, Standstill, State, Target},
     tables::{
-        Button, Guard, Interface, Kind, Link, Missing, Operator, Passage, Position, Posture, Request, Rest,
-        Samples, Situation, StateVariables, Switches, Way,
+        Button, Devices, Guard, Interface, Kind, Link, Missing, Operator, Passage, Position, Posture,
+        Request, Rest, Samples, Situation, StateVariables, Switches, Way,
     },
 };
 use crate::{execution::Asked, halt::Above, places::pose_of};
@@ -86,7 +86,8 @@ impl State {
         let button = self.button(&devices.joystick);
         let lag_ms = devices.robot_lag.unwrap_or(track::LAG_MS);
         let proof = self.proof(verb, &situation, resolvers.as_ref(), lag_ms);
-        StateVariables { arrival, verb, request, proof, situation, button, feedback, resolvers }
+        let field = Devices { position: situation.position, connection: devices.field.any };
+        StateVariables { arrival, verb, request, field, proof, situation, button, feedback, resolvers }
     }
 
     /// After a time in which Prim was held or suspended the motion goes on from rest, because T3I has stopped
@@ -196,8 +197,12 @@ impl State {
 
     /// The readings of CAL-SENSOR: only those of one rest count together.
     fn samples(&mut self, inputs: &Inputs<'_, TaskData<'_>>, rest: Rest) -> Samples {
-        let force = &inputs.external.devices.force;
+        let DeviceInputs { force, field, .. } = &inputs.external.devices;
         self.calibration.watch_power(force);
+        if field.force.is_old() {
+            // The bias stays: the sensor has had power.
+            return Samples::Faulty;
+        }
         if rest != Rest::Arrived {
             self.calibration.begin();
         }

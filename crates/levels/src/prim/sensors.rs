@@ -126,6 +126,14 @@ impl Calibration {
     /// What a sensor says in this tick. `end_effector` is the id of the gripper that is on, if one is.
     #[must_use]
     pub fn read(&self, sensor: &SensorPara, devices: &DeviceInputs, end_effector: Option<u8>) -> Reading {
+        let connection = match sensor.source {
+            SensorSource::Fx | SensorSource::Fy | SensorSource::Fz | SensorSource::My => devices.field.force,
+            SensorSource::Near | SensorSource::Seated => devices.field.holsters,
+            SensorSource::Beam => devices.field.grip,
+        };
+        if connection.is_old() {
+            return Reading::FAULTY;
+        }
         let along = |axis| self.force(axis, FORCE_COUNTS_PER_LB, &devices.force);
         let value = match sensor.source {
             SensorSource::Fx => along(0),

@@ -33,8 +33,12 @@ impl State {
         if arrival == Arrival::New {
             (self.command, self.since) = (command.command, inputs.tick);
         }
-        let sensors = &inputs.external.devices.quick_change;
-        if !may_go_on {
+        let devices = &inputs.external.devices;
+        let (sensors, connection) = (&devices.quick_change, devices.field.quick_change);
+        if connection.is_old() {
+            // The last reading stays, and the time of the ring stands.
+            self.since = self.since.next();
+        } else if !may_go_on {
             self.read_ring(sensors);
         }
         let late = inputs.tick.since(self.since) > TURN_TICKS;
@@ -45,6 +49,7 @@ impl State {
                 ring: self.ring,
                 id: self.read_id(sensors.end_effector_id),
                 clock: if late { Clock::Expired } else { Clock::Running },
+                connection,
             },
         }
     }

@@ -2,7 +2,7 @@
 
 use interfaces::{
     CommonMemory, ExternalInputs, QuickChangeOutputs, Reason,
-    device::{QuickChangeSensors, QuickChangeValves},
+    device::{Connection, QuickChangeSensors, QuickChangeValves},
     quick_change::{QuickChangeCommand, QuickChangeReport, QuickChangeStatus, QuickChangeVerb, RingPosition},
 };
 use proptest::prelude::*;
@@ -97,6 +97,7 @@ fn every_row_fires() {
         where_the_ring_is_is_published_in_every_tick_whatever_is_reported,
         a_malfunction_is_reported_only_after_a_while,
         a_restart_and_an_unknown_command_are_named_and_the_ring_still_reported,
+        ring_turns_only_while_its_device_answers,
     ]);
     assert_eq!(silent, [""; 0]);
 }
@@ -117,6 +118,37 @@ fn the_ring_is_locked_and_unlocked_with_the_port_enabled_only_while_it_turns() {
     bench.world.id = 200;
     assert_eq!(bench.execute(QuickChangeVerb::Unlock), UNLOCKED, "pins that part do not matter");
     assert_eq!((bench.world.place, bench.valves()), (0.0, SHUT));
+}
+
+#[test]
+fn ring_turns_only_while_its_device_answers() {
+    for (verb, place, done) in
+        [(QuickChangeVerb::Lock, 0.0, LOCKED), (QuickChangeVerb::Unlock, 1.0, UNLOCKED)]
+    {
+        let mut bench = Bench::at(place);
+        bench.step();
+        bench.send(verb);
+        bench.wait(4);
+        let half = bench.world.place;
+        // The readings stand still.
+        bench.world.claim = Some(bench.world.sensors());
+        bench.external.devices.field.quick_change = Connection::Stale;
+        let status = bench.wait(40).status;
+        assert_eq!((status.report, bench.valves()), (QuickChangeReport::Executing, SHUT));
+        assert!((bench.world.place - half).abs() < 0.2, "the ring stays half turned");
+        bench.external.devices.field.quick_change = Connection::Fresh;
+        bench.world.claim = None;
+        assert_eq!(bench.finish(), done, "the time of the ring has stood still");
+        for (connection, reason) in
+            [(Connection::Lost, Reason::DeviceSilent), (Connection::Tripped, Reason::DeviceTripped)]
+        {
+            let mut bench = Bench::at(place);
+            bench.step();
+            bench.external.devices.field.quick_change = connection;
+            assert_eq!(bench.execute(verb), (QuickChangeReport::SensorMalfunction, reason));
+            assert_eq!(bench.valves(), SHUT);
+        }
+    }
 }
 
 #[test]

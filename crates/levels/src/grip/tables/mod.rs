@@ -118,6 +118,12 @@ pub enum Sensors {
     Plausible,
     /// No.
     Implausible,
+    /// The words of their device are old.
+    Stale,
+    /// Their device has not answered for a second.
+    Lost,
+    /// The valves of their device are off until an operator releases them.
+    Tripped,
 }
 
 /// What the fingers do.

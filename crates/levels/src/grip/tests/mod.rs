@@ -5,7 +5,7 @@ mod ends;
 
 use interfaces::{
     Reason,
-    device::valve,
+    device::{Connection, valve},
     grip::{Felt, GripReport, GripVerb},
 };
 use proptest::prelude::*;
@@ -684,6 +684,28 @@ fn a_state_that_is_restored_from_its_bytes_goes_on_to_the_bit() {
 }
 
 #[test]
+fn valves_are_off_while_the_readings_are_old() {
+    let mut bench = calibrated(31);
+    let calibration = bench.memory.grip.calibration;
+    bench.command(GripVerb::Position, 4.0, 0);
+    bench.wait(5);
+    bench.external.devices.field.grip = Connection::Stale;
+    let outputs = bench.wait(20);
+    assert_eq!((outputs.valves.bits, outputs.status.report), (0, GripReport::Executing));
+    assert_eq!((outputs.status.felt, outputs.calibration), (Felt::NotKnown, calibration));
+    bench.external.devices.field.grip = Connection::Fresh;
+    assert_eq!(bench.finish().status.report, GripReport::Done);
+    for (connection, expected) in
+        [(Connection::Lost, Reason::DeviceSilent), (Connection::Tripped, Reason::DeviceTripped)]
+    {
+        bench.external.devices.field.grip = connection;
+        bench.command(GripVerb::CloseGrip, 1.0, 10);
+        assert_eq!(reason(&mut bench), expected);
+        assert_eq!(bench.memory.grip.calibration, calibration, "the calibration stays");
+    }
+}
+
+#[test]
 fn every_row_fires() {
     let mut silent = silent::<Grip, ()>(&[
         fingers_that_are_moved_while_they_settle_are_moved_back,
@@ -705,6 +727,7 @@ fn every_row_fires() {
         sensors_that_tell_nothing_are_not_calibrated,
         without_a_calibration_the_fingers_open_fully_and_no_less,
         a_calibration_goes_on_beside_a_command_that_is_refused,
+        valves_are_off_while_the_readings_are_old,
     ]);
     let in_no_header = ["COMMAND ", "START ", "TOUCH ", "PRESENCE "];
     silent.retain(|row| !in_no_header.iter().any(|table| row.starts_with(table)));

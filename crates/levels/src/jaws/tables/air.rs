@@ -7,15 +7,17 @@ decision_table! {
     /// then there is no air.
     pub AIR: fn air(super::Step, super::Situation) -> super::Action or () {
         any {
-            1: gripper: Detached  => Refuse(WrongGripper);
+            1: gripper: Detached    => Refuse(WrongGripper);
+            2: connection: Tripped  => Fail(DeviceTripped);
+            3: connection: Lost     => Fail(DeviceSilent);
         }
         Start {
-            2: otherwise          => consult;
+            4: otherwise            => consult;
         }
         Move {
-            3: motion: Moving     => Wait;
-            4: motion: Endless    => Fail(JawsStuck);
-            5: motion: Stopped    => consult;
+            5: motion: Moving       => Wait;
+            6: motion: Endless      => Fail(JawsStuck);
+            7: motion: Stopped      => consult;
         }
     }
 }

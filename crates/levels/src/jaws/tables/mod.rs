@@ -11,6 +11,7 @@ pub mod valves;
 
 use interfaces::{
     Reason,
+    device::Connection,
     grip::Felt,
     jaws::{JawsReport, JawsVerb},
 };
@@ -102,6 +103,8 @@ pub struct Situation {
     pub stop: Stop,
     /// Where they are, seen from the commanded size.
     pub size: Size,
+    /// How the controller is connected with the gripper.
+    pub connection: Connection,
 }
 
 /// What preprocess has found in a tick.

@@ -60,7 +60,13 @@ impl State {
             (self.at_limit, self.since) = (outputs.at_limit.or(self.at_limit), inputs.tick);
             self.adopt(&outputs.motor, inputs.tick);
         }
-        let (motor, counter) = (self.motor(sensors), self.counter(sensors));
+        let (motor, counter) = if inputs.external.devices.field.table.is_old() {
+            // Its controller finishes a turn by itself.
+            self.standing = 0;
+            (Motor::Settling, self.counter(sensors))
+        } else {
+            (self.motor(sensors), self.counter(sensors))
+        };
         let known = motor != Motor::Standing || counter == Counter::Agrees;
         let late = arrival != Arrival::New && inputs.tick.since(self.since) > LIMIT_TICKS;
         StateVariables {

@@ -4,6 +4,7 @@
 pub mod accept;
 pub mod attend;
 pub mod cal_sensor;
+pub mod field;
 pub mod go_thru;
 pub mod go_until;
 pub mod go_while;
@@ -15,7 +16,7 @@ pub mod record_pose;
 pub mod robot_init;
 
 use geometry::frame::Frame;
-use interfaces::{Reason, prim::PrimVerb, t3i::ReportCheck};
+use interfaces::{Reason, device::Connection, prim::PrimVerb, t3i::ReportCheck};
 use rcs_core::{Actions, Plain, Variables, commands, handshake::Arrival};
 
 use super::goals;
@@ -231,6 +232,15 @@ pub struct Attendance {
     pub operator: Operator,
 }
 
+/// The devices behind field I/O, for [`field::FIELD`].
+#[derive(Clone, Copy, Debug, Variables)]
+pub struct Devices {
+    /// Does the command need a position?
+    pub position: Position,
+    /// How the controller is connected with the worst of all devices.
+    pub connection: Connection,
+}
+
 /// The state variables of a tick, for the tables of the commands.
 #[derive(Clone, Copy, Debug, Variables)]
 pub struct Situation {
@@ -288,6 +298,8 @@ pub struct StateVariables {
     pub verb: PrimVerb,
     /// What a new command needs.
     pub request: Request,
+    /// The devices behind field I/O.
+    pub field: Devices,
     /// The goal of the command, compared with the sensors.
     pub proof: Proof,
     /// The state variables.
@@ -351,8 +363,9 @@ commands! {
     /// Consult the tables of a command.
     pub fn of_command(PrimVerb, enum Step, Situation) -> Action {
         others: EXECUTE, accept::ACCEPT, attend::ATTEND, path_clock::PATH_CLOCK, record_pose::RECORD_POSE,
-            link::LINK, CONFIRM;
-        before: EXECUTE, ATTEND by attend, ACCEPT(request), LINK(situation in link);
+            field::FIELD, link::LINK, CONFIRM;
+        before: EXECUTE, ATTEND by attend, ACCEPT(request), FIELD(field),
+            LINK(situation in link);
         after: CONFIRM;
         None | Pause: goals::REST           => pause::pause;
         RobotInit: goals::POSITIONED        => robot_init::robot_init;

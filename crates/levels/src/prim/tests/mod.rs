@@ -16,7 +16,7 @@ use geometry::{
 };
 use interfaces::{
     ChangingPose, CommonMemory, ExternalInputs, PrimOutputs, Reason,
-    device::ForceSensor,
+    device::{Connection, ForceSensor},
     pose_range,
     prim::{PrimCommand, PrimReport, PrimStatus, PrimVerb},
     process::Process,
@@ -582,6 +582,30 @@ fn a_restored_prim_goes_on_to_the_bit() {
 }
 
 #[test]
+fn devices_that_are_lost_or_tripped_stop_the_robot() {
+    for (connection, reason) in
+        [(Connection::Lost, Reason::DeviceSilent), (Connection::Tripped, Reason::DeviceTripped)]
+    {
+        let mut rig = Rig::initialized();
+        rig.command(PrimVerb::GotoPt, 3);
+        rig.wait(30);
+        rig.external.devices.field.any = Connection::Stale;
+        rig.external.devices.joystick.velocity = 0;
+        rig.wait(60);
+        assert_eq!(rig.report(), PrimReport::Executing, "a late device is waited for");
+        rig.external.devices.field.any = connection;
+        assert_eq!((rig.finish(), rig.memory.prim.status.reason), (PrimReport::Error, reason));
+        rig.wait(60);
+        assert!(rig.at_rest());
+        assert_eq!(rig.run(PrimVerb::Pause, 0), PrimReport::Done);
+        rig.external.devices.field.any = Connection::Fresh;
+        rig.external.devices.joystick.velocity = 1000;
+        assert_eq!(rig.run(PrimVerb::GotoPt, 3), PrimReport::Done);
+        rig.check_path(&start());
+    }
+}
+
+#[test]
 fn every_row_fires() {
     const SCENARIOS: &[fn()] = &[
         starts_with_pause_and_without_a_position,
@@ -606,6 +630,7 @@ fn every_row_fires() {
         a_robot_that_does_not_arrive_is_an_error_after_two_seconds,
         a_restarted_prim_executes_nothing,
         a_restored_prim_goes_on_to_the_bit,
+        devices_that_are_lost_or_tripped_stop_the_robot,
     ];
     let scenarios =
         [SCENARIOS, line::SCENARIOS, guarded::SCENARIOS, joystick::SCENARIOS, recovery::SCENARIOS].concat();

@@ -7,6 +7,7 @@ pub mod qc_unlock;
 
 use interfaces::{
     Reason,
+    device::Connection,
     quick_change::{QuickChangeReport, QuickChangeVerb, RingPosition},
 };
 use rcs_core::{Actions, Plain, Variables, commands, handshake::Arrival};
@@ -63,6 +64,8 @@ pub struct Situation {
     pub id: Id,
     /// Time of the command.
     pub clock: Clock,
+    /// How the controller is connected with the quick change.
+    pub connection: Connection,
 }
 
 /// What preprocess has found in a tick.
@@ -83,6 +86,10 @@ pub enum Failure {
     Stuck,
     /// Its sensors, or the id pins, failed: `qc-sens-malf`.
     SensorMalfunction,
+    /// Its device does not answer.
+    Silent,
+    /// The outputs of its device are safe until an operator releases them.
+    Tripped,
 }
 
 impl Failure {
@@ -91,7 +98,7 @@ impl Failure {
     pub const fn report(self) -> QuickChangeReport {
         match self {
             Self::Stuck => QuickChangeReport::Stuck,
-            Self::SensorMalfunction => QuickChangeReport::SensorMalfunction,
+            Self::SensorMalfunction | Self::Silent | Self::Tripped => QuickChangeReport::SensorMalfunction,
         }
     }
 
@@ -101,6 +108,8 @@ impl Failure {
         match self {
             Self::Stuck => Reason::QuickChangeStuck,
             Self::SensorMalfunction => Reason::QuickChangeFault,
+            Self::Silent => Reason::DeviceSilent,
+            Self::Tripped => Reason::DeviceTripped,
         }
     }
 }
