@@ -13,7 +13,7 @@ use diagnostics::ROBOTS;
 use executive::{boards::Board, memory::RunName, overrun::Policy};
 use rcs_core::name::Name10;
 use record::LogLimit;
-use runtime::{Boards, LogTarget, OperatorAccess, RobotConfig, RunConfig};
+use runtime::{Boards, FieldConfig, LogTarget, OperatorAccess, RobotConfig, RunConfig};
 use sessions::live::Origin;
 use sessions::network::{Address, Role};
 
@@ -66,6 +66,10 @@ pub struct RunArguments {
     /// emulated robot in simulated time; docs/egm.md has its options.
     #[arg(long, value_name = "ROBOT", default_value = "sim", value_parser = robot(), hide_possible_values = true)]
     pub robot: RobotConfig,
+    /// Couplers between the controller and the devices of the cell: sim:NAME for emulated ones in simulated time, with
+    /// the mapping NAME of the data directory (data/field/NAME.toml), or sim:FILE (docs/field.md)
+    #[arg(long, value_name = "FIELD")]
+    pub field: Option<FieldConfig>,
     /// Fault plan: faults of the cell and of the line to the simulated robot, at set ticks or at random; a name in the
     /// data directory, such as air-lost for data/faults/air-lost.toml, or a file (TOML; data/README.md)
     #[arg(long, value_name = "NAME|FILE", value_parser = fault_file(), hide_possible_values = true)]
@@ -200,6 +204,7 @@ impl RunArguments {
             overrun: own.overrun,
             cpu: own.cpu,
             robot: own.robot,
+            field: own.field,
             faults: own.faults,
             boards: own.boards,
             name: own.run,

@@ -18,7 +18,8 @@ use std::{
 
 use crate::pages::DataArgument;
 use diagnostics::{
-    Blame, Diagnostic, Diagnostics, FAULTS, Finding, Group, JOBS, Problems, ROBOTS, Severity, Source, grouped,
+    Blame, Diagnostic, Diagnostics, FAULTS, FIELDS, Finding, Group, JOBS, Problems, ROBOTS, Severity, Source,
+    grouped,
 };
 use executive::egm::{RobotFile, placement::PlacementError};
 use os_io::{
@@ -35,7 +36,7 @@ use plant::{
 use serde::Serialize;
 use taskdata::load::{Job, Store};
 
-use runtime::{StartError, agreement, setup::fault_file};
+use runtime::{StartError, agreement, field, setup::fault_file};
 
 use crate::rcs_run::{
     answer::answer_long_json,
@@ -205,6 +206,7 @@ impl Checked {
         reports.push(("cell description".to_owned(), of_cell));
         if let Some((cell, _)) = &cell {
             reports.push(("faults".to_owned(), faults(data, cell.description())));
+            reports.push(("field I/O".to_owned(), mappings(data)));
         }
         reports.push(("robots".to_owned(), robots(data)));
         Self { reports, jobs: names, cell: cell.map(|(cell, _)| cell) }
@@ -311,6 +313,20 @@ fn faults(data: &Path, cell: &CellDescription) -> Diagnostics {
     for path in FAULTS.all(data) {
         all.files += 1;
         match fault_file(&path, cell) {
+            Ok(_) => {}
+            Err(StartError::Data { report, .. }) => all = all.with(*report),
+            Err(error) => all = all.with(one(&path, &error)),
+        }
+    }
+    all
+}
+
+/// The findings in the mappings of a data directory.
+fn mappings(data: &Path) -> Diagnostics {
+    let mut all = Diagnostics::default();
+    for path in FIELDS.all(data) {
+        all.files += 1;
+        match field::read(&path) {
             Ok(_) => {}
             Err(StartError::Data { report, .. }) => all = all.with(*report),
             Err(error) => all = all.with(one(&path, &error)),

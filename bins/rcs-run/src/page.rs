@@ -86,6 +86,9 @@ impl fmt::Display for Page<'_> {
         for fault in &result.cell_faults {
             writeln!(f, "fault      {fault}")?;
         }
+        if let Some(field) = &result.field {
+            writeln!(f, "field      {field}")?;
+        }
         if let Some(egm) = &result.egm {
             write!(
                 f,

@@ -11,6 +11,7 @@ use taskdata::load::{Store, job::Reload};
 use crate::{
     ClosedLoop, RobotLine, Turn, World,
     contacts::{Commands, ContactCheck, ContactEvent},
+    field::{FieldEvent, SimulatedField},
     truth::{Confirmation, Scene, TruthCheck, placement::PlacementCheck},
     workstation::SimulatedWorkstation,
 };
@@ -24,6 +25,8 @@ pub struct Settled {
     pub contacts: Vec<ContactEvent>,
     /// Confirmations that are not true.
     pub untrue: Vec<Confirmation>,
+    /// What has happened to the couplers between controller and cell.
+    pub field: Vec<FieldEvent>,
 }
 
 /// The line to the simulated robot controller, and the judges of the cell.
@@ -50,7 +53,8 @@ impl World for SimulatedWorkstation {
     }
 
     fn inputs(&self) -> DeviceInputs {
-        self.cell.inputs()
+        let inputs = self.cell.inputs();
+        self.field.as_ref().map_or(inputs, |field| field.inputs(&inputs))
     }
 
     fn settle(&mut self, checks: &mut Checks, turn: &Turn<'_>) -> (DeviceInputs, Settled) {
@@ -79,16 +83,26 @@ fn advance(
     outputs: &DeviceOutputs,
     moved: Option<&Plate>,
 ) -> (DeviceInputs, Settled) {
-    let inputs = match workstation.is_robot_elsewhere() {
-        true => workstation.cell.step_following(moved, outputs),
-        false => line.advance(tick, &mut workstation.cell, outputs),
+    let is_elsewhere = workstation.is_robot_elsewhere();
+    let cell = &mut workstation.cell;
+    let mut outputs = *outputs;
+    if let Some(field) = &mut workstation.field {
+        outputs = field.write(tick, &outputs, |device| cell.is_device_cut(device));
+    }
+    let mut inputs = match is_elsewhere {
+        true => cell.step_following(moved, &outputs),
+        false => line.advance(tick, cell, &outputs),
     };
+    if let Some(field) = &mut workstation.field {
+        inputs = field.read(tick, &inputs);
+    }
     let mut events = workstation.events(tick);
     // The check selects the contacts that are events.
     events.retain(|event| !matches!(event, CellEvent::Contact(_)));
     let begun = contacts.look(tick, workstation.cell.contacts(), commands);
     workstation.cell.watch_clearance(contacts.margin());
-    (inputs, Settled { events, contacts: begun, untrue: Vec::new() })
+    let field = workstation.field.as_mut().map(|field| field.take_events()).unwrap_or_default();
+    (inputs, Settled { events, contacts: begun, untrue: Vec::new(), field })
 }
 
 impl<L> ClosedLoop<L> {
@@ -96,6 +110,14 @@ impl<L> ClosedLoop<L> {
     #[must_use]
     pub fn new(levels: L, store: Arc<Store>, reloads: Arc<Vec<Reload>>, cell: Cell) -> Self {
         Self::in_world(levels, store, reloads, SimulatedWorkstation::new(cell))
+    }
+
+    /// Put couplers between the controller and the cell.
+    #[must_use]
+    pub fn with_field(mut self, field: SimulatedField) -> Self {
+        self.workstation.field = Some(Box::new(field));
+        self.inputs = self.workstation.inputs();
+        self
     }
 
     /// Ignore distances of the robot to things that it does not touch, which saves time.

@@ -8,6 +8,8 @@ use plant::{
 use rcs_core::tick::{TICK_MS, Tick};
 use taskdata::load::job::{Drum, Offset, Workstation as Action};
 
+use crate::field::SimulatedField;
+
 /// Time limit for an arm without pressure to come to rest before the run ends, ticks: two minutes. From HOME it takes
 /// 40 s; an arm that slides off an obstacle takes twice as long.
 const SETTLING_LIMIT: u64 = 120_000 / TICK_MS;
@@ -30,6 +32,8 @@ pub struct Emergency {
 pub struct SimulatedWorkstation {
     /// The cell.
     pub cell: Cell,
+    /// The couplers between the controller and the cell, if there are any.
+    pub field: Option<Box<SimulatedField>>,
     state: WorkstationState,
 }
 
@@ -53,7 +57,7 @@ pub struct WorkstationState {
 impl SimulatedWorkstation {
     /// A workstation with a cell.
     pub fn new(cell: Cell) -> Self {
-        Self { cell, state: WorkstationState::default() }
+        Self { cell, field: None, state: WorkstationState::default() }
     }
 
     /// Its state in addition to the cell.

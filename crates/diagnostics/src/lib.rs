@@ -24,7 +24,7 @@ pub mod toml;
 pub use diagnostic::Diagnostic;
 pub use finding::Finding;
 pub use groups::{Blame, Group, grouped};
-pub use named_files::{FAULTS, JOBS, NamedFiles, ROBOTS, UnknownFile};
+pub use named_files::{FAULTS, FIELDS, JOBS, NamedFiles, ROBOTS, UnknownFile};
 pub use names::{alternatives, distance, nearest};
 pub use places::{Places, Position};
 pub use problem::{Problem, Problems, Severity};

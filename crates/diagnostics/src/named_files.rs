@@ -16,6 +16,8 @@ pub const JOBS: NamedFiles = NamedFiles { what: "job", directory: "jobs", extens
 pub const FAULTS: NamedFiles = NamedFiles { what: "fault file", directory: "faults", extension: "toml" };
 /// The robots, `robots/NAME.toml`.
 pub const ROBOTS: NamedFiles = NamedFiles { what: "robot", directory: "robots", extension: "toml" };
+/// The mappings of field I/O, `field/NAME.toml`.
+pub const FIELDS: NamedFiles = NamedFiles { what: "mapping", directory: "field", extension: "toml" };
 
 /// A kind of file of the data directory.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

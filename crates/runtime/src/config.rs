@@ -45,6 +45,9 @@ pub struct RunConfig {
     /// The robot.
     #[serde(with = "as_text")]
     pub robot: RobotConfig,
+    /// Couplers between the controller and the devices of the cell; `None` for none.
+    #[serde(with = "as_text::option")]
+    pub field: Option<FieldConfig>,
     /// File with faults of the cell and of the line to the simulated robot.
     pub faults: Option<PathBuf>,
     /// Distribution of the control processes over boards.
@@ -121,6 +124,7 @@ impl RunConfig {
             overrun: Policy::Count,
             cpu: None,
             robot: RobotConfig { kind: RobotKind::Sim, silence: None, lag: None },
+            field: None,
             faults: None,
             boards: Boards::One,
             program: "rcs-run".into(),
@@ -159,6 +163,35 @@ impl RunConfig {
 impl Default for RunConfig {
     fn default() -> Self {
         Self::new("data", "linkbar")
+    }
+}
+
+/// The couplers of a run.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct FieldConfig {
+    /// Name of a mapping in the data directory, or a path.
+    pub mapping: PathBuf,
+}
+
+/// What comes before the name of a mapping whose couplers are emulated in simulated time.
+const SIMULATED: &str = "sim:";
+
+impl fmt::Display for FieldConfig {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{SIMULATED}{}", self.mapping.display())
+    }
+}
+
+impl FromStr for FieldConfig {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        match text.strip_prefix(SIMULATED) {
+            Some(name) if !name.is_empty() => Ok(Self { mapping: name.into() }),
+            _ => {
+                Err(format!("sim:NAME or sim:FILE was expected, couplers in simulated time; found {text:?}"))
+            }
+        }
     }
 }
 

@@ -66,6 +66,17 @@ pub enum StartError {
     /// Faults of the line need the simulated robot.
     #[error("the file has faults of the line to the simulated robot; leave them out for any other robot")]
     FaultsAtPort,
+    /// A coupler cannot be simulated.
+    #[error("the field I/O cannot begin: {0}")]
+    Field(#[from] closed_loop::field::FieldError),
+    /// The fault file cuts a connection that the run does not have.
+    #[error("the fault file cuts the connection of {device:?}: expected {expected}")]
+    NoSuchDevice {
+        /// The device.
+        device: String,
+        /// What was expected.
+        expected: String,
+    },
     /// The port cannot be opened.
     #[error("the robot cannot be reached: {0}")]
     Port(#[from] OpenError),

@@ -18,7 +18,11 @@ use plant::{CellEvent, t3::explained};
 use record::Level;
 use sessions::{data_system, network::NetEvent, pedestal, vision};
 
-use closed_loop::{contacts::ContactEvent, truth::Confirmation};
+use closed_loop::{
+    contacts::ContactEvent,
+    field::{FieldEvent, Happened},
+    truth::Confirmation,
+};
 
 /// An event of a run.
 #[derive(Debug)]
@@ -56,6 +60,8 @@ pub enum Event {
     CellLineRefused(String),
     /// A confirmation that is not true in the cell.
     Untrue(Confirmation),
+    /// Something has happened to a coupler.
+    Field(FieldEvent),
     /// The status of the cell cannot be written for the workstation controller.
     CellStatusUnsent(MailboxError),
     /// The job has handed over to the workstation controller.
@@ -119,6 +125,7 @@ impl Event {
             Self::CommandRefused(_) => "command.refused",
             Self::CommandFailsCheck(_) => "command.check",
             Self::CellLineRefused(_) => "workstation.refused",
+            Self::Field(event) => event.code(),
             Self::Untrue(confirmation) if confirmation.is_false() => "truth.false",
             Self::Untrue(_) => "truth.not-sensed",
             Self::CellStatusUnsent(_) => "workstation.unsent",
@@ -148,6 +155,7 @@ impl Event {
             Self::Untrue(confirmation) if confirmation.is_false() => Level::Error,
             Self::Contact(_) | Self::CellStatusUnsent(_) | Self::Stops | Self::WentWrong(_) => Level::Error,
             Self::RealTime { complete: true, .. } => Level::Info,
+            Self::Field(FieldEvent { what: Happened::Back(_) | Happened::Released, .. }) => Level::Info,
             Self::Network(NetEvent::Connected(_)) => Level::Info,
             Self::HandedOver | Self::TakenBack | Self::Loaded { .. } | Self::Changed(_) | Self::Punctual => {
                 Level::Info
@@ -166,6 +174,7 @@ impl Event {
             }
             Self::Cell(_) | Self::Contact(_) => "cell",
             Self::CellLineRefused(_) | Self::CellStatusUnsent(_) | Self::Untrue(_) => "cell",
+            Self::Field(_) => "field",
             Self::Link(_) => "T3I",
             Self::RobotRefuses(_) => "robot",
             Self::Network(_) => "network",
@@ -213,6 +222,7 @@ impl fmt::Display for Event {
             Self::OperatorJobFailed(failure) => write!(f, "the job of the operator has failed: {failure}"),
             Self::CommandRefused(refusal) => write!(f, "a command is refused: {refusal}"),
             Self::CommandFailsCheck(why) => write!(f, "a command does not pass its check: {why}"),
+            Self::Field(event) => event.fmt(f),
             Self::Untrue(confirmation) => confirmation.fmt(f),
             Self::CellLineRefused(why) => write!(f, "a line of the workstation is refused: {why}"),
             Self::CellStatusUnsent(error) => error.fmt(f),

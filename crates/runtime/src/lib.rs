@@ -27,6 +27,7 @@ pub mod config;
 mod egm;
 pub mod error;
 pub mod event;
+pub mod field;
 pub mod findings;
 pub mod judge;
 mod live;
@@ -50,7 +51,7 @@ mod verdict;
 
 pub use self::{
     change::ChangeError,
-    config::{Boards, ClockKind, LogTarget, OperatorAccess, RobotConfig, RobotKind, RunConfig},
+    config::{Boards, ClockKind, FieldConfig, LogTarget, OperatorAccess, RobotConfig, RobotKind, RunConfig},
     error::StartError,
     event::Event,
     observer::{Observer, TickReport},

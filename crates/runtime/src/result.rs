@@ -2,6 +2,7 @@
 
 mod cell;
 mod data;
+mod field;
 mod robot;
 mod timing;
 
@@ -19,6 +20,7 @@ use serde::Serialize;
 pub use self::{
     cell::{CellFaultResult, ContactResult, EmergencyResult, EventResult, Events, ItemResult},
     data::DataResult,
+    field::{FieldDevice, FieldResult},
     robot::{EgmResult, FaultsResult, LinkResult, PortResult},
     timing::{BoardResult, TickTimes},
 };
@@ -104,6 +106,9 @@ pub struct RunResult {
     /// Requests of operators; `None` if there were none.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub operator: Option<Requests>,
+    /// The couplers between controller and cell; `None` without `--field`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub field: Option<FieldResult>,
     /// Number of ticks, without those in which the robot was brought to rest.
     pub ticks: u64,
     /// Number of ticks in which the robot was brought to rest at the end.

@@ -6,7 +6,7 @@ use std::{
     sync::Arc,
 };
 
-use closed_loop::JobPlayer;
+use closed_loop::{JobPlayer, field::SimulatedField};
 use depc::fault::Plan;
 use diagnostics::JOBS;
 use executive::serial::SerialLine;
@@ -68,6 +68,8 @@ pub struct Setup {
     pub description: CellDescription,
     /// The cell.
     pub cell: Cell,
+    /// The couplers between the controller and the cell.
+    pub field: Option<SimulatedField>,
     /// Text of the fault file; empty without one.
     pub faults_text: String,
     /// Faults of the line to the simulated robot.
@@ -112,6 +114,13 @@ impl Setup {
         left_out.into_iter().chain(findings.lines(config.unchecked)).for_each(|line| observer.message(&line));
         let (faults, faults_text) = faults(config, &description)?;
         let cell = Cell::with_faults(&description, config.seed, &faults.cell)?;
+        let mapping = config.field.as_ref().map(|field| crate::field::load(field, data)).transpose()?;
+        crate::field::check_cuts(&faults.cell, mapping.as_ref())?;
+        let field =
+            mapping.map(|mapping| SimulatedField::new(Arc::new(mapping), &cell.inputs())).transpose()?;
+        if let Some(field) = &field {
+            observer.message(&crate::field::introduction(field.mapping()));
+        }
         let sees_elsewhere = config.outside.contains(&Role::Vision);
         let cell = if sees_elsewhere { cell.with_vision_elsewhere() } else { cell };
         let live = Live::prepare(config)?;
@@ -147,6 +156,7 @@ impl Setup {
             description_text,
             description,
             cell,
+            field,
             faults_text,
             line_faults: faults.line,
             robot,

@@ -287,6 +287,12 @@ impl Cell {
         self.faults.struck()
     }
 
+    /// True if a fault has cut the connection of a device of the field I/O.
+    #[must_use]
+    pub fn is_device_cut(&self, device: &str) -> bool {
+        self.faults.is_device_cut(device)
+    }
+
     /// Advance all moving bodies by one tick.
     fn advance(&mut self, outputs: &DeviceOutputs) {
         self.pedestal.table.order(&outputs.pedestal_table);

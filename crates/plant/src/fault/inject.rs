@@ -195,6 +195,12 @@ impl Injector {
         self.active().any(|what| *what == What::CameraBlind)
     }
 
+    /// True if a device of the field I/O has no connection.
+    #[must_use]
+    pub fn is_device_cut(&self, device: &str) -> bool {
+        self.active().any(|what| matches!(what, What::FieldCut(cut) if cut == device))
+    }
+
     /// Errors of the delivery of a part, and the faults that begin or end with it.
     pub(crate) fn delivery(&mut self, part: &str) -> (Delivery, Vec<Change>) {
         let tick = self.tick;

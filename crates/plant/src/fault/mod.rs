@@ -84,6 +84,8 @@ pub enum What {
     JawStuck,
     /// The camera sees nothing.
     CameraBlind,
+    /// A device of the field I/O has no connection.
+    FieldCut(String),
     /// Deliveries to a tray go wrong: all, or those of one part.
     Delivery(Option<String>, Mishap),
     /// The stand of the pedestal is not on its mark on the floor (II.1.2.3): inches in x and y, degrees.
@@ -192,6 +194,7 @@ impl fmt::Display for What {
             Self::RingStuck => f.write_str("the locking ring is stuck"),
             Self::JawStuck => f.write_str("the jaw of the vise is stuck"),
             Self::CameraBlind => f.write_str("the camera is blind"),
+            Self::FieldCut(device) => write!(f, "{device} has no connection"),
             Self::Delivery(object, mishap) => {
                 let object = object.as_deref().unwrap_or("what is delivered");
                 match mishap {

@@ -35,7 +35,8 @@
 //!
 //! A fault of the line can also have `byte = 0x06` (insert); before the faults the file can have `most_per_tick`, the
 //! greatest number of line faults per tick and direction. Other faults of the cell: `stuck` with `device = "lock-ring"`
-//! or `"vise-jaw"`, `air-lost`, `hydraulics-lost`, `camera-blind`, `pedestal-moved`. A fault without a time is always
+//! or `"vise-jaw"`, `air-lost`, `hydraulics-lost`, `camera-blind`, `pedestal-moved`, and `field-cut` with the
+//! `device` of a mapping of field I/O that has no connection. A fault without a time is always
 //! present; a fault of the line needs a rate, a tick or a range of ticks.
 //!
 //! Parsing reports all mistakes of a file at once.

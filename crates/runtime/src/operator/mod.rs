@@ -25,7 +25,7 @@ mod written;
 
 use std::path::{self, Path};
 
-use closed_loop::workstation::SimulatedWorkstation;
+use closed_loop::{field::SimulatedField, workstation::SimulatedWorkstation};
 use interfaces::{
     CommonMemory, OperatorInputs,
     device::{JoystickBox, KNOB_FULL},
@@ -281,6 +281,18 @@ impl Operator {
             Request::Status => Ok(self.status(around)),
             Request::Data => Ok(directory(around.data)),
             Request::Pedestal => Ok(by_hand::state(around.memory)),
+            Request::Field => field(around).map(|field| format!("io {}", field.status())),
+            Request::Release(device) => {
+                let field = field(around)?;
+                if field.release(&device) {
+                    return Ok(format!(
+                        "{device} is released when it answers and asks for no output but at rest"
+                    ));
+                }
+                let names: Vec<_> =
+                    field.mapping().devices.iter().map(|device| device.name.as_str()).collect();
+                Err(format!("there is no device {device}; expected one of {}", names.join(", ")))
+            }
             Request::Stop => {
                 self.is_stopped = true;
                 Ok("the velocity knob is at 0; `go` turns it back".to_owned())
@@ -393,6 +405,14 @@ fn directory(data: &Path) -> String {
 /// The job, if it is the source of commands.
 fn job<'a>(around: &'a mut Around<'_>) -> Result<&'a mut Hwsc, String> {
     around.neighbours.job_under_way()
+}
+
+/// The couplers of the run.
+///
+/// # Errors
+/// The run has none.
+fn field<'a>(around: &'a mut Around<'_>) -> Result<&'a mut SimulatedField, String> {
+    around.workstation.field.as_deref_mut().ok_or_else(|| "this run has no couplers: --field".to_owned())
 }
 
 #[cfg(test)]

@@ -22,6 +22,10 @@ pub enum Request {
     Data,
     /// Ask for the state of the Active Pedestal; changes nothing.
     Pedestal,
+    /// The state of the couplers.
+    Field,
+    /// Release a tripped coupler.
+    Release(String),
     /// Set the velocity knob to zero.
     Stop,
     /// Set the velocity knob back.
@@ -58,7 +62,7 @@ pub enum Request {
 }
 
 /// Requests that change nothing and are not logged.
-pub const QUESTIONS: [&str; 3] = [STATUS, DATA, PEDESTAL];
+pub const QUESTIONS: [&str; 4] = [STATUS, DATA, PEDESTAL, FIELD];
 /// Request for the status.
 const STATUS: &str = "status";
 /// Request for the directory of the task data.
@@ -66,11 +70,15 @@ const DATA: &str = "data";
 /// Request for the state of the Active Pedestal.
 const PEDESTAL: &str = "pedestal";
 
+/// Request for the state of the couplers.
+const FIELD: &str = "io";
+
 /// The requests that are not lines of a job.
 const WORDS: &[(&str, Request)] = &[
     (STATUS, Request::Status),
     (DATA, Request::Data),
     (PEDESTAL, Request::Pedestal),
+    (FIELD, Request::Field),
     ("stop", Request::Stop),
     ("go", Request::Go),
     ("leave", Request::Leave),
@@ -83,8 +91,9 @@ const WORDS: &[(&str, Request)] = &[
 ];
 
 /// First words of the requests with arguments, beside the lines for the cell.
-const OTHER_WORDS: [&str; 11] = [
+const OTHER_WORDS: [&str; 12] = [
     "note",
+    "io",
     "job",
     "board",
     "execute",
@@ -115,6 +124,12 @@ impl Request {
             return Err(format!("job wait, job go or job skip was expected; found {words}"));
         }
         let each: Vec<&str> = words.split(' ').collect();
+        if let ["io", rest @ ..] = &each[..] {
+            return match rest {
+                ["go", device] => Ok(Self::Release((*device).to_owned())),
+                _ => Err(format!("io, or io go DEVICE, was expected; found {words}")),
+            };
+        }
         if let Some(entry) = Entry::read(&each) {
             return entry.map(Self::Terminal);
         }
@@ -146,6 +161,7 @@ impl Request {
             Self::Status
             | Self::Data
             | Self::Pedestal
+            | Self::Field
             | Self::Stop
             | Self::Leave
             | Self::Note
@@ -162,6 +178,7 @@ impl Request {
             | Self::Go
             | Self::GoOn
             | Self::Skip
+            | Self::Release(_)
             | Self::Command(..)
             | Self::Box(_) => false,
         }

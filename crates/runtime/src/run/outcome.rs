@@ -96,6 +96,7 @@ impl Run {
             link: (&self.closed.memory().t3i.status.counters).into(),
             operator: self.operator.requests(),
             faults: self.closed.line().faults().map(FaultsResult::from),
+            field: self.closed.workstation.field.as_deref().map(Into::into),
             cell_faults: self.closed.workstation.cell.faults().into_iter().map(Into::into).collect(),
             port: self.robot.port().map(PortResult::from),
             egm: self.robot.egm().map(EgmResult::from),

@@ -126,9 +126,13 @@ impl Run {
         let log_path = file.as_ref().map(|file| file.path().to_owned());
         let log = file.map(|file| Log::start(file, &config, &setup)).transpose()?;
         let publisher = publisher(&config, &name, &mut *observer);
-        let Setup { store, data, mut job, cell, line_faults, robot, mut neighbours, mut live, .. } = setup;
+        let Setup { store, data, mut job, cell, field, line_faults, robot, mut neighbours, mut live, .. } =
+            setup;
         let reloads = std::mem::take(&mut job.reloads);
         let mut closed = ClosedLoop::new(controller, Arc::new(store), Arc::new(reloads), cell);
+        if let Some(field) = field {
+            closed = closed.with_field(field);
+        }
         if robot.is_elsewhere() {
             closed.workstation.note_robot_elsewhere();
         }

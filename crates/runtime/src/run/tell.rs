@@ -79,7 +79,7 @@ impl Run {
 
     /// Collect what has happened in the cell in a tick, for log, result and verdict.
     pub(super) fn observe(&mut self, tick: Tick, settled: Settled) {
-        let Settled { events, contacts, untrue } = settled;
+        let Settled { events, contacts, untrue, field } = settled;
         let shown = |event: &CellEvent| matches!(event, CellEvent::Warning(_)).then(|| event.to_string());
         let controller = |text| Some(Failure::outside(tick, Kind::RobotController, "T3", text));
         if let Some(warning) = events.iter().find_map(shown) {
@@ -91,6 +91,10 @@ impl Run {
             self.fresh.push(event);
         }
         self.fresh.extend(contacts.into_iter().map(Event::Contact));
+        for event in field.into_iter().map(Event::Field) {
+            self.observer.message(&format!("tick {tick}: {event}"));
+            self.fresh.push(event);
+        }
         for event in untrue.into_iter().map(Event::Untrue) {
             self.observer.message(&format!("tick {tick}: {event}"));
             self.fresh.push(event);

@@ -30,7 +30,7 @@ const fn delivery(name: &'static str, keys: &'static [&'static str]) -> Kind {
     Kind { name, keys, when: &DELIVERY }
 }
 
-const KINDS: [Kind; 15] = [
+const KINDS: [Kind; 16] = [
     lasting("off", &["sensor"]),
     lasting("stuck", &["sensor", "valve", "device", "value"]),
     lasting("noisy", &["sensor", "by"]),
@@ -41,6 +41,7 @@ const KINDS: [Kind; 15] = [
     lasting("air-lost", &[]),
     lasting("hydraulics-lost", &[]),
     lasting("camera-blind", &[]),
+    lasting("field-cut", &["device"]),
     delivery("missing", &["object"]),
     delivery("misplaced", &["object", "x", "y"]),
     delivery("turned", &["object", "angle"]),
@@ -104,6 +105,11 @@ fn what(entry: &Entry<'_>, kind: &str, cell: &CellDescription) -> Result<What, B
         "air-lost" => return Ok(What::AirLost),
         "hydraulics-lost" => return Ok(What::HydraulicsLost),
         "camera-blind" => return Ok(What::CameraBlind),
+        "field-cut" => {
+            let device =
+                form.device.clone().ok_or_else(|| entry.says("needs `device`: which of the mapping"))?;
+            return Ok(What::FieldCut(device));
+        }
         "missing" => return Ok(What::Delivery(object()?, Mishap::Missing)),
         "misplaced" => {
             let (x, y) = (aside("x", form.x)?, aside("y", form.y)?);

@@ -1,0 +1,124 @@
+//! Couplers in simulated time, without a cell: the sensors and valves are those of the test.
+
+use diagnostics::Source;
+use interfaces::device::{Connection, KNOB_FULL, valve};
+
+use super::*;
+
+fn station() -> SimulatedField {
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../data/field/station.toml");
+    let text = std::fs::read_to_string(path).unwrap();
+    let mapping = Mapping::parse(&Source { name: path.to_owned(), text: text.into() }).unwrap();
+    SimulatedField::new(Arc::new(mapping), &sensors(0)).unwrap()
+}
+
+fn sensors(tick: u64) -> DeviceInputs {
+    let mut inputs = DeviceInputs::default();
+    inputs.grip.potentiometer = 1000 + u16::try_from(tick).unwrap();
+    inputs.joystick.velocity = KNOB_FULL;
+    inputs
+}
+
+/// Outputs that close the parts gripper and press the tool gripper.
+fn closing() -> DeviceOutputs {
+    let mut outputs = DeviceOutputs::default();
+    outputs.grip.bits = valve::SUPPLY | valve::CLOSE_COARSE;
+    outputs.tool_grip.close = true;
+    outputs
+}
+
+struct Bench {
+    field: SimulatedField,
+    tick: u64,
+}
+
+impl Bench {
+    fn new() -> Self {
+        Self { field: station(), tick: 0 }
+    }
+
+    /// A tick: what arrives at the valves, and what the controller reads.
+    fn step(&mut self, outputs: &DeviceOutputs, cut: &str) -> (DeviceOutputs, DeviceInputs) {
+        self.tick += 1;
+        let valves = self.field.write(Tick(self.tick), outputs, |device| device == cut);
+        (valves, self.field.read(Tick(self.tick), &sensors(self.tick)))
+    }
+
+    fn steps(&mut self, ticks: u64, outputs: &DeviceOutputs, cut: &str) -> (DeviceOutputs, DeviceInputs) {
+        (0..ticks).map(|_| self.step(outputs, cut)).last().unwrap()
+    }
+
+    fn codes(&mut self) -> Vec<&'static str> {
+        self.field.take_events().iter().map(FieldEvent::code).collect()
+    }
+}
+
+#[test]
+fn words_pass_the_couplers_without_delay() {
+    let mut bench = Bench::new();
+    for tick in 1..=100 {
+        let outputs = if tick % 3 == 0 { closing() } else { DeviceOutputs::default() };
+        let (valves, inputs) = bench.step(&outputs, "");
+        assert_eq!((valves.grip, valves.tool_grip), (outputs.grip, outputs.tool_grip), "tick {tick}");
+        assert_eq!(inputs.grip.potentiometer, sensors(tick).grip.potentiometer, "tick {tick}");
+        assert_eq!(inputs.field.any, Connection::Fresh);
+    }
+    assert!(bench.codes().is_empty());
+    assert_eq!(bench.field.status(), "arm 8 ms, fixture 8 ms, pedestal 8 ms");
+}
+
+#[test]
+fn short_cut_keeps_the_inputs_and_goes_unnoticed() {
+    let mut bench = Bench::new();
+    bench.steps(10, &closing(), "");
+    let (valves, inputs) = bench.step(&closing(), "arm");
+    assert_eq!(valves.grip, closing().grip, "the watchdog has not fired");
+    assert_eq!((inputs.grip.potentiometer, inputs.field.any), (1010, Connection::Fresh));
+    let (_, inputs) = bench.steps(3, &closing(), "");
+    assert_eq!((inputs.grip.potentiometer, inputs.field.any), (1014, Connection::Fresh));
+    assert!(bench.codes().is_empty());
+}
+
+#[test]
+fn cut_of_a_fifth_of_a_second_is_stale_and_comes_back() {
+    let mut bench = Bench::new();
+    bench.steps(10, &closing(), "");
+    let (valves, inputs) = bench.steps(5, &closing(), "arm");
+    assert_eq!(valves.grip, closing().grip, "the watchdog has not fired");
+    assert_eq!((inputs.field.grip, inputs.field.hand), (Connection::Stale, Connection::Fresh));
+    assert_eq!((inputs.grip.potentiometer, inputs.joystick.velocity), (1010, 0), "held, and the knob at 0");
+    let (_, inputs) = bench.steps(10, &closing(), "");
+    assert_eq!((inputs.field.any, inputs.grip.potentiometer), (Connection::Fresh, 1025));
+    assert_eq!(bench.codes(), ["io.stale", "io.back"]);
+}
+
+#[test]
+fn long_cut_makes_the_outputs_safe_until_a_release() {
+    let mut bench = Bench::new();
+    bench.steps(10, &closing(), "");
+    let (valves, inputs) = bench.steps(50, &closing(), "arm");
+    assert_eq!((valves.grip.bits, valves.tool_grip.close), (0, false), "the watchdog has fired");
+    assert_eq!(inputs.field.grip, Connection::Lost);
+    let (valves, inputs) = bench.steps(25, &closing(), "");
+    assert_eq!((valves.grip.bits, inputs.field.grip), (0, Connection::Tripped));
+    assert!(bench.field.release("arm") && !bench.field.release("leg"));
+    let (valves, _) = bench.steps(2, &closing(), "");
+    assert_eq!(valves.grip.bits, 0, "not while an output is asked for that may not be on at rest");
+    let at_rest = DeviceOutputs { grip: Default::default(), ..closing() };
+    assert!(bench.field.release("arm"));
+    let (valves, inputs) = bench.steps(2, &at_rest, "");
+    assert!(valves.tool_grip.close && inputs.field.any == Connection::Fresh);
+    assert_eq!(bench.codes(), ["io.stale", "io.tripped", "io.refused", "io.released"]);
+}
+
+#[test]
+fn copy_continues_alike() {
+    let mut bench = Bench::new();
+    bench.steps(10, &closing(), "");
+    let mut copy = Bench { field: bench.field.clone(), tick: bench.tick };
+    for tick in 0..60 {
+        let cut = if tick < 15 { "fixture" } else { "" };
+        assert_eq!(bench.step(&closing(), cut), copy.step(&closing(), cut));
+    }
+    assert_eq!(bench.codes(), copy.codes());
+}

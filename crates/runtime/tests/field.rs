@@ -1,0 +1,122 @@
+//! Runs with emulated couplers between the controller and the cell.
+
+use std::{
+    fmt::Write as _,
+    fs,
+    sync::{Arc, Mutex},
+};
+
+use rcs_core::tick::Tick;
+use runtime::{Event, FieldConfig, LogTarget, Observer, Run, RunConfig, RunOutcome, StartError};
+
+const DATA: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../data");
+/// What happens when a part, or a gripper, is lost.
+const LOST: [&str; 6] = [
+    "cell.dropped",
+    "cell.fell",
+    "cell.slipped",
+    "cell.gripper-fell",
+    "cell.forced-out",
+    "cell.gripper-torn",
+];
+
+/// A linkbar with the couplers of the shipped mapping.
+fn config() -> RunConfig {
+    RunConfig {
+        log: LogTarget::None,
+        shared_memory: false,
+        field: Some(FieldConfig { mapping: "station".into() }),
+        ..RunConfig::new(DATA, "linkbar")
+    }
+}
+
+/// Records the codes of the events.
+#[derive(Clone, Default)]
+struct Codes(Arc<Mutex<Vec<&'static str>>>);
+
+impl Observer for Codes {
+    fn event(&mut self, _: Tick, event: &Event) {
+        self.0.lock().unwrap().push(event.code());
+    }
+}
+
+impl Codes {
+    fn count(&self, code: &str) -> usize {
+        self.0.lock().unwrap().iter().filter(|one| **one == code).count()
+    }
+}
+
+/// A run in which the connections of these devices are cut for some ticks from a tick on.
+fn cut(devices: &[&str], at: u64, ticks: u64) -> (RunOutcome, Codes) {
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path().join("cuts.toml");
+    let mut text = String::new();
+    for device in devices {
+        writeln!(text, "[[fault]]\nkind = \"field-cut\"\ndevice = \"{device}\"\nat = {at}\nticks = {ticks}")
+            .unwrap();
+    }
+    fs::write(&path, text).unwrap();
+    let codes = Codes::default();
+    let config = RunConfig { faults: Some(path), retry: 3, ..config() };
+    let outcome = Run::new(config, Box::new(codes.clone())).unwrap().complete();
+    for code in LOST {
+        assert_eq!(codes.count(code), 0, "{devices:?} cut at tick {at} for {ticks} ticks: {code}");
+    }
+    (outcome, codes)
+}
+
+#[test]
+fn couplers_without_a_fault_change_nothing_in_the_cell() {
+    let mut plain = Run::new(RunConfig { field: None, ..config() }, Box::new(())).unwrap();
+    let mut through = Run::new(config(), Box::new(())).unwrap();
+    loop {
+        let more = [plain.step(), through.step()];
+        assert_eq!(more[0], more[1], "tick {}", plain.last_tick());
+        if !plain.last_tick().0.is_multiple_of(50) && more[0] {
+            continue;
+        }
+        assert_eq!(plain.cell_digest(), through.cell_digest(), "tick {}", plain.last_tick());
+        if !more[0] {
+            break;
+        }
+    }
+    assert!(through.finish().is_finished());
+}
+
+#[test]
+fn short_cuts_finish_without_a_person() {
+    for at in [130, 450, 770, 1090, 1410, 1730] {
+        let (outcome, codes) = cut(&["arm"], at, 1);
+        assert!(outcome.is_finished(), "one tick at {at}");
+        assert_eq!(codes.count("io.stale"), 0);
+        let (outcome, codes) = cut(&["arm"], at, 5);
+        assert!(outcome.is_finished(), "0.2 s at tick {at}");
+        assert_eq!((codes.count("io.stale"), codes.count("io.back"), codes.count("io.tripped")), (1, 1, 0));
+    }
+    let (outcome, _) = cut(&["fixture", "pedestal"], 900, 5);
+    assert!(outcome.is_finished());
+}
+
+#[test]
+fn long_cuts_wait_for_a_person_and_drop_nothing() {
+    for at in [450, 1090, 1730] {
+        let (outcome, codes) = cut(&["arm"], at, 50);
+        assert!(!outcome.is_finished(), "2 s at tick {at}");
+        assert_eq!((codes.count("io.stale"), codes.count("io.released")), (1, 0));
+    }
+}
+
+#[test]
+fn cut_of_an_unknown_device_is_refused() {
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path().join("cuts.toml");
+    fs::write(&path, "[[fault]]\nkind = \"field-cut\"\ndevice = \"leg\"\nat = 5\n").unwrap();
+    let refused = |field| {
+        let config = RunConfig { faults: Some(path.clone()), field, ..config() };
+        Run::new(config, Box::new(())).err().unwrap()
+    };
+    let error = refused(config().field);
+    assert!(matches!(error, StartError::NoSuchDevice { .. }), "{error}");
+    assert!(error.to_string().contains("one of arm, fixture, pedestal"), "{error}");
+    assert!(refused(None).to_string().contains("add --field"), "no couplers");
+}
