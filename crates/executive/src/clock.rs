@@ -135,6 +135,12 @@ impl<T: Time> Grid<T> {
         u64::try_from(elapsed.as_nanos() / self.length.as_nanos()).unwrap_or(u64::MAX)
     }
 
+    /// Start of slot 0: threads that keep the same grid need it.
+    #[must_use]
+    pub const fn start(&self) -> Duration {
+        self.start
+    }
+
     /// Number of slots in which a tick was run.
     #[must_use]
     pub const fn ticks(&self) -> u64 {

@@ -5,13 +5,15 @@
 //! when each tick begins, [`realtime`] requests real-time priority from the system, [`timing`] measures the parts of a
 //! tick, [`overrun`] reacts to skipped slots, [`alloc`] counts allocations, [`boards`] distributes the processes over
 //! operating system processes, [`memory`] publishes the buffers in shared memory, and [`status`] summarises them.
-//! Lines to robots at ports are [`serial`], to a T3, and [`mod@egm`], to a robot with ABB's Externally Guided Motion.
+//! Lines to robots at ports are [`serial`], to a T3, and [`mod@egm`], to a robot with ABB's Externally Guided Motion;
+//! [`field`] has the devices behind Modbus couplers.
 
 #![deny(unsafe_code)]
 
 pub mod boards;
 pub mod clock;
 pub mod egm;
+pub mod field;
 pub mod histogram;
 pub mod machine;
 pub mod memory;

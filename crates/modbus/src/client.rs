@@ -94,6 +94,12 @@ impl Client {
         Self { unit, transaction: 0 }
     }
 
+    /// The transaction identifier of the last request; 0 before the first one.
+    #[must_use]
+    pub const fn transaction(&self) -> u16 {
+        self.transaction
+    }
+
     /// Writes a request into `buffer`, with the next transaction identifier. Returns the length of the frame; a buffer
     /// of [`MOST_FRAME_BYTES`](crate::MOST_FRAME_BYTES) is large enough for every request.
     ///

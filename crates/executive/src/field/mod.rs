@@ -1,0 +1,24 @@
+//! Devices behind Modbus couplers, over TCP.
+//!
+//! ```text
+//!   run ── Orders, once per tick ──► latest ──► thread of the device: couplers::Session
+//!       ◄─ Report ─────────────────◄ latest ◄──   │ one request at a time
+//!                                                 ▼
+//!                                               link ── TCP ── coupler, or station
+//! ```
+//!
+//! * [`device`]: a device with its thread, which keeps the grid of the run's clock by itself;
+//! * [`latest`]: the newest value from one thread to another, without waiting;
+//! * [`link`]: the connection to a coupler;
+//! * [`station`]: a server with an emulated coupler, for tests.
+
+pub mod device;
+pub mod latest;
+pub mod link;
+pub mod station;
+
+pub use self::{
+    device::{Device, DeviceError},
+    link::TcpLink,
+    station::{Station, StationError},
+};

@@ -1,0 +1,172 @@
+//! A server with an emulated coupler, in real time: for tests, and for a controller and a cell in two programs.
+
+use std::{
+    io::{self, ErrorKind, Read, Write},
+    net::{SocketAddr, TcpListener, TcpStream},
+    sync::{
+        Arc, Mutex, MutexGuard, PoisonError,
+        atomic::{AtomicBool, AtomicU64, Ordering},
+    },
+    thread::{self, JoinHandle},
+    time::Duration,
+};
+
+use couplers::Emulated;
+use modbus::{MOST_FRAME_BYTES, mbap};
+
+use crate::clock::{Monotonic, Time};
+
+/// Longest wait for a request before a thread looks at faults and at the end.
+const WAIT: Duration = Duration::from_millis(2);
+
+/// Why a station cannot be opened.
+#[derive(Debug, thiserror::Error)]
+#[error("a station cannot listen at TCP {address}: {source}")]
+pub struct StationError {
+    address: SocketAddr,
+    source: io::Error,
+}
+
+struct Shared {
+    coupler: Mutex<Emulated>,
+    /// The network is down: nothing arrives, and nothing is answered.
+    is_cut: AtomicBool,
+    /// Number of restarts, changed while the coupler is locked: connections of an earlier one are closed.
+    restarts: AtomicU64,
+    stop: AtomicBool,
+}
+
+impl Shared {
+    fn coupler(&self) -> MutexGuard<'_, Emulated> {
+        // A thread that panicked has changed nothing by halves: the tables are words.
+        self.coupler.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+/// A server with an emulated coupler. Dropping it closes all connections.
+pub struct Station {
+    shared: Arc<Shared>,
+    address: SocketAddr,
+    thread: Option<JoinHandle<()>>,
+}
+
+impl Station {
+    /// Listens at `address`; port 0 chooses a free one.
+    ///
+    /// # Errors
+    /// [`StationError`] if the address cannot be used.
+    pub fn open(address: SocketAddr, coupler: Emulated) -> Result<Self, StationError> {
+        let failed = |source| StationError { address, source };
+        let listener = TcpListener::bind(address).map_err(failed)?;
+        listener.set_nonblocking(true).map_err(failed)?;
+        let address = listener.local_addr().map_err(failed)?;
+        let shared = Arc::new(Shared {
+            coupler: Mutex::new(coupler),
+            is_cut: AtomicBool::new(false),
+            restarts: AtomicU64::new(0),
+            stop: AtomicBool::new(false),
+        });
+        let served = Arc::clone(&shared);
+        let thread = thread::Builder::new()
+            .name("station".into())
+            .spawn(move || accept(&listener, &served))
+            .map_err(failed)?;
+        Ok(Self { shared, address, thread: Some(thread) })
+    }
+
+    /// The address on which the station listens.
+    #[must_use]
+    pub const fn address(&self) -> SocketAddr {
+        self.address
+    }
+
+    /// Uses the coupler as it is now: its inputs, outputs and faults.
+    pub fn with<T>(&self, action: impl FnOnce(&mut Emulated) -> T) -> T {
+        let mut coupler = self.shared.coupler();
+        coupler.advance(now());
+        action(&mut coupler)
+    }
+
+    /// Cuts the network, or joins it. Requests that were sent in between arrive when it is joined, unless the client has
+    /// reset its connection.
+    pub fn cut(&self, is_cut: bool) {
+        self.shared.is_cut.store(is_cut, Ordering::Relaxed);
+    }
+
+    /// Switches the coupler off and on: see [`Emulated::restart`].
+    pub fn restart(&self) {
+        self.with(|coupler| {
+            coupler.restart();
+            self.shared.restarts.fetch_add(1, Ordering::Relaxed);
+        });
+    }
+}
+
+impl Drop for Station {
+    fn drop(&mut self) {
+        self.shared.stop.store(true, Ordering::Relaxed);
+        if let Some(thread) = self.thread.take() {
+            // A thread that panicked has already reported it.
+            let _ = thread.join();
+        }
+    }
+}
+
+fn now() -> u64 {
+    u64::try_from(Monotonic.now().as_nanos()).unwrap_or(u64::MAX)
+}
+
+fn accept(listener: &TcpListener, shared: &Arc<Shared>) {
+    let mut threads: Vec<JoinHandle<()>> = Vec::new();
+    while !shared.stop.load(Ordering::Relaxed) {
+        match listener.accept() {
+            Ok((stream, _)) => {
+                threads.retain(|thread| !thread.is_finished());
+                let shared = Arc::clone(shared);
+                let spawned = thread::Builder::new().name("connection".into()).spawn(move || {
+                    // An error ends the connection, as the coupler would.
+                    let _ = serve(stream, &shared);
+                });
+                threads.extend(spawned);
+            }
+            Err(_) => thread::sleep(WAIT),
+        }
+    }
+    for thread in threads {
+        let _ = thread.join();
+    }
+}
+
+/// Answers the requests of a connection.
+fn serve(mut stream: TcpStream, shared: &Shared) -> io::Result<()> {
+    stream.set_nonblocking(false)?;
+    stream.set_nodelay(true)?;
+    stream.set_read_timeout(Some(WAIT))?;
+    let restarts = shared.restarts.load(Ordering::Relaxed);
+    let (mut received, mut filled) = ([0; MOST_FRAME_BYTES], 0);
+    let mut answer = [0; MOST_FRAME_BYTES];
+    while !shared.stop.load(Ordering::Relaxed) && shared.restarts.load(Ordering::Relaxed) == restarts {
+        match stream.read(&mut received[filled..]) {
+            Ok(0) => return Ok(()),
+            Ok(read) => filled += read,
+            Err(error) if matches!(error.kind(), ErrorKind::WouldBlock | ErrorKind::TimedOut) => {}
+            Err(error) => return Err(error),
+        }
+        if shared.is_cut.load(Ordering::Relaxed) {
+            continue;
+        }
+        while let Some(frame) = mbap::first_frame(&received[..filled]).map_err(io::Error::other)? {
+            let used = frame.len();
+            let mut coupler = shared.coupler();
+            if shared.restarts.load(Ordering::Relaxed) != restarts {
+                return Ok(());
+            }
+            let length = coupler.answer(now(), frame, &mut answer).map_err(io::Error::other)?;
+            drop(coupler);
+            stream.write_all(&answer[..length])?;
+            received.copy_within(used..filled, 0);
+            filled -= used;
+        }
+    }
+    Ok(())
+}
