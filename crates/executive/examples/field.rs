@@ -32,15 +32,13 @@ struct Bench {
 
 impl Bench {
     fn new(plan: Plan) -> Result<Self, Box<dyn Error>> {
+        // The threads of station and device inherit the priority.
+        if let Err(why) = realtime::raise_priority() {
+            println!("without priority: {why}");
+        }
         let local = SocketAddr::from((Ipv4Addr::LOCALHOST, 0));
         let station = Station::open(local, Emulated::new(Kind::Bk9000, 1, 33, 4))?;
-        let prepare = || {
-            if let Err(why) = realtime::raise_priority() {
-                println!("without priority: {why}");
-            }
-        };
-        let device = Device::open(station.address(), Duration::from_millis(15), plan, prepare)?;
-        prepare();
+        let device = Device::open(station.address(), Duration::from_millis(15), plan, || {})?;
         let grid = Grid::new(Monotonic);
         device.align(grid.start());
         let orders = Orders { tick: 0, mode: Mode::Run, go: 0, words: OutWords::ZERO };
