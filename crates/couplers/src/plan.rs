@@ -271,3 +271,83 @@ impl Plan {
         kept.with(&self.safe.outside(&self.rest), |kept, safe| kept | safe)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn words(first: u16) -> OutWords {
+        let mut image = OutWords::ZERO;
+        image.words[0] = first;
+        image
+    }
+
+    fn plan() -> Plan {
+        Plan {
+            unit: 1,
+            kind: Kind::Bk9000,
+            fallback: Fallback::Zero,
+            watchdog_ms: 500,
+            stale_ms: 100,
+            reads: vec![Span { area: Area::Input, first: 0, count: 4 }],
+            writes: vec![Span { area: Area::Holding, first: 0x800, count: 2 }],
+            safe: OutWords::ZERO,
+            rest: words(2),
+            alive: None,
+        }
+    }
+
+    fn changed(change: impl FnOnce(&mut Plan)) -> Result<(), PlanError> {
+        let mut plan = plan();
+        change(&mut plan);
+        plan.check()
+    }
+
+    #[test]
+    fn plans_without_a_safe_fallback_are_refused() {
+        assert_eq!(plan().check(), Ok(()));
+        let fallback = Fallback::Zero;
+        assert_eq!(changed(|plan| plan.safe = words(1)), Err(PlanError::UnsafeFallback { fallback }));
+        let (kind, fallback) = (Kind::Bk9000, Fallback::Hold);
+        assert_eq!(changed(|plan| plan.fallback = fallback), Err(PlanError::NoFallback { kind, fallback }));
+        let plain = |plan: &mut Plan| (plan.kind, plan.fallback) = (Kind::Plain, Fallback::Hold);
+        assert_eq!(changed(plain), Err(PlanError::NotAtRest));
+        let at_rest = |plan: &mut Plan| {
+            plain(plan);
+            plan.rest = plan.written();
+        };
+        assert_eq!(changed(at_rest), Ok(()));
+    }
+
+    #[test]
+    fn watchdog_below_the_time_of_stale_inputs_is_refused() {
+        let expected = Err(PlanError::BadWatchdog { least: 101, found: 100 });
+        assert_eq!(changed(|plan| plan.watchdog_ms = 100), expected);
+        assert_eq!(changed(|plan| plan.watchdog_ms = 101), Ok(()));
+    }
+
+    #[test]
+    fn impossible_spans_are_refused() {
+        assert_eq!(changed(|plan| plan.reads.clear()), Err(PlanError::NoInputs));
+        assert_eq!(
+            changed(|plan| plan.reads[0].count = 126),
+            Err(PlanError::TooLong { most: 125, found: 126 })
+        );
+        assert_eq!(
+            changed(|plan| plan.writes[0].count = 122),
+            Err(PlanError::TooLong { most: 121, found: 122 })
+        );
+        assert_eq!(changed(|plan| plan.reads[0].count = 0), Err(PlanError::BadSpan { first: 0, count: 0 }));
+        let found = Area::Input;
+        assert_eq!(changed(|plan| plan.writes[0].area = found), Err(PlanError::NotWritable { found }));
+        let outside = changed(|plan| plan.writes[0].first = 0x900);
+        let expected =
+            PlanError::NotProcessData { kind: Kind::Bk9000, direction: "outputs", first: 0x900, last: 0x901 };
+        assert_eq!(outside, Err(expected));
+    }
+
+    #[test]
+    fn outputs_of_the_end_keep_what_may_be_on_at_rest() {
+        assert_eq!(plan().at_end(&words(7)), words(2));
+    }
+}

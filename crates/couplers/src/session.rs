@@ -216,6 +216,10 @@ impl Session {
             (State::Starting | State::Stale, _) => self.report.state = State::Running,
             _ => {}
         }
+        if self.report.state == State::Running {
+            // The thread itself may have stood still, with its connection in order.
+            self.check_gap(link.now())?;
+        }
         self.release(orders);
         match (orders.mode, self.report.state) {
             (Mode::End, _) => return self.finish(link).map_err(Stop::Fault),

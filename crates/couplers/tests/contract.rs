@@ -291,6 +291,17 @@ fn lost_controller_makes_the_outputs_safe_once() {
     assert_eq!((run.state(), run.outputs()), (State::Tripped(Trip::NoOrders), 0));
 }
 
+/// The process was stopped for a time; the network is in order.
+#[test]
+fn stalled_thread_trips_before_an_output_is_on() {
+    let mut run = Run::running();
+    run.now += 600 * MS;
+    run.ticks(1);
+    assert!(matches!(run.state(), State::Tripped(Trip::Gap(600..700))), "{:?}", run.state());
+    run.ticks(3);
+    assert_eq!(run.outputs(), 0);
+}
+
 #[test]
 fn safe_orders_trip_at_once() {
     let mut run = Run::running();

@@ -26,16 +26,9 @@ impl Session {
 
     /// Checks a device after a lost connection: it must not have been away too long, and must be as it was left.
     pub(super) fn come_back(&mut self, link: &mut impl Link) -> Result<(), Stop> {
-        let limit = match self.plan.kind.facts().watchdog_ms {
-            Some(_) => u64::from(self.plan.watchdog_ms).min(MOST_GAP_MS),
-            None => MOST_GAP_MS,
-        };
-        if let Some(written_at) = self.written_at {
+        if self.written_at.is_some() {
             let outputs = self.read_outputs(link)?;
-            let gap = link.now().saturating_sub(written_at) / MS;
-            if gap >= limit {
-                return Err(Stop::Trip(Trip::Gap(u32::try_from(gap).unwrap_or(u32::MAX))));
-            }
+            self.check_gap(link.now())?;
             // The last image may have been carried out although its answer was lost.
             if outputs != self.report.acknowledged && outputs != self.sent {
                 return Err(Stop::Trip(Trip::Outputs));
@@ -46,6 +39,16 @@ impl Session {
         }
         self.report.counters.returns = self.report.counters.returns.wrapping_add(1);
         Ok(())
+    }
+
+    /// Checks that the device was written lately: after a longer gap its watchdog has fired, or a person must look.
+    pub(super) fn check_gap(&self, now: u64) -> Result<(), Stop> {
+        let limit = match self.plan.kind.facts().watchdog_ms {
+            Some(_) => u64::from(self.plan.watchdog_ms).min(MOST_GAP_MS),
+            None => MOST_GAP_MS,
+        };
+        let gap = self.written_at.map_or(0, |written_at| now.saturating_sub(written_at) / MS);
+        if gap < limit { Ok(()) } else { Err(Stop::Trip(Trip::Gap(u32::try_from(gap).unwrap_or(u32::MAX)))) }
     }
 
     /// True if the settings of the device are those of the plan.

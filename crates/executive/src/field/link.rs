@@ -1,5 +1,6 @@
 //! The connection to a coupler over TCP. Every close is a reset (`SO_LINGER` 0): what has not reached the coupler never
-//! will. With an ordinary close, the system would deliver old outputs after a short interruption of the network.
+//! will. With an ordinary close, the system would deliver old outputs after a short interruption of the network. See
+//! also [`neighbour`](super::neighbour).
 
 use std::{
     io::{ErrorKind, Read, Write},
