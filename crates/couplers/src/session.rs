@@ -66,7 +66,7 @@ pub struct Session {
     plan: Plan,
     phase: Phase,
     report: Report,
-    /// The last image that was sent; the device has carried it out, or not.
+    /// The last image that was sent; the device may not have carried it out.
     sent: OutWords,
     /// When the last write began that the device acknowledged.
     written_at: Option<u64>,

@@ -31,6 +31,7 @@ impl Simulated {
             now: 0,
             is_cut: false,
             is_broken: false,
+            is_hanging: false,
             waiting: None,
         };
         Ok(Self { session: Session::new(plan)?, line })
@@ -46,6 +47,13 @@ impl Simulated {
     /// Cuts the connection, or joins it.
     pub const fn cut(&mut self, is_cut: bool) {
         self.line.is_cut = is_cut;
+    }
+
+    /// Stops the program of the coupler, or lets it continue. It then carries out the request that it had received, also
+    /// if the connection was reset in the meantime.
+    pub const fn hang(&mut self, is_hanging: bool) {
+        self.line.is_cut = is_hanging;
+        self.line.is_hanging = is_hanging;
     }
 
     /// Switches the coupler off and on: see [`Emulated::restart`]. The connection ends.
@@ -88,6 +96,8 @@ struct SimulatedLine {
     is_cut: bool,
     /// The coupler has forgotten the connection.
     is_broken: bool,
+    /// Requests reach the coupler, but its program stands still.
+    is_hanging: bool,
     /// A request that was sent while the line was cut: the coupler receives it when the line is joined.
     waiting: Option<Waiting>,
 }
@@ -109,6 +119,11 @@ impl Link for SimulatedLine {
             return Err(Fault::NoConnection);
         }
         self.is_broken = false;
+        if let Some(Waiting { frame, length }) = self.waiting.take() {
+            let mut answer = [0; MOST_FRAME_BYTES];
+            // The answer goes to a connection that was reset.
+            let _ = self.coupler.answer(self.now, &frame[..length], &mut answer);
+        }
         Ok(())
     }
 
@@ -141,6 +156,8 @@ impl Link for SimulatedLine {
     }
 
     fn reset(&mut self) {
-        self.waiting = None;
+        if !self.is_hanging {
+            self.waiting = None;
+        }
     }
 }

@@ -205,6 +205,22 @@ fn cut_shorter_than_the_watchdog_is_stale_and_continues() {
     assert_eq!(run.outputs(), VALVE | CLAMP);
 }
 
+/// A program that hangs may carry out the last request after the connection was reset: its outputs are those that were
+/// sent last, but not those that were acknowledged.
+#[test]
+fn request_that_a_hanging_coupler_carries_out_late_is_no_trip() {
+    let mut run = Run::running();
+    run.device.hang(true);
+    run.ticks(5);
+    assert_eq!(run.state(), State::Stale);
+    let written = run.device.coupler().writes();
+    run.device.hang(false);
+    run.ticks(2);
+    assert!(run.device.coupler().writes() > written);
+    let report = run.device.report();
+    assert_eq!((report.state, report.counters.returns, report.counters.trips), (State::Running, 1, 0));
+}
+
 #[test]
 fn cut_longer_than_the_watchdog_trips_until_released() {
     let mut run = Run::running();

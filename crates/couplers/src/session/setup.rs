@@ -30,7 +30,8 @@ impl Session {
             let outputs = self.read_outputs(link)?;
             self.check_gap(link.now())?;
             // The last image may have been carried out although its answer was lost.
-            if outputs != self.report.acknowledged && outputs != self.sent {
+            let left = self.report.acknowledged.words.iter().zip(&self.sent.words);
+            if !outputs.words.iter().zip(left).all(|(found, (known, sent))| found == known || found == sent) {
                 return Err(Stop::Trip(Trip::Outputs));
             }
         }

@@ -50,8 +50,12 @@ impl Session {
         let mut inputs = InWords::ZERO;
         let (mut start, mut reads) = (0, 0);
         if let Some(words) = outputs {
-            self.sent = *words;
-            if let Some(first) = self.write(link, words)? {
+            let written = self.write(link, words);
+            if written != Err(Fault::Unanswered) {
+                // The device has carried it out, or may still do so.
+                self.sent = *words;
+            }
+            if let Some(first) = written? {
                 store_first(&mut inputs, &mut start, &first, self.plan.reads[0]);
                 reads = 1;
             }
