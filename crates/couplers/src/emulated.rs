@@ -1,5 +1,5 @@
 //! An emulated coupler: process data, settings and a watchdog, as in the manual of the BK9000. No coupler was at hand:
-//! SPECNOTES.md lists what the manual leaves open.
+//! SPECNOTES.md lists the assumptions.
 
 use modbus::{Bits, Error, Exception, Request, Tables, Words, server};
 
@@ -16,7 +16,7 @@ const IDENTITY: &[u8; 14] = b"BK9000 emulate";
 /// A fault of a coupler.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum CouplerFault {
-    /// None.
+    /// No fault.
     #[default]
     None,
     /// Its answers are good, but its inputs stand still.

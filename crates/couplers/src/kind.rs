@@ -1,4 +1,4 @@
-//! Kinds of couplers: where their process data are, and what their watchdog does.
+//! Kinds of couplers: addresses of their process data, and their watchdog.
 
 use std::ops::RangeInclusive;
 
@@ -13,7 +13,7 @@ pub enum Kind {
     Plain,
 }
 
-/// What the outputs of a device do by themselves when its watchdog fires.
+/// Behaviour of the outputs of a device when its watchdog fires.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Fallback {
     /// All outputs become 0.
@@ -31,7 +31,7 @@ pub struct Facts {
     pub outputs: RangeInclusive<u16>,
     /// One request can write outputs and read inputs (function 23).
     pub has_read_write: bool,
-    /// What the watchdog can do; without a watchdog only [`Fallback::Hold`].
+    /// Possible behaviours when the watchdog fires; without a watchdog only [`Fallback::Hold`].
     pub fallbacks: &'static [Fallback],
     /// The watchdog times that can be set, ms; `None` without a watchdog.
     pub watchdog_ms: Option<RangeInclusive<u16>>,
@@ -82,7 +82,7 @@ pub mod bk9000 {
     pub const WATCHDOG_MS: u16 = 0x1120;
     /// Resets a watchdog that has fired: [`RESET`] is written, one word after the other.
     pub const WATCHDOG_RESET: u16 = 0x1121;
-    /// What restarts the watchdog: [`ANY_TELEGRAM`] or [`WRITE_TELEGRAMS`].
+    /// Telegrams that restart the watchdog: [`ANY_TELEGRAM`] or [`WRITE_TELEGRAMS`].
     pub const WATCHDOG_TYPE: u16 = 0x1122;
     /// The words that reset the watchdog.
     pub const RESET: [u16; 2] = [0xBECF, 0xAFFE];

@@ -10,7 +10,7 @@
 //! The owner calls [`Session::exchange`] at fixed times, twice per tick. A session sends one request at a time and
 //! repeats none: the next exchange carries the newest outputs.
 //!
-//! * [`kind`]: what kinds of couplers can do;
+//! * [`kind`]: kinds of couplers and their abilities;
 //! * [`plan`]: registers, safe values and time limits of a device;
 //! * [`report`]: orders to a session, and its state;
 //! * [`link`]: the connection that a session needs, and its faults;

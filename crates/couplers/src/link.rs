@@ -29,7 +29,7 @@ pub trait Link {
     fn reset(&mut self);
 }
 
-/// What went wrong on a connection.
+/// A fault of a connection.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Fault {
     /// The device has not answered in time.
@@ -42,11 +42,11 @@ pub enum Fault {
     Disconnected,
     /// The device refused the request with this exception code.
     Exception(u8),
-    /// Bytes that are no answer to the request.
+    /// The bytes are not an answer to the request.
     Frame(FrameFault),
 }
 
-/// What is wrong with an answer.
+/// The wrong part of an answer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum FrameFault {
     /// Protocol identifier.

@@ -1,4 +1,4 @@
-//! What a session needs to know of a device: registers, safe values, time limits.
+//! Description of a device for its session: registers, safe values, time limits.
 
 use std::ops::RangeInclusive;
 
@@ -99,15 +99,15 @@ pub struct Plan {
     pub unit: u8,
     /// Kind of coupler.
     pub kind: Kind,
-    /// What the outputs do when the watchdog fires.
+    /// Behaviour of the outputs when the watchdog fires.
     pub fallback: Fallback,
     /// Time of the watchdog, ms; not used without one.
     pub watchdog_ms: u16,
     /// Age at which inputs are stale, ms: the least one of all points.
     pub stale_ms: u16,
-    /// What is read; the input image consists of these spans.
+    /// Spans to read; the input image consists of them.
     pub reads: Vec<Span>,
-    /// What is written; the output image consists of these spans.
+    /// Spans to write; the output image consists of them.
     pub writes: Vec<Span>,
     /// The safe output image.
     pub safe: OutWords,
@@ -173,10 +173,10 @@ pub enum PlanError {
         /// Time found, ms.
         found: u16,
     },
-    /// The safe image is not what the fallback gives.
-    #[error("safe values differ from what the fallback {fallback} gives")]
+    /// The safe image differs from the outputs after the fallback.
+    #[error("safe values differ from the outputs after the fallback {fallback}")]
     UnsafeFallback {
-        /// What the outputs do when the watchdog fires.
+        /// Behaviour of the outputs when the watchdog fires.
         fallback: Fallback,
     },
     /// A device without a fallback has an output that may not be on at rest.

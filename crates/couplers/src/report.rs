@@ -8,7 +8,7 @@ use crate::{
     plan::{InWords, OutWords},
 };
 
-/// What the run wants of a device.
+/// Mode of a device, as ordered by the run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Mode {
     /// Connect, set up and read; write nothing.
@@ -26,7 +26,7 @@ pub enum Mode {
 pub struct Orders {
     /// Number of the tick. A session whose orders keep their number is without a controller.
     pub tick: u64,
-    /// What to do.
+    /// Mode of the device.
     pub mode: Mode,
     /// Number of releases so far: a change releases a tripped device.
     pub go: u32,

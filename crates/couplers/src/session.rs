@@ -1,6 +1,6 @@
 //! The contract of a device: when its outputs are safe, when its inputs are valid, and when a person must release it.
 //!
-//! | event | what the session does |
+//! | event | action of the session |
 //! |---|---|
 //! | connected for the first time | reads the outputs back, refuses those that may not be on; sets the watchdog, reads it back |
 //! | a request fails | counts it; the next exchange carries the newest outputs, and no request is repeated |
@@ -358,7 +358,7 @@ impl Session {
     }
 }
 
-/// A device that refuses a write does not do what it is told: it trips.
+/// A device that refuses a write trips.
 fn refused_write(fault: Fault) -> Stop {
     match fault {
         Fault::Exception(code) => Stop::Trip(Trip::Refused(code)),

@@ -260,7 +260,7 @@ fn release_of_an_absent_device_is_refused() {
     assert!(matches!(run.state(), State::Tripped(_)));
 }
 
-/// With outputs on the coupler forgets them; without, only its settings show it.
+/// Outputs that were on show the restart; if all were off, only the settings show it.
 #[test]
 fn restarted_coupler_trips_before_an_output_is_on() {
     for (asked, cause) in [(VALVE | CLAMP, Trip::Outputs), (0, Trip::Settings)] {
@@ -295,7 +295,7 @@ fn lost_controller_makes_the_outputs_safe_once() {
     run.ticks(2);
     assert_eq!(run.outputs(), VALVE | CLAMP);
     let written = run.device.coupler().writes();
-    // 121 ms after the last orders; writes of the same orders go on until then.
+    // 121 ms after the last orders; the same image is written until then.
     run.device.exchange(run.now + MS, &run.orders);
     assert_eq!((run.state(), run.outputs()), (State::Silent, 0));
     assert_eq!(run.device.coupler().writes(), written + 1);
@@ -418,7 +418,7 @@ fn bits_and_registers_share_an_image() {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(200))]
 
-    /// Whatever is cut when: an image that is carried out is not older than `stale_ms` + 20 ms, and no output is on
+    /// For any sequence of cuts: an image that is carried out is not older than `stale_ms` + 20 ms, and no output is on
     /// between a trip and the release. Once joined and released, the device runs.
     #[test]
     fn no_old_image_is_carried_out(cuts in prop::collection::vec((1..40_u64, 1..40_u64, any::<bool>()), 1..12)) {

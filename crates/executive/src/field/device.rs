@@ -66,7 +66,7 @@ impl Device {
     /// `prepare` first, for example to request real-time scheduling.
     ///
     /// # Errors
-    /// [`DeviceError`]. A device that does not answer is no error: its report says so.
+    /// [`DeviceError`]. A device that does not answer is not an error: its report shows it.
     pub fn open(
         address: SocketAddr,
         timeout: Duration,

@@ -1,5 +1,5 @@
-//! The connection to a coupler over TCP. Every close is a reset (`SO_LINGER` 0): what has not reached the coupler never
-//! will. With an ordinary close, the system would deliver old outputs after a short interruption of the network. See
+//! The connection to a coupler over TCP. Every close is a reset (`SO_LINGER` 0): requests that have not left
+//! this machine are discarded. With an ordinary close, the system would deliver old outputs after a short interruption of the network. See
 //! also [`neighbour`](super::neighbour).
 
 use std::{
@@ -77,7 +77,7 @@ impl TcpLink {
             let frame = mbap::first_frame(self.received.get(..self.filled).unwrap_or_default())?;
             if let Some(length) = frame.map(<[u8]>::len) {
                 if length < self.filled {
-                    // More than an answer: they could not be told apart.
+                    // More than one answer: it is unknown which one belongs to the request.
                     return Err(Fault::Frame(FrameFault::Length));
                 }
                 return Ok(Some(length));
