@@ -14,8 +14,8 @@ pub trait Link {
     /// [`Fault`] if the device does not accept the connection in time.
     fn connect(&mut self) -> Result<(), Fault>;
 
-    /// Sends a request and waits for its answer, with a limit. While an earlier request is unanswered, it waits for that
-    /// answer first, and drops it: two requests are never under way.
+    /// Sends a request and waits for its answer, with a limit. While an earlier request is unanswered, it waits for
+    /// that answer first, and drops it: two requests are never under way.
     ///
     /// # Errors
     /// [`Fault`].

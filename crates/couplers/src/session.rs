@@ -2,7 +2,7 @@
 //!
 //! | event | action of the session |
 //! |---|---|
-//! | connected for the first time | reads the outputs back, refuses those that may not be on; sets the watchdog, reads it back |
+//! | connected for the first time | refuses outputs that may not be on; sets the watchdog, reads it back |
 //! | a request fails | counts it; the next exchange carries the newest outputs, and no request is repeated |
 //! | no answer for `stale_ms` | resets the connection and connects again, after 20 to 320 ms |
 //! | back in time, outputs and settings as left | continues |

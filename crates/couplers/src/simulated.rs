@@ -49,8 +49,8 @@ impl Simulated {
         self.line.is_cut = is_cut;
     }
 
-    /// Stops the program of the coupler, or lets it continue. It then carries out the request that it had received, also
-    /// if the connection was reset in the meantime.
+    /// Stops the program of the coupler, or lets it continue. It then carries out the request that it had received,
+    /// also if the connection was reset in the meantime.
     pub const fn hang(&mut self, is_hanging: bool) {
         self.line.is_cut = is_hanging;
         self.line.is_hanging = is_hanging;

@@ -1,5 +1,5 @@
-//! Measures a device behind an emulated coupler on this machine: age of the inputs at the tick, the tick's share, and the
-//! time until outputs are safe or inputs are fresh after a disturbance.
+//! Measures a device behind an emulated coupler on this machine: age of the inputs at the tick, the tick's share, and
+//! the time until outputs are safe or inputs are fresh after a disturbance.
 //!
 //! `cargo run --release -p executive --example field -- 500 20`: 500 ticks, and each disturbance 20 times. Real-time
 //! scheduling is requested for both threads; without the permission they run without.

@@ -1,6 +1,6 @@
 #!/bin/sh
-# Takes the link between a controller and an emulated coupler down, in two network namespaces, and prints the greatest age
-# of an image that the coupler carried out. Needs root and iproute2.
+# Takes the link between a controller and an emulated coupler down, in two network namespaces, and prints the greatest
+# age of an image that the coupler carried out. Needs root and iproute2.
 #   link_down.sh PROGRAM TIMES SECONDS...       PROGRAM is the example `coupler` of crates/executive
 # With NEIGHBOUR=dynamic the controller has to ask for the coupler's hardware address after each loss of the link.
 set -eu

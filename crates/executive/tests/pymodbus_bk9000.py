@@ -2,8 +2,8 @@
 
 pymodbus_bk9000.py PORT        then: the example `coupler controller 127.0.0.1:PORT SECONDS` of crates/executive
 
-Each second it prints the first output, the number of writes, and how often the watchdog has fired. On its standard input,
-`cut SECONDS` stops the server for a time, as a program that hangs; `restart` forgets outputs and settings.
+Each second it prints the first output, the number of writes, and how often the watchdog has fired. On its standard
+input, `cut SECONDS` stops the server for a time, as a program that hangs; `restart` resets outputs and settings.
 """
 
 import sys

@@ -1,6 +1,6 @@
 //! A device with its thread. The thread exchanges data twice per tick: 1 ms after a slot of the run's clock, with the
-//! outputs of its tick, and 8 ms before the next one, for fresh inputs. It keeps the grid by itself, since waking it would
-//! take up the run's time.
+//! outputs of its tick, and 8 ms before the next one, for fresh inputs. It keeps the grid by itself, since waking it
+//! would take up the run's time.
 
 use std::{
     io,
@@ -62,8 +62,8 @@ fn nanoseconds(time: Duration) -> u64 {
 }
 
 impl Device {
-    /// Starts the thread of a device. It connects and reads, and writes nothing before [`Self::order`]. The thread calls
-    /// `prepare` first, for example to request real-time scheduling.
+    /// Starts the thread of a device. It connects and reads, and writes nothing before [`Self::order`]. The thread
+    /// calls `prepare` first, for example to request real-time scheduling.
     ///
     /// # Errors
     /// [`DeviceError`]. A device that does not answer is not an error: its report shows it.
@@ -121,8 +121,8 @@ impl Device {
         report.age(now).map(|age| (report.inputs, age))
     }
 
-    /// Ends the device: writes the outputs of the end, and waits until they are read back, at most 0.3 s. Returns true if
-    /// the device has confirmed them.
+    /// Ends the device: writes the outputs of the end, and waits until they are read back, at most 0.3 s. Returns
+    /// true if the device has confirmed them.
     pub fn end(&mut self) -> bool {
         let end = Orders { tick: self.newest.tick.wrapping_add(1), mode: Mode::End, ..self.newest };
         self.order(&end);

@@ -1,8 +1,8 @@
 //! The newest value from one thread to another: a sequence lock of atomics. Neither thread waits for the other, and no
 //! end allocates.
 //!
-//! The writer makes the sequence odd, writes the words, and makes it even. A reader that finds an odd sequence, or another
-//! one after its copy, tries again, a few times; then it keeps the value that it has.
+//! The writer makes the sequence odd, writes the words, and makes it even. A reader that finds an odd sequence, or
+//! another one after its copy, tries again, a few times; then it keeps the value that it has.
 
 use std::{
     marker::PhantomData,

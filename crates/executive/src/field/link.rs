@@ -1,6 +1,6 @@
-//! The connection to a coupler over TCP. Every close is a reset (`SO_LINGER` 0): requests that have not left this machine
-//! are discarded. With an ordinary close, the system would deliver old outputs after a short interruption of the network.
-//! See also [`neighbour`](super::neighbour).
+//! The connection to a coupler over TCP. Every close is a reset (`SO_LINGER` 0): requests that have not left this
+//! machine are discarded. With an ordinary close, the system would deliver old outputs after a short interruption of
+//! the network. See also [`neighbour`](super::neighbour).
 
 use std::{
     io::{ErrorKind, Read, Write},

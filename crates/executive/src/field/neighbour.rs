@@ -1,8 +1,9 @@
 //! Whether the system knows the hardware address of a coupler for good.
 //!
 //! A machine that loses its link discards the hardware addresses that it has learnt. It then keeps packets until it has
-//! learnt the address again, up to three seconds, also those of connections that were reset in the meantime: an old image arrives
-//! at the coupler when the link is back. With a permanent entry in the table of neighbours the packets are dropped.
+//! learnt the address again, up to three seconds, also those of connections that were reset in the meantime: an old
+//! image arrives at the coupler when the link is back. With a permanent entry in the table of neighbours the packets
+//! are dropped.
 
 use std::{fs, io, net::IpAddr};
 

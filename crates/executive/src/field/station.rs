@@ -87,8 +87,8 @@ impl Station {
         action(&mut coupler)
     }
 
-    /// Cuts the network, or joins it. Requests that were sent in between arrive when it is joined, unless the client has
-    /// reset its connection.
+    /// Cuts the network, or joins it. Requests that were sent in between arrive when it is joined, unless the client
+    /// has reset its connection.
     pub fn cut(&self, is_cut: bool) {
         self.shared.is_cut.store(is_cut, Ordering::Relaxed);
     }

@@ -38,7 +38,8 @@ static int ask(int port, int count) {
     uint16_t holding[SIZE] = {0}, words[SIZE], registers[SIZE];
     modbus_set_slave(bus, 1);
     if (modbus_connect(bus)) fail(-1, "connect");
-    if (modbus_write_bits(bus, 0, SIZE, coils) < 0 || modbus_write_registers(bus, 0, SIZE, holding) < 0) fail(-1, "zero");
+    if (modbus_write_bits(bus, 0, SIZE, coils) < 0) fail(-1, "coils");
+    if (modbus_write_registers(bus, 0, SIZE, holding) < 0) fail(-1, "holding registers");
     srand(1);
     for (int number = 0; number < count; number++) {
         int first = rand() % SIZE, size = 1 + rand() % (SIZE - first), done = 0;
