@@ -29,7 +29,7 @@ const QUESTIONS: [(&str, &[&str]); 6] = [
     ("replay", &["replay"]),
     ("why", &["why"]),
     ("why --tick", &["why", "--tick", "60"]),
-    ("report", &["report", "-o", "page.html"]),
+    ("page", &["page", "-o", "page.html"]),
     ("golden", &["golden", "-o", "goldens"]),
 ];
 

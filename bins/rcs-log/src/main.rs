@@ -8,8 +8,7 @@
 //! | [`diff`] | where do two runs differ? |
 //! | [`fork`] | what would have happened with another command, datum, seed or fault? |
 //! | [`compare`] | what do other data change in the jobs? |
-//! | [`report`] | the run on one page |
-//! | [`page`] | the run on one page that can be searched and played |
+//! | [`page`] | the run on one page for a browser |
 //! | [`serve`] | the run as a viewer shows it |
 //! | [`golden`] | the run as a small file for tests |
 
@@ -22,7 +21,6 @@ mod info;
 mod page;
 mod parallel;
 mod replay;
-mod report;
 mod serve;
 mod story;
 mod why;
@@ -52,8 +50,8 @@ Examples:
   rcs-log diff a.mcap b.mcap                where two runs differ
   rcs-log fork runs/linkbar.mcap --tick 4600 --set 'line=** wait 50'   what if the next line came 2 s later?
   rcs-log compare data ../new/data          what do other data change in the jobs?
-  rcs-log report runs/linkbar.mcap          the run as a page, runs/linkbar.html
-  rcs-log page runs/linkbar.mcap -o run.html    the run to look through in a browser, without a network
+  rcs-log open runs/linkbar.mcap            look through the run in a browser
+  rcs-log page runs/linkbar.mcap -o run.html    the same page as one file, for a mail
   rcs-log serve runs/linkbar.mcap --rate 5  play the run in Foxglove or Lichtblick, five times as fast
   rcs-log golden runs/*.mcap -o tests/goldens   small files for tests, with their texts
 
@@ -93,13 +91,13 @@ enum Command {
     Fork(fork::Arguments),
     /// Run jobs with two data directories, and print the differences
     Compare(compare::Arguments),
-    /// Write the run as one HTML page that needs no other file
-    Report(report::Arguments),
     /// Write the log as one page for a browser: cell, decisions, and the chain of a failure
     ///
     /// The page needs no other file and no network, and shows every tick. It holds a copy of the log without the
     /// channel `/replay`, so keep the log if you want to replay the run.
     Page(page::Arguments),
+    /// Write the page as `page` does, and open it in a browser
+    Open(page::Arguments),
     /// Play a log in Foxglove or Lichtblick on this machine, as rcs-run --live shows a run
     ///
     /// The log plays once, from its start. It starts when a viewer has subscribed to a channel. The program ends when
@@ -226,8 +224,8 @@ fn main() -> ExitCode {
         Command::Diff(arguments) => diff::diff(&arguments),
         Command::Fork(arguments) => fork::fork(&arguments),
         Command::Compare(arguments) => compare::compare(&arguments),
-        Command::Report(arguments) => report::report(&arguments),
         Command::Page(arguments) => page::page(&arguments),
+        Command::Open(arguments) => page::open(&arguments),
         Command::Serve(arguments) => serve::serve(&arguments),
         Command::Golden(arguments) => golden::golden(&arguments),
     };

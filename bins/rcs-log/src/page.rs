@@ -1,17 +1,21 @@
-//! `rcs-log page`: writes a log as one page for a browser, which needs no other file and no network.
+//! `rcs-log page` and `open`: write a log as one page for a browser, which needs no other file and no network.
+//!
+//! `open` leaves the page beside the log instead of serving it: other users of the machine could read what is served,
+//! and the page can be opened again.
 
 use std::{path::PathBuf, process::ExitCode};
 
 use os_io::{
-    console,
+    browser, console,
     replace::{Format, check_output, replace},
+    stderr_line,
 };
 use record::input::Attachment;
 use serde::Serialize;
 
-use crate::{Error, info, story::open, why};
+use crate::{Error, info, story, why};
 
-/// Arguments of `page`.
+/// Arguments of `page` and `open`.
 #[derive(Clone, Debug, clap::Args)]
 pub struct Arguments {
     /// The log
@@ -23,10 +27,29 @@ pub struct Arguments {
 
 /// Writes the page of a log.
 pub fn page(arguments: &Arguments) -> Result<ExitCode, Error> {
+    let output = write(arguments)?;
+    console::answer(&format!("{}\n", output.display()))?;
+    Ok(ExitCode::SUCCESS)
+}
+
+/// Writes the page of a log, and opens it in a browser.
+pub fn open(arguments: &Arguments) -> Result<ExitCode, Error> {
+    let output = write(arguments)?;
+    console::answer(&format!("{}\n", output.display()))?;
+    // An absolute path cannot be read as an option, whatever the name of the log is.
+    let path = std::path::absolute(&output).unwrap_or(output);
+    if let Err(error) = browser::open(path.as_os_str()) {
+        stderr_line!("rcs-log: no browser can be started: {error}; open {} in one", path.display());
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+/// Writes the page; returns its path.
+fn write(arguments: &Arguments) -> Result<PathBuf, Error> {
     let output = arguments.output.clone().unwrap_or_else(|| arguments.file.with_extension("html"));
     let unwritten = |source| Error::Write { path: output.clone(), source };
     check_output(&output, Format::Html, [arguments.file.as_path()]).map_err(unwritten)?;
-    let log = open(&arguments.file)?;
+    let log = story::open(&arguments.file)?;
     let answers = [
         json("info.json", &info::summary(&log, &arguments.file)?)?,
         json("why.json", &why::explanation(&log, &arguments.file, None)?)?,
@@ -34,10 +57,9 @@ pub fn page(arguments: &Arguments) -> Result<ExitCode, Error> {
         json("reasons.json", &page::reasons())?,
     ];
     let name = arguments.file.file_name().unwrap_or_default().to_string_lossy().into_owned();
-    let document = page::document(&name, Some(&page::pack(&log, &answers)));
+    let document = page::document(&name, page::Content::Log(&page::pack(&log, &answers)));
     replace(&output, document.as_bytes()).map_err(unwritten)?;
-    console::answer(&format!("{}\n", output.display()))?;
-    Ok(ExitCode::SUCCESS)
+    Ok(output)
 }
 
 /// An answer of this program as a file in the page.

@@ -2,8 +2,11 @@
 
 use std::{
     fs, io,
+    os::unix::fs::PermissionsExt as _,
     path::{Path, PathBuf},
     process::{Child, Command, Output, Stdio},
+    thread,
+    time::{Duration, Instant},
 };
 
 use interfaces::{CommonMemory, ExternalInputs};
@@ -229,15 +232,29 @@ fn page_writes_one_file_with_the_log_inside() {
 }
 
 #[test]
-fn a_report_is_one_page_with_the_failure_on_it() {
+fn open_starts_the_browser_with_the_page_and_does_without_one() {
     let scratch = Scratch::new();
     let log = scratch.log("run.mcap", 1000);
-    let output = rcs_log(&["report"], &[&log]);
-    assert!(output.status.success());
-    let page = fs::read_to_string(log.with_extension("html")).expect("the page is there");
-    assert!(page.contains("the object is not in the task data"), "{page}");
-    assert!(page.contains("TRANSFER NOBODY") && page.ends_with("</body></html>"));
-    assert!(!page.contains("http"), "the page needs nothing from elsewhere");
-    let output = rcs_log(&["report", "--output", "/nowhere/page.html"], &[&log]);
-    assert_eq!(output.status.code(), Some(2));
+    let page = log.with_extension("html");
+    let programs = log.with_file_name("programs");
+    fs::create_dir(&programs).expect("a directory");
+    let open = || {
+        let program = env!("CARGO_BIN_EXE_rcs-log");
+        let output = Command::new(program).arg("open").arg(&log).env("PATH", &programs).output();
+        let output = output.expect("rcs-log starts");
+        assert!(output.status.success());
+        String::from_utf8(output.stderr).expect("a text")
+    };
+    let without = open();
+    assert!(without.contains(&format!("open {} in one", page.display())), "{without}");
+    assert!(fs::read_to_string(&page).expect("the page is there").contains("id=\"log-data\">"));
+    let (browser, opened) = (programs.join("xdg-open"), log.with_file_name("opened"));
+    fs::write(&browser, format!("#!/bin/sh\necho \"$1\" > {}\n", opened.display())).expect("a script");
+    fs::set_permissions(&browser, fs::Permissions::from_mode(0o755)).expect("it can be executed");
+    assert_eq!(open(), "");
+    let until = Instant::now() + Duration::from_secs(10);
+    while fs::read_to_string(&opened).unwrap_or_default().trim() != page.display().to_string() {
+        assert!(Instant::now() < until, "the browser was not started");
+        thread::sleep(Duration::from_millis(20));
+    }
 }

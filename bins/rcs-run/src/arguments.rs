@@ -145,12 +145,16 @@ pub struct RunArguments {
     /// Replay the operator's inputs of this log, each in its tick
     #[arg(long, value_name = "LOG")]
     pub inputs: Option<PathBuf>,
-    /// Show the run in Foxglove or Lichtblick on this machine: connect to ws://127.0.0.1:PORT [default port: 8765]
+    /// Show the run in a browser on this machine at http://127.0.0.1:PORT, and in Foxglove or Lichtblick at
+    /// ws://127.0.0.1:PORT [default port: 8765]
     ///
     /// The view shows what is written to the log, so it needs a log (docs/live.md). To watch the run, use --clock real
     /// or 5x.
     #[arg(long, value_name = "PORT", num_args = 0..=1, default_missing_value = "8765", value_parser = port)]
     pub live: Option<u16>,
+    /// Open the page of the live view in a browser
+    #[arg(long, requires = "live")]
+    pub open: bool,
     /// Let web pages of this origin connect to the live view, such as http://localhost:8080; may be given several times
     #[arg(long, value_name = "ORIGIN", requires = "live")]
     pub live_origin: Vec<Origin>,

@@ -32,7 +32,7 @@ impl fmt::Display for LastLines<'_> {
         };
         writeln!(f)?;
         writeln!(f, "watch      {} --log {log}{tick}", start_of("rcs-console"))?;
-        writeln!(f, "look       {} page {log}    # one file for a browser", start_of("rcs-log"))?;
+        writeln!(f, "look       {} open {log}    # in a browser", start_of("rcs-log"))?;
         writeln!(f, "open       rerun {log}    # or open the file in Foxglove or Lichtblick")?;
         writeln!(f, "ask why    {} why {log}", start_of("rcs-log"))
     }

@@ -45,6 +45,11 @@ pub fn run(arguments: &RunArguments) -> Result<ExitCode, Error> {
         return Err(Error::BuiltInAtPort);
     }
     let run = Run::new(config, observer).map_err(explained)?;
+    if let Some(address) = run.live_address().filter(|_| arguments.open)
+        && let Err(error) = os_io::browser::open(address.as_ref())
+    {
+        stderr_line!("rcs-run: no browser can be started: {error}; open {address} in one");
+    }
     let console =
         console.zip(name).map(|(program, name)| Console::start(program, &name, stop)).transpose()?;
     let outcome = run.complete();

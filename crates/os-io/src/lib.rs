@@ -8,6 +8,7 @@
 #![deny(unsafe_code)]
 
 pub mod alloc;
+pub mod browser;
 pub mod carried;
 pub mod console;
 pub mod files;

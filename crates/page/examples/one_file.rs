@@ -12,6 +12,6 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         return Err("the names of a log and of a page were expected".into());
     };
     let log = Log::open(Path::new(&file))?;
-    fs::write(output, page::document(&file, Some(&page::pack(&log, &[]))))?;
+    fs::write(output, page::document(&file, page::Content::Log(&page::pack(&log, &[]))))?;
     Ok(())
 }

@@ -31,6 +31,7 @@ const STYLES: &[(&str, &str)] = &[
     ("view/side.css", include_str!("../web/view/side.css")),
     ("view/why.css", include_str!("../web/view/why.css")),
     ("view/time.css", include_str!("../web/view/time.css")),
+    ("view/controls.css", include_str!("../web/view/controls.css")),
     ("view/layout.css", include_str!("../web/view/layout.css")),
     ("view/print.css", include_str!("../web/view/print.css")),
 ];
@@ -46,9 +47,11 @@ const MODULES: &[(&str, &str)] = &[
     ("log/account.js", include_str!("../web/log/account.js")),
     ("log/bytes.js", include_str!("../web/log/bytes.js")),
     ("log/cdr.js", include_str!("../web/log/cdr.js")),
+    ("log/connection.js", include_str!("../web/log/connection.js")),
     ("log/explanation.js", include_str!("../web/log/explanation.js")),
     ("log/job.js", include_str!("../web/log/job.js")),
     ("log/lanes.js", include_str!("../web/log/lanes.js")),
+    ("log/live.js", include_str!("../web/log/live.js")),
     ("log/log.js", include_str!("../web/log/log.js")),
     ("log/mcap.js", include_str!("../web/log/mcap.js")),
     ("log/messages.js", include_str!("../web/log/messages.js")),
@@ -63,13 +66,17 @@ const MODULES: &[(&str, &str)] = &[
     ("view/actions.js", include_str!("../web/view/actions.js")),
     ("view/bar.js", include_str!("../web/view/bar.js")),
     ("view/cell.js", include_str!("../web/view/cell.js")),
+    ("view/controls.js", include_str!("../web/view/controls.js")),
     ("view/dom.js", include_str!("../web/view/dom.js")),
     ("view/hierarchy.js", include_str!("../web/view/hierarchy.js")),
     ("view/icons.js", include_str!("../web/view/icons.js")),
     ("view/instruments.js", include_str!("../web/view/instruments.js")),
     ("view/lists.js", include_str!("../web/view/lists.js")),
+    ("view/open.js", include_str!("../web/view/open.js")),
+    ("view/operate.js", include_str!("../web/view/operate.js")),
     ("view/pointer.js", include_str!("../web/view/pointer.js")),
     ("view/score.js", include_str!("../web/view/score.js")),
+    ("view/session.js", include_str!("../web/view/session.js")),
     ("view/side.js", include_str!("../web/view/side.js")),
     ("view/table-rows.js", include_str!("../web/view/table-rows.js")),
     ("view/table.js", include_str!("../web/view/table.js")),
@@ -79,31 +86,42 @@ const MODULES: &[(&str, &str)] = &[
     ("view/why.js", include_str!("../web/view/why.js")),
 ];
 
-/// The page as one file, with a packed log inside if one is given ([`crate::pack`]).
+/// What a page shows.
+#[derive(Clone, Copy, Debug)]
+pub enum Content<'a> {
+    /// A packed log ([`crate::pack`]).
+    Log(&'a [u8]),
+    /// A run in progress ([`crate::pack_start`]). The page connects to the live view at the address that served it.
+    Run(&'a [u8]),
+}
+
+/// The page as one file, with a packed log or the start of a run inside.
 ///
-/// The file permits itself this one script and nothing from outside, whatever the texts of the log are. Without a log
-/// inside, the page fetches one from where it came from.
+/// The file permits itself this one script, whatever the texts of the log are. With a log it loads nothing; with a run
+/// it connects to its own server only.
 #[must_use]
-pub fn document(title: &str, log: Option<&[u8]>) -> String {
+pub fn document(title: &str, content: Content<'_>) -> String {
     let style: String = STYLES.iter().map(|(_, text)| *text).collect();
     let script = match bundle(MODULES, START) {
         Ok(script) => harmless(&script),
         // The tests bundle the same sources, so that no program has this.
         Err(error) => format!("document.body.textContent = {error:?};"),
     };
-    let from = if log.is_some() { "'none'" } else { "'self'" };
+    let (id, data, from) = match content {
+        Content::Log(data) => ("log-data", data, "'none'"),
+        Content::Run(data) => ("run-data", data, "'self'"),
+    };
     let digest = BASE64.encode(&Sha256::digest(script.as_bytes()));
     let policy = format!(
         "default-src 'none'; script-src 'sha256-{digest}'; style-src 'unsafe-inline'; img-src blob: data:; \
          connect-src {from}; base-uri 'none'; form-action 'none'"
     );
-    let log = log.map_or_else(String::new, |log| {
-        format!("<script type=\"application/octet-stream\" id=\"log-data\">{}</script>\n", BASE64.encode(log))
-    });
+    let data = BASE64.encode(data);
+    let data = format!("<script type=\"application/octet-stream\" id=\"{id}\">{data}</script>\n");
     let head = format!(
         "<meta http-equiv=\"Content-Security-Policy\" content=\"{policy}\">\n<style>\n{style}</style>"
     );
-    let body = format!("{log}<script type=\"module\">{script}</script>\n</body>");
+    let body = format!("{data}<script type=\"module\">{script}</script>\n</body>");
     INDEX
         .replace("<title>RCS-II/T3</title>", &format!("<title>{}</title>", escaped(title)))
         .replace(LINKS, &head)
@@ -320,14 +338,15 @@ mod tests {
 
     #[test]
     fn a_document_needs_no_other_file_and_has_the_log_inside() {
-        let page = document("a < b", Some(b"\x89MCAP0\r\n"));
+        let page = document("a < b", Content::Log(b"\x89MCAP0\r\n"));
+        let live = document("t", Content::Run(b""));
         assert!(page.contains("<title>a &lt; b</title>"));
-        assert!(page.contains("connect-src 'none'") && document("t", None).contains("connect-src 'self'"));
+        assert!(page.contains("connect-src 'none'") && live.contains("connect-src 'self'"));
         assert!(page.contains(&format!("id=\"log-data\">{}</script>", BASE64.encode(b"\x89MCAP0\r\n"))));
         for outside in ["src=", "href=\"style", "@import", "http://", "https://"] {
             let lines: Vec<&str> = page.lines().filter(|line| line.contains(outside)).collect();
             assert!(lines.iter().all(|line| line.contains("www.w3.org")), "{outside}: {lines:?}");
         }
-        assert!(document("t", None).len() < 400_000, "{} bytes without a log", document("t", None).len());
+        assert!(live.len() < 400_000, "{} bytes without a log", live.len());
     }
 }

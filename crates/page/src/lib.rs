@@ -12,6 +12,6 @@ mod inline;
 mod pack;
 mod tables;
 
-pub use inline::{bundle, document};
-pub use pack::pack;
+pub use inline::{Content, bundle, document};
+pub use pack::{pack, pack_start};
 pub use tables::{reasons, tables};

@@ -54,23 +54,42 @@ pub fn pack(log: &Log, added: &[Attachment]) -> Vec<u8> {
     let mut packer = Packer::default();
     log.tell_channels(&mut packer);
     log.play(&mut packer, |_| ());
+    let mut out = begin(&log.run, &log.attachments, added);
+    packer.write(&mut out);
+    if let Some(end) = &log.end {
+        metadata(END, end, &mut out);
+    }
+    finish(out)
+}
+
+/// What the page needs of a run before its first message: its metadata and files, with further ones. The messages
+/// arrive over the live view.
+#[must_use]
+pub fn pack_start(
+    run: &BTreeMap<String, String>,
+    attachments: &[Attachment],
+    added: &[Attachment],
+) -> Vec<u8> {
+    finish(begin(run, attachments, added))
+}
+
+/// The start of a file: header, metadata of the run, attachments.
+fn begin(run: &BTreeMap<String, String>, attachments: &[Attachment], added: &[Attachment]) -> Vec<u8> {
     let mut out = MAGIC.to_vec();
     record(code::HEADER, &mut out, |body| {
         text("", body);
         text(concat!("rcs-page ", env!("CARGO_PKG_VERSION")), body);
     });
-    metadata(RUN, &log.run, &mut out);
-    let kept = log
-        .attachments
-        .iter()
-        .filter(|file| KEPT.contains(&file.name.as_str()) || file.name.starts_with(Attachment::PLAYED));
-    kept.chain(added).for_each(|file| attachment(file, &mut out));
-    packer.write(&mut out);
-    if let Some(end) = &log.end {
-        metadata(END, end, &mut out);
-    }
+    metadata(RUN, run, &mut out);
+    let is_kept =
+        |file: &&Attachment| KEPT.contains(&file.name.as_str()) || file.name.starts_with(Attachment::PLAYED);
+    attachments.iter().filter(is_kept).chain(added).for_each(|file| attachment(file, &mut out));
+    out
+}
+
+/// The end of a file. There is no summary: the page reads the file from its beginning.
+fn finish(mut out: Vec<u8>) -> Vec<u8> {
     record(code::DATA_END, &mut out, |body| number32(0, body));
-    // No summary: the page reads the file from its beginning.
     record(code::FOOTER, &mut out, |body| body.extend_from_slice(&[0; 20]));
     out.extend_from_slice(MAGIC);
     out

@@ -1,17 +1,23 @@
 // The page: finds a log, opens it, and draws what changed.
 
 import { openLog } from './log/log.js';
+import { LiveLog } from './log/live.js';
+import { readMcap } from './log/mcap.js';
 import { Run } from './log/run.js';
-import { act, actionOf, follow, KEYS } from './view/actions.js';
+import { act, actionOf, follow, followRun, KEYS } from './view/actions.js';
 import { bar, tabs } from './view/bar.js';
 import { CellView } from './view/cell.js';
+import { controls } from './view/controls.js';
 import { byId, colours, h, isShown, patch, windowSize } from './view/dom.js';
 import { hierarchy, paintStrip } from './view/hierarchy.js';
 import { timePane } from './view/timeline.js';
 import { paintTimeline } from './view/timeline-paint.js';
 import { bufferTopics, fieldsPane, messagesPane } from './view/lists.js';
+import { followControls, operate } from './view/operate.js';
+import { ask, fail, find } from './view/open.js';
 import { followPointers } from './view/pointer.js';
 import { paintScore } from './view/score.js';
+import { Session } from './view/session.js';
 import { side } from './view/side.js';
 import { consultation, tablePane } from './view/table.js';
 import { firstUi } from './view/ui.js';
@@ -19,14 +25,15 @@ import { why } from './view/why.js';
 
 /** Ticks of a second. */
 const TICKS = 25;
-/** Element with the log of a page that `rcs-log page` wrote. */
-const INSIDE = 'log-data';
+/** Topics without which no picture of the cell can be drawn. */
+const PICTURE = ['/meshes', '/tf', '/tf_static', '/names'];
 
 class Page {
-  /** @param {Run} run */
-  constructor(run) {
+  /** @param {Run} run @param {Session | null} live */
+  constructor(run, live) {
     this.run = run;
-    this.ui = firstUi(run);
+    this.live = live;
+    this.ui = firstUi(run, live !== null);
     /** @type {CellView | null} */
     this.cell = null;
     this.colour = colours();
@@ -81,6 +88,7 @@ class Page {
       () => this.cell,
       changed,
     );
+    if (this.live) followControls(() => this, changed);
     addEventListener('resize', changed);
     addEventListener('hashchange', () => {
       this.read(location.hash);
@@ -113,6 +121,26 @@ class Page {
     this.dirty = true;
   }
 
+  /** Take in what has arrived of a run in progress. */
+  advance() {
+    const { run, ui, live } = this;
+    if (!live) return;
+    live.connection.watch();
+    const { log } = live;
+    if (log.last > run.last) {
+      run.update();
+      if (log.trim()) {
+        run.trim(log.first);
+        this.cell?.forget();
+      }
+      if (ui.following) followRun(this);
+      this.dirty = true;
+    }
+    if (!this.cell && PICTURE.every((topic) => log.series(topic).length > 0)) this.cell = new CellView(run);
+    // The time since the last message is shown.
+    if (live.loss) this.dirty = true;
+  }
+
   /** @param {Element} target */
   click(target) {
     const button = /** @type {HTMLElement | null} */ (target.closest('[data-do]'));
@@ -134,7 +162,9 @@ class Page {
     if (!action || event.ctrlKey || event.metaKey || event.altKey || target.tagName === 'INPUT' || presses)
       return;
     event.preventDefault();
-    this.act(action);
+    // Space stops a robot, and never starts one.
+    if (event.key === ' ' && this.live) operate(this, 'stop');
+    else this.act(action);
   }
 
   /** @param {string} action */
@@ -183,6 +213,7 @@ class Page {
     const { ui, run } = this;
     const passed = Math.min(0.1, (time - this.last) / 1000);
     this.last = time;
+    this.advance();
     if (ui.playing) {
       this.owed += passed * TICKS * ui.rate;
       const ticks = Math.floor(this.owed);
@@ -190,6 +221,7 @@ class Page {
         this.owed -= ticks;
         ui.tick = Math.min(run.last, ui.tick + ticks);
         ui.playing = ui.tick < run.last;
+        ui.following = this.live !== null && !ui.playing;
         follow(ui);
         this.dirty = true;
       }
@@ -209,12 +241,14 @@ class Page {
     root.classList.toggle('big', ui.big && size === 'desk');
     const app = byId('app');
     [app.dataset.view, app.dataset.tab] = [ui.view, ui.tab];
+    app.className = this.classes();
     app.setAttribute('aria-busy', 'false');
     patch(byId('bar'), ...bar(this));
     patch(byId('tabs'), ...tabs(this));
     const panes = /** @type {[string, () => import('./view/dom.js').Children[]][]} */ ([
       ['hierarchy', () => [hierarchy(this)]],
       ['side', () => side(this)],
+      ['controls', () => controls(this, size)],
       ['why', () => why(this)],
       ['time', () => timePane(this, size)],
     ]);
@@ -230,6 +264,14 @@ class Page {
       paintTimeline(this, /** @type {HTMLCanvasElement} */ (byId('timeline')), size, this.colour);
     this.cell?.draw(this, this.colour);
     this.dirty = false;
+  }
+
+  /** What the page shows, for the style. */
+  classes() {
+    const { live, ui } = this;
+    if (!live) return 'app is-log';
+    const stale = live.loss ? ' is-stale' : '';
+    return `app is-live${stale}${ui.following ? '' : ' is-past'}`;
   }
 
   /** @param {import('./view/dom.js').Size} size */
@@ -288,77 +330,46 @@ function showLast(pane) {
 
 /** @param {string} name @param {Uint8Array} bytes */
 async function show(name, bytes) {
-  const page = new Page(new Run(await openLog(name, bytes)));
+  const page = new Page(new Run(await openLog(name, bytes)), null);
   byId('start').hidden = true;
   page.start();
   await page.complete();
 }
 
-/** Say what went wrong, where the person looks. @param {unknown} error */
-function fail(error) {
-  const start = byId('start');
-  start.hidden = false;
-  const text = error instanceof Error ? error.message : String(error);
-  patch(
-    start,
-    h('div', { class: 'notice', role: 'alert' }, h('h1', {}, 'The log cannot be shown'), h('p', {}, text)),
-  );
-}
-
-/** Ask for a log. */
-function ask() {
-  const start = byId('start');
-  start.hidden = false;
-  patch(
-    start,
-    h(
-      'div',
-      { class: 'notice' },
-      h('h1', {}, 'No log is open'),
-      h('p', {}, 'Drop a log here, or choose one. It stays on this machine.'),
-      h('input', {
-        type: 'file',
-        accept: '.mcap',
-        id: 'choose',
-        'aria-label': 'a log, a file that ends with .mcap',
-      }),
-      h('p', { class: 'dim' }, 'rcs-log page LOG -o run.html writes a page with the log inside.'),
-    ),
-  );
-  const take = async (/** @type {File | undefined} */ file) => {
-    if (file) await show(file.name, new Uint8Array(await file.arrayBuffer())).catch(fail);
-  };
-  byId('choose').addEventListener('change', (event) =>
-    take(/** @type {HTMLInputElement} */ (event.target).files?.[0]),
-  );
-  addEventListener('dragover', (event) => event.preventDefault());
-  addEventListener('drop', (event) => {
-    event.preventDefault();
-    void take(event.dataTransfer?.files[0]);
-  });
-}
-
 /**
- * The log inside the page, or that of the address (`?log=run.mcap`); null if there is none.
- * @returns {Promise<[string, Uint8Array] | null>}
+ * Show a run in progress, as soon as its first tick has arrived.
+ * @param {string} name
+ * @param {Uint8Array} bytes start of the run
  */
-async function find() {
-  const inside = document.getElementById(INSIDE);
-  if (inside) {
-    const text = atob(inside.textContent ?? '');
-    inside.remove();
-    return [document.title, Uint8Array.from(text, (letter) => letter.charCodeAt(0))];
-  }
-  const address = new URLSearchParams(location.search).get('log');
-  if (!address) return null;
-  const url = new URL(address, location.href);
-  if (url.origin !== location.origin)
-    throw new Error(`The log is at ${url.origin}: only a log of ${location.origin} is opened.`);
-  const answer = await fetch(url);
-  if (!answer.ok) throw new Error(`${address}: the server answers ${answer.status} ${answer.statusText}.`);
-  return [address.split('/').at(-1) ?? address, new Uint8Array(await answer.arrayBuffer())];
+async function watch(name, bytes) {
+  const log = new LiveLog(name, await readMcap(bytes));
+  /** @type {Page | null} */
+  let page = null;
+  const live = new Session(log, () => {
+    if (page) page.dirty = true;
+  });
+  const start = byId('start');
+  start.hidden = false;
+  const begin = () => {
+    live.connection.watch();
+    if (log.last === 0) {
+      patch(
+        start,
+        h('div', { class: 'notice' }, h('h1', {}, name), h('p', {}, 'The page waits for the run.')),
+      );
+      requestAnimationFrame(begin);
+      return;
+    }
+    start.hidden = true;
+    page = new Page(new Run(log), live);
+    page.start();
+  };
+  begin();
 }
 
 find()
-  .then((found) => (found ? show(...found) : ask()))
+  .then((found) => {
+    if (!found) return ask(show);
+    return (found.isLive ? watch : show)(found.name, found.bytes);
+  })
   .catch(fail);

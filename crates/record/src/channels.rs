@@ -86,6 +86,13 @@ impl<W: Write + Seek> Output<W> {
             tap.message(channel, self.epoch.of(tick), data);
         }
     }
+
+    /// Report to the tap that a tick is complete.
+    pub fn end_tick(&mut self, tick: Tick) {
+        if let Some(tap) = &mut self.tap {
+            tap.tick(self.epoch.of(tick));
+        }
+    }
 }
 
 /// Fields that count on by themselves while the robot runs: clocks of the T3 interface, frames on the line, and numbers

@@ -8,6 +8,11 @@ pub trait Tap: Send {
 
     /// A message of a channel, with its time in nanoseconds since 1970.
     fn message(&mut self, channel: u16, time: u64, data: &[u8]);
+
+    /// All messages of a tick have been written, also if there are none; its time as above.
+    fn tick(&mut self, time: u64) {
+        let _ = time;
+    }
 }
 
 /// Description of a channel of a log.

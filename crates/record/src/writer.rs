@@ -286,6 +286,7 @@ impl<W: Write + Seek> LogWriter<W> {
         self.before = record.memory;
         std::mem::swap(&mut self.last, &mut self.now);
         self.ticks += 1;
+        self.output.end_tick(tick);
         Ok(())
     }
 

@@ -6,12 +6,16 @@ use std::{
     sync::mpsc::{Receiver, channel},
 };
 
-use record::Tap;
+use page::Content;
+use record::{Attachment, Epoch, Tap};
+use serde_json::{Value, json};
 use sessions::live::{
     Feed, NoRandom, Options, Port, Server,
     commands::{Access, Knob, Token},
     protocol::ServerInfo,
 };
+
+use rcs_core::tick::Tick;
 
 use crate::{
     config::{ClockKind, LogTarget, RunConfig},
@@ -28,6 +32,52 @@ pub struct Live {
     server: Option<Server>,
     /// Viewers that the server has disconnected.
     notices: Option<Receiver<String>>,
+}
+
+/// What a viewer cannot learn from the messages of a run.
+pub struct Beginning {
+    /// Metadata of the run.
+    pub run: BTreeMap<String, String>,
+    /// Files of the run.
+    pub attachments: Vec<Attachment>,
+    /// Time of tick 0.
+    pub epoch: Epoch,
+    /// Words of requests, for the completion of lines.
+    pub words: Words,
+}
+
+/// The words that an operator's line can have.
+#[derive(serde::Serialize)]
+pub struct Words {
+    /// First words.
+    pub first: Vec<&'static str>,
+    /// Names of objects and locations.
+    pub names: Vec<String>,
+}
+
+impl Beginning {
+    /// The page of the run, which connects to the server that sent it.
+    fn page(&self, job: &str) -> String {
+        let mut run = self.run.clone();
+        run.insert(TICK_0.to_owned(), self.epoch.of(Tick::BEFORE_START).to_string());
+        let added = [
+            json("tables.json", &page::tables()),
+            json("reasons.json", &page::reasons()),
+            json("words.json", &json!(self.words)),
+        ];
+        page::document(job, Content::Run(&page::pack_start(&run, &self.attachments, &added)))
+    }
+}
+
+/// Metadata of the page: the time of tick 0, nanoseconds since 1970.
+const TICK_0: &str = "tick_0_ns";
+
+fn json(name: &str, value: &Value) -> Attachment {
+    Attachment {
+        name: name.to_owned(),
+        media_type: "application/json".to_owned(),
+        data: value.to_string().into_bytes(),
+    }
 }
 
 impl Live {
@@ -64,6 +114,7 @@ impl Live {
         &mut self,
         config: &RunConfig,
         job: &str,
+        beginning: &Beginning,
         operators: Option<&Path>,
         observer: &mut dyn Observer,
     ) -> Result<(), StartError> {
@@ -77,6 +128,7 @@ impl Live {
         self.notices = Some(notices);
         let options = Options {
             origins,
+            page: Some(beginning.page(job)),
             info,
             knob: Some(self.knob.clone()),
             access,
@@ -94,8 +146,15 @@ impl Live {
         if let Some(token) = token {
             observer.message(&format!("requests of viewers need the token {}", token.reveal()));
         }
+        observer.message(&format!("open http://{}/ in a browser to see the run", server.address()));
         self.server = Some(server);
         Ok(())
+    }
+
+    /// The address of the page; `None` before the start.
+    #[must_use]
+    pub fn address(&self) -> Option<String> {
+        self.server.as_ref().map(|server| format!("http://{}/", server.address()))
     }
 
     /// A viewer that the server has disconnected since the last call, and why, as a sentence.

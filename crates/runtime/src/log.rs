@@ -1,6 +1,9 @@
 //! Writes the log of a run: set-up, one frame of the cell per tick, events, and the tick itself.
 
-use std::{collections::BTreeMap, path::Path};
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    path::Path,
+};
 
 use ::egm::Pose;
 use depc::fault::{Counts, FaultKind};
@@ -18,7 +21,7 @@ use record::{
     RecordError, Recorder, Shown, Summary, Timing, Touch, Transform,
 };
 use taskdata::load::{
-    Source,
+    Source, Store,
     job::{Drum, Job, Step, Workstation},
 };
 
@@ -26,7 +29,8 @@ use crate::{
     config::{ClockKind, RobotKind, RunConfig},
     egm::FRAMES,
     event::Event,
-    live::Live,
+    live::{Beginning, Live, Words},
+    operator::first_words,
     setup::{EXTENSION, Setup},
 };
 
@@ -61,6 +65,8 @@ pub struct Log {
     faults: Counts,
     kinds: Vec<&'static str>,
     vision: Vision,
+    /// What the live view sends to a browser; `None` without a live view, and after it was taken.
+    beginning: Option<Beginning>,
     /// The contacts of the last tick.
     touches: Vec<Touch>,
 }
@@ -129,6 +135,12 @@ impl Log {
             ClockKind::Real => (Pace::Drop, Epoch::now()),
         };
         let run = metadata(config, setup, &attachments);
+        let beginning = tap.is_some().then(|| Beginning {
+            run: run.clone(),
+            attachments: attachments.clone(),
+            epoch,
+            words: words(&setup.store),
+        });
         let start = record::Setup { epoch, run, attachments, cell: Some(model) };
         let recorder = Recorder::start_in(file, pace, start, tap, config.log_limit)?;
         Ok(Self {
@@ -137,8 +149,14 @@ impl Log {
             faults: Counts::default(),
             kinds: Vec::new(),
             vision: Vision::new(&setup.description.camera),
+            beginning,
             touches: Vec::new(),
         })
+    }
+
+    /// What the live view sends to a browser; `None` without a live view, and after the first call.
+    pub const fn take_beginning(&mut self) -> Option<Beginning> {
+        self.beginning.take()
     }
 
     /// Log the cell that the controller sees in `tick`, with the [`FRAMES`] of a robot with EGM; call it before
@@ -276,6 +294,16 @@ fn delivered(step: &Step) -> Option<&str> {
         }
         _ => None,
     }
+}
+
+/// The words of an operator's line.
+fn words(store: &Store) -> Words {
+    let data = store.view();
+    let objects = data.objects.iter().map(|object| object.name.to_string());
+    let owners = data.owners.iter().map(|owner| owner.name.to_string());
+    let points = data.locpts.iter().map(|point| point.name.to_string());
+    let names: BTreeSet<String> = objects.chain(owners).chain(points).collect();
+    Words { first: first_words(), names: names.into_iter().collect() }
 }
 
 /// All files that a replay or a repetition of the run needs: task data, job, cell description, fault plan.

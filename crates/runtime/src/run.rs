@@ -112,6 +112,12 @@ pub struct Run {
 }
 
 impl Run {
+    /// The address of the live view's page; `None` without a live view.
+    #[must_use]
+    pub fn live_address(&self) -> Option<String> {
+        self.live.as_ref().and_then(Live::address)
+    }
+
     /// Run to the end, and return the outcome.
     #[must_use]
     pub fn complete(mut self) -> RunOutcome {

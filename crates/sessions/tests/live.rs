@@ -125,6 +125,49 @@ fn programs_and_listed_pages_may_connect_and_others_get_403() {
     }
 }
 
+/// The answer to a request.
+fn answer(address: SocketAddr, request: &str) -> String {
+    let mut stream = TcpStream::connect(address).unwrap();
+    stream.set_read_timeout(Some(Duration::from_secs(10))).unwrap();
+    stream.write_all(request.as_bytes()).unwrap();
+    let mut answer = String::new();
+    stream.read_to_string(&mut answer).unwrap();
+    answer
+}
+
+#[test]
+fn browser_gets_the_page_and_nothing_else() {
+    let page = Some("<title>run</title>".to_owned());
+    let (server, _tap) = serve(Options { page, ..Options::default() });
+    let get = |path: &str, host: &str| {
+        answer(server.address(), &format!("GET {path} HTTP/1.1\r\nHost: {host}\r\n\r\n"))
+    };
+    let page = get("/", "127.0.0.1:8765");
+    assert!(page.starts_with("HTTP/1.1 200 OK\r\n") && page.ends_with("<title>run</title>"), "{page}");
+    for header in ["text/html; charset=utf-8", "frame-ancestors 'none'", "no-store", "nosniff"] {
+        assert!(page.contains(header), "{header}: {page}");
+    }
+    assert!(get("/token", "localhost").starts_with("HTTP/1.1 404 "));
+    assert!(get("/", "evil.example").starts_with("HTTP/1.1 421 "), "another name of this machine");
+    let post = answer(server.address(), "POST / HTTP/1.1\r\nHost: localhost\r\n\r\n");
+    assert!(post.starts_with("HTTP/1.1 405 ") && post.contains("Allow: GET"), "{post}");
+    let (other, _tap) = serve(Options::default());
+    let none = answer(other.address(), "GET / HTTP/1.1\r\nHost: localhost\r\n\r\n");
+    assert!(none.starts_with("HTTP/1.1 404 ") && none.contains("there is no page here"), "{none}");
+}
+
+#[test]
+fn page_of_the_server_may_connect_and_pages_of_other_ports_may_not() {
+    let (server, _tap) = serve(Options::default());
+    let port = server.address().port();
+    let own = format!("http://127.0.0.1:{port}");
+    assert!(try_connect(server.address(), Some(&own), "foxglove.sdk.v1").is_ok());
+    for foreign in [format!("http://localhost:{port}"), format!("https://127.0.0.1:{port}"), own + "1"] {
+        let refused = try_connect(server.address(), Some(&foreign), "foxglove.sdk.v1").map(|_| ());
+        assert_eq!(refused.unwrap_err().0, 403, "{foreign}");
+    }
+}
+
 #[test]
 fn a_client_without_a_known_subprotocol_is_refused() {
     let (server, _tap) = serve(Options::default());

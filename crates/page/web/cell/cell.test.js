@@ -1,6 +1,5 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { Series } from '../log/series.js';
 import { Frames } from './frames.js';
 import { edgesOf, readGlb } from './glb.js';
 import { lookAt, multiply, ofPose, perspective, transform } from './matrix.js';
@@ -37,13 +36,9 @@ function message(tick, parent, child, x) {
 }
 
 test('a_frame_is_where_its_last_transform_puts_it_in_its_parent', () => {
-  const none = new Series([], () => null);
   const frames = new Frames(
-    new Series(
-      [message(1, 'world', 'arm', 1), message(1, 'arm', 'hand', 10), message(5, 'world', 'arm', 2)],
-      () => null,
-    ),
-    none,
+    [message(1, 'world', 'arm', 1), message(1, 'arm', 'hand', 10), message(5, 'world', 'arm', 2)],
+    [],
   );
   assert.deepEqual(
     [1, 4, 5, 9].map((tick) => frames.place('hand', tick)?.[0]),

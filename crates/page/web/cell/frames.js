@@ -36,13 +36,13 @@ class Track {
 
 export class Frames {
   /**
-   * @param {import('../log/series.js').Series<any>} moving `/tf`
-   * @param {import('../log/series.js').Series<any>} fixed `/tf_static`
+   * @param {import('../log/mcap.js').Message[]} moving of `/tf`
+   * @param {import('../log/mcap.js').Message[]} fixed of `/tf_static`
    */
   constructor(moving, fixed) {
     /** @type {Map<string, Track>} */
     this.tracks = new Map();
-    for (const { tick, data } of [...fixed.messages, ...moving.messages]) this.add(tick, data);
+    for (const { tick, data } of [...fixed, ...moving]) this.add(tick, data);
   }
 
   /** @param {number} tick @param {Uint8Array} data a `foxglove.FrameTransforms` */

@@ -4,6 +4,8 @@
 // message, so
 // their ticks are those between the commands around them.
 
+import { Reader } from './series.js';
+
 /**
  * @typedef {{ text: string, station: boolean, start: number, end: number, status: string }} JobLine
  *   `station`: a line that the workstation executes. `start` is Infinity for a line that did not begin.
@@ -42,6 +44,57 @@ export function jobLines(text, commands) {
     });
   }
   return lines;
+}
+
+/** The lines of the job from `/job/lines`, with their ticks from `/job/state`. */
+export class JobProgress {
+  /** @param {{ series(topic: string): import('./series.js').Series<any> }} log */
+  constructor(log) {
+    this.jobs = new Reader(log, '/job/lines');
+    this.states = new Reader(log, '/job/state');
+    /** @type {JobLine[] | null} */
+    this.lines = null;
+    this.text = '';
+  }
+
+  /** Take in what is new. Returns the lines; null if the log has none. */
+  update() {
+    for (const [, { lines }] of this.jobs.fresh()) {
+      const text = lines.map((/** @type {any} */ line) => line.text).join('\n');
+      if (text === this.text) continue;
+      this.text = text;
+      this.lines = lines.map((/** @type {any} */ line) => lineOfJob(line));
+    }
+    for (const [tick, state] of this.states.fresh()) this.reach(tick, state);
+    return this.lines;
+  }
+
+  /** @param {number} tick @param {any} state */
+  reach(tick, state) {
+    const at = Number(state.index) - 1;
+    const line = this.lines?.[at];
+    if (!line) return;
+    if (line.start === Infinity) {
+      line.start = Math.min(tick, Number(state.began) + 1);
+      for (const before of this.lines?.slice(0, at) ?? []) {
+        before.start = Math.min(before.start, line.start);
+        if (before.end === Infinity) [before.end, before.status] = [line.start, 'finished'];
+      }
+    }
+    const failed = state.phase === 'failed' || state.outcome === 'error';
+    const over = failed || state.phase === 'over';
+    if (over && line.end === Infinity) [line.end, line.status] = [tick, failed ? 'error' : 'finished'];
+    // A line that is sent again is executed again.
+    if (state.phase === 'plays' && state.outcome === 'executing' && line.status === 'error')
+      [line.end, line.status] = [Infinity, ''];
+  }
+}
+
+/** @param {{ text: string, is_command: boolean }} line @returns {JobLine} */
+function lineOfJob({ text, is_command: isCommand }) {
+  const bare = text.replace(/^(==|\*\*)\s*/, '');
+  const words = isCommand ? inWords(bare) : bare;
+  return { text: words, station: !isCommand, start: Infinity, end: Infinity, status: '' };
 }
 
 /**

@@ -68,8 +68,8 @@ export class Log {
 /** @type {Series<any>} */
 const NONE = new Series([], () => null);
 
-/** @param {import('./mcap.js').Channel | undefined} channel */
-function decoderOf(channel) {
+/** The function that decodes the messages of a channel. @param {import('./mcap.js').Channel | undefined} channel */
+export function decoderOf(channel) {
   if (channel?.encoding === 'cdr') return jointState;
   if (channel?.encoding === 'protobuf' && channel.schema) return decoder(channel.schema);
   return () => null;

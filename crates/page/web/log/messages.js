@@ -11,13 +11,9 @@ import { idOf } from './processes.js';
 /** @type {Record<string, Line['level']>} */
 const LEVELS = { DEBUG: 'debug', INFO: 'info', WARNING: 'warning', ERROR: 'error', FATAL: 'error' };
 
-/** All lines. @param {import('./log.js').Log} log @returns {Line[]} */
-export function linesOf(log) {
-  const lines = [];
-  for (const [tick, { level, name, message, file }] of log.series('/log')) {
-    lines.push({ tick, level: LEVELS[level] ?? 'info', source: name, text: message, code: file });
-  }
-  return lines;
+/** A line of a message on `/log`. @param {number} tick @param {any} message @returns {Line} */
+export function lineOf(tick, { level, name, message, file }) {
+  return { tick, level: LEVELS[level] ?? 'info', source: name, text: message, code: file };
 }
 
 /**

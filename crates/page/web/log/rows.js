@@ -105,12 +105,3 @@ export function rowsBetween(rows, table, from, to) {
   }
   return found;
 }
-
-/**
- * Ticks in which any process decided another row, sorted.
- * @param {import('./series.js').Series<RowMessage>[]} all
- */
-export function changesOf(all) {
-  const ticks = new Set(all.flatMap((rows) => rows.messages.map((message) => message.tick)));
-  return [...ticks].sort((a, b) => a - b);
-}

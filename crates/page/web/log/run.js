@@ -1,13 +1,12 @@
 // What a log says about the run as a whole: commands, events, the failure, the state of the robot.
 
 import { failuresOf } from './account.js';
-import { jobLines, lineAt } from './job.js';
-import { lanesOf } from './lanes.js';
-import { commandsOf, linesOf } from './messages.js';
+import { JobProgress, jobLines, lineAt } from './job.js';
+import { Lanes } from './lanes.js';
+import { commandsOf, lineOf } from './messages.js';
 import { TABLED } from './processes.js';
-import { changesOf } from './rows.js';
-import { lastUpTo } from './series.js';
-import { word } from './state.js';
+import { lastUpTo, Reader } from './series.js';
+import { reasonText, word } from './state.js';
 import { TICK_S } from './units.js';
 
 /**
@@ -20,14 +19,30 @@ import { TICK_S } from './units.js';
  * @typedef {'run' | 'fault' | 'estop' | 'pause' | 'done'} Mode
  */
 
+/** Messages of which the run keeps what it has read. */
+const READ = {
+  log: '/log',
+  operator: '/operator',
+  camera: '/camera',
+  contacts: '/contacts',
+  devices: '/external/devices',
+  robot: '/t3i/status',
+  grip: '/grip/status',
+};
+
 export class Run {
   /** @param {import('./log.js').Log} log */
   constructor(log) {
     this.log = log;
-    this.last = log.last;
-    this.lines = linesOf(log);
-    this.orders = commandsOf(this.lines);
-    this.info = log.json('info.json') ?? {};
+    this.last = 0;
+    /** @type {import('./messages.js').Line[]} */
+    this.lines = [];
+    /** @type {Map<string, import('./messages.js').Command[]>} */
+    this.orders = new Map();
+    const info = log.json('info.json');
+    this.info = info ?? {};
+    /** Commands that `rcs-log info` has counted. */
+    this.counted = info !== null;
     /** @type {import('./job.js').RunCommand[]} */
     this.commands = this.info.commands ?? [];
     this.why = log.json('why.json');
@@ -35,19 +50,99 @@ export class Run {
     this.tables = log.json('tables.json') ?? [];
     /** @type {{ code: number, text: string, remedy: string | null }[]} */
     this.reasons = log.json('reasons.json') ?? [];
-    this.job = jobLines(log.text('job'), this.commands);
-    this.contacts = contactsOf(log);
-    this.vision = visionOf(log);
+    /** Words of an operator's lines; null for a log. @type {{ first: string[], names: string[] } | null} */
+    this.words = log.json('words.json');
+    /** @type {import('./job.js').JobLine[]} */
+    this.job = [];
+    this.progress = new JobProgress(log);
+    /** @type {Contacts[]} */
+    this.contacts = [];
+    /** Changes of what vision reports. @type {{ tick: number, status: string }[]} */
+    this.vision = [];
     this.failures = failuresOf(this.why, this.reasons);
     /** What went wrong first; null if the run finished. */
     this.cause = this.failures[0] ?? null;
-    this.events = eventsOf(this);
-    this.lanes = lanesOf(this);
-    /** @type {{ tick: number, value: number }[] | null} */
-    this.knownSpeeds = null;
-    /** @type {{ tick: number, left: number, right: number }[] | null} */
-    this.knownForces = null;
-    this.changes = changesOf(TABLED.map((id) => log.series(`/${id}/row`)));
+    /** @type {RunEvent[]} */
+    this.events = [];
+    this.tracks = new Lanes(log);
+    /** @type {import('./lanes.js').Lane[]} */
+    this.lanes = [];
+    /** Ticks in which any process decided another row, sorted. @type {number[]} */
+    this.changes = [];
+    this.knownSpeeds = new Speeds(log);
+    /** @type {{ tick: number, left: number, right: number }[]} */
+    this.knownForces = [];
+    this.readers = {
+      log: new Reader(log, READ.log),
+      operator: new Reader(log, READ.operator),
+      camera: new Reader(log, READ.camera),
+      contacts: new Reader(log, READ.contacts),
+      vision: new Reader(log, READ.devices, 'vision'),
+      grip: new Reader(log, READ.grip),
+      rows: TABLED.map((id) => new Reader(log, `/${id}/row`)),
+    };
+    this.update();
+  }
+
+  /** Take in the messages up to the last tick: all of a log, or those that have arrived since the last call. */
+  update() {
+    const { log, readers } = this;
+    this.last = log.last;
+    const lines = [...readers.log.fresh()].map(([tick, message]) => lineOf(tick, message));
+    const orders = commandsOf(lines);
+    append(this.lines, lines);
+    for (const [id, list] of orders) {
+      const known = this.orders.get(id);
+      if (known) append(known, list);
+      else this.orders.set(id, list);
+    }
+    append(this.contacts, contactsOf(readers.contacts.fresh()));
+    for (const [tick, devices] of readers.vision.fresh()) {
+      const status = word(devices.vision?.status ?? 'idle');
+      if (this.vision.at(-1)?.status !== status) this.vision.push({ tick, status });
+    }
+    append(this.events, eventsOf(lines, readers.operator.fresh(), readers.camera.messages()));
+    this.tracks.update(orders, this.last);
+    if (!this.counted) this.commands = commandsOfTask(this.tracks.of('task'), this.tracks.tracks.get('task'));
+    this.lanes = this.tracks.all(this.commands, this.vision, this.last);
+    this.job = this.progress.update() ?? jobLines(log.text('job'), this.commands);
+    const ticks = new Set(readers.rows.flatMap((reader) => reader.messages().map(({ tick }) => tick)));
+    append(
+      this.changes,
+      [...ticks].sort((a, b) => a - b),
+    );
+  }
+
+  /** Forget what was before a tick. @param {number} tick */
+  trim(tick) {
+    const recent = (/** @type {{ tick: number }} */ it) => it.tick >= tick;
+    this.lines = this.lines.filter(recent);
+    this.events = this.events.filter(recent);
+    this.changes = this.changes.filter((it) => it >= tick);
+    this.contacts = this.contacts.slice(
+      Math.max(
+        0,
+        lastUpTo(this.contacts, tick, (it) => it.tick),
+      ),
+    );
+    this.vision = this.vision.slice(
+      Math.max(
+        0,
+        lastUpTo(this.vision, tick, (it) => it.tick),
+      ),
+    );
+    this.tracks.trim(tick);
+    this.knownSpeeds.list = this.knownSpeeds.list.filter(recent);
+    this.knownForces = this.knownForces.filter(recent);
+  }
+
+  /**
+   * The state of the job, of those who command or of the robot controller; null if the log has none.
+   * @param {'/job/state' | '/operator/state' | '/cell/controller'} topic
+   * @param {number} tick
+   */
+  view(topic, tick) {
+    return this.log.series(topic).latest(tick);
   }
 
   /** How the run ended, in words; empty if the log has no end. */
@@ -94,25 +189,37 @@ export class Run {
   }
 
   /**
-   * State of the robot in a tick.
+   * State of the robot in a tick. `note` says where it is known from, such as `recorded`.
    * @param {number} tick
+   * @param {string} [note]
    * @returns {{ mode: Mode, title: string, detail: string }}
    */
-  mode(tick) {
+  mode(tick, note = 'recorded') {
     const task = this.log.series('/task/status').latest(tick);
+    const job = this.view('/job/state', tick);
+    const pressed = this.view('/cell/controller', tick)?.pressed ?? [];
     const { cause } = this;
+    const noted = (/** @type {string} */ text) => [note, text].filter(Boolean).join(', ');
     if (cause && tick >= cause.tick) {
       const mode = cause.kind === 'emergency-stop' ? 'estop' : 'fault';
-      return { mode, title: cause.name.toUpperCase(), detail: `recorded, since tick ${cause.tick}` };
+      return { mode, title: cause.name.toUpperCase(), detail: noted(`since tick ${cause.tick}`) };
     }
-    if (word(task?.report) === 'error') return { mode: 'fault', title: 'FAULT', detail: 'recorded' };
-    if (tick >= this.last && this.result === 'finished') {
+    if (pressed.length > 0) return { mode: 'estop', title: 'E-STOP', detail: noted(pressed.join(', ')) };
+    if (job?.phase === 'failed' || word(task?.report) === 'error') {
+      return { mode: 'fault', title: 'FAULT', detail: noted(reasonText(task?.reason)) };
+    }
+    if (job?.phase === 'over' || (tick >= this.last && this.result === 'finished')) {
       return { mode: 'done', title: 'FINISHED', detail: `${this.job.length} lines in the job` };
     }
     if (this.knob(tick) === 0)
-      return { mode: 'pause', title: 'STOPPED', detail: 'recorded, the knob is at 0 %' };
-    if (task?.command === 'PAUSE') return { mode: 'pause', title: 'PAUSED', detail: 'recorded' };
-    return { mode: 'run', title: 'RUNNING', detail: 'recorded' };
+      return { mode: 'pause', title: 'STOPPED', detail: noted('the knob is at 0 %') };
+    if (task?.command === 'PAUSE') {
+      const waits = job?.phase === 'waits';
+      return { mode: 'pause', title: 'PAUSED', detail: noted(waits ? 'the job waits' : '') };
+    }
+    const { kind, name } = this.held(tick);
+    const carries = kind === 'object' && note === '' ? `carries ${name}` : '';
+    return { mode: 'run', title: 'RUNNING', detail: noted(carries) };
   }
 
   /**
@@ -120,8 +227,7 @@ export class Run {
    * @returns {{ tick: number, value: number }[]}
    */
   get speeds() {
-    this.knownSpeeds ??= speedsOf(this.log.series('/t3i/status'));
-    return this.knownSpeeds;
+    return this.knownSpeeds.update();
   }
 
   /**
@@ -129,45 +235,64 @@ export class Run {
    * @returns {{ tick: number, left: number, right: number }[]}
    */
   get forces() {
-    this.knownForces ??= forcesOf(this.log.series('/grip/status'));
+    for (const [tick, { left_force: left, right_force: right }] of this.readers.grip.fresh()) {
+      const last = this.knownForces.at(-1);
+      if (last?.left !== left || last?.right !== right) this.knownForces.push({ tick, left, right });
+    }
     return this.knownForces;
   }
+}
+
+/** @template T @param {T[]} list @param {T[]} more */
+function append(list, more) {
+  for (const item of more) list.push(item);
+}
+
+/**
+ * The commands of Task as `rcs-log info` counts them, for a run that is not over.
+ * @param {import('./lanes.js').Bar[]} bars
+ * @param {{ answered: boolean } | undefined} track
+ * @returns {import('./job.js').RunCommand[]}
+ */
+function commandsOfTask(bars, track) {
+  return bars.map(({ start, done, text, failed }, index) => {
+    const open = index === bars.length - 1 && !track?.answered;
+    const status = open ? 'executing' : failed ? 'error' : 'finished';
+    return { text, first_tick: start, last_tick: open ? Infinity : done, status };
+  });
 }
 
 /** Positions further apart are no movement of the robot but a new start of the link, in/s. */
 const JUMP = 60;
 
-/** @param {import('./series.js').Series<any>} statuses */
-function speedsOf(statuses) {
-  const found = [];
-  /** @type {{ tick: number, tool: number[] } | null} */
-  let before = null;
-  for (const [tick, { resolver_frame: frame }] of statuses.each('resolver_frame')) {
-    if (!frame) continue;
-    const tool = frame.tool;
-    const { tick: last, tool: from } = before ?? { tick: tick - 1, tool };
-    const way = Math.hypot(tool[0] - from[0], tool[1] - from[1], tool[2] - from[2]) / 100;
-    const value = way / ((tick - last) * TICK_S);
-    if (value < JUMP) found.push({ tick, value });
-    before = { tick, tool };
+/** Speed of the tool point over time. */
+class Speeds {
+  /** @param {import('./log.js').Log} log */
+  constructor(log) {
+    this.reader = new Reader(log, READ.robot, 'resolver_frame');
+    /** @type {{ tick: number, value: number }[]} */
+    this.list = [];
+    /** @type {{ tick: number, tool: number[] } | null} */
+    this.before = null;
   }
-  return found;
+
+  update() {
+    for (const [tick, { resolver_frame: frame }] of this.reader.fresh()) {
+      if (!frame) continue;
+      const tool = frame.tool;
+      const { tick: last, tool: from } = this.before ?? { tick: tick - 1, tool };
+      const way = Math.hypot(tool[0] - from[0], tool[1] - from[1], tool[2] - from[2]) / 100;
+      const value = way / (Math.max(1, tick - last) * TICK_S);
+      if (value < JUMP) this.list.push({ tick, value });
+      this.before = { tick, tool };
+    }
+    return this.list;
+  }
 }
 
-/** @param {import('./series.js').Series<any>} statuses */
-function forcesOf(statuses) {
-  /** @type {{ tick: number, left: number, right: number }[]} */
-  const found = [];
-  for (const [tick, { left_force: left, right_force: right }] of statuses) {
-    const last = found.at(-1);
-    if (last?.left !== left || last?.right !== right) found.push({ tick, left, right });
-  }
-  return found;
-}
-
-/** @param {import('./log.js').Log} log @returns {Contacts[]} */
-function contactsOf(log) {
-  return [...log.series('/contacts')].map(([tick, update]) => ({
+/** @param {Iterable<[number, any]>} messages @returns {Contacts[]} */
+function contactsOf(messages) {
+  return [...messages].map(([tick, update]) => ({
     tick,
     contacts: update.entities.flatMap((/** @type {any} */ entity) => {
       const facts = new Map(entity.metadata.map((/** @type {any} */ it) => [it.key, it.value]));
@@ -186,22 +311,16 @@ function contactsOf(log) {
   }));
 }
 
-/** The changes of what vision reports. @param {import('./log.js').Log} log */
-function visionOf(log) {
-  /** @type {{ tick: number, status: string }[]} */
-  const found = [];
-  for (const [tick, devices] of log.series('/external/devices').each('vision')) {
-    const status = word(devices.vision?.status ?? 'idle');
-    if (found.at(-1)?.status !== status) found.push({ tick, status });
-  }
-  return found;
-}
-
-/** @param {Run} run @returns {RunEvent[]} */
-function eventsOf(run) {
+/**
+ * @param {import('./messages.js').Line[]} lines
+ * @param {Iterable<[number, any]>} requests
+ * @param {{ tick: number }[]} pictures
+ * @returns {RunEvent[]}
+ */
+function eventsOf(lines, requests, pictures) {
   /** @type {RunEvent[]} */
   const found = [];
-  for (const { tick, level, source, text, code } of run.lines) {
+  for (const { tick, level, source, text, code } of lines) {
     const said = `${source}: ${text}`;
     if (source === 'fault') found.push({ tick, kind: 'fault', text: said, weight: 4 });
     else if (code.startsWith('contact.')) {
@@ -209,10 +328,10 @@ function eventsOf(run) {
     } else if (level === 'error') found.push({ tick, kind: 'error', text: said, weight: 5 });
     else if (level === 'warning') found.push({ tick, kind: 'warning', text: said, weight: 3 });
   }
-  for (const [tick, { source, line }] of run.log.series('/operator')) {
+  for (const [tick, { source, line }] of requests) {
     found.push({ tick, kind: 'operator', text: `${source}: ${line}`, weight: 2 });
   }
-  for (const { tick } of run.log.series('/camera').messages) {
+  for (const { tick } of pictures) {
     found.push({ tick, kind: 'camera', text: 'a picture of the camera', weight: 1 });
   }
   return found.sort((a, b) => a.tick - b.tick);

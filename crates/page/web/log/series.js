@@ -14,6 +14,26 @@ export class Series {
     this.decode = decode;
     /** @type {Map<number, T>} */
     this.decoded = new Map();
+    /** Number of messages that were removed from the start. */
+    this.removed = 0;
+  }
+
+  /** Append a message. @param {import('./mcap.js').Message} message */
+  push(message) {
+    this.messages.push(message);
+  }
+
+  /**
+   * Remove the messages before a tick, except the last of them: its value is still valid in that tick. Returns the
+   * number of removed bytes.
+   * @param {number} tick
+   */
+  trim(tick) {
+    const count = Math.max(0, this.index(tick - 1));
+    const bytes = this.messages.splice(0, count).reduce((sum, { data }) => sum + data.length, 0);
+    this.removed += count;
+    if (count > 0) this.decoded.clear();
+    return bytes;
   }
 
   get length() {
@@ -58,6 +78,35 @@ export class Series {
    */
   *each(only) {
     for (const { tick, data } of this.messages) yield [tick, this.decode(data, only)];
+  }
+}
+
+/** Reads each message of a topic once, also those that arrive later. */
+export class Reader {
+  /**
+   * @param {{ series(topic: string): Series<any> }} log
+   * @param {string} topic
+   * @param {string} [only] field to decode; all without it
+   */
+  constructor(log, topic, only) {
+    this.log = log;
+    this.topic = topic;
+    this.only = only;
+    this.next = 0;
+  }
+
+  /** The messages since the last call, with their ticks. @returns {Generator<[number, any]>} */
+  *fresh() {
+    const series = this.log.series(this.topic);
+    for (const { tick, data } of this.messages()) yield [tick, series.decode(data, this.only)];
+  }
+
+  /** The messages since the last call, not decoded. */
+  messages() {
+    const series = this.log.series(this.topic);
+    const found = series.messages.slice(Math.max(0, this.next - series.removed));
+    this.next = series.removed + series.length;
+    return found;
   }
 }
 

@@ -13,7 +13,9 @@ export const KEYS = [
   [['1'], 'view:operate', '1 2 3', 'Operate, Explain, Trace'],
   [['2'], 'view:explain', '', ''],
   [['3'], 'view:trace', '', ''],
-  [[' '], 'play', 'Space', 'play or hold'],
+  [[' '], 'play', 'Space', 'log: play or hold; run: STOP'],
+  [['p'], 'hold', 'p  l', 'run: hold the picture; back to the present'],
+  [['l'], 'live', '', ''],
   [['['], 'back', '[ ]  { }', 'a tick, a second back and on'],
   [[']'], 'on', '', ''],
   [['{'], 'secondBack', '', ''],
@@ -54,7 +56,18 @@ export function actionOf(key) {
 export function seek({ run, ui }, tick) {
   ui.tick = Math.max(1, Math.min(run.last, Math.round(tick)));
   ui.playing = false;
+  ui.following = false;
   follow(ui);
+}
+
+/** Show the newest tick; the window of the timeline moves on when little room is left. @param {import('./ui.js').Context} context */
+export function followRun({ run, ui }) {
+  ui.tick = run.last;
+  const [first, last] = ui.window;
+  const width = last - first;
+  if (ui.tick > last - width * 0.04 || ui.tick < first)
+    ui.window = [ui.tick - width * 0.7, ui.tick + width * 0.3];
+  if (ui.window[0] < 0) ui.window = [0, width];
 }
 
 /** Move the window so that the tick is in it. @param {import('./ui.js').Ui} ui */
@@ -157,6 +170,15 @@ export function act(context, action, phone) {
       break;
     case 'end':
       seek(context, run.last);
+      ui.following = context.live !== null;
+      break;
+    case 'live':
+      if (!context.live) break;
+      seek(context, run.last);
+      ui.following = true;
+      break;
+    case 'hold':
+      if (context.live) ui.following = false;
       break;
     case 'change':
       to(next(run.changes));

@@ -5,7 +5,7 @@ import { h } from './dom.js';
 import { icon } from './icons.js';
 import { VIEWS } from './ui.js';
 
-const ICON = { run: 'run', fault: 'fault', estop: 'estop', pause: 'pause', done: 'done' };
+const ICON = { run: 'run', fault: 'fault', estop: 'estop', pause: 'pause', done: 'done', lost: 'lost' };
 /** A title of the state with more letters is set smaller. */
 const LONG = 9;
 /** Ticks of a second. */
@@ -13,24 +13,51 @@ const TICKS = 25;
 /** Ticks of a line of the job that is drawn with the smallest width. */
 const SHORT = 420;
 
+/**
+ * What the bar says. Of a run it is the newest state, also while the page looks back.
+ * @param {import('./ui.js').Context} context
+ */
+function state({ run, ui, live }) {
+  const loss = live?.loss;
+  if (!live) return { tick: ui.tick, ...run.mode(ui.tick) };
+  const tick = run.last;
+  if (loss?.state === 'ended') return { tick, mode: 'done', title: 'RUN ENDED', detail: `last tick ${tick}` };
+  if (loss) return { tick, mode: 'lost', title: 'NO CONNECTION', detail: `last tick ${tick}, ${loss.ago}` };
+  return { tick, ...run.mode(tick, '') };
+}
+
 /** @param {import('./ui.js').Context} context */
-export function bar({ run, ui }) {
-  const { mode, title, detail } = run.mode(ui.tick);
+export function bar(context) {
+  const { run, ui, live } = context;
+  const { tick, mode, title, detail } = state(context);
+  const held = run.held(tick);
   return [
     h('h1', { class: 'hidden' }, run.log.name),
     h(
       'div',
-      { class: 'state past', 'data-k': mode, role: 'status' },
-      icon(ICON[mode]),
+      { class: `state ${live ? '' : 'past'}`, 'data-k': mode, role: 'status' },
+      icon(ICON[/** @type {keyof typeof ICON} */ (mode)]),
       h('div', {}, h('b', { class: title.length > LONG ? 'long' : '' }, title), h('small', {}, detail)),
+      live
+        ? h(
+            'div',
+            { class: 'brief' },
+            h(
+              'b',
+              {},
+              held.kind === 'object' ? held.name : held.kind === 'nothing' ? 'hand empty' : held.kind,
+            ),
+            h('small', {}, `${run.knob(tick)} % speed`),
+          )
+        : null,
     ),
-    job(run, ui, mode),
-    h('div', { class: 'fact' }, h('small', {}, 'In hand'), hand(run.held(ui.tick))),
+    job(run, tick, mode),
+    h('div', { class: 'fact' }, h('small', {}, 'In hand'), hand(held)),
     h(
       'div',
       { class: 'fact sp' },
       h('small', {}, 'Speed'),
-      h('b', {}, `${run.knob(ui.tick)} `, h('em', {}, '%')),
+      h('b', {}, `${run.knob(tick)} `, h('em', {}, '%')),
     ),
     h(
       'div',
@@ -39,10 +66,15 @@ export function bar({ run, ui }) {
         'div',
         { class: 'factrow' },
         ring(ui.tick),
-        h('div', {}, h('small', {}, `Tick ${ui.tick} of ${run.last}`), h('b', {}, seconds(ui.tick))),
+        h(
+          'div',
+          {},
+          h('small', {}, live ? `Tick ${ui.tick}` : `Tick ${ui.tick} of ${run.last}`),
+          h('b', {}, seconds(ui.tick)),
+        ),
       ),
     ),
-    tools(ui),
+    tools(ui, sign(context)),
   ];
 }
 
@@ -53,13 +85,23 @@ function hand(held) {
   return h('b', {}, held.name, held.grip === null ? null : h('em', {}, ` grip ${held.grip}`));
 }
 
-/** @param {import('../log/run.js').Run} run @param {import('./ui.js').Ui} ui @param {string} mode */
-function job(run, ui, mode) {
-  const at = run.line(ui.tick);
+/** Whether the page shows a log, the present or the past of a run. @param {import('./ui.js').Context} context */
+function sign({ ui, live }) {
+  if (!live) return h('span', { class: 'recorded' }, 'LOG');
+  const { loss } = live;
+  if (loss) return h('span', { class: 'live lost' }, loss.state === 'ended' ? 'ENDED' : 'LOST');
+  if (ui.following) return h('span', { class: 'live' }, 'LIVE');
+  return h('button', { class: 'live behind', 'data-do': 'live', title: 'back to the present (l)' }, 'LIVE');
+}
+
+/** @param {import('../log/run.js').Run} run @param {number} tick @param {string} mode */
+function job(run, tick, mode) {
+  const at = run.line(tick);
   const line = run.job[at];
   const place = at < 0 ? 'Before the job' : `Line ${at + 1} of ${run.job.length}`;
   const { cause } = run;
-  const reason = cause && ui.tick >= cause.tick ? cause.title : undefined;
+  const waits = run.view('/job/state', tick)?.reason;
+  const reason = cause && tick >= cause.tick ? cause.title : waits || undefined;
   return h(
     'div',
     { class: 'job' },
@@ -73,7 +115,7 @@ function job(run, ui, mode) {
     h(
       'div',
       { class: 'segments', role: 'img', 'aria-label': place },
-      run.job.map((it, index) => segment(it, index, at, ui.tick, mode)),
+      run.job.map((it, index) => segment(it, index, at, tick, mode)),
     ),
   );
 }
@@ -124,8 +166,8 @@ function ring(tick) {
   );
 }
 
-/** @param {import('./ui.js').Ui} ui */
-function tools(ui) {
+/** @param {import('./ui.js').Ui} ui @param {import('./dom.js').Element} shown */
+function tools(ui, shown) {
   const views = VIEWS.map(([view, name, text], index) =>
     h(
       'button',
@@ -141,7 +183,7 @@ function tools(ui) {
   return h(
     'div',
     { class: 'tools' },
-    h('span', { class: 'recorded' }, 'LOG'),
+    shown,
     h('div', { class: 'choice views', role: 'group', 'aria-label': 'View' }, views),
     h(
       'button',

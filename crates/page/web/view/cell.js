@@ -4,7 +4,7 @@ import { Frames, WORLD } from '../cell/frames.js';
 import { IDENTITY, transform } from '../cell/matrix.js';
 import { Renderer } from '../cell/renderer.js';
 import { processOf } from '../log/processes.js';
-import { lastUpTo } from '../log/series.js';
+import { lastUpTo, Reader } from '../log/series.js';
 import { stateOf } from '../log/state.js';
 import { bareLength, length } from '../log/units.js';
 import { byId, h, isShown, patch } from './dom.js';
@@ -40,7 +40,8 @@ export class CellView {
   constructor(run) {
     this.run = run;
     this.canvas = /** @type {HTMLCanvasElement} */ (byId('gl'));
-    this.frames = new Frames(run.log.series('/tf'), run.log.series('/tf_static'));
+    this.moving = new Reader(run.log, '/tf');
+    this.frames = new Frames(this.moving.messages(), run.log.series('/tf_static').messages);
     this.turn = { azimuth: 0, elevation: 0, distance: 1 };
     /** @type {Renderer | null} */
     this.renderer = null;
@@ -81,6 +82,13 @@ export class CellView {
     this.turn.distance *= nearer;
   }
 
+  /** The oldest part of the run is gone. */
+  forget() {
+    const { log } = this.run;
+    this.moving = new Reader(log, '/tf');
+    this.frames = new Frames(this.moving.messages(), log.series('/tf_static').messages);
+  }
+
   /** Put the camera where its button puts it. */
   reset() {
     this.turn = { azimuth: 0, elevation: 0, distance: 1 };
@@ -90,6 +98,7 @@ export class CellView {
   draw(context, colour) {
     if (!isShown(byId('cell'))) return;
     const { ui, run } = context;
+    for (const { tick, data } of this.moving.messages()) this.frames.add(tick, data);
     const contacts = run.contactsAt(ui.tick);
     const collision = contacts.filter((it) => !it.permitted).sort((a, b) => b.depth - a.depth)[0];
     if (this.renderer) {
@@ -229,10 +238,11 @@ export class CellView {
    * Buttons of the camera, and the last picture that vision took.
    * @param {import('./ui.js').Context} context
    */
-  overlay({ run, ui }) {
+  overlay({ run, ui, live }) {
     const cameras = Object.entries(CAMERAS).filter(([id]) => id !== 'contact' || run.collision);
     return [
       this.trouble ? h('p', { class: 'trouble' }, this.trouble) : null,
+      live ? notices(run, ui, live) : null,
       this.cameraPicture(run, ui),
       h(
         'div',
@@ -280,6 +290,47 @@ export class CellView {
     this.urls.set(index, url);
     return url;
   }
+}
+
+/**
+ * That the picture is not the present one: the page looks back, or nothing arrives.
+ * @param {import('../log/run.js').Run} run
+ * @param {import('./ui.js').Ui} ui
+ * @param {import('./session.js').Session} live
+ */
+function notices(run, ui, live) {
+  const { loss } = live;
+  if (loss?.state === 'ended') {
+    return h(
+      'div',
+      { class: 'notice lost', role: 'alert' },
+      h('h2', {}, 'The run has ended'),
+      h('p', {}, 'This page keeps what it has seen, and begins again with the next run at this address.'),
+      h('p', { class: 'dim' }, 'rcs-log open LOG shows the whole run, with the chain of causes.'),
+    );
+  }
+  if (loss) {
+    return h(
+      'div',
+      { class: 'notice lost', role: 'alert' },
+      h('h2', {}, 'No connection to the controller'),
+      h(
+        'p',
+        {},
+        `The picture is of tick ${run.last}, ${loss.ago}. `,
+        h('b', {}, 'The robot may still be moving.'),
+      ),
+      h('p', {}, 'STOP cannot be sent from here. Use the emergency stop at the robot.'),
+      loss.attempt ? h('p', { class: 'dim' }, `Trying again: ${loss.attempt}`) : null,
+    );
+  }
+  if (ui.following) return null;
+  return h(
+    'div',
+    { class: 'looking-back' },
+    `${live.ago(ui.tick)} `,
+    h('button', { 'data-do': 'live' }, 'back to LIVE'),
+  );
 }
 
 /** Labels that do not cover each other. */

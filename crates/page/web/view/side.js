@@ -37,7 +37,8 @@ export function side({ run, ui }) {
 /** @param {import('../log/run.js').Run} run @param {import('./ui.js').Ui} ui */
 function failureCard(run, ui) {
   const { cause } = run;
-  if (!cause || ui.tick < cause.tick) return null;
+  if (!cause) return waitCard(run, ui);
+  if (ui.tick < cause.tick) return null;
   const next = remedyOf(run);
   const process = cause.process ? processOf(cause.process).name : 'in the cell';
   const kick = [cause.name.toUpperCase(), process, `tick ${cause.tick}`, seconds(cause.tick)];
@@ -49,6 +50,20 @@ function failureCard(run, ui) {
     cause.detail ? h('div', { class: 'who' }, cause.detail) : null,
     next ? h('div', { class: 'who' }, h('b', {}, 'Next: '), next) : null,
     h('button', { class: 'text-button key', 'data-do': 'cause', 'data-key': 'c' }, 'why'),
+  );
+}
+
+/** Why the job waits or has failed, and what to do. @param {import('../log/run.js').Run} run @param {import('./ui.js').Ui} ui */
+function waitCard(run, ui) {
+  const job = run.view('/job/state', ui.tick);
+  if (!job?.reason) return null;
+  const { mode, title } = run.mode(ui.tick, '');
+  return h(
+    'div',
+    { class: mode === 'pause' ? 'failure-card waits' : 'failure-card' },
+    h('div', { class: 'kick' }, `${title} · the job ${job.phase === 'failed' ? 'has failed' : 'waits'}`),
+    h('h2', {}, sentence(job.reason)),
+    job.remedy ? h('div', { class: 'who' }, h('b', {}, 'Next: '), job.remedy) : null,
   );
 }
 

@@ -126,7 +126,7 @@ function reading({ run, ui }, { id }) {
 }
 
 /** @param {import('./ui.js').Context} context @param {import('./dom.js').Size} size */
-function tools({ run, ui }, size) {
+function tools({ run, ui, live }, size) {
   const button = (/** @type {string} */ action, /** @type {string} */ name, /** @type {string} */ title) =>
     h('button', { class: 'icon-button', 'data-do': action, title, 'aria-label': title }, icon(name));
   const key = (/** @type {string} */ action, /** @type {string} */ letter, /** @type {string} */ text) =>
@@ -134,8 +134,10 @@ function tools({ run, ui }, size) {
   return h(
     'div',
     { class: 'time-tools' },
+    live && ui.following ? key('hold', 'p', 'hold the picture') : null,
+    live && !ui.following ? key('live', 'l', 'back to LIVE') : null,
     button('home', 'first', 'first tick (Home)'),
-    button('play', ui.playing ? 'pause' : 'run', ui.playing ? 'hold (Space)' : 'play (Space)'),
+    button('play', ui.playing ? 'pause' : 'run', ui.playing ? 'hold' : 'play'),
     button('end', 'last', 'last tick (End)'),
     h('span', { class: 'clock' }, seconds(ui.tick), h('small', {}, `tick ${ui.tick}`)),
     h(

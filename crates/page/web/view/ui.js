@@ -24,15 +24,24 @@
  * @property {Units} units
  * @property {'dark' | 'light'} theme
  * @property {boolean} big letters for a projector
+ * @property {boolean} following the shown tick is the newest one of a run in progress
+ * @property {string} typed line of an operator that is not sent
+ * @property {string | null} held button that is held down
  */
 
-/** @typedef {{ run: import('../log/run.js').Run, ui: Ui }} Context */
+/**
+ * @typedef {{ run: import('../log/run.js').Run, ui: Ui, live: import('./session.js').Session | null }} Context
+ *   `live`: null for a log
+ */
 
 export const VIEWS = /** @type {[View, string, string][]} */ ([
   ['operate', 'cell', 'Operate'],
   ['explain', 'hierarchy', 'Explain'],
   ['trace', 'time', 'Trace'],
 ]);
+
+/** Ticks in the timeline of a run in progress. */
+const LIVE_WINDOW = 1500;
 
 /**
  * The window of the timeline that shows a failure with the command that led to it.
@@ -54,8 +63,8 @@ export function wholeRun(run) {
   return [0, Math.max(25, run.last * 1.02)];
 }
 
-/** @param {import('../log/run.js').Run} run @returns {Ui} */
-export function firstUi(run) {
+/** @param {import('../log/run.js').Run} run @param {boolean} isLive @returns {Ui} */
+export function firstUi(run, isLive) {
   const cause = run.cause;
   return {
     view: cause ? 'trace' : 'explain',
@@ -66,7 +75,9 @@ export function firstUi(run) {
     tick: cause?.tick ?? run.last,
     playing: false,
     rate: 1,
-    window: windowOf(run),
+    window: isLive
+      ? [Math.max(0, run.last - LIVE_WINDOW * 0.7), run.last + LIVE_WINDOW * 0.3]
+      : windowOf(run),
     camera: cause?.kind === 'collision' && run.collision ? 'contact' : 'cell',
     turned: false,
     allRows: false,
@@ -76,5 +87,8 @@ export function firstUi(run) {
     units: 'in',
     theme: matchMedia('(prefers-color-scheme: light)').matches ? 'light' : 'dark',
     big: false,
+    following: isLive,
+    typed: '',
+    held: null,
   };
 }

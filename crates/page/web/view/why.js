@@ -130,12 +130,13 @@ function levelOf(link) {
 }
 
 /** @param {import('./ui.js').Context} context */
-function finished({ run, ui }) {
+function finished({ run, ui, live }) {
   const facts = run.info.facts ?? {};
   const link = run.info.link;
   const clearance = facts.clearance ?? '';
   const [, closest] = /tick (\d+)/.exec(clearance) ?? [];
   const ended = run.result === 'finished' || run.result === '';
+  const count = (/** @type {string} */ level) => run.lines.filter((line) => line.level === level).length;
   return [
     h(
       'div',
@@ -143,14 +144,22 @@ function finished({ run, ui }) {
       h(
         'div',
         { class: 'kick' },
-        run.log.file.complete ? (run.result === 'finished' ? 'FINISHED' : 'ENDED') : 'NO END',
+        live
+          ? run.mode(run.last, '').title
+          : !run.log.file.complete
+            ? 'NO END'
+            : run.result === 'finished'
+              ? 'FINISHED'
+              : 'ENDED',
       ),
       h(
         'h2',
         {},
-        ended
-          ? `${amount(run.job.length, 'line')} in ${duration(run.last)}, no failure`
-          : sentence(run.result),
+        live
+          ? `Line ${run.line(run.last) + 1} of ${run.job.length} after ${duration(run.last)}`
+          : ended
+            ? `${amount(run.job.length, 'line')} in ${duration(run.last)}, no failure`
+            : sentence(run.result),
       ),
       h(
         'p',
@@ -158,8 +167,8 @@ function finished({ run, ui }) {
         [
           amount(run.commands.length, 'command'),
           amount(run.last, 'tick'),
-          amount(run.info.warnings ?? 0, 'warning'),
-          amount(run.info.errors ?? 0, 'error'),
+          amount(run.info.warnings ?? count('warning'), 'warning'),
+          amount(run.info.errors ?? count('error'), 'error'),
         ].join(' · '),
       ),
     ),

@@ -41,8 +41,11 @@ use serde::Serialize;
 use sessions::operator::Event;
 use taskdata::load::{BlockNumber, Store, job::Workstation};
 
-pub use self::source::{Input, Inputs, WORKSTATION};
 use self::{hold::Ended, request::Request, terminals::Terminals};
+pub use self::{
+    request::first_words,
+    source::{Input, Inputs, WORKSTATION},
+};
 use crate::{judge, neighbours::Neighbours};
 
 /// Largest number of requests carried out in a tick; others wait for the next one.

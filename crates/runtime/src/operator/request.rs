@@ -1,5 +1,7 @@
 //! Requests of an operator, and their text form.
 
+use std::collections::BTreeSet;
+
 use diagnostics::nearest;
 use interfaces::{
     HwsCommand,
@@ -8,6 +10,7 @@ use interfaces::{
 use taskdata::load::{
     BlockNumber, Store,
     job::{self, Step, Workstation},
+    verdict::TASK_COMMANDS,
 };
 
 use super::terminals::Entry;
@@ -203,10 +206,25 @@ impl Request {
     }
 }
 
+/// The first words of requests.
+fn first() -> impl Iterator<Item = &'static str> {
+    let known = WORDS.iter().filter_map(|(words, _)| words.split(' ').next());
+    known.chain(OTHER_WORDS).chain(LineVerb::ALL.iter().map(|verb| verb.text()))
+}
+
+/// Whole requests without arguments, the first words of the others, and the commands of Task.
+#[must_use]
+pub fn first_words() -> Vec<&'static str> {
+    let whole = WORDS.iter().map(|(words, _)| *words);
+    let lines = LineVerb::ALL.iter().filter(|verb| !matches!(verb, LineVerb::Wait | LineVerb::After));
+    let begun = OTHER_WORDS.into_iter().filter(|word| *word != "job").chain(lines.map(|verb| verb.text()));
+    let words: BTreeSet<&str> = whole.chain(begun).chain(TASK_COMMANDS.iter().copied()).collect();
+    words.into_iter().collect()
+}
+
 /// The refusal of a request that begins with an unknown word.
 fn unknown(word: &str) -> String {
-    let known = WORDS.iter().filter_map(|(words, _)| words.split(' ').next());
-    match nearest(word, known.chain(OTHER_WORDS).chain(LineVerb::ALL.iter().map(|verb| verb.text()))) {
+    match nearest(word, first()) {
         Some(near) => format!("no request is named {word}: the nearest is {near}"),
         None => format!("no request is named {word}: docs/operator.md lists the requests"),
     }

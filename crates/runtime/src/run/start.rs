@@ -124,7 +124,7 @@ impl Run {
         say("starts");
         let file = setup.log.take();
         let log_path = file.as_ref().map(|file| file.path().to_owned());
-        let log = file.map(|file| Log::start(file, &config, &setup)).transpose()?;
+        let mut log = file.map(|file| Log::start(file, &config, &setup)).transpose()?;
         let publisher = publisher(&config, &name, &mut *observer);
         let Setup { store, data, mut job, cell, field, line_faults, robot, mut neighbours, mut live, .. } =
             setup;
@@ -151,9 +151,10 @@ impl Run {
         if let Some((network, entrance)) = network.zip(asked.entrance()) {
             network.let_operators_in(move |stream, unread| entrance.enter(stream, &unread));
         }
-        if let Some(live) = &mut live {
+        let beginning = log.as_mut().and_then(Log::take_beginning);
+        if let Some((live, beginning)) = live.as_mut().zip(beginning) {
             let operators = asked.socket().filter(|_| config.operator == OperatorAccess::Network);
-            live.start(&config, &job.name, operators, &mut *observer)?;
+            live.start(&config, &job.name, &beginning, operators, &mut *observer)?;
         }
         // The thread starts before this process requests real-time priority.
         let asks = config.outside.contains(&Role::Workstation) || asked.socket().is_some();

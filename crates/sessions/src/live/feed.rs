@@ -167,6 +167,14 @@ impl Tap for Tapped {
             }
         }
     }
+
+    fn tick(&mut self, time: u64) {
+        let mut inner = lock(&self.0.0);
+        if time > inner.now {
+            inner.now = time;
+            inner.queues.iter().for_each(|queue| lock(&queue.0).push(Item::Time(time)));
+        }
+    }
 }
 
 impl Drop for Tapped {
@@ -315,7 +323,10 @@ mod tests {
         assert!(matches!(&all(&queue)[..], [Item::Text(text)] if text.contains("\"id\":3")));
         queue.unsubscribe(1);
         tap.message(1, 90, b"gone");
+        tap.tick(90);
         assert_eq!(all(&queue), []);
+        tap.tick(130);
+        assert_eq!(all(&queue), [Item::Time(130)], "a tick without messages has a time, too");
         drop(tap);
         assert!(queue.is_over());
         assert!(feed.join().0.is_over());

@@ -1,4 +1,4 @@
-//! The live view: the messages of a log, sent over WebSocket to Foxglove and Lichtblick.
+//! The live view: the messages of a log, sent over WebSocket to browsers, Foxglove and Lichtblick.
 //!
 //! ```text
 //!  tick ──ring──> writer of the log ──Tap──> Feed ──bounded queue──> client's thread ──> viewer
@@ -8,6 +8,7 @@
 //! * [`commands`]: requests of a client to the run;
 //! * [`session`]: the session of one client, without I/O;
 //! * [`feed`]: channels, the newest message of each, and a queue per client;
+//! * `http`: the first request of a connection, and the page for browsers;
 //! * [`server`]: listens on this machine, with one thread per client.
 //!
 //! The run never waits for a client. A full queue drops its oldest messages and counts them. A client that reads nothing
@@ -23,6 +24,7 @@ pub mod commands;
 mod connection;
 pub mod feed;
 mod frames;
+mod http;
 pub mod options;
 pub mod origin;
 mod outgoing;

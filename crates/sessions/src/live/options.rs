@@ -19,6 +19,8 @@ pub type Notices = Sender<String>;
 pub struct Options {
     /// Origins of web pages that may connect, besides Foxglove's.
     pub origins: Vec<Origin>,
+    /// The web page, which connects to this server; `None` if there is none.
+    pub page: Option<String>,
     /// The first message to clients.
     pub info: ServerInfo,
     /// Time after which a client that reads nothing is disconnected.
@@ -33,7 +35,7 @@ pub struct Options {
 
 impl Default for Options {
     fn default() -> Self {
-        let (info, origins) = (ServerInfo::default(), Vec::new());
-        Self { origins, info, patience: PATIENCE, knob: None, access: None, notices: None }
+        let (info, origins, page) = (ServerInfo::default(), Vec::new(), None);
+        Self { origins, page, info, patience: PATIENCE, knob: None, access: None, notices: None }
     }
 }

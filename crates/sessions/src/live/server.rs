@@ -1,26 +1,30 @@
 //! A server on this machine for viewers.
 
 use std::{
-    io::{self, Write as _},
+    io,
     net::{Ipv4Addr, SocketAddr, TcpListener, TcpStream},
     sync::{
         Arc,
-        atomic::{AtomicBool, AtomicUsize, Ordering},
+        atomic::{AtomicBool, AtomicU64, AtomicUsize, Ordering},
     },
     thread::{self, JoinHandle},
     time::{Duration, Instant},
 };
 
-use crate::operator::Name;
 use tungstenite::{
-    accept_hdr_with_config,
-    handshake::server::{Callback, ErrorResponse, Request, Response},
+    Error, WebSocket,
+    handshake::server::{Request, Response, create_response, write_response},
     http::{HeaderMap, HeaderValue, StatusCode, header},
-    protocol::WebSocketConfig,
+    protocol::{Role, WebSocketConfig},
 };
 
 use crate::live::{
-    client::Client, connection::Connection, feed::Feed, options::Options, origin::Origin,
+    client::Client,
+    connection::Connection,
+    feed::Feed,
+    http::{self, First, Refusal},
+    options::Options,
+    origin::Origin,
     protocol::SUBPROTOCOLS,
 };
 
@@ -85,7 +89,7 @@ impl Server {
             feed: feed.clone(),
             stop: stop.clone(),
             open: open.clone(),
-            clients: 0,
+            viewers: Arc::default(),
         };
         let thread = thread::Builder::new().name("live".into()).spawn(move || accept.run())?;
         Ok(Self { address, feed, stop, open, thread: Some(thread) })
@@ -120,12 +124,12 @@ struct Accept {
     feed: Feed,
     stop: Arc<AtomicBool>,
     open: Arc<AtomicUsize>,
-    /// Number of clients so far.
-    clients: u64,
+    /// Number of viewers so far. Requests for the page do not count.
+    viewers: Arc<AtomicU64>,
 }
 
 impl Accept {
-    fn run(mut self) {
+    fn run(self) {
         loop {
             let accepted = self.listener.accept();
             if self.stop.load(Ordering::Relaxed) {
@@ -140,18 +144,17 @@ impl Accept {
         }
     }
 
-    fn admit(&mut self, stream: TcpStream) {
+    fn admit(&self, stream: TcpStream) {
         if self.open.load(Ordering::Acquire) >= CLIENTS {
             return refuse(stream);
         }
         self.open.fetch_add(1, Ordering::AcqRel);
-        self.clients = self.clients.saturating_add(1);
-        let Ok(name) = format!("viewer-{}", self.clients).parse() else { return };
         let (options, feed, open) = (self.options.clone(), self.feed.clone(), Open(self.open.clone()));
+        let viewers = self.viewers.clone();
         // If the thread cannot start, the connection is closed.
         let _ = thread::Builder::new().name("live client".into()).spawn(move || {
             let _open = open;
-            serve(stream, &options, feed, name);
+            serve(stream, &options, feed, &viewers);
         });
     }
 }
@@ -168,53 +171,61 @@ impl Drop for Open {
 /// Refuses a client because too many are connected.
 fn refuse(mut stream: TcpStream) {
     let why = format!("{CLIENTS} viewers are connected: close one first\n");
-    let head = "HTTP/1.1 503 Service Unavailable\r\nConnection: close\r\nContent-Type: text/plain";
-    let answer = format!("{head}\r\nContent-Length: {}\r\n\r\n{why}", why.len());
     // The answer is small and usually fits; otherwise the client gets none.
     if stream.set_nonblocking(true).is_ok() {
-        let _ = stream.write(answer.as_bytes());
+        http::send_refusal(&mut stream, &(StatusCode::SERVICE_UNAVAILABLE, why));
     }
 }
 
-fn serve(stream: TcpStream, options: &Options, feed: Feed, name: Name) {
-    let Ok(connection) = Connection::new(stream, HANDSHAKE) else { return };
+fn serve(stream: TcpStream, options: &Options, feed: Feed, viewers: &AtomicU64) {
+    let Ok(mut connection) = Connection::new(stream, HANDSHAKE) else { return };
+    let First { request, rest } = match http::read(&mut connection) {
+        Ok(first) => first,
+        Err(Some(refusal)) => return http::send_refusal(&mut connection, &refusal),
+        Err(None) => return,
+    };
+    if !http::is_upgrade(request.headers()) {
+        let page = options.page.as_deref();
+        return match http::check(&request, page.is_some()) {
+            Ok(()) => http::send_page(&mut connection, page.unwrap_or_default()),
+            Err(refusal) => http::send_refusal(&mut connection, &refusal),
+        };
+    }
+    let response = match shake_hands(&request, &options.origins) {
+        Ok(response) => response,
+        Err(refusal) => return http::send_refusal(&mut connection, &refusal),
+    };
+    if write_response(&mut connection, &response).is_err() {
+        return;
+    }
     let limits = WebSocketConfig::default()
         .read_buffer_size(16 * 1024)
         .max_message_size(Some(MESSAGE))
         .max_frame_size(Some(MESSAGE));
-    let Ok(socket) = accept_hdr_with_config(connection, Handshake(&options.origins), Some(limits)) else {
-        return;
-    };
+    let socket = WebSocket::from_partially_read(connection, rest, Role::Server, Some(limits));
+    let number = viewers.fetch_add(1, Ordering::Relaxed).saturating_add(1);
+    let Ok(name) = format!("viewer-{number}").parse() else { return };
     let (queue, channels) = feed.join();
     Client::new(socket, feed, queue, options, name).run(vec![options.info.encode(), channels]);
 }
 
 /// Checks the origin of a client, and chooses the subprotocol.
-struct Handshake<'a>(&'a [Origin]);
-
-impl Callback for Handshake<'_> {
-    fn on_request(self, request: &Request, mut response: Response) -> Result<Response, ErrorResponse> {
-        let agreed = check_origin(request.headers(), self.0).and_then(|()| agree(request.headers()));
-        match agreed {
-            Ok(subprotocol) => {
-                let agreed = HeaderValue::from_static(subprotocol);
-                response.headers_mut().insert(header::SEC_WEBSOCKET_PROTOCOL, agreed);
-                Ok(response)
-            }
-            Err((status, why)) => {
-                let mut response = ErrorResponse::new(Some(why));
-                *response.status_mut() = status;
-                Err(response)
-            }
-        }
-    }
+fn shake_hands(request: &Request, origins: &[Origin]) -> Result<Response, Refusal> {
+    check_origin(request.headers(), origins)?;
+    let subprotocol = agree(request.headers())?;
+    let wrong = |error: Error| (StatusCode::BAD_REQUEST, format!("{error}\n"));
+    let mut response = create_response(request).map_err(wrong)?;
+    response.headers_mut().insert(header::SEC_WEBSOCKET_PROTOCOL, HeaderValue::from_static(subprotocol));
+    Ok(response)
 }
 
-/// Checks the origin header: pages in a browser always send one, programs do not.
-fn check_origin(headers: &HeaderMap, origins: &[Origin]) -> Result<(), (StatusCode, String)> {
+/// Checks the origin header: pages in a browser always send one, programs do not. The page of this server may connect.
+fn check_origin(headers: &HeaderMap, origins: &[Origin]) -> Result<(), Refusal> {
     let foxglove = Origin::foxglove();
-    let is_allowed =
-        |origin: &&HeaderValue| origins.iter().chain([&foxglove]).any(|known| known.is(origin.as_bytes()));
+    let own = http::host(headers).and_then(|host| format!("http://{host}").parse::<Origin>().ok());
+    let is_allowed = |origin: &&HeaderValue| {
+        origins.iter().chain([&foxglove]).chain(&own).any(|known| known.is(origin.as_bytes()))
+    };
     match headers.get_all(header::ORIGIN).iter().find(|origin| !is_allowed(origin)) {
         None => Ok(()),
         Some(origin) => {
@@ -228,7 +239,7 @@ fn check_origin(headers: &HeaderMap, origins: &[Origin]) -> Result<(), (StatusCo
 }
 
 /// The preferred subprotocol among those that the client offers.
-fn agree(headers: &HeaderMap) -> Result<&'static str, (StatusCode, String)> {
+fn agree(headers: &HeaderMap) -> Result<&'static str, Refusal> {
     let asked = headers.get_all(header::SEC_WEBSOCKET_PROTOCOL).iter();
     let asked: Vec<&str> =
         asked.filter_map(|text| text.to_str().ok()).flat_map(|text| text.split(',')).map(str::trim).collect();

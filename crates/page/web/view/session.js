@@ -1,0 +1,120 @@
+// A run in progress: its connection, what arrives, and what the person at the page asks of it.
+
+import { Connection } from '../log/connection.js';
+import { seconds, TICK_S } from '../log/units.js';
+
+/** Nanoseconds of a tick. */
+const TICK_NS = 40_000_000n;
+/** Key of the token in the storage of this tab. */
+const TOKEN = 'rcs-token';
+/** Metadata with the time of tick 0. */
+const TICK_0 = 'tick_0_ns';
+
+/** @typedef {{ line: string, text: string, refused: boolean }} Answer */
+
+export class Session {
+  /**
+   * @param {import('../log/live.js').LiveLog} log
+   * @param {() => void} changed
+   */
+  constructor(log, changed) {
+    this.log = log;
+    this.changed = changed;
+    this.zero = BigInt(log.run.get(TICK_0) ?? '0');
+    /** Identifier of the run; empty before the first connection. */
+    this.id = '';
+    /** Name of the log of the run. */
+    this.name = '';
+    /** The line that was sent last, and its answer. @type {Answer | null} */
+    this.answer = null;
+    /** Lines that were sent from the field, the last one at the end. @type {string[]} */
+    this.typed = [];
+    const address = location.origin.replace(/^http/, 'ws');
+    this.connection = new Connection(`${address}/`, {
+      begin: (info) => this.begin(info),
+      open: (channel) => log.open(channel),
+      message: (topic, time, data) => log.take({ topic, tick: this.tick(time), data: data.slice() }),
+      time: (time) => log.complete(this.tick(time) - 1),
+      changed,
+    });
+    this.takeToken();
+  }
+
+  /** Tick of a time. @param {bigint} time */
+  tick(time) {
+    return Number((time - this.zero) / TICK_NS);
+  }
+
+  /** @param {any} info */
+  begin(info) {
+    // Another run has another job and another time: the page of that run is needed.
+    if (this.id !== '' && this.id !== info.sessionId) location.reload();
+    this.id = info.sessionId;
+    this.name = info.name;
+  }
+
+  /** The token of the address or of this tab. The address must not keep it: it would stay in the history. */
+  takeToken() {
+    const hash = new URLSearchParams(location.hash.slice(1));
+    const given = hash.get('token');
+    if (given !== null) {
+      hash.delete('token');
+      history.replaceState(null, '', `${location.pathname}#${hash}`);
+    }
+    const token = given ?? sessionStorage.getItem(TOKEN);
+    if (token) this.authorize(token);
+  }
+
+  /** @param {string} token */
+  authorize(token) {
+    sessionStorage.setItem(TOKEN, token);
+    this.connection.authorize(token.trim());
+  }
+
+  /** Returns true if messages arrive. */
+  get isConnected() {
+    return this.connection.state === 'ok';
+  }
+
+  /** Returns true if the person may send requests. */
+  get mayOperate() {
+    return this.connection.right === 'accepted' && this.connection.service !== null;
+  }
+
+  /** Why nothing arrives, in parts; null if messages arrive. */
+  get loss() {
+    const { state, heard, attempts, next } = this.connection;
+    if (state === 'ok') return null;
+    const now = performance.now();
+    const ago = `${((now - heard) / 1000).toFixed(1)} s ago`;
+    const again = next > now ? `, the next in ${Math.ceil((next - now) / 1000)} s` : '';
+    return { state, ago, attempt: attempts > 0 ? `attempt ${attempts}${again}` : '' };
+  }
+
+  /**
+   * Send a line as an operator; its answer is shown.
+   * @param {string} line
+   */
+  async ask(line) {
+    this.answer = { line, text: 'sent', refused: false };
+    this.changed();
+    const sent = this.answer;
+    try {
+      sent.text = await this.connection.ask(line);
+    } catch (error) {
+      [sent.text, sent.refused] = [error instanceof Error ? error.message : String(error), true];
+    }
+    this.changed();
+  }
+
+  /** Send a line that was typed. @param {string} line */
+  type(line) {
+    this.typed = [...this.typed.filter((it) => it !== line), line].slice(-50);
+    void this.ask(line);
+  }
+
+  /** How long ago a tick was, in words. @param {number} tick */
+  ago(tick) {
+    return `${((this.log.last - tick) * TICK_S).toFixed(1)} s ago, ${seconds(tick)}`;
+  }
+}
