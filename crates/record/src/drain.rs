@@ -73,6 +73,7 @@ impl Drain {
             }
             thread::sleep(IDLE);
         }
+        self.write_shown(Tick(u64::MAX))?;
         self.write_notes(Tick(u64::MAX))?;
         self.write_operators(Tick(u64::MAX))?;
         let (end, lost) = self.end.lock().unwrap_or_else(PoisonError::into_inner).clone();
@@ -115,13 +116,18 @@ impl Drain {
                 self.log.attach(tick, attachment)?;
             }
         }
-        while self.shown.peek().is_ok_and(|(tick, _)| *tick <= record.tick) {
+        self.write_shown(record.tick)?;
+        let cell = latest(&mut self.cells, record.tick, |frame| frame.tick);
+        self.log.tick(record, state.as_ref(), cell.as_ref())?;
+        Ok(())
+    }
+
+    fn write_shown(&mut self, until: Tick) -> Result<(), RecordError> {
+        while self.shown.peek().is_ok_and(|(tick, _)| *tick <= until) {
             if let Ok((tick, shown)) = self.shown.pop() {
                 self.log.show(tick, &shown)?;
             }
         }
-        let cell = latest(&mut self.cells, record.tick, |frame| frame.tick);
-        self.log.tick(record, state.as_ref(), cell.as_ref())?;
         Ok(())
     }
 

@@ -11,6 +11,7 @@ use taskdata::load::Source;
 use crate::{
     error::RecordError,
     proto::foxglove::{Level, Link, Transform},
+    views::View,
 };
 
 /// Greatest number of moving links.
@@ -241,6 +242,8 @@ pub enum Shown {
     Picture(Vec<u8>),
     /// All contacts from this tick on.
     Touches(Vec<Touch>),
+    /// A state of the run from this tick on.
+    View(View),
 }
 
 /// Data of a log from before the first tick.
@@ -298,7 +301,7 @@ pub struct Lost {
     pub notes: u64,
     /// Files of the run, such as reloads. Without them the run cannot be replayed to the end.
     pub files: u64,
-    /// Pictures of the camera, and lists of contacts.
+    /// Pictures of the camera, lists of contacts, and states of the run.
     pub shown: u64,
     /// Requests of operators. Without them the inputs cannot be replayed.
     pub operators: u64,

@@ -11,6 +11,7 @@
 //! * [`reader`]: reads a log back, also one whose program was killed.
 //! * [`mod@replay`]: runs the control processes on the recorded inputs and compares every output buffer of every
 //!   tick, bit for bit.
+//! * [`views`], [`ladder`], [`rows`]: the state of the run for viewers.
 //! * [`layout`], [`delta`]: byte images, and what changed in them.
 //! * [`proto`]: the messages of the channels.
 //!
@@ -34,6 +35,7 @@ pub mod error;
 pub mod file;
 pub mod golden;
 pub mod input;
+pub mod ladder;
 pub mod layout;
 pub mod names;
 mod operator;
@@ -50,6 +52,7 @@ pub mod scene;
 pub mod sink;
 pub mod tap;
 pub mod trail;
+pub mod views;
 pub mod writer;
 
 pub use error::{ReadError, RecordError, ReplayError};

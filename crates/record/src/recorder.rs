@@ -46,8 +46,8 @@ const NOTE_RING: usize = 1024;
 const FULL: Duration = Duration::from_micros(100);
 /// Capacity of the ring of files.
 const FILE_RING: usize = 64;
-/// Capacity of the ring of camera pictures and lists of contacts.
-const SHOWN_RING: usize = 256;
+/// Capacity of the ring of camera pictures, lists of contacts and states of the run: on average one per tick.
+const SHOWN_RING: usize = RING;
 /// Capacity of the ring of operators' lines.
 const OPERATOR_RING: usize = 256;
 

@@ -1,7 +1,7 @@
 //! The row channels: one per process, `/process/row`, with the row of a decision table that fired.
 //!
-//! A message has the row as text, the values of the state variables that its table asks for, the tick in which it
-//! fired, and the rows of other tables that fired beside it. A process that rests repeats its last row in its header:
+//! A message has the row as text, the step in which it was looked up, the values of the state variables that its table
+//! asks for, the tick in which it fired, and the rows of other tables that fired beside it. A process that rests repeats its last row in its header:
 //! then `resting` is set. A message is written when anything but the tick changes.
 
 use std::io::{Seek, Write};
@@ -63,6 +63,7 @@ impl Rows {
             field("values", 11, Type::String),
             field("beside", 12, Type::String),
             field("fired_tick", 13, Type::Uint64),
+            field("step_before", 14, Type::String),
         ];
         let message = descriptor::message(ROW, fields);
         let set = encode_set(vec![file("rcs.proto", descriptor::PACKAGE, &[], vec![message])]);
@@ -119,9 +120,11 @@ fn row_message(place: &HeaderPlace, header: &Header) -> Vec<u8> {
         }
         None => Default::default(),
     };
-    let values = header.consulted().and_then(|consulted| {
-        Some(values_text(place.process.table(consulted.decided.table)?, consulted.values))
+    let consulted = header.consulted().and_then(|consulted| {
+        Some((place.process.table(consulted.decided.table)?, consulted.values))
     });
+    let values = consulted.map(|(table, values)| values_text(table, values));
+    let step_before = consulted.and_then(|(table, values)| Some(table.step(values)?.name));
     let beside: Vec<String> = beside(place.process, header).collect();
     let (table_number, row_number) = header.decided.map_or((0, 0), |Decided { table, row }| (table, row));
     let mut data = Vec::new();
@@ -137,6 +140,7 @@ fn row_message(place: &HeaderPlace, header: &Header) -> Vec<u8> {
     wire::unsigned(10, header.age().is_some_and(|age| age > 0).into(), &mut data);
     wire::bytes(11, values.unwrap_or_default().as_bytes(), &mut data);
     wire::bytes(12, beside.join("; ").as_bytes(), &mut data);
+    wire::bytes(14, step_before.unwrap_or_default().as_bytes(), &mut data);
     data
 }
 
@@ -152,6 +156,7 @@ pub fn beside(process: &'static ProcessInfo, header: &Header) -> impl Iterator<I
 mod tests {
     use super::*;
     use levels::execution::Course;
+    use crate::proto::wire::{Fields, Value};
     use levels::prim::tables::{Attendance, Kind, Operator, TABLES, number};
     use rcs_core::table::Variables as _;
 
@@ -179,6 +184,27 @@ mod tests {
         assert_eq!(values_text(attend, basis.values), "course Continue, kind Motion, operator Moves");
         let told: Vec<_> = beside(prim().process, &attended(Operator::Idle)).collect();
         assert_eq!(told, ["ATTEND row 2 (course Continue, kind Motion, operator Idle)"]);
+    }
+
+    #[test]
+    fn message_has_the_step_in_which_the_row_was_looked_up() {
+        let place = prim();
+        let (number, table) =
+            (1_u8..).zip(TABLES).find(|(_, table)| table.steps.is_some_and(|of| of.variants.len() > 1)).unwrap();
+        let step = &table.steps.unwrap().variants[1];
+        let values = Values { step: step.code, variables: 0 };
+        let header = Header {
+            stamp: Tick(7),
+            decided: Some(Decided { table: number, row: 1 }),
+            basis: Some(Basis { tick: Tick(7), values }),
+            ..Header::default()
+        };
+        let message = row_message(&place, &header);
+        let found = Fields(&message).find_map(|field| match field {
+            (14, Value::Bytes(bytes)) => Some(bytes),
+            _ => None,
+        });
+        assert_eq!(found, Some(step.name.as_bytes()));
     }
 
     #[test]

@@ -12,7 +12,7 @@ use rcs_core::tick::Tick;
 use crate::{
     channels::Output,
     contacts,
-    input::{CellFrame, CellModel, Shown},
+    input::{CellFrame, CellModel, Touch},
     proto::{
         foxglove::{self, Transform},
         ros,
@@ -151,20 +151,23 @@ impl Scene {
         Ok(())
     }
 
-    /// Write data for viewers besides the frames.
-    pub fn show<W: Write + Seek>(&self, output: &mut Output<W>, tick: Tick, shown: &Shown) -> McapResult<()> {
-        let (mut data, time) = (Vec::new(), output.epoch.of(tick));
-        let channel = match shown {
-            Shown::Picture(png) => {
-                foxglove::put_png(time, CAMERA_LINK, png, &mut data);
-                self.camera
-            }
-            Shown::Touches(touches) => {
-                contacts::put_marks(time, touches, &mut data);
-                self.contacts
-            }
-        };
-        output.put(channel, tick, &data)
+    /// Write a picture of the wrist camera.
+    pub fn picture<W: Write + Seek>(&self, output: &mut Output<W>, tick: Tick, png: &[u8]) -> McapResult<()> {
+        let mut data = Vec::new();
+        foxglove::put_png(output.epoch.of(tick), CAMERA_LINK, png, &mut data);
+        output.put(self.camera, tick, &data)
+    }
+
+    /// Write all contacts from a tick on.
+    pub fn touches<W: Write + Seek>(
+        &self,
+        output: &mut Output<W>,
+        tick: Tick,
+        touches: &[Touch],
+    ) -> McapResult<()> {
+        let mut data = Vec::new();
+        contacts::put_marks(output.epoch.of(tick), touches, &mut data);
+        output.put(self.contacts, tick, &data)
     }
 
     /// Write the data that are valid for the whole log.

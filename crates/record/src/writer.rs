@@ -8,6 +8,8 @@
 //! | `/tf`, `/joint_states`, `/robot_description` | the moving cell | on change, and every ten seconds |
 //! | `/meshes`, `/names` | shapes and names of bodies | at the start |
 //! | `/trail`, `/camera` | the path of the tool point, the pictures that vision analysed | once a second, on an answer |
+//! | `/ladder` | command, status and row of all processes | on change |
+//! | `/job/lines`, `/job/state`, `/operator/state`, `/cell/controller`, `/cell/parts`, `/cell/places` | the run outside the buffers ([`crate::views`]) | on change, and every ten seconds |
 //! | `/contacts` | a mark where the robot, or what it carries, touches something | on change |
 //! | `/log` | `foxglove.Log` | when there is a remark |
 //! | `/operator` | `rcs.OperatorLine` | on a request of an operator |
@@ -27,7 +29,7 @@ use std::{
     io::{Seek, Write},
 };
 
-use interfaces::{CommonMemory, ExternalInputs};
+use interfaces::{CommonMemory, ExternalInputs, HwsCommand};
 use levels::ladder::LadderState;
 use mcap::{Compression, McapResult, WriteOptions, records::Metadata};
 use os_io::text::amount;
@@ -38,6 +40,7 @@ use crate::{
     channels::{Buffers, HeaderPlace, Output, headers},
     delta::Codec,
     input::{Attachment, CellFrame, End, Lost, Setup, Shown},
+    ladder::LadderChannel,
     layout,
     names::{EARLIER, END, LAYOUT, LOG_TOPIC, REPLAY, RESULT, RUN},
     operator::{OperatorChannel, OperatorLine},
@@ -50,6 +53,7 @@ use crate::{
     rows::Rows,
     scene::Scene,
     tap::Tap,
+    views::{View, Views},
 };
 
 /// Ticks from one set of whole images, and of states, to the next: a second.
@@ -120,12 +124,18 @@ pub struct LogWriter<W: Write + Seek> {
     rows: Rows,
     headers: Vec<HeaderPlace>,
     scene: Option<Scene>,
+    ladder: LadderChannel,
+    views: Views,
+    /// When the job began the last action of the workstation that `/log` has.
+    action_began: u64,
     operator: OperatorChannel,
     codecs: Codecs,
     zeros: Images,
     last: Images,
     now: Images,
     before: CommonMemory,
+    /// The last tick, the command of the workstation in it, and true if all buffers were written.
+    ended: Option<(Tick, HwsCommand, bool)>,
     last_full: Option<Tick>,
     full_sets: u64,
     ticks: u64,
@@ -195,6 +205,7 @@ impl<W: Write + Seek> LogWriter<W> {
         let scene = setup.cell.map(|model| Scene::open(&mut output, model)).transpose()?;
         let log = output.protobuf(LOG_TOPIC, foxglove::LOG, &foxglove::log_descriptor())?;
         let replay = output.protobuf(REPLAY, "rcs.ReplayTick", &replay_descriptor())?;
+        let (ladder, views) = (LadderChannel::open(&mut output)?, Views::open(&mut output)?);
         Ok(Self {
             output,
             replay,
@@ -205,12 +216,16 @@ impl<W: Write + Seek> LogWriter<W> {
             rows,
             headers: headers(),
             scene,
+            ladder,
+            views,
+            action_began: 0,
             operator: OperatorChannel::default(),
             codecs: Codecs::new(),
             zeros: Images::zeros(),
             last: Images::zeros(),
             now: Images::zeros(),
             before: CommonMemory::default(),
+            ended: None,
             last_full: None,
             full_sets: 0,
             ticks: 0,
@@ -228,6 +243,8 @@ impl<W: Write + Seek> LogWriter<W> {
     pub(crate) fn continue_run<E: Write + Seek>(&mut self, ended: &mut LogWriter<E>, name: String) {
         self.output.tap = ended.output.tap.take();
         self.before = ended.before;
+        self.views.continue_run(&mut ended.views);
+        self.action_began = ended.action_began;
         self.earlier = Some(name);
     }
 
@@ -274,9 +291,7 @@ impl<W: Write + Seek> LogWriter<W> {
                 &Remark { level: Level::Warning, source: "log".into(), text, ..Remark::default() },
             )?;
         }
-        self.external.write(&mut self.output, tick, &self.last.external, &self.now.external, all)?;
-        self.memory.write(&mut self.output, tick, &self.last.memory, &self.now.memory, all)?;
-        self.rows.write(&mut self.output, tick, &self.now.memory, all)?;
+        self.write_state(tick, (&record.external.hws, &record.memory), all)?;
         if let (Some(scene), Some(frame)) = (&mut self.scene, cell) {
             scene.write(&mut self.output, frame, all)?;
         }
@@ -284,10 +299,34 @@ impl<W: Write + Seek> LogWriter<W> {
             self.remark(tick, &remark)?;
         }
         self.before = record.memory;
+        self.ended = Some((tick, record.external.hws, all));
         std::mem::swap(&mut self.last, &mut self.now);
         self.ticks += 1;
         self.output.end_tick(tick);
         Ok(())
+    }
+
+    /// Write the state after a tick for viewers, from the images of the tick: what has changed, or everything.
+    fn write_state(
+        &mut self,
+        tick: Tick,
+        (hws, memory): (&HwsCommand, &CommonMemory),
+        all: bool,
+    ) -> McapResult<()> {
+        let Self { output, last, now, .. } = self;
+        self.external.write(output, tick, &last.external, &now.external, all)?;
+        self.memory.write(output, tick, &last.memory, &now.memory, all)?;
+        self.rows.write(output, tick, &now.memory, all)?;
+        self.ladder.write(output, tick, (hws, memory), all)?;
+        if all { self.views.repeat(output, tick) } else { Ok(()) }
+    }
+
+    /// Write everything once more in the last tick, so that lanes of states in a viewer last to the end.
+    fn write_last_state(&mut self) -> McapResult<()> {
+        let Some((tick, hws, false)) = self.ended else { return Ok(()) };
+        std::mem::swap(&mut self.last, &mut self.now);
+        let memory = self.before;
+        self.write_state(tick, (&hws, &memory), true)
     }
 
     /// Write a line on `/log`.
@@ -301,12 +340,31 @@ impl<W: Write + Seek> LogWriter<W> {
         self.output.put(self.log, tick, &data)
     }
 
-    /// Write data for viewers; a log without a cell has no channels for them.
+    /// Write data for viewers; a log without a cell has no channels for pictures and contacts.
     ///
     /// # Errors
     /// Errors of the sink.
     pub fn show(&mut self, tick: Tick, shown: &Shown) -> McapResult<()> {
-        self.scene.as_ref().map_or(Ok(()), |scene| scene.show(&mut self.output, tick, shown))
+        match (shown, &self.scene) {
+            (Shown::View(view), _) => {
+                self.views.put(&mut self.output, tick, view)?;
+                self.note_action(tick, view)
+            }
+            (Shown::Picture(png), Some(scene)) => scene.picture(&mut self.output, tick, png),
+            (Shown::Touches(touches), Some(scene)) => scene.touches(&mut self.output, tick, touches),
+            (Shown::Picture(_) | Shown::Touches(_), None) => Ok(()),
+        }
+    }
+
+    /// Write a line on `/log` when the job begins an action of the workstation; Task reports the commands.
+    fn note_action(&mut self, tick: Tick, view: &View) -> McapResult<()> {
+        let View::JobState(job) = view else { return Ok(()) };
+        if job.is_command || job.began == self.action_began || job.text.is_empty() {
+            return Ok(());
+        }
+        self.action_began = job.began;
+        let text = format!("line {} of {}: {}", job.index, job.lines, job.text);
+        self.remark(tick, &Remark { source: "job".into(), text, ..Remark::default() })
     }
 
     /// Write a request of an operator.
@@ -346,6 +404,7 @@ impl<W: Write + Seek> LogWriter<W> {
         ];
         let mut metadata = end.facts.clone();
         metadata.extend(entries.map(|(key, value)| (key.to_owned(), value)));
+        self.write_last_state()?;
         self.end_second()?;
         self.output.mcap.write_metadata(&Metadata { name: END.into(), metadata })?;
         self.output.mcap.finish()?;

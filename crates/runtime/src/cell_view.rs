@@ -58,7 +58,8 @@ impl View {
     }
 }
 
-fn controller(
+/// The console of the robot controller after `tick`; `before` is the last one.
+pub fn controller(
     t3: &T3Controller,
     warning: Option<&Failure>,
     tick: Tick,

@@ -54,6 +54,12 @@ impl Commanded {
         self.alone.as_mut().map(|emulator| &mut emulator.hwsc)
     }
 
+    /// The same, to read it.
+    #[must_use]
+    pub fn job(&self) -> Option<&Hwsc> {
+        self.alone.as_ref().map(|emulator| &emulator.hwsc)
+    }
+
     /// Commands of the present source.
     #[must_use]
     pub fn begun_steps(&self) -> &[BegunStep] {

@@ -48,6 +48,7 @@ mod run;
 pub mod setup;
 mod switched;
 mod verdict;
+mod views;
 
 pub use self::{
     change::ChangeError,

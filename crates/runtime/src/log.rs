@@ -18,7 +18,7 @@ use plant::{Cell, camera::Subject, clearance::Contact, convert::metres, descript
 use rcs_core::{digest::Digest, tick::Tick};
 use record::{
     Attachment, CellFrame, CellModel, End, Epoch, Link, LogFile, Model, Name, OperatorLine, Pace,
-    RecordError, Recorder, Shown, Summary, Timing, Touch, Transform,
+    RecordError, Recorder, Shown, Summary, Timing, Touch, Transform, views::View,
 };
 use taskdata::load::{
     Source, Store,
@@ -87,16 +87,20 @@ impl Vision {
         Self { camera: camera.clone(), request, answer, taken: 0, seen: None }
     }
 
-    /// Take a picture for a new request; returns the drawing of an answered one.
+    /// Take a picture for a new request. Returns the drawing of the last one when it has been answered, or when the next
+    /// request replaces it: the answer often leads to the next request in the same tick.
     fn look(&mut self, cell: &Cell) -> Option<Vec<u8>> {
         let VisionRequest { number, picture, .. } = self.request;
-        if number != self.taken && picture != Picture::None {
+        let is_new = number != self.taken && picture != Picture::None;
+        let is_answered = self.answer.echo == self.taken && self.answer.status != VisionStatus::Busy;
+        let seen = self.seen.take_if(|_| is_answered || is_new);
+        if is_new {
             self.taken = number;
             self.seen = Some(cell.picture());
         }
-        let answered = self.answer.echo == self.taken && self.answer.status != VisionStatus::Busy;
-        let seen = self.seen.take_if(|_| answered)?;
-        Some(plant::look::camera::draw(&self.camera, &seen, &self.answer))
+        let busy = VisionResponse { status: VisionStatus::Busy, ..VisionResponse::default() };
+        let answer = if is_answered { &self.answer } else { &busy };
+        Some(plant::look::camera::draw(&self.camera, &seen?, answer))
     }
 }
 
@@ -189,6 +193,11 @@ impl Log {
             self.recorder.show(tick, Shown::Touches(touches.clone()));
             self.touches = touches;
         }
+    }
+
+    /// Log a state of the run that is valid from `tick` on; call it before [`Log::tick`] of that tick.
+    pub fn view(&mut self, tick: Tick, view: View) {
+        self.recorder.show(tick, Shown::View(view));
     }
 
     /// Log an event; call it before [`Log::tick`] of the same tick.

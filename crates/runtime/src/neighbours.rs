@@ -199,6 +199,16 @@ impl Neighbours {
         }
     }
 
+    /// The job, also while the run is about to end; `None` while a workstation controller commands.
+    #[must_use]
+    pub fn job(&self) -> Option<&Hwsc> {
+        match &self.workstation {
+            WorkstationSource::Emulator(emulator) => Some(&emulator.hwsc),
+            WorkstationSource::Switched(switched) => switched.job(),
+            WorkstationSource::Outside(commanded) => commanded.job(),
+        }
+    }
+
     /// The reason why the job has begun to wait for an operator; each reason is returned once.
     pub fn operator_news(&mut self) -> Option<WaitReason> {
         match &mut self.workstation {

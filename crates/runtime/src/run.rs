@@ -10,7 +10,7 @@ mod tell;
 
 use std::{path::PathBuf, sync::atomic::Ordering, time::Instant};
 
-use ::neighbours::workstation::player;
+use ::neighbours::workstation::player::{self, WaitReason};
 use closed_loop::{ClosedLoop, Given, RobotInputs};
 use closed_loop::{
     account::{Alarms, Kind},
@@ -48,6 +48,7 @@ use crate::{
     result::{DataResult, Events},
     robot::Robot,
     verdict::Ending,
+    views::Viewed,
 };
 
 /// Ticks for which the cell is simulated after the controller has stopped: two seconds, in which the arm comes to rest
@@ -92,6 +93,9 @@ pub struct Run {
     task: HwsStatus,
     /// The state of the cell for other programs.
     view: Box<View>,
+    /// The states of the run that were logged last, and why the job waits, if it does.
+    viewed: Viewed,
+    waits: Option<WaitReason>,
     /// Events of the cell since the last tick, for the log of the next one.
     fresh: Vec<Event>,
     /// All events, for the result.

@@ -80,6 +80,12 @@ impl Switched {
         (!self.is_handed_over()).then_some(&mut self.job.hwsc)
     }
 
+    /// The job, to read it, unless it has handed over.
+    #[must_use]
+    pub fn job(&self) -> Option<&Hwsc> {
+        (!self.is_handed_over()).then_some(&self.job.hwsc)
+    }
+
     /// The workstation controller.
     pub const fn outside(&mut self) -> &mut OutsideWorkstation {
         &mut self.outside

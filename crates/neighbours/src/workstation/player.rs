@@ -212,6 +212,12 @@ impl Hwsc {
         &self.begun_steps
     }
 
+    /// The lines of the job.
+    #[must_use]
+    pub fn lines(&self) -> &[JobLine] {
+        &self.steps
+    }
+
     /// Progress of the job.
     #[must_use]
     pub const fn progress(&self) -> &Progress {

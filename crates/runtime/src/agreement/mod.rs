@@ -7,7 +7,7 @@
 mod alike;
 mod both;
 mod job;
-mod places;
+pub mod places;
 mod sizes;
 
 use std::{collections::BTreeSet, path::Path};

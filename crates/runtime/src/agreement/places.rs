@@ -2,6 +2,7 @@
 
 use geometry::frame::{Frame, Rotation, Vector};
 use plant::{
+    CellDescription,
     description::{Nest, PartType, Shape},
     scene::vise_frame,
 };
@@ -19,20 +20,30 @@ const DEGREES: f64 = 2.0;
 const HOLSTERS: [(&str, &str); 3] =
     [("HOLSTER-R", "holsters.right"), ("HOLSTER-L", "holsters.left"), ("HOLSTER-C", "holsters.centre")];
 
-/// Add an error for each body that stands elsewhere.
-pub fn check(both: &mut Both<'_>) {
-    let cell = both.cell;
+/// A body of the cell at a location: its entry in the cell description, the name of the location, and its frame.
+pub type Body<'a> = (&'static str, &'a str, Frame);
+
+/// The bodies that have a location of their own: vise, pedestal, holsters, drum.
+pub fn bodies(cell: &CellDescription) -> impl Iterator<Item = Body<'_>> {
     let pedestal = &cell.pedestal;
     let radial = Rotation::from_axis_angle(&Vector::z_axis(), pedestal.azimuth.to_radians());
     let pedestal_frame = Frame { position: Vector::from(pedestal.position), rotation: radial };
-    stands(both, "vise.position", &cell.vise.location, &vise_frame(&cell.vise));
-    stands(both, "pedestal.position", &pedestal.location, &pedestal_frame);
     let holsters = [&cell.holsters.right, &cell.holsters.left, &cell.holsters.centre];
     let points = HOLSTERS.into_iter().zip(holsters).map(|((name, entry), points)| (entry, name, points));
-    for (entry, name, points) in points.chain([("drum.pose", cell.drum.location.as_str(), &cell.drum.pose)]) {
-        if let Some(frame) = points.frame() {
-            stands(both, entry, name, &frame);
-        }
+    let points = points.chain([("drum.pose", cell.drum.location.as_str(), &cell.drum.pose)]);
+    let framed = points.filter_map(|(entry, name, points)| Some((entry, name, points.frame()?)));
+    [
+        ("vise.position", cell.vise.location.as_str(), vise_frame(&cell.vise)),
+        ("pedestal.position", pedestal.location.as_str(), pedestal_frame),
+    ]
+    .into_iter()
+    .chain(framed)
+}
+
+/// Add an error for each body that stands elsewhere.
+pub fn check(both: &mut Both<'_>) {
+    for (entry, name, frame) in bodies(both.cell) {
+        stands(both, entry, name, &frame);
     }
     trays(both);
     nests(both);

@@ -43,6 +43,7 @@ use taskdata::load::{BlockNumber, Store, job::Workstation};
 
 use self::{hold::Ended, request::Request, terminals::Terminals};
 pub use self::{
+    obstacles::is_led,
     request::first_words,
     source::{Input, Inputs, WORKSTATION},
 };
@@ -150,6 +151,12 @@ impl Operator {
     #[must_use]
     pub const fn at_the_terminals(&self) -> &OperatorInputs {
         self.terminals.inputs()
+    }
+
+    /// The operator in command, all connected operators, and true if one of them has stopped the robot.
+    #[must_use]
+    pub fn present(&self) -> (Option<&str>, &[String], bool) {
+        (self.commander.as_deref(), &self.sessions, self.is_stopped)
     }
 
     /// Called once per tick, after all requests: sets the box and the terminals for the next tick. `is_table_led` is

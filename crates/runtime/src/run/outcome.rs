@@ -140,6 +140,7 @@ impl Run {
 
     /// End the log and describe it. A finished job stays finished if its log could not be written.
     fn finish_log(&mut self, ending: &Ending, result: &mut RunResult) -> String {
+        self.show_state();
         let Some(mut log) = self.log.take() else { return "none".to_owned() };
         if let Ending::Failed(account) = ending {
             for sentence in account.sentences() {

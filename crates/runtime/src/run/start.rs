@@ -10,6 +10,7 @@ use executive::{
     runner::Runner,
 };
 use interfaces::hws::HwsStatus;
+use rcs_core::tick::Tick;
 use sessions::network::Role;
 
 use super::Run;
@@ -26,6 +27,7 @@ use crate::{
     pace::Pace,
     result::Events,
     setup::Setup,
+    views::{self, Viewed},
 };
 
 /// Ticks to wait for the first answer of a robot controller at a port, which may be powered up after the run has begun.
@@ -125,6 +127,9 @@ impl Run {
         let file = setup.log.take();
         let log_path = file.as_ref().map(|file| file.path().to_owned());
         let mut log = file.map(|file| Log::start(file, &config, &setup)).transpose()?;
+        if let Some(log) = &mut log {
+            log.view(Tick::BEFORE_START.next(), views::places(&setup.description));
+        }
         let publisher = publisher(&config, &name, &mut *observer);
         let Setup { store, data, mut job, cell, field, line_faults, robot, mut neighbours, mut live, .. } =
             setup;
@@ -187,6 +192,8 @@ impl Run {
             alarms: Alarms::default(),
             task: HwsStatus::default(),
             view: Box::default(),
+            viewed: Viewed::default(),
+            waits: None,
             fresh: Vec::new(),
             events: Events::default(),
             rest: RestWatch::default(),

@@ -11,7 +11,7 @@ use plant::CellEvent;
 use rcs_core::tick::Tick;
 
 use super::Run;
-use crate::{egm::EgmPort, event::Event, live::Live};
+use crate::{egm::EgmPort, event::Event, live::Live, views::Around};
 
 impl Run {
     /// Report an event outside the cell's ticks to the log and the observer.
@@ -35,6 +35,26 @@ impl Run {
         let (cell, check) = (&self.closed.workstation.cell, self.closed.contacts());
         log.contacts(tick, cell.contacts(), |contact| check.is_collision(contact));
         log.cell(tick, cell, self.robot.egm().map(EgmPort::frames));
+        self.show_state();
+    }
+
+    /// Log the states of the run that have changed; the next tick is the first with them.
+    pub(super) fn show_state(&mut self) {
+        let Some(log) = &mut self.log else { return };
+        let tick = self.closed.tick();
+        let around = Around {
+            tick,
+            memory: self.closed.memory(),
+            neighbours: &self.neighbours,
+            operator: &self.operator,
+            job: &self.job.name,
+            played: self.loads.played,
+            waits: self.waits.as_ref(),
+            cell: &self.closed.workstation.cell,
+            has_controller: !self.robot.is_elsewhere(),
+            warning: self.warning.as_ref(),
+        };
+        self.viewed.look(&around, |view| log.view(tick.next(), view));
     }
 
     /// Publish the cell after a tick to other programs. A run with a robot at a port publishes none.
@@ -71,7 +91,9 @@ impl Run {
 
     /// If the job has begun to wait, report it to operators, terminal and log.
     pub(super) fn tell_operators(&mut self, tick: Tick) {
-        let Some(event) = self.neighbours.operator_news().map(Event::Waits) else { return };
+        let Some(reason) = self.neighbours.operator_news() else { return };
+        self.waits = Some(reason.clone());
+        let event = Event::Waits(reason);
         self.observer.message(&format!("tick {tick}: {event}"));
         self.log_event(tick.next(), &event);
         self.events.push(tick, &event);

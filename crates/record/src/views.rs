@@ -1,0 +1,266 @@
+//! The state of a run outside the buffers of the processes: the job, who commands, the robot controller, the parts and
+//! the places of the cell. Each has a channel with one message type.
+//!
+//! A message has the whole state, so that a reader needs only the last one. It is written when the state changes, and
+//! repeated with the buffers.
+
+use std::io::{Seek, Write};
+
+use mcap::McapResult;
+use rcs_core::tick::Tick;
+
+use crate::{
+    channels::Output,
+    proto::typed::{self, messages},
+};
+
+/// Topic of the lines of the job.
+pub const JOB_LINES: &str = "/job/lines";
+/// Topic of the progress of the job.
+pub const JOB_STATE: &str = "/job/state";
+/// Topic of the source of commands.
+pub const COMMANDER: &str = "/operator/state";
+/// Topic of the console of the robot controller.
+pub const CONTROLLER: &str = "/cell/controller";
+/// Topic of the parts.
+pub const PARTS: &str = "/cell/parts";
+/// Topic of the places.
+pub const PLACES: &str = "/cell/places";
+
+messages! {
+    /// A line of a job.
+    JobLine {
+        /// Its number in the job, from 1: comments and empty lines are not counted.
+        number: u32,
+        /// The line as written, without its comment.
+        text: String,
+        /// It is a command for Task, not an action of the workstation.
+        is_command: bool,
+        /// The command must fail.
+        expects_error: bool,
+    }
+
+    /// The lines of a job. An operator can replace the rest of a job during the run.
+    JobLines {
+        /// Name of the job.
+        name: String,
+        /// The lines, in order.
+        lines: Vec<JobLine>,
+    }
+
+    /// Progress of a job.
+    JobState {
+        /// `plays`, `waits` for an operator, `over`, `failed`, `ends` (the robot is brought to rest), or `outside`: a
+        /// workstation controller in another process commands.
+        phase: &'static str,
+        /// Number of the line that was begun last; 0 before the first.
+        index: u32,
+        /// Number of lines.
+        lines: u32,
+        /// The step that was begun last: a line of the job, PAUSE, or a command of an operator or of the workstation
+        /// controller.
+        text: String,
+        /// The step is a command for Task, not an action of the workstation.
+        is_command: bool,
+        /// The tick after which the step was begun.
+        began: u64,
+        /// `executing`, `finished`, `error`, `error as expected`, `interrupted`; empty before the first step.
+        outcome: &'static str,
+        /// Duration of the step, ticks; 0 while it is executed.
+        ticks: u64,
+        /// Why the job waits or has failed.
+        reason: String,
+        /// What a person has to do before the job can continue, if it is known.
+        remedy: String,
+        /// Number of the present retry of the line; 0 for none.
+        retry: u32,
+        /// Greatest number of retries of a line.
+        retries: u32,
+    }
+
+    /// Who commands the robot.
+    Commander {
+        /// `job`, `operator`, or `workstation controller`.
+        source: &'static str,
+        /// Name of the operator in command, whose requests alone are accepted, except stops; empty for none.
+        operator: String,
+        /// Names of the connected operators.
+        connected: Vec<String>,
+        /// An operator has stopped the robot: the velocity knob is at 0 until `go`.
+        is_stopped: bool,
+        /// The joystick box has the robot.
+        by_hand: bool,
+    }
+
+    /// Lamps and latching keys of the robot controller's console.
+    Lamps {
+        /// Control power is on.
+        power: bool,
+        /// FAULT RESET is lit.
+        fault_reset: bool,
+        /// HYD ENABLED is lit.
+        hydraulics_enabled: bool,
+        /// MANUAL is on: the actuators have pressure.
+        hydraulics_on: bool,
+        /// Auto mode.
+        auto: bool,
+        /// Hold is on.
+        hold: bool,
+    }
+
+    /// The simulated robot controller.
+    Controller {
+        /// Stage of its start-up, such as `hydraulics enabled` or `DEPC`.
+        stage: String,
+        /// Lamps and keys.
+        lamps: Lamps,
+        /// The emergency stops that are pressed, by their places: `on the control panel`.
+        pressed: Vec<String>,
+        /// Cause of the loss of pressure; empty under pressure.
+        cut: String,
+        /// The last warning or error on its screen; empty for none.
+        screen: String,
+        /// The tick of this warning or error.
+        screen_tick: u64,
+    }
+
+    /// A part in the cell.
+    Part {
+        /// Its number, from 1.
+        id: u32,
+        /// Its frame on `/tf`, and its name in `/meshes`.
+        frame: String,
+        /// Its name in the task data at present.
+        name: String,
+        /// A location: a unit, that of the vise, the drum or the pedestal, `gripper`, `floor` or `elsewhere`.
+        location: String,
+        /// The nearest sector of the unit; 0 elsewhere.
+        sector: u32,
+        /// The gripper holds it.
+        held: bool,
+        /// The vise holds it.
+        clamped: bool,
+    }
+
+    /// The parts in the cell.
+    Parts {
+        /// By their numbers.
+        parts: Vec<Part>,
+    }
+
+    /// A place for parts or grippers.
+    Place {
+        /// Name of the location.
+        location: String,
+        /// The sector of the location; 0 if it has none.
+        sector: u32,
+        /// Its origin in the world, metres.
+        x: f64,
+        /// Metres.
+        y: f64,
+        /// Metres.
+        z: f64,
+    }
+
+    /// The places of the cell.
+    Places {
+        /// The places.
+        places: Vec<Place>,
+    }
+}
+
+/// A state of the run.
+#[derive(Clone, Debug, PartialEq)]
+pub enum View {
+    /// The lines of the job.
+    JobLines(JobLines),
+    /// The progress of the job.
+    JobState(JobState),
+    /// Who commands.
+    Commander(Commander),
+    /// The robot controller.
+    Controller(Controller),
+    /// The parts.
+    Parts(Parts),
+    /// The places.
+    Places(Places),
+}
+
+/// Number of kinds of [`View`].
+pub const KINDS: usize = 6;
+
+impl View {
+    /// Its position among the kinds.
+    #[must_use]
+    pub const fn kind(&self) -> usize {
+        match self {
+            Self::JobLines(_) => 0,
+            Self::JobState(_) => 1,
+            Self::Commander(_) => 2,
+            Self::Controller(_) => 3,
+            Self::Parts(_) => 4,
+            Self::Places(_) => 5,
+        }
+    }
+
+    fn encode(&self) -> Vec<u8> {
+        match self {
+            Self::JobLines(message) => typed::encode(message),
+            Self::JobState(message) => typed::encode(message),
+            Self::Commander(message) => typed::encode(message),
+            Self::Controller(message) => typed::encode(message),
+            Self::Parts(message) => typed::encode(message),
+            Self::Places(message) => typed::encode(message),
+        }
+    }
+}
+
+/// The channels of the views, with the last message of each.
+pub(crate) struct Views([Channel; KINDS]);
+
+struct Channel {
+    id: u16,
+    /// The last message; empty before the first.
+    last: Vec<u8>,
+    /// The tick in which it was written.
+    written: Tick,
+}
+
+impl Views {
+    pub fn open<W: Write + Seek>(output: &mut Output<W>) -> McapResult<Self> {
+        fn channel<M: typed::Message, W: Write + Seek>(
+            output: &mut Output<W>,
+            topic: &str,
+        ) -> McapResult<Channel> {
+            let id = output.protobuf(topic, &typed::name::<M>(), &typed::descriptor_set::<M>())?;
+            Ok(Channel { id, last: Vec::new(), written: Tick::BEFORE_START })
+        }
+        Ok(Self([
+            channel::<JobLines, W>(output, JOB_LINES)?,
+            channel::<JobState, W>(output, JOB_STATE)?,
+            channel::<Commander, W>(output, COMMANDER)?,
+            channel::<Controller, W>(output, CONTROLLER)?,
+            channel::<Parts, W>(output, PARTS)?,
+            channel::<Places, W>(output, PLACES)?,
+        ]))
+    }
+
+    pub fn put<W: Write + Seek>(&mut self, output: &mut Output<W>, tick: Tick, view: &View) -> McapResult<()> {
+        let Some(channel) = self.0.get_mut(view.kind()) else { return Ok(()) };
+        (channel.last, channel.written) = (view.encode(), tick);
+        output.put(channel.id, tick, &channel.last)
+    }
+
+    /// Write the last message of each channel again, unless it is of this tick or a later one.
+    pub fn repeat<W: Write + Seek>(&self, output: &mut Output<W>, tick: Tick) -> McapResult<()> {
+        let due = self.0.iter().filter(|channel| !channel.last.is_empty() && channel.written < tick);
+        due.into_iter().try_for_each(|channel| output.put(channel.id, tick, &channel.last))
+    }
+
+    /// Take over the messages of the log before, for the next log of a run.
+    pub fn continue_run(&mut self, ended: &mut Self) {
+        for (channel, before) in self.0.iter_mut().zip(&mut ended.0) {
+            channel.last = std::mem::take(&mut before.last);
+        }
+    }
+}
