@@ -25,6 +25,8 @@ import { why } from './view/why.js';
 
 /** Ticks of a second. */
 const TICKS = 25;
+/** Time between two looks at a run while the page is hidden, milliseconds. */
+const HIDDEN = 1000;
 /** Topics without which no picture of the cell can be drawn. */
 const PICTURE = ['/meshes', '/tf', '/tf_static', '/names'];
 
@@ -89,8 +91,11 @@ class Page {
       changed,
     );
     if (this.live) followControls(() => this, changed);
+    // A hidden page gets no frames, but its messages arrive.
+    if (this.live) setInterval(() => document.hidden && this.advance(), HIDDEN);
     addEventListener('resize', changed);
     addEventListener('hashchange', () => {
+      this.live?.takeToken();
       this.read(location.hash);
       changed();
     });

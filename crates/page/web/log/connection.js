@@ -19,6 +19,8 @@ const PATIENCE = 3000;
 /** The service for any line of an operator. */
 const REQUEST = '/operator/request';
 const TOKEN = '/operator/token';
+/** Level of a status that refuses something. */
+const ERROR = 2;
 /** Close code of a run that has ended. */
 const AWAY = 1001;
 
@@ -142,7 +144,7 @@ export class Connection {
     } else if (message.op === 'parameterValues' && message.id === TOKEN) {
       this.right = 'accepted';
       this.receiver.changed();
-    } else if (message.op === 'status' && this.right === 'asked') {
+    } else if (message.op === 'status' && message.level === ERROR && this.right === 'asked') {
       // The only message that can be wrong is the token.
       [this.right, this.token] = ['none', ''];
       this.receiver.changed();

@@ -62,7 +62,11 @@ export function effects({ run, live }) {
     pause,
     go,
     wait: waits ? cannot('the job waits') : can('job wait', `Wait after line ${number}`),
-    skip: waits ? can('job skip', `Skip line ${number}`) : cannot('only a job that waits can skip a line'),
+    skip: !waits
+      ? cannot('only a job that waits can skip a line')
+      : mode === 'estop'
+        ? cannot('an emergency stop is pressed')
+        : can('job skip', `Skip line ${number}`),
     leave: commander === '' ? cannot('nobody commands') : can('leave', 'Leave'),
     knob: mode === 'estop' ? cannot('the robot has no pressure') : can('joystick velocity', ''),
   };
@@ -191,7 +195,8 @@ function velocity(effect, percent) {
 /** @param {import('./ui.js').Context} context @param {Effects} does @param {import('./dom.js').Size} size */
 function commanding({ run, live, ui }, does, size) {
   const commander = run.view('/operator/state', run.last)?.operator ?? '';
-  const who = commander === '' ? 'You may command' : `${commander} commands`;
+  const you = commander === live?.viewer ? ' (you)' : '';
+  const who = commander === '' ? 'You may command' : `${commander}${you} commands`;
   const small = (/** @type {string} */ id, /** @type {Effect} */ effect, /** @type {string} */ name) =>
     h(
       'button',
@@ -216,13 +221,22 @@ function commanding({ run, live, ui }, does, size) {
         : small('skip', does.skip, 'Skip'),
       small('leave', does.leave, 'Leave'),
     ),
+    size === 'phone' && live?.answer?.refused ? answered(live) : null,
     h('div', { class: 'note' }, NOTE),
+  );
+}
+
+/** The line that was sent last, and its answer. @param {import('./session.js').Session} live */
+function answered({ answer }) {
+  return h(
+    'output',
+    { class: answer?.refused ? 'refused' : '', role: 'status' },
+    answer ? [h('b', {}, answer.line), ` ${answer.refused ? 'refused: ' : ''}${answer.text}`] : '',
   );
 }
 
 /** @param {import('./ui.js').Context} context */
 function line({ live, ui, run }) {
-  const { answer } = live ?? {};
   const offered = completions(ui.typed, run.words).slice(0, OFFERED);
   return h(
     'form',
@@ -237,11 +251,7 @@ function line({ live, ui, run }) {
       disabled: !live?.isConnected,
     }),
     ui.typed === ''
-      ? h(
-          'output',
-          { class: answer?.refused ? 'refused' : '', role: 'status' },
-          answer ? [h('b', {}, answer.line), ` ${answer.refused ? 'refused: ' : ''}${answer.text}`] : '',
-        )
+      ? live && answered(live)
       : h(
           'div',
           { class: 'offered' },

@@ -23,8 +23,8 @@ export class Session {
     this.zero = BigInt(log.run.get(TICK_0) ?? '0');
     /** Identifier of the run; empty before the first connection. */
     this.id = '';
-    /** Name of the log of the run. */
-    this.name = '';
+    /** Name of this page among the operators of the run. */
+    this.viewer = '';
     /** The line that was sent last, and its answer. @type {Answer | null} */
     this.answer = null;
     /** Lines that were sent from the field, the last one at the end. @type {string[]} */
@@ -35,7 +35,10 @@ export class Session {
       open: (channel) => log.open(channel),
       message: (topic, time, data) => log.take({ topic, tick: this.tick(time), data: data.slice() }),
       time: (time) => log.complete(this.tick(time) - 1),
-      changed,
+      changed: () => {
+        if (this.mayOperate) keep(this.connection.token);
+        changed();
+      },
     });
     this.takeToken();
   }
@@ -50,7 +53,7 @@ export class Session {
     // Another run has another job and another time: the page of that run is needed.
     if (this.id !== '' && this.id !== info.sessionId) location.reload();
     this.id = info.sessionId;
-    this.name = info.name;
+    this.viewer = String(info.metadata?.viewer ?? '');
   }
 
   /** The token of the address or of this tab. The address must not keep it: it would stay in the history. */
@@ -61,13 +64,12 @@ export class Session {
       hash.delete('token');
       history.replaceState(null, '', `${location.pathname}#${hash}`);
     }
-    const token = given ?? sessionStorage.getItem(TOKEN);
-    if (token) this.authorize(token);
+    const token = given ?? kept();
+    if (token && token !== this.connection.token) this.authorize(token);
   }
 
   /** @param {string} token */
   authorize(token) {
-    sessionStorage.setItem(TOKEN, token);
     this.connection.authorize(token.trim());
   }
 
@@ -116,5 +118,23 @@ export class Session {
   /** How long ago a tick was, in words. @param {number} tick */
   ago(tick) {
     return `${((this.log.last - tick) * TICK_S).toFixed(1)} s ago, ${seconds(tick)}`;
+  }
+}
+
+/** The token that this tab has used; empty if there is none, or if the browser keeps nothing. */
+function kept() {
+  try {
+    return sessionStorage.getItem(TOKEN) ?? '';
+  } catch {
+    return '';
+  }
+}
+
+/** Keep a token for the next page of this tab, if the browser allows it. @param {string} token */
+function keep(token) {
+  try {
+    sessionStorage.setItem(TOKEN, token);
+  } catch {
+    // The person enters it again.
   }
 }
