@@ -3,7 +3,7 @@
 import { processOf } from '../log/processes.js';
 import { remedyOf } from '../log/explanation.js';
 import { bareLength, duration, force, length, seconds, speed } from '../log/units.js';
-import { h, sentence } from './dom.js';
+import { h, sentence, windowSize } from './dom.js';
 import { icon } from './icons.js';
 
 /**
@@ -20,8 +20,8 @@ const JOINTS = [
 ];
 /** Distance from a limit that is marked, degrees. */
 const NEAR = 10;
-/** Lines of the job before the present one, and of messages. */
-const SHOWN = { before: 1, lines: 12, messages: 5 };
+/** Lines of the job before the present one, lines in all, and messages. */
+const SHOWN = { before: 1, lines: 12, linesOnPhone: 6, messages: 5 };
 
 /** @param {import('./ui.js').Context} context */
 export function side({ run, ui }) {
@@ -71,14 +71,17 @@ function waitCard(run, ui) {
 function jobBlock(run, ui) {
   const at = run.line(ui.tick);
   const { mode } = run.mode(ui.tick);
-  const first = Math.max(0, Math.min(at - SHOWN.before, run.job.length - SHOWN.lines));
-  const shown = run.job.slice(first, first + SHOWN.lines);
+  const room = windowSize() === 'phone' ? SHOWN.linesOnPhone : SHOWN.lines;
+  const first = Math.max(0, Math.min(at - SHOWN.before, run.job.length - room));
+  const shown = run.job.slice(first, first + room);
   const rest = run.job.length - first - shown.length;
   const lines = shown.map((line, index) => {
     const number = first + index;
     const place = number < at ? 'past' : number === at ? `cur ${mode}` : 'fut';
     const [verb, ...words] = line.text.split(' ');
-    const time = line.station || number > at ? '' : duration(Math.min(ui.tick, line.end) - line.start);
+    // A line that ended before the page was opened has no known duration.
+    const unknown = line.station || number > at || line.end === line.start;
+    const time = unknown ? '' : duration(Math.min(ui.tick, line.end) - line.start);
     return h(
       'div',
       {
