@@ -120,7 +120,7 @@ impl Client {
             feed,
             queue,
             outgoing: Outgoing::default(),
-            session: Session::new(Rights { knob: knob.clone(), token }),
+            session: Session::new(Rights { knob: knob.clone(), token, name: name.to_string() }),
             access: access.clone(),
             operator: None,
             name,
@@ -203,8 +203,8 @@ impl Client {
     fn act(&mut self, action: Action) -> Result<(), End> {
         match action {
             Action::Text(text) => self.outgoing.reply(Message::text(text)),
-            Action::Subscribe { channel, subscription } => {
-                self.feed.subscribe(&self.queue, channel, subscription);
+            Action::Subscribe { channel, subscription, past_s } => {
+                self.feed.subscribe(&self.queue, channel, subscription, past_s);
             }
             Action::Unsubscribe { channel } => self.queue.unsubscribe(channel),
             Action::Bytes(bytes) => self.outgoing.reply(Message::binary(bytes)),

@@ -1,14 +1,15 @@
-//! The messages for clients: channels, the newest message of each, and a queue per client.
+//! The messages for clients: channels, the newest message of each, those of the last minute, and a queue per client.
 //!
 //! A client that subscribes receives the newest message of the channel at once, with the present time, even if that
-//! message was sent only once, at the start of the run. For transforms it receives those of all links.
+//! message was sent only once, at the start of the run. For transforms it receives those of all links. A client that has
+//! asked for the past receives the state at its beginning instead, and all messages since then with their times.
 
 use std::{
     collections::{BTreeMap, VecDeque},
     sync::{Arc, Mutex, MutexGuard, PoisonError},
 };
 
-use record::{Tap, tap::Channel};
+use record::{Tap, names::REPLAY, tap::Channel};
 
 use crate::live::{
     frames::{self, Frames},
@@ -19,6 +20,13 @@ use crate::live::{
 pub const QUEUE: usize = 4096;
 /// Greatest number of bytes in a client's queue; a single longer message is accepted.
 pub const QUEUE_BYTES: usize = 8 << 20;
+
+/// The past that is kept for clients that connect later, seconds of the run.
+pub const PAST_S: u64 = 60;
+/// Greatest number of bytes of the past. The linkbar needs a third of it. Above it, a channel keeps less.
+pub const PAST_BYTES: usize = 16 << 20;
+
+const NS_PER_S: u64 = 1_000_000_000;
 
 fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
@@ -31,6 +39,8 @@ pub struct Feed(Arc<Mutex<Inner>>);
 #[derive(Debug, Default)]
 struct Inner {
     channels: BTreeMap<u16, Known>,
+    /// Number of bytes in the pasts of all channels.
+    past_bytes: usize,
     /// Time of the newest message, ns.
     now: u64,
     queues: Vec<Arc<Queue>>,
@@ -43,10 +53,49 @@ struct Known {
     /// Text of its advertisement.
     advertised: String,
     newest: Newest,
+    past: Past,
+}
+
+/// The last minute of a channel.
+#[derive(Debug)]
+struct Past {
+    /// Messages with their times, ns, the oldest first.
+    messages: VecDeque<(u64, Arc<[u8]>)>,
+    /// The newest data before these messages.
+    before: Newest,
+    /// Nothing is kept: the messages are differences, which nobody can read without all messages before.
+    is_off: bool,
+}
+
+impl Past {
+    /// Add a message, and remove those that are too old, or for which there is no room.
+    fn add(&mut self, time: u64, data: &Arc<[u8]>, bytes: &mut usize) {
+        if self.is_off {
+            return;
+        }
+        self.messages.push_back((time, Arc::clone(data)));
+        *bytes = bytes.saturating_add(data.len());
+        let oldest = time.saturating_sub(PAST_S * NS_PER_S);
+        while self.messages.front().is_some_and(|(time, _)| *time < oldest) || *bytes > PAST_BYTES {
+            let Some((_, data)) = self.messages.pop_front() else { break };
+            *bytes = bytes.saturating_sub(data.len());
+            self.before.take(&data);
+        }
+    }
+
+    /// The state at a time, and the messages from that time on.
+    fn since(&self, start: u64) -> (Newest, impl Iterator<Item = &(u64, Arc<[u8]>)>) {
+        let mut state = self.before.clone();
+        let mut later = self.messages.iter().peekable();
+        while let Some((_, data)) = later.next_if(|(time, _)| *time < start) {
+            state.take(data);
+        }
+        (state, later)
+    }
 }
 
 /// The newest data of a channel, which a new subscriber receives.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 enum Newest {
     Nothing,
     Message(Arc<[u8]>),
@@ -54,6 +103,17 @@ enum Newest {
 }
 
 impl Newest {
+    fn of(channel: &Channel<'_>) -> Self {
+        if channel.schema_name == frames::SCHEMA { Self::Frames(Frames::default()) } else { Self::Nothing }
+    }
+
+    fn take(&mut self, data: &Arc<[u8]>) {
+        match self {
+            Self::Frames(frames) => frames.add(data),
+            newest => *newest = Self::Message(Arc::clone(data)),
+        }
+    }
+
     fn message(&self) -> Option<Arc<[u8]>> {
         match self {
             Self::Nothing => None,
@@ -91,14 +151,28 @@ impl Feed {
         lock(&self.0).channels.contains_key(&channel)
     }
 
-    /// Sends the messages of a channel to a client from now on, beginning with the newest one.
-    pub fn subscribe(&self, queue: &Queue, channel: u16, subscription: u32) {
+    /// Sends the messages of a channel to a client: from now on, beginning with the newest one, or from `past_s` seconds
+    /// ago on, beginning with the state at that time.
+    pub fn subscribe(&self, queue: &Queue, channel: u16, subscription: u32, past_s: u64) {
         let inner = lock(&self.0);
         let mut waiting = lock(&queue.0);
         waiting.subscriptions.insert(channel, subscription);
-        if let Some(data) = inner.channels.get(&channel).and_then(|known| known.newest.message()) {
-            waiting.first.push_back(Item::Message { subscription, time: inner.now, data });
+        let Some(known) = inner.channels.get(&channel) else { return };
+        let mut push = |time: u64, data: Arc<[u8]>| {
+            waiting.first.push_back(Item::Message { subscription, time, data });
+        };
+        if past_s == 0 || known.past.is_off {
+            if let Some(data) = known.newest.message() {
+                push(inner.now, data);
+            }
+            return;
         }
+        let start = inner.now.saturating_sub(past_s.min(PAST_S) * NS_PER_S);
+        let (state, later) = known.past.since(start);
+        if let Some(data) = state.message() {
+            push(start, data);
+        }
+        later.for_each(|(time, data)| push(*time, Arc::clone(data)));
     }
 
     /// Number of clients.
@@ -142,21 +216,20 @@ impl Tap for Tapped {
         for queue in &inner.queues {
             lock(&queue.0).first.push_back(Item::Text(Arc::clone(&text)));
         }
-        let is_frames = channel.schema_name == frames::SCHEMA;
-        let newest = if is_frames { Newest::Frames(Frames::default()) } else { Newest::Nothing };
-        inner.channels.insert(id, Known { advertised, newest });
+        let is_off = channel.topic == REPLAY;
+        let past = Past { messages: VecDeque::new(), before: Newest::of(channel), is_off };
+        inner.channels.insert(id, Known { advertised, newest: Newest::of(channel), past });
     }
 
     fn message(&mut self, channel: u16, time: u64, data: &[u8]) {
         let data: Arc<[u8]> = data.into();
-        let mut inner = lock(&self.0.0);
+        let mut guard = lock(&self.0.0);
+        let inner = &mut *guard;
         let is_new = time > inner.now;
         inner.now = inner.now.max(time);
-        match inner.channels.get_mut(&channel).map(|known| &mut known.newest) {
-            Some(Newest::Frames(frames)) => frames.add(&data),
-            Some(newest) => *newest = Newest::Message(Arc::clone(&data)),
-            None => return,
-        }
+        let Some(known) = inner.channels.get_mut(&channel) else { return };
+        known.newest.take(&data);
+        known.past.add(time, &data, &mut inner.past_bytes);
         for queue in &inner.queues {
             let mut waiting = lock(&queue.0);
             if is_new {
@@ -222,7 +295,7 @@ pub struct Queue(Mutex<Waiting>);
 struct Waiting {
     /// The client's subscription numbers by channel.
     subscriptions: BTreeMap<u16, u32>,
-    /// Items that are never dropped: new channels, and one message per subscription.
+    /// Items that are never dropped: new channels, and the first messages of each subscription.
     first: VecDeque<Item>,
     /// Items that can be dropped, the oldest first.
     later: VecDeque<Item>,
@@ -313,7 +386,7 @@ mod tests {
         let (queue, channels) = feed.join();
         assert!(channels.contains("/robot_description") && channels.contains("/other"), "{channels}");
         assert!(!feed.is_watched());
-        feed.subscribe(&queue, 1, 7);
+        feed.subscribe(&queue, 1, 7, 0);
         assert!(feed.is_watched());
         assert_eq!(all(&queue), [message(7, 50, b"once")]);
         tap.message(2, 90, b"not subscribed");
@@ -340,8 +413,8 @@ mod tests {
         tap.channel(2, &TEXT);
         tap.message(1, 1, b"once");
         let (queue, _) = feed.join();
-        feed.subscribe(&queue, 1, 1);
-        feed.subscribe(&queue, 2, 2);
+        feed.subscribe(&queue, 1, 1, 0);
+        feed.subscribe(&queue, 2, 2, 0);
         for number in 0..u64::try_from(QUEUE).unwrap() + 100 {
             tap.message(2, 1, &number.to_le_bytes());
         }
@@ -356,5 +429,41 @@ mod tests {
         tap.message(2, 1, &large);
         tap.message(2, 1, &huge);
         assert_eq!((queue.dropped(), all(&queue).len()), (103, 1));
+    }
+
+    const S: u64 = NS_PER_S;
+
+    #[test]
+    fn late_client_gets_the_state_before_and_the_messages_since_then() {
+        let feed = Feed::default();
+        let mut tap = feed.tap();
+        tap.channel(1, &TEXT);
+        tap.channel(2, &Channel { topic: REPLAY, ..TEXT });
+        for second in 0..=100_u8 {
+            tap.message(1, u64::from(second) * S, &[second]);
+            tap.message(2, u64::from(second) * S, &[second]);
+        }
+        let (queue, _) = feed.join();
+        feed.subscribe(&queue, 1, 7, 2);
+        let expected = [(98, 97), (98, 98), (99, 99), (100, 100)];
+        assert_eq!(all(&queue), expected.map(|(time, data): (u64, u8)| message(7, time * S, &[data])));
+        feed.subscribe(&queue, 1, 8, u64::MAX);
+        let found = all(&queue);
+        assert_eq!((found.len(), &found[0]), (62, &message(8, 40 * S, &[39])), "a minute is kept");
+        feed.subscribe(&queue, 2, 9, 60);
+        assert_eq!(all(&queue), [message(9, 100 * S, &[100])], "differences are of no use");
+    }
+
+    #[test]
+    fn past_is_bounded_in_bytes_and_its_beginning_stays_known() {
+        let feed = Feed::default();
+        let mut tap = feed.tap();
+        tap.channel(1, &TEXT);
+        let large = vec![0; PAST_BYTES / 4];
+        (0..10).for_each(|second| tap.message(1, second * S, &large));
+        let (queue, _) = feed.join();
+        feed.subscribe(&queue, 1, 7, 60);
+        assert_eq!(all(&queue).len(), 5, "four messages, and the state before them");
+        assert!(lock(&feed.0).past_bytes <= PAST_BYTES);
     }
 }

@@ -15,7 +15,7 @@ const LONGEST: usize = 4096;
 const LINKS: usize = 4096;
 
 /// Encoded transforms, in the order of the first message of each link.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub struct Frames {
     transforms: Vec<Vec<u8>>,
     /// Index of each link's transform.

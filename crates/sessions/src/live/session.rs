@@ -9,6 +9,7 @@ use serde_json::{Value, json};
 
 use crate::live::{
     commands::{Knob, SERVICES, Service, Token},
+    feed::PAST_S,
     protocol::{self, Parameter, Request, ServiceCall, StatusLevel, Subscription},
 };
 
@@ -20,6 +21,14 @@ pub const MISTAKES: u32 = 32;
 pub const VELOCITY: &str = "/operator/velocity";
 /// The parameter for the token. Its value shows only whether the token was accepted.
 pub const TOKEN: &str = "/operator/token";
+/// The parameter that says whether the run accepts requests of this client: [`ACCESS_WORDS`].
+pub const ACCESS: &str = "/operator/access";
+/// The values of [`ACCESS`]: the run accepts no requests; requests need the token; the client has given the token.
+pub const ACCESS_WORDS: [&str; 3] = ["none", "token", "granted"];
+/// The parameter for the name under which the run knows the client as an operator.
+pub const NAME: &str = "/viewer/name";
+/// The parameter for the seconds of the past with which a subscription begins, 0 to [`PAST_S`].
+pub const PAST: &str = "/viewer/past";
 /// Knob position for full speed.
 const FULL: u16 = 1000;
 /// Number of characters of a client's message that the answer quotes.
@@ -37,12 +46,14 @@ pub enum Action {
     Text(String),
     /// Send a binary message.
     Bytes(Vec<u8>),
-    /// Send the messages of a channel, beginning with the newest one.
+    /// Send the messages of a channel, beginning with the newest one, or with the past.
     Subscribe {
         /// The channel.
         channel: u16,
         /// The client's number of the subscription.
         subscription: u32,
+        /// Seconds of the past.
+        past_s: u64,
     },
     /// Stop sending the messages of a channel.
     Unsubscribe {
@@ -86,6 +97,8 @@ pub struct Rights {
     pub knob: Option<Knob>,
     /// The token that a request must contain; `None` if the run accepts no requests.
     pub token: Option<Token>,
+    /// The name under which the run knows the client as an operator.
+    pub name: String,
 }
 
 /// The state of one client's session.
@@ -96,6 +109,8 @@ pub struct Session {
     subscriptions: BTreeMap<u32, u16>,
     /// True if the client has set the token as a parameter.
     has_token: bool,
+    /// Seconds of the past with which a subscription begins.
+    past_s: u64,
     /// The knob position sent last; `None` if the client has not subscribed to it.
     knob: Option<u16>,
     mistakes: u32,
@@ -199,7 +214,15 @@ impl Session {
         let knob = self.rights.knob.as_ref().map(|knob| (VELOCITY, json!(knob.get())));
         let accepted = if self.has_token { "accepted" } else { "" };
         let token = self.rights.token.as_ref().map(|_| (TOKEN, json!(accepted)));
-        let all = knob.into_iter().chain(token).filter(|(name, _)| is_wanted(names, name));
+        let [none, needed, granted] = ACCESS_WORDS;
+        let access = match &self.rights.token {
+            None => none,
+            Some(_) if self.has_token => granted,
+            Some(_) => needed,
+        };
+        let own =
+            [(ACCESS, json!(access)), (NAME, json!(self.rights.name)), (PAST, json!(self.past_s))];
+        let all = knob.into_iter().chain(token).chain(own).filter(|(name, _)| is_wanted(names, name));
         let parameters: Vec<Parameter> =
             all.map(|(name, value)| Parameter { name: name.to_owned(), value }).collect();
         protocol::parameter_values(&parameters, id)
@@ -210,6 +233,13 @@ impl Session {
     }
 
     fn set_one(&mut self, Parameter { name, value }: &Parameter, id: Option<&str>) -> Vec<Action> {
+        if name == PAST {
+            let Some(past_s) = whole(value, PAST_S) else {
+                return self.wrong(&format!("{PAST} is a whole number from 0 to {PAST_S}"));
+            };
+            self.past_s = past_s;
+            return id.map(|id| Action::Text(self.parameters(&[PAST.to_owned()], Some(id)))).into_iter().collect();
+        }
         let Some(token) = &self.rights.token else { return self.wrong(NO_REQUESTS) };
         match name.as_str() {
             TOKEN if value.as_str().is_some_and(|given| token.is(given)) => {
@@ -229,7 +259,7 @@ impl Session {
                 }
                 None => self.wrong(&format!("{VELOCITY} is a whole number from 0 to {FULL}")),
             },
-            _ => self.wrong(&format!("{VELOCITY} or {TOKEN} was expected; found {}", quoted(name))),
+            _ => self.wrong(&format!("{VELOCITY}, {TOKEN} or {PAST} was expected; found {}", quoted(name))),
         }
     }
 
@@ -281,7 +311,7 @@ impl Session {
             return self.wrong(&format!("a client has {SUBSCRIPTIONS} subscriptions at most"));
         }
         self.subscriptions.insert(id, channel);
-        vec![Action::Subscribe { channel, subscription: id }]
+        vec![Action::Subscribe { channel, subscription: id, past_s: self.past_s }]
     }
 
     fn unsubscribe(&mut self, id: u32) -> Vec<Action> {
@@ -310,10 +340,15 @@ fn is_wanted(names: &[String], name: &str) -> bool {
     names.is_empty() || names.iter().any(|wanted| wanted == name)
 }
 
-/// Parses a knob position; viewers may send it as a decimal number.
+/// Parses a knob position.
 fn knob(value: &Value) -> Option<u16> {
+    u16::try_from(whole(value, FULL.into())?).ok()
+}
+
+/// A whole number up to a limit; viewers may send it as a decimal number.
+fn whole(value: &Value, limit: u64) -> Option<u64> {
     let number = value.as_f64()?;
-    (0..=FULL).find(|velocity| f64::from(*velocity) == number)
+    (0..=limit).find(|whole| *whole as f64 == number)
 }
 
 /// The first [`QUOTED`] characters of a client's message, without control characters.
@@ -343,7 +378,8 @@ mod tests {
     #[test]
     fn a_channel_is_subscribed_once_and_let_go() {
         let mut session = Session::default();
-        assert_eq!(subscribe(&mut session, 7, 1), [Action::Subscribe { channel: 1, subscription: 7 }]);
+        let subscribed = [Action::Subscribe { channel: 1, subscription: 7, past_s: 0 }];
+        assert_eq!(subscribe(&mut session, 7, 1), subscribed);
         assert!(status_of(&subscribe(&mut session, 7, 2)).contains("subscription 7 is in use"));
         assert!(status_of(&subscribe(&mut session, 8, 1)).contains("channel 1 is subscribed already"));
         let end =
@@ -391,7 +427,7 @@ mod tests {
         let (token, knob) = (Token::random().unwrap(), Knob::default());
         knob.set(1000);
         let word = token.reveal().to_owned();
-        (Session::new(Rights { knob: Some(knob.clone()), token: Some(token) }), word, knob)
+        (Session::new(Rights { knob: Some(knob.clone()), token: Some(token), ..Rights::default() }), word, knob)
     }
 
     fn call(session: &mut Session, service: u32, payload: &Value) -> Vec<Action> {
@@ -433,7 +469,7 @@ mod tests {
 
     #[test]
     fn a_run_without_operators_takes_no_calls() {
-        let mut session = Session::new(Rights { knob: Some(Knob::default()), token: None });
+        let mut session = Session::new(Rights { knob: Some(Knob::default()), ..Rights::default() });
         assert_eq!(session.services(), None);
         assert!(failure_of(&call(&mut session, 4, &json!({ "token": "" }))).contains("accepts no requests"));
         assert!(status_of(&set(&mut session, VELOCITY, json!(5))).contains("accepts no requests"));
@@ -474,6 +510,36 @@ mod tests {
         session.text(r#"{"op":"unsubscribeParameterUpdates","parameterNames":[]}"#, |_| true);
         knob.set(7);
         assert_eq!(session.knob(), None);
+    }
+
+    fn value_of(session: &mut Session, name: &str) -> Value {
+        let text = json!({ "op": "getParameters", "parameterNames": [name], "id": "b" }).to_string();
+        let [Action::Text(values)] = &session.text(&text, |_| true)[..] else { panic!() };
+        serde_json::from_str::<Value>(values).unwrap()["parameters"][0]["value"].clone()
+    }
+
+    #[test]
+    fn client_knows_whether_it_may_command() {
+        let mut watching = Session::new(Rights { name: "viewer-2".into(), ..Rights::default() });
+        assert_eq!(value_of(&mut watching, ACCESS), "none");
+        assert_eq!(value_of(&mut watching, NAME), "viewer-2");
+        let (mut session, token, _) = permitted();
+        assert_eq!(value_of(&mut session, ACCESS), "token");
+        set(&mut session, SECRET, json!(token));
+        assert_eq!(value_of(&mut session, ACCESS), "granted");
+    }
+
+    #[test]
+    fn client_without_a_token_asks_for_the_past() {
+        let mut session = Session::default();
+        assert_eq!(value_of(&mut session, PAST), 0);
+        for wrong in [json!(61), json!(-1), json!(0.5), json!("60"), json!(null)] {
+            assert!(status_of(&set(&mut session, PAST, wrong)).contains("from 0 to 60"));
+        }
+        let [Action::Text(set)] = &set(&mut session, PAST, json!(60.0))[..] else { panic!() };
+        assert!(set.contains("60"), "{set}");
+        let subscribed = [Action::Subscribe { channel: 1, subscription: 7, past_s: 60 }];
+        assert_eq!(subscribe(&mut session, 7, 1), subscribed);
     }
 
     proptest::proptest! {
