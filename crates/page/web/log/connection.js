@@ -12,6 +12,8 @@ const CODE = { message: 1, time: 2, response: 3, request: 2 };
 const LEFT_OUT = ['/replay', '/trail', '/t3i/link_tx', '/robot_description'];
 /** Silence after which the connection counts as lost, milliseconds. */
 const SILENCE = 850;
+/** Longest time that counts as silence between two looks, milliseconds. */
+const GAP = 250;
 /** Pauses before the attempts to connect again, milliseconds; the last one repeats. */
 const PAUSES = [250, 500, 1000, 2000];
 /** Time limit of an answer, milliseconds: that of the run, and the way. */
@@ -19,6 +21,11 @@ const PATIENCE = 3000;
 /** The service for any line of an operator. */
 const REQUEST = '/operator/request';
 const TOKEN = '/operator/token';
+/** Name of this client among the operators, and the seconds of the past that it wants. */
+const NAME = '/viewer/name';
+const PAST = '/viewer/past';
+/** Most seconds of the past that the server keeps. */
+const KEPT = 60;
 /** Level of a status that refuses something. */
 const ERROR = 2;
 /** Close code of a run that has ended. */
@@ -41,8 +48,13 @@ export class Connection {
     this.receiver = receiver;
     /** @type {State} */
     this.state = 'connecting';
-    /** Time of the last message, as `performance.now` has it. */
-    this.heard = performance.now();
+    /** Time of the last tick that arrived, as `performance.now` has it; null before the first. @type {number | null} */
+    this.heard = null;
+    /** Time of the last message, or of the last attempt. */
+    this.received = performance.now();
+    /** Silence since the last tick, milliseconds, and the time of the last look at it. */
+    this.silent = 0;
+    this.looked = performance.now();
     this.attempts = 0;
     /** Time of the next attempt. */
     this.next = 0;
@@ -53,6 +65,8 @@ export class Connection {
     /** Number of the service for requests; null if the run accepts none. @type {number | null} */
     this.service = null;
     this.token = '';
+    /** Name of this client among the operators of the run. */
+    this.name = '';
     /** @type {'none' | 'asked' | 'accepted'} */
     this.right = 'none';
     /** @type {Map<number, { resolve: (answer: string) => void, reject: (error: Error) => void }>} */
@@ -68,7 +82,7 @@ export class Connection {
     this.topics.clear();
     this.service = null;
     this.right = 'none';
-    this.heard = performance.now();
+    this.received = performance.now();
     socket.onmessage = ({ data }) => {
       if (this.socket === socket) this.take(data);
     };
@@ -80,9 +94,12 @@ export class Connection {
   /** Check for silence, and connect again when it is time. Call it often. */
   watch() {
     const now = performance.now();
-    if (this.state === 'ok' && now - this.heard > SILENCE) this.become('lost');
+    // A page that was held up has not yet read what has arrived: a gap between two looks counts little.
+    this.silent += Math.min(now - this.looked, GAP);
+    this.looked = now;
+    if (this.state === 'ok' && this.silent > SILENCE) this.become('lost');
     // An attempt that gets no answer is given up.
-    if (this.socket && this.state !== 'ok' && now - this.heard > 2 * PATIENCE) this.lose('lost');
+    if (this.socket && this.state !== 'ok' && now - this.received > 2 * PATIENCE) this.lose('lost');
     if (!this.socket && now >= this.next) this.connect();
   }
 
@@ -108,7 +125,7 @@ export class Connection {
 
   /** @param {string | ArrayBuffer} data */
   take(data) {
-    this.heard = performance.now();
+    this.received = performance.now();
     if (typeof data === 'string') {
       this.text(JSON.parse(data));
       return;
@@ -117,7 +134,7 @@ export class Connection {
     const code = view.getUint8(0);
     if (code === CODE.time) {
       // Only a run sends the time: the connection counts as alive from the first tick on.
-      this.attempts = 0;
+      [this.heard, this.silent, this.attempts] = [this.received, 0, 0];
       this.become('ok');
       this.receiver.time(view.getBigUint64(1, true));
     } else if (code === CODE.message) {
@@ -130,10 +147,19 @@ export class Connection {
     }
   }
 
+  /** Seconds of the past that the page has not seen. */
+  missed() {
+    if (this.heard === null) return KEPT;
+    return Math.min(KEPT, Math.ceil((performance.now() - this.heard) / 1000) + 1);
+  }
+
   /** @param {any} message */
   text(message) {
-    if (message.op === 'serverInfo') this.receiver.begin(message);
-    else if (message.op === 'advertise') this.advertised(message.channels);
+    if (message.op === 'serverInfo') {
+      this.receiver.begin(message);
+      this.send({ op: 'getParameters', parameterNames: [NAME], id: NAME });
+      this.send({ op: 'setParameters', parameters: [{ name: PAST, value: this.missed() }] });
+    } else if (message.op === 'advertise') this.advertised(message.channels);
     else if (message.op === 'advertiseServices') {
       const found = message.services.find((/** @type {any} */ it) => it.name === REQUEST);
       this.service = found?.id ?? null;
@@ -141,12 +167,14 @@ export class Connection {
       this.receiver.changed();
     } else if (message.op === 'serviceCallFailure') {
       this.answered(message.callId, (call) => call.reject(new Error(message.message)));
+    } else if (message.op === 'parameterValues' && message.id === NAME) {
+      this.name = String(message.parameters[0]?.value ?? '');
     } else if (message.op === 'parameterValues' && message.id === TOKEN) {
       this.right = 'accepted';
       this.receiver.changed();
     } else if (message.op === 'status' && message.level === ERROR && this.right === 'asked') {
       // The only message that can be wrong is the token.
-      [this.right, this.token] = ['none', ''];
+      this.right = 'none';
       this.receiver.changed();
     }
   }

@@ -29,16 +29,18 @@ export class LiveLog extends Log {
 
   /** Take a message; it is shown when its tick is complete. @param {Arrival} arrival */
   take(arrival) {
+    // After a loss the server begins with the state of a time that is known.
+    if (arrival.tick <= this.last && (this.loaded.get(arrival.topic)?.length ?? 0) > 0) return;
     this.waiting.push(arrival);
   }
 
   /** All messages up to a tick have arrived. @param {number} tick */
   complete(tick) {
     this.last = Math.max(this.last, tick);
-    if (this.first === 0) this.first = this.last;
     // A message that was sent again to a new viewer has the tick in which it was sent.
     const ready = this.waiting.filter((arrival) => arrival.tick <= tick);
     if (ready.length === 0) return;
+    if (this.first === 0) this.first = ready.reduce((least, arrival) => Math.min(least, arrival.tick), tick);
     this.waiting = this.waiting.filter((arrival) => arrival.tick > tick);
     for (const { topic, tick: of, data } of ready) {
       const series = this.loaded.get(topic);

@@ -65,7 +65,8 @@ export function stateOf(run, id, tick) {
   const reason = reasonText(status.reason ?? status.fault);
   // A gripper that is not on the arm is not stepped, and T3 Interface gets a command in every tick.
   const dormant = id.endsWith('_grip') && !order;
-  const command = order?.text ?? (id === 't3i' ? word(status.command) : '');
+  const line = own === 'task' ? run.job[run.line(tick)]?.text : undefined;
+  const command = order?.text ?? line ?? (id === 't3i' ? word(status.command) : '');
   return {
     command,
     number: String(status.echo ?? ''),

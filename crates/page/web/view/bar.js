@@ -132,7 +132,8 @@ function segment(line, index, at, tick, mode) {
   const length = line.end === Infinity ? SHORT * 2 : line.end - line.start;
   const width = line.station ? 0.4 : Math.max(1, Math.min(6, length / SHORT));
   const done = index < at ? 'd' : index === at ? `c ${mode}` : '';
-  const share = index === at && length > 0 && line.end !== Infinity ? Math.min(1, (tick - line.start) / length) : 1;
+  const share =
+    index === at && length > 0 && line.end !== Infinity ? Math.min(1, (tick - line.start) / length) : 1;
   return h('i', { class: done, style: `flex:${width.toFixed(2)};--f:${(share * 100).toFixed(1)}%` });
 }
 

@@ -195,7 +195,7 @@ function velocity(effect, percent) {
 /** @param {import('./ui.js').Context} context @param {Effects} does @param {import('./dom.js').Size} size */
 function commanding({ run, live, ui }, does, size) {
   const commander = run.view('/operator/state', run.last)?.operator ?? '';
-  const you = commander === live?.viewer ? ' (you)' : '';
+  const you = commander === live?.connection.name ? ' (you)' : '';
   const who = commander === '' ? 'You may command' : `${commander}${you} commands`;
   const small = (/** @type {string} */ id, /** @type {Effect} */ effect, /** @type {string} */ name) =>
     h(

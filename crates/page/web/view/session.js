@@ -23,8 +23,6 @@ export class Session {
     this.zero = BigInt(log.run.get(TICK_0) ?? '0');
     /** Identifier of the run; empty before the first connection. */
     this.id = '';
-    /** Name of this page among the operators of the run. */
-    this.viewer = '';
     /** The line that was sent last, and its answer. @type {Answer | null} */
     this.answer = null;
     /** Lines that were sent from the field, the last one at the end. @type {string[]} */
@@ -53,7 +51,6 @@ export class Session {
     // Another run has another job and another time: the page of that run is needed.
     if (this.id !== '' && this.id !== info.sessionId) location.reload();
     this.id = info.sessionId;
-    this.viewer = String(info.metadata?.viewer ?? '');
   }
 
   /** The token of the address or of this tab. The address must not keep it: it would stay in the history. */
@@ -88,7 +85,7 @@ export class Session {
     const { state, heard, attempts, next } = this.connection;
     if (state === 'ok') return null;
     const now = performance.now();
-    const ago = `${((now - heard) / 1000).toFixed(1)} s ago`;
+    const ago = heard === null ? 'not seen yet' : `${((now - heard) / 1000).toFixed(1)} s ago`;
     const again = next > now ? `, the next in ${Math.ceil((next - now) / 1000)} s` : '';
     return { state, ago, attempt: attempts > 0 ? `attempt ${attempts}${again}` : '' };
   }

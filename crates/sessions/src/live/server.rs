@@ -38,8 +38,6 @@ pub const MESSAGE: usize = 64 * 1024;
 const HANDSHAKE: Duration = Duration::from_secs(3);
 /// Time at the end in which clients can still read.
 const LAST: Duration = Duration::from_secs(2);
-/// Metadata of the first message: the client's name as an operator.
-const VIEWER: &str = "viewer";
 /// Pause after a connection that could not be accepted.
 const AGAIN: Duration = Duration::from_millis(100);
 
@@ -207,10 +205,8 @@ fn serve(stream: TcpStream, options: &Options, feed: Feed, viewers: &AtomicU64) 
     let socket = WebSocket::from_partially_read(connection, rest, Role::Server, Some(limits));
     let number = viewers.fetch_add(1, Ordering::Relaxed).saturating_add(1);
     let Ok(name) = format!("viewer-{number}").parse() else { return };
-    let mut info = options.info.clone();
-    info.metadata.insert(VIEWER.to_owned(), format!("viewer-{number}"));
     let (queue, channels) = feed.join();
-    Client::new(socket, feed, queue, options, name).run(vec![info.encode(), channels]);
+    Client::new(socket, feed, queue, options, name).run(vec![options.info.encode(), channels]);
 }
 
 /// Checks the origin of a client, and chooses the subprotocol.
