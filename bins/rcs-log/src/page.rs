@@ -10,8 +10,13 @@ use os_io::{
     replace::{Format, check_output, replace},
     stderr_line,
 };
-use record::input::Attachment;
+use record::{
+    Log,
+    explanation::{self, REASONS, TABLES, reasons, tables},
+    input::Attachment,
+};
 use serde::Serialize;
+use serde_json::Value;
 
 use crate::{Error, info, story, why};
 
@@ -53,13 +58,21 @@ fn write(arguments: &Arguments) -> Result<PathBuf, Error> {
     let answers = [
         json("info.json", &info::summary(&log, &arguments.file)?)?,
         json("why.json", &why::explanation(&log, &arguments.file, None)?)?,
-        json("tables.json", &page::tables())?,
-        json("reasons.json", &page::reasons())?,
+        json("tables.json", &of_log(&log, TABLES, tables))?,
+        json("reasons.json", &of_log(&log, REASONS, reasons))?,
     ];
     let name = arguments.file.file_name().unwrap_or_default().to_string_lossy().into_owned();
     let document = page::document(&name, page::Content::Log(&page::pack(&log, &answers)));
     replace(&output, document.as_bytes()).map_err(unwritten)?;
     Ok(output)
+}
+
+/// Tables or reasons of a log; those of this program if the log has none.
+fn of_log(log: &Log, name: &str, own: impl FnOnce() -> Value) -> Value {
+    explanation::of_log(log, name).unwrap_or_else(|| {
+        os_io::stderr_line!("rcs-log: the log has no {name}: those of this program are shown");
+        own()
+    })
 }
 
 /// An answer of this program as a file in the page.

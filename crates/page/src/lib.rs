@@ -5,13 +5,11 @@
 //! [`document`] writes style, modules and log into one HTML file ([`inline`]).
 //!
 //! Browsers cannot decompress zstd everywhere. [`pack`] copies a log with deflate, which all of them have, sorted by
-//! channel, and without the channels that the page does not show. [`tables`] and [`reasons`] are what a page has to
-//! know of the program: the decision tables, and the reasons with their remedies.
+//! channel, and without the channels that the page does not show. The decision tables, and the reasons with their remedies,
+//! are those of the log.
 
 mod inline;
 mod pack;
-mod tables;
 
 pub use inline::{Content, bundle, document};
 pub use pack::{pack, pack_start};
-pub use tables::{reasons, tables};

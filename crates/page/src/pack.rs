@@ -13,13 +13,16 @@ use flate2::{Compression, write::ZlibEncoder};
 use record::{
     Log,
     input::Attachment,
+    instruments::INSTRUMENTS,
+    ladder::LADDER,
     names::{END, REPLAY, RUN},
     proto::wire::{Fields, Value},
     tap::{Channel, Tap},
 };
 
 /// Topics that the page does not read: bytes for programs, and what it computes from other topics.
-const LEFT_OUT: [&str; 4] = [REPLAY, "/trail", "/t3i/link_tx", "/robot_description"];
+const LEFT_OUT: [&str; 6] =
+    [REPLAY, "/trail", "/t3i/link_tx", "/robot_description", LADDER, INSTRUMENTS];
 /// Attachments that the page reads.
 const KEPT: [&str; 2] = [Attachment::JOB, "faults.toml"];
 /// Size at which a chunk is closed, bytes before compression.

@@ -11,7 +11,7 @@ use crate::{
 pub const CONTACTS: &str = "/contacts";
 
 /// An inch, metres.
-const INCH: f64 = 0.0254;
+pub(crate) const INCH: f64 = 0.0254;
 /// The mark of two things that may touch: its diameter, m, and its colour.
 const PERMITTED: (f64, Colour) = (0.03, [0.15, 0.75, 0.30, 0.9]);
 /// The mark of a collision.

@@ -73,6 +73,7 @@ impl Drain {
             }
             thread::sleep(IDLE);
         }
+        self.write_files(Tick(u64::MAX))?;
         self.write_shown(Tick(u64::MAX))?;
         self.write_notes(Tick(u64::MAX))?;
         self.write_operators(Tick(u64::MAX))?;
@@ -108,7 +109,15 @@ impl Drain {
         let record = if state.is_some() { &self.rotate(record)? } else { record };
         self.write_notes(record.tick)?;
         self.write_operators(record.tick)?;
-        while self.files.peek().is_ok_and(|(tick, _)| *tick <= record.tick) {
+        self.write_files(record.tick)?;
+        self.write_shown(record.tick)?;
+        let cell = latest(&mut self.cells, record.tick, |frame| frame.tick);
+        self.log.tick(record, state.as_ref(), cell.as_ref())?;
+        Ok(())
+    }
+
+    fn write_files(&mut self, until: Tick) -> Result<(), RecordError> {
+        while self.files.peek().is_ok_and(|(tick, _)| *tick <= until) {
             if let Ok((tick, attachment)) = self.files.pop() {
                 if let Some(rotation) = &mut self.rotation {
                     rotation.setup.attachments.push(attachment.clone());
@@ -116,9 +125,6 @@ impl Drain {
                 self.log.attach(tick, attachment)?;
             }
         }
-        self.write_shown(record.tick)?;
-        let cell = latest(&mut self.cells, record.tick, |frame| frame.tick);
-        self.log.tick(record, state.as_ref(), cell.as_ref())?;
         Ok(())
     }
 

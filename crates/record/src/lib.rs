@@ -11,7 +11,8 @@
 //! * [`reader`]: reads a log back, also one whose program was killed.
 //! * [`mod@replay`]: runs the control processes on the recorded inputs and compares every output buffer of every
 //!   tick, bit for bit.
-//! * [`views`], [`ladder`], [`rows`]: the state of the run for viewers.
+//! * [`views`], [`ladder`], [`instruments`], [`rows`]: the state of the run for viewers.
+//! * [`explanation`]: tables and reasons, so that a log explains itself.
 //! * [`layout`], [`delta`]: byte images, and what changed in them.
 //! * [`proto`]: the messages of the channels.
 //!
@@ -32,9 +33,11 @@ pub mod delta;
 mod described;
 mod drain;
 pub mod error;
+pub mod explanation;
 pub mod file;
 pub mod golden;
 pub mod input;
+pub mod instruments;
 pub mod ladder;
 pub mod layout;
 pub mod names;

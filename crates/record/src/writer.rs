@@ -9,6 +9,7 @@
 //! | `/meshes`, `/names` | shapes and names of bodies | at the start |
 //! | `/trail`, `/camera` | the path of the tool point, the pictures that vision analysed | once a second, on an answer |
 //! | `/ladder` | command, status and row of all processes | on change |
+//! | `/instruments` | openings and forces of the grippers in SI units | on change, and every ten seconds |
 //! | `/job/lines`, `/job/state`, `/operator/state`, `/cell/controller`, `/cell/parts`, `/cell/places` | the run outside the buffers ([`crate::views`]) | on change, and every ten seconds |
 //! | `/contacts` | a mark where the robot, or what it carries, touches something | on change |
 //! | `/log` | `foxglove.Log` | when there is a remark |
@@ -40,6 +41,7 @@ use crate::{
     channels::{Buffers, HeaderPlace, Output, headers},
     delta::Codec,
     input::{Attachment, CellFrame, End, Lost, Setup, Shown},
+    instruments::InstrumentsChannel,
     ladder::LadderChannel,
     layout,
     names::{EARLIER, END, LAYOUT, LOG_TOPIC, REPLAY, RESULT, RUN},
@@ -125,6 +127,7 @@ pub struct LogWriter<W: Write + Seek> {
     headers: Vec<HeaderPlace>,
     scene: Option<Scene>,
     ladder: LadderChannel,
+    instruments: InstrumentsChannel,
     views: Views,
     /// When the job began the last action of the workstation that `/log` has.
     action_began: u64,
@@ -205,7 +208,9 @@ impl<W: Write + Seek> LogWriter<W> {
         let scene = setup.cell.map(|model| Scene::open(&mut output, model)).transpose()?;
         let log = output.protobuf(LOG_TOPIC, foxglove::LOG, &foxglove::log_descriptor())?;
         let replay = output.protobuf(REPLAY, "rcs.ReplayTick", &replay_descriptor())?;
-        let (ladder, views) = (LadderChannel::open(&mut output)?, Views::open(&mut output)?);
+        let ladder = LadderChannel::open(&mut output)?;
+        let instruments = InstrumentsChannel::open(&mut output)?;
+        let views = Views::open(&mut output)?;
         Ok(Self {
             output,
             replay,
@@ -217,6 +222,7 @@ impl<W: Write + Seek> LogWriter<W> {
             headers: headers(),
             scene,
             ladder,
+            instruments,
             views,
             action_began: 0,
             operator: OperatorChannel::default(),
@@ -318,6 +324,7 @@ impl<W: Write + Seek> LogWriter<W> {
         self.memory.write(output, tick, &last.memory, &now.memory, all)?;
         self.rows.write(output, tick, &now.memory, all)?;
         self.ladder.write(output, tick, (hws, memory), all)?;
+        self.instruments.write(output, tick, memory, all)?;
         if all { self.views.repeat(output, tick) } else { Ok(()) }
     }
 

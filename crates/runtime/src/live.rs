@@ -7,7 +7,7 @@ use std::{
 };
 
 use page::Content;
-use record::{Attachment, Epoch, Tap};
+use record::{Attachment, Epoch, Tap, explanation};
 use serde_json::{Value, json};
 use sessions::live::{
     Feed, NoRandom, Options, Port, Server,
@@ -61,8 +61,8 @@ impl Beginning {
         let mut run = self.run.clone();
         run.insert(TICK_0.to_owned(), self.epoch.of(Tick::BEFORE_START).to_string());
         let added = [
-            json("tables.json", &page::tables()),
-            json("reasons.json", &page::reasons()),
+            json(explanation::TABLES, &explanation::tables()),
+            json(explanation::REASONS, &explanation::reasons()),
             json("words.json", &json!(self.words)),
         ];
         page::document(job, Content::Run(&page::pack_start(&run, &self.attachments, &added)))

@@ -18,7 +18,8 @@ use plant::{Cell, camera::Subject, clearance::Contact, convert::metres, descript
 use rcs_core::{digest::Digest, tick::Tick};
 use record::{
     Attachment, CellFrame, CellModel, End, Epoch, Link, LogFile, Model, Name, OperatorLine, Pace,
-    RecordError, Recorder, Shown, Summary, Timing, Touch, Transform, views::View,
+    RecordError, Recorder, Shown, Summary, Timing, Touch, Transform, explanation,
+    views::View,
 };
 use taskdata::load::{
     Source, Store,
@@ -31,6 +32,8 @@ use crate::{
     event::Event,
     live::{Beginning, Live, Words},
     operator::first_words,
+    live::Live,
+    result::FailureResult,
     setup::{EXTENSION, Setup},
 };
 
@@ -133,7 +136,7 @@ impl Log {
             joints: joints.collect(),
         };
         let links = model.links.iter().map(|link| link.name.clone()).collect();
-        let attachments = attachments(setup);
+        let mut attachments = attachments(setup);
         let (pace, epoch) = match config.clock {
             ClockKind::Fast => (Pace::Wait, Epoch::Fixed),
             ClockKind::Real => (Pace::Drop, Epoch::now()),
@@ -145,6 +148,8 @@ impl Log {
             epoch,
             words: words(&setup.store),
         });
+        // The configuration does not depend on them.
+        attachments.extend(explanation::attachments());
         let start = record::Setup { epoch, run, attachments, cell: Some(model) };
         let recorder = Recorder::start_in(file, pace, start, tap, config.log_limit)?;
         Ok(Self {
@@ -234,6 +239,14 @@ impl Log {
     pub fn played(&mut self, tick: Tick, number: u32, job: &Job) {
         let source = Source { name: format!("{}.{EXTENSION}", job.name), text: job.source().text.clone() };
         self.recorder.attach(tick, Attachment::played(number, &source));
+    }
+
+    /// Attach what went wrong first and what followed, at the end of a run.
+    pub fn failure(&mut self, tick: Tick, failure: &FailureResult) {
+        // Text and numbers, which JSON can hold.
+        let data = serde_json::to_vec(failure).unwrap_or_default();
+        let (name, media_type) = (explanation::FAILURE.to_owned(), "application/json".to_owned());
+        self.recorder.attach(tick, Attachment { name, media_type, data });
     }
 
     /// Set the times of the tick; call it before [`Log::tick`] of the same tick. Not for runs in fast clock: equal runs

@@ -142,10 +142,14 @@ impl Run {
     fn finish_log(&mut self, ending: &Ending, result: &mut RunResult) -> String {
         self.show_state();
         let Some(mut log) = self.log.take() else { return "none".to_owned() };
+        let tick = self.closed.tick().next();
         if let Ending::Failed(account) = ending {
             for sentence in account.sentences() {
-                log.event(self.closed.tick().next(), &Event::WentWrong(sentence));
+                log.event(tick, &Event::WentWrong(sentence));
             }
+        }
+        if let Some(failure) = &result.failure {
+            log.failure(tick, failure);
         }
         let outcome = ending.text().into_owned();
         let path = self.log_path.take();

@@ -1,4 +1,9 @@
-//! The decision tables and the reasons as JSON, so that the page can show a row with its meaning.
+//! What a log carries so that it explains itself, also to a program with other tables: the decision tables of the run, and
+//! the reasons of failures with their remedies, as JSON.
+//!
+//! MCAP does not compress attachments, so these are compressed with zstd.
+
+use std::io::Read as _;
 
 use interfaces::Reason;
 use levels::ladder::Ladder;
@@ -8,6 +13,40 @@ use rcs_core::{
     table::{ActionText, Row, Table, Variable},
 };
 use serde_json::{Value, json};
+
+use crate::{Attachment, Log};
+
+/// Name of the attachment with the decision tables.
+pub const TABLES: &str = "tables.json.zst";
+/// Name of the attachment with the reasons.
+pub const REASONS: &str = "reasons.json.zst";
+/// Name of the attachment with what went wrong first and what followed; only in the log of a failed run.
+pub const FAILURE: &str = "failure.json";
+
+/// Level of the compression. A log has these files once.
+const COMPRESSION: i32 = 19;
+/// Greatest size of a decompressed file, bytes: a damaged one may claim any size.
+const LARGEST: u64 = 16 << 20;
+
+/// The decision tables and the reasons of this program, as attachments.
+#[must_use]
+pub fn attachments() -> [Attachment; 2] {
+    [(TABLES, tables()), (REASONS, reasons())].map(|(name, value)| {
+        // Compression into memory cannot fail.
+        let data = zstd::encode_all(value.to_string().as_bytes(), COMPRESSION).unwrap_or_default();
+        Attachment { name: name.into(), media_type: "application/zstd".into(), data }
+    })
+}
+
+/// The tables of a log, or its reasons, by the name of the attachment; `None` if the log is older than these attachments,
+/// or if the attachment is damaged.
+#[must_use]
+pub fn of_log(log: &Log, name: &str) -> Option<Value> {
+    let data = &log.attachment(name)?.data;
+    let mut text = Vec::new();
+    zstd::Decoder::new(data.as_slice()).ok()?.take(LARGEST).read_to_end(&mut text).ok()?;
+    serde_json::from_slice(&text).ok()
+}
 
 /// The decision tables of all processes: `[{process, tables: [{name, doc, source, steps, variables, actions, rows}]}]`.
 #[must_use]
@@ -91,6 +130,13 @@ mod tests {
                 assert_eq!(shown["rows"].as_array().unwrap().len(), table.rows.len());
             }
         }
+    }
+
+    #[test]
+    fn attachments_are_small() {
+        let [tables, reasons] = attachments().map(|file| file.data.len());
+        assert!((1..64 << 10).contains(&tables), "{tables}");
+        assert!((1..16 << 10).contains(&reasons), "{reasons}");
     }
 
     #[test]
