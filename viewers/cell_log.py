@@ -5,6 +5,7 @@
 
 import bisect
 import re
+import struct
 from dataclasses import dataclass, field
 
 from mcap.reader import make_reader
@@ -52,6 +53,9 @@ class CellLog:
     moves: dict = field(default_factory=dict)  # frame: ([tick], [Pose])
     lines: list = field(default_factory=list)  # (tick, source, text)
     marks: list = field(default_factory=list)  # (ns, [Mark]): those that there are from then on
+    pictures: list = field(default_factory=list)  # (ns, PNG file): what the wrist camera saw
+    joints: list = field(default_factory=list)  # (ns, {name: position}): radians
+    levels: list = field(default_factory=list)  # (ns, [processes]): the ladder from then on
 
     def pose(self, frame, tick):
         """The pose of a frame in its parent as it holds in a tick."""
@@ -81,6 +85,30 @@ def mark(text, ball):
     return Mark(triple(ball.pose.position), ball.size.x, colour, text)
 
 
+def joint_state(data):
+    """Names and positions of a sensor_msgs/JointState in little-endian CDR."""
+    body, at = data[4:], 8  # after the time stamp
+
+    def number():
+        nonlocal at
+        at = (at + 3) // 4 * 4
+        (value,) = struct.unpack_from("<I", body, at)
+        at += 4
+        return value
+
+    def text():
+        nonlocal at
+        length = number()
+        at += length
+        return body[at - length : at - 1].decode()
+
+    text()  # the frame
+    names = [text() for _ in range(number())]
+    count = number()
+    at = (at + 7) // 8 * 8
+    return dict(zip(names, struct.unpack_from(f"<{count}d", body, at)))
+
+
 def read(path):
     """Read a log that `rcs-run` wrote."""
     log = CellLog()
@@ -89,11 +117,17 @@ def read(path):
         statistics = reader.get_summary().statistics
         log.start = statistics.message_start_time
         log.ticks = (statistics.message_end_time - log.start) // TICK
-        topics = ["/meshes", "/names", "/tf", "/tf_static", "/log", "/contacts"]
+        joints = reader.iter_messages(topics=["/joint_states"])
+        log.joints = [(message.log_time, joint_state(message.data)) for _, _, message in joints]
+        topics = ["/meshes", "/names", "/tf", "/tf_static", "/log", "/contacts", "/camera", "/ladder"]
         for _, channel, message, decoded in reader.iter_decoded_messages(topics=topics):
             tick = (message.log_time - log.start) // TICK
             if channel.topic == "/log":
                 log.lines.append((tick, decoded.name, decoded.message))
+            elif channel.topic == "/camera":
+                log.pictures.append((message.log_time, decoded.data))
+            elif channel.topic == "/ladder":
+                log.levels.append((message.log_time, list(decoded.processes)))
             elif channel.topic == "/contacts":
                 balls = [(e.id, e.spheres[0]) for e in decoded.entities if e.spheres]
                 log.marks.append((message.log_time, [mark(text, ball) for text, ball in balls]))

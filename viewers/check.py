@@ -20,6 +20,7 @@ import argparse
 import datetime
 import json
 import re
+import shlex
 import shutil
 import subprocess
 import sys
@@ -79,10 +80,9 @@ def panels(part):
     return panels(part["first"]) + panels(part["second"])
 
 
-def fault(panel, page, picture):
-    """What is wrong with a panel, in words; None if nothing is."""
+def fault(panel, shown, picture):
+    """What is wrong with a panel, in words; None if nothing is. `shown` is the page's answer to PANEL."""
     kind = panel.partition("!")[0]
-    shown = page.ask(PANEL.replace("${ID}", panel))
     if shown is None:
         return "is not shown"
     text = shown["text"]
@@ -92,7 +92,9 @@ def fault(panel, page, picture):
     if kind == "RosOut":
         return None if re.search(r"\[(INFO|WARN|ERROR)\]|->", text) else "has no lines"
     if kind == "RawMessages":
-        return None if re.search(r"^(state|row|table)", text, re.MULTILINE) else f"has no message: {text!r}"
+        return None if re.search(r"^(state|row|table|phase|stage|source)", text, re.MULTILINE) else f"has no message: {text!r}"
+    if kind == "Table":
+        return None if "E-move" in text else f"has no row of E-move: {text!r}"
     if shown["canvas"] is None:
         return "draws nothing"
     x, y, width, height = map(round, shown["canvas"])
@@ -169,8 +171,10 @@ def look(arguments, page, name, wanted):
     end, wrong = time.monotonic() + arguments.patience, {}
     while True:
         time.sleep(3.0)
+        # The places of the panels first: a panel that appears later must not be looked for in an older picture.
+        shown = {panel: page.ask(PANEL.replace("${ID}", panel)) for panel in wanted}
         picture = page.picture()
-        found = {panel: fault(panel, page, picture) for panel in wanted}
+        found = {panel: fault(panel, shown[panel], picture) for panel in wanted}
         wrong = {panel: text for panel, text in found.items() if text}
         if not wrong or time.monotonic() > end:
             break
@@ -181,13 +185,14 @@ def look(arguments, page, name, wanted):
 
 
 def rerun(arguments):
-    """Open the log in Rerun with rerun.sh. Returns what is wrong."""
+    """Open the log in Rerun, with rerun.sh or the command of the last lines of a run. Returns what is wrong."""
     screen = f"-screen 0 {arguments.size[0] + 100}x{arguments.size[1] + 100}x24"
     window = shutil.which("xvfb-run") and ["xvfb-run", "--auto-servernum", "--server-args", screen] or []
     with tempfile.TemporaryDirectory() as folder:
         shot = Path(folder, "shot.png")
         options = ["--window-size", "x".join(map(str, arguments.size)), "--screenshot-to", str(shot)]
-        done = subprocess.run([*window, HERE / "rerun.sh", arguments.source, *options], capture_output=True, text=True, check=False)
+        command = shlex.split(arguments.command) if arguments.command else [str(HERE / "rerun.sh"), arguments.source]
+        done = subprocess.run([*window, *command, *options], capture_output=True, text=True, check=False)
         if not shot.exists():
             return [f"Rerun ends without a picture: {done.stderr[-400:]}"]
         picture = Image.open(shot).convert("RGB")
@@ -207,6 +212,7 @@ def main():
     parser.add_argument("source", help="a log, or the address of a live view, ws://...")
     parser.add_argument("--lichtblick", type=Path, help="the directory of a web build")
     parser.add_argument("--rerun", action="store_true", help="open the log in Rerun too")
+    parser.add_argument("--command", help="the command that opens the log in Rerun, as a run prints it")
     parser.add_argument("--layout", type=Path, default=HERE / "foxglove.json")
     parser.add_argument("--chromium", default="chromium", help="the program")
     parser.add_argument("--port", type=int, default=0, help="of the pages; a live view must be told with --live-origin")

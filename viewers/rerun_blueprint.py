@@ -4,8 +4,8 @@
     pip install rerun-sdk
     python3 viewers/rerun_blueprint.py          # writes viewers/cell.rbl
 
-The cell moves on the left; beside it are the curves of the joints and of the gripper, and the lines of the log. Everything else
-in the log can be dragged in from the list of streams. Rerun takes an arrangement for recordings of one application: cell.rbl is
+The cell moves on the left; beside it are the curves of the joints, the picture of the camera, the rows of all processes and the
+lines of the log. Everything else in the log can be dragged in from the list of streams. Rerun takes an arrangement for recordings of one application: cell.rbl is
 for `linkbar`. viewers/rerun.sh converts a log, adds its meshes and opens it with an arrangement for its name; `rerun LOG
 viewers/cell.rbl` shows Rerun's own views instead.
 """
@@ -24,15 +24,20 @@ EYE = rrb.EyeControls3D(
 
 
 def blueprint(meshes: bool) -> rrb.Blueprint:
-    """The cell, the log, and curves; boxes and cylinders are left out where there are meshes."""
-    curves = rrb.Vertical(
-        rrb.TimeSeriesView(
-            origin="/joint_states/position",
-            name="Joints (rad, m)",
-            plot_legend=rrb.PlotLegend(visible=False),
-        ),
-        rrb.TextLogView(origin="/log", name="Log"),
-    )
+    """The cell, curves, the log; with the recording of rerun_meshes.py also meshes, rows and the camera's picture."""
+    if meshes:
+        joints = rrb.TimeSeriesView(origin="/joints", name="Joints (degrees)", plot_legend=rrb.PlotLegend(visible=True))
+        below = rrb.Tabs(
+            rrb.TextDocumentView(origin="/rows", name="Rows"),
+            rrb.TextLogView(origin="/log", name="Log"),
+        )
+        beside = rrb.Spatial2DView(origin="/vision", name="What vision saw")
+        curves = rrb.Vertical(rrb.Horizontal(joints, beside, column_shares=[3, 2]), below, row_shares=[2, 3])
+    else:
+        joints = rrb.TimeSeriesView(
+            origin="/joint_states/position", name="Joints (rad, m)", plot_legend=rrb.PlotLegend(visible=False)
+        )
+        curves = rrb.Vertical(joints, rrb.TextLogView(origin="/log", name="Log"))
     cell = rrb.Spatial3DView(
         origin="/",
         contents=["/meshes/**", "/names/**", "/marks/**", "/tf/**", "/tf_static/**"] if meshes else "/**",
