@@ -2,6 +2,7 @@
 
 use std::{
     io::Read as _,
+    path::Path,
     process::{Command, Stdio},
     thread,
     time::Duration,
@@ -53,7 +54,9 @@ fn finished_run_ends_with_the_place_of_the_part_and_the_next_commands() {
     assert!(part.starts_with("LINKBAR1 is at UNIT_1 sector 1, "), "{output}");
     assert_eq!(empty, "");
     assert!(watch.starts_with("watch ") && why.starts_with("ask why "), "{output}");
-    assert!(open.starts_with("open       rerun runs/linkbar.mcap"), "{output}");
+    let (script, layout) = opened(open);
+    assert!(script.ends_with("viewers/rerun.sh runs/linkbar.mcap"), "{output}");
+    assert!(Path::new(layout).is_file(), "{output}");
     // Nothing has to be on time in the fast clock.
     for timing in [" p50 ", "slowest", "punctual", "slots skipped"] {
         assert!(!output.contains(timing), "{timing} in\n{output}");
@@ -65,6 +68,47 @@ fn finished_run_ends_with_the_place_of_the_part_and_the_next_commands() {
     assert!(is_written && scratch.file("runs/linkbar.html").is_file(), "{page}");
     let (why, is_answered) = shown(&scratch, command(&output, "ask why"));
     assert!(is_answered && !why.is_empty(), "{why}");
+}
+
+/// The command that opens a log in Rerun, and the layout for Foxglove, in the line of a run.
+fn opened(line: &str) -> (&str, &str) {
+    let (command, hint) = line.strip_prefix("open ").and_then(|line| line.split_once('#')).expect(line);
+    let (_, layout) = hint.rsplit_once(' ').expect(line);
+    (command.trim(), layout)
+}
+
+/// True if a command succeeds.
+fn succeeds(program: &str, arguments: &[&str]) -> bool {
+    let status = Command::new(program).args(arguments).stdout(Stdio::null()).stderr(Stdio::null()).status();
+    status.is_ok_and(|status| status.success())
+}
+
+/// Opens what a run prints, in a window without a screen: Rerun, and Lichtblick if `RCS_LICHTBLICK` is the directory of a
+/// web build. `viewers/check.py` finds the robot in the picture.
+#[test]
+fn printed_commands_show_the_robot_in_the_viewers() {
+    let packages = "import rerun, mcap, mcap_protobuf, PIL, websockets";
+    let has_rerun = succeeds("python3", &["-c", packages])
+        && succeeds("rerun", &["--version"])
+        && succeeds("xvfb-run", &["--help"]);
+    let lichtblick = std::env::var("RCS_LICHTBLICK").ok();
+    if !has_rerun && lichtblick.is_none() {
+        eprintln!("skipped: rerun, its Python packages (docs/logs.md) and xvfb-run are needed, or RCS_LICHTBLICK");
+        return;
+    }
+    let scratch = Scratch::new("last-viewers");
+    let output = run(&scratch, "linkbar");
+    let (command, layout) = opened(output.lines().find(|line| line.starts_with("open ")).expect(&output));
+    let check = Path::new(layout).with_file_name("check.py");
+    let check = format!("python3 {} runs/linkbar.mcap --layout {layout}", check.display());
+    if has_rerun {
+        let (found, is_shown) = shown(&scratch, &format!("{check} --rerun --command '{command}'"));
+        assert!(is_shown, "{found}");
+    }
+    if let Some(directory) = lichtblick {
+        let (found, is_shown) = shown(&scratch, &format!("{check} --lichtblick '{directory}'"));
+        assert!(is_shown, "{found}");
+    }
 }
 
 #[test]

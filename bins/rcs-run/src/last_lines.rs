@@ -1,11 +1,26 @@
 //! The last lines of a run: first where the parts are, then the commands with which a person continues.
 
-use std::fmt;
+use std::{
+    fmt,
+    path::{Path, PathBuf},
+};
 
 use os_io::shell;
 use runtime::{Ending, RunOutcome};
 
 use crate::rcs_run::programs::start_of;
+
+/// The script that opens a log in Rerun, and the layout for Foxglove and Lichtblick, in the directory of the viewers.
+const RERUN: &str = "rerun.sh";
+const LAYOUT: &str = "foxglove.json";
+
+/// The directory with the layouts of the viewers: of the working directory, or of the sources of this program. `None` for
+/// a program that was installed without them.
+fn viewers() -> Option<PathBuf> {
+    let here = PathBuf::from("viewers");
+    let sources = Path::new(env!("CARGO_MANIFEST_DIR")).parent()?.join(&here);
+    [here, sources].into_iter().find(|directory| directory.join(RERUN).is_file())
+}
 
 /// The lines. A run without a log leaves nothing to open.
 pub struct LastLines<'a>(pub &'a RunOutcome);
@@ -33,7 +48,13 @@ impl fmt::Display for LastLines<'_> {
         writeln!(f)?;
         writeln!(f, "watch      {} --log {log}{tick}", start_of("rcs-console"))?;
         writeln!(f, "look       {} open {log}    # in a browser", start_of("rcs-log"))?;
-        writeln!(f, "open       rerun {log}    # or open the file in Foxglove or Lichtblick")?;
+        match viewers() {
+            Some(viewers) => {
+                let (rerun, layout) = (shell::path(viewers.join(RERUN)), shell::path(viewers.join(LAYOUT)));
+                writeln!(f, "open       {rerun} {log}    # Foxglove, Lichtblick: the file with the layout {layout}")?;
+            }
+            None => writeln!(f, "open       rerun {log}    # or open the file in Foxglove or Lichtblick")?,
+        }
         writeln!(f, "ask why    {} why {log}", start_of("rcs-log"))
     }
 }

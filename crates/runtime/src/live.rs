@@ -61,8 +61,8 @@ impl Beginning {
         let mut run = self.run.clone();
         run.insert(TICK_0.to_owned(), self.epoch.of(Tick::BEFORE_START).to_string());
         let added = [
-            json(explanation::TABLES, &explanation::tables()),
-            json(explanation::REASONS, &explanation::reasons()),
+            json("tables.json", &explanation::tables()),
+            json("reasons.json", &explanation::reasons()),
             json("words.json", &json!(self.words)),
         ];
         page::document(job, Content::Run(&page::pack_start(&run, &self.attachments, &added)))
