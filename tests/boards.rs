@@ -217,6 +217,7 @@ fn strike(
         if struck && ended.status == Some(3) {
             assert!(ended.last_words().contains(&format!("board {board} (")), "{}", ended.said);
             assert_eq!(ended.result["failure"]["process"], format!("board {board}"));
+            assert_eq!(ended.result["failure"]["kind"], "program", "{}", ended.said);
             if wanted(&ended) {
                 return ended;
             }

@@ -153,6 +153,15 @@ endings! {
     an_absent_host: "linkbar", "host-absent" => Failing(3, "robot-controller", "T3", "the T3 controller shows WD1");
 }
 
+#[test]
+fn lagging_egm_robot_is_off_its_path_on_every_surface() {
+    let outcome = run_with("linkbar", 1, "egm-lags", &["--robot", "egm:sim,deviation=2"], |_| {});
+    let failure = &outcome.result["failure"];
+    assert_eq!(outcome.status, Some(1), "{}", outcome.last_words);
+    assert_eq!((&failure["kind"], &failure["process"]), (&json!("off-path"), &json!("Prim")), "{failure}");
+    assert_same_account("a lagging EGM robot", &outcome);
+}
+
 /// IV.3.3 step 11: with the robot at HOME, the reset of the joint repairs its reading, and the job goes on.
 #[test]
 fn a_reset_at_home_repairs_an_offset_resolver() {
