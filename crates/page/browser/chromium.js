@@ -139,6 +139,7 @@ export class Page {
 
   /** Press the middle of an element for a time, as a finger or a mouse does. */
   async press(selector, milliseconds = 0) {
+    await this.until(`document.querySelector(${JSON.stringify(selector)})?.getClientRects().length > 0`);
     const [x, y] = await this.value(`(() => {
       const box = document.querySelector(${JSON.stringify(selector)}).getBoundingClientRect();
       return [box.left + box.width / 2, box.top + box.height / 2];

@@ -8,6 +8,7 @@
  * @property {string} action
  * @property {string} next
  * @property {string} step step of the command after the row
+ * @property {string} [step_before] step in which the row was looked up; logs of earlier versions lack it
  * @property {boolean} resting no row fired in this tick: the process rests
  * @property {string} values
  * @property {string} beside
@@ -29,6 +30,7 @@
  * @property {Record<string, string>} values
  * @property {string} step step of the command after the row
  * @property {string} before step of the command before the message: the row was looked up in it, or in `step`
+ * @property {string | undefined} lookedUp step in which the row was looked up, if the log has it
  * @property {string} next step that the row names; empty if the step stays
  * @property {boolean} resting
  * @property {Consulted[]} beside other tables of the same tick
@@ -55,6 +57,7 @@ export function decisionAt(rows, tick) {
     values: valuesOf(message.values),
     step: message.step,
     before,
+    lookedUp: message.step_before,
     next: message.next,
     resting: message.resting,
     beside: besideOf(message.beside),

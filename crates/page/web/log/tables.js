@@ -73,14 +73,14 @@ export function nearMisses(table, values, step, fired) {
 }
 
 /**
- * The step in which a row was looked up. The log has the step after the row only, so this is the step that
- * explains the
- * row: the one before the message, the one after it, or the first one of the table.
+ * The step in which a row was looked up. A log of an earlier version has the step after the row only; then this is
+ * the step that explains the row: the one before the message, the one after it, or the first one of the table.
  * @param {Table} table
  * @param {import('./rows.js').Decision} decision
  */
-export function stepBefore(table, { row, values, before, step, next }) {
+export function stepBefore(table, { row, values, before, step, next, lookedUp }) {
   if (table.steps.length === 0) return '';
+  if (lookedUp) return lookedUp;
   const candidates = [next ? before : step, before, table.steps[0].name, step].filter((it) => it !== '');
   return candidates.find((it) => firstRow(table, values, it) === row) ?? candidates[0] ?? '';
 }

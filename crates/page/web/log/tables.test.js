@@ -39,13 +39,14 @@ test('near_misses_are_rows_that_one_other_value_would_have_fired', () => {
 });
 
 test('the_step_before_a_row_is_the_one_that_explains_it', () => {
-  const decision = (fired, before, step, next = '') =>
+  const decision = (fired, before, step, next = '', lookedUp = undefined) =>
     stepBefore(table, {
       row: fired,
       values: { door: 'Open' },
       before,
       step,
       next,
+      lookedUp,
       table: '',
       since: 0,
       fired: 0,
@@ -54,6 +55,7 @@ test('the_step_before_a_row_is_the_one_that_explains_it', () => {
     });
   assert.equal(decision(2, 'start', 'closing', 'Closing'), 'start');
   assert.equal(decision(3, 'closing', 'closing'), 'closing');
+  assert.equal(decision(3, 'closing', 'closing', '', 'opening'), 'opening');
   // A command that is new begins in the first step, whatever the step of the one before was.
   assert.equal(decision(2, 'closing', 'closing', 'Closing'), 'Start');
 });
