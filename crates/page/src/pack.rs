@@ -21,8 +21,7 @@ use record::{
 };
 
 /// Topics that the page does not read: bytes for programs, and what it computes from other topics.
-const LEFT_OUT: [&str; 6] =
-    [REPLAY, "/trail", "/t3i/link_tx", "/robot_description", LADDER, INSTRUMENTS];
+const LEFT_OUT: [&str; 6] = [REPLAY, "/trail", "/t3i/link_tx", "/robot_description", LADDER, INSTRUMENTS];
 /// Attachments that the page reads.
 const KEPT: [&str; 2] = [Attachment::JOB, "faults.toml"];
 /// Size at which a chunk is closed, bytes before compression.

@@ -36,8 +36,6 @@ pub struct Live {
 
 /// What a viewer cannot learn from the messages of a run.
 pub struct Beginning {
-    /// Metadata of the run.
-    pub run: BTreeMap<String, String>,
     /// Files of the run.
     pub attachments: Vec<Attachment>,
     /// Time of tick 0.
@@ -56,9 +54,9 @@ pub struct Words {
 }
 
 impl Beginning {
-    /// The page of the run, which connects to the server that sent it.
-    fn page(&self, job: &str) -> String {
-        let mut run = self.run.clone();
+    /// The page of the run, which connects to the server that sent it. Other users of the machine can read it, so it has
+    /// neither the command line nor the paths of the run.
+    fn page(&self, job: &str, mut run: BTreeMap<String, String>) -> String {
         run.insert(TICK_0.to_owned(), self.epoch.of(Tick::BEFORE_START).to_string());
         let added = [
             json("tables.json", &explanation::tables()),
@@ -121,14 +119,15 @@ impl Live {
         let Some(port) = self.port.take() else { return Ok(()) };
         let access = operators.map(access).transpose()?;
         let token = access.as_ref().map(|access| access.token.clone());
-        let info =
-            ServerInfo { name: format!("rcs-run {job}"), metadata: facts(config, job), ..ServerInfo::new()? };
+        let facts = facts(config, job);
+        let page = Some(beginning.page(job, facts.clone()));
+        let info = ServerInfo { name: format!("rcs-run {job}"), metadata: facts, ..ServerInfo::new()? };
         let origins = config.live_origins.clone();
         let (sender, notices) = channel();
         self.notices = Some(notices);
         let options = Options {
             origins,
-            page: Some(beginning.page(job)),
+            page,
             info,
             knob: Some(self.knob.clone()),
             access,

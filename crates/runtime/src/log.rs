@@ -18,8 +18,7 @@ use plant::{Cell, camera::Subject, clearance::Contact, convert::metres, descript
 use rcs_core::{digest::Digest, tick::Tick};
 use record::{
     Attachment, CellFrame, CellModel, End, Epoch, Link, LogFile, Model, Name, OperatorLine, Pace,
-    RecordError, Recorder, Shown, Summary, Timing, Touch, Transform, explanation,
-    views::View,
+    RecordError, Recorder, Shown, Summary, Timing, Touch, Transform, explanation, views::View,
 };
 use taskdata::load::{
     Source, Store,
@@ -32,7 +31,6 @@ use crate::{
     event::Event,
     live::{Beginning, Live, Words},
     operator::first_words,
-    live::Live,
     result::FailureResult,
     setup::{EXTENSION, Setup},
 };
@@ -143,7 +141,6 @@ impl Log {
         };
         let run = metadata(config, setup, &attachments);
         let beginning = tap.is_some().then(|| Beginning {
-            run: run.clone(),
             attachments: attachments.clone(),
             epoch,
             words: words(&setup.store),
