@@ -6,7 +6,7 @@ import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 
 /** Time limit of a condition, milliseconds. */
-const PATIENCE = 20_000;
+const PATIENCE = 30_000;
 const FLAGS = [
   '--headless=new',
   '--no-first-run',
