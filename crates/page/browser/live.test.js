@@ -196,7 +196,7 @@ test('failed_log_opens_at_its_cause_with_the_chain', async () => {
 });
 
 test('ten_pages_beside_a_run_change_no_bit', async () => {
-  const ticks = ['--ticks', '400', '--json', '--operator', 'none'];
+  const ticks = ['--ticks', '1000', '--json', '--operator', 'none'];
   const alone = spawnSync(join(PROGRAMS, 'rcs-run'), ['linkbar', '--log', 'none', ...ticks], {
     cwd: scratch,
   });
@@ -207,6 +207,6 @@ test('ten_pages_beside_a_run_change_no_bit', async () => {
   await Promise.all(pages.map((page) => page.until(`document.querySelector('.live')`)));
   const printed = JSON.parse(await live.ended);
   assert.equal(printed.digest, JSON.parse(String(alone.stdout)).digest);
-  assert.equal(printed.ticks, 400);
+  assert.equal(printed.ticks, 1000);
   await Promise.all(pages.map((page) => page.close()));
 });

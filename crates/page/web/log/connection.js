@@ -12,8 +12,6 @@ const CODE = { message: 1, time: 2, response: 3, request: 2 };
 const LEFT_OUT = ['/replay', '/trail', '/t3i/link_tx', '/robot_description'];
 /** Silence after which the connection counts as lost, milliseconds. */
 const SILENCE = 850;
-/** Longest time that counts as silence between two looks, milliseconds. */
-const GAP = 250;
 /** Pauses before the attempts to connect again, milliseconds; the last one repeats. */
 const PAUSES = [250, 500, 1000, 2000];
 /** Time limit of an answer, milliseconds: that of the run, and the way. */
@@ -52,9 +50,8 @@ export class Connection {
     this.heard = null;
     /** Time of the last message, or of the last attempt. */
     this.received = performance.now();
-    /** Silence since the last tick, milliseconds, and the time of the last look at it. */
-    this.silent = 0;
-    this.looked = performance.now();
+    /** The time of the last tick when a look found it too old. @type {number | null} */
+    this.suspect = null;
     this.attempts = 0;
     /** Time of the next attempt. */
     this.next = 0;
@@ -94,10 +91,11 @@ export class Connection {
   /** Check for silence, and connect again when it is time. Call it often. */
   watch() {
     const now = performance.now();
-    // A page that was held up has not yet read what has arrived: a gap between two looks counts little.
-    this.silent += Math.min(now - this.looked, GAP);
-    this.looked = now;
-    if (this.state === 'ok' && this.silent > SILENCE) this.become('lost');
+    const { heard } = this;
+    const isOld = heard !== null && now - heard > SILENCE;
+    // A page that was held up first reads what has arrived meanwhile: the second look decides.
+    if (this.state === 'ok' && isOld && this.suspect === heard) this.become('lost');
+    this.suspect = isOld ? heard : null;
     // An attempt that gets no answer is given up.
     if (this.socket && this.state !== 'ok' && now - this.received > 2 * PATIENCE) this.lose('lost');
     if (!this.socket && now >= this.next) this.connect();
@@ -134,7 +132,7 @@ export class Connection {
     const code = view.getUint8(0);
     if (code === CODE.time) {
       // Only a run sends the time: the connection counts as alive from the first tick on.
-      [this.heard, this.silent, this.attempts] = [this.received, 0, 0];
+      [this.heard, this.attempts] = [this.received, 0];
       this.become('ok');
       this.receiver.time(view.getBigUint64(1, true));
     } else if (code === CODE.message) {
