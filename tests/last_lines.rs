@@ -93,7 +93,9 @@ fn printed_commands_show_the_robot_in_the_viewers() {
         && succeeds("xvfb-run", &["--help"]);
     let lichtblick = std::env::var("RCS_LICHTBLICK").ok();
     if !has_rerun && lichtblick.is_none() {
-        eprintln!("skipped: rerun, its Python packages (docs/logs.md) and xvfb-run are needed, or RCS_LICHTBLICK");
+        eprintln!(
+            "skipped: rerun, its Python packages (docs/logs.md) and xvfb-run are needed, or RCS_LICHTBLICK"
+        );
         return;
     }
     let scratch = Scratch::new("last-viewers");

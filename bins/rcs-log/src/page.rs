@@ -70,7 +70,9 @@ fn write(arguments: &Arguments) -> Result<PathBuf, Error> {
 /// Tables or reasons of a log; those of this program if the log has none.
 fn of_log(log: &Log, name: &str, own: impl FnOnce() -> Value) -> Value {
     explanation::of_log(log, name).unwrap_or_else(|| {
-        os_io::stderr_line!("rcs-log: the log has no {name}: those of this program are shown");
+        os_io::stderr_line!(
+            "rcs-log: the log of an older program has no {name}: the page shows the tables or remedies of this program"
+        );
         own()
     })
 }

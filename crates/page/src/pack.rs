@@ -145,7 +145,7 @@ impl Tap for Packer {
 
 /// The tick of a message on `/replay`.
 fn tick_of(data: &[u8]) -> Option<u64> {
-    let tick = u64::from(record::writer::replay_field::TICK);
+    let tick = u64::from(record::lossless::replay_field::TICK);
     Fields(data).find_map(|(field, value)| match value {
         Value::Number(value) if field == tick => Some(value),
         _ => None,

@@ -116,7 +116,7 @@ fn level(id: ProcessId, process: &ProcessInfo, hws: &HwsCommand, memory: &Common
         process: process.name,
         command,
         status: said.report,
-        reason: said.fault.text(),
+        reason: if said.fault.is_none() { "" } else { said.fault.text() },
         table: row.map_or("", |(table, _)| table.name),
         row: row.map_or(0, |(_, row)| row.number.into()),
         action: row.map_or_else(String::new, |(_, row)| row.call().to_string()),
@@ -139,6 +139,7 @@ mod tests {
         assert_eq!(state.processes.len(), ProcessId::ALL.len());
         let emove = &state.processes[2];
         assert_eq!((emove.process, emove.row, emove.reason), ("E-move", 1, Reason::NoTrajectory.text()));
+        assert!(state.processes.iter().all(|level| level.process == "E-move" || level.reason.is_empty()));
         assert!(emove.command.starts_with("MOV-TO-LOC") && !emove.table.is_empty(), "{emove:?}");
     }
 

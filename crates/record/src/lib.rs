@@ -40,6 +40,7 @@ pub mod input;
 pub mod instruments;
 pub mod ladder;
 pub mod layout;
+pub mod lossless;
 pub mod names;
 mod operator;
 mod part;

@@ -25,6 +25,7 @@ use crate::{
     error::ReadError,
     input::Attachment,
     layout,
+    lossless::{Codecs, replay_field},
     names::{END, LAYOUT, LOG_TOPIC, REPLAY, RUN},
     operator::{OPERATOR, OperatorLine},
     pieces::{self, Damage, Decoder, Message, Piece, Pieces},
@@ -34,7 +35,7 @@ use crate::{
     },
     scene::{TF, TF_STATIC},
     tap::Tap,
-    writer::{Codecs, Timing, replay_field},
+    writer::Timing,
 };
 
 /// Size of the magic of an MCAP file, bytes.

@@ -33,8 +33,8 @@ use crate::{
     error::ReplayError,
     input::Attachment,
     layout,
+    lossless::Codecs,
     reader::{Log, LoggedTick},
-    writer::Codecs,
 };
 
 pub use crate::comparison::Difference;

@@ -120,9 +120,9 @@ fn row_message(place: &HeaderPlace, header: &Header) -> Vec<u8> {
         }
         None => Default::default(),
     };
-    let consulted = header.consulted().and_then(|consulted| {
-        Some((place.process.table(consulted.decided.table)?, consulted.values))
-    });
+    let consulted = header
+        .consulted()
+        .and_then(|consulted| Some((place.process.table(consulted.decided.table)?, consulted.values)));
     let values = consulted.map(|(table, values)| values_text(table, values));
     let step_before = consulted.and_then(|(table, values)| Some(table.step(values)?.name));
     let beside: Vec<String> = beside(place.process, header).collect();
@@ -155,8 +155,8 @@ pub fn beside(process: &'static ProcessInfo, header: &Header) -> impl Iterator<I
 #[cfg(test)]
 mod tests {
     use super::*;
-    use levels::execution::Course;
     use crate::proto::wire::{Fields, Value};
+    use levels::execution::Course;
     use levels::prim::tables::{Attendance, Kind, Operator, TABLES, number};
     use rcs_core::table::Variables as _;
 
@@ -189,8 +189,10 @@ mod tests {
     #[test]
     fn message_has_the_step_in_which_the_row_was_looked_up() {
         let place = prim();
-        let (number, table) =
-            (1_u8..).zip(TABLES).find(|(_, table)| table.steps.is_some_and(|of| of.variants.len() > 1)).unwrap();
+        let (number, table) = (1_u8..)
+            .zip(TABLES)
+            .find(|(_, table)| table.steps.is_some_and(|of| of.variants.len() > 1))
+            .unwrap();
         let step = &table.steps.unwrap().variants[1];
         let values = Values { step: step.code, variables: 0 };
         let header = Header {

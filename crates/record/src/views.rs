@@ -189,6 +189,9 @@ pub enum View {
 /// Number of kinds of [`View`].
 pub const KINDS: usize = 6;
 
+/// Kinds that hardly ever change: the lines of the job, and the places.
+const FIXED: [usize; 2] = [0, 5];
+
 impl View {
     /// Its position among the kinds.
     #[must_use]
@@ -245,16 +248,27 @@ impl Views {
         ]))
     }
 
-    pub fn put<W: Write + Seek>(&mut self, output: &mut Output<W>, tick: Tick, view: &View) -> McapResult<()> {
+    pub fn put<W: Write + Seek>(
+        &mut self,
+        output: &mut Output<W>,
+        tick: Tick,
+        view: &View,
+    ) -> McapResult<()> {
         let Some(channel) = self.0.get_mut(view.kind()) else { return Ok(()) };
         (channel.last, channel.written) = (view.encode(), tick);
         output.put(channel.id, tick, &channel.last)
     }
 
-    /// Write the last message of each channel again, unless it is of this tick or a later one.
-    pub fn repeat<W: Write + Seek>(&self, output: &mut Output<W>, tick: Tick) -> McapResult<()> {
-        let due = self.0.iter().filter(|channel| !channel.last.is_empty() && channel.written < tick);
-        due.into_iter().try_for_each(|channel| output.put(channel.id, tick, &channel.last))
+    /// Write the last message of each channel again, unless it is of this tick or a later one. The lines of the job and
+    /// the places, which hardly ever change, are repeated only at the `start` of a log.
+    pub fn repeat<W: Write + Seek>(&self, output: &mut Output<W>, tick: Tick, start: bool) -> McapResult<()> {
+        let is_due = |channel: &Channel| !channel.last.is_empty() && channel.written < tick;
+        let due = self
+            .0
+            .iter()
+            .enumerate()
+            .filter(|(kind, channel)| is_due(channel) && (start || !FIXED.contains(kind)));
+        due.into_iter().try_for_each(|(_, channel)| output.put(channel.id, tick, &channel.last))
     }
 
     /// Take over the messages of the log before, for the next log of a run.

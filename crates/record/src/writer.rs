@@ -34,23 +34,18 @@ use interfaces::{CommonMemory, ExternalInputs, HwsCommand};
 use levels::ladder::LadderState;
 use mcap::{Compression, McapResult, WriteOptions, records::Metadata};
 use os_io::text::amount;
-use prost_types::field_descriptor_proto::Type;
 use rcs_core::{Plain, plain::Writer, tick::Tick};
 
 use crate::{
     channels::{Buffers, HeaderPlace, Output, headers},
-    delta::Codec,
     input::{Attachment, CellFrame, End, Lost, Setup, Shown},
     instruments::InstrumentsChannel,
     ladder::LadderChannel,
     layout,
-    names::{EARLIER, END, LAYOUT, LOG_TOPIC, REPLAY, RESULT, RUN},
+    lossless::{Images, Lossless},
+    names::{EARLIER, END, LAYOUT, LOG_TOPIC, RESULT, RUN},
     operator::{OperatorChannel, OperatorLine},
-    proto::{
-        descriptor::{self, encode_set, field, file},
-        foxglove::{self, Level},
-        wire,
-    },
+    proto::foxglove::{self, Level},
     remarks::{Remark, remarks},
     rows::Rows,
     scene::Scene,
@@ -67,28 +62,6 @@ const REPETITION: u64 = 10;
 const CHUNK: u64 = 256 * 1024;
 /// Level of the compression. At level 6 a log is a twenty-sixth smaller, and a run takes a seventh more processor time.
 const COMPRESSION: u32 = 3;
-
-/// Field numbers of the message on [`REPLAY`].
-pub mod replay_field {
-    /// The tick.
-    pub const TICK: u32 = 1;
-    /// Ticks that are missing before this one.
-    pub const GAP: u32 = 2;
-    /// The images are differences from zeros, not from the message before.
-    pub const FULL: u32 = 3;
-    /// Inputs of the tick.
-    pub const EXTERNAL: u32 = 4;
-    /// Output buffers after the tick.
-    pub const MEMORY: u32 = 5;
-    /// States of the processes after the tick, as a difference from zeros; not in every message.
-    pub const STATE: u32 = 6;
-    /// Fingerprint of the simulated cell before the tick.
-    pub const WORLD: u32 = 7;
-    /// Time of the controller, nanoseconds.
-    pub const CONTROLLER_NS: u32 = 8;
-    /// Slots of the 40 ms grid that were skipped so far.
-    pub const SKIPPED: u32 = 9;
-}
 
 /// Everything that the ladder read and wrote in a tick.
 #[derive(Clone, Copy, Debug)]
@@ -117,9 +90,7 @@ pub struct Timing {
 /// A log that is being written.
 pub struct LogWriter<W: Write + Seek> {
     output: Output<W>,
-    replay: u16,
-    /// Messages on [`REPLAY`] of the second that is not over.
-    second: Vec<(Tick, Vec<u8>)>,
+    lossless: Lossless,
     log: u16,
     external: Buffers,
     memory: Buffers,
@@ -132,8 +103,6 @@ pub struct LogWriter<W: Write + Seek> {
     /// When the job began the last action of the workstation that `/log` has.
     action_began: u64,
     operator: OperatorChannel,
-    codecs: Codecs,
-    zeros: Images,
     last: Images,
     now: Images,
     before: CommonMemory,
@@ -145,35 +114,6 @@ pub struct LogWriter<W: Write + Seek> {
     gaps: u64,
     /// Name of the log with the ticks before those of this one, until its first tick.
     earlier: Option<String>,
-}
-
-/// Codecs for the deltas of the images.
-pub(crate) struct Codecs {
-    pub(crate) external: Codec,
-    pub(crate) memory: Codec,
-    pub(crate) state: Codec,
-}
-
-impl Codecs {
-    pub(crate) fn new() -> Self {
-        Self {
-            external: Codec::new(ExternalInputs::STRUCT),
-            memory: Codec::new(CommonMemory::STRUCT),
-            state: Codec::new(LadderState::STRUCT),
-        }
-    }
-}
-
-/// The byte images of a tick.
-struct Images {
-    external: Vec<u8>,
-    memory: Vec<u8>,
-}
-
-impl Images {
-    fn zeros() -> Self {
-        Self { external: vec![0; ExternalInputs::SIZE], memory: vec![0; CommonMemory::SIZE] }
-    }
 }
 
 impl<W: Write + Seek> LogWriter<W> {
@@ -207,14 +147,13 @@ impl<W: Write + Seek> LogWriter<W> {
         let rows = Rows::open(&mut output)?;
         let scene = setup.cell.map(|model| Scene::open(&mut output, model)).transpose()?;
         let log = output.protobuf(LOG_TOPIC, foxglove::LOG, &foxglove::log_descriptor())?;
-        let replay = output.protobuf(REPLAY, "rcs.ReplayTick", &replay_descriptor())?;
+        let lossless = Lossless::open(&mut output)?;
         let ladder = LadderChannel::open(&mut output)?;
         let instruments = InstrumentsChannel::open(&mut output)?;
         let views = Views::open(&mut output)?;
         Ok(Self {
             output,
-            replay,
-            second: Vec::new(),
+            lossless,
             log,
             external,
             memory,
@@ -226,8 +165,6 @@ impl<W: Write + Seek> LogWriter<W> {
             views,
             action_began: 0,
             operator: OperatorChannel::default(),
-            codecs: Codecs::new(),
-            zeros: Images::zeros(),
             last: Images::zeros(),
             now: Images::zeros(),
             before: CommonMemory::default(),
@@ -273,13 +210,15 @@ impl<W: Write + Seek> LogWriter<W> {
         if full {
             // The second that ends here is safe before the next one begins.
             if self.last_full.is_some() {
-                self.end_second()?;
+                self.lossless.end_second(&mut self.output)?;
             }
             self.last_full = Some(tick);
         }
         record.external.encode(&mut Writer::new(&mut self.now.external));
         record.memory.encode(&mut Writer::new(&mut self.now.memory));
-        self.note_replay(record, state, cell.and_then(|frame| frame.digest), full);
+        let images = (&self.last, &self.now);
+        let world = cell.and_then(|frame| frame.digest);
+        self.lossless.note(&mut self.output, record, images, (state, world), full);
         if let Some(earlier) = self.earlier.take() {
             let text = format!("{EARLIER}{earlier}");
             self.remark(
@@ -325,7 +264,7 @@ impl<W: Write + Seek> LogWriter<W> {
         self.rows.write(output, tick, &now.memory, all)?;
         self.ladder.write(output, tick, (hws, memory), all)?;
         self.instruments.write(output, tick, memory, all)?;
-        if all { self.views.repeat(output, tick) } else { Ok(()) }
+        if all { self.views.repeat(output, tick, self.ticks == 0) } else { Ok(()) }
     }
 
     /// Write everything once more in the last tick, so that lanes of states in a viewer last to the end.
@@ -412,58 +351,12 @@ impl<W: Write + Seek> LogWriter<W> {
         let mut metadata = end.facts.clone();
         metadata.extend(entries.map(|(key, value)| (key.to_owned(), value)));
         self.write_last_state()?;
-        self.end_second()?;
+        self.lossless.end_second(&mut self.output)?;
         self.output.mcap.write_metadata(&Metadata { name: END.into(), metadata })?;
         self.output.mcap.finish()?;
         let mut sink = self.output.mcap.into_inner();
         sink.flush()?;
         Ok(Written { ticks: self.ticks, bytes: sink.stream_position()? })
-    }
-
-    /// Note the message on [`REPLAY`] of a tick.
-    fn note_replay(
-        &mut self,
-        record: &TickRecord,
-        state: Option<&LadderState>,
-        world: Option<u64>,
-        full: bool,
-    ) {
-        let mut data = Vec::new();
-        wire::unsigned(replay_field::TICK, record.tick.0, &mut data);
-        wire::unsigned(replay_field::GAP, record.gap.into(), &mut data);
-        wire::unsigned(replay_field::FULL, full.into(), &mut data);
-        let (last, now) = (if full { &self.zeros } else { &self.last }, &self.now);
-        wire::nested(replay_field::EXTERNAL, &mut data, |out| {
-            self.codecs.external.encode(&last.external, &now.external, out);
-        });
-        wire::nested(replay_field::MEMORY, &mut data, |out| {
-            self.codecs.memory.encode(&last.memory, &now.memory, out);
-        });
-        if let Some(state) = state {
-            let mut image = vec![0; LadderState::SIZE];
-            state.encode(&mut Writer::new(&mut image));
-            let zeros = vec![0; LadderState::SIZE];
-            wire::nested(replay_field::STATE, &mut data, |out| self.codecs.state.encode(&zeros, &image, out));
-        }
-        if let Some(world) = world {
-            wire::fixed64(replay_field::WORLD, world, &mut data);
-        }
-        if let Some(Timing { controller_ns, skipped }) = record.timing {
-            wire::unsigned(replay_field::CONTROLLER_NS, controller_ns, &mut data);
-            wire::unsigned(replay_field::SKIPPED, skipped, &mut data);
-        }
-        self.output.pass(self.replay, record.tick, &data);
-        self.second.push((record.tick, data));
-    }
-
-    /// Write the messages on [`REPLAY`] of a second into a chunk of their own, so that a replay decompresses a seventh
-    /// of a log.
-    fn end_second(&mut self) -> McapResult<()> {
-        self.output.mcap.flush()?;
-        for (tick, data) in self.second.drain(..) {
-            self.output.write(self.replay, tick, &data)?;
-        }
-        self.output.mcap.flush()
     }
 }
 
@@ -495,21 +388,4 @@ fn attach<W: Write + Seek>(output: &mut Output<W>, time: u64, attachment: Attach
     let Attachment { name, media_type, data } = attachment;
     let data = data.into();
     output.mcap.attach(&mcap::Attachment { log_time: time, create_time: time, name, media_type, data })
-}
-
-fn replay_descriptor() -> Vec<u8> {
-    let number = |field: u32| i32::try_from(field).unwrap_or(i32::MAX);
-    let fields = vec![
-        field("tick", number(replay_field::TICK), Type::Uint64),
-        field("gap", number(replay_field::GAP), Type::Uint32),
-        field("full", number(replay_field::FULL), Type::Bool),
-        field("external", number(replay_field::EXTERNAL), Type::Bytes),
-        field("memory", number(replay_field::MEMORY), Type::Bytes),
-        field("state", number(replay_field::STATE), Type::Bytes),
-        field("world", number(replay_field::WORLD), Type::Fixed64),
-        field("controller_ns", number(replay_field::CONTROLLER_NS), Type::Uint64),
-        field("skipped", number(replay_field::SKIPPED), Type::Uint64),
-    ];
-    let message = descriptor::message("ReplayTick", fields);
-    encode_set(vec![file("rcs.proto", descriptor::PACKAGE, &[], vec![message])])
 }

@@ -1,4 +1,5 @@
-//! The layout for Foxglove and Lichtblick that is shipped asks for nothing that a log does not have.
+//! Channels for viewers: states of the run, and the layout for Foxglove and Lichtblick, which asks for nothing that a log does
+//! not have.
 
 use std::{fs, path::Path};
 
@@ -6,7 +7,10 @@ use interfaces::{CommonMemory, ExternalInputs};
 use prost::Message as _;
 use prost_types::{DescriptorProto, FileDescriptorSet, field_descriptor_proto::Type};
 use rcs_core::tick::Tick;
-use record::{CellFrame, CellModel, End, Epoch, Link, Pace, Recorder, Setup};
+use record::{
+    CellFrame, CellModel, End, Epoch, Link, Pace, Recorder, Setup, Shown,
+    views::{JOB_STATE, JobState, View},
+};
 use serde_json::Value;
 
 /// A log of one tick: it has all channels.
@@ -109,4 +113,40 @@ fn the_foxglove_layout_names_channels_and_fields_that_a_log_has() {
     }
     assert_eq!(panels, layout["configById"].as_object().unwrap().len(), "each panel has its place");
     assert!(names.len() > 20);
+}
+
+/// Ticks of the messages on a topic.
+fn ticks(log: &[u8], topic: &str) -> Vec<u32> {
+    let messages = mcap::MessageStream::new(log).unwrap().map(Result::unwrap);
+    messages.filter(|message| message.channel.topic == topic).map(|message| message.sequence).collect()
+}
+
+#[test]
+fn states_are_logged_on_change_and_everything_again_in_the_last_tick() {
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path().join("run.mcap");
+    let mut recorder = Recorder::start(&path, Pace::Wait, Setup::default()).unwrap();
+    let job = |index, text: &str, is_command| {
+        let state = JobState { index, lines: 2, text: text.into(), is_command, ..JobState::default() };
+        Shown::View(View::JobState(JobState { began: u64::from(index) * 5, ..state }))
+    };
+    let (external, memory) = (ExternalInputs::default(), CommonMemory::default());
+    for tick in (1..=30).map(Tick) {
+        match tick.0 {
+            3 => recorder.show(tick, job(1, "** vise open PFIXTURE", false)),
+            7 => recorder.show(tick, job(2, "== PAUSE", true)),
+            _ => {}
+        }
+        recorder.tick(tick, &external, &memory, Default::default);
+    }
+    recorder.show(Tick(31), job(2, "== PAUSE", true));
+    recorder.finish(End::default()).unwrap();
+    let log = fs::read(&path).unwrap();
+    assert_eq!(ticks(&log, JOB_STATE), [3, 7, 31], "the last one is newer than the last tick");
+    for topic in ["/task/status", "/task/row", "/ladder", "/instruments"] {
+        assert_eq!(ticks(&log, topic), [1, 30], "{topic}");
+    }
+    let lines: Vec<_> =
+        record::Log::open(&path).unwrap().lines().map(|line| (line.tick, line.text)).collect();
+    assert_eq!(lines, [(Tick(3), "line 1 of 2: ** vise open PFIXTURE".to_owned())]);
 }

@@ -117,7 +117,8 @@ fn job_state(around: &Around<'_>) -> JobState {
         ..JobState::default()
     };
     let Some(step) = neighbours.begun_steps().last() else { return state };
-    let retry = neighbours.retried().last().filter(|retry| step.began >= retry.tick && step.text == retry.line);
+    let retry =
+        neighbours.retried().last().filter(|retry| step.began >= retry.tick && step.text == retry.line);
     let is_executed = step.outcome == neighbours::workstation::player::Outcome::Executing;
     JobState {
         text: step.text.clone(),

@@ -154,10 +154,18 @@ mod tests {
         let set = FileDescriptorSet::decode(descriptor_set::<Outer>().as_slice()).unwrap();
         let messages = &set.file[0].message_type;
         assert_eq!(messages.iter().map(|it| it.name()).collect::<Vec<_>>(), ["Inner", "Outer"]);
-        let fields: Vec<_> =
-            messages[1].field.iter().map(|it| (it.number(), it.name(), it.label() == Label::Repeated)).collect();
-        let expected =
-            [(1, "name", false), (2, "count", false), (3, "list", true), (4, "words", true), (5, "one", false)];
+        let fields: Vec<_> = messages[1]
+            .field
+            .iter()
+            .map(|it| (it.number(), it.name(), it.label() == Label::Repeated))
+            .collect();
+        let expected = [
+            (1, "name", false),
+            (2, "count", false),
+            (3, "list", true),
+            (4, "words", true),
+            (5, "one", false),
+        ];
         assert_eq!(fields, expected);
         assert_eq!(messages[1].field[2].type_name(), ".rcs.Inner");
     }

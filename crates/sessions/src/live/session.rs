@@ -220,8 +220,7 @@ impl Session {
             Some(_) if self.has_token => granted,
             Some(_) => needed,
         };
-        let own =
-            [(ACCESS, json!(access)), (NAME, json!(self.rights.name)), (PAST, json!(self.past_s))];
+        let own = [(ACCESS, json!(access)), (NAME, json!(self.rights.name)), (PAST, json!(self.past_s))];
         let all = knob.into_iter().chain(token).chain(own).filter(|(name, _)| is_wanted(names, name));
         let parameters: Vec<Parameter> =
             all.map(|(name, value)| Parameter { name: name.to_owned(), value }).collect();
@@ -238,7 +237,10 @@ impl Session {
                 return self.wrong(&format!("{PAST} is a whole number from 0 to {PAST_S}"));
             };
             self.past_s = past_s;
-            return id.map(|id| Action::Text(self.parameters(&[PAST.to_owned()], Some(id)))).into_iter().collect();
+            return id
+                .map(|id| Action::Text(self.parameters(&[PAST.to_owned()], Some(id))))
+                .into_iter()
+                .collect();
         }
         let Some(token) = &self.rights.token else { return self.wrong(NO_REQUESTS) };
         match name.as_str() {
@@ -427,7 +429,11 @@ mod tests {
         let (token, knob) = (Token::random().unwrap(), Knob::default());
         knob.set(1000);
         let word = token.reveal().to_owned();
-        (Session::new(Rights { knob: Some(knob.clone()), token: Some(token), ..Rights::default() }), word, knob)
+        (
+            Session::new(Rights { knob: Some(knob.clone()), token: Some(token), ..Rights::default() }),
+            word,
+            knob,
+        )
     }
 
     fn call(session: &mut Session, service: u32, payload: &Value) -> Vec<Action> {
