@@ -51,10 +51,7 @@ impl fmt::Display for LastLines<'_> {
         match viewers() {
             Some(viewers) => {
                 let (rerun, layout) = (shell::path(viewers.join(RERUN)), shell::path(viewers.join(LAYOUT)));
-                writeln!(
-                    f,
-                    "open       {rerun} {log}    # Foxglove, Lichtblick: the file with the layout {layout}"
-                )?;
+                writeln!(f, "open       {rerun} {log}    # or in Foxglove, with the layout {layout}")?;
             }
             None => writeln!(f, "open       rerun {log}    # or open the file in Foxglove or Lichtblick")?,
         }
