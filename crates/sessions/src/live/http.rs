@@ -112,12 +112,13 @@ pub fn send_refusal(stream: &mut impl Write, (status, why): &Refusal) {
 }
 
 fn send(stream: &mut impl Write, status: StatusCode, kind: &str, extra: &str, body: &str) {
-    let head = format!(
-        "HTTP/1.1 {status}\r\nContent-Type: {kind}\r\nContent-Length: {}\r\n{extra}{HEADERS}\r\n",
+    // In one piece: some clients take the body of a refusal only if it arrives with the head.
+    let answer = format!(
+        "HTTP/1.1 {status}\r\nContent-Type: {kind}\r\nContent-Length: {}\r\n{extra}{HEADERS}\r\n{body}",
         body.len()
     );
     // A client that has disconnected gets no answer.
-    let _ = stream.write_all(head.as_bytes()).and_then(|()| stream.write_all(body.as_bytes()));
+    let _ = stream.write_all(answer.as_bytes());
     let _ = stream.flush();
 }
 
