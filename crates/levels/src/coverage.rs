@@ -5,8 +5,8 @@ use std::{
     collections::{BTreeMap, BTreeSet},
 };
 
-use interfaces::{Consulted, Header, process::Process};
-use rcs_core::table::{Table, Values};
+use interfaces::{Consulted, Decided, Header, process::Process};
+use rcs_core::table::Table;
 
 use crate::{confirm::CONFIRM, execution::EXECUTE};
 
@@ -15,25 +15,23 @@ use crate::{confirm::CONFIRM, execution::EXECUTE};
 pub struct Coverage(BTreeSet<(u8, u8, u8, u64)>);
 
 impl Coverage {
-    /// Take in what a process has reported.
-    pub fn note(&mut self, header: &Header) {
+    /// Take in what a process has reported. Each row that has fired must be the one that the table as text gives for
+    /// the same values.
+    pub fn note(&mut self, tables: &[&Table], header: &Header) {
         let rows = header.consulted().into_iter().chain(header.beside.into_iter().flatten());
-        self.0.extend(rows.map(|Consulted { decided, values: Values { step, variables } }| {
-            (decided.table, decided.row, step, variables)
-        }));
+        for Consulted { decided: Decided { table, row }, values } in rows {
+            if self.0.insert((table, row, values.step, values.variables)) {
+                let table = tables[usize::from(table) - 1];
+                let read = table.consult(values).map(|row| row.number);
+                assert_eq!(read, Some(row), "{} with {values:?}", table.name);
+            }
+        }
     }
 
     /// Rows that have not fired, as `GET-OBJECT 3`. Rows that no header ever names are left out: those that
     /// pass on to the table below, and those of EXECUTE that do not refuse. CONFIRM has rows for all processes; its own
     /// tests reach them.
-    ///
-    /// Each row that has fired must be the one that the table as text gives for the same values.
     pub fn missing(&self, tables: &[&Table]) -> Vec<String> {
-        for &(number, row, step, variables) in &self.0 {
-            let (table, values) = (tables[usize::from(number) - 1], Values { step, variables });
-            let read = table.consult(values).map(|row| row.number);
-            assert_eq!(read, Some(row), "{} with {values:?}", table.name);
-        }
         let own = tables.iter().zip(1_u8..).filter(|(table, _)| table.name != CONFIRM.name);
         let rows = own.flat_map(|(table, number)| {
             let named =
@@ -54,11 +52,11 @@ thread_local! {
 }
 
 /// Take in what a process has reported in a test.
-pub fn note(process: &'static str, header: &Header) {
-    FIRED.with_borrow_mut(|fired| fired.entry(process).or_default().note(header));
+pub fn note(process: &'static str, tables: &[&Table], header: &Header) {
+    FIRED.with_borrow_mut(|fired| fired.entry(process).or_default().note(tables, header));
 }
 
-/// The rows of a process that fire in none of its scenarios, as [`Coverage::missing`] has them.
+/// The rows of a process that fire in none of some scenarios, as [`Coverage::missing`] has them.
 pub fn silent<P: Process<Data>, Data>(scenarios: &[fn()]) -> Vec<String> {
     FIRED.take();
     scenarios.iter().for_each(|scenario| scenario());

@@ -335,11 +335,8 @@ fn fingers_are_waited_for_while_their_device_is_late() {
 fn every_row_fires() {
     let mut silent = silent::<VGrip, ()>(&[
         every_command_reports_where_its_fingers_stopped,
-        an_object_is_pressed_until_it_is_released,
-        fingers_that_closed_on_something_have_grasped_it_when_they_have_stood_for_a_second,
         a_potentiometer_that_never_rests_or_reads_nonsense_is_not_believed,
         without_the_gripper_commands_fail_and_there_is_no_air,
-        the_air_stays_on_without_the_id_and_after_a_restart,
         a_process_that_starts_or_wakes_adopts_the_command_and_gives_no_air,
         fingers_are_waited_for_while_their_device_is_late,
     ]);

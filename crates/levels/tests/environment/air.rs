@@ -78,6 +78,11 @@ impl Gripper {
             return;
         }
         let bits = if self.late { core::mem::replace(&mut self.pending, bits) } else { bits };
+        let stop = self.object.map_or(0.10, |object| object.size.max(0.10));
+        // Trapped air drives the fingers on when what they held is gone.
+        let gap = (self.opening - stop).max(0.0).min(self.force / COMPRESSIBILITY);
+        self.opening -= gap;
+        self.force -= gap * COMPRESSIBILITY;
         if bits & valve::VENT != 0 {
             self.force = 0.0;
         }
@@ -85,7 +90,6 @@ impl Gripper {
             return;
         }
         let way: f64 = FLOWS.iter().filter(|(bit, _)| bits & bit != 0).map(|(_, flow)| flow * TICK_S).sum();
-        let stop = self.object.map_or(0.10, |object| object.size.max(0.10));
         if way < 0.0 {
             let free = (-way).min((self.opening - stop).max(0.0));
             self.opening -= free;

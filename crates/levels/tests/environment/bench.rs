@@ -155,7 +155,7 @@ impl<P: Tested<Data>, W: World<P>, Data> Bench<P, W, Data> {
         } else {
             let (memory, external, data) = (&before, &self.external, &self.data);
             self.process.step(&Inputs { tick: self.tick, memory, external, data }, &mut outputs);
-            coverage::note(P::NAME, P::header(&mut outputs));
+            coverage::note(P::NAME, P::TABLES, P::header(&mut outputs));
             P::check(&outputs, &before, &self.external);
         }
         *P::outputs(&mut self.memory) = outputs;

@@ -14,8 +14,9 @@ use levels::{
 use rcs_core::{handshake::Commander, tick::Tick};
 
 use crate::{
-    emove::{Fingered, run},
+    emove::Fingered,
     fingers::{Fingers, Sizes, calibration, flow},
+    frame::{Data, Half, Stepped},
     image::{Image, rebase},
 };
 
@@ -24,12 +25,27 @@ const SIZES: Sizes = Sizes { open: 350, part: 66, force: 30 };
 
 #[derive(Clone)]
 pub struct Grip {
-    state: grip::state::State,
-    outputs: GripOutputs,
+    half: Half<grip::Grip>,
     /// Fingers that stand open do so at the last opening for which air has opened them.
     sizes: Sizes,
     /// Air brings them to an opening that is wider than the part.
     positions: bool,
+}
+
+impl Stepped for Grip {
+    fn step(&mut self, inputs: &Inputs<'_, Data>) {
+        self.half.step(inputs);
+        let GripCommand { command, position, .. } = inputs.memory.emove.grip;
+        let (opens, closes) = flow(self.half.out.valves.bits);
+        self.positions = command == GripVerb::Position && (opens || closes);
+        if self.positions || (opens && command == GripVerb::OpenGrip) {
+            self.sizes.open = u16::try_from(position).unwrap_or_default();
+        }
+    }
+
+    fn restart(&mut self) {
+        self.half.restart();
+    }
 }
 
 impl Fingered for Grip {
@@ -46,12 +62,18 @@ impl Fingered for Grip {
     /// The gripper is calibrated.
     fn first() -> Self {
         let calibration = Some(calibration());
-        let mut outputs = GripOutputs { calibration, ..GripOutputs::default() };
-        let status = &mut outputs.status;
+        let mut out = GripOutputs { calibration, ..GripOutputs::default() };
+        let status = &mut out.status;
         (status.initialized, status.position, status.felt) = (true, i32::from(SIZES.open), Felt::Nothing);
         Self {
-            state: grip::state::State { phase: Phase::Valid, calibration, ..grip::state::State::default() },
-            outputs,
+            half: Half {
+                state: grip::state::State {
+                    phase: Phase::Valid,
+                    calibration,
+                    ..grip::state::State::default()
+                },
+                out,
+            },
             sizes: SIZES,
             positions: false,
         }
@@ -62,7 +84,7 @@ impl Fingered for Grip {
         if self.positions {
             return vec![(fingers, false), (Fingers::Open, true)];
         }
-        let bits = self.outputs.valves.bits;
+        let bits = self.half.out.valves.bits;
         let mut next = fingers.next(bits);
         if fingers == Fingers::Holding && flow(bits).0 {
             next.push((Fingers::Touching, false));
@@ -72,7 +94,7 @@ impl Fingered for Grip {
 
     /// They have stood for so long that their process has noted it.
     fn may_be_long(&self, fingers: Fingers, (next, arrive): (Fingers, bool)) -> bool {
-        let it = &self.state;
+        let it = &self.half.state;
         let read = it.sensed.map(|sensed| sensed.last) == Some(self.sensors(fingers));
         next == fingers && !arrive && read && it.still_ticks >= 5 && it.touch_ticks >= 5
     }
@@ -98,30 +120,21 @@ impl Fingered for Grip {
     }
 
     fn write(&self, memory: &mut CommonMemory, stamp: Tick) {
-        memory.grip = self.outputs;
+        memory.grip = self.half.out;
         memory.grip.header.stamp = stamp;
     }
 
-    fn step(&mut self, inputs: &Inputs<'_, ()>) {
-        run::<grip::Grip>(&mut self.state, inputs, &mut self.outputs);
-        let GripCommand { command, position, .. } = inputs.memory.emove.grip;
-        let (opens, closes) = flow(self.outputs.valves.bits);
-        self.positions = command == GripVerb::Position && (opens || closes);
-        if self.positions || (opens && command == GripVerb::OpenGrip) {
-            self.sizes.open = u16::try_from(position).unwrap_or_default();
-        }
-    }
-
     fn execution(&mut self) -> &mut Execution {
-        &mut self.state.execution
+        &mut self.half.state.execution
     }
 
     fn reports_executing(&self) -> bool {
-        self.outputs.status.report == GripReport::Executing
+        self.half.out.status.report == GripReport::Executing
     }
 
     fn rests(&self) -> bool {
-        self.state.execution.outcome != Outcome::Executing && flow(self.outputs.valves.bits) == (false, false)
+        self.half.state.execution.outcome != Outcome::Executing
+            && flow(self.half.out.valves.bits) == (false, false)
     }
 
     /// They hold it without air, too.
@@ -129,12 +142,8 @@ impl Fingered for Grip {
         true
     }
 
-    fn restart(&mut self) {
-        self.state = grip::state::State::default();
-    }
-
     fn echo(&self) -> u32 {
-        self.outputs.status.echo
+        self.half.out.status.echo
     }
 
     fn number(outputs: &mut EmoveOutputs) -> &mut u32 {
@@ -142,8 +151,8 @@ impl Fingered for Grip {
     }
 
     fn renumber(&mut self, commander: &mut Commander, number: &mut u32) {
-        let read = &mut self.state.execution.receiver.echo;
-        rebase(commander, &mut [number, read, &mut self.outputs.status.echo]);
+        let read = &mut self.half.state.execution.receiver.echo;
+        rebase(commander, &mut [number, read, &mut self.half.out.status.echo]);
     }
 
     fn commander(state: &mut emove::State) -> &mut Commander {
@@ -151,7 +160,7 @@ impl Fingered for Grip {
     }
 
     fn forget(&mut self, tick: Tick) {
-        let state = &mut self.state;
+        let state = &mut self.half.state;
         if state.execution.outcome != Outcome::Executing {
             (state.step, state.goal, state.settled, state.missed) = Default::default();
             state.since = tick;
@@ -165,9 +174,9 @@ impl Fingered for Grip {
     }
 
     fn add_to(&self, outputs: &EmoveOutputs, image: &mut Image) {
-        let status = &self.outputs.status;
+        let status = &self.half.out.status;
         image.add(&outputs.grip);
-        image.add(&self.state);
+        image.add(&self.half.state);
         image.add(&status.echo);
         image.add(&status.report);
         image.add(&status.felt);
@@ -176,6 +185,6 @@ impl Fingered for Grip {
         image.add(&status.left_force);
         image.add(&status.right_force);
         image.add(&status.velocity);
-        image.bytes.extend([self.outputs.valves.bits, self.positions.into()]);
+        image.bytes.extend([self.half.out.valves.bits, self.positions.into()]);
     }
 }

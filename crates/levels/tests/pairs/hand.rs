@@ -1,29 +1,26 @@
 //! The pedestal process and its hand's. Around them: Subtask, the fingers with a part or without, the rotary table.
 
+use crate::{
+    fingers::{Fingers, Sizes, calibration, flow},
+    frame::{self, Choice, Event, Half, Scene},
+    image::{Image, rebase, rebase_echoes},
+    search::Wrong,
+};
 use interfaces::{
-    CommonMemory, ExternalInputs, GripOutputs, PedestalOutputs, Reason,
+    CommonMemory, ExternalInputs, GripOutputs, Reason,
     device::GripSensors,
     grip::{GripCommand, GripReport},
-    pedestal::{PedestalCommand, PedestalReport, PedestalVerb, TableStatus, TableVerb},
-    process::{Inputs, Process},
+    pedestal::{
+        PedestalCommand, PedestalReport, PedestalStatus, PedestalVerb, TableCommand, TableStatus, TableVerb,
+    },
 };
 use levels::{
     execution::Outcome,
     grip::{self, tables::Phase},
-    pedestal::{Hand, Pedestal, control},
-};
-use rcs_core::tick::Tick;
-
-use crate::{
-    fingers::{Fingers, Sizes, calibration, flow},
-    image::{Image, rebase, rebase_echoes},
-    search::{Mishap, World, Wrong, resumed},
-    told::{Told, choices},
+    pedestal::{Hand, Pedestal},
 };
 
-/// Longer than the time limit of the hand's commands.
-const LONG: u64 = 200;
-/// The greatest age that is within it, ticks.
+/// The greatest age that is within the time limit of the hand's commands, ticks.
 const LIMIT: u64 = 150;
 /// The opening of PRE-GRIP and RELEASE and the grasp size of a GRIP, 0.01 in.
 const OPEN: i32 = 450;
@@ -42,64 +39,30 @@ pub enum TableDoes {
     Fails,
 }
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Event {
-    pub told: Told,
-    pub fingers: Fingers,
-    pub table: TableDoes,
-    pub mishap: Mishap,
-    /// A long time has passed in which nothing else happened.
-    pub long: bool,
-}
-
+/// The fingers, and the table as the pedestal process sees it.
 #[derive(Clone)]
-pub struct Pair {
-    tick: Tick,
-    mishaps: u8,
-    commands: &'static [PedestalVerb],
-    command: PedestalCommand,
-    pedestal: control::state::State,
-    pedestal_out: PedestalOutputs,
-    hand: grip::state::State,
-    hand_out: GripOutputs,
+pub struct Around {
     fingers: Fingers,
     table: TableStatus,
 }
 
-impl Pair {
-    /// The first tick of a system that is booted, with a hand that is calibrated and open, and a table that is
-    /// calibrated; so many mishaps can happen, and these commands can come.
-    pub fn first(mishaps: u8, commands: &'static [PedestalVerb]) -> Self {
-        let calibration = Some(calibration());
-        let mut pair = Self {
-            tick: Tick(10_000),
-            mishaps,
-            commands,
-            command: PedestalCommand::default(),
-            pedestal: control::state::State::default(),
-            pedestal_out: PedestalOutputs::default(),
-            hand: grip::state::State { phase: Phase::Valid, calibration, ..grip::state::State::default() },
-            hand_out: GripOutputs { calibration, ..GripOutputs::default() },
-            fingers: Fingers::Open,
-            table: TableStatus { calibrated: true, position: Some(TURNED), ..TableStatus::default() },
-        };
-        pair.hand.execution.receiver.started = true;
-        pair
-    }
+pub type Pair = frame::Pair<Around>;
 
-    fn tell(&mut self, verb: PedestalVerb) {
-        self.command = PedestalCommand {
-            cycle: self.tick,
-            number: self.command.number + 1,
-            command: verb,
-            grasp_size: if verb == PedestalVerb::Grip { SIZE } else { OPEN },
-            grasp_force: 50,
-            table_angle: if verb == PedestalVerb::Flip { -100 } else { RECEIVE },
-        };
-    }
+/// The first tick of a system that is booted, with a hand that is calibrated and open, and a table that is calibrated;
+/// so many mishaps can happen, and these commands can come.
+pub fn first(mishaps: u8, commands: &[PedestalVerb]) -> Pair {
+    let calibration = Some(calibration());
+    let mut hand = Half::<Hand> {
+        state: grip::state::State { phase: Phase::Valid, calibration, ..grip::state::State::default() },
+        out: GripOutputs { calibration, ..GripOutputs::default() },
+    };
+    hand.state.execution.receiver.started = true;
+    let table = TableStatus { calibrated: true, position: Some(TURNED), ..TableStatus::default() };
+    Pair::new(commands, (None, mishaps), hand, Around { fingers: Fingers::Open, table })
+}
 
-    fn table_does(&mut self, does: TableDoes) {
-        let order = self.pedestal_out.table;
+impl Around {
+    fn table_does(&mut self, does: TableDoes, order: &TableCommand) {
         if order.number != self.table.echo && order.number != 0 {
             (self.table.echo, self.table.report) = (order.number, PedestalReport::Executing);
             self.table.position = None;
@@ -114,187 +77,198 @@ impl Pair {
             TableDoes::Fails => self.table.report = PedestalReport::Error,
         }
     }
+}
+
+impl Scene for Around {
+    type Upper = Half<Pedestal>;
+    type Lower = Half<Hand>;
+    type Line = PedestalVerb;
+    type Command = PedestalCommand;
+    type Does = (Fingers, TableDoes);
+    /// Longer than the time limit of the hand's commands.
+    const LONG: u64 = 200;
+
+    fn choices(pair: &Pair) -> Vec<Choice<Self::Does>> {
+        let turning = pair.is_turning();
+        let table: &[TableDoes] =
+            if turning { &[TableDoes::Goes, TableDoes::Ends, TableDoes::Fails] } else { &[TableDoes::Goes] };
+        let mut choices = Vec::new();
+        for &table in table {
+            for (fingers, arrive) in pair.scene.fingers.next(pair.lower.out.valves.bits) {
+                let waits = fingers == pair.scene.fingers && !arrive && !turning;
+                let long = waits && pair.is_settled() && pair.is_still();
+                let prompt = arrive && (!turning || table != TableDoes::Goes);
+                choices.push(Choice { long, ..Choice::new((fingers, table), prompt) });
+            }
+        }
+        choices
+    }
+
+    fn has_ended(pair: &Pair) -> bool {
+        has_ended(&pair.command, &pair.upper.out.status)
+    }
+
+    fn is_other(pair: &Pair, verb: &PedestalVerb) -> bool {
+        *verb != pair.command.command
+    }
+
+    fn command(pair: &mut Pair, nth: usize) {
+        let verb = pair.lines[nth];
+        pair.command = PedestalCommand {
+            cycle: pair.tick,
+            number: pair.command.number + 1,
+            command: verb,
+            grasp_size: if verb == PedestalVerb::Grip { SIZE } else { OPEN },
+            grasp_force: 50,
+            table_angle: if verb == PedestalVerb::Flip { -100 } else { RECEIVE },
+        };
+    }
+
+    fn inputs(pair: &Pair) -> (CommonMemory, ExternalInputs) {
+        let before = pair.tick.previous();
+        let (mut memory, mut external) = (CommonMemory::default(), ExternalInputs::default());
+        memory.subtask.pedestal = pair.command;
+        (memory.pedestal, memory.hand) = (pair.upper.out, pair.lower.out);
+        memory.table.status = pair.scene.table;
+        let headers = [&mut memory.pedestal.header, &mut memory.hand.header, &mut memory.table.header];
+        headers.into_iter().for_each(|header| header.stamp = before);
+        let sensors = &mut external.devices.pedestal;
+        let GripSensors { potentiometer, strain_left, strain_right, .. } = pair.scene.fingers.sensors(&SIZES);
+        (sensors.potentiometer, sensors.strain_left, sensors.strain_right) =
+            (potentiometer, strain_left, strain_right);
+        (memory, external)
+    }
+
+    fn act(pair: &mut Pair, event: &Event<Self::Does>, memory: &CommonMemory) -> Result<(), Wrong> {
+        let (fingers, table) = event.does;
+        pair.scene.table_does(table, &memory.pedestal.table);
+        pair.scene.fingers = fingers;
+        Ok(())
+    }
 
     /// What is reported done is done.
-    ///
-    /// `before` is the pair as it was when the processes read it.
-    fn judge(&self, before: &Self) -> Result<(), Wrong> {
-        let ended = |it: &Self| {
-            let status = &it.pedestal_out.status;
-            status.echo == self.command.number && status.report == PedestalReport::Done
+    fn judge(pair: &Pair, before: &Pair, _: &Event<Self::Does>) -> Result<(), Wrong> {
+        let ended = |it: &Pair| {
+            let status = &it.upper.out.status;
+            status.echo == pair.command.number && status.report == PedestalReport::Done
         };
-        if !ended(self) || ended(before) {
+        if !ended(pair) || ended(before) {
             return Ok(());
         }
-        let is_open = matches!(before.fingers, Fingers::Open | Fingers::Drifted);
-        match self.command.command {
+        let is_open = matches!(before.scene.fingers, Fingers::Open | Fingers::Drifted);
+        match pair.command.command {
             PedestalVerb::PreGrip | PedestalVerb::Release if !is_open => {
                 Err("done, and the hand is not open")
             }
-            PedestalVerb::PreGrip if before.table.position != Some(RECEIVE) => {
+            PedestalVerb::PreGrip if before.scene.table.position != Some(RECEIVE) => {
                 Err("done, and the table is elsewhere")
             }
-            PedestalVerb::Grip if !matches!(before.fingers, Fingers::Holding | Fingers::Emptied) => {
+            PedestalVerb::Grip if !matches!(before.scene.fingers, Fingers::Holding | Fingers::Emptied) => {
                 Err("done, and nothing is between the fingers")
             }
-            PedestalVerb::Pause if before.hand_out.status.report == GripReport::Executing => {
+            PedestalVerb::Pause if before.lower.out.status.report == GripReport::Executing => {
                 Err("done, and the hand moves")
             }
-            PedestalVerb::Pause if before.table.report == PedestalReport::Executing => {
+            PedestalVerb::Pause if before.scene.table.report == PedestalReport::Executing => {
                 Err("done, and the table turns")
             }
             PedestalVerb::None => Err("an unknown command is done"),
             _ => Ok(()),
         }
     }
-}
 
-impl World for Pair {
-    type Event = Event;
-
-    fn events(&self) -> Vec<(Event, bool)> {
-        let turning = self.is_turning();
-        let table: &[TableDoes] =
-            if turning { &[TableDoes::Goes, TableDoes::Ends, TableDoes::Fails] } else { &[TableDoes::Goes] };
-        let mut events = Vec::new();
-        for mishap in Mishap::choices(self.mishaps, Mishap::RESTARTS) {
-            for told in choices(self.commands, &self.command, &self.pedestal_out.status) {
-                for &table in table {
-                    for (fingers, arrive) in self.fingers.next(self.hand_out.valves.bits) {
-                        if mishap != Mishap::None && told != Told::Nothing {
-                            continue;
-                        }
-                        let quiet = told == Told::Nothing && mishap == Mishap::None;
-                        let event = Event { told, fingers, table, mishap, long: false };
-                        events.push((event, quiet && arrive && (!turning || table != TableDoes::Goes)));
-                        let waits = quiet && fingers == self.fingers && !arrive;
-                        if waits && !turning && self.is_settled() && self.is_still() {
-                            events.push((Event { long: true, ..event }, true));
-                        }
-                    }
-                }
-            }
-        }
-        events
-    }
-
-    fn step(&mut self, event: Event) -> Result<(), Wrong> {
-        self.tick = if event.long { Tick(self.tick.0 + LONG) } else { self.tick.next() };
-        let mut upper: Pedestal = resumed::<_, ()>(self.pedestal, event.mishap == Mishap::RestartUpper);
-        let mut lower: Hand = resumed::<_, ()>(self.hand, event.mishap == Mishap::RestartLower);
-        self.mishaps -= u8::from(event.mishap != Mishap::None);
-        if let Told::Command(verb) = event.told {
-            self.tell(verb);
-        }
-        let before = self.tick.previous();
-        let mut memory = CommonMemory::default();
-        memory.subtask.pedestal = self.command;
-        (memory.pedestal, memory.hand) = (self.pedestal_out, self.hand_out);
-        memory.table.status = self.table;
-        let headers = [&mut memory.pedestal.header, &mut memory.hand.header, &mut memory.table.header];
-        headers.into_iter().for_each(|header| header.stamp = before);
-        let mut external = ExternalInputs::default();
-        let sensors = &mut external.devices.pedestal;
-        let GripSensors { potentiometer, strain_left, strain_right, .. } = self.fingers.sensors(&SIZES);
-        (sensors.potentiometer, sensors.strain_left, sensors.strain_right) =
-            (potentiometer, strain_left, strain_right);
-        let inputs = Inputs { tick: self.tick, memory: &memory, external: &external, data: &() };
-        let old = self.clone();
-        let (mut pedestal_out, mut hand_out) = (self.pedestal_out, self.hand_out);
-        upper.step(&inputs, &mut pedestal_out);
-        lower.step(&inputs, &mut hand_out);
-        // The table reads what was written in the tick before.
-        self.table_does(event.table);
-        self.fingers = event.fingers;
-        (self.pedestal_out, self.hand_out) = (pedestal_out, hand_out);
-        self.pedestal = *Process::<()>::state(&upper);
-        self.hand = *Process::<()>::state(&lower);
-        let wrong = self.judge(&old);
-        self.renumber();
-        wrong
+    /// What does not count any more begins again.
+    fn renumber(pair: &mut Pair) {
+        let (pedestal, out) = (&mut pair.upper.state, &mut pair.upper.out);
+        let echo = &mut pedestal.execution.receiver.echo;
+        rebase_echoes(&mut [&mut pair.command.number, echo, &mut out.status.echo]);
+        let echo = &mut pair.lower.state.execution.receiver.echo;
+        rebase(&mut pedestal.hand, &mut [&mut out.hand.number, echo, &mut pair.lower.out.status.echo]);
+        rebase(&mut pedestal.table, &mut [&mut out.table.number, &mut pair.scene.table.echo]);
     }
 
     /// Without what no row asks for any more: reasons; the step, the command, the goal and the times of a process
     /// that executes nothing; the text of an order that has been taken.
-    fn image(&self) -> Vec<u8> {
+    fn image(pair: &Pair) -> Vec<u8> {
         let counters = &[("settled", 6), ("missed", 3), ("touch_ticks", 5), ("still_ticks", 5)];
-        let mut image = Image::new(self.tick, LIMIT, counters);
-        let mut it = self.clone();
-        let reasons =
-            [&mut it.pedestal.execution.reason, &mut it.hand.execution.reason, &mut it.table.reason];
+        let mut image = Image::new(pair.tick, LIMIT, counters);
+        let mut it = pair.clone();
+        let reasons = [
+            &mut it.upper.state.execution.reason,
+            &mut it.lower.state.execution.reason,
+            &mut it.scene.table.reason,
+        ];
         reasons.into_iter().for_each(|reason| *reason = Reason::None);
-        if it.pedestal.execution.outcome != Outcome::Executing {
-            (it.pedestal.step, it.pedestal.ordered, it.pedestal.command) = Default::default();
+        if it.upper.state.execution.outcome != Outcome::Executing {
+            (it.upper.state.step, it.upper.state.ordered, it.upper.state.command) = Default::default();
         }
-        if it.hand.execution.outcome != Outcome::Executing {
-            (it.hand.step, it.hand.goal, it.hand.settled, it.hand.missed) = Default::default();
-            it.hand.since = it.tick;
+        if it.lower.state.execution.outcome != Outcome::Executing {
+            (it.lower.state.step, it.lower.state.goal, it.lower.state.settled, it.lower.state.missed) =
+                Default::default();
+            it.lower.state.since = it.tick;
         }
         if it.is_settled() {
-            let number = it.pedestal_out.hand.number;
-            it.pedestal_out.hand = GripCommand { number, ..GripCommand::default() };
-            it.pedestal_out.table.angle = if it.is_turning() { it.pedestal_out.table.angle } else { 0 };
+            let number = it.upper.out.hand.number;
+            it.upper.out.hand = GripCommand { number, ..GripCommand::default() };
+            it.upper.out.table.angle = if it.is_turning() { it.upper.out.table.angle } else { 0 };
         }
-        (it.pedestal.command.number, it.hand.steady) = Default::default();
+        (it.upper.state.command.number, it.lower.state.steady) = Default::default();
         image.add(&it.command);
-        image.add(&it.pedestal);
-        image.add(&it.pedestal_out.hand);
-        image.add(&it.pedestal_out.table);
-        image.add(&it.pedestal_out.status.echo);
-        image.add(&it.pedestal_out.status.report);
-        image.add(&it.hand);
-        image.add(&it.hand_out.status.echo);
-        image.add(&it.hand_out.status.report);
-        image.add(&it.hand_out.status.felt);
-        image.add(&it.hand_out.status.initialized);
-        image.add(&it.table);
-        image.bytes.extend([u8::from(it.hand_out.status.position > SIZE), it.mishaps]);
-        image.bytes.push(it.hand_out.valves.bits);
-        image.add(&it.fingers.sensors(&SIZES));
+        image.add(&it.upper.state);
+        image.add(&it.upper.out.hand);
+        image.add(&it.upper.out.table);
+        image.add(&it.upper.out.status.echo);
+        image.add(&it.upper.out.status.report);
+        image.add(&it.lower.state);
+        image.add(&it.lower.out.status.echo);
+        image.add(&it.lower.out.status.report);
+        image.add(&it.lower.out.status.felt);
+        image.add(&it.lower.out.status.initialized);
+        image.add(&it.scene.table);
+        image.bytes.extend([u8::from(it.lower.out.status.position > SIZE), it.mishaps]);
+        image.bytes.push(it.lower.out.valves.bits);
+        image.add(&it.scene.fingers.sensors(&SIZES));
         image.bytes
     }
 
-    fn rests(&self) -> bool {
-        let status = &self.pedestal_out.status;
-        status.echo == self.command.number
-            && status.report != PedestalReport::Executing
-            && self.is_settled()
-            && self.hand.execution.outcome != Outcome::Executing
-            && !self.is_turning()
-            && flow(self.hand_out.valves.bits) == (false, false)
+    fn rests(pair: &Pair) -> bool {
+        Self::has_ended(pair)
+            && pair.is_settled()
+            && pair.lower.state.execution.outcome != Outcome::Executing
+            && !pair.is_turning()
+            && flow(pair.lower.out.valves.bits) == (false, false)
     }
 
-    fn pauses(&self) -> bool {
-        self.command.command == PedestalVerb::Pause
+    fn pauses(pair: &Pair) -> bool {
+        pair.command.command == PedestalVerb::Pause
     }
+}
+
+/// A command of Subtask to the pedestal process has ended.
+pub fn has_ended(command: &PedestalCommand, status: &PedestalStatus) -> bool {
+    status.echo == command.number && status.report != PedestalReport::Executing
 }
 
 impl Pair {
     /// The hand has read its last command, and the pedestal its echo.
     fn is_settled(&self) -> bool {
-        let number = self.pedestal_out.hand.number;
-        number == 0 || (number == self.hand_out.status.echo && number == self.hand.execution.receiver.echo)
+        let number = self.upper.out.hand.number;
+        number == 0
+            || (number == self.lower.out.status.echo && number == self.lower.state.execution.receiver.echo)
     }
 
     /// The table has not ended its last order.
     fn is_turning(&self) -> bool {
-        let number = self.pedestal_out.table.number;
-        (number != self.table.echo && number != 0) || self.table.report == PedestalReport::Executing
+        let number = self.upper.out.table.number;
+        (number != self.scene.table.echo && number != 0)
+            || self.scene.table.report == PedestalReport::Executing
     }
 
     /// The fingers have stood for so long that their process has noted it.
     fn is_still(&self) -> bool {
-        let read = self.hand.sensed.map(|sensed| sensed.last);
-        read == Some(self.fingers.sensors(&SIZES)) && self.hand.still_ticks >= 5 && self.hand.touch_ticks >= 5
-    }
-
-    /// What does not count any more begins again.
-    fn renumber(&mut self) {
-        let (pedestal, out) = (&mut self.pedestal, &mut self.pedestal_out);
-        let echo = &mut pedestal.execution.receiver.echo;
-        rebase_echoes(&mut [&mut self.command.number, echo, &mut out.status.echo]);
-        let echo = &mut self.hand.execution.receiver.echo;
-        rebase(&mut pedestal.hand, &mut [&mut out.hand.number, echo, &mut self.hand_out.status.echo]);
-        rebase(&mut pedestal.table, &mut [&mut out.table.number, &mut self.table.echo]);
+        let read = self.lower.state.sensed.map(|sensed| sensed.last);
+        read == Some(self.scene.fingers.sensors(&SIZES))
+            && self.lower.state.still_ticks >= 5
+            && self.lower.state.touch_ticks >= 5
     }
 }

@@ -22,7 +22,8 @@ use levels::{
 use rcs_core::{handshake::Commander, tick::Tick};
 
 use crate::{
-    emove::{Fingered, run},
+    emove::Fingered,
+    frame::{Data, Half, Stepped},
     image::{Image, rebase},
 };
 
@@ -88,9 +89,8 @@ impl Side for ToolGripper {
 }
 
 #[derive(Clone)]
-pub struct Jaws<S> {
-    state: State,
-    outputs: JawsOutputs,
+pub struct Jaws<S: Side> {
+    half: Half<Real<S>>,
     side: PhantomData<S>,
 }
 
@@ -104,6 +104,16 @@ impl<S: Side> Jaws<S> {
             Fingers::Closed => S::PARAMETERS.closed,
         };
         (POTENTIOMETER_OFFSET + POTENTIOMETER_SCALE * opening).round() as u16
+    }
+}
+
+impl<S: Side> Stepped for Jaws<S> {
+    fn step(&mut self, inputs: &Inputs<'_, Data>) {
+        self.half.step(inputs);
+    }
+
+    fn restart(&mut self) {
+        self.half.restart();
     }
 }
 
@@ -123,15 +133,15 @@ impl<S: Side> Fingered for Jaws<S> {
         let counts = Self::reading(Fingers::Open);
         let state =
             State { window: Some([counts; 4]), attached_ticks: 10, air_ticks: 10, ..State::default() };
-        let mut outputs = JawsOutputs::default();
-        (outputs.status.size, outputs.status.felt) = (S::GRIPPER.closed() + 300, Felt::Nothing);
-        Self { state, outputs, side: PhantomData }
+        let mut out = JawsOutputs::default();
+        (out.status.size, out.status.felt) = (S::GRIPPER.closed() + 300, Felt::Nothing);
+        Self { half: Half { state, out }, side: PhantomData }
     }
 
     /// Fingers that stand still have stopped for their process, wherever that is.
     fn next(&self, fingers: Fingers) -> Vec<(Fingers, bool)> {
         use Fingers::{Closed, Holding, Open, Wide};
-        let valves = self.outputs.valves;
+        let valves = self.half.out.valves;
         let also: &[(Fingers, bool)] = match (valves.open, valves.close, fingers) {
             (true, _, Closed | Holding) => &[(Wide, true), (Open, true)],
             (true, _, Wide) => &[(Open, true)],
@@ -146,9 +156,10 @@ impl<S: Side> Fingered for Jaws<S> {
 
     /// They have not stood still, and do not until the time limit is over.
     fn may_be_long(&self, fingers: Fingers, (next, _): (Fingers, bool)) -> bool {
-        let still = self.state.window.is_some_and(|window| window.iter().all(|counts| *counts == window[0]));
-        let goes = self.outputs.valves.open || self.outputs.valves.close;
-        next == fingers && goes && !still && self.state.execution.outcome == Outcome::Executing
+        let still =
+            self.half.state.window.is_some_and(|window| window.iter().all(|counts| *counts == window[0]));
+        let goes = self.half.out.valves.open || self.half.out.valves.close;
+        next == fingers && goes && !still && self.half.state.execution.outcome == Outcome::Executing
     }
 
     fn sensors(&self, fingers: Fingers) -> GripSensors {
@@ -173,36 +184,28 @@ impl<S: Side> Fingered for Jaws<S> {
 
     fn write(&self, memory: &mut CommonMemory, stamp: Tick) {
         let outputs = S::outputs(memory);
-        *outputs = self.outputs;
+        *outputs = self.half.out;
         outputs.header.stamp = stamp;
     }
 
-    fn step(&mut self, inputs: &Inputs<'_, ()>) {
-        run::<Real<S>>(&mut self.state, inputs, &mut self.outputs);
-    }
-
     fn execution(&mut self) -> &mut Execution {
-        &mut self.state.execution
+        &mut self.half.state.execution
     }
 
     fn reports_executing(&self) -> bool {
-        self.outputs.status.report == JawsReport::Executing
+        self.half.out.status.report == JawsReport::Executing
     }
 
     fn rests(&self) -> bool {
-        self.state.execution.outcome != Outcome::Executing
+        self.half.state.execution.outcome != Outcome::Executing
     }
 
     fn presses(&self) -> bool {
-        self.outputs.valves.close
-    }
-
-    fn restart(&mut self) {
-        self.state = State::default();
+        self.half.out.valves.close
     }
 
     fn echo(&self) -> u32 {
-        self.outputs.status.echo
+        self.half.out.status.echo
     }
 
     fn number(outputs: &mut EmoveOutputs) -> &mut u32 {
@@ -210,8 +213,8 @@ impl<S: Side> Fingered for Jaws<S> {
     }
 
     fn renumber(&mut self, commander: &mut Commander, number: &mut u32) {
-        let read = &mut self.state.execution.receiver.echo;
-        rebase(commander, &mut [number, read, &mut self.outputs.status.echo]);
+        let read = &mut self.half.state.execution.receiver.echo;
+        rebase(commander, &mut [number, read, &mut self.half.out.status.echo]);
     }
 
     fn commander(state: &mut emove::State) -> &mut Commander {
@@ -219,7 +222,7 @@ impl<S: Side> Fingered for Jaws<S> {
     }
 
     fn forget(&mut self, tick: Tick) {
-        let state = &mut self.state;
+        let state = &mut self.half.state;
         if state.execution.outcome != Outcome::Executing {
             (state.step, state.verb, state.since) = (Default::default(), Default::default(), tick);
         }
@@ -232,14 +235,14 @@ impl<S: Side> Fingered for Jaws<S> {
     }
 
     fn add_to(&self, outputs: &EmoveOutputs, image: &mut Image) {
-        let status = &self.outputs.status;
+        let status = &self.half.out.status;
         image.add(S::order(&mut { *outputs }));
-        image.add(&self.state);
+        image.add(&self.half.state);
         image.add(&status.echo);
         image.add(&status.report);
         image.add(&status.felt);
         image.add(&status.size);
         image.add(&status.velocity);
-        image.add(&self.outputs.valves);
+        image.add(&self.half.out.valves);
     }
 }

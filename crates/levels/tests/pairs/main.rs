@@ -15,7 +15,10 @@
 
 mod data;
 mod emove;
+#[path = "../environment/emove.rs"]
+mod emove_orders;
 mod fingers;
+mod frame;
 mod grip;
 mod hand;
 mod holster;
@@ -29,7 +32,6 @@ mod robot;
 mod search;
 mod subtask;
 mod task;
-mod told;
 
 use interfaces::{emove::EmoveVerb, pedestal::PedestalVerb};
 use levels::jaws::{CylindricalPartGripper, ToolGripper};
@@ -73,14 +75,14 @@ fn commands() -> &'static [PedestalVerb] {
 
 #[test]
 fn pedestal_and_table() {
-    let found = is_sound("Pedestal and table", pedestal::Pair::first(0, commands()), 1_000_000);
+    let found = is_sound("Pedestal and table", pedestal::first(0, commands()), 1_000_000);
     assert!(found.pause <= 22 && found.any <= 44, "{} and {}", found.pause, found.any);
 }
 
 #[test]
 fn pedestal_and_table_with_a_mishap() {
     let commands = if is_full() { SOME } else { &[PedestalVerb::Flip, PedestalVerb::Pause] };
-    is_sound("Pedestal and table, a mishap", pedestal::Pair::first(1, commands), 8_000_000);
+    is_sound("Pedestal and table, a mishap", pedestal::first(1, commands), 8_000_000);
 }
 
 const HOLDING: &[PedestalVerb] = &[PedestalVerb::Grip, PedestalVerb::Release, PedestalVerb::Pause];
@@ -88,14 +90,14 @@ const HOLDING: &[PedestalVerb] = &[PedestalVerb::Grip, PedestalVerb::Release, Pe
 #[test]
 fn pedestal_and_hand() {
     let commands = if is_full() { PedestalVerb::ALL } else { HOLDING };
-    let found = is_sound("Pedestal and hand", hand::Pair::first(0, commands), 1_000_000);
+    let found = is_sound("Pedestal and hand", hand::first(0, commands), 1_000_000);
     assert!(found.pause <= 21 && found.any <= 29, "{} and {}", found.pause, found.any);
 }
 
 #[test]
 fn pedestal_and_hand_with_a_mishap() {
     let commands = if is_full() { HOLDING } else { &[PedestalVerb::Grip, PedestalVerb::Pause] };
-    is_sound("Pedestal and hand, a mishap", hand::Pair::first(1, commands), 1_000_000);
+    is_sound("Pedestal and hand, a mishap", hand::first(1, commands), 1_000_000);
 }
 
 /// Commands that handle an object.
@@ -111,7 +113,7 @@ const TELLING: &[&str] = &["PAUSE", "STARTUP", "POSITION LINKBAR1 +2 PFIXTURE 0 
 
 /// Search Task and Subtask with these commands; a pair that rests takes `any` ticks at most.
 fn tasks(name: &str, mishaps: u8, lines: &[&str], any: u32) {
-    let found = is_sound(name, task::Pair::first(mishaps, data::commands(lines)), 4_000_000);
+    let found = is_sound(name, task::first(mishaps, data::commands(lines)), 4_000_000);
     assert!(found.pause <= 14 && found.any <= any, "{} and {}", found.pause, found.any);
 }
 
@@ -135,7 +137,7 @@ const TELLING_TWICE: u32 = 32;
 fn task_and_subtask_let_an_object_go() {
     let mut commands = data::commands(&[HANDLING[0], HANDLING[2], HANDLING[1]]);
     commands.truncate(if is_full() { 3 } else { 2 });
-    let pair = task::Pair::first(0, commands.clone()).carrying(&commands[1]);
+    let pair = task::first(0, commands.clone()).carrying(&commands[1]);
     let found = is_sound("Task and Subtask, an object in the database", pair, 4_000_000);
     assert!(found.pause <= 14 && found.any <= TELLING_TWICE, "{} and {}", found.pause, found.any);
 }
@@ -145,7 +147,7 @@ fn task_and_subtask_take_an_object_out_of_the_mbd() {
     let mut commands =
         data::commands(&["TRANSFER LINKBAR1 +2 UNIT_1 1 +2 PFIXTURE 0 SAFE 0", HANDLING[2], HANDLING[0]]);
     commands.truncate(if is_full() { 3 } else { 2 });
-    let pair = task::Pair::first(0, commands).connected("UNIT_1").promptly(!is_full());
+    let pair = task::first(0, commands).connected("UNIT_1").promptly(!is_full());
     let found = is_sound("Task and Subtask, an object taken out of the MBD", pair, 4_000_000);
     assert!(found.pause <= 14 && found.any <= TELLING_TWICE, "{} and {}", found.pause, found.any);
 }
@@ -171,7 +173,7 @@ fn grasping<G: emove::Fingered>(
     (early, restarts): (Option<u8>, u8),
     (pause, any): (u32, u32),
 ) {
-    let found = is_sound(name, emove::Pair::<G>::first(commands, early, restarts), 2_500_000);
+    let found = is_sound(name, emove::first::<G>(commands, early, restarts), 2_500_000);
     assert!(found.pause <= pause && found.any <= any, "{} and {}", found.pause, found.any);
 }
 
@@ -328,7 +330,7 @@ fn emove_and_prim_change_grippers_with_a_fault() {
 /// Subtask and E-move: `early` commands come before the last one has ended, and so many `mishaps`; a pair that rests
 /// takes `any` ticks at most.
 fn fetches(name: &str, object: &str, lines: &[subtask::Line], (early, mishaps): (u8, u8), any: u32) {
-    let found = is_sound(name, subtask::Pair::first(object, lines, early, mishaps), 4_000_000);
+    let found = is_sound(name, subtask::first(object, lines, early, mishaps), 4_000_000);
     assert!(found.pause <= 12 && found.any <= any, "{} and {}", found.pause, found.any);
 }
 
@@ -372,7 +374,7 @@ fn subtask_and_emove_with_other_commands() {
 
 /// E-move and Quick Change: `early` commands come before the last one has ended, and so many `faults`.
 fn changes(name: &str, early: u8, faults: u8) {
-    let found = is_sound(name, ring::Pair::first(early, faults), 1_000_000);
+    let found = is_sound(name, ring::first(early, faults), 1_000_000);
     assert!(found.pause <= 14 && found.any <= 43, "{} and {}", found.pause, found.any);
 }
 

@@ -8,35 +8,30 @@
 mod judge;
 mod states;
 
-use std::sync::Arc;
-
+use crate::{
+    data::{place, subtask_command},
+    frame::{self, Choice, Event, Half, Scene},
+    image::Image,
+    parts_gripper::{GripDoes, PartsGripper},
+    robot::{PrimDoes, Robot},
+    search::{Mishap, Wrong},
+};
 use interfaces::{
-    ChangingPose, CommonMemory, EmoveOutputs, ExternalInputs, StatusReport, SubtaskOutputs,
+    ChangingPose, CommonMemory, ExternalInputs, StatusReport,
     device::{QuickChangeSensors, VisionResponse, VisionStatus},
     emove::GoneTo,
-    process::{Inputs, Process},
     quick_change::{QuickChangeReport, RingPosition},
     subtask::{SubtaskCommand, SubtaskVerb},
 };
 use levels::{
-    emove::{self, Emove, gripper::Gripper, tables::Ordered},
+    emove::{Emove, gripper::Gripper, tables::Ordered},
     execution::{Execution, Outcome},
     places::robot_at,
-    subtask::{self, Subtask},
-};
-use rcs_core::tick::Tick;
-
-use crate::{
-    data::{data, place, subtask_command},
-    image::Image,
-    parts_gripper::{GripDoes, PartsGripper},
-    robot::{PrimDoes, Robot},
-    search::{Mishap, World, Wrong, resumed},
+    subtask::Subtask,
 };
 
-/// Ticks after which vision counts as silent, and more than that.
+/// Ticks after which vision counts as silent.
 const LIMIT: u64 = 100;
-const LONG: u64 = 200;
 /// Opening of the fingers at the start, 0.01 in.
 const OPENING: i32 = 300;
 /// Ticks for which Subtask need not know that the part has gone.
@@ -53,30 +48,17 @@ pub const POSITION: Line = (SubtaskVerb::Position, true, "UNIT_2", Some(1), 1);
 pub const RELEASE: Line = (SubtaskVerb::Release, true, "UNIT_2", Some(2), 2);
 pub const GRIPPER: Line = (SubtaskVerb::GetEndeff, true, "UNIT_2", Some(1), 1);
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Event {
-    /// A command that comes, from 0 in the list of commands.
-    pub told: Option<usize>,
+#[derive(Clone, Copy, Debug)]
+pub struct Does {
     pub prim: PrimDoes,
     pub grip: GripDoes,
     /// Vision answers.
     pub vision: Option<VisionStatus>,
-    pub mishap: Mishap,
-    /// A long time has passed in which nothing else happened.
-    pub long: bool,
 }
 
+/// Prim with the robot, Grip with its fingers, vision, and what has come of the current command.
 #[derive(Clone)]
-pub struct Pair {
-    tick: Tick,
-    /// Commands that may still come before the last one has ended, and mishaps that may.
-    left: (u8, u8),
-    commands: Arc<[(SubtaskCommand, ChangingPose)]>,
-    command: SubtaskCommand,
-    subtask: subtask::state::State,
-    subtask_out: SubtaskOutputs,
-    emove: emove::State,
-    emove_out: EmoveOutputs,
+pub struct Around {
     robot: Robot,
     grip: PartsGripper,
     quick_change: u32,
@@ -91,218 +73,185 @@ pub struct Pair {
     let_go: bool,
 }
 
-impl Pair {
-    /// A robot at SAFE whose parts gripper is on and open. These commands can come, so many of them before the last one
-    /// has ended, and so many mishaps.
-    pub fn first(object: &str, lines: &[Line], early: u8, mishaps: u8) -> Self {
-        let command = |&(verb, named, location, sector, nth): &Line| {
-            subtask_command(verb, Some(object).filter(|_| named), location, sector, nth)
-        };
-        let commands: Vec<_> = lines.iter().map(command).collect();
-        let safe = place("SAFE");
-        let stands = robot_at(GoneTo::Location, &safe, &safe.frame);
-        let mut pair = Self {
-            tick: Tick(10_000),
-            left: (early, mishaps),
-            commands: commands.into(),
-            command: SubtaskCommand::default(),
-            subtask: subtask::state::State::default(),
-            subtask_out: SubtaskOutputs::default(),
-            emove: emove::State::default(),
-            emove_out: EmoveOutputs::default(),
-            robot: Robot::new(stands.pose),
-            grip: PartsGripper::new(OPENING),
-            quick_change: 0,
-            vision: VisionResponse::default(),
-            silent: false,
-            own: false,
-            apart: LATE + 1,
-            let_go: false,
-        };
-        (pair.emove_out.beliefs.place, pair.emove_out.beliefs.empty) = (Some(stands), true);
-        pair.emove.adopt(&pair.emove_out.beliefs);
-        pair.emove.exchange.adopt_gripper(Gripper::Parts);
-        pair.emove_out.status.end_effector_id = Gripper::Parts.id();
-        pair.emove.execution.receiver.started = true;
-        pair.subtask.execution.receiver.started = true;
-        pair
-    }
+pub type Pair = frame::Pair<Around>;
 
-    /// What the processes read.
-    fn memory(&self) -> CommonMemory {
-        let before = self.tick.previous();
-        let mut memory = CommonMemory::default();
-        memory.task.subtask = self.command;
-        for (record, (_, pose)) in memory.task.poses.iter_mut().zip(self.poses()) {
-            *record = pose;
+/// A robot at SAFE whose parts gripper is on and open. These commands can come, so many of them before the last one has
+/// ended, and so many mishaps.
+pub fn first(object: &str, lines: &[Line], early: u8, mishaps: u8) -> Pair {
+    let command = |&(verb, named, location, sector, nth): &Line| {
+        subtask_command(verb, Some(object).filter(|_| named), location, sector, nth)
+    };
+    let commands: Vec<_> = lines.iter().map(command).collect();
+    let safe = place("SAFE");
+    let stands = robot_at(GoneTo::Location, &safe, &safe.frame);
+    let around = Around {
+        robot: Robot::new(stands.pose),
+        grip: PartsGripper::new(OPENING),
+        quick_change: 0,
+        vision: VisionResponse::default(),
+        silent: false,
+        own: false,
+        apart: LATE + 1,
+        let_go: false,
+    };
+    let mut pair = Pair::new(commands, (Some(early), mishaps), Half::default(), around);
+    let Half { state: emove, out } = &mut pair.lower;
+    (out.beliefs.place, out.beliefs.empty) = (Some(stands), true);
+    emove.adopt(&out.beliefs);
+    emove.exchange.adopt_gripper(Gripper::Parts);
+    out.status.end_effector_id = Gripper::Parts.id();
+    emove.execution.receiver.started = true;
+    pair.upper.state.execution.receiver.started = true;
+    pair
+}
+
+impl Scene for Around {
+    type Upper = Half<Subtask>;
+    type Lower = Half<Emove>;
+    type Line = (SubtaskCommand, ChangingPose);
+    type Command = SubtaskCommand;
+    type Does = Does;
+    const LONG: u64 = 2 * LIMIT;
+    const MISHAPS: &'static [Mishap] = &[Mishap::RestartUpper, Mishap::RestartLower, Mishap::SilentLower];
+
+    fn choices(pair: &Pair) -> Vec<Choice<Does>> {
+        let moving = pair.scene.robot.is_busy(&pair.lower.out.prim);
+        let gripping = pair.scene.grip.is_busy(&pair.lower.out.grip);
+        let prim: &[_] =
+            if moving { &[PrimDoes::Goes, PrimDoes::Ends, PrimDoes::LinkFails] } else { &[PrimDoes::Goes] };
+        let grip: &[_] = match (gripping, pair.scene.grip.full) {
+            (true, _) => &[GripDoes::Goes, GripDoes::Ends, GripDoes::Fails, GripDoes::Loses],
+            (false, true) => &[GripDoes::Goes, GripDoes::Loses],
+            (false, false) => &[GripDoes::Goes],
+        };
+        let looks = pair.awaits_vision();
+        let vision: &[_] =
+            if looks { &[None, Some(VisionStatus::Done), Some(VisionStatus::NothingSeen)] } else { &[None] };
+        let mut choices = Vec::new();
+        for &prim in prim {
+            for &grip in grip {
+                for &vision in vision {
+                    let ends = (!moving || prim != PrimDoes::Goes)
+                        && (!looks || vision.is_some())
+                        && if gripping { grip != GripDoes::Goes } else { grip == GripDoes::Goes };
+                    let waits = !moving && !gripping && pair.is_settled();
+                    let long = looks && waits && vision.is_none() && grip == GripDoes::Goes;
+                    choices.push(Choice { long, ..Choice::new(Does { prim, grip, vision }, ends) });
+                }
+            }
         }
-        (memory.subtask, memory.emove) = (self.subtask_out, self.emove_out);
-        self.robot.write(&mut memory, before);
-        self.grip.write(&mut memory, before);
-        let status = &mut memory.quick_change.status;
-        (status.echo, status.report) = (self.quick_change, QuickChangeReport::Locked);
-        (status.end_effector_id, status.ring) = (Gripper::Parts.id(), RingPosition::Locked);
-        (memory.task.header.stamp, memory.subtask.header.stamp) = (before, before);
-        (memory.quick_change.header.stamp, memory.pedestal.header.stamp) = (before, before);
-        memory.emove.header.stamp = if self.silent { before.previous() } else { before };
-        memory
-    }
-
-    /// The poses of the commands, each once.
-    fn poses(&self) -> impl Iterator<Item = (u32, ChangingPose)> {
-        let pose =
-            |nth: u32| self.commands.iter().find(|(_, pose)| pose.number.is_some_and(|it| it & 0xFF == nth));
-        (1..=3).filter_map(move |nth| pose(nth).map(|(_, pose)| (nth, *pose)))
+        choices
     }
 
     /// The last command has ended, as Task reads it.
-    fn has_ended(&self) -> bool {
-        let status = &self.subtask_out.status;
-        status.echo == self.command.number && status.report != StatusReport::Executing
+    fn has_ended(pair: &Pair) -> bool {
+        let status = &pair.upper.out.status;
+        status.echo == pair.command.number && status.report != StatusReport::Executing
     }
 
-    /// E-move waits for a picture.
-    fn awaits_vision(&self) -> bool {
-        self.emove.execution.outcome == Outcome::Executing
-            && self.emove.ordered == Ordered::Vision
-            && self.vision.echo != self.emove_out.vision.number
+    fn is_other(pair: &Pair, (command, _): &Self::Line) -> bool {
+        (command.command, command.pose) != (pair.command.command, pair.command.pose)
     }
 
-    /// Grip, Prim and vision read what E-move wrote in the tick before.
-    fn surroundings(&mut self, event: Event, memory: &CommonMemory) -> Result<(), Wrong> {
-        let full = self.grip.full;
-        self.robot.take(memory)?;
-        self.robot.does(event.prim);
-        self.grip.does(event.grip, &memory.emove.grip)?;
-        self.quick_change = memory.emove.quick_change.number;
-        if let Some(status) = event.vision {
+    fn command(pair: &mut Pair, nth: usize) {
+        pair.command = SubtaskCommand { number: pair.command.number + 1, ..pair.lines[nth].0 };
+        pair.scene.own = false;
+    }
+
+    fn inputs(pair: &Pair) -> (CommonMemory, ExternalInputs) {
+        let before = pair.tick.previous();
+        let (mut memory, mut external) = (CommonMemory::default(), ExternalInputs::default());
+        memory.task.subtask = pair.command;
+        for (record, (_, pose)) in memory.task.poses.iter_mut().zip(pair.poses()) {
+            *record = pose;
+        }
+        (memory.subtask, memory.emove) = (pair.upper.out, pair.lower.out);
+        pair.scene.robot.write(&mut memory, before);
+        pair.scene.grip.write(&mut memory, before);
+        let status = &mut memory.quick_change.status;
+        (status.echo, status.report) = (pair.scene.quick_change, QuickChangeReport::Locked);
+        (status.end_effector_id, status.ring) = (Gripper::Parts.id(), RingPosition::Locked);
+        (memory.task.header.stamp, memory.subtask.header.stamp) = (before, before);
+        (memory.quick_change.header.stamp, memory.pedestal.header.stamp) = (before, before);
+        memory.emove.header.stamp = if pair.scene.silent { before.previous() } else { before };
+        external.devices.quick_change =
+            QuickChangeSensors { locked: true, unlocked: false, end_effector_id: 1 };
+        external.devices.vision = pair.scene.vision;
+        (memory, external)
+    }
+
+    fn act(pair: &mut Pair, event: &Event<Does>, memory: &CommonMemory) -> Result<(), Wrong> {
+        pair.scene.silent = event.mishap == Mishap::SilentLower;
+        let full = pair.scene.grip.full;
+        pair.scene.robot.take(memory)?;
+        pair.scene.robot.does(event.does.prim);
+        pair.scene.grip.does(event.does.grip, &memory.emove.grip)?;
+        pair.scene.quick_change = memory.emove.quick_change.number;
+        if let Some(status) = event.does.vision {
             let request = &memory.emove.vision;
-            self.vision = VisionResponse {
+            pair.scene.vision = VisionResponse {
                 echo: request.number,
                 status,
                 recognised: Some(request.object_id),
                 ..VisionResponse::default()
             };
         }
-        self.apart = if self.grip.full { 0 } else { (self.apart + 1).min(LATE + 1) };
-        if full || self.grip.full {
-            self.let_go = !self.grip.full && self.is_destination(&self.robot.at);
+        pair.scene.apart = if pair.scene.grip.full { 0 } else { (pair.scene.apart + 1).min(LATE + 1) };
+        if full || pair.scene.grip.full {
+            pair.scene.let_go = !pair.scene.grip.full && pair.is_destination(&pair.scene.robot.at);
         }
         Ok(())
     }
-}
 
-impl World for Pair {
-    type Event = Event;
-
-    fn events(&self) -> Vec<(Event, bool)> {
-        let moving = self.robot.is_busy(&self.emove_out.prim);
-        let gripping = self.grip.is_busy(&self.emove_out.grip);
-        let prim: &[_] =
-            if moving { &[PrimDoes::Goes, PrimDoes::Ends, PrimDoes::LinkFails] } else { &[PrimDoes::Goes] };
-        let grip: &[_] = match (gripping, self.grip.full) {
-            (true, _) => &[GripDoes::Goes, GripDoes::Ends, GripDoes::Fails, GripDoes::Loses],
-            (false, true) => &[GripDoes::Goes, GripDoes::Loses],
-            (false, false) => &[GripDoes::Goes],
-        };
-        let looks = self.awaits_vision();
-        let vision: &[_] =
-            if looks { &[None, Some(VisionStatus::Done), Some(VisionStatus::NothingSeen)] } else { &[None] };
-        let mut events = Vec::new();
-        for told in self.commands() {
-            for &prim in prim {
-                for &grip in grip {
-                    for &vision in vision {
-                        let event = Event { told, prim, grip, vision, mishap: Mishap::None, long: false };
-                        let ends = (!moving || prim != PrimDoes::Goes)
-                            && (!looks || vision.is_some())
-                            && if gripping { grip != GripDoes::Goes } else { grip == GripDoes::Goes };
-                        events.push((event, told.is_none() && ends));
-                        if told.is_none() && self.left.1 > 0 {
-                            let all = [Mishap::RestartUpper, Mishap::RestartLower, Mishap::SilentLower];
-                            events.extend(all.map(|mishap| (Event { mishap, ..event }, false)));
-                        }
-                        let waits = !moving && !gripping && self.is_settled() && told.is_none();
-                        if looks && waits && vision.is_none() && grip == GripDoes::Goes {
-                            events.push((Event { long: true, ..event }, true));
-                        }
-                    }
-                }
-            }
-        }
-        events
+    fn note(pair: &mut Pair, before: &Pair) {
+        let sent = pair.upper.out.emove.number != before.upper.out.emove.number;
+        pair.scene.own |= sent && pair.upper.out.status.echo == pair.command.number;
     }
 
-    fn step(&mut self, event: Event) -> Result<(), Wrong> {
-        self.tick = if event.long { Tick(self.tick.0 + LONG) } else { self.tick.next() };
-        let mut upper: Subtask = resumed(self.subtask, event.mishap == Mishap::RestartUpper);
-        let mut lower: Emove = resumed(self.emove, event.mishap == Mishap::RestartLower);
-        self.left.1 -= u8::from(event.mishap != Mishap::None);
-        if let Some(nth) = event.told {
-            self.left.0 -= u8::from(!self.has_ended() && self.command.number != 0);
-            let number = self.command.number + 1;
-            self.command = SubtaskCommand { number, ..self.commands[nth].0 };
-            self.own = false;
-        }
-        let memory = self.memory();
-        let mut external = ExternalInputs::default();
-        external.devices.quick_change =
-            QuickChangeSensors { locked: true, unlocked: false, end_effector_id: 1 };
-        external.devices.vision = self.vision;
-        let data = data();
-        let inputs = Inputs { tick: self.tick, memory: &memory, external: &external, data: &data };
-        let old = self.clone();
-        upper.step(&inputs, &mut self.subtask_out);
-        self.subtask = *upper.state();
-        self.silent = event.mishap == Mishap::SilentLower;
-        if !self.silent {
-            lower.step(&inputs, &mut self.emove_out);
-            self.emove = *lower.state();
-        }
-        let sent = self.subtask_out.emove.number != old.subtask_out.emove.number;
-        self.own |= sent && self.subtask_out.status.echo == self.command.number;
-        self.surroundings(event, &memory)?;
-        let wrong = self.judge(&old, event);
-        self.renumber();
-        wrong
+    fn judge(pair: &Pair, before: &Pair, event: &Event<Does>) -> Result<(), Wrong> {
+        pair.judge(before, event)
     }
 
-    fn image(&self) -> Vec<u8> {
-        let mut image = Image::new(self.tick, LIMIT, &[("unfelt", 6)]);
-        let mut it = self.clone();
+    fn renumber(pair: &mut Pair) {
+        pair.renumber();
+    }
+
+    fn image(pair: &Pair) -> Vec<u8> {
+        let mut image = Image::new(pair.tick, LIMIT, &[("unfelt", 6)]);
+        let mut it = pair.clone();
         it.forget();
         image.add(&it.command);
-        image.add(&it.subtask);
-        image.add(&it.subtask_out.emove);
-        image.add(&it.subtask_out.status.echo);
-        image.add(&it.subtask_out.status.report);
-        image.add(&it.emove);
-        image.add(&it.emove_out.status);
-        image.add(&it.emove_out.prim);
-        image.add(&it.emove_out.grip);
-        image.add(&it.emove_out.quick_change);
-        image.add(&it.emove_out.vision);
-        image.add(&it.emove_out.poses);
-        it.robot.add_to(&mut image);
-        it.grip.add_to(&mut image);
-        image.add(&it.quick_change);
-        image.add(&it.vision);
-        image.bytes.extend([it.silent, it.own, it.let_go].map(u8::from));
-        image.bytes.extend([it.apart, it.left.0, it.left.1]);
+        image.add(&it.upper.state);
+        image.add(&it.upper.out.emove);
+        image.add(&it.upper.out.status.echo);
+        image.add(&it.upper.out.status.report);
+        image.add(&it.lower.state);
+        image.add(&it.lower.out.status);
+        image.add(&it.lower.out.prim);
+        image.add(&it.lower.out.grip);
+        image.add(&it.lower.out.quick_change);
+        image.add(&it.lower.out.vision);
+        image.add(&it.lower.out.poses);
+        it.scene.robot.add_to(&mut image);
+        it.scene.grip.add_to(&mut image);
+        image.add(&it.scene.quick_change);
+        image.add(&it.scene.vision);
+        image.bytes.extend([it.scene.silent, it.scene.own, it.scene.let_go].map(u8::from));
+        image.bytes.extend([it.scene.apart, it.early.unwrap_or_default(), it.mishaps]);
         image.bytes
     }
 
-    fn rests(&self) -> bool {
-        is_over(&self.subtask.execution, self.command.number)
-            && is_over(&self.emove.execution, self.subtask_out.emove.number)
-            && self.has_ended()
-            && self.is_settled()
-            && !self.robot.is_busy(&self.emove_out.prim)
-            && !self.grip.is_busy(&self.emove_out.grip)
+    fn rests(pair: &Pair) -> bool {
+        is_over(&pair.upper.state.execution, pair.command.number)
+            && is_over(&pair.lower.state.execution, pair.upper.out.emove.number)
+            && Self::has_ended(pair)
+            && pair.is_settled()
+            && !pair.scene.robot.is_busy(&pair.lower.out.prim)
+            && !pair.scene.grip.is_busy(&pair.lower.out.grip)
     }
 
-    fn pauses(&self) -> bool {
-        self.command.command == SubtaskVerb::Pause
+    fn pauses(pair: &Pair) -> bool {
+        pair.command.command == SubtaskVerb::Pause
     }
 }
 
@@ -314,24 +263,27 @@ fn is_over(execution: &Execution, number: u32) -> bool {
 }
 
 impl Pair {
-    /// Any command can come when the last one has ended, and another one than it before.
-    fn commands(&self) -> Vec<Option<usize>> {
-        let ended = self.has_ended() || self.command.number == 0;
-        let may = |nth: &usize| {
-            let command = &self.commands[*nth].0;
-            let other = (command.command, command.pose) != (self.command.command, self.command.pose);
-            ended || (other && self.left.0 > 0)
-        };
-        core::iter::once(None).chain((0..self.commands.len()).filter(may).map(Some)).collect()
+    /// The poses of the commands, each once.
+    fn poses(&self) -> impl Iterator<Item = (u32, ChangingPose)> {
+        let pose =
+            |nth: u32| self.lines.iter().find(|(_, pose)| pose.number.is_some_and(|it| it & 0xFF == nth));
+        (1..=3).filter_map(move |nth| pose(nth).map(|(_, pose)| (nth, *pose)))
+    }
+
+    /// E-move waits for a picture.
+    fn awaits_vision(&self) -> bool {
+        self.lower.state.execution.outcome == Outcome::Executing
+            && self.lower.state.ordered == Ordered::Vision
+            && self.scene.vision.echo != self.lower.out.vision.number
     }
 
     /// Every command is echoed, and its commander has read the echo.
     fn is_settled(&self) -> bool {
-        let number = self.subtask_out.emove.number;
-        let (prim, grip) = (self.emove_out.prim.number, self.emove_out.grip.number);
-        (number == 0 || number == self.emove_out.status.echo)
-            && (prim == 0 || prim == self.robot.echo)
-            && (grip == 0 || grip == self.grip.echo)
-            && self.emove_out.quick_change.number == self.quick_change
+        let number = self.upper.out.emove.number;
+        let (prim, grip) = (self.lower.out.prim.number, self.lower.out.grip.number);
+        (number == 0 || number == self.lower.out.status.echo)
+            && (prim == 0 || prim == self.scene.robot.echo)
+            && (grip == 0 || grip == self.scene.grip.echo)
+            && self.lower.out.quick_change.number == self.scene.quick_change
     }
 }

@@ -1,27 +1,28 @@
-//! E-move with doubles of its neighbours, tick by tick. The test is Subtask.
+//! E-move in the bench of all processes, with the doubles of its neighbours. The test is Subtask.
 
 use std::sync::OnceLock;
 
 use geometry::{frame::Frame, pose::Pose};
 use interfaces::{
-    CommonMemory, ExternalInputs, Reason, StatusReport,
-    emove::{EmoveCommand, EmoveVerb},
+    CommonMemory, EmoveOutputs, Reason, StatusReport,
+    emove::{EmoveCommand, EmoveVerb, Holding},
     location::Site,
     pose_range,
-    prim::JoystickGrip,
-    process::{Inputs, Process},
 };
-use rcs_core::{handshake::successor, name::Name16, tick::Tick};
+use rcs_core::name::Name16;
 use taskdata::{
     files::{EndEffId, TaskData, VisionId},
     load::{Source, Store},
 };
 
 use super::{
-    doubles::{Grip, Jaws, Mishap, Prim, Ring, Vision, World},
+    doubles::{Cell, Mishap},
     together::Real,
 };
-use crate::{coverage, emove::Emove};
+use crate::{
+    bench::{self, Tested},
+    emove::Emove,
+};
 
 /// The task data of the tests.
 pub fn data() -> TaskData<'static> {
@@ -67,71 +68,67 @@ pub fn moved(frame: Frame, movetables: &[&str]) -> Frame {
     })
 }
 
-#[derive(Clone)]
-pub struct Bench {
-    pub process: Emove,
-    pub memory: CommonMemory,
-    pub external: ExternalInputs,
-    pub tick: Tick,
-    pub world: World,
-    pub prim: Prim,
-    pub ring: Ring,
-    pub grip: Grip,
-    pub v_grip: Jaws,
-    pub tool_grip: Jaws,
-    pub vision: Vision,
-    /// The real processes, instead of the doubles of Quick Change and the grippers.
-    pub real: Option<Real>,
-    pub data: TaskData<'static>,
-    /// Processes that have died.
-    pub dead: Vec<&'static str>,
+/// E-move in the cell.
+pub type Bench = bench::Bench<Emove, Cell, TaskData<'static>>;
+
+/// A command of Subtask: object, its grip, location and gripper.
+pub type Line = (EmoveVerb, &'static str, i32, &'static str, u8);
+
+/// How a command ends.
+pub type End = (StatusReport, Reason);
+
+impl<'d> Tested<TaskData<'d>> for Emove {
+    type Order = Line;
+    type End = End;
+    const LONGEST: u64 = 1000;
+
+    /// Its location and the records of the object are looked up as Subtask would.
+    fn order(memory: &mut CommonMemory, (verb, object, grip, location, gripper): Line, number: u32) {
+        let (object, place) = (Name16::clipped(object), Name16::clipped(location));
+        let data = data();
+        let mut command = EmoveCommand {
+            number,
+            command: verb,
+            object: Some(object).filter(|object| !object.is_empty()),
+            grip,
+            object_parameters: data.object(&object, grip).map_or(EndEffId::NULL, |(id, _)| id),
+            end_effector_id: given(gripper),
+            ..EmoveCommand::default()
+        };
+        if let Some((id, locpt)) = data.locpt_named(&place).and_then(|id| Some((id, data.locpt(id)?))) {
+            let pose = &mut memory.subtask.poses[0];
+            pose.number = Some(pose_range::next(pose_range::SUBTASK, pose.number.unwrap_or_default()));
+            pose.pose = Pose::from_frame(&locpt.frame);
+            command.site = Site::point(locpt.name, id);
+            command.pose = pose.number;
+            command.object_vision =
+                data.view(&object, &command.site.place()).map_or(VisionId::NULL, |(id, _)| id);
+        }
+        memory.subtask.emove = command;
+    }
+
+    fn end(outputs: &EmoveOutputs) -> Option<End> {
+        let status = outputs.status;
+        (status.report != StatusReport::Executing).then_some((status.report, status.reason))
+    }
 }
 
 impl Bench {
     /// A cell whose robot stands at a location with a gripper; the other grippers are in their holsters.
     pub fn new(location: &str, gripper: u8) -> Self {
-        Self::with(location, gripper, None)
+        Self::of(location, gripper, None)
     }
 
     /// The same with the real processes.
-    pub fn with(location: &str, gripper: u8, real: Option<Real>) -> Self {
-        let mut resident = [1, 2, 3];
-        let mut holsters = [0b1111; 3];
-        if gripper != 0 {
-            let which = usize::from(gripper) - 1;
-            (resident[which], holsters[which]) = (0, 0);
-        }
-        let mut bench = Self {
-            process: Emove::default(),
-            memory: CommonMemory::default(),
-            external: ExternalInputs::default(),
-            tick: Tick::BEFORE_START,
-            world: World {
-                frame: frame_of(location),
-                mated: gripper,
-                resident,
-                holsters,
-                locked: gripper != 0,
-                object: None,
-                joystick: false,
-                button: JoystickGrip::None,
-                mishaps: Vec::new(),
-                log: Vec::new(),
-                answers: Vec::new(),
-                claims: Vec::new(),
-            },
-            prim: Prim::default(),
-            ring: Ring::default(),
-            grip: Grip::default(),
-            v_grip: Jaws::new((50, 350)),
-            tool_grip: Jaws::new((100, 400)),
-            vision: Vision::default(),
-            real,
-            data: data(),
-            dead: Vec::new(),
-        };
-        bench.step();
-        bench.step();
+    pub fn real(location: &str, gripper: u8) -> Self {
+        let mut bench = Self::of(location, gripper, Some(Real::new(gripper != 0)));
+        assert_eq!(bench.pause(), DONE);
+        bench
+    }
+
+    fn of(location: &str, gripper: u8, real: Option<Real>) -> Self {
+        let mut bench = Self::with(Cell::new(frame_of(location), gripper, real), data());
+        bench.wait(2);
         bench
     }
 
@@ -141,150 +138,130 @@ impl Bench {
         assert_eq!(bench.pause(), DONE);
         // A robot in a holster or at the tool drum may be there in more than one way.
         let plain = !location.starts_with("HOLSTER") && location != "TOOL-TRNS";
-        let found = bench.memory.emove.status.at.unwrap_or_default().site.location;
-        assert_eq!(found.as_str(), if plain { location } else { "" });
+        assert_eq!(bench.at(), if plain { location } else { "" });
         bench.world.log.clear();
         bench
     }
 
-    pub fn step(&mut self) {
-        self.tick = self.tick.next();
-        let before = self.memory;
-        let after = &mut self.memory;
-        let data = self.data;
-        let alive = |name| !self.dead.contains(&name);
-        if alive("Subtask") {
-            after.subtask.header.stamp = self.tick;
-        }
-        if alive("E-move") {
-            let inputs = Inputs { tick: self.tick, memory: &before, external: &self.external, data: &data };
-            self.process.step(&inputs, &mut after.emove);
-        }
-        if alive("Prim") {
-            after.prim = self.prim.step(self.tick, &before, &data, &mut self.world);
-            if self.prim.by_steps {
-                self.world.feel_holsters(["HOLSTER-R", "HOLSTER-L", "HOLSTER-C"].map(frame_of));
-            }
-        }
-        if let Some(real) = &mut self.real {
-            real.step(self.tick, &before, &mut self.external, &data, &mut self.world, after);
-            self.vision.step(&before, &mut self.external, &mut self.world);
-            self.note_row();
-            return;
-        }
-        if alive("Quick Change") {
-            after.quick_change = self.ring.step(self.tick, &before, &mut self.world);
-        }
-        if alive("gripper") {
-            after.grip = self.grip.step(self.tick, &before, &mut self.world);
-            let (asleep, to) = (before.emove.dormant, &before.emove);
-            let world = &mut self.world;
-            after.v_grip = self.v_grip.step(self.tick, asleep.v_grip, &to.v_grip, &before.v_grip, world);
-            after.tool_grip =
-                self.tool_grip.step(self.tick, asleep.tool_grip, &to.tool_grip, &before.tool_grip, world);
-        }
-        if alive("vision") {
-            self.vision.step(&before, &mut self.external, &mut self.world);
-        }
-        self.note_row();
+    /// Send a command when E-move has seen what the test has changed, by way of its neighbours.
+    pub fn command(
+        &mut self,
+        verb: EmoveVerb,
+        object: &'static str,
+        grip: i32,
+        location: &'static str,
+        gripper: u8,
+    ) {
+        self.begin((verb, object, grip, location, gripper));
     }
 
-    fn note_row(&self) {
-        coverage::note(<Emove as Process<TaskData<'_>>>::NAME, &self.memory.emove.header);
+    /// The same with a line.
+    pub fn begin(&mut self, line: Line) {
+        self.wait(2);
+        self.send(line);
     }
 
-    pub fn steps(&mut self, ticks: u32) {
-        (0..ticks).for_each(|_| self.step());
-    }
-
-    /// Write a command; its location and the records of the object are looked up as Subtask would.
-    pub fn command(&mut self, verb: EmoveVerb, object: &str, grip: i32, location: &str, gripper: u8) {
-        // What the test has changed is seen by the neighbours, and then by E-move.
-        self.steps(2);
-        self.write(verb, object, grip, location, gripper);
-    }
-
-    /// Write a command, at once.
-    pub fn write(&mut self, verb: EmoveVerb, object: &str, grip: i32, location: &str, gripper: u8) {
-        let object = Name16::clipped(object);
-        let place = Name16::clipped(location);
-        let data = data();
-        let found = data.locpt_named(&place).and_then(|id| Some((id, data.locpt(id)?)));
-        let pose = &mut self.memory.subtask.poses[0];
-        let mut command = EmoveCommand {
-            number: successor(self.memory.subtask.emove.number),
-            command: verb,
-            object: Some(object).filter(|object| !object.is_empty()),
-            grip,
-            object_parameters: data.object(&object, grip).map_or(EndEffId::NULL, |(id, _)| id),
-            end_effector_id: given(gripper),
-            ..EmoveCommand::default()
-        };
-        if let Some((id, locpt)) = found {
-            pose.number = Some(pose_range::next(pose_range::SUBTASK, pose.number.unwrap_or_default()));
-            pose.pose = Pose::from_frame(&locpt.frame);
-            command.site = Site::point(locpt.name, id);
-            command.pose = pose.number;
-            command.object_vision =
-                data.view(&object, &command.site.place()).map_or(VisionId::NULL, |(id, _)| id);
-        }
-        self.memory.subtask.emove = command;
-    }
-
-    /// Run until the command has ended.
-    pub fn finish(&mut self) -> (StatusReport, Reason) {
-        for _ in 0..1000 {
-            self.step();
-            let status = self.memory.emove.status;
-            if status.echo == self.memory.subtask.emove.number && status.report != StatusReport::Executing {
-                return (status.report, status.reason);
-            }
-        }
-        panic!("never over: {:#?} {:?}", self.process.state().execution, self.world.log);
-    }
-
-    /// Command and run until it has ended.
+    /// The same to its end.
     pub fn run(
         &mut self,
         verb: EmoveVerb,
-        object: &str,
+        object: &'static str,
         grip: i32,
-        location: &str,
+        location: &'static str,
         gripper: u8,
-    ) -> (StatusReport, Reason) {
+    ) -> End {
         self.world.log.clear();
         self.command(verb, object, grip, location, gripper);
         self.finish()
     }
 
-    pub fn pause(&mut self) -> (StatusReport, Reason) {
+    /// [`Self::run`] of a line.
+    pub fn perform(&mut self, (verb, object, grip, location, gripper): Line) -> End {
+        self.run(verb, object, grip, location, gripper)
+    }
+
+    /// Perform a line. How near the robot comes to each of some frames, in.
+    pub fn pass<const N: usize>(&mut self, line: Line, frames: [Frame; N]) -> [f64; N] {
+        let mut nearest = [f64::INFINITY; N];
+        self.world.log.clear();
+        self.begin(line);
+        loop {
+            let end = Emove::end(&self.step());
+            for (nearest, frame) in nearest.iter_mut().zip(&frames) {
+                *nearest = nearest.min(self.world.frame.distance(frame).inches);
+            }
+            if let Some(end) = end {
+                assert_eq!(end, DONE, "{:?}", self.world.log);
+                return nearest;
+            }
+        }
+    }
+
+    pub fn pause(&mut self) -> End {
         self.run(EmoveVerb::Pause, "", 0, "", 0)
     }
 
-    /// The motions that Prim was told of.
+    /// PAUSE at once. How many motions Prim was commanded before.
+    pub fn stop(&mut self) -> usize {
+        assert_eq!(self.execute(PAUSE), DONE, "{:?}", self.world.log);
+        let motions = self.motions().len();
+        self.world.log.clear();
+        motions
+    }
+
+    /// E-move is restarted; its output buffers stay.
+    pub fn restart_and_finish(&mut self) {
+        self.restart();
+        assert_eq!(self.finish(), error(Reason::Restarted));
+    }
+
+    /// A person has the robot with the joystick box, and does something with it.
+    pub fn lead(&mut self, does: impl FnOnce(&mut Self)) {
+        self.world.joystick = true;
+        self.wait(5);
+        does(self);
+        self.wait(5);
+        self.world.joystick = false;
+        self.wait(8);
+    }
+
+    /// The robot does not move.
+    pub fn assert_stands(&mut self) {
+        let there = self.world.frame;
+        self.wait(8);
+        assert!(self.off(&there) < 0.01, "it moves: {:?}", self.world.log);
+    }
+
+    /// A parts gripper with something of a size between its fingers, and an E-move that knows nothing of it.
+    pub fn with_unknown(location: &str, size: i32) -> Self {
+        let mut bench = Self::new(location, 1);
+        (bench.world.grip.opening, bench.world.object) = (size, Some(size));
+        bench.forget_empty();
+        assert_eq!(bench.memory.emove.status.held, Holding::Something);
+        bench
+    }
+
+    /// A restarted E-move no longer knows that the fingers were empty.
+    pub fn forget_empty(&mut self) {
+        self.wait(3);
+        self.restart();
+        self.memory.emove.beliefs.empty = false;
+        assert_eq!(self.pause(), DONE);
+    }
+
+    /// The motions that Prim was commanded.
     pub fn motions(&self) -> Vec<String> {
         let motions = ["GO-THRU", "GOTO-PT", "GO-UNTIL", "DELTA-MOVE"];
         let is_motion = |text: &&String| motions.iter().any(|motion| text.starts_with(motion));
         self.world.log.iter().filter(is_motion).cloned().collect()
     }
 
-    /// Give a command and try something in a copy of the cell at every tick of it.
-    pub fn at_every_tick(
-        &mut self,
-        (verb, object, grip, location, gripper): (EmoveVerb, &str, i32, &str, u8),
-        mut attempt: impl FnMut(&mut Self),
-    ) {
-        self.world.log.clear();
-        self.write(verb, object, grip, location, gripper);
-        for _ in 0..1000 {
-            self.step();
-            attempt(&mut self.clone());
-            let status = self.memory.emove.status;
-            if status.echo == self.memory.subtask.emove.number && status.report != StatusReport::Executing {
-                return;
-            }
-        }
-        panic!("never over: {:#?} {:?}", self.process.state().execution, self.world.log);
+    /// Copies of the cell in each tick in which a command executes.
+    pub fn during(&self, line: Line) -> impl Iterator<Item = Self> {
+        let mut bench = self.clone();
+        bench.world.log.clear();
+        bench.send(line);
+        bench.at_every_tick()
     }
 
     /// Let something go wrong in the command whose text contains a word.
@@ -294,24 +271,87 @@ impl Bench {
     }
 
     /// The gripper finds an object of a size and holds it.
-    pub fn hold(&mut self, object: &str, size: i32, gripper: u8) {
+    pub fn hold(&mut self, object: &'static str, size: i32, gripper: u8) {
         self.world.object = Some(size);
         assert_eq!(self.run(EmoveVerb::GraspObj, object, 1, "", gripper), DONE);
-        assert_eq!(self.memory.emove.status.held.object().unwrap_or_default().as_str(), object);
+        assert_eq!(self.held(), object);
     }
 
     pub fn log(&self) -> Vec<&str> {
         self.world.log.iter().map(String::as_str).collect()
     }
 
+    /// Step until the neighbours have been commanded something whose text contains a word.
+    pub fn until_logged(&mut self, word: &str) {
+        self.until(|bench| bench.world.log.iter().any(|text| text.contains(word)));
+    }
+
     /// How far the robot is from a frame.
     pub fn off(&self, frame: &Frame) -> f64 {
         self.world.frame.distance(frame).path()
     }
+
+    /// The location at which the robot is; empty if it is at none.
+    pub fn at(&self) -> String {
+        self.memory.emove.status.at.unwrap_or_default().site.location.to_string()
+    }
+
+    /// The name of the object that is held; empty if there is none with a name.
+    pub fn held(&self) -> String {
+        self.memory.emove.status.held.object().unwrap_or_default().to_string()
+    }
 }
 
-pub const DONE: (StatusReport, Reason) = (StatusReport::Done, Reason::None);
+/// Commands that move the robot, its fingers or a tool, but none of an exchange or RELEASE.
+pub const ORDINARY: &[Line] = &[
+    (EmoveVerb::MovToLoc, "", 0, "HOME", 1),
+    (EmoveVerb::MovToObj, "BLOCK", 1, "BENCH", 1),
+    (EmoveVerb::MovObjTo, "BLOCK", 1, "BENCH", 1),
+    (EmoveVerb::MovToVu, "BLOCK", 1, "BENCH", 1),
+    (EmoveVerb::MovToHol, "GRIPPER-1", 1, "HOLSTER-R", 1),
+    (EmoveVerb::Withdraw, "", 0, "BENCH", 1),
+    (EmoveVerb::LocateObj, "BLOCK", 1, "BENCH", 1),
+    (EmoveVerb::GraspObj, "BLOCK", 1, "BENCH", 1),
+    (EmoveVerb::InsertTool, "CUTTER", 1, "TOOL-TRNS", 1),
+    (EmoveVerb::ReleaseTool, "CUTTER", 1, "TOOL-TRNS", 1),
+    (EmoveVerb::AcquireTool, "CUTTER", 1, "TOOL-TRNS", 1),
+    (EmoveVerb::RemoveTool, "CUTTER", 1, "TOOL-TRNS", 1),
+];
 
-pub const fn error(reason: Reason) -> (StatusReport, Reason) {
+/// A command with a gripper at its holster.
+fn at_holster(verb: EmoveVerb, grip: i32, gripper: u8) -> Line {
+    let (object, holster) =
+        [("GRIPPER-1", "HOLSTER-R"), ("GRIPPER-2", "HOLSTER-L"), ("GRIPPER-3", "HOLSTER-C")]
+            [usize::from(gripper) - 1];
+    (verb, object, grip, holster, gripper)
+}
+
+pub fn attach(gripper: u8) -> Line {
+    at_holster(EmoveVerb::QcAttach, 2, gripper)
+}
+
+pub fn detach(gripper: u8) -> Line {
+    at_holster(EmoveVerb::QcDetach, 1, gripper)
+}
+
+/// The robot brings a gripper to its holster, in grip 1, or comes bare to fetch it, in grip 2.
+pub fn to_holster(grip: i32, gripper: u8) -> Line {
+    at_holster(EmoveVerb::MovToHol, grip, gripper)
+}
+
+pub const PAUSE: Line = (EmoveVerb::Pause, "", 0, "", 0);
+
+/// How a command that executes is interrupted before it is sent again.
+pub const INTERRUPTIONS: &[fn(&mut Bench)] = &[
+    |bench| assert_eq!(bench.execute(PAUSE), DONE, "{:?}", bench.world.log),
+    |bench| {
+        bench.restart_and_finish();
+        assert_eq!(bench.execute(PAUSE), DONE, "{:?}", bench.world.log);
+    },
+];
+
+pub const DONE: End = (StatusReport::Done, Reason::None);
+
+pub const fn error(reason: Reason) -> End {
     (StatusReport::Error, reason)
 }

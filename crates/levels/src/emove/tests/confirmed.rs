@@ -30,7 +30,7 @@ fn motion_is_not_done_if_the_arm_hangs_beside_the_goal() {
         (0.10, error(Reason::NotAtGoal), Offset::None),
     ] {
         let mut bench = Bench::ready("HOME", 1);
-        bench.prim.sag = Vector::new(0.0, 0.0, sag);
+        bench.world.prim.sag = Vector::new(0.0, 0.0, sag);
         assert_eq!(bench.run(MovToLoc, "", 0, "VISE", 0), end, "{sag} in");
         assert_eq!(bench.memory.emove.status.offset, offset, "{sag} in");
     }
@@ -39,7 +39,7 @@ fn motion_is_not_done_if_the_arm_hangs_beside_the_goal() {
 #[test]
 fn withdrawal_is_not_done_if_the_arm_hangs_beside_the_commanded_pose() {
     let mut bench = Bench::ready("BENCH", 1);
-    bench.prim.sag = Vector::new(0.0, 0.1, 0.0);
+    bench.world.prim.sag = Vector::new(0.0, 0.1, 0.0);
     assert_eq!(bench.run(Withdraw, "", 0, "BENCH", 0), error(Reason::NotAtGoal));
 }
 
@@ -72,9 +72,7 @@ fn part_with_which_a_person_has_led_the_robot_has_no_confirmed_place_in_the_fing
         bench.world.object = Some(size);
         assert_eq!(bench.run(GraspObj, object, 1, "HOME", gripper), DONE);
         assert_eq!(bench.memory.emove.status.unconfirmed, sensed, "{object}");
-        bench.world.joystick = true;
-        bench.steps(5);
-        bench.world.joystick = false;
+        bench.lead(|_| {});
         bench.pause();
         assert_eq!(bench.memory.emove.status.seat, Seat::NotKnown, "{object}");
         for (verb, location) in [(GraspObj, "HOME"), (MovObjTo, "VISE")] {
@@ -98,9 +96,7 @@ fn picture_shows_where_a_part_is_that_was_let_go_with_an_unknown_place_in_the_fi
     let mut bench = Bench::ready("BENCH", 1);
     bench.world.object = Some(75);
     assert_eq!(bench.run(GraspObj, "BLOCK", 1, "BENCH", 1), DONE);
-    bench.world.joystick = true;
-    bench.steps(5);
-    bench.world.joystick = false;
+    bench.lead(|_| {});
     bench.pause();
     for verb in [Release, MovToVu, LocateObj, MovToObj] {
         assert_eq!(bench.run(verb, "BLOCK", 1, "BENCH", 1), DONE, "{verb}");
@@ -120,8 +116,8 @@ fn part_in_the_fingers_of_an_arm_without_pressure_has_no_confirmed_place() {
         if !is_closing {
             assert_eq!(bench.run(GraspObj, "BLOCK", 1, "BENCH", 1), DONE);
         }
-        bench.prim.controller_off = true;
-        bench.steps(3);
+        bench.world.prim.controller_off = true;
+        bench.wait(3);
         assert_eq!(bench.run(GraspObj, "BLOCK", 1, "BENCH", 1), DONE);
         assert_eq!(
             bench.memory.emove.status.unconfirmed,
@@ -140,8 +136,8 @@ fn part_that_was_just_released_may_be_pushed_by_an_arm_without_pressure() {
     let mut clear = bench.clone();
     assert_eq!(clear.run(MovToLoc, "", 0, "HOME", 0), DONE);
     for (bench, seat) in [(&mut bench, Seat::NotKnown), (&mut clear, Seat::Kept)] {
-        bench.prim.controller_off = true;
-        bench.steps(3);
+        bench.world.prim.controller_off = true;
+        bench.wait(3);
         assert_eq!(bench.memory.emove.status.seat, seat);
     }
 }
@@ -158,9 +154,7 @@ fn part_beside_which_a_person_has_led_the_empty_robot_has_no_confirmed_place_in_
         let mut bench = Bench::ready("HOME", 1);
         assert_eq!(bench.run(MovToObj, "BLOCK", 1, led_at, 1), DONE, "{led_at}");
         bench.pause();
-        bench.world.joystick = true;
-        bench.steps(5);
-        bench.world.joystick = false;
+        bench.lead(|_| {});
         bench.pause();
         for at in [fetched_at, "BENCH", fetched_at] {
             let expected = if at == fetched_at { unconfirmed } else { Unconfirmed::None };
@@ -176,9 +170,7 @@ fn part_beside_which_a_person_has_led_the_empty_robot_has_no_confirmed_place_in_
 #[test]
 fn empty_fingers_have_nothing_that_slides() {
     let mut bench = Bench::ready("HOME", 1);
-    bench.world.joystick = true;
-    bench.steps(5);
-    bench.world.joystick = false;
+    bench.lead(|_| {});
     bench.pause();
     assert_eq!(bench.memory.emove.status.seat, Seat::Kept);
 }

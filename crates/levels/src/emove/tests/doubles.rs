@@ -1,5 +1,7 @@
-//! Test doubles of E-move's neighbours, each a dozen lines that do what the manual's chapter says of the
-//! process, and the little world that they share.
+//! Test doubles of E-move's neighbours, each a dozen lines that do what the manual's chapter says of the process, and
+//! the cell that they share.
+
+use std::ops::{Deref, DerefMut};
 
 use geometry::{
     frame::{Frame, Vector, rotation_by, rotation_vector},
@@ -14,14 +16,18 @@ use interfaces::{
     prim::{FORCE_AXES, JoystickGrip, PrimReport, PrimVerb},
     quick_change::{QuickChangeReport, QuickChangeVerb, RingPosition},
 };
-use rcs_core::{
-    handshake::{Arrival, Receiver},
-    tick::Tick,
-};
-use taskdata::files::TaskData;
+use rcs_core::tick::Tick;
 
-use super::bench::given;
-use crate::places::pose_of;
+use super::{
+    bench::{data, frame_of, given},
+    together::Real,
+};
+use crate::{
+    bench::World,
+    emove::Emove,
+    environment::worker::{Turn, Worker},
+    places::pose_of,
+};
 
 /// Ticks that a double takes for a command.
 const TICKS: u32 = 4;
@@ -67,9 +73,25 @@ pub enum Mishap {
     Never,
 }
 
-/// What is where.
+/// The cell with the doubles in it.
 #[derive(Clone)]
-pub struct World {
+pub struct Cell {
+    scene: Scene,
+    pub prim: Prim,
+    pub ring: Ring,
+    pub grip: Grip,
+    pub v_grip: Jaws,
+    pub tool_grip: Jaws,
+    vision: Vision,
+    /// The real processes, instead of the doubles of Quick Change and the grippers.
+    pub real: Option<Real>,
+    /// Neighbours that write nothing.
+    pub dead: Vec<&'static str>,
+}
+
+/// What is where, and what goes wrong.
+#[derive(Clone)]
+pub struct Scene {
     /// Where the robot is.
     pub frame: Frame,
     /// The gripper that is mated, and what hangs in the holsters right, left, centre.
@@ -96,7 +118,96 @@ pub struct World {
     pub claims: Vec<(i32, i32, i32, u16)>,
 }
 
-impl World {
+impl Deref for Cell {
+    type Target = Scene;
+
+    fn deref(&self) -> &Scene {
+        &self.scene
+    }
+}
+
+impl DerefMut for Cell {
+    fn deref_mut(&mut self) -> &mut Scene {
+        &mut self.scene
+    }
+}
+
+impl Cell {
+    /// A robot with a gripper; the other grippers are in their holsters.
+    pub fn new(frame: Frame, gripper: u8, real: Option<Real>) -> Self {
+        let mut resident = [1, 2, 3];
+        let mut holsters = [0b1111; 3];
+        if let Some(which) = usize::from(gripper).checked_sub(1) {
+            (resident[which], holsters[which]) = (0, 0);
+        }
+        let scene = Scene {
+            frame,
+            mated: gripper,
+            resident,
+            holsters,
+            locked: gripper != 0,
+            object: None,
+            joystick: false,
+            button: JoystickGrip::None,
+            mishaps: Vec::new(),
+            log: Vec::new(),
+            answers: Vec::new(),
+            claims: Vec::new(),
+        };
+        Self {
+            scene,
+            prim: Prim::default(),
+            ring: Ring::default(),
+            grip: Grip::default(),
+            v_grip: Jaws::new((50, 350)),
+            tool_grip: Jaws::new((100, 400)),
+            vision: Vision::default(),
+            real,
+            dead: Vec::new(),
+        }
+    }
+}
+
+impl World<Emove> for Cell {
+    fn act(
+        &mut self,
+        tick: Tick,
+        before: &CommonMemory,
+        after: &mut CommonMemory,
+        external: &mut ExternalInputs,
+    ) {
+        let (dead, scene) = (&self.dead, &mut self.scene);
+        let alive = |name| !dead.contains(&name);
+        if alive("Subtask") {
+            after.subtask.header.stamp = tick;
+        }
+        if alive("Prim") {
+            after.prim = self.prim.step(tick, before, scene);
+            if self.prim.by_steps {
+                scene.feel_holsters(["HOLSTER-R", "HOLSTER-L", "HOLSTER-C"].map(frame_of));
+            }
+        }
+        if let Some(real) = &mut self.real {
+            real.step(tick, before, external, scene, after);
+        } else {
+            if alive("Quick Change") {
+                after.quick_change = self.ring.step(tick, before, scene);
+            }
+            if alive("gripper") {
+                let (asleep, to) = (before.emove.dormant, &before.emove);
+                after.grip = self.grip.step(tick, before, scene);
+                after.v_grip = self.v_grip.step(tick, asleep.v_grip, &to.v_grip, &before.v_grip, scene);
+                after.tool_grip =
+                    self.tool_grip.step(tick, asleep.tool_grip, &to.tool_grip, &before.tool_grip, scene);
+            }
+        }
+        if alive("vision") {
+            self.vision.step(before, external, scene);
+        }
+    }
+}
+
+impl Scene {
     fn mishap(&self, text: &str) -> Option<Mishap> {
         self.mishaps.iter().find(|(word, _)| text.contains(word)).map(|(_, mishap)| *mishap)
     }
@@ -148,11 +259,10 @@ impl World {
     }
 }
 
-/// Receives commands and counts the ticks that they take.
+/// Works on commands that it writes into a log.
 #[derive(Clone, Default)]
 struct Receiving {
-    receiver: Receiver,
-    left: u32,
+    worker: Worker,
     text: String,
 }
 
@@ -165,14 +275,12 @@ impl Receiving {
         text: impl FnOnce() -> String,
         log: &mut Vec<String>,
     ) -> bool {
-        if self.receiver.observe(number) == Arrival::New {
-            (self.left, self.text) = (ticks, text());
+        let turn = self.worker.turn(number, ticks);
+        if turn == Turn::Takes {
+            self.text = text();
             log.push(self.text.clone());
-            return false;
         }
-        let ends = self.left == 1;
-        self.left = self.left.saturating_sub(1);
-        ends
+        turn == Turn::Ends
     }
 }
 
@@ -197,8 +305,8 @@ pub struct Prim {
 }
 
 impl Prim {
-    fn text(memory: &CommonMemory, data: &TaskData<'_>) -> String {
-        let command = &memory.emove.prim;
+    fn text(memory: &CommonMemory) -> String {
+        let (command, data) = (&memory.emove.prim, data());
         let table = command.movetable.of(data.movetables).map(|record| record.name);
         let words = [
             command.command.text().to_owned(),
@@ -208,32 +316,26 @@ impl Prim {
         words.iter().filter(|word| !word.is_empty()).cloned().collect::<Vec<_>>().join(" ")
     }
 
-    fn goal(memory: &CommonMemory, data: &TaskData<'_>) -> Option<Frame> {
+    fn goal(memory: &CommonMemory) -> Option<Frame> {
         let command = &memory.emove.prim;
-        let base = pose_of(command.pose, memory, data)?;
-        Some(data.moved(&base, command.movetable))
+        let base = pose_of(command.pose, memory, &data())?;
+        Some(data().moved(&base, command.movetable))
     }
 
-    pub fn step(
-        &mut self,
-        tick: Tick,
-        memory: &CommonMemory,
-        data: &TaskData<'_>,
-        world: &mut World,
-    ) -> PrimOutputs {
+    fn step(&mut self, tick: Tick, memory: &CommonMemory, world: &mut Scene) -> PrimOutputs {
         let command = &memory.emove.prim;
-        let new = command.number != self.receiving.receiver.echo;
+        let new = command.number != self.receiving.worker.echo();
         let steps = self.by_steps && is_motion(command.command);
         let ticks = if steps { u32::MAX } else { TICKS };
-        let ends = self.receiving.step(command.number, ticks, || Self::text(memory, data), &mut world.log);
+        let ends = self.receiving.step(command.number, ticks, || Self::text(memory), &mut world.log);
         if new {
             (self.report, self.reason) = (PrimReport::Executing, Reason::None);
-        } else if steps && self.report == PrimReport::Executing && Self::go(memory, data, world) {
+        } else if steps && self.report == PrimReport::Executing && Self::go(memory, world) {
             self.report = PrimReport::Done;
         }
         let text = self.receiving.text.clone();
         if ends && self.report == PrimReport::Executing {
-            self.end(&text, memory, data, world);
+            self.end(&text, memory, world);
         }
         let pausing = command.command == PrimVerb::Pause;
         if world.joystick && (pausing || self.report != PrimReport::Done) {
@@ -245,11 +347,11 @@ impl Prim {
     }
 
     /// A step towards the goal. True if the motion has come to its end.
-    fn go(memory: &CommonMemory, data: &TaskData<'_>, world: &mut World) -> bool {
+    fn go(memory: &CommonMemory, world: &mut Scene) -> bool {
         let command = &memory.emove.prim;
-        let goal = Self::goal(memory, data).expect("Prim is sent to records that exist");
+        let goal = Self::goal(memory).expect("Prim is sent to records that exist");
         let sensor = command.sensor.unwrap_or_default();
-        let condition = |world: &World| {
+        let condition = |world: &Scene| {
             let bits = match sensor.as_str() {
                 "HOL-NEAR" => 0b0011,
                 "HOL-SEAT" => 0b1111,
@@ -267,7 +369,7 @@ impl Prim {
         distance <= STEP.max(near)
     }
 
-    fn end(&mut self, text: &str, memory: &CommonMemory, data: &TaskData<'_>, world: &mut World) {
+    fn end(&mut self, text: &str, memory: &CommonMemory, world: &mut Scene) {
         let command = &memory.emove.prim;
         self.report = PrimReport::Done;
         match world.mishap(text) {
@@ -284,14 +386,14 @@ impl Prim {
             PrimVerb::CalSensor => self.calibrated |= self.report == PrimReport::Done,
             PrimVerb::None | PrimVerb::Pause => {}
             _ if matches!(self.report, PrimReport::Done | PrimReport::NotDetected) => {
-                world.frame = Self::goal(memory, data).expect("Prim is sent to records that exist");
+                world.frame = Self::goal(memory).expect("Prim is sent to records that exist");
                 world.moved(text, memory.subtask.emove.end_effector_id.unwrap_or(1));
             }
             _ => {}
         }
     }
 
-    fn outputs(&mut self, tick: Tick, world: &World) -> PrimOutputs {
+    fn outputs(&mut self, tick: Tick, world: &Scene) -> PrimOutputs {
         let mut outputs =
             PrimOutputs { header: Header { stamp: tick, ..Header::default() }, ..PrimOutputs::default() };
         for record in &mut outputs.poses[..2] {
@@ -303,7 +405,7 @@ impl Prim {
         outputs.bias = self.calibrated.then_some([0.0; FORCE_AXES]);
         let status = &mut outputs.status;
         status.restarting = self.restarts;
-        status.echo = self.receiving.receiver.echo;
+        status.echo = self.receiving.worker.echo();
         (status.report, status.reason) = (self.report, self.reason);
         (status.link_running, status.controller_off) = (self.link, self.controller_off);
         (status.present_pose, status.sensor_pose) = (outputs.poses[0].number, outputs.poses[1].number);
@@ -323,10 +425,10 @@ pub struct Ring {
 }
 
 impl Ring {
-    pub fn step(&mut self, tick: Tick, memory: &CommonMemory, world: &mut World) -> QuickChangeOutputs {
+    fn step(&mut self, tick: Tick, memory: &CommonMemory, world: &mut Scene) -> QuickChangeOutputs {
         let command = &memory.emove.quick_change;
         let text = || command.command.text().to_owned();
-        let new = command.number != self.receiving.receiver.echo;
+        let new = command.number != self.receiving.worker.echo();
         if self.receiving.step(command.number, TICKS, text, &mut world.log) {
             match world.mishap(command.command.text()) {
                 Some(Mishap::Ring(report)) => self.failed = Some(report),
@@ -341,7 +443,7 @@ impl Ring {
             header: Header { stamp: tick, ..Header::default() },
             ..QuickChangeOutputs::default()
         };
-        outputs.status.echo = self.receiving.receiver.echo;
+        outputs.status.echo = self.receiving.worker.echo();
         outputs.status.end_effector_id = given(world.mated);
         outputs.status.ring = match self.failed {
             Some(QuickChangeReport::SensorMalfunction) => RingPosition::Implausible,
@@ -352,7 +454,7 @@ impl Ring {
         };
         outputs.status.report = match self.failed {
             Some(report) => report,
-            None if self.receiving.left > 0 => QuickChangeReport::Executing,
+            None if self.receiving.worker.is_working() => QuickChangeReport::Executing,
             None if world.locked => QuickChangeReport::Locked,
             None => QuickChangeReport::Unlocked,
         };
@@ -391,14 +493,14 @@ impl Default for Grip {
 }
 
 impl Grip {
-    pub fn step(&mut self, tick: Tick, memory: &CommonMemory, world: &mut World) -> GripOutputs {
+    fn step(&mut self, tick: Tick, memory: &CommonMemory, world: &mut Scene) -> GripOutputs {
         let mut outputs = memory.grip;
         if memory.emove.dormant.grip {
             sleep(&mut outputs.header, tick);
             return outputs;
         }
         let command = &memory.emove.grip;
-        let new = command.number != self.receiving.receiver.echo;
+        let new = command.number != self.receiving.worker.echo();
         if self.receiving.step(command.number, TICKS, || command.command.text().to_owned(), &mut world.log) {
             self.report = GripReport::Done;
             match (world.mishap(command.command.text()), command.command) {
@@ -416,7 +518,7 @@ impl Grip {
             (self.report, self.reason) = (GripReport::Executing, Reason::None);
         }
         outputs.header = Header { stamp: tick, ..Header::default() };
-        outputs.status.echo = self.receiving.receiver.echo;
+        outputs.status.echo = self.receiving.worker.echo();
         (outputs.status.report, outputs.status.reason) = (self.report, self.reason);
         (outputs.status.initialized, outputs.status.position) = (self.initialized, self.opening);
         (outputs.status.left_force, outputs.status.right_force) = (self.force, self.force);
@@ -443,13 +545,13 @@ impl Jaws {
         Self { receiving: Receiving::default(), report: JawsReport::Idle, stops, opening: stops.1 }
     }
 
-    pub fn step(
+    fn step(
         &mut self,
         tick: Tick,
         dormant: bool,
         command: &JawsCommand,
         before: &JawsOutputs,
-        world: &mut World,
+        world: &mut Scene,
     ) -> JawsOutputs {
         let mut outputs = *before;
         if dormant {
@@ -457,7 +559,7 @@ impl Jaws {
             return outputs;
         }
         let text = || format!("{} {}", command.command.text(), command.size);
-        let new = command.number != self.receiving.receiver.echo;
+        let new = command.number != self.receiving.worker.echo();
         if self.receiving.step(command.number, TICKS, text, &mut world.log) {
             let close = command.command == JawsVerb::Grasp;
             if !matches!(command.command, JawsVerb::None | JawsVerb::Pause) {
@@ -487,7 +589,7 @@ impl Jaws {
             self.report = JawsReport::Executing;
         }
         outputs.header = Header { stamp: tick, ..Header::default() };
-        outputs.status.echo = self.receiving.receiver.echo;
+        outputs.status.echo = self.receiving.worker.echo();
         (outputs.status.report, outputs.status.size) = (self.report, self.opening);
         let at_stop = self.opening == self.stops.0 || self.opening == self.stops.1;
         outputs.status.felt = if at_stop { Felt::Nothing } else { Felt::Something };
@@ -505,7 +607,7 @@ pub struct Vision {
 }
 
 impl Vision {
-    pub fn step(&mut self, memory: &CommonMemory, external: &mut ExternalInputs, world: &mut World) {
+    fn step(&mut self, memory: &CommonMemory, external: &mut ExternalInputs, world: &mut Scene) {
         let (request, answer) = (&memory.emove.vision, &mut external.devices.vision);
         if request.number != answer.echo {
             (answer.echo, answer.status, self.left) = (request.number, VisionStatus::Busy, TICKS);

@@ -3,7 +3,7 @@
 use geometry::frame::{Frame, Vector};
 use interfaces::{
     Reason, StatusReport, Unconfirmed,
-    emove::EmoveVerb::{self, AcquireTool, InsertTool, MovToLoc, Pause, Release, ReleaseTool, RemoveTool},
+    emove::EmoveVerb::{self, AcquireTool, InsertTool, MovToLoc, Release, ReleaseTool, RemoveTool},
     grip::Felt,
     jaws::JawsReport,
     prim::PrimReport,
@@ -13,7 +13,7 @@ use interfaces::{
 use taskdata::files::Index;
 
 use super::{
-    bench::{Bench, DONE, error, frame_of, moved},
+    bench::{Bench, DONE, PAUSE, error, frame_of, moved},
     doubles::Mishap,
 };
 use crate::{
@@ -25,25 +25,19 @@ use crate::{
 };
 
 pub const SCENARIOS: &[fn()] = &[
-    a_tool_is_put_into_the_drum_and_left,
-    a_tool_is_taken_out_of_the_drum,
-    a_tool_in_the_drum_is_not_dragged_away,
-    tool_commands_begin_only_when_they_can,
-    a_force_that_must_not_come_stops_the_robot,
-    a_contact_that_does_not_come_is_given_up,
-    a_tool_that_slips_is_noticed,
-    a_failing_gripper_ends_the_command,
-    a_failing_motion_ends_the_command,
-    an_interrupted_insertion_goes_on,
-    an_interrupted_release_goes_on,
-    an_interrupted_acquisition_goes_on,
-    an_interrupted_removal_goes_on,
-    acquire_tool_at_an_empty_drum_names_it_and_release_tool_leads_out,
-    a_contact_before_the_drum_means_that_it_is_occupied,
-    insert_tool_needs_a_force_sensor_that_was_calibrated_at_tool_safe,
-    a_robot_half_way_at_the_drum_goes_nowhere_else,
-    what_is_unknown_is_neither_inserted_nor_let_go,
-    a_robot_that_is_taken_away_is_no_longer_half_way,
+    tool_is_inserted_and_released,
+    tool_is_acquired_and_removed,
+    robot_does_not_leave_the_drum_with_an_inserted_tool,
+    tool_commands_without_their_preconditions_are_refused,
+    gripper_failure_ends_the_tool_command,
+    interrupted_insertion_resumes,
+    interrupted_tool_release_resumes,
+    interrupted_acquisition_resumes,
+    acquire_tool_at_an_empty_drum_fails_and_release_tool_moves_out,
+    contact_before_the_drum_is_reported_as_occupied_drum,
+    insert_tool_requires_a_calibration_at_tool_safe,
+    tool_commands_refuse_an_unknown_object,
+    robot_moved_away_from_the_drum_forgets_the_tool_command,
 ];
 
 /// The orders of INSERT-TOOL.
@@ -74,7 +68,7 @@ fn inserted() -> Bench {
 /// A robot before the drum with open fingers, and a tool in it.
 fn empty() -> Bench {
     let mut bench = Bench::ready("TOOL-SAFE", 3);
-    bench.v_grip.opening = 350;
+    bench.world.v_grip.opening = 350;
     bench
 }
 
@@ -82,20 +76,18 @@ fn empty() -> Bench {
 fn acquire(bench: &mut Bench) -> (StatusReport, Reason) {
     bench.world.log.clear();
     bench.command(AcquireTool, "CUTTER", 1, "TOOL-TRNS", 3);
-    while !bench.log().contains(&"GO-UNTIL ACQ-SLIDE ACQ-MY") {
-        bench.step();
-    }
+    bench.until_logged("GO-UNTIL ACQ-SLIDE ACQ-MY");
     bench.world.object = Some(SIZE);
     bench.finish()
 }
 
 #[test]
-fn a_tool_is_put_into_the_drum_and_left() {
+fn tool_is_inserted_and_released() {
     let mut bench = loaded();
     assert_eq!(run(&mut bench, InsertTool), DONE);
     assert_eq!(bench.log(), INSERTION);
     assert!(bench.off(&moved(frame_of("TOOL-TRNS"), &["INS-IN"])) < 0.02);
-    assert_eq!(bench.memory.emove.status.at.unwrap_or_default().site.location.as_str(), "TOOL-TRNS");
+    assert_eq!(bench.at(), "TOOL-TRNS");
     assert_eq!(run(&mut bench, InsertTool), DONE, "it is in");
     assert!(bench.log().is_empty());
     assert_eq!(run(&mut bench, ReleaseTool), DONE);
@@ -111,7 +103,7 @@ fn a_tool_is_put_into_the_drum_and_left() {
 }
 
 #[test]
-fn a_tool_is_taken_out_of_the_drum() {
+fn tool_is_acquired_and_removed() {
     let mut bench = empty();
     assert_eq!(acquire(&mut bench), DONE);
     assert_eq!(
@@ -122,7 +114,7 @@ fn a_tool_is_taken_out_of_the_drum() {
             .collect::<Vec<_>>()
     );
     assert!(bench.off(&moved(frame_of("TOOL-TRNS"), &["ACQ-STRIKE", "ACQ-SLIDE"])) < 0.02);
-    assert_eq!(bench.memory.emove.status.held.object().unwrap_or_default().as_str(), "CUTTER");
+    assert_eq!(bench.held(), "CUTTER");
     assert_eq!(run(&mut bench, AcquireTool), DONE, "it is held");
     assert!(bench.log().is_empty());
     assert_eq!(run(&mut bench, RemoveTool), DONE);
@@ -134,7 +126,7 @@ fn a_tool_is_taken_out_of_the_drum() {
 }
 
 #[test]
-fn a_tool_in_the_drum_is_not_dragged_away() {
+fn robot_does_not_leave_the_drum_with_an_inserted_tool() {
     let mut bench = inserted();
     assert_eq!(bench.run(MovToLoc, "", 0, "TOOL-SAFE", 0), error(Reason::NotPrepared));
     assert_eq!(run(&mut bench, ReleaseTool), DONE);
@@ -146,7 +138,7 @@ fn a_tool_in_the_drum_is_not_dragged_away() {
 }
 
 #[test]
-fn tool_commands_begin_only_when_they_can() {
+fn tool_commands_without_their_preconditions_are_refused() {
     let mut bench = Bench::ready("TOOL-SAFE", 3);
     assert_eq!(run(&mut bench, InsertTool), error(Reason::NothingHeld));
     assert_eq!(run(&mut bench, ReleaseTool), error(Reason::NotPrepared), "the robot is elsewhere");
@@ -168,7 +160,7 @@ fn tool_commands_begin_only_when_they_can() {
         let mut bench = loaded();
         assert_eq!(bench.run(verb, "CUTTER", 1, "HOME", 3), error(Reason::NoRelativeMove), "{verb}");
         bench.world.frame = moved(frame_of("HOME"), &["300ty"]);
-        bench.steps(3);
+        bench.wait(3);
         assert_eq!(run(&mut bench, verb), error(Reason::UnknownStart), "{verb}");
     }
     let mut bench = loaded();
@@ -183,7 +175,7 @@ fn tool_commands_begin_only_when_they_can() {
 }
 
 #[test]
-fn a_force_that_must_not_come_stops_the_robot() {
+fn unexpected_force_stops_the_tool_command() {
     let detected = Mishap::Prim(PrimReport::DetectedErr, Reason::Detected);
     let mut bench = loaded();
     bench.spoil("INS-IN", detected);
@@ -196,7 +188,7 @@ fn a_force_that_must_not_come_stops_the_robot() {
 }
 
 #[test]
-fn a_contact_that_does_not_come_is_given_up() {
+fn missing_contact_fails_the_tool_command() {
     let missed = Mishap::Prim(PrimReport::NotDetected, Reason::NotDetected);
     let mut bench = inserted();
     bench.spoil("REL-SLIDE", missed);
@@ -211,12 +203,12 @@ fn a_contact_that_does_not_come_is_given_up() {
 }
 
 #[test]
-fn a_tool_that_slips_is_noticed() {
+fn slipping_tool_is_reported_as_lost() {
     for (verb, before) in [(InsertTool, None), (RemoveTool, Some(()))] {
         let mut bench = if before.is_none() { loaded() } else { inserted() };
         bench.command(verb, "CUTTER", 1, "TOOL-TRNS", 3);
-        bench.steps(4);
-        bench.tool_grip.opening = 100;
+        bench.wait(4);
+        bench.world.tool_grip.opening = 100;
         assert_eq!(bench.finish(), error(Reason::ObjectLost), "{verb}");
     }
     let mut bench = empty();
@@ -224,7 +216,7 @@ fn a_tool_that_slips_is_noticed() {
 }
 
 #[test]
-fn acquire_tool_at_an_empty_drum_names_it_and_release_tool_leads_out() {
+fn acquire_tool_at_an_empty_drum_fails_and_release_tool_moves_out() {
     let mut bench = empty();
     assert_eq!(run(&mut bench, AcquireTool), error(Reason::NoToolInDrum));
     assert_eq!(run(&mut bench, AcquireTool), error(Reason::NoToolInDrum), "sent again");
@@ -240,7 +232,7 @@ fn orders(bench: &Bench) -> Vec<&str> {
 }
 
 #[test]
-fn a_contact_before_the_drum_means_that_it_is_occupied() {
+fn contact_before_the_drum_is_reported_as_occupied_drum() {
     let detected = Mishap::Prim(PrimReport::DetectedErr, Reason::Detected);
     let mut bench = loaded();
     bench.spoil("INS-NEAR", detected);
@@ -266,12 +258,12 @@ fn a_contact_before_the_drum_means_that_it_is_occupied() {
 }
 
 #[test]
-fn insert_tool_needs_a_force_sensor_that_was_calibrated_at_tool_safe() {
+fn insert_tool_requires_a_calibration_at_tool_safe() {
     let refused = error(Reason::ForceUncalibrated);
     for (word, frame) in [("INS-NEAR", at(-3.0, 0.0)), ("INS-IN", at(-1.0, 0.0)), ("INS-IN", at(-0.1, 0.0))] {
         let mut bench = loaded();
         interrupt(&mut bench, InsertTool, word, frame);
-        bench.prim.calibrated = false;
+        bench.world.prim.calibrated = false;
         assert_eq!(run(&mut bench, InsertTool), refused, "{word}: the sensor was without power");
         assert!(orders(&bench).is_empty(), "{:?}", bench.log());
         // The remedy.
@@ -296,14 +288,14 @@ fn insert_tool_needs_a_force_sensor_that_was_calibrated_at_tool_safe() {
     // What E-move believes of the calibration outlives a restart of E-move.
     let mut bench = loaded();
     interrupt(&mut bench, InsertTool, "INS-NEAR", at(-3.0, 0.0));
-    bench.process = crate::emove::Emove::default();
-    bench.steps(2);
+    bench.restart();
+    bench.wait(2);
     assert_eq!(run(&mut bench, InsertTool), DONE);
     assert_eq!(bench.log(), &INSERTION[1..]);
 }
 
 #[test]
-fn a_failing_gripper_ends_the_command() {
+fn gripper_failure_ends_the_tool_command() {
     let mut bench = inserted();
     bench.spoil("RELEASE", Mishap::Jaws(JawsReport::Stuck));
     assert_eq!(run(&mut bench, ReleaseTool), error(Reason::JawsStuck));
@@ -315,7 +307,7 @@ fn a_failing_gripper_ends_the_command() {
     }
     assert!(bench.log().iter().all(|word| *word == "PAUSE"), "{:?}", bench.log());
     // It is grasped anew.
-    bench.tool_grip.opening = SIZE + 50;
+    bench.world.tool_grip.opening = SIZE + 50;
     bench.world.log.clear();
     assert_eq!(run(&mut bench, AcquireTool), DONE);
     assert!(bench.log().contains(&"GRASP 250"), "{:?}", bench.log());
@@ -327,7 +319,7 @@ fn a_failing_gripper_ends_the_command() {
 }
 
 #[test]
-fn a_failing_motion_ends_the_command() {
+fn motion_failure_ends_the_tool_command() {
     let failed = Mishap::Prim(PrimReport::SensorError, Reason::SensorError);
     for (verb, words) in [
         (InsertTool, &["CAL-SENSOR", "INS-FAR", "INS-NEAR", "INS-IN"][..]),
@@ -356,17 +348,14 @@ fn at(x: f64, z: f64) -> Frame {
 fn interrupt(bench: &mut Bench, verb: EmoveVerb, word: &str, frame: Frame) {
     bench.world.log.clear();
     bench.command(verb, "CUTTER", 1, "TOOL-TRNS", 3);
-    while !bench.log().iter().any(|order| order.contains(word)) {
-        bench.step();
-    }
+    bench.until_logged(word);
     bench.world.frame = frame;
-    bench.write(Pause, "", 0, "", 0);
-    assert_eq!(bench.finish(), DONE);
+    assert_eq!(bench.execute(PAUSE), DONE);
     bench.world.log.clear();
 }
 
 #[test]
-fn an_interrupted_insertion_goes_on() {
+fn interrupted_insertion_resumes() {
     for (word, frame, orders) in [
         ("CAL-SENSOR", frame_of("TOOL-SAFE"), INSERTION),
         ("INS-FAR", at(-5.0, 0.0), &INSERTION[1..]),
@@ -408,7 +397,7 @@ fn an_interrupted_insertion_goes_on() {
 }
 
 #[test]
-fn an_interrupted_release_goes_on() {
+fn interrupted_tool_release_resumes() {
     const WHOLE: &[&str] = &["RELEASE 400", "CAL-SENSOR", "GO-UNTIL REL-SLIDE REL-MY", "DELTA-MOVE REL-BACK"];
     for (word, x, z, orders) in [
         ("RELEASE", 0.0, 0.0, WHOLE),
@@ -431,7 +420,7 @@ fn an_interrupted_release_goes_on() {
     for (verb, z) in [(ReleaseTool, -1.0), (AcquireTool, -1.0), (ReleaseTool, -1.8)] {
         let mut bench = inserted();
         interrupt(&mut bench, ReleaseTool, "REL-SLIDE", at(0.0, z));
-        bench.tool_grip.opening = 100;
+        bench.world.tool_grip.opening = 100;
         assert_eq!(run(&mut bench, verb), error(Reason::NotPrepared), "{verb} {z}");
     }
     let mut bench = Bench::ready("HOME", 3);
@@ -439,7 +428,7 @@ fn an_interrupted_release_goes_on() {
 }
 
 #[test]
-fn an_interrupted_acquisition_goes_on() {
+fn interrupted_acquisition_resumes() {
     const WHOLE: &[&str] = &[
         "POSE 400",
         "DELTA-MOVE ACQ-NEAR",
@@ -473,15 +462,13 @@ fn an_interrupted_acquisition_goes_on() {
 fn acquire_from(bench: &mut Bench) -> (StatusReport, Reason) {
     bench.world.log.clear();
     bench.command(AcquireTool, "CUTTER", 1, "TOOL-TRNS", 3);
-    while !bench.log().contains(&"GRASP 250") {
-        bench.step();
-    }
+    bench.until_logged("GRASP 250");
     bench.world.object = Some(SIZE);
     bench.finish()
 }
 
 #[test]
-fn an_interrupted_removal_goes_on() {
+fn interrupted_removal_resumes() {
     for (word, x, orders) in [
         ("CAL-SENSOR", 0.0, &["CAL-SENSOR", "GO-WHILE REM-OUT REM-FX"][..]),
         ("REM-OUT", -0.1, &["GO-WHILE REM-OUT REM-FX"]),
@@ -506,7 +493,7 @@ fn an_interrupted_removal_goes_on() {
 }
 
 #[test]
-fn a_robot_half_way_at_the_drum_goes_nowhere_else() {
+fn robot_in_the_drum_refuses_other_commands() {
     let mut bench = loaded();
     interrupt(&mut bench, InsertTool, "INS-IN", at(-1.0, 0.0));
     for verb in [MovToLoc, EmoveVerb::Withdraw] {
@@ -517,34 +504,30 @@ fn a_robot_half_way_at_the_drum_goes_nowhere_else() {
 }
 
 #[test]
-fn a_robot_that_is_led_away_from_the_drum_and_back_goes_on() {
+fn insertion_resumes_after_the_operator_led_the_robot_away_and_back() {
     let mut bench = loaded();
     interrupt(&mut bench, InsertTool, "INS-IN", at(-1.0, 0.0));
-    bench.world.joystick = true;
-    bench.steps(3);
-    bench.world.frame = at(-20.0, 0.0);
-    bench.steps(3);
-    bench.world.frame = at(-1.0, 0.0);
-    bench.steps(3);
-    bench.world.joystick = false;
+    bench.lead(|bench| {
+        bench.world.frame = at(-20.0, 0.0);
+        bench.wait(3);
+        bench.world.frame = at(-1.0, 0.0);
+    });
     assert_eq!(bench.pause(), DONE);
     assert_eq!(run(&mut bench, InsertTool), DONE);
 }
 
 #[test]
-fn tool_in_the_drum_beside_which_a_person_has_led_the_robot_has_no_confirmed_place_in_the_fingers() {
+fn tool_acquired_after_manual_motion_has_an_unconfirmed_seat() {
     for (led, unconfirmed) in [(false, Unconfirmed::GraspForce), (true, Unconfirmed::PartInFingers)] {
         let mut bench = empty();
         interrupt(&mut bench, AcquireTool, "ACQ-SLIDE", moved(frame_of("TOOL-TRNS"), &["ACQ-STRIKE"]));
         bench.world.joystick = led;
-        bench.steps(5);
+        bench.wait(5);
         bench.world.joystick = false;
         assert_eq!(bench.pause(), DONE);
         bench.world.log.clear();
         bench.command(AcquireTool, "CUTTER", 1, "TOOL-TRNS", 3);
-        while !bench.log().iter().any(|order| order.contains("ACQ-SLIDE")) {
-            bench.step();
-        }
+        bench.until_logged("ACQ-SLIDE");
         bench.world.object = Some(SIZE);
         assert_eq!(bench.finish(), DONE, "led: {led}");
         assert_eq!(bench.memory.emove.status.unconfirmed, unconfirmed, "led: {led}");
@@ -552,19 +535,19 @@ fn tool_in_the_drum_beside_which_a_person_has_led_the_robot_has_no_confirmed_pla
 }
 
 #[test]
-fn a_robot_that_is_taken_away_is_no_longer_half_way() {
+fn robot_moved_away_from_the_drum_forgets_the_tool_command() {
     for away in [at(-1.0, 3.5), at(-20.0, 0.0), at(1.0, 0.0), at(-1.0, -1.0), at(-5.0, 5.0)] {
         let mut bench = loaded();
         interrupt(&mut bench, InsertTool, "INS-IN", at(-1.0, 0.0));
         bench.world.frame = away;
-        bench.steps(3);
+        bench.wait(3);
         assert!(bench.memory.emove.beliefs.drum.is_none());
         assert_eq!(run(&mut bench, InsertTool), error(Reason::UnknownStart));
     }
 }
 
 #[test]
-fn what_is_unknown_is_neither_inserted_nor_let_go() {
+fn tool_commands_refuse_an_unknown_object() {
     for (felt, verb, reason) in [
         (Felt::NotKnown, InsertTool, Reason::HeldNotKnown),
         (Felt::NotKnown, AcquireTool, Reason::HeldNotKnown),
@@ -572,7 +555,7 @@ fn what_is_unknown_is_neither_inserted_nor_let_go() {
         (Felt::Something, AcquireTool, Reason::AlreadyHolding),
     ] {
         let mut bench = empty();
-        bench.dead.push("gripper");
+        bench.world.dead.push("gripper");
         bench.memory.tool_grip.status.felt = felt;
         let state = bench.process.state_mut();
         state.adopt(&interfaces::emove::Beliefs { empty: false, ..state.beliefs() });
@@ -581,7 +564,7 @@ fn what_is_unknown_is_neither_inserted_nor_let_go() {
 }
 
 #[test]
-fn what_becomes_of_an_interrupted_tool_command_stands_in_a_table() {
+fn drum_table_decides_the_interrupted_tool_command() {
     let row = |at, tool, outcome| {
         let decision = drum((), &AtTheDrum { at, tool, outcome });
         (decision.row, decision.action)

@@ -1,4 +1,4 @@
-//! QC-ATTACH, QC-DETACH and GRASP-OBJ that are interrupted and sent again (docs/design/recovery.md
+//! QC-attach(1), QC-detach(1) and GRASP-OBJ that are interrupted and sent again (docs/design/recovery.md
 //! "Exchange", "Held").
 
 use interfaces::{
@@ -6,8 +6,8 @@ use interfaces::{
     device::JawValves,
     emove::{
         EmoveVerb::{
-            self, AcquireTool, GraspObj, InsertTool, LocateObj, MovObjTo, MovToHol, MovToLoc, MovToObj,
-            MovToVu, Pause, QcAttach, QcDetach, Release, ReleaseTool, RemoveTool, Withdraw,
+            AcquireTool, GraspObj, InsertTool, LocateObj, MovObjTo, MovToHol, MovToLoc, MovToObj, MovToVu,
+            Pause, Release,
         },
         Holding, Pins,
     },
@@ -17,116 +17,72 @@ use interfaces::{
 };
 
 use super::{
-    bench::{Bench, DONE, error, frame_of, moved},
+    bench::{Bench, DONE, INTERRUPTIONS, ORDINARY, attach, detach, error, frame_of, moved, to_holster},
     doubles::Mishap,
-    recovery::send,
-    together::Real,
 };
-use crate::emove::Emove;
 
 pub const SCENARIOS: &[fn()] = &[
-    a_gripper_is_attached_from_every_tick,
-    a_gripper_is_detached_from_every_tick,
-    an_exchange_goes_on_from_where_it_is,
-    what_cannot_be_attached_is_named,
-    an_order_without_effect_ends_the_command,
-    ring_that_stays_locked_under_a_bare_robot_ends_the_command,
-    what_cannot_be_detached_is_named,
-    in_a_holster_only_the_exchange_goes_on,
-    a_robot_that_is_led_out_of_a_holster_and_back_goes_on,
-    a_gripper_that_mates_in_its_holster_holds_nothing,
-    a_loose_gripper_that_is_led_away_is_still_to_be_changed,
-    a_grasp_is_made_again_from_every_tick,
-    fingers_that_are_stopped_while_they_let_go_have_not_let_go,
-    what_is_closed_on_by_hand_is_not_let_go,
-    what_was_half_let_go_is_grasped_anew,
-    what_the_fingers_have_closed_on_since_does_not_count_as_placed,
-    jaws_that_air_moves_do_not_stand,
-    jaws_without_air_have_grasped_nothing,
-    what_is_not_known_is_held,
-    a_bare_robot_leaves_a_holster_without_a_gripper,
-    id_pins_that_fail_change_nothing,
-    a_gripper_that_has_come_off_a_locked_ring_is_taken_again,
+    exchange_resumes_from_each_position,
+    impossible_attach_is_reported,
+    order_without_effect_ends_the_exchange,
+    ring_that_stays_locked_ends_the_exchange,
+    impossible_detach_is_reported,
+    exchange_resumes_after_the_operator_led_the_robot_out_and_back,
+    fingers_stuck_in_a_release_have_not_released,
+    object_regrasped_by_the_operator_is_not_released,
+    grasp_after_a_release_clears_the_placed_object,
+    unknown_contents_count_as_held,
+    bare_robot_leaves_an_empty_holster,
+    failed_id_pins_keep_the_estimates,
 ];
-
-/// How a command ends before it is sent again.
-#[derive(Clone, Copy, PartialEq)]
-enum Interruption {
-    Paused,
-    Restarted,
-}
-
-impl Interruption {
-    const ALL: [Self; 2] = [Self::Paused, Self::Restarted];
-
-    fn of(self, bench: &mut Bench) {
-        if self == Self::Restarted {
-            bench.process = Emove::default();
-            assert_eq!(bench.finish(), error(Reason::Restarted));
-        }
-        bench.write(Pause, "", 0, "", 0);
-        assert_eq!(bench.finish(), DONE, "{:?} {:?}", bench.world.log, bench.memory.emove.header);
-        bench.world.log.clear();
-    }
-}
 
 /// A bare robot above the holster of gripper 1, 2 or 3, with the real processes.
 fn bare(gripper: u8) -> Bench {
-    let mut bench = Bench::with("HOME", 0, Some(Real::default()));
-    assert_eq!(bench.pause(), DONE);
-    let (object, holster) = holster(gripper);
-    assert_eq!(bench.run(MovToHol, object, 2, holster, gripper), DONE);
-    bench.prim.by_steps = true;
-    bench
+    above(0, 2, gripper)
 }
 
 /// A robot above the holster of the gripper that it has, with the real processes.
 fn with(gripper: u8) -> Bench {
-    let mut bench = Bench::with("HOME", gripper, Some(Real::default()));
-    assert_eq!(bench.pause(), DONE);
-    let (object, holster) = holster(gripper);
-    assert_eq!(bench.run(MovToHol, object, 1, holster, gripper), DONE);
-    bench.prim.by_steps = true;
+    above(gripper, 1, gripper)
+}
+
+fn above(attached: u8, grip: i32, gripper: u8) -> Bench {
+    let mut bench = Bench::real("HOME", attached);
+    assert_eq!(bench.perform(to_holster(grip, gripper)), DONE);
+    bench.world.prim.by_steps = true;
     bench
 }
 
-fn holster(gripper: u8) -> (&'static str, &'static str) {
-    [("GRIPPER-1", "HOLSTER-R"), ("GRIPPER-2", "HOLSTER-L"), ("GRIPPER-3", "HOLSTER-C")]
-        [usize::from(gripper) - 1]
-}
-
 #[test]
-fn a_gripper_is_attached_from_every_tick() {
+fn interrupted_attach_resumes_from_every_tick() {
     for gripper in 1..=3 {
-        let (object, holster) = holster(gripper);
-        let attach = (QcAttach, object, 2, holster, gripper);
-        for interruption in Interruption::ALL {
-            let mut bench = bare(gripper);
-            bench.at_every_tick(attach, |fork| {
-                interruption.of(fork);
-                assert_eq!(send(fork, attach), DONE, "{:?}", fork.world.log);
-                assert_eq!((fork.world.mated, fork.world.locked), (gripper, true));
-                assert!(fork.off(&moved(frame_of(holster), &["QCA-UP"])) < 0.31, "clear of the holster");
-                assert_eq!(send(fork, (MovToLoc, "", 0, "HOME", 0)), DONE);
-            });
-        }
+        let (attach, seat) = (attach(gripper), frame_of(attach(gripper).3));
+        bare(gripper).sent_again(
+            |bench| bench.send(attach),
+            INTERRUPTIONS,
+            |bench| {
+                assert_eq!(bench.finish(), DONE, "{:?}", bench.world.log);
+                assert_eq!((bench.world.mated, bench.world.locked), (gripper, true));
+                assert!(bench.off(&moved(seat, &["QCA-UP"])) < 0.31, "clear of the holster");
+                assert_eq!(bench.run(MovToLoc, "", 0, "HOME", 0), DONE);
+            },
+        );
     }
 }
 
 #[test]
-fn a_gripper_is_detached_from_every_tick() {
+fn interrupted_detach_resumes_from_every_tick() {
     for gripper in 1..=3 {
-        let (object, holster) = holster(gripper);
-        let detach = (QcDetach, object, 1, holster, gripper);
-        for interruption in Interruption::ALL {
-            let mut bench = with(gripper);
-            bench.at_every_tick(detach, |fork| {
-                interruption.of(fork);
-                assert_eq!(send(fork, detach), DONE, "{:?}", fork.world.log);
-                assert_eq!((fork.world.mated, fork.world.resident[usize::from(gripper) - 1]), (0, gripper));
-                assert_eq!(send(fork, (MovToLoc, "", 0, "HOME", 0)), DONE);
-            });
-        }
+        let detach = detach(gripper);
+        with(gripper).sent_again(
+            |bench| bench.send(detach),
+            INTERRUPTIONS,
+            |bench| {
+                assert_eq!(bench.finish(), DONE, "{:?}", bench.world.log);
+                assert_eq!((bench.world.mated, bench.world.resident[usize::from(gripper) - 1]), (0, gripper));
+                assert_eq!(bench.run(MovToLoc, "", 0, "HOME", 0), DONE);
+            },
+        );
     }
 }
 
@@ -154,7 +110,7 @@ fn halfway(at: &[&str], mated: u8, locked: bool, holster: u8) -> Bench {
     bench.world.holsters[0] = holster;
     bench.world.locked = locked;
     bench.world.resident[0] = if mated == 0 { 1 } else { 0 };
-    bench.grip.opening = 100;
+    bench.world.grip.opening = 100;
     bench
 }
 
@@ -162,61 +118,56 @@ fn halfway(at: &[&str], mated: u8, locked: bool, holster: u8) -> Bench {
 const BLIND: u8 = 0;
 const SLIPPED: u8 = 0b0111;
 
-const ATTACH: (EmoveVerb, &str, i32, &str, u8) = (QcAttach, "GRIPPER-1", 2, "HOLSTER-R", 1);
-const DETACH: (EmoveVerb, &str, i32, &str, u8) = (QcDetach, "GRIPPER-1", 1, "HOLSTER-R", 1);
-
 #[test]
-fn an_exchange_goes_on_from_where_it_is() {
+fn exchange_resumes_from_each_position() {
     let from = |at: &[&str], mated, locked, bits, command, first: &str| {
         let mut bench = halfway(at, mated, locked, bits);
         // The sensors of the holster are those of the place, or what is given.
-        bench.prim.by_steps = bits != BLIND && bits != SLIPPED;
-        assert_eq!(send(&mut bench, command), DONE, "{at:?} {:?}", bench.world.log);
+        bench.world.prim.by_steps = bits != BLIND && bits != SLIPPED;
+        assert_eq!(bench.perform(command), DONE, "{at:?} {:?}", bench.world.log);
         assert_eq!(bench.log().first().copied().unwrap_or_default(), first, "{at:?}");
     };
-    from(BARE, 0, false, 0b1111, ATTACH, "DELTA-MOVE QCA-FAST");
-    from(FAST, 0, false, 0b1111, ATTACH, "DELTA-MOVE QCA-SLOW");
-    from(SEAT, 1, false, 0b1111, ATTACH, "DELTA-MOVE QCA-SLOW");
-    from(LOW, 1, false, 0b0011, ATTACH, "DELTA-MOVE QCA-SLOW");
-    from(SEAT, 1, true, 0b1111, ATTACH, "DELTA-MOVE QCA-BACK");
-    from(LOW, 1, true, 0b0011, ATTACH, "DELTA-MOVE QCA-LIFT");
-    from(RAISED, 1, true, 0, ATTACH, "DELTA-MOVE QCA-UP");
-    from(CLEAR, 1, true, 0, ATTACH, "");
-    from(RAISED, 1, true, 0, DETACH, "GO-UNTIL QCD-DOWN HOL-NEAR");
-    from(LIFTED, 1, true, 0, DETACH, "GO-UNTIL QCD-DOWN HOL-NEAR");
-    from(LOW, 1, true, BLIND, DETACH, "GO-UNTIL QCD-DOWN HOL-NEAR");
-    from(LOW, 1, true, 0b0011, DETACH, "QC-UNLOCK");
-    from(LOW, 1, false, 0b0011, DETACH, "GO-UNTIL QCD-SEAT HOL-SEAT");
-    from(HIGH, 1, false, SLIPPED, ATTACH, "DELTA-MOVE QCA-SLOW");
-    from(HIGH, 1, false, SLIPPED, DETACH, "GO-UNTIL QCD-SEAT HOL-SEAT");
-    from(OVER, 1, false, SLIPPED, DETACH, "GO-UNTIL QCD-SEAT HOL-SEAT");
-    from(SEAT, 1, true, 0b1111, DETACH, "QC-UNLOCK");
-    from(SEAT, 1, false, 0b1111, DETACH, "DELTA-MOVE QCD-UP");
-    from(FAST, 0, false, 0b1111, DETACH, "DELTA-MOVE QCD-UP");
-    from(FAST, 0, true, 0b1111, DETACH, "QC-UNLOCK");
-    from(BARE, 0, false, 0b1111, DETACH, "DELTA-MOVE QCD-UP");
-    from(ABOVE, 0, false, 0b1111, DETACH, "");
+    from(BARE, 0, false, 0b1111, attach(1), "DELTA-MOVE QCA-FAST");
+    from(FAST, 0, false, 0b1111, attach(1), "DELTA-MOVE QCA-SLOW");
+    from(SEAT, 1, false, 0b1111, attach(1), "DELTA-MOVE QCA-SLOW");
+    from(LOW, 1, false, 0b0011, attach(1), "DELTA-MOVE QCA-SLOW");
+    from(SEAT, 1, true, 0b1111, attach(1), "DELTA-MOVE QCA-BACK");
+    from(LOW, 1, true, 0b0011, attach(1), "DELTA-MOVE QCA-LIFT");
+    from(RAISED, 1, true, 0, attach(1), "DELTA-MOVE QCA-UP");
+    from(CLEAR, 1, true, 0, attach(1), "");
+    from(RAISED, 1, true, 0, detach(1), "GO-UNTIL QCD-DOWN HOL-NEAR");
+    from(LIFTED, 1, true, 0, detach(1), "GO-UNTIL QCD-DOWN HOL-NEAR");
+    from(LOW, 1, true, BLIND, detach(1), "GO-UNTIL QCD-DOWN HOL-NEAR");
+    from(LOW, 1, true, 0b0011, detach(1), "QC-UNLOCK");
+    from(LOW, 1, false, 0b0011, detach(1), "GO-UNTIL QCD-SEAT HOL-SEAT");
+    from(HIGH, 1, false, SLIPPED, attach(1), "DELTA-MOVE QCA-SLOW");
+    from(HIGH, 1, false, SLIPPED, detach(1), "GO-UNTIL QCD-SEAT HOL-SEAT");
+    from(OVER, 1, false, SLIPPED, detach(1), "GO-UNTIL QCD-SEAT HOL-SEAT");
+    from(SEAT, 1, true, 0b1111, detach(1), "QC-UNLOCK");
+    from(SEAT, 1, false, 0b1111, detach(1), "DELTA-MOVE QCD-UP");
+    from(FAST, 0, false, 0b1111, detach(1), "DELTA-MOVE QCD-UP");
+    from(FAST, 0, true, 0b1111, detach(1), "QC-UNLOCK");
+    from(BARE, 0, false, 0b1111, detach(1), "DELTA-MOVE QCD-UP");
+    from(ABOVE, 0, false, 0b1111, detach(1), "");
     // At the seat, and the small sensors do not see it yet.
-    from(SEAT, 1, false, SLIPPED, DETACH, "GO-UNTIL QCD-SEAT HOL-SEAT");
+    from(SEAT, 1, false, SLIPPED, detach(1), "GO-UNTIL QCD-SEAT HOL-SEAT");
     // The gripper lies at its seat, and the robot stands over it, where QCD-SEAT has ended.
     let mut bench = halfway(OVER, 1, false, 0b1111);
-    assert_eq!(send(&mut bench, DETACH), DONE, "{:?}", bench.world.log);
+    assert_eq!(bench.perform(detach(1)), DONE, "{:?}", bench.world.log);
     assert_eq!(bench.log(), ["DELTA-MOVE QCD-UP"]);
     // The gripper needs calibrating, and the command had ended before.
     let mut bench = halfway(CLEAR, 1, true, 0);
-    bench.grip.initialized = false;
-    assert_eq!(send(&mut bench, ATTACH), DONE);
+    bench.world.grip.initialized = false;
+    assert_eq!(bench.perform(attach(1)), DONE);
     assert_eq!(bench.log(), ["UP-INIT"]);
 }
 
 #[test]
-fn what_cannot_be_attached_is_named() {
+fn impossible_attach_is_reported() {
     let fails = |at: &[&str], mated, locked, bits, reason: Reason| {
         let mut bench = halfway(at, mated, locked, bits);
-        assert_eq!(send(&mut bench, ATTACH), error(reason), "{at:?} {:?}", bench.world.log);
-        let there = bench.world.frame;
-        bench.steps(8);
-        assert!(bench.off(&there) < 0.01, "it stands");
+        assert_eq!(bench.perform(attach(1)), error(reason), "{at:?} {:?}", bench.world.log);
+        bench.assert_stands();
     };
     fails(AWAY, 1, true, 0b0001, Reason::NotPrepared);
     fails(AWAY, 1, false, 0, Reason::RingNotLocked);
@@ -227,41 +178,41 @@ fn what_cannot_be_attached_is_named() {
     fails(FAST, 1, true, 0b0001, Reason::RingNotLocked);
     // Done at once far from its holster.
     let mut bench = halfway(AWAY, 1, true, 0);
-    assert_eq!(send(&mut bench, ATTACH), DONE);
+    assert_eq!(bench.perform(attach(1)), DONE);
     assert!(bench.log().is_empty());
     // A gripper that came loose below the seat, with a ring that is neither locked nor unlocked.
     let mut bench = halfway(LOW, 1, false, 0b0011);
-    bench.ring.half = true;
-    assert_eq!(send(&mut bench, ATTACH), DONE);
+    bench.world.ring.half = true;
+    assert_eq!(bench.perform(attach(1)), DONE);
     assert_eq!(bench.log()[..2], ["DELTA-MOVE QCA-SLOW", "QC-LOCK"]);
     // The robot is at the seat, and nothing mates there: it goes a little away, and says so.
     let mut bench = halfway(SEAT, 0, false, 0b1111);
     bench.world.resident[0] = 0;
-    assert_eq!(send(&mut bench, ATTACH), error(Reason::NotAttached));
+    assert_eq!(bench.perform(attach(1)), error(Reason::NotAttached));
     assert_eq!(bench.log()[0], "DELTA-MOVE QCA-FAST");
 }
 
 /// Id pins without contact read as a bare robot. The ring opens before the robot leaves the seat: it may hold a gripper
 /// that is in its holster.
 #[test]
-fn a_locked_ring_at_the_seat_is_opened_before_the_robot_leaves() {
+fn locked_ring_at_the_seat_opens_before_the_robot_leaves() {
     let mut bench = halfway(SEAT, 0, true, 0b1111);
-    send(&mut bench, ATTACH);
+    bench.perform(attach(1));
     assert_eq!(bench.log()[0], "QC-UNLOCK", "{:?}", bench.log());
 }
 
 #[test]
-fn ring_that_stays_locked_under_a_bare_robot_ends_the_command() {
-    for command in [ATTACH, DETACH] {
+fn ring_that_stays_locked_ends_the_exchange() {
+    for command in [attach(1), detach(1)] {
         let mut bench = halfway(SEAT, 0, true, 0b1111);
         bench.spoil("QC-UNLOCK", Mishap::Ring(QuickChangeReport::Locked));
-        assert_eq!(send(&mut bench, command), error(Reason::QuickChangeFault));
+        assert_eq!(bench.perform(command), error(Reason::QuickChangeFault));
         assert_eq!(bench.motions(), [""; 0], "the robot stays at the seat");
     }
 }
 
 #[test]
-fn an_order_without_effect_ends_the_command() {
+fn order_without_effect_ends_the_exchange() {
     for (at, mated, locked, bits, word) in [
         (FAST, 0, false, 0b1111, "QCA-SLOW"),
         (LOW, 1, false, 0b0011, "QCA-SLOW"),
@@ -275,22 +226,20 @@ fn an_order_without_effect_ends_the_command() {
     ] {
         let mut bench = halfway(at, mated, locked, bits);
         bench.spoil(word, Mishap::Stays);
-        assert_eq!(send(&mut bench, ATTACH), error(Reason::NoEffect), "{word} {:?}", bench.world.log);
+        assert_eq!(bench.perform(attach(1)), error(Reason::NoEffect), "{word} {:?}", bench.world.log);
     }
     let mut bench = halfway(LOW, 1, false, 0b0011);
-    bench.ring.half = true;
+    bench.world.ring.half = true;
     bench.spoil("QCA-SLOW", Mishap::Stays);
-    assert_eq!(send(&mut bench, ATTACH), error(Reason::NoEffect));
+    assert_eq!(bench.perform(attach(1)), error(Reason::NoEffect));
 }
 
 #[test]
-fn what_cannot_be_detached_is_named() {
+fn impossible_detach_is_reported() {
     let fails = |at: &[&str], mated, locked, bits, reason: Reason| {
         let mut bench = halfway(at, mated, locked, bits);
-        assert_eq!(send(&mut bench, DETACH), error(reason), "{at:?} {:?}", bench.world.log);
-        let there = bench.world.frame;
-        bench.steps(8);
-        assert!(bench.off(&there) < 0.01, "it stands");
+        assert_eq!(bench.perform(detach(1)), error(reason), "{at:?} {:?}", bench.world.log);
+        bench.assert_stands();
     };
     fails(FAST, 1, true, 0b0001, Reason::NotDetached);
     fails(ABOVE, 1, true, 0, Reason::NotDetached);
@@ -300,35 +249,27 @@ fn what_cannot_be_detached_is_named() {
     let mut bench = halfway(LOW, 1, true, 0b0011);
     bench.spoil("QC-PAUSE", Mishap::Ring(QuickChangeReport::SensorMalfunction));
     assert_eq!(bench.pause(), error(Reason::QuickChangeFault));
-    assert_eq!(send(&mut bench, DETACH), error(Reason::QuickChangeFault));
+    assert_eq!(bench.perform(detach(1)), error(Reason::QuickChangeFault));
     // The gripper is in its holster, and the bare robot at no known location.
     let mut bench = halfway(AWAY, 0, false, 0b1111);
-    assert_eq!(send(&mut bench, DETACH), DONE);
+    assert_eq!(bench.perform(detach(1)), DONE);
     assert!(bench.log().is_empty());
     // What is felt above the holster must not go into it.
     let mut bench = halfway(RAISED, 1, true, 0);
-    bench.world.object = Some(bench.grip.opening);
-    bench.steps(3);
-    bench.process = Emove::default();
-    bench.memory.emove.beliefs.empty = false;
-    bench.pause();
-    assert_eq!(send(&mut bench, DETACH), error(Reason::AlreadyHolding));
+    bench.world.object = Some(bench.world.grip.opening);
+    bench.forget_empty();
+    assert_eq!(bench.perform(detach(1)), error(Reason::AlreadyHolding));
     let mut bench = halfway(RAISED, 1, true, 0);
-    bench.grip.initialized = false;
-    bench.steps(3);
-    bench.process = Emove::default();
-    bench.memory.emove.beliefs.empty = false;
-    bench.pause();
-    assert_eq!(send(&mut bench, DETACH), error(Reason::HeldNotKnown));
+    bench.world.grip.initialized = false;
+    bench.forget_empty();
+    assert_eq!(bench.perform(detach(1)), error(Reason::HeldNotKnown));
     // The gripper goes while it is being lowered or pushed to its seat, and is not where it should be.
     for (word, at, bits) in
         [("QC-UNLOCK", LOW, 0b0011), ("QC-UNLOCK", LOW, 0b1111), ("QC-UNLOCK", CLEAR, 0b1111)]
     {
         let mut bench = halfway(LOW, 1, true, 0b0011);
-        bench.command(DETACH.0, DETACH.1, 1, DETACH.3, 1);
-        while !bench.log().iter().any(|text| text.starts_with(word)) {
-            bench.step();
-        }
+        bench.begin(detach(1));
+        bench.until_logged(word);
         (bench.world.mated, bench.world.holsters[0]) = (0, bits);
         bench.world.frame = moved(frame_of("HOLSTER-R"), at);
         assert_eq!(bench.finish(), error(Reason::NotDetached), "{word} {bits:b}");
@@ -336,78 +277,57 @@ fn what_cannot_be_detached_is_named() {
 }
 
 #[test]
-fn in_a_holster_only_the_exchange_goes_on() {
-    let commands = [
-        (MovToLoc, "", "HOME"),
-        (MovToObj, "BLOCK", "BENCH"),
-        (MovObjTo, "BLOCK", "BENCH"),
-        (MovToVu, "BLOCK", "BENCH"),
-        (MovToHol, "GRIPPER-1", "HOLSTER-R"),
-        (Withdraw, "", "BENCH"),
-        (LocateObj, "BLOCK", "BENCH"),
-        (GraspObj, "BLOCK", "BENCH"),
-        (InsertTool, "CUTTER", "TOOL-TRNS"),
-        (ReleaseTool, "CUTTER", "TOOL-TRNS"),
-        (AcquireTool, "CUTTER", "TOOL-TRNS"),
-        (RemoveTool, "CUTTER", "TOOL-TRNS"),
-    ];
-    for (verb, object, location) in commands {
+fn robot_in_a_holster_refuses_other_commands() {
+    for &line in ORDINARY {
         let mut bench = halfway(LOW, 1, true, 0b0011);
-        bench.prim.by_steps = true;
-        bench.command(ATTACH.0, ATTACH.1, 2, ATTACH.3, 1);
-        bench.steps(6);
+        bench.world.prim.by_steps = true;
+        bench.begin(attach(1));
+        bench.wait(6);
         assert_eq!(bench.pause(), DONE);
-        let there = bench.world.frame;
-        assert_eq!(bench.run(verb, object, 1, location, 1), error(Reason::InHolster), "{verb}");
-        assert!(bench.off(&there) < 0.01 && bench.log().is_empty());
+        assert_eq!(bench.perform(line), error(Reason::InHolster), "{}", line.0);
+        assert!(bench.log().is_empty());
+        bench.assert_stands();
         // Either way out of it is left.
         let mut other = bench.clone();
-        assert_eq!(send(&mut other, DETACH), DONE, "{:?}", other.world.log);
-        assert_eq!(send(&mut bench, ATTACH), DONE, "{:?}", bench.world.log);
+        assert_eq!(other.perform(detach(1)), DONE, "{:?}", other.world.log);
+        assert_eq!(bench.perform(attach(1)), DONE, "{:?}", bench.world.log);
         assert_eq!(bench.run(MovToLoc, "", 0, "HOME", 0), DONE);
     }
     // A bare robot.
     let mut bench = bare(1);
-    bench.command(ATTACH.0, ATTACH.1, 2, ATTACH.3, 1);
-    bench.steps(4);
+    bench.begin(attach(1));
+    bench.wait(4);
     assert_eq!(bench.pause(), DONE);
     assert_eq!(bench.run(MovToLoc, "", 0, "HOME", 0), error(Reason::InHolster));
     // The operator who takes it out of the holster ends the exchange.
-    bench.world.joystick = true;
-    bench.steps(3);
-    bench.world.frame = frame_of("HOME");
-    bench.steps(3);
-    bench.world.joystick = false;
+    bench.lead(|bench| bench.world.frame = frame_of("HOME"));
     assert_eq!(bench.pause(), DONE);
     assert_eq!(bench.run(MovToLoc, "", 0, "VISE", 0), DONE);
 }
 
 #[test]
-fn a_robot_that_is_led_out_of_a_holster_and_back_goes_on() {
+fn exchange_resumes_after_the_operator_led_the_robot_out_and_back() {
     let mut bench = bare(1);
-    bench.command(ATTACH.0, ATTACH.1, ATTACH.2, ATTACH.3, ATTACH.4);
-    bench.steps(4);
+    bench.begin(attach(1));
+    bench.wait(4);
     assert_eq!(bench.pause(), DONE);
     let stopped = bench.world.frame;
-    bench.world.joystick = true;
-    bench.steps(3);
-    bench.world.frame.position.z += 30.0;
-    bench.steps(3);
-    assert!(bench.memory.emove.beliefs.exchange.is_some());
-    bench.world.frame = stopped;
-    bench.steps(3);
-    bench.world.joystick = false;
+    bench.lead(|bench| {
+        bench.world.frame.position.z += 30.0;
+        bench.wait(3);
+        assert!(bench.memory.emove.beliefs.exchange.is_some());
+        bench.world.frame = stopped;
+    });
     assert_eq!(bench.pause(), DONE);
     assert_eq!(bench.run(MovToLoc, "", 0, "HOME", 0), error(Reason::InHolster));
-    assert_eq!(send(&mut bench, ATTACH), DONE, "{:?}", bench.world.log);
+    assert_eq!(bench.perform(attach(1)), DONE, "{:?}", bench.world.log);
 }
 
 #[test]
-fn a_gripper_that_mates_in_its_holster_holds_nothing() {
+fn gripper_mated_in_its_holster_holds_nothing() {
     for gripper in 1..=3 {
-        let (object, holster) = holster(gripper);
         let mut bench = bare(gripper);
-        bench.command(QcAttach, object, 2, holster, gripper);
+        bench.begin(attach(gripper));
         while bench.world.mated == 0 {
             bench.step();
         }
@@ -418,58 +338,57 @@ fn a_gripper_that_mates_in_its_holster_holds_nothing() {
 }
 
 #[test]
-fn a_loose_gripper_that_is_led_away_is_still_to_be_changed() {
+fn unlocked_gripper_led_away_keeps_its_exchange_open() {
     let mut bench = halfway(LOW, 1, true, 0b0011);
-    bench.command(DETACH.0, DETACH.1, DETACH.2, DETACH.3, DETACH.4);
+    bench.begin(detach(1));
     while bench.world.locked {
         bench.step();
     }
     assert_eq!(bench.pause(), DONE);
     let low = bench.world.frame;
     bench.world.frame = moved(frame_of("HOLSTER-R"), AWAY);
-    bench.steps(3);
+    bench.wait(3);
     assert_eq!(bench.run(MovToLoc, "", 0, "HOME", 0), error(Reason::RingNotLocked));
     assert_eq!(bench.memory.emove.status.exchange, Some(1));
-    assert_eq!(send(&mut bench, DETACH), error(Reason::NotPrepared));
+    assert_eq!(bench.perform(detach(1)), error(Reason::NotPrepared));
     bench.world.frame = low;
-    assert_eq!(send(&mut bench, DETACH), DONE, "{:?}", bench.world.log);
+    assert_eq!(bench.perform(detach(1)), DONE, "{:?}", bench.world.log);
     assert_eq!(bench.run(MovToLoc, "", 0, "HOME", 0), DONE);
 }
 
 #[test]
-fn a_grasp_is_made_again_from_every_tick() {
+fn interrupted_grasp_resumes_from_every_tick() {
     for (gripper, object, size) in [(1, "BLOCK", 75), (2, "SHAFT", 204), (3, "CUTTER", 246)] {
         let grasp = (GraspObj, object, 1, "BENCH", gripper);
-        for interruption in Interruption::ALL {
-            for present in [true, false] {
-                let mut bench = Bench::with("HOME", gripper, Some(Real::default()));
-                assert_eq!(bench.pause(), DONE);
-                assert_eq!(bench.run(MovToObj, object, 1, "BENCH", gripper), DONE);
-                bench.world.object = present.then_some(size);
-                bench.at_every_tick(grasp, |fork| {
-                    interruption.of(fork);
-                    let end = if present { DONE } else { error(Reason::GraspMissed) };
-                    assert_eq!(send(fork, grasp), end, "{object} {:?}", fork.world.log);
+        for (present, end) in [(true, DONE), (false, error(Reason::GraspMissed))] {
+            let mut bench = Bench::real("HOME", gripper);
+            assert_eq!(bench.run(MovToObj, object, 1, "BENCH", gripper), DONE);
+            bench.world.object = present.then_some(size);
+            bench.sent_again(
+                |bench| bench.send(grasp),
+                INTERRUPTIONS,
+                |bench| {
+                    assert_eq!(bench.finish(), end, "{object} {:?}", bench.world.log);
                     if present {
-                        assert_eq!(send(fork, (MovObjTo, object, 1, "VISE", gripper)), DONE);
-                        assert_eq!(send(fork, (Release, object, 1, "VISE", gripper)), DONE);
+                        assert_eq!(bench.run(MovObjTo, object, 1, "VISE", gripper), DONE);
+                        assert_eq!(bench.run(Release, object, 1, "VISE", gripper), DONE);
                     }
-                });
-            }
+                },
+            );
         }
     }
 }
 
 #[test]
-fn fingers_that_are_stopped_while_they_let_go_have_not_let_go() {
+fn fingers_stuck_in_a_release_have_not_released() {
     let mut bench = Bench::ready("HOME", 2);
     assert_eq!(bench.run(MovToObj, "SHAFT", 1, "BENCH", 2), DONE);
     bench.hold("SHAFT", 204, 2);
     let mut stuck = bench.clone();
     stuck.spoil("RELEASE", Mishap::Jaws(JawsReport::Stuck));
     stuck.command(Release, "SHAFT", 1, "BENCH", 2);
-    stuck.steps(2);
-    stuck.v_grip.opening = 250;
+    stuck.wait(2);
+    stuck.world.v_grip.opening = 250;
     assert_eq!(stuck.finish(), error(Reason::JawsStuck));
     stuck.world.mishaps.clear();
     assert_eq!(stuck.pause(), DONE);
@@ -478,52 +397,49 @@ fn fingers_that_are_stopped_while_they_let_go_have_not_let_go() {
     // The robot does not leave with it, whether E-move is restarted or not.
     for restarted in [false, true] {
         if restarted {
-            stuck.process = Emove::default();
-            assert_eq!(stuck.finish(), error(Reason::Restarted));
+            stuck.restart_and_finish();
         }
         for line in [(MovObjTo, "SHAFT", 1, "VISE", 2), (MovToLoc, "", 0, "HOME", 0)] {
             stuck.world.log.clear();
-            assert_eq!(send(&mut stuck, line), error(Reason::ReleaseNotEnded));
+            assert_eq!(stuck.perform(line), error(Reason::ReleaseNotEnded));
             assert!(!stuck.log().iter().any(|word| word.starts_with("GO")), "{:?}", stuck.log());
         }
     }
     assert_eq!(stuck.run(MovObjTo, "SHAFT", 1, "BENCH", 2), DONE, "it is there");
-    assert_eq!(send(&mut stuck, (Release, "SHAFT", 1, "BENCH", 2)), DONE);
+    assert_eq!(stuck.perform((Release, "SHAFT", 1, "BENCH", 2)), DONE);
     assert_eq!(stuck.memory.emove.status.held, Holding::Nothing);
     assert!(stuck.memory.emove.beliefs.placed.is_some());
     // A restarted E-move still knows that it lets go.
     bench.command(Release, "SHAFT", 1, "BENCH", 2);
-    bench.steps(3);
-    bench.process = Emove::default();
-    assert_eq!(bench.finish(), error(Reason::Restarted));
-    bench.steps(10);
+    bench.wait(3);
+    bench.restart_and_finish();
+    bench.wait(10);
     assert_eq!(bench.pause(), DONE);
     assert!(bench.memory.emove.beliefs.placed.is_some());
 }
 
 /// The operator opens the gripper a little, and closes it again.
 #[test]
-fn what_is_closed_on_by_hand_is_not_let_go() {
+fn object_regrasped_by_the_operator_is_not_released() {
     let mut bench = Bench::ready("BENCH", 2);
     bench.hold("SHAFT", 204, 2);
     bench.command(Pause, "", 0, "", 0);
     bench.world.joystick = true;
-    bench.steps(20);
+    bench.wait(20);
     bench.spoil("RELEASE", Mishap::Jaws(JawsReport::Stuck));
     for button in [JoystickGrip::Open, JoystickGrip::Close] {
         bench.world.button = button;
-        bench.steps(20);
+        bench.wait(20);
     }
     (bench.world.joystick, bench.world.button) = (false, JoystickGrip::None);
-    bench.steps(20);
-    bench.process = Emove::default();
-    assert_eq!(bench.finish(), error(Reason::Restarted));
+    bench.wait(20);
+    bench.restart_and_finish();
     assert!(matches!(bench.memory.emove.status.held, Holding::Object(_)));
-    assert_eq!(send(&mut bench, (MovObjTo, "SHAFT", 1, "VISE", 2)), DONE, "{:?}", bench.log());
+    assert_eq!(bench.perform((MovObjTo, "SHAFT", 1, "VISE", 2)), DONE, "{:?}", bench.log());
 }
 
 #[test]
-fn what_was_half_let_go_is_grasped_anew() {
+fn partly_released_object_is_grasped_again() {
     for (gripper, object, size, wide, stuck) in [
         (1, "BLOCK", 75, 140, Mishap::Grip(Reason::GripUnattainable)),
         // They still feel it.
@@ -533,107 +449,95 @@ fn what_was_half_let_go_is_grasped_anew() {
     ] {
         let mut bench = Bench::ready("BENCH", gripper);
         bench.hold(object, size, gripper);
-        assert_eq!(send(&mut bench, (GraspObj, object, 1, "BENCH", gripper)), DONE);
+        assert_eq!(bench.perform((GraspObj, object, 1, "BENCH", gripper)), DONE);
         assert!(bench.log().is_empty(), "held firmly: {:?}", bench.log());
         bench.spoil("RELEASE", stuck).spoil("OPEN-GRIP", stuck);
         bench.command(Release, object, 1, "BENCH", gripper);
         assert_ne!(bench.finish(), DONE, "{object}");
         bench.world.mishaps.clear();
-        (bench.grip.opening, bench.v_grip.opening, bench.tool_grip.opening) = (wide, wide, wide);
-        bench.steps(10);
+        (bench.world.grip.opening, bench.world.v_grip.opening, bench.world.tool_grip.opening) =
+            (wide, wide, wide);
+        bench.wait(10);
         assert!(matches!(bench.memory.emove.status.held, Holding::Object(_)), "RELEASE can be sent again");
         let mut gone = bench.clone();
         gone.world.object = None;
-        assert_eq!(send(&mut gone, (GraspObj, object, 1, "BENCH", gripper)), error(Reason::GraspMissed));
+        assert_eq!(gone.perform((GraspObj, object, 1, "BENCH", gripper)), error(Reason::GraspMissed));
         assert_eq!(gone.memory.emove.status.held, Holding::Nothing, "{object}");
         bench.world.object = Some(size);
-        bench.at_every_tick((GraspObj, object, 1, "BENCH", gripper), |fork| {
-            Interruption::Paused.of(fork);
-            let held = fork.memory.emove.status.held.object().map(|held| held.as_str().to_owned());
-            assert_eq!(held.as_deref(), Some(object), "what they have closed on has its name");
-        });
+        for mut fork in bench.during((GraspObj, object, 1, "BENCH", gripper)) {
+            fork.stop();
+            assert_eq!(fork.held(), object, "what they have closed on has its name");
+        }
+        assert_eq!(bench.run(GraspObj, object, 1, "BENCH", gripper), DONE);
         assert!(!bench.log().is_empty(), "they are closed");
         assert!(matches!(bench.memory.emove.status.held, Holding::Object(_)), "{object}");
     }
 }
 
 #[test]
-fn what_the_fingers_have_closed_on_since_does_not_count_as_placed() {
+fn grasp_after_a_release_clears_the_placed_object() {
     let mut bench = Bench::ready("BENCH", 1);
     bench.hold("BLOCK", 75, 1);
-    assert_eq!(send(&mut bench, (Release, "BLOCK", 1, "BENCH", 1)), DONE);
+    assert_eq!(bench.perform((Release, "BLOCK", 1, "BENCH", 1)), DONE);
     assert!(bench.memory.emove.status.placed.is_some());
     bench.world.object = None;
-    assert_eq!(send(&mut bench, (GraspObj, "BLOCK", 1, "BENCH", 1)), error(Reason::GraspMissed));
+    assert_eq!(bench.perform((GraspObj, "BLOCK", 1, "BENCH", 1)), error(Reason::GraspMissed));
     assert_eq!(bench.memory.emove.status.placed, None);
 }
 
 /// Jaws that were stuck may still go where their air presses them, and hold nothing without air.
 #[test]
-fn jaws_that_air_moves_do_not_stand() {
+fn pressurised_jaws_count_as_moving() {
     for (close, open) in [(false, false), (true, false), (false, true)] {
         let air = JawValves { open, close };
         let mut bench = Bench::ready("HOME", 2);
         bench.memory.v_grip.valves = air;
-        assert_eq!(send(&mut bench, (Release, "SHAFT", 1, "BENCH", 2)), DONE);
+        assert_eq!(bench.perform((Release, "SHAFT", 1, "BENCH", 2)), DONE);
         assert_eq!(bench.log().contains(&"RELEASE 350"), close, "{:?}", bench.log());
         let mut bench = Bench::ready("HOME", 2);
         bench.memory.v_grip.valves = air;
-        assert_eq!(send(&mut bench, (MovToObj, "SHAFT", 1, "BENCH", 2)), DONE);
+        assert_eq!(bench.perform((MovToObj, "SHAFT", 1, "BENCH", 2)), DONE);
         assert_eq!(bench.log().contains(&"POSE 350"), close, "{:?}", bench.log());
         let mut bench = Bench::ready("BENCH", 2);
         bench.hold("SHAFT", 204, 2);
         bench.world.log.clear();
         bench.memory.v_grip.valves = air;
-        assert_eq!(send(&mut bench, (GraspObj, "SHAFT", 1, "BENCH", 2)), DONE);
+        assert_eq!(bench.perform((GraspObj, "SHAFT", 1, "BENCH", 2)), DONE);
         assert_eq!(bench.log().is_empty(), close, "{:?}", bench.log());
     }
 }
 
 /// Jaws that do not stand still within their time limit have no air, wherever they stop later.
 #[test]
-fn jaws_without_air_have_grasped_nothing() {
+fn jaws_without_air_have_no_grasp() {
     let mut bench = Bench::ready("BENCH", 2);
     bench.world.object = Some(204);
     bench.spoil("GRASP", Mishap::Jaws(JawsReport::Stuck));
     bench.command(GraspObj, "SHAFT", 1, "BENCH", 2);
-    bench.steps(2);
-    bench.v_grip.opening = 204;
+    bench.wait(2);
+    bench.world.v_grip.opening = 204;
     assert_eq!(bench.finish(), error(Reason::JawsStuck));
     bench.world.mishaps.clear();
     bench.memory.v_grip.valves = JawValves::default();
-    bench.steps(10);
+    bench.wait(10);
     assert_eq!(bench.memory.emove.status.held, Holding::Something);
     bench.world.log.clear();
-    assert_eq!(send(&mut bench, (GraspObj, "SHAFT", 1, "BENCH", 2)), DONE);
+    assert_eq!(bench.perform((GraspObj, "SHAFT", 1, "BENCH", 2)), DONE);
     assert_eq!(bench.log(), ["GRASP 200"]);
 }
 
 #[test]
-fn what_is_not_known_is_held() {
+fn unknown_contents_count_as_held() {
     // Not calibrated: it may hold something.
     let blind = |location: &str| {
         let mut bench = Bench::new(location, 1);
-        bench.grip.initialized = false;
-        bench.steps(3);
-        bench.process = Emove::default();
-        bench.memory.emove.beliefs.empty = false;
-        assert_eq!(bench.pause(), DONE);
+        bench.world.grip.initialized = false;
+        bench.forget_empty();
         assert_eq!(bench.memory.emove.status.held, Holding::NotKnown);
         bench
     };
     // Felt, and it is not known what it is.
-    let felt_of = |location: &str, size: i32| {
-        let mut bench = Bench::new(location, 1);
-        (bench.grip.opening, bench.world.object) = (size, Some(size));
-        bench.steps(3);
-        bench.process = Emove::default();
-        bench.memory.emove.beliefs.empty = false;
-        assert_eq!(bench.pause(), DONE);
-        assert_eq!(bench.memory.emove.status.held, Holding::Something);
-        bench
-    };
-    let felt = |location: &str| felt_of(location, 75);
+    let felt = |location: &str| Bench::with_unknown(location, 75);
     for (verb, object, location, something, not_known) in [
         (MovToObj, "BLOCK", "BENCH", Reason::AlreadyHolding, Reason::HeldNotKnown),
         (MovToVu, "BLOCK", "BENCH", Reason::AlreadyHolding, Reason::HeldNotKnown),
@@ -650,7 +554,7 @@ fn what_is_not_known_is_held() {
     // At the object it is grasped anew.
     let mut bench = felt("BENCH");
     assert_eq!(bench.run(GraspObj, "BLOCK", 1, "BENCH", 1), DONE);
-    assert_eq!(bench.memory.emove.status.held.object().unwrap_or_default().as_str(), "BLOCK");
+    assert_eq!(bench.held(), "BLOCK");
     // RELEASE lets go of whatever it is.
     for mut bench in [felt("HOME"), blind("HOME")] {
         assert_eq!(bench.run(Release, "BLOCK", 1, "HOME", 1), DONE);
@@ -658,14 +562,14 @@ fn what_is_not_known_is_held() {
     }
     // It opens, even if what is held is wider than the depart size of the command's object.
     for (size, opened) in [(75, 350), (345, 395), (480, 500)] {
-        let mut bench = felt_of("HOME", size);
+        let mut bench = Bench::with_unknown("HOME", size);
         assert_eq!(bench.run(Release, "BLOCK", 1, "HOME", 1), DONE);
         assert_eq!(bench.memory.emove.grip.position, opened);
     }
     // A gripper that was never calibrated opens fully, and is calibrated on the way to the next object.
     let mut bench = blind("HOME");
     assert_eq!(bench.run(Release, "BLOCK", 1, "HOME", 1), DONE);
-    assert_eq!((bench.grip.opening, bench.memory.emove.status.held), (500, Holding::Nothing));
+    assert_eq!((bench.world.grip.opening, bench.memory.emove.status.held), (500, Holding::Nothing));
     assert_eq!(bench.run(MovToObj, "BLOCK", 1, "BENCH", 1), DONE);
     let log = bench.log();
     let at = |word: &str| log.iter().position(|text| text.starts_with(word));
@@ -674,7 +578,7 @@ fn what_is_not_known_is_held() {
 }
 
 #[test]
-fn a_bare_robot_leaves_a_holster_without_a_gripper() {
+fn bare_robot_leaves_an_empty_holster() {
     let (full, empty, partial) = (0b1111, 0, 0b0001);
     for (at, bits, attached, detached) in [
         (ABOVE, empty, Reason::HolsterEmpty, DONE),
@@ -686,69 +590,68 @@ fn a_bare_robot_leaves_a_holster_without_a_gripper() {
         (SEAT, partial, Reason::HolsterEmpty, DONE),
         (AWAY, empty, Reason::NotPrepared, error(Reason::WrongGripper)),
     ] {
-        for (command, end) in [(ATTACH, error(attached)), (DETACH, detached)] {
+        for (command, end) in [(attach(1), error(attached)), (detach(1), detached)] {
             let mut bench = halfway(at, 0, false, bits);
             bench.world.resident[0] = 0;
-            assert_eq!(send(&mut bench, command), end, "{at:?} {bits} {:?}", bench.world.log);
+            assert_eq!(bench.perform(command), end, "{at:?} {bits} {:?}", bench.world.log);
             if at != AWAY {
                 assert!(bench.off(&moved(frame_of("HOLSTER-R"), ABOVE)) < 0.31, "clear of the holster");
                 assert_eq!(bench.run(MovToLoc, "", 0, "HOME", 0), DONE);
             }
         }
         if at == BARE {
-            for command in [ATTACH, DETACH] {
+            for command in [attach(1), detach(1)] {
                 let mut bench = halfway(at, 0, false, bits);
                 bench.world.resident[0] = 0;
                 bench.spoil("QCD-UP", Mishap::Stays);
-                assert_eq!(send(&mut bench, command), error(Reason::NoEffect));
+                assert_eq!(bench.perform(command), error(Reason::NoEffect));
             }
         }
     }
 }
 
 #[test]
-fn a_gripper_that_has_come_off_a_locked_ring_is_taken_again() {
+fn gripper_torn_off_a_locked_ring_is_attached_again() {
     for gripper in 1..=3 {
-        let (object, holster) = holster(gripper);
-        let fetch = (MovToHol, object, 2, holster, gripper);
+        let fetch = to_holster(2, gripper);
         let mut bench = with(gripper);
         bench.world.mated = 0;
-        bench.steps(4);
-        assert_eq!(send(&mut bench, fetch), error(Reason::PinsFail));
+        bench.wait(4);
+        assert_eq!(bench.perform(fetch), error(Reason::PinsFail));
         assert_eq!(bench.memory.emove.status.pins, Pins::Differ);
         // Its own holster feels the gripper: the robot is bare, although the ring is locked …
         let mut locked = bench.clone();
         locked.world.resident[usize::from(gripper) - 1] = gripper;
-        locked.steps(10);
+        locked.wait(10);
         let status = locked.memory.emove.status;
         assert_eq!((status.end_effector_id, status.pins), (None, Pins::Agree));
-        assert_eq!(send(&mut locked, fetch), DONE);
-        assert_eq!(send(&mut locked, (QcAttach, object, 2, holster, gripper)), DONE);
+        assert_eq!(locked.perform(fetch), DONE);
+        assert_eq!(locked.perform(attach(gripper)), DONE);
         assert_eq!((locked.world.mated, locked.world.locked), (gripper, true));
         // … a person opens the ring and puts the gripper into its holster …
         let mut opened = bench.clone();
-        opened.real.as_mut().unwrap().open_ring();
+        opened.world.real.as_mut().unwrap().open_ring();
         opened.world.resident[usize::from(gripper) - 1] = gripper;
-        opened.steps(10);
-        assert_eq!(send(&mut opened, fetch), DONE);
-        assert_eq!(send(&mut opened, (QcAttach, object, 2, holster, gripper)), DONE);
+        opened.wait(10);
+        assert_eq!(opened.perform(fetch), DONE);
+        assert_eq!(opened.perform(attach(gripper)), DONE);
         assert_eq!((opened.world.mated, opened.world.locked), (gripper, true));
         // … or back onto the robot.
         bench.world.mated = gripper;
-        bench.steps(10);
-        assert_eq!(send(&mut bench, (QcDetach, object, 1, holster, gripper)), DONE);
+        bench.wait(10);
+        assert_eq!(bench.perform(detach(gripper)), DONE);
         assert_eq!(bench.world.resident[usize::from(gripper) - 1], gripper);
     }
 }
 
 #[test]
-fn id_pins_that_fail_change_nothing() {
+fn failed_id_pins_keep_the_estimates() {
     for (gripper, object, size) in [(1, "BLOCK", 75), (2, "SHAFT", 200), (3, "CUTTER", 250)] {
         let mut bench = Bench::ready("HOME", gripper);
         bench.hold(object, size, gripper);
         let held = bench.memory.emove.status.held;
         bench.world.mated = 0;
-        bench.steps(4);
+        bench.wait(4);
         assert_eq!(bench.memory.emove.status.held, Holding::NotKnown);
         assert_eq!(bench.memory.emove.status.end_effector_id, Some(gripper));
         for (verb, location) in [
@@ -764,15 +667,15 @@ fn id_pins_that_fail_change_nothing() {
         assert_eq!(bench.pause(), DONE);
         let mut other = bench.clone();
         bench.world.mated = gripper;
-        bench.steps(10);
+        bench.wait(10);
         assert_eq!(bench.memory.emove.status.held, held);
         assert_eq!(bench.run(MovToLoc, "", 0, "VISE", 0), DONE);
         assert_eq!(bench.memory.emove.status.held, held);
         // A ring that was open is another matter: what is felt then has no name.
         other.world.locked = false;
-        other.steps(4);
+        other.wait(4);
         (other.world.locked, other.world.mated) = (true, gripper);
-        other.steps(10);
+        other.wait(10);
         assert_eq!(other.memory.emove.status.held, Holding::Something);
     }
 }

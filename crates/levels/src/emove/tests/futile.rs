@@ -71,7 +71,7 @@ fn orders(verb: EmoveVerb, situation: &Situation) {
 }
 
 #[test]
-fn a_gripper_change_ends_in_a_world_that_ignores_every_order() {
+fn exchange_ends_when_every_order_is_ignored() {
     for situation in attach() {
         orders(EmoveVerb::QcAttach, &situation);
     }

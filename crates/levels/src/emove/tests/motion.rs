@@ -23,34 +23,23 @@ use super::{
 use crate::emove::localization::surroundings::Surroundings;
 
 pub const SCENARIOS: &[fn()] = &[
-    a_robot_moves_with_any_gripper_and_with_none,
-    a_move_to_where_the_robot_is_is_done_at_once,
-    a_robot_that_flies_past_a_point_is_on_its_way,
-    a_pose_may_be_a_static_record,
-    a_part_is_taken_placed_and_left,
-    jaws_take_and_leave_their_parts,
-    fingers_that_stand_right_are_left_alone,
-    fingers_do_not_open_over_a_held_part,
-    a_gripper_that_fails_stops_the_move,
-    what_prim_reports_goes_up,
-    a_lost_part_is_noticed_with_every_gripper,
-    a_part_that_is_no_longer_felt_is_lost,
-    the_wrong_gripper_is_refused,
-    what_is_not_gripped_is_reported,
-    a_release_of_nothing_opens_or_is_done,
-    an_object_is_located,
-    an_object_at_the_edge_of_its_tray_is_not_gone_to,
-    vision_that_fails_is_asked_again_and_given_up,
-    what_no_picture_can_show_moves_nothing,
-    the_robot_withdraws,
-    missing_data_are_named,
+    parts_gripper_fetches_places_and_releases_a_part,
+    fingers_open_only_after_the_depart_points,
+    gripper_failure_stops_the_motion,
+    lost_part_is_reported_with_each_gripper,
+    command_for_another_gripper_is_refused,
+    object_at_the_edge_of_its_tray_is_refused,
+    failed_picture_is_retried_and_then_reported,
+    implausible_picture_moves_nothing,
+    withdraw_moves_the_robot_clear,
+    missing_data_are_reported,
 ];
 
 /// Gripper, an object for it, and its size, 0.01 in.
 const PARTS: [(u8, &str, i32); 3] = [(1, "BLOCK", 75), (2, "SHAFT", 204), (3, "CUTTER", 246)];
 
 #[test]
-fn a_robot_moves_with_any_gripper_and_with_none() {
+fn robot_moves_with_each_gripper_and_without_one() {
     for gripper in 0..=3 {
         let mut bench = Bench::ready("HOME", gripper);
         assert_eq!(bench.run(MovToLoc, "", 0, "VISE", 0), DONE);
@@ -58,28 +47,28 @@ fn a_robot_moves_with_any_gripper_and_with_none() {
         assert!(bench.off(&frame_of("VISE")) < 0.02);
         assert_eq!(bench.run(MovToLoc, "", 0, "HOME", 0), DONE);
         assert!(bench.off(&frame_of("HOME")) < 0.02);
-        assert_eq!(bench.memory.emove.status.at.unwrap_or_default().site.location.as_str(), "HOME");
+        assert_eq!(bench.at(), "HOME");
     }
 }
 
 #[test]
-fn a_move_to_where_the_robot_is_is_done_at_once() {
+fn move_to_the_present_location_is_done_at_once() {
     let mut bench = Bench::ready("HOME", 0);
     assert_eq!(bench.run(MovToLoc, "", 0, "HOME", 0), DONE);
     assert!(bench.log().is_empty());
 }
 
 #[test]
-fn a_robot_that_flies_past_a_point_is_on_its_way() {
+fn robot_passing_a_through_point_stays_on_its_path() {
     let mut bench = Bench::ready("HOME", 0);
-    bench.prim.by_steps = true;
+    bench.world.prim.by_steps = true;
     bench.command(MovToLoc, "", 0, "VISE", 0);
     let mut passed = 0;
     for _ in 0..1000 {
         bench.step();
         let moves = matches!(bench.memory.emove.prim.command, PrimVerb::GoThru | PrimVerb::GotoPt);
         // While it moves, the arm is farther behind than where a robot at rest still is on its way.
-        bench.prim.sag = Vector::new(if moves { 1.0 } else { 0.0 }, 0.0, 0.0);
+        bench.world.prim.sag = Vector::new(if moves { 1.0 } else { 0.0 }, 0.0, 0.0);
         if bench.memory.emove.prim.command == PrimVerb::GotoPt {
             assert!(passed > 1, "{:?}", bench.world.log);
             return;
@@ -92,7 +81,7 @@ fn a_robot_that_flies_past_a_point_is_on_its_way() {
 }
 
 #[test]
-fn a_pose_may_be_a_static_record() {
+fn static_pose_record_is_a_valid_goal() {
     let mut bench = Bench::ready("HOME", 0);
     bench.command(MovToLoc, "", 0, "VISE", 0);
     bench.memory.subtask.emove.pose = data().pose_named(&Name16::clipped("VISE-P")).map(|id| id.number());
@@ -101,7 +90,7 @@ fn a_pose_may_be_a_static_record() {
 }
 
 #[test]
-fn a_part_is_taken_placed_and_left() {
+fn parts_gripper_fetches_places_and_releases_a_part() {
     let mut bench = Bench::ready("HOME", 1);
     assert_eq!(bench.run(MovToObj, "BLOCK", 1, "BENCH", 1), DONE);
     assert_eq!(bench.log(), ["POSITION", "GO-THRU", "GO-THRU", "GO-THRU A/D-5", "GOTO-PT"]);
@@ -130,12 +119,12 @@ fn a_part_is_taken_placed_and_left() {
 }
 
 #[test]
-fn jaws_take_and_leave_their_parts() {
+fn jaws_fetch_place_and_release_their_parts() {
     for (gripper, object, size, opened, stop) in
         [(2, "SHAFT", 204, "POSE 350", 350), (3, "CUTTER", 246, "POSE 400", 400)]
     {
         let mut bench = Bench::ready("HOME", gripper);
-        (bench.v_grip.opening, bench.tool_grip.opening) = (50, 100);
+        (bench.world.v_grip.opening, bench.world.tool_grip.opening) = (50, 100);
         assert_eq!(bench.run(MovToObj, object, 1, "BENCH", gripper), DONE);
         assert_eq!(bench.log(), [opened, "GO-THRU", "GO-THRU", "GOTO-PT"]);
         bench.world.object = Some(size);
@@ -149,26 +138,26 @@ fn jaws_take_and_leave_their_parts() {
         assert!(!bench.memory.emove.status.held.is_held());
         assert_eq!(bench.run(Release, object, 1, "VISE", gripper), DONE);
         assert!(bench.log().is_empty());
-        let opening = if gripper == 2 { bench.v_grip.opening } else { bench.tool_grip.opening };
+        let opening = if gripper == 2 { bench.world.v_grip.opening } else { bench.world.tool_grip.opening };
         assert_eq!(opening, stop);
     }
 }
 
 #[test]
-fn fingers_that_stand_right_are_left_alone() {
+fn fingers_at_their_opening_are_not_commanded() {
     let mut bench = Bench::ready("HOME", 1);
-    bench.grip.opening = 300;
+    bench.world.grip.opening = 300;
     assert_eq!(bench.run(MovToObj, "BLOCK", 1, "BENCH", 1), DONE);
     assert!(!bench.log().contains(&"POSITION"));
     let mut bench = Bench::ready("HOME", 2);
-    bench.v_grip.opening = 350;
+    bench.world.v_grip.opening = 350;
     assert_eq!(bench.run(MovToObj, "SHAFT", 1, "BENCH", 2), DONE);
     assert!(!bench.log().contains(&"POSE 350"));
 }
 
 /// Fingers move only after the last depart point, and the final motion waits for them.
 #[test]
-fn fingers_do_not_open_over_a_held_part() {
+fn fingers_open_only_after_the_depart_points() {
     let mut bench = Bench::ready("HOME", 1);
     assert_eq!(bench.run(MovToObj, "BLOCK", 1, "BENCH", 1), DONE);
     assert_eq!(bench.run(Release, "BLOCK", 1, "BENCH", 1), DONE);
@@ -183,14 +172,14 @@ fn fingers_do_not_open_over_a_held_part() {
 }
 
 #[test]
-fn a_gripper_that_fails_stops_the_move() {
+fn gripper_failure_stops_the_motion() {
     let mut bench = Bench::ready("HOME", 1);
     bench.spoil("POSITION", Mishap::Grip(Reason::GripTimeout));
     assert_eq!(bench.run(MovToObj, "BLOCK", 1, "BENCH", 1), error(Reason::GripTimeout));
     bench.step();
     assert_eq!(bench.log().last(), Some(&"PAUSE"), "the robot stops");
     let mut bench = Bench::ready("HOME", 2);
-    bench.v_grip.opening = 50;
+    bench.world.v_grip.opening = 50;
     bench.spoil("POSE", Mishap::Jaws(JawsReport::Closed));
     assert_eq!(bench.run(MovToObj, "SHAFT", 1, "BENCH", 2), error(Reason::JawsStuck), "they went nowhere");
     let mut bench = Bench::ready("HOME", 2);
@@ -205,17 +194,17 @@ fn a_gripper_that_fails_stops_the_move() {
     bench.spoil("RELEASE", Mishap::Jaws(JawsReport::Stuck));
     assert_eq!(bench.run(Release, "SHAFT", 1, "BENCH", 2), error(Reason::JawsStuck));
     let mut bench = Bench::ready("HOME", 1);
-    bench.dead.push("gripper");
+    bench.world.dead.push("gripper");
     assert_eq!(bench.run(GraspObj, "BLOCK", 1, "BENCH", 1), error(Reason::NeighbourLost));
     let mut bench = Bench::ready("HOME", 1);
     bench.command(MovToObj, "BLOCK", 1, "BENCH", 1);
-    bench.steps(5);
+    bench.wait(5);
     bench.world.mated = 0;
     assert_eq!(bench.finish(), error(Reason::WrongGripper), "the gripper is gone");
 }
 
 #[test]
-fn what_prim_reports_goes_up() {
+fn failure_of_prim_is_passed_up() {
     for (report, reason) in [
         (PrimReport::T3LinkOff, Reason::LinkOff),
         (PrimReport::T3LinkErr, Reason::LinkError),
@@ -238,7 +227,7 @@ fn what_prim_reports_goes_up() {
         }
     }
     let mut bench = Bench::ready("HOME", 0);
-    bench.dead.push("Prim");
+    bench.world.dead.push("Prim");
     assert_eq!(bench.run(MovToLoc, "", 0, "BENCH", 0), error(Reason::NeighbourLost));
     let mut bench = Bench::ready("HOME", 0);
     bench.spoil("GOTO-PT", Mishap::Joystick);
@@ -246,17 +235,21 @@ fn what_prim_reports_goes_up() {
 }
 
 #[test]
-fn a_lost_part_is_noticed_with_every_gripper() {
+fn lost_part_is_reported_with_each_gripper() {
     for (gripper, object, size) in PARTS {
         for verb in [MovObjTo, MovToLoc] {
             for gone in [Mishap::Slip, Mishap::Mated(0)] {
                 let mut bench = Bench::ready("HOME", gripper);
                 bench.hold(object, size, gripper);
                 bench.command(verb, object, 1, "VISE", gripper);
-                bench.steps(6);
+                bench.wait(6);
                 match gone {
                     Mishap::Slip => {
-                        (bench.grip.opening, bench.v_grip.opening, bench.tool_grip.opening) = (60, 50, 100);
+                        (
+                            bench.world.grip.opening,
+                            bench.world.v_grip.opening,
+                            bench.world.tool_grip.opening,
+                        ) = (60, 50, 100);
                     }
                     _ => (bench.world.mated, bench.world.locked) = (0, false),
                 }
@@ -268,34 +261,34 @@ fn a_lost_part_is_noticed_with_every_gripper() {
         }
         let mut bench = Bench::ready("HOME", gripper);
         bench.hold(object, size, gripper);
-        (bench.grip.opening, bench.v_grip.opening, bench.tool_grip.opening) =
+        (bench.world.grip.opening, bench.world.v_grip.opening, bench.world.tool_grip.opening) =
             (size + 30, size + 30, size + 30);
-        bench.steps(3);
+        bench.wait(3);
         assert!(bench.memory.emove.status.held.object().is_none(), "fingers that stand wider have lost it");
         assert_eq!(bench.run(MovObjTo, object, 1, "VISE", gripper), error(Reason::NothingHeld));
     }
 }
 
 #[test]
-fn a_part_that_is_no_longer_felt_is_lost() {
+fn part_without_contact_force_is_lost() {
     let mut bench = Bench::ready("HOME", 1);
     bench.hold("BLOCK", 100, 1);
     bench.command(MovObjTo, "BLOCK", 1, "VISE", 1);
-    bench.steps(6);
+    bench.wait(6);
     // A short dip is none: a part that is pushed to the other finger, or noise.
-    bench.grip.force = 0;
-    bench.steps(3);
-    bench.grip.force = 30;
-    bench.steps(3);
+    bench.world.grip.force = 0;
+    bench.wait(3);
+    bench.world.grip.force = 30;
+    bench.wait(3);
     assert!(bench.memory.emove.status.held.is_held());
     // The fingers hardly move when a part falls that was held with little force.
-    bench.grip.force = 0;
+    bench.world.grip.force = 0;
     assert_eq!(bench.finish(), error(Reason::ObjectLost));
     assert!(!bench.memory.emove.status.held.is_held());
 }
 
 #[test]
-fn the_wrong_gripper_is_refused() {
+fn command_for_another_gripper_is_refused() {
     for (verb, location) in [
         (MovToObj, "BENCH"),
         (MovObjTo, "BENCH"),
@@ -308,7 +301,7 @@ fn the_wrong_gripper_is_refused() {
         for attached in [0, 2, 3] {
             let mut bench = Bench::ready("HOME", attached);
             assert_eq!(bench.run(verb, "BLOCK", 1, location, 1), error(Reason::WrongGripper), "{verb}");
-            bench.steps(3);
+            bench.wait(3);
             assert!(bench.log().is_empty(), "nothing was under way");
         }
     }
@@ -317,7 +310,7 @@ fn the_wrong_gripper_is_refused() {
 }
 
 #[test]
-fn what_is_not_gripped_is_reported() {
+fn grasp_of_nothing_is_reported() {
     for (gripper, object, _) in PARTS {
         let mut bench = Bench::ready("HOME", gripper);
         assert_eq!(bench.run(GraspObj, object, 1, "BENCH", gripper), error(Reason::GraspMissed));
@@ -328,7 +321,7 @@ fn what_is_not_gripped_is_reported() {
 }
 
 #[test]
-fn a_release_of_nothing_opens_or_is_done() {
+fn release_of_nothing_opens_or_is_done_at_once() {
     let mut bench = Bench::ready("HOME", 1);
     assert_eq!(bench.run(Release, "BLOCK", 1, "", 1), DONE);
     assert_eq!(bench.log(), ["OPEN-GRIP"], "the fingers were narrow");
@@ -346,7 +339,7 @@ fn a_release_of_nothing_opens_or_is_done() {
 }
 
 #[test]
-fn an_object_is_located() {
+fn vision_locates_an_object() {
     let mut bench = Bench::ready("HOME", 1);
     assert_eq!(bench.run(MovToVu, "BLOCK", 1, "BENCH", 1), DONE);
     assert_eq!(bench.log(), ["POSITION", "GO-THRU", "GO-THRU", "GOTO-PT"]);
@@ -370,7 +363,7 @@ fn an_object_is_located() {
 /// A slot is 8.00 in by 9.00 in, and the open fingers are 4.00 in by 1.50 in. SLOT is a tray of one; SLOTS has three
 /// more towards -Y and -Z of the tool.
 #[test]
-fn an_object_at_the_edge_of_its_tray_is_not_gone_to() {
+fn object_at_the_edge_of_its_tray_is_refused() {
     let outside = error(Reason::AtTrayEdge);
     // The block lies twice as far from the middle as each of the two pictures says.
     for (array, (y, z, angle), end) in [
@@ -405,7 +398,7 @@ fn an_object_at_the_edge_of_its_tray_is_not_gone_to() {
 
 /// What vision has found in one sector is not where a command for another sector of the same tray leads.
 #[test]
-fn what_was_located_in_one_sector_is_not_gone_to_for_another() {
+fn located_object_counts_only_for_its_sector() {
     let mut bench = Bench::ready("HOME", 1);
     let array = data().array_named(&Name16::clipped("SLOTS")).unwrap_or_default();
     assert_eq!(bench.run(MovToVu, "BLOCK", 1, "BENCH", 1), DONE);
@@ -427,7 +420,7 @@ fn what_was_located_in_one_sector_is_not_gone_to_for_another() {
 }
 
 #[test]
-fn vision_that_fails_is_asked_again_and_given_up() {
+fn failed_picture_is_retried_and_then_reported() {
     use VisionStatus::{Done, NotRecognised, NothingSeen};
     for (answers, end, log) in [
         (vec![NothingSeen, Done, NotRecognised, NothingSeen, Done], DONE, 7),
@@ -443,10 +436,10 @@ fn vision_that_fails_is_asked_again_and_given_up() {
         assert_eq!(bench.log().len(), log, "{:?}", bench.log());
     }
     let mut bench = Bench::ready("HOME", 1);
-    bench.dead.push("vision");
+    bench.world.dead.push("vision");
     assert_eq!(bench.run(LocateObj, "BLOCK", 1, "BENCH", 1), error(Reason::VisionSilent));
     let mut bench = Bench::ready("HOME", 1);
-    bench.dead.push("Prim");
+    bench.world.dead.push("Prim");
     bench.memory.prim.status.sensor_pose = None;
     assert_eq!(
         bench.run(LocateObj, "BLOCK", 1, "BENCH", 1),
@@ -459,29 +452,29 @@ fn vision_that_fails_is_asked_again_and_given_up() {
 }
 
 #[test]
-fn a_picture_from_an_arm_that_sinks_says_nothing() {
+fn picture_from_a_sinking_arm_is_discarded() {
     let mut bench = Bench::ready("HOME", 1);
     assert_eq!(bench.run(MovToVu, "BLOCK", 1, "BENCH", 1), DONE);
-    bench.prim.sag.z = 0.3;
+    bench.world.prim.sag.z = 0.3;
     assert_eq!(bench.run(LocateObj, "BLOCK", 1, "BENCH", 1), error(Reason::VisionImplausible));
     assert!(bench.memory.emove.beliefs.located.is_none());
-    bench.prim.sag.z = 0.0;
+    bench.world.prim.sag.z = 0.0;
     assert_eq!(bench.run(LocateObj, "BLOCK", 1, "BENCH", 1), DONE);
 }
 
 #[test]
-fn pictures_do_not_outlive_a_controller_that_was_off() {
+fn located_object_is_discarded_after_a_lost_link() {
     let mut bench = Bench::ready("HOME", 1);
     assert_eq!(bench.run(MovToVu, "BLOCK", 1, "BENCH", 1), DONE);
     assert_eq!(bench.run(LocateObj, "BLOCK", 1, "BENCH", 1), DONE);
     assert!(bench.memory.emove.beliefs.located.is_some());
-    (bench.prim.report, bench.prim.reason) = (PrimReport::T3LinkOff, Reason::LinkOff);
-    bench.steps(3);
+    (bench.world.prim.report, bench.world.prim.reason) = (PrimReport::T3LinkOff, Reason::LinkOff);
+    bench.wait(3);
     assert!(bench.memory.emove.beliefs.located.is_none());
 }
 
 #[test]
-fn what_no_picture_can_show_moves_nothing() {
+fn implausible_picture_moves_nothing() {
     // BLOCK is looked at from 590 mm: the picture ends before 11.61 in.
     const TRUTH: (i32, i32, i32, u16) = (20, -10, 1000, 17);
     for (claims, end, log) in [
@@ -504,16 +497,16 @@ fn what_no_picture_can_show_moves_nothing() {
 }
 
 #[test]
-fn the_robot_withdraws() {
+fn withdraw_moves_the_robot_clear() {
     let mut bench = Bench::ready("BENCH", 1);
     bench.hold("BLOCK", 75, 1);
     assert_eq!(bench.run(Withdraw, "", 0, "BENCH", 0), DONE);
     assert_eq!(bench.log(), ["DELTA-MOVE WITHDRAW"]);
     assert!(bench.off(&moved(frame_of("BENCH"), &["WITHDRAW"])) < 0.02);
-    assert_eq!(bench.memory.emove.status.at.unwrap_or_default().site.location.as_str(), "BENCH");
+    assert_eq!(bench.at(), "BENCH");
     bench.command(Withdraw, "", 0, "BENCH", 0);
-    bench.steps(3);
-    bench.grip.opening = 60;
+    bench.wait(3);
+    bench.world.grip.opening = 60;
     assert_eq!(bench.finish(), error(Reason::ObjectLost));
     let mut bench = Bench::ready("BENCH", 0);
     bench.spoil("WITHDRAW", Mishap::Prim(PrimReport::Error, Reason::NotAtGoal));
@@ -522,7 +515,7 @@ fn the_robot_withdraws() {
 }
 
 #[test]
-fn missing_data_are_named() {
+fn missing_data_are_reported() {
     let mut bench = Bench::ready("HOME", 1);
     assert_eq!(bench.run(MovToLoc, "", 0, "TOOL-TRNS", 0), error(Reason::NoTrajectory));
     assert_eq!(bench.run(MovToLoc, "", 0, "", 0), error(Reason::NoDestination));
@@ -538,16 +531,16 @@ fn missing_data_are_named() {
     assert_eq!(bench.finish(), error(Reason::NoDestination), "no such changing record");
     assert_eq!(bench.run(interfaces::emove::EmoveVerb::None, "", 0, "", 0), error(Reason::UnknownCommand));
     bench.world.frame = moved(frame_of("HOME"), &["300ty"]);
-    bench.steps(2);
+    bench.wait(2);
     assert_eq!(bench.run(MovToLoc, "", 0, "BENCH", 0), error(Reason::UnknownStart));
     // The places that are nearest: HOME, three inches away, and another one.
     assert_eq!(bench.memory.emove.nearest, [None; 2], "the location points are looked through");
-    bench.steps(60);
+    bench.wait(60);
     let [Some(first), Some(second)] = bench.memory.emove.nearest else { panic!("two places") };
     assert_eq!(first.location.as_str(), "HOME");
     assert!((first.inches - 3.0).abs() < 1e-9 && first.degrees.abs() < 1e-9 && second.inches > first.inches);
     bench.world.frame = frame_of("HOME");
-    bench.steps(3);
+    bench.wait(3);
     assert_eq!(bench.memory.emove.nearest, [None; 2]);
     let mut bench = Bench::ready("VISE", 0);
     let nowhere = Target::LocationPoint(LocptId::new(9_999));

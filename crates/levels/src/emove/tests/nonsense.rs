@@ -56,7 +56,7 @@ fn nonsense() -> impl Strategy<Value = Nonsense> {
 fn bring(bench: &mut Bench, tick: &Nonsense) {
     if let Some((verb, object, grip, location, gripper)) = tick.command {
         let verb = EmoveVerb::from_code(verb).unwrap();
-        bench.write(verb, OBJECTS[object], grip, LOCATIONS[location], gripper);
+        bench.send((verb, OBJECTS[object], grip, LOCATIONS[location], gripper));
     }
     if !LOCATIONS[tick.at].is_empty() {
         bench.world.frame = frame_of(LOCATIONS[tick.at]);

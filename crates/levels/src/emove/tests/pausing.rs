@@ -13,7 +13,7 @@ use interfaces::{
 use rcs_core::table::Verdict;
 
 use super::{
-    bench::{Bench, DONE, error, frame_of, given, moved},
+    bench::{Bench, DONE, PAUSE, error, frame_of, given, moved},
     doubles::Mishap,
 };
 use crate::{
@@ -26,44 +26,34 @@ use crate::{
 };
 
 pub const SCENARIOS: &[fn()] = &[
-    the_first_pause_brings_the_link_up,
-    every_gripper_and_none_can_be_on_at_the_start,
-    a_pause_waits_for_the_calibration,
-    only_the_process_of_the_attached_gripper_runs,
-    a_pause_that_fails_says_why,
-    a_ring_that_stands_half_way_is_at_rest,
-    fingers_do_what_they_were_told_before_they_pause,
-    the_robot_is_found_where_it_stands,
-    the_operator_moves_the_robot_and_the_fingers,
-    the_operator_interrupts_a_command,
-    robot_given_back_by_the_operator_is_done_when_everything_rests,
-    nothing_begins_while_the_operator_has_the_robot,
-    a_restarted_e_move_executes_nothing,
-    a_link_that_fails_in_a_pause_is_initialized_again_or_reported,
+    failed_pause_reports_its_reason,
+    returned_robot_is_done_when_everything_rests,
+    command_during_manual_control_is_refused,
+    link_failure_during_pause_is_initialized_again_or_reported,
 ];
 
 #[test]
-fn a_link_that_fails_in_a_pause_is_initialized_again_or_reported() {
+fn link_failure_during_pause_is_initialized_again_or_reported() {
     // The gripper is not calibrated yet.
     let mut bench = Bench::new("HOME", 1);
     bench.spoil("PAUSE", Mishap::Never);
     bench.command(Pause, "", 0, "", 0);
-    bench.steps(40);
-    (bench.prim.report, bench.prim.reason) = (PrimReport::T3LinkErr, Reason::LinkError);
+    bench.wait(40);
+    (bench.world.prim.report, bench.world.prim.reason) = (PrimReport::T3LinkErr, Reason::LinkError);
     let before = bench.log().len();
-    bench.steps(40);
+    bench.wait(40);
     assert_eq!(bench.log()[before..before + 2], ["ROBOT-INIT", "PAUSE"]);
     assert_eq!(bench.memory.emove.status.report, StatusReport::Executing);
     let mut again = bench.clone();
-    (again.prim.report, again.prim.reason) = (PrimReport::T3LinkErr, Reason::LinkError);
+    (again.world.prim.report, again.world.prim.reason) = (PrimReport::T3LinkErr, Reason::LinkError);
     assert_eq!(again.finish(), error(Reason::LinkError), "not a third time");
-    bench.dead.push("Prim");
+    bench.world.dead.push("Prim");
     assert_eq!(bench.finish(), error(Reason::NeighbourLost));
     // The pause is done and stands.
     let mut bench = Bench::ready("HOME", 1);
     assert_eq!(bench.pause(), DONE);
-    (bench.prim.report, bench.prim.reason) = (PrimReport::T3LinkErr, Reason::LinkError);
-    bench.steps(3);
+    (bench.world.prim.report, bench.world.prim.reason) = (PrimReport::T3LinkErr, Reason::LinkError);
+    bench.wait(3);
     let status = &bench.memory.emove.status;
     assert_eq!(
         (status.report, status.reason),
@@ -74,25 +64,24 @@ fn a_link_that_fails_in_a_pause_is_initialized_again_or_reported() {
 }
 
 #[test]
-fn a_person_lets_prim_initialize_the_link_while_the_pause_stands() {
+fn operator_initializes_the_link_during_a_pause() {
     let mut bench = Bench::ready("HOME", 1);
     assert_eq!(bench.pause(), DONE);
     bench.world.log.clear();
     bench.external.operator.robot_init = 7;
-    bench.steps(40);
+    bench.wait(40);
     assert_eq!(bench.log(), ["ROBOT-INIT", "PAUSE", "QC-PAUSE"]);
     assert_eq!(bench.memory.emove.status.report, StatusReport::Done, "what is done stays done");
     // An E-move that starts again does not obey it once more.
-    bench.process = crate::emove::Emove::default();
-    assert_eq!(bench.finish(), error(Reason::Restarted));
+    bench.restart_and_finish();
     assert_eq!(bench.pause(), DONE);
     bench.world.log.clear();
-    bench.steps(40);
+    bench.wait(40);
     assert!(bench.log().is_empty(), "{:?}", bench.log());
 }
 
 #[test]
-fn the_first_pause_brings_the_link_up() {
+fn first_pause_starts_the_link() {
     let mut bench = Bench::new("HOME", 1);
     assert_eq!(bench.pause(), DONE);
     assert_eq!(bench.log(), ["ROBOT-INIT", "PAUSE", "QC-PAUSE", "PAUSE"], "Prim, Quick Change, Grip");
@@ -101,28 +90,28 @@ fn the_first_pause_brings_the_link_up() {
 }
 
 #[test]
-fn every_gripper_and_none_can_be_on_at_the_start() {
+fn pause_accepts_each_gripper_at_the_start() {
     for gripper in 0..=3 {
         let mut bench = Bench::new("HOME", gripper);
         // Fingers on something of any size are not the pause's business.
-        (bench.v_grip.opening, bench.tool_grip.opening) = (200, 200);
+        (bench.world.v_grip.opening, bench.world.tool_grip.opening) = (200, 200);
         assert_eq!(bench.pause(), DONE);
         assert_eq!(bench.memory.emove.status.end_effector_id, given(gripper));
     }
 }
 
 #[test]
-fn a_pause_waits_for_the_calibration() {
+fn pause_waits_for_the_calibration() {
     let mut bench = Bench::new("HOME", 1);
     bench.spoil("PAUSE", Mishap::Never);
     bench.command(Pause, "", 0, "", 0);
-    bench.steps(200);
+    bench.wait(200);
     assert_eq!(bench.memory.prim.status.report, PrimReport::Done);
     assert_eq!(bench.memory.emove.status.report, StatusReport::Executing, "Grip's PAUSE is not done before");
 }
 
 #[test]
-fn only_the_process_of_the_attached_gripper_runs() {
+fn only_the_attached_gripper_is_awake() {
     let all = Dormancy { grip: true, v_grip: true, tool_grip: true };
     for (gripper, dormant) in [
         (0, all),
@@ -132,30 +121,30 @@ fn only_the_process_of_the_attached_gripper_runs() {
     ] {
         let mut bench = Bench::new("HOME", 0);
         bench.world.mated = gripper;
-        bench.steps(2);
+        bench.wait(2);
         assert_eq!(bench.memory.emove.dormant, dormant, "gripper {gripper}, without any command");
     }
 }
 
 #[test]
-fn a_pause_that_fails_says_why() {
+fn failed_pause_reports_its_reason() {
     let mut bench = Bench::new("HOME", 1);
     bench.spoil("QC-PAUSE", Mishap::Ring(QuickChangeReport::SensorMalfunction));
     assert_eq!(bench.pause(), error(Reason::QuickChangeFault));
     let mut bench = Bench::new("HOME", 1);
     bench.command(Pause, "", 0, "", 0);
-    bench.steps(10);
-    bench.dead.push("Quick Change");
+    bench.wait(10);
+    bench.world.dead.push("Quick Change");
     assert_eq!(bench.finish(), error(Reason::NeighbourLost));
     let mut bench = Bench::new("HOME", 2);
     bench.command(Pause, "", 0, "", 0);
-    bench.steps(10);
-    bench.dead.push("gripper");
+    bench.wait(10);
+    bench.world.dead.push("gripper");
     assert_eq!(bench.finish(), error(Reason::NeighbourLost));
     let mut bench = Bench::ready("HOME", 1);
     bench.command(Pause, "", 0, "", 0);
-    bench.steps(3);
-    bench.dead.push("Prim");
+    bench.wait(3);
+    bench.world.dead.push("Prim");
     assert_eq!(bench.finish(), error(Reason::NeighbourLost));
     let mut bench = Bench::new("HOME", 1);
     bench.spoil("ROBOT-INIT", Mishap::Prim(PrimReport::T3LinkOff, Reason::LinkOff));
@@ -165,13 +154,13 @@ fn a_pause_that_fails_says_why() {
     assert_eq!(bench.pause().1, Reason::JoystickOn);
     let mut bench = Bench::new("HOME", 1);
     bench.command(Pause, "", 0, "", 0);
-    bench.steps(3);
+    bench.wait(3);
     bench.world.mated = 2;
     assert_eq!(bench.finish(), DONE, "a gripper that has come since is not waited for");
 }
 
 #[test]
-fn a_ring_that_stands_half_way_is_at_rest() {
+fn ring_between_its_ends_is_at_rest() {
     let mut bench = Bench::new("HOME", 1);
     bench.spoil("QC-PAUSE", Mishap::Ring(QuickChangeReport::Stuck));
     assert_eq!(bench.pause(), DONE);
@@ -180,13 +169,12 @@ fn a_ring_that_stands_half_way_is_at_rest() {
 }
 
 #[test]
-fn fingers_do_what_they_were_told_before_they_pause() {
+fn fingers_finish_their_order_before_pause() {
     for (gripper, object, size) in [(1, "BLOCK", 75), (2, "SHAFT", 200), (3, "CUTTER", 250)] {
         let mut bench = Bench::ready("HOME", gripper);
         bench.world.object = Some(size);
-        bench.at_every_tick((GraspObj, object, 1, "", gripper), |fork| {
-            fork.write(Pause, "", 0, "", 0);
-            assert_eq!(fork.finish(), DONE);
+        for mut fork in bench.during((GraspObj, object, 1, "", gripper)) {
+            assert_eq!(fork.execute(PAUSE), DONE);
             let log = fork.log();
             let closed = log.iter().position(|text| text.contains("CLOSE") || text.contains("GRASP"));
             let paused = log.iter().rposition(|text| text.contains("PAUSE")).unwrap_or_default();
@@ -197,19 +185,20 @@ fn fingers_do_what_they_were_told_before_they_pause() {
                 closed.is_none() || named,
                 "what they have closed on has the name of the command: {held:?}"
             );
-        });
+        }
+        assert_eq!(bench.run(GraspObj, object, 1, "", gripper), DONE);
         assert!(bench.memory.emove.status.held.is_held());
     }
 }
 
 #[test]
-fn the_robot_is_found_where_it_stands() {
+fn pause_finds_the_location_of_the_robot() {
     let mut bench = Bench::new("HOLSTER-C", 0);
     assert_eq!(bench.pause(), DONE);
     assert!(bench.memory.emove.status.at.is_none(), "a holster is no plain location");
     bench.world.frame = frame_of("BENCH");
     assert_eq!(bench.pause(), DONE);
-    assert_eq!(bench.memory.emove.status.at.unwrap_or_default().site.location.as_str(), "BENCH");
+    assert_eq!(bench.at(), "BENCH");
     bench.world.frame = moved(frame_of("HOME"), &["300ty"]);
     assert_eq!(bench.pause(), DONE, "it need not be anywhere");
     assert!(bench.memory.emove.status.at.is_none());
@@ -217,7 +206,7 @@ fn the_robot_is_found_where_it_stands() {
 
 /// Only E-PAUSE looks for the robot, and only while it is done or under way.
 #[test]
-fn the_search_belongs_to_the_pause() {
+fn location_search_runs_only_during_pause() {
     let rows = |watch: Watch| (search((), &watch).row, search((), &watch).action);
     let looking = Watch {
         initialization: tables::Initialization::None,
@@ -242,7 +231,7 @@ fn the_search_belongs_to_the_pause() {
 
 /// A pause that stands goes on; a command that has ended does not.
 #[test]
-fn only_a_standing_pause_goes_on() {
+fn only_a_standing_pause_continues() {
     for &pause in tables::Pause::ALL {
         for &outcome in Outcome::ALL {
             let watch = Watch {
@@ -271,34 +260,34 @@ fn only_a_standing_pause_goes_on() {
 }
 
 #[test]
-fn the_operator_moves_the_robot_and_the_fingers() {
+fn operator_moves_robot_and_fingers() {
     for gripper in 1..=3 {
         let mut bench = Bench::ready("HOME", gripper);
         let (object, size) = [("BLOCK", 75), ("SHAFT", 200), ("CUTTER", 250)][usize::from(gripper) - 1];
         bench.hold(object, size, gripper);
         assert_eq!(bench.pause(), DONE);
         bench.world.joystick = true;
-        bench.steps(3);
+        bench.wait(3);
         let status = bench.memory.emove.status;
         assert_eq!((status.report, status.reason), (StatusReport::JoystickOn, Reason::JoystickOn));
         bench.world.log.clear();
         bench.world.button = JoystickGrip::Open;
-        bench.steps(20);
+        bench.wait(20);
         assert_eq!(bench.log().len(), 1, "pressing counts, not holding down: {:?}", bench.log());
         assert!(!bench.memory.emove.status.held.is_held(), "the fingers are open");
         assert!(bench.memory.emove.status.placed.is_some());
         bench.world.button = JoystickGrip::None;
-        bench.steps(3);
+        bench.wait(3);
         bench.world.button = JoystickGrip::Close;
-        bench.steps(20);
+        bench.wait(20);
         assert_eq!(bench.log().len(), 2);
         assert_eq!(bench.memory.emove.status.placed, None, "it may be between the fingers again");
-        let closed = [bench.grip.opening, bench.v_grip.opening, bench.tool_grip.opening];
+        let closed = [bench.world.grip.opening, bench.world.v_grip.opening, bench.world.tool_grip.opening];
         assert_eq!(closed[usize::from(gripper) - 1], [10, 50, 100][usize::from(gripper) - 1]);
         // The operator has carried the robot to the vise and gives it back.
         bench.world.frame = frame_of("VISE");
         (bench.world.joystick, bench.world.button) = (false, JoystickGrip::None);
-        bench.steps(10);
+        bench.wait(10);
         let status = bench.memory.emove.status;
         assert_eq!(
             (status.report, status.reason, status.at.unwrap_or_default().site.location.as_str()),
@@ -311,22 +300,22 @@ fn the_operator_moves_the_robot_and_the_fingers() {
     bench.world.joystick = true;
     assert_eq!(bench.pause(), (StatusReport::JoystickOn, Reason::JoystickOn));
     bench.world.joystick = false;
-    bench.steps(10);
+    bench.wait(10);
     assert_eq!(bench.memory.emove.status.report, StatusReport::Done);
-    bench.dead.push("Prim");
-    bench.steps(5);
+    bench.world.dead.push("Prim");
+    bench.wait(5);
     assert_eq!(bench.memory.emove.status.report, StatusReport::Done, "done stays");
 }
 
 /// The operator gives the robot back while the fingers still move, while the ring still pauses, and with a link that
 /// fails; and takes it once more before everything rests.
 #[test]
-fn robot_given_back_by_the_operator_is_done_when_everything_rests() {
+fn returned_robot_is_done_when_everything_rests() {
     let led = || {
         let mut bench = Bench::ready("HOME", 2);
         assert_eq!(bench.pause(), DONE);
         bench.world.joystick = true;
-        bench.steps(3);
+        bench.wait(3);
         bench
     };
     let ticks = |bench: &mut Bench| {
@@ -341,19 +330,19 @@ fn robot_given_back_by_the_operator_is_done_when_everything_rests() {
     let at_rest = ticks(&mut led());
     let mut bench = led();
     bench.world.button = JoystickGrip::Open;
-    bench.steps(2);
+    bench.wait(2);
     assert!(ticks(&mut bench) > at_rest, "the fingers open first");
     let mut bench = led();
     bench.spoil("QC-PAUSE", Mishap::Ring(QuickChangeReport::Executing));
     bench.world.joystick = false;
-    bench.steps(20);
+    bench.wait(20);
     assert_eq!(bench.memory.emove.status.report, StatusReport::JoystickOn, "Quick Change never pauses");
     for again in 1..at_rest {
         let mut bench = led();
         bench.world.joystick = false;
-        bench.steps(again);
+        bench.wait(again);
         bench.world.joystick = true;
-        bench.steps(4);
+        bench.wait(4);
         assert_eq!(bench.memory.emove.status.report, StatusReport::JoystickOn, "after {again} ticks");
         ticks(&mut bench);
     }
@@ -363,36 +352,36 @@ fn robot_given_back_by_the_operator_is_done_when_everything_rests() {
     assert_eq!(bench.memory.emove.status.reason, Reason::LinkError, "the reason stands beside it");
     let mut bench = led();
     bench.memory.prim.status.report = PrimReport::T3LinkErr;
-    bench.dead.push("Prim");
-    bench.steps(2);
+    bench.world.dead.push("Prim");
+    bench.wait(2);
     assert_eq!(bench.memory.emove.status.report, StatusReport::Done, "the reason stands beside it");
 }
 
 #[test]
-fn the_operator_interrupts_a_command() {
+fn operator_interrupts_a_command() {
     let mut bench = Bench::ready("HOME", 1);
     bench.command(MovToLoc, "", 0, "VISE", 0);
-    bench.steps(7);
+    bench.wait(7);
     bench.world.joystick = true;
     assert_eq!(bench.finish(), (StatusReport::JoystickOn, Reason::JoystickOn));
     assert_eq!(bench.pause(), (StatusReport::JoystickOn, Reason::JoystickOn));
     bench.world.joystick = false;
-    bench.steps(10);
+    bench.wait(10);
     assert_eq!(bench.memory.emove.status.report, StatusReport::Done);
     // A command that was interrupted and not followed by a pause ends in an error when the box is let go.
     let mut bench = Bench::ready("HOME", 1);
     bench.spoil("GO-THRU", Mishap::Joystick);
     assert_eq!(bench.run(MovToLoc, "", 0, "VISE", 0), (StatusReport::JoystickOn, Reason::JoystickOn));
     bench.memory.prim.status.report = PrimReport::Done;
-    bench.dead.push("Prim");
-    bench.steps(2);
+    bench.world.dead.push("Prim");
+    bench.wait(2);
     let status = bench.memory.emove.status;
     assert_eq!((status.report, status.reason), error(Reason::JoystickOn));
 }
 
 /// A command that comes in the tick in which the operator takes the robot: fingers and ring stay as they are.
 #[test]
-fn nothing_begins_while_the_operator_has_the_robot() {
+fn command_during_manual_control_is_refused() {
     for (holds, verb, object, location) in [
         (true, Release, "BLOCK", ""),
         (true, MovToLoc, "", "VISE"),
@@ -412,7 +401,7 @@ fn nothing_begins_while_the_operator_has_the_robot() {
             "{verb}"
         );
         bench.world.joystick = false;
-        bench.steps(5);
+        bench.wait(5);
         let status = bench.memory.emove.status;
         assert_eq!((status.report, status.reason), error(Reason::JoystickOn), "{verb}");
         assert_eq!(status.held.is_held(), holds, "{verb}");
@@ -421,11 +410,10 @@ fn nothing_begins_while_the_operator_has_the_robot() {
 }
 
 #[test]
-fn a_restarted_e_move_executes_nothing() {
+fn restarted_emove_executes_nothing() {
     let mut bench = Bench::ready("HOME", 2);
     bench.hold("SHAFT", 200, 2);
-    bench.process = crate::emove::Emove::default();
-    assert_eq!(bench.finish(), error(Reason::Restarted));
+    bench.restart_and_finish();
     assert_eq!(bench.pause(), DONE);
     assert_eq!(bench.memory.v_grip.status.report, JawsReport::AtPosition);
     bench.world.object = Some(200);

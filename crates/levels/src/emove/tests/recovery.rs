@@ -6,69 +6,33 @@ use interfaces::{
     Reason, StatusReport,
     emove::{
         Beliefs,
-        EmoveVerb::{self, LocateObj, MovObjTo, MovToLoc, MovToObj, MovToVu, Pause, QcAttach, Release},
+        EmoveVerb::{self, LocateObj, MovObjTo, MovToLoc, MovToObj, MovToVu, QcAttach, Release},
     },
     prim::{PrimReport, PrimVerb},
 };
 
 use super::{
-    bench::{Bench, DONE, error, frame_of, moved},
+    bench::{Bench, DONE, INTERRUPTIONS, Line, ORDINARY, error, frame_of, moved},
     doubles::Mishap,
 };
-use crate::emove::{
-    Emove,
-    tables::resume::{Beginning, GoalOf, LegNow, Robot, Start, WayBack, resume},
-};
+use crate::emove::tables::resume::{Beginning, GoalOf, LegNow, Robot, Start, WayBack, resume};
 
 pub const SCENARIOS: &[fn()] = &[
-    a_motion_goes_on_to_the_same_goal_from_every_tick,
-    another_goal_is_gone_to_by_the_end_of_the_depart_leg,
-    the_place_left_is_gone_to_by_its_own_approach,
-    a_way_between_two_poses_at_an_object_leads_only_on,
-    a_new_command_stops_what_is_under_way_before_it_is_answered,
-    a_nudge_in_the_corridor_leaves_the_robot_on_its_way,
-    a_gripper_on_an_open_ring_goes_nowhere,
-    a_robot_that_a_lost_link_stopped_short_is_on_its_way,
-    a_link_that_is_lost_behind_a_point_may_stop_the_robot_before_it,
-    a_robot_that_moved_while_emove_was_held_is_on_its_way,
-    a_robot_whose_link_began_anew_short_of_its_point_is_on_its_way,
-    without_subtask_everything_stops,
+    motion_at_an_object_resumes_forward_only,
+    unlocked_ring_refuses_every_motion,
+    loss_of_subtask_stops_everything,
 ];
 
-type Command<'a> = (EmoveVerb, &'a str, i32, &'a str, u8);
-
-const TO_VISE: Command<'_> = (MovObjTo, "BLOCK", 1, "VISE", 1);
-const TO_HOME: Command<'_> = (MovToLoc, "", 0, "HOME", 0);
-
-/// E-PAUSE, at once. How many motions Prim was told of before.
-pub fn paused(bench: &mut Bench) -> usize {
-    bench.write(Pause, "", 0, "", 0);
-    assert_eq!(bench.finish(), DONE, "{:?}", bench.world.log);
-    let told = bench.motions().len();
-    bench.world.log.clear();
-    told
-}
-
-pub fn send(
-    bench: &mut Bench,
-    (verb, object, grip, location, gripper): Command<'_>,
-) -> (StatusReport, Reason) {
-    bench.run(verb, object, grip, location, gripper)
-}
+const TO_VISE: Line = (MovObjTo, "BLOCK", 1, "VISE", 1);
+const TO_HOME: Line = (MovToLoc, "", 0, "HOME", 0);
 
 /// A robot at the bench with a block in its fingers.
 fn loaded() -> Bench {
     let mut bench = Bench::ready("HOME", 1);
     assert_eq!(bench.run(MovToObj, "BLOCK", 1, "BENCH", 1), DONE);
     bench.hold("BLOCK", 75, 1);
-    bench.prim.by_steps = true;
+    bench.world.prim.by_steps = true;
     bench
-}
-
-/// E-move is restarted; its output buffers stay.
-fn restart(bench: &mut Bench) {
-    bench.process = Emove::default();
-    assert_eq!(bench.finish(), error(Reason::Restarted));
 }
 
 /// The end of the depart leg of a robot at the bench with a block.
@@ -76,60 +40,42 @@ fn departed() -> Frame {
     moved(frame_of("BENCH"), &["GRASP-MTB", "A/D-5"])
 }
 
-/// Run a command to its end. How near the robot came to a frame, in.
-fn nearest(bench: &mut Bench, (verb, object, grip, location, gripper): Command<'_>, frame: &Frame) -> f64 {
-    bench.command(verb, object, grip, location, gripper);
-    let mut nearest = f64::INFINITY;
-    for _ in 0..1000 {
-        nearest = nearest.min(bench.world.frame.distance(frame).inches);
-        bench.step();
-        let status = bench.memory.emove.status;
-        if status.echo == bench.memory.subtask.emove.number && status.report != StatusReport::Executing {
-            assert_eq!((status.report, status.reason), DONE, "{:?}", bench.world.log);
-            return nearest;
-        }
-    }
-    panic!("never over: {:?}", bench.world.log);
-}
-
 #[test]
-fn a_motion_goes_on_to_the_same_goal_from_every_tick() {
-    for restarts in [false, true] {
-        let mut bench = loaded();
+fn interrupted_motion_resumes_to_its_goal_from_every_tick() {
+    for interrupt in INTERRUPTIONS {
+        let bench = loaded();
         let full = ["GO-THRU A/D-5", "GO-THRU", "GO-THRU A/D-5", "GOTO-PT"];
         let mut seen = [0; 5];
-        bench.at_every_tick(TO_VISE, |fork| {
-            if restarts {
-                restart(fork);
-            }
-            let told = paused(fork);
-            assert_eq!(send(fork, TO_VISE), DONE, "{told}");
+        for mut fork in bench.during(TO_VISE) {
+            interrupt(&mut fork);
+            let told = fork.motions().len();
+            assert_eq!(fork.perform(TO_VISE), DONE, "{told}");
             let again = fork.motions();
             let rest = if again.is_empty() { &[] } else { &full[told.saturating_sub(1)..] };
             assert_eq!(again, rest, "no point twice, {told} told");
             assert!(fork.off(&moved(frame_of("VISE"), &["GRASP-MTB"])) < 0.02);
-            let status = fork.memory.emove.status;
-            assert_eq!(status.at.unwrap_or_default().site.location.as_str(), "VISE");
-            assert_eq!(status.held.object().unwrap_or_default().as_str(), "BLOCK");
+            assert_eq!((fork.at(), fork.held()), ("VISE".to_owned(), "BLOCK".to_owned()));
             seen[told] += 1;
-        });
+        }
+        let mut bench = bench;
+        assert_eq!(bench.perform(TO_VISE), DONE);
         assert_eq!(bench.motions(), full);
         assert!(seen[1..].iter().all(|ticks| *ticks > 0), "in every leg: {seen:?}");
     }
 }
 
 #[test]
-fn another_goal_is_gone_to_by_the_end_of_the_depart_leg() {
-    let mut bench = loaded();
+fn motion_to_another_goal_passes_the_end_of_the_depart_leg() {
+    let bench = loaded();
     let taken = moved(frame_of("BENCH"), &["GRASP-MTB"]);
     let mut seen = [0; 5];
-    bench.at_every_tick(TO_VISE, |fork| {
-        let told = paused(fork);
+    for mut fork in bench.during(TO_VISE) {
+        let told = fork.stop();
         if fork.memory.emove.status.at.is_some() {
-            return;
+            continue;
         }
         let from = fork.world.frame.distance(&taken).inches;
-        let near = nearest(fork, TO_HOME, &taken);
+        let [near] = fork.pass(TO_HOME, [taken]);
         let back = vec!["GO-THRU"; told.saturating_sub(1)];
         let then = if told == 1 { vec!["GO-THRU A/D-5"] } else { back };
         let then = then.into_iter().chain(["GO-THRU", "GOTO-PT"]).collect::<Vec<_>>();
@@ -138,77 +84,77 @@ fn another_goal_is_gone_to_by_the_end_of_the_depart_leg() {
         // Points are passed within an inch.
         assert!(near > from.min(5.0) - 1.1, "{near} in: it does not go back into the depart leg");
         seen[told] += 1;
-    });
+    }
     assert!(seen[1..].iter().all(|ticks| *ticks > 0), "in every leg: {seen:?}");
     // Interrupted a second time, on the way back, it still knows the way.
     for ticks in (10..300).step_by(29) {
         for later in (5..120).step_by(17) {
             let mut bench = loaded();
-            bench.write(TO_VISE.0, TO_VISE.1, 1, TO_VISE.3, 1);
-            bench.steps(ticks);
-            paused(&mut bench);
-            bench.write(TO_HOME.0, "", 0, TO_HOME.3, 0);
-            bench.steps(later);
-            paused(&mut bench);
-            let near = nearest(&mut bench, TO_VISE, &departed());
+            bench.send(TO_VISE);
+            bench.wait(ticks);
+            bench.stop();
+            bench.send(TO_HOME);
+            bench.wait(later);
+            bench.stop();
+            let [near] = bench.pass(TO_VISE, [departed()]);
             assert!(bench.off(&moved(frame_of("VISE"), &["GRASP-MTB"])) < 0.02, "{ticks} {later} {near}");
         }
     }
 }
 
 #[test]
-fn the_place_left_is_gone_to_by_its_own_approach() {
-    let mut bench = loaded();
-    bench.at_every_tick(TO_VISE, |fork| {
-        let told = paused(fork);
+fn motion_back_uses_the_approach_of_the_place() {
+    let bench = loaded();
+    for mut fork in bench.during(TO_VISE) {
+        let told = fork.stop();
         let left = fork.memory.emove.status.at.is_none();
-        assert_eq!(send(fork, (MovObjTo, "BLOCK", 1, "BENCH", 1)), DONE);
+        assert_eq!(fork.perform((MovObjTo, "BLOCK", 1, "BENCH", 1)), DONE);
         assert!(fork.off(&moved(frame_of("BENCH"), &["GRASP-MTB"])) < 0.02);
         if left && told > 1 {
             let back = vec!["GO-THRU"; told - 1];
             let then = back.into_iter().chain(["GO-THRU A/D-5", "GOTO-PT"]).collect::<Vec<_>>();
             assert_eq!(fork.motions(), then);
         }
-    });
+    }
     // A robot that was to open its fingers for the goal orders it again when it is due.
     let mut bench = Bench::ready("HOME", 1);
-    bench.prim.by_steps = true;
-    bench.at_every_tick((MovToObj, "BLOCK", 1, "BENCH", 1), |fork| {
-        paused(fork);
-        assert_eq!(send(fork, (MovToObj, "BLOCK", 1, "BENCH", 1)), DONE);
-        assert_eq!(fork.grip.opening, 300, "{:?}", fork.world.log);
-    });
+    bench.world.prim.by_steps = true;
+    for mut fork in bench.during((MovToObj, "BLOCK", 1, "BENCH", 1)) {
+        fork.stop();
+        assert_eq!(fork.perform((MovToObj, "BLOCK", 1, "BENCH", 1)), DONE);
+        assert_eq!(fork.world.grip.opening, 300, "{:?}", fork.world.log);
+    }
     // The camera over a part goes on, or back to the view.
     let mut bench = Bench::ready("HOME", 1);
     assert_eq!(bench.run(MovToVu, "BLOCK", 1, "BENCH", 1), DONE);
-    bench.prim.by_steps = true;
-    bench.at_every_tick((LocateObj, "BLOCK", 1, "BENCH", 1), |fork| {
-        paused(fork);
+    bench.world.prim.by_steps = true;
+    for mut fork in bench.during((LocateObj, "BLOCK", 1, "BENCH", 1)) {
+        fork.stop();
         for verb in [MovToVu, LocateObj, MovToObj] {
-            assert_eq!(send(fork, (verb, "BLOCK", 1, "BENCH", 1)), DONE, "{verb} {:?}", fork.world.log);
+            assert_eq!(fork.perform((verb, "BLOCK", 1, "BENCH", 1)), DONE, "{verb} {:?}", fork.world.log);
         }
-        assert_eq!(send(fork, TO_HOME), DONE);
-    });
+        assert_eq!(fork.perform(TO_HOME), DONE);
+    }
 }
 
 #[test]
-fn a_way_between_two_poses_at_an_object_leads_only_on() {
+fn motion_at_an_object_resumes_forward_only() {
     let to_block = (MovToObj, "BLOCK", 1, "BENCH", 1);
     let to_pin = (MovToObj, "PIN", 1, "BENCH", 1);
     let mut bench = Bench::ready("HOME", 1);
-    assert_eq!(send(&mut bench, to_pin), DONE);
+    assert_eq!(bench.perform(to_pin), DONE);
     // A pin that lies two inches farther is still the same place; it has no depart points.
-    bench.prim.by_steps = true;
+    bench.world.prim.by_steps = true;
     let further = |bench: &mut Bench| {
-        bench.write(to_pin.0, to_pin.1, 1, to_pin.3, 1);
+        bench.send(to_pin);
         let record = &mut bench.memory.subtask.poses[0];
         record.pose = geometry::pose::Pose::from_frame(&moved(frame_of("BENCH"), &["300ty"]));
     };
     further(&mut bench);
-    bench.steps(8);
-    paused(&mut bench);
+    bench.wait(8);
+    bench.stop();
     for other in [TO_HOME, to_block, to_pin] {
-        assert_eq!(send(&mut bench, other), error(Reason::ForwardOnly));
+        assert_eq!(bench.perform(other), error(Reason::ForwardOnly));
         assert_eq!(bench.motions(), [""; 0], "nothing moves");
     }
     further(&mut bench);
@@ -218,88 +164,80 @@ fn a_way_between_two_poses_at_an_object_leads_only_on() {
     for (verb, gripper) in [(MovToLoc, 1), (MovToVu, 1)] {
         let mut bench = Bench::ready("HOME", gripper);
         assert_eq!(bench.run(verb, "BLOCK", 1, "BENCH", 1), DONE);
-        bench.prim.by_steps = true;
-        bench.write(to_pin.0, to_pin.1, 1, to_pin.3, 1);
-        bench.steps(6);
-        paused(&mut bench);
-        assert_eq!(send(&mut bench, TO_HOME), DONE, "{verb}");
+        bench.world.prim.by_steps = true;
+        bench.send(to_pin);
+        bench.wait(6);
+        bench.stop();
+        assert_eq!(bench.perform(TO_HOME), DONE, "{verb}");
     }
 }
 
 /// E-PAUSE brings all to rest itself; every other command waits until all is at rest, whether it is accepted
 /// or refused.
 #[test]
-fn a_new_command_stops_what_is_under_way_before_it_is_answered() {
+fn new_command_stops_the_running_one_before_it_is_answered() {
     for (next, end) in [
         (TO_HOME, DONE),
         ((MovToLoc, "", 0, "", 0), error(Reason::NoDestination)),
         ((MovToObj, "BLOCK", 7, "BENCH", 1), error(Reason::UnknownGrip)),
         ((Release, "BLOCK", 1, "VISE", 1), DONE),
     ] {
-        let mut bench = loaded();
-        bench.at_every_tick(TO_VISE, |fork| {
+        let bench = loaded();
+        for mut fork in bench.during(TO_VISE) {
             let prim = &fork.memory.prim.status;
             let moving = prim.echo != fork.memory.emove.prim.number || prim.report == PrimReport::Executing;
             let before = fork.world.log.len();
-            let (verb, object, grip, location, gripper) = next;
-            fork.write(verb, object, grip, location, gripper);
-            assert_eq!(fork.finish(), end, "{:?}", fork.world.log);
+            assert_eq!(fork.execute(next), end, "{:?}", fork.world.log);
             // What was ordered in the tick before is on its way to Prim.
             let at = fork.log()[before..].iter().position(|text| *text == "PAUSE");
             assert!(!moving || at.is_some_and(|at| at <= 1), "{:?}", fork.world.log);
-            let there = fork.world.frame;
-            fork.steps(5);
-            assert!(fork.off(&there) < 0.01, "it is at rest when the end is reported");
-        });
+            fork.assert_stands();
+        }
     }
 }
 
 /// A command that is found after a restart is not executed, and what was ordered for it is stopped.
 #[test]
-fn a_restarted_e_move_stops_what_it_had_ordered() {
-    let mut bench = loaded();
-    bench.at_every_tick(TO_VISE, |fork| {
+fn restarted_emove_stops_its_orders() {
+    let bench = loaded();
+    for mut fork in bench.during(TO_VISE) {
         let (prim, sent) = (fork.memory.prim.status, fork.memory.emove.prim);
         let arrived =
             prim.echo == sent.number && prim.report == PrimReport::Done && sent.command == PrimVerb::GotoPt;
-        restart(fork);
-        fork.steps(2);
+        fork.restart_and_finish();
+        fork.wait(2);
         assert!(arrived || fork.memory.emove.prim.command == PrimVerb::Pause);
-        let there = fork.world.frame;
-        fork.steps(5);
-        assert!(fork.off(&there) < 0.01, "it stands");
-    });
+        fork.assert_stands();
+    }
     // The operator who has the robot keeps it.
     let mut bench = Bench::ready("HOME", 1);
     bench.spoil("GO-THRU", Mishap::Joystick);
     assert_eq!(bench.run(MovToLoc, "", 0, "VISE", 0), (StatusReport::JoystickOn, Reason::JoystickOn));
     let sent = bench.memory.emove.prim.number;
-    bench.process = Emove::default();
-    bench.steps(5);
+    bench.restart();
+    bench.wait(5);
     assert_eq!(bench.memory.emove.prim.number, sent, "nothing is sent");
 }
 
 /// Nothing that Subtask has commanded goes on without it.
 #[test]
-fn without_subtask_everything_stops() {
-    let mut bench = loaded();
-    bench.at_every_tick(TO_VISE, |fork| {
+fn loss_of_subtask_stops_everything() {
+    let bench = loaded();
+    for mut fork in bench.during(TO_VISE) {
         let was_executing = fork.memory.emove.status.report == StatusReport::Executing;
-        fork.dead.push("Subtask");
-        fork.steps(60);
-        let there = fork.world.frame;
-        fork.steps(5);
-        assert!(fork.off(&there) < 0.01, "it stands");
+        fork.world.dead.push("Subtask");
+        fork.wait(60);
+        fork.assert_stands();
         let status = fork.memory.emove.status;
         if was_executing {
             let ended = (status.report, status.reason);
             assert!([error(Reason::NeighbourLost), (StatusReport::Done, Reason::None)].contains(&ended));
         }
-    });
+    }
 }
 
 #[test]
-fn a_restarted_e_move_believes_what_it_believed() {
+fn restarted_emove_keeps_its_estimates() {
     let beliefs = |bench: &Bench| {
         let Beliefs { place, held, placed, located, exchange, .. } = bench.memory.emove.beliefs;
         (place, held, placed, located, exchange)
@@ -319,35 +257,55 @@ fn a_restarted_e_move_believes_what_it_believed() {
         }
         assert_eq!(bench.run(verb, "BLOCK", 1, location, 1), DONE, "{verb}");
         let before = beliefs(&bench);
-        restart(&mut bench);
+        bench.restart_and_finish();
         assert_eq!(beliefs(&bench), before, "after {verb}");
-        paused(&mut bench);
+        bench.stop();
         assert_eq!(beliefs(&bench), before, "after {verb}");
     }
     assert!(bench.memory.emove.status.placed.is_some());
     // What the sensors contradict is not believed.
     let mut bench = loaded();
-    bench.dead.push("E-move");
+    bench.held = true;
     bench.world.frame = frame_of("HOME");
-    bench.grip.opening = 200;
+    bench.world.grip.opening = 200;
     bench.world.object = None;
-    bench.steps(3);
-    bench.dead.clear();
-    restart(&mut bench);
+    bench.wait(3);
+    bench.held = false;
+    bench.restart_and_finish();
     let status = bench.memory.emove.status;
     assert_eq!((status.at.is_some(), status.held.is_held()), (false, false));
     // A change of a gripper is one of the beliefs.
     let mut bench = Bench::ready("HOLSTER-R", 1);
     bench.world.frame = moved(frame_of("HOLSTER-R"), &["QCA-LIFT"]);
-    bench.prim.by_steps = true;
+    bench.world.prim.by_steps = true;
     bench.command(QcAttach, "GRIPPER-1", 2, "HOLSTER-R", 1);
-    bench.steps(8);
-    restart(&mut bench);
+    bench.wait(8);
+    bench.restart_and_finish();
     assert_eq!(bench.memory.emove.status.exchange, Some(1));
 }
 
+/// The robot is moved, by a person with the joystick box or otherwise.
+fn nudge(bench: &mut Bench, by_hand: bool, does: impl FnOnce(&mut Frame)) {
+    if by_hand {
+        bench.lead(|bench| does(&mut bench.world.frame));
+    } else {
+        bench.wait(5);
+        does(&mut bench.world.frame);
+        bench.wait(13);
+    }
+}
+
+/// A bare robot on its way from HOME to the vise for so many ticks.
+fn under_way(ticks: u32) -> Bench {
+    let mut bench = Bench::ready("HOME", 0);
+    bench.world.prim.by_steps = true;
+    bench.send((MovToLoc, "", 0, "VISE", 0));
+    bench.wait(ticks);
+    bench
+}
+
 #[test]
-fn a_nudge_in_the_corridor_leaves_the_robot_on_its_way() {
+fn nudge_inside_the_corridor_keeps_the_path() {
     for (aside, by_hand, end) in [
         (0.4, false, DONE),
         (0.6, false, error(Reason::UnknownStart)),
@@ -356,64 +314,40 @@ fn a_nudge_in_the_corridor_leaves_the_robot_on_its_way() {
         (4.5, true, error(Reason::UnknownStart)),
     ] {
         // To the second point of the way from HOME, which is passed within three inches.
-        let mut bench = Bench::ready("HOME", 0);
-        bench.prim.by_steps = true;
-        bench.write(MovToLoc, "", 0, "VISE", 0);
-        bench.steps(90);
-        assert_eq!(paused(&mut bench), 2);
-        bench.world.joystick = by_hand;
-        bench.steps(4);
-        let heading = moved(frame_of("HOME"), &[]).position;
-        let along = heading - bench.world.frame.position;
+        let mut bench = under_way(90);
+        assert_eq!(bench.stop(), 2);
+        let along = frame_of("HOME").position - bench.world.frame.position;
         let across = along.cross(&Vector::new(0.0, 0.0, 1.0)).normalize();
-        bench.world.frame.position += across * aside;
-        bench.steps(4);
-        bench.world.joystick = false;
-        bench.steps(8);
+        nudge(&mut bench, by_hand, |frame| frame.position += across * aside);
         assert_eq!(bench.run(MovToLoc, "", 0, "VISE", 0), end, "{aside} in");
     }
     // Off its way and at a known location: the search finds it there.
     for by_hand in [true, false] {
-        let mut bench = Bench::ready("HOME", 0);
-        bench.prim.by_steps = true;
-        bench.write(MovToLoc, "", 0, "VISE", 0);
-        bench.steps(90);
-        paused(&mut bench);
-        bench.world.joystick = by_hand;
-        bench.steps(4);
-        bench.world.frame = frame_of("BENCH");
-        bench.steps(4);
-        bench.world.joystick = false;
-        bench.steps(8);
-        paused(&mut bench);
-        assert_eq!(bench.memory.emove.status.at.unwrap_or_default().site.location.as_str(), "BENCH");
+        let mut bench = under_way(90);
+        bench.stop();
+        nudge(&mut bench, by_hand, |frame| *frame = frame_of("BENCH"));
+        bench.stop();
+        assert_eq!(bench.at(), "BENCH");
         assert_eq!(bench.run(MovToLoc, "", 0, "VISE", 0), DONE, "{by_hand}");
     }
 }
 
 #[test]
-fn a_robot_beside_its_way_comes_back_to_it_first() {
+fn robot_off_its_path_returns_to_it_first() {
     for aside in [0.1, 0.3, -2.0] {
-        let mut bench = Bench::ready("HOME", 0);
-        bench.prim.by_steps = true;
-        bench.write(MovToLoc, "", 0, "VISE", 0);
         // On the first leg: no point was passed beside yet.
-        bench.steps(20);
+        let mut bench = under_way(20);
         let before = bench.world.frame.position;
-        bench.steps(1);
+        bench.step();
         let along = (bench.world.frame.position - before).normalize();
-        paused(&mut bench);
-        bench.world.joystick = true;
-        bench.steps(4);
+        bench.stop();
         let left = bench.world.frame.position;
-        bench.world.frame.position += along.cross(&Vector::new(0.0, 0.0, 1.0)).normalize() * aside;
-        bench.steps(4);
-        bench.world.joystick = false;
-        bench.steps(8);
-        bench.write(MovToLoc, "", 0, "VISE", 0);
+        let across = along.cross(&Vector::new(0.0, 0.0, 1.0)).normalize();
+        nudge(&mut bench, true, |frame| frame.position += across * aside);
+        bench.send((MovToLoc, "", 0, "VISE", 0));
         let mut stopped = false;
         for _ in 0..200 {
-            bench.steps(1);
+            bench.step();
             let offset = bench.world.frame.position - left;
             let beside = (offset - along * along.dot(&offset)).norm();
             stopped = beside < 0.02 && bench.memory.prim.status.report == PrimReport::Done;
@@ -433,101 +367,82 @@ fn stopped_short(cut: impl Fn(&mut Bench)) {
     for (short, aside, end) in
         [(1.5, 0.0, DONE), (1.5, 4.5, error(Reason::UnknownStart)), (4.0, 0.0, error(Reason::UnknownStart))]
     {
-        let mut bench = Bench::ready("HOME", 0);
-        bench.prim.by_steps = true;
-        bench.write(MovToLoc, "", 0, "VISE", 0);
-        bench.steps(90);
+        let mut bench = under_way(90);
         let heading = bench.world.frame.position;
-        bench.steps(1);
+        bench.step();
         let along = (bench.world.frame.position - heading).normalize();
         let across = along.cross(&Vector::new(0.0, 0.0, 1.0)).normalize();
         cut(&mut bench);
         bench.world.frame.position += across * aside - along * short;
-        paused(&mut bench);
+        bench.stop();
         assert_eq!(bench.run(MovToLoc, "", 0, "VISE", 0), end, "{short} in short, {aside} in aside");
     }
 }
 
 #[test]
-fn a_robot_that_a_lost_link_stopped_short_is_on_its_way() {
+fn robot_stopped_short_by_a_lost_link_keeps_its_path() {
     stopped_short(|bench| {
-        (bench.prim.report, bench.prim.reason) = (PrimReport::T3LinkOff, Reason::LinkOff);
+        (bench.world.prim.report, bench.world.prim.reason) = (PrimReport::T3LinkOff, Reason::LinkOff);
         assert_eq!(bench.finish(), error(Reason::LinkOff));
     });
 }
 
 #[test]
-fn a_link_that_is_lost_behind_a_point_may_stop_the_robot_before_it() {
+fn robot_stopped_before_a_passed_point_keeps_its_path() {
     let mut bench = Bench::ready("HOME", 1);
-    bench.prim.by_steps = true;
-    bench.write(MovToObj, "BLOCK", 1, "BENCH", 1);
+    bench.world.prim.by_steps = true;
+    bench.send((MovToObj, "BLOCK", 1, "BENCH", 1));
     let mut passed = Vec::new();
     while !bench.motions().iter().any(|motion| motion.starts_with("GOTO-PT")) {
         passed.push(bench.world.frame);
         bench.step();
     }
-    (bench.prim.report, bench.prim.reason) = (PrimReport::T3LinkOff, Reason::LinkOff);
+    (bench.world.prim.report, bench.world.prim.reason) = (PrimReport::T3LinkOff, Reason::LinkOff);
     assert_eq!(bench.finish(), error(Reason::LinkOff));
     bench.world.frame = passed[passed.len() - 5];
-    paused(&mut bench);
+    bench.stop();
     assert_eq!(bench.run(MovToObj, "BLOCK", 1, "BENCH", 1), DONE, "{:?}", bench.motions());
 }
 
 #[test]
-fn a_robot_that_moved_while_emove_was_held_is_on_its_way() {
-    let mut bench = loaded();
+fn robot_that_moved_while_emove_was_held_keeps_its_path() {
+    let bench = loaded();
     let mut farther = 0;
-    bench.at_every_tick(TO_VISE, |fork| {
+    for mut fork in bench.during(TO_VISE) {
         let before = fork.world.frame.position;
-        fork.dead.push("E-move");
-        fork.steps(30);
-        fork.dead.clear();
+        fork.sleep(30);
         // A held process does not see the ticks that it has missed.
         farther += u32::from((fork.world.frame.position - before).norm() > 2.0);
-        let told = paused(fork);
-        assert_eq!(send(fork, TO_VISE), DONE, "{told} told: {:?}", fork.world.log);
-    });
+        let told = fork.stop();
+        assert_eq!(fork.perform(TO_VISE), DONE, "{told} told: {:?}", fork.world.log);
+    }
     assert!(farther > 5, "{farther}");
 }
 
 #[test]
-fn a_robot_whose_link_began_anew_short_of_its_point_is_on_its_way() {
+fn robot_stopped_short_by_a_restarted_link_keeps_its_path() {
     stopped_short(|bench| {
-        bench.prim.restarts = true;
-        bench.steps(3);
-        bench.prim.restarts = false;
+        bench.world.prim.restarts = true;
+        bench.wait(3);
+        bench.world.prim.restarts = false;
     });
 }
 
 #[test]
-fn a_gripper_on_an_open_ring_goes_nowhere() {
-    use EmoveVerb::{AcquireTool, GraspObj, InsertTool, MovToHol, ReleaseTool, RemoveTool, Withdraw};
-    let mut bench = Bench::ready("HOME", 1);
+fn unlocked_ring_refuses_every_motion() {
+    let mut bench = Bench::ready("VISE", 1);
     bench.world.locked = false;
-    for (verb, object, location) in [
-        (MovToLoc, "", "VISE"),
-        (MovToObj, "BLOCK", "BENCH"),
-        (MovObjTo, "BLOCK", "BENCH"),
-        (MovToVu, "BLOCK", "BENCH"),
-        (MovToHol, "GRIPPER-1", "HOLSTER-R"),
-        (Withdraw, "", "BENCH"),
-        (LocateObj, "BLOCK", "BENCH"),
-        (GraspObj, "BLOCK", "BENCH"),
-        (InsertTool, "CUTTER", "TOOL-TRNS"),
-        (ReleaseTool, "CUTTER", "TOOL-TRNS"),
-        (AcquireTool, "CUTTER", "TOOL-TRNS"),
-        (RemoveTool, "CUTTER", "TOOL-TRNS"),
-    ] {
-        assert_eq!(bench.run(verb, object, 1, location, 1), error(Reason::RingNotLocked), "{verb}");
+    for &line in ORDINARY {
+        assert_eq!(bench.perform(line), error(Reason::RingNotLocked), "{}", line.0);
         assert!(bench.log().is_empty());
     }
     bench.world.locked = true;
     assert_eq!(bench.run(MovToLoc, "", 0, "HOLSTER-R", 0), error(Reason::HolsterOnly));
-    assert_eq!(bench.run(MovToLoc, "", 0, "VISE", 0), DONE);
+    assert_eq!(bench.run(MovToLoc, "", 0, "HOME", 0), DONE);
 }
 
 #[test]
-fn a_motion_begins_where_the_robot_is() {
+fn motion_begins_where_the_robot_is() {
     let row = |robot, goal, back, leg| {
         let decision = resume((), &Start { robot, goal, back, leg });
         (decision.row, decision.action)

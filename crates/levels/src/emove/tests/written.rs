@@ -8,7 +8,6 @@ use interfaces::{
 use rcs_core::name::Name16;
 
 use super::bench::{Bench, DONE};
-use crate::emove::Emove;
 
 impl Bench {
     /// Write a value between two ticks.
@@ -19,22 +18,10 @@ impl Bench {
             Inputs { tick: self.tick.next(), memory: &before, external: &self.external, data: &self.data };
         self.process.write(&Write { variable, object, grip }, &inputs, &mut self.memory.emove);
     }
+}
 
-    /// The parts gripper feels something without a name, so wide.
-    fn feeling(size: i32) -> Self {
-        let mut bench = Self::new("HOME", 1);
-        (bench.grip.opening, bench.world.object) = (size, Some(size));
-        bench.steps(3);
-        bench.process = Emove::default();
-        bench.memory.emove.beliefs.empty = false;
-        assert_eq!(bench.pause(), DONE);
-        assert_eq!(bench.memory.emove.status.held, Holding::Something);
-        bench
-    }
-
-    fn held(&self) -> Holding {
-        self.memory.emove.status.held
-    }
+fn held(bench: &Bench) -> Holding {
+    bench.memory.emove.status.held
 }
 
 fn block() -> Holding {
@@ -42,47 +29,47 @@ fn block() -> Holding {
 }
 
 #[test]
-fn what_is_felt_has_the_name_that_is_written() {
-    let mut bench = Bench::feeling(75);
+fn felt_object_gets_the_written_name() {
+    let mut bench = Bench::with_unknown("HOME", 75);
     bench.put(Variable::Held, "BLOCK", 1);
-    bench.steps(10);
-    assert_eq!(bench.held(), block());
+    bench.wait(10);
+    assert_eq!(held(&bench), block());
     assert_eq!(bench.run(MovObjTo, "BLOCK", 1, "BENCH", 1), DONE);
-    assert_eq!(bench.held(), block());
+    assert_eq!(held(&bench), block());
     bench.put(Variable::Held, "", 0);
-    bench.steps(10);
-    assert_eq!(bench.held(), Holding::Something, "it is held, and has no name");
+    bench.wait(10);
+    assert_eq!(held(&bench), Holding::Something, "it is held, and has no name");
 }
 
 #[test]
-fn a_restarted_e_move_adopts_what_was_written_before_its_first_tick() {
-    let mut bench = Bench::feeling(75);
-    bench.process = Emove::default();
+fn restarted_emove_adopts_values_written_before_its_first_tick() {
+    let mut bench = Bench::with_unknown("HOME", 75);
+    bench.restart();
     bench.put(Variable::Held, "BLOCK", 1);
-    bench.steps(10);
-    assert_eq!(bench.held(), block());
+    bench.wait(10);
+    assert_eq!(held(&bench), block());
 }
 
 #[test]
-fn sensors_and_task_data_count_more_than_what_is_written() {
+fn sensors_and_task_data_override_written_values() {
     for (size, object, grip, why) in [
         (40, "BLOCK", 1, "fingers that are closer than the grasp size"),
         (75, "BLOCK", 9, "no such grip"),
         (75, "NO-SUCH", 1, "no such object"),
     ] {
-        let mut bench = Bench::feeling(size);
+        let mut bench = Bench::with_unknown("HOME", size);
         bench.put(Variable::Held, object, grip);
-        bench.steps(10);
-        assert_eq!(bench.held(), Holding::Something, "{why}");
+        bench.wait(10);
+        assert_eq!(held(&bench), Holding::Something, "{why}");
     }
     let mut bench = Bench::ready("HOME", 1);
     bench.put(Variable::Held, "BLOCK", 1);
-    bench.steps(10);
-    assert_eq!(bench.held(), Holding::Nothing, "nothing is felt");
+    bench.wait(10);
+    assert_eq!(held(&bench), Holding::Nothing, "nothing is felt");
 }
 
 #[test]
-fn beliefs_are_forgotten() {
+fn written_estimates_are_cleared() {
     let mut bench = Bench::ready("HOME", 1);
     let placed = Some(PlacedObject { grip: 1, ..PlacedObject::default() });
     let located = Some(Located::default());

@@ -517,14 +517,12 @@ fn a_new_command_stops_the_table_and_waits_for_the_hand_before_it_is_answered() 
 #[test]
 fn every_row_fires() {
     let silent = silent::<Pedestal, ()>(&[
-        pre_grip_opens_the_hand_and_turns_the_table_at_once,
         commands_are_not_done_while_hand_or_table_are_elsewhere,
         grip_flip_and_release_command_one_neighbour_each,
         what_cannot_be_done_is_refused_before_anything_moves,
         a_hand_that_closes_on_nothing_or_cannot_tell_is_an_error,
         what_the_hand_holds_and_the_angle_are_published_whatever_is_commanded,
         pre_grip_calibrates_a_hand_that_was_not_told_to_grip,
-        an_object_that_comes_loose_is_noticed_while_it_is_turned,
         failures_below_are_passed_up_and_send_nothing_to_the_hand,
         pause_stops_the_table_and_waits_for_the_hand,
         a_restarted_process_adopts_the_command_and_stops_the_table,
@@ -602,48 +600,6 @@ fn what_the_hand_has_not_let_go_is_gripped() {
         assert!(!cell.memory.pedestal.status.gripped);
     }
     assert!(kept > 0, "the first of them come before the fingers move");
-}
-
-/// Every pair of commands, the second at some ticks of the first, in worlds that obey and worlds that do not,
-/// with processes that are restarted in between: all end, with a reason if they fail.
-#[test]
-fn every_command_ends_whatever_it_interrupts_and_whatever_does_not_obey() {
-    let worlds: [fn(&mut Cell); 6] = [
-        |_| {},
-        |c| c.world.rotary.blocked = true,
-        |c| c.world.rotary.off = true,
-        |c| c.world.fingers.without_air = true,
-        |c| c.world.fingers.object = None,
-        |c| c.world.fingers.strain[0] = (0.0, 0.0),
-    ];
-    let restarts: [fn(&mut Cell); 4] =
-        [|_| {}, |c| c.restart(), |c| c.world.hand = Hand::default(), |c| c.world.table = Table::default()];
-    let taken = Cell::taken();
-    let mut ends = [0; 2];
-    let angle = |verb| if verb == PedestalVerb::Flip { 500 } else { -1000 };
-    let interruptions = worlds.iter().flat_map(|world| restarts.iter().map(move |restart| (world, restart)));
-    for (world, restart) in interruptions {
-        for (first, second) in PedestalVerb::ALL
-            .iter()
-            .flat_map(|first| PedestalVerb::ALL.iter().map(move |second| (first, second)))
-        {
-            for later in [1, 12] {
-                let mut cell = taken.clone();
-                world(&mut cell);
-                cell.send((*first, 250, 50, angle(*first)));
-                cell.wait(later);
-                restart(&mut cell);
-                cell.wait(later);
-                for verb in [*second, PedestalVerb::Pause, *first] {
-                    let (report, reason) = cell.execute((verb, 250, 50, angle(verb)));
-                    let done = report == PedestalReport::Done;
-                    assert_eq!(done, reason == Reason::None, "{verb}: {report} {reason}");
-                    ends[usize::from(done)] += 1;
-                }
-            }
-        }
-    }
-    assert!(ends.iter().all(|count| *count > 100), "{ends:?}");
 }
 
 proptest! {

@@ -9,7 +9,7 @@ use proptest::prelude::*;
 use rcs_core::tick::Tick;
 
 use super::{
-    LIMIT_MINUS, LIMIT_PLUS, State, Table,
+    LIMIT_MINUS, LIMIT_PLUS, Table,
     preprocess::{AT_LIMIT, LIMIT_TICKS},
     tables::Phase,
 };
@@ -295,18 +295,13 @@ fn an_angle_that_the_potentiometer_denies_is_not_published_until_it_agrees() {
 #[test]
 fn every_row_fires() {
     let silent = silent::<Table, ()>(&[
-        a_table_that_is_booted_calibrates_itself,
         a_calibrated_table_is_calibrated_again_by_command,
         angles_beyond_the_limits_cannot_be_done,
-        a_turn_before_the_calibration_is_made_after_it,
         pause_stops_a_turning_table_and_a_new_turn_starts_from_rest,
-        a_slow_line_is_waited_for,
         what_keeps_the_table_from_its_angle_is_an_error_and_the_next_turn_calibrates_again,
         a_calibration_that_fails_fails_the_command_that_needs_it_and_no_other,
-        a_calibration_that_fails_does_not_count_for_a_refused_command_nor_for_none,
         a_restarted_process_stops_the_table_and_adopts_its_calibration,
         a_restarted_process_adopts_no_calibration_that_the_sensors_deny,
-        a_table_that_never_stops_is_stuck,
     ]);
     assert_eq!(silent, [""; 0]);
 }
@@ -328,31 +323,6 @@ fn a_calibration_goes_on_beside_a_command_that_is_refused() {
     let status = bench.wait(600).status;
     assert_eq!((status.calibrated, status.position), (true, Some(LIMIT_PLUS)));
     assert_eq!((status.report, status.reason), (PedestalReport::CannotDo, Reason::TableLimit));
-}
-
-/// From every state, with a table that turns, one that is blocked, one that takes no orders and one that
-/// never stops, at the limits, between them, and with a counter and a potentiometer that deny each other.
-#[test]
-fn every_command_ends_from_every_state_whether_the_table_obeys_or_not() {
-    let worlds: [fn(&mut Rotary); 5] =
-        [|_| {}, |t| t.blocked = true, |t| t.off = true, |t| t.runs_on = true, |t| t.slip = 4];
-    let positions = [(-3400, Some(3950)), (-1000, Some(3950)), (-200, Some(100)), (0, None)];
-    let mut ends = [0; 2];
-    for (phase, step) in Phase::ALL.iter().flat_map(|p| super::tables::Step::ALL.iter().map(move |s| (p, s)))
-    {
-        for (world, verb) in worlds.iter().flat_map(|w| TableVerb::ALL.iter().map(move |verb| (w, verb))) {
-            for (angle, at_limit) in positions {
-                let mut bench = Bench::new(Rotary { offset: 0, ..Rotary::new(angle) });
-                world(&mut bench.world);
-                bench.process.state = State { phase: *phase, step: *step, at_limit, ..bench.process.state };
-                let (report, reason) = bench.execute((*verb, -2135));
-                let done = report == PedestalReport::Done;
-                assert_eq!(done, reason == Reason::None, "{verb} in {phase} {step}");
-                ends[usize::from(done)] += 1;
-            }
-        }
-    }
-    assert!(ends.iter().all(|count| *count > 100), "{ends:?}");
 }
 
 proptest! {

@@ -6,17 +6,12 @@ use rcs_core::tick::TICK_S;
 use super::*;
 
 pub(super) const SCENARIOS: &[fn()] = &[
-    go_until_ramps_down_where_it_trips_and_says_where_that_was,
     a_condition_that_holds_already_ends_a_guarded_move_without_motion,
-    a_goal_without_the_condition_is_not_detected_until_it_comes,
-    go_while_reaches_its_goal_or_stops_with_an_error,
     a_force_sensor_that_cannot_be_trusted_stops_the_robot,
     a_restarted_prim_knows_what_the_force_sensor_reads_without_a_force,
     cal_sensor_stops_the_robot_first_and_takes_the_mean,
     a_sensor_that_cannot_be_calibrated_is_an_error,
     a_sensor_that_is_not_in_the_task_data_is_refused,
-    beams_guard_too,
-    all_three_motions_take_a_movetable_and_delta_move_ends_as_goto_pt_does,
 ];
 
 /// A force sensor at rest with something in the gripper.

@@ -14,20 +14,12 @@ use super::*;
 use crate::prim::manual::{ACCELERATION, SPEED};
 
 pub(super) const SCENARIOS: &[fn()] = &[
-    translations_follow_the_axes_of_the_frame_at_the_speed_of_the_knob,
-    rotations_leave_their_centre_where_it_is,
-    a_stick_that_is_not_quite_centred_moves_nothing,
     the_box_is_done_when_the_robot_stands,
     the_box_waits_until_a_motion_has_ramped_down,
     two_frames_are_none,
-    a_stick_stops_every_motion_and_the_commander_hears_of_it,
     a_stick_is_heard_of_after_a_motion_is_done,
-    a_command_in_the_middle_of_a_manual_motion_begins_when_that_has_ramped_down,
     without_a_position_the_box_moves_nothing,
-    the_gripper_buttons_are_passed_on_while_the_box_has_the_robot,
     a_recorded_pose_suspends_until_the_operator_goes_on,
-    a_prim_that_was_held_goes_on_from_rest_to_its_goal,
-    a_step_is_a_knot_point_of_the_trajectory,
 ];
 
 const FULL: i16 = 1000;

@@ -523,20 +523,6 @@ fn a_robot_that_does_not_arrive_is_an_error_after_two_seconds() {
     }
 }
 
-#[test]
-fn a_restarted_prim_executes_nothing() {
-    let mut rig = Rig::initialized();
-    rig.command(PrimVerb::GotoPt, 3);
-    rig.wait(30);
-    rig.restart();
-    rig.wait(5);
-    assert_eq!((rig.report(), rig.memory.prim.status.reason), (PrimReport::Error, Reason::Restarted));
-    assert_eq!(rig.memory.prim.t3i.command, T3iVerb::Pause);
-    let stopped = rig.world.t3i.output;
-    rig.wait(20);
-    assert_eq!(rig.world.t3i.output, stopped);
-}
-
 /// Whatever is commanded whenever, points stay in order and the path has no jump.
 #[test]
 fn random_commands_never_make_the_robot_jump() {
@@ -609,28 +595,15 @@ fn devices_that_are_lost_or_tripped_stop_the_robot() {
 fn every_row_fires() {
     const SCENARIOS: &[fn()] = &[
         starts_with_pause_and_without_a_position,
-        robot_init_takes_the_position_over,
-        a_trajectory_ends_exactly_whatever_stalls,
+        devices_that_are_lost_or_tripped_stop_the_robot,
         through_point_is_not_passed_while_the_resolvers_are_far_from_it,
-        a_through_point_without_a_next_command_is_stopped_at,
-        pause_ramps_down_and_keeps_the_last_point,
-        a_goal_before_its_time_is_reached_without_a_jump,
-        the_knob_stops_the_path,
-        movetables_and_changing_poses_make_the_goal,
         missing_records_and_bad_parameters_are_refused_and_stop_the_robot,
         a_silent_t3i_is_noticed,
         a_t3i_that_does_not_echo_gets_one_point_more_and_no_other,
-        a_last_point_that_is_not_echoed_is_noticed,
-        a_held_t3i_is_waited_for,
-        a_point_is_sent_every_tick,
-        pause_is_done_when_the_resolvers_show_that_the_robot_rests,
         a_robot_that_swings_through_the_goal_is_not_at_rest,
         robot_init_in_the_middle_of_a_motion_stops_the_robot_first,
         without_e_move_the_robot_stops,
         a_robot_that_does_not_arrive_is_an_error_after_two_seconds,
-        a_restarted_prim_executes_nothing,
-        a_restored_prim_goes_on_to_the_bit,
-        devices_that_are_lost_or_tripped_stop_the_robot,
     ];
     let scenarios =
         [SCENARIOS, line::SCENARIOS, guarded::SCENARIOS, joystick::SCENARIOS, recovery::SCENARIOS].concat();

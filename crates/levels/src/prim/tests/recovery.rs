@@ -7,16 +7,8 @@ use crate::prim::state::{MOST_RESTARTS, RESTART_TICKS};
 
 pub(super) const SCENARIOS: &[fn()] = &[
     a_motion_goes_on_from_rest_to_its_goal_after_every_fault,
-    it_goes_on_to_the_goal_of_the_command_that_is_current_then,
-    a_robot_that_flies_on_is_sent_on_by_the_next_motion,
     a_link_that_fails_while_pause_stands_is_reported_and_the_next_motion_restarts_it,
-    a_guarded_move_asks_its_condition_before_the_first_point,
-    a_guarded_move_that_was_stopping_is_done_where_it_rests,
-    a_missed_condition_is_waited_for_after_a_restart,
-    cal_sensor_begins_its_samples_anew,
     a_restart_without_a_report_is_a_lost_link,
-    a_controller_whose_dtr_is_off_is_a_link_that_is_off,
-    controller_that_goes_off_after_the_end_of_a_motion_is_reported_beside_done,
     too_many_restarts_are_a_lost_link_and_pass,
     a_link_that_fails_again_and_again_is_lost_by_its_last_fault,
     a_robot_that_is_elsewhere_waits_for_robot_init,
@@ -24,7 +16,6 @@ pub(super) const SCENARIOS: &[fn()] = &[
     robot_init_says_what_is_wrong_with_the_link,
     robot_init_clears_a_fault_of_the_link_but_not_a_robot_off_its_path,
     a_link_that_fails_leaves_no_motion_behind,
-    a_restarted_prim_goes_on_where_the_robot_stands,
 ];
 
 const FAULTS: [LinkFault; 5] = [
@@ -348,7 +339,10 @@ fn a_restarted_prim_goes_on_where_the_robot_stands() {
     rig.restart();
     rig.wait(5);
     assert_eq!((rig.report(), rig.memory.prim.status.reason), (PrimReport::Error, Reason::Restarted));
+    assert_eq!(rig.memory.prim.t3i.command, T3iVerb::Pause);
     let stopped = rig.world.t3i.output;
+    rig.wait(20);
+    assert_eq!(rig.world.t3i.output, stopped);
     rig.world.t3i.path.clear();
     assert_eq!(rig.run(PrimVerb::GotoPt, 3), PrimReport::Done);
     rig.check_path(&stopped.to_frame().unwrap());

@@ -5,21 +5,21 @@ use geometry::pose::Pose;
 use interfaces::{
     CommonMemory, EmoveOutputs, ExternalInputs, Header, PedestalOutputs, Reason, StatusReport,
     SubtaskOutputs,
-    emove::{EmoveCommand, EmoveVerb, Holding, LocatedObject, ObjectGrip, PlacedObject, Standing},
+    emove::{EmoveCommand, EmoveVerb, Holding, ObjectGrip},
     grip::Felt,
-    pedestal::{PedestalCommand, PedestalReport, PedestalVerb},
+    pedestal::{PedestalCommand, PedestalReport, PedestalStatus, PedestalVerb},
     subtask::{SubtaskCommand, SubtaskVerb},
 };
-use rcs_core::{
-    handshake::{Arrival, Receiver},
-    name::Name16,
-    tick::Tick,
-};
-use taskdata::files::{EndEffId, TaskData};
+use rcs_core::{name::Name16, tick::Tick};
+use taskdata::files::TaskData;
 
 use super::data::data;
 use crate::{
     bench::{self, Tested, World},
+    environment::{
+        emove,
+        worker::{Turn, Worker},
+    },
     places::Missing,
     subtask::Subtask,
 };
@@ -49,8 +49,7 @@ pub enum Mishap {
 /// The E-move that a test sees.
 #[derive(Clone, Default)]
 pub struct EmoveDouble {
-    receiver: Receiver,
-    left: u32,
+    worker: Worker,
     pub outputs: EmoveOutputs,
     pub received: Vec<EmoveCommand>,
     pub mishap: Option<(EmoveVerb, Mishap)>,
@@ -66,22 +65,16 @@ impl EmoveDouble {
         if silent {
             return;
         }
-        match self.receiver.observe(command.number) {
-            Arrival::New => {
+        match self.worker.turn(command.number, WORK) {
+            Turn::Takes => {
                 self.received.push(*command);
-                self.left = WORK;
-                self.outputs.status.report = StatusReport::Executing;
+                emove::take(&mut self.outputs.status, command.number);
                 self.outputs.status.reason = Reason::None;
             }
-            Arrival::Same if self.left > 0 => {
-                self.left -= 1;
-                if self.left == 0 {
-                    self.end(command);
-                }
-            }
-            _ => {}
+            Turn::Ends => self.end(command),
+            Turn::Waits => {}
         }
-        self.outputs.status.echo = self.receiver.echo;
+        self.outputs.status.echo = self.worker.echo();
     }
 
     fn end(&mut self, command: &EmoveCommand) {
@@ -90,7 +83,7 @@ impl EmoveDouble {
         status.report = StatusReport::Done;
         match mishap {
             _ if self.ignores => {}
-            None => self.effect(command),
+            None => emove::effect(status, command),
             Some(Mishap::Error(reason)) => (status.report, status.reason) = (StatusReport::Error, reason),
             Some(Mishap::Special(reason)) => {
                 (status.report, status.reason) = (StatusReport::JoystickOn, reason)
@@ -98,72 +91,27 @@ impl EmoveDouble {
             Some(Mishap::Hang | Mishap::Silence) => status.report = StatusReport::Executing,
             Some(Mishap::NoEffect) => {}
             Some(Mishap::Loss) => {
-                self.effect(command);
-                self.hold("", 0);
+                emove::effect(status, command);
+                status.held = Holding::Nothing;
             }
             Some(Mishap::OtherGripper(id)) => status.end_effector_id = Some(id),
         }
     }
 
-    fn effect(&mut self, command: &EmoveCommand) {
-        match command.command {
-            EmoveVerb::GraspObj => self.hold(command.object.unwrap_or_default().as_str(), command.grip),
-            EmoveVerb::AcquireTool => {
-                self.hold(command.object.unwrap_or_default().as_str(), command.grip);
-                self.outputs.status.drum = true;
-            }
-            EmoveVerb::InsertTool => self.outputs.status.drum = true,
-            EmoveVerb::RemoveTool => self.outputs.status.drum = false,
-            EmoveVerb::Release => {
-                if let Some(held) = self.outputs.status.held.object() {
-                    self.outputs.status.placed =
-                        Some(PlacedObject { object: held, grip: command.grip, site: command.site });
-                }
-                self.hold("", 0);
-            }
-            EmoveVerb::ReleaseTool => {
-                self.hold("", 0);
-                self.outputs.status.drum = false;
-            }
-            EmoveVerb::LocateObj => {
-                self.outputs.status.located =
-                    command.object.map(|object| LocatedObject { object, site: command.site });
-            }
-            EmoveVerb::QcDetach => {
-                (self.outputs.status.end_effector_id, self.outputs.status.exchange) = (None, None);
-            }
-            EmoveVerb::QcAttach => {
-                self.outputs.status.end_effector_id = command.end_effector_id;
-                self.outputs.status.exchange = None;
-            }
-            EmoveVerb::MovToLoc | EmoveVerb::MovToObj | EmoveVerb::MovObjTo | EmoveVerb::MovToHol => {
-                self.outputs.status.at = Some(Standing {
-                    site: command.site,
-                    grip: Some(command.grip).filter(|_| command.command != EmoveVerb::MovToLoc),
-                });
-            }
-            _ => {}
-        }
-    }
-
     /// The gripper holds an object; an empty name for none.
     pub fn hold(&mut self, object: &str, grip: i32) {
-        let object = Name16::new(object).unwrap();
-        let held = Holding::Object(ObjectGrip { object, grip });
-        self.outputs.status.held = if object.is_empty() {
-            Holding::Nothing
-        } else {
-            self.outputs.status.located = None;
-            held
-        };
+        let status = &mut self.outputs.status;
+        match Name16::clipped(object) {
+            object if object.is_empty() => status.held = Holding::Nothing,
+            object => emove::grasp(status, ObjectGrip { object, grip }),
+        }
     }
 }
 
 /// The Active Pedestal that a test sees.
 #[derive(Clone, Default)]
 pub struct PedestalDouble {
-    receiver: Receiver,
-    left: u32,
+    worker: Worker,
     pub outputs: PedestalOutputs,
     pub received: Vec<PedestalCommand>,
     pub mishap: Option<(PedestalVerb, Mishap)>,
@@ -184,50 +132,53 @@ impl PedestalDouble {
         }
         outputs.header = Header { stamp: tick, ..Header::default() };
         let status = &mut outputs.status;
-        match self.receiver.observe(command.number) {
-            Arrival::New => {
+        match self.worker.turn(command.number, WORK) {
+            Turn::Takes => {
                 self.received.push(*command);
-                self.left = WORK;
                 (status.report, status.reason) = (PedestalReport::Executing, Reason::None);
             }
-            Arrival::Same if self.left > 0 => {
-                self.left -= 1;
-                if self.left == 0 {
-                    (status.report, status.reason) = match mishap {
-                        Some(Mishap::Error(reason)) => (PedestalReport::Error, reason),
-                        Some(Mishap::Special(reason)) => (PedestalReport::CannotDo, reason),
-                        Some(Mishap::Hang) => (PedestalReport::Executing, Reason::None),
-                        _ => (PedestalReport::Done, Reason::None),
-                    };
-                    match command.command {
-                        _ if mishap == Some(Mishap::NoEffect) || self.ignores => {}
-                        PedestalVerb::PreGrip => {
-                            status.grip_size = command.grasp_size;
-                            status.table_position = Some(command.table_angle);
-                            (status.felt, status.gripped) = (Felt::Nothing, false);
-                        }
-                        PedestalVerb::Release => {
-                            status.grip_size = command.grasp_size;
-                            (status.felt, status.gripped) = (Felt::Nothing, false);
-                        }
-                        PedestalVerb::Grip => {
-                            let holds = self.part > command.grasp_size;
-                            status.grip_size = self.part.max(command.grasp_size);
-                            status.felt = if holds { Felt::Something } else { Felt::Nothing };
-                            status.gripped = true;
-                        }
-                        PedestalVerb::Flip if !self.slips => {
-                            status.table_position =
-                                status.table_position.map(|position| position + command.table_angle);
-                        }
-                        PedestalVerb::Flip => (status.grip_size, status.felt) = (0, Felt::Nothing),
-                        _ => {}
-                    }
+            Turn::Ends => {
+                (status.report, status.reason) = match mishap {
+                    Some(Mishap::Error(reason)) => (PedestalReport::Error, reason),
+                    Some(Mishap::Special(reason)) => (PedestalReport::CannotDo, reason),
+                    Some(Mishap::Hang) => (PedestalReport::Executing, Reason::None),
+                    _ => (PedestalReport::Done, Reason::None),
+                };
+                if mishap != Some(Mishap::NoEffect) && !self.ignores {
+                    Self::effect(status, command, self.part, self.slips);
                 }
             }
-            _ => {}
+            Turn::Waits => {}
         }
-        status.echo = self.receiver.echo;
+        status.echo = self.worker.echo();
+    }
+
+    /// The effect of an order that is done, with a part of a size in the hand's reach, which slips or not.
+    const fn effect(status: &mut PedestalStatus, command: &PedestalCommand, part: i32, slips: bool) {
+        match command.command {
+            PedestalVerb::PreGrip => {
+                status.grip_size = command.grasp_size;
+                status.table_position = Some(command.table_angle);
+                (status.felt, status.gripped) = (Felt::Nothing, false);
+            }
+            PedestalVerb::Release => {
+                status.grip_size = command.grasp_size;
+                (status.felt, status.gripped) = (Felt::Nothing, false);
+            }
+            PedestalVerb::Grip => {
+                let holds = part > command.grasp_size;
+                status.grip_size = if holds { part } else { command.grasp_size };
+                status.felt = if holds { Felt::Something } else { Felt::Nothing };
+                status.gripped = true;
+            }
+            PedestalVerb::Flip if slips => (status.grip_size, status.felt) = (0, Felt::Nothing),
+            PedestalVerb::Flip => {
+                if let Some(position) = status.table_position {
+                    status.table_position = Some(position + command.table_angle);
+                }
+            }
+            PedestalVerb::None | PedestalVerb::Pause => {}
+        }
     }
 }
 

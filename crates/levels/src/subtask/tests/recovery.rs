@@ -19,24 +19,15 @@ use super::{
 };
 
 pub(super) const SCENARIOS: &[fn()] = &[
-    a_new_command_stops_what_is_under_way_before_it_is_answered,
-    a_stop_that_the_box_has_ended_is_not_waited_for_again,
-    a_restarted_subtask_stops_what_it_had_commanded,
     without_task_everything_stops,
-    an_interrupted_regrip_goes_on,
-    a_table_that_was_stopped_half_way_turns_by_what_is_left,
     while_the_part_is_in_the_pedestal_nothing_else_is_done,
     a_regrip_ends_from_every_state_whether_the_world_obeys_or_ignores,
     an_exchange_that_was_interrupted_is_finished_first,
     what_is_held_and_not_known_is_neither_taken_nor_placed,
-    what_counts_as_held_is_grasped_again_in_its_grip,
     an_object_that_is_placed_is_not_placed_again,
-    what_vision_has_found_is_not_looked_for_again,
     object_that_may_have_slid_is_released_and_located_again_where_pictures_are_taken,
     pictures_that_are_lost_on_the_way_are_taken_again_before_anything_is_grasped,
-    what_belongs_to_one_sector_does_not_count_for_another,
     fingers_that_have_let_go_are_led_out_of_the_drum,
-    an_interrupted_grasp_of_a_tool_is_made_again,
     a_pause_waits_for_robot_and_pedestal,
     a_person_takes_a_part_with_the_pedestal_turns_and_releases_it,
     orders_of_a_person_are_refused_while_subtask_or_robot_are_at_the_pedestal,
@@ -59,7 +50,7 @@ fn is_under_way(bench: &Bench<'_>) -> bool {
 }
 
 #[test]
-fn a_new_command_stops_what_is_under_way_before_it_is_answered() {
+fn new_command_stops_the_running_one_before_it_is_answered() {
     for (verb, object, location) in [
         (SubtaskVerb::Pause, "", ""),
         (SubtaskVerb::None, "", ""),
@@ -96,7 +87,7 @@ fn a_stop_that_the_box_has_ended_is_not_waited_for_again() {
 }
 
 #[test]
-fn a_restarted_subtask_stops_what_it_had_commanded() {
+fn restarted_subtask_stops_its_orders() {
     for mut bench in Bench::fixing().at_every_tick() {
         let tick = bench.tick;
         bench.restart();

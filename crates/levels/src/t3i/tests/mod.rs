@@ -110,6 +110,12 @@ impl Bench {
         (tables::TABLES[usize::from(table) - 1].name, row)
     }
 
+    /// An invalid command is the fault, by this row.
+    fn assert_refused_by(&self, table: &'static str, row: u8) {
+        let refused = (T3iReport::Error, LinkFault::InvalidCommand, (table, row));
+        assert_eq!((self.report(), self.fault(), self.row()), refused);
+    }
+
     fn sent(&self) -> Option<Plate> {
         DataCommand::parse(self.memory.t3i.link_tx.as_slice()).ok().map(|command| command.plate)
     }
@@ -223,17 +229,11 @@ fn a_gap_in_the_numbers_is_an_invalid_command_until_pause() {
     bench.memory.prim.t3i.number += 1;
     bench.point(&beside(0.3));
     bench.step();
-    assert_eq!(
-        (bench.report(), bench.fault(), bench.row()),
-        (T3iReport::Error, LinkFault::InvalidCommand, ("RECEIVE", 8))
-    );
+    bench.assert_refused_by("RECEIVE", 8);
     // The next point was on its way already.
     bench.point(&beside(0.4));
     bench.step();
-    assert_eq!(
-        (bench.report(), bench.fault(), bench.row()),
-        (T3iReport::Error, LinkFault::InvalidCommand, ("RECEIVE", 10))
-    );
+    bench.assert_refused_by("RECEIVE", 10);
     assert!((bench.robot_tool().position.x - 0.1).abs() < 0.01);
     bench.command(T3iVerb::Pause);
     bench.step();
@@ -338,10 +338,7 @@ fn points_before_the_report_are_refused() {
     bench.step();
     bench.point(&beside(0.1));
     bench.step();
-    assert_eq!(
-        (bench.report(), bench.fault(), bench.row()),
-        (T3iReport::Error, LinkFault::InvalidCommand, ("RECEIVE", 7))
-    );
+    bench.assert_refused_by("RECEIVE", 7);
 }
 
 #[test]
@@ -671,25 +668,15 @@ fn a_state_that_is_restored_goes_on_to_the_bit() {
 #[test]
 fn every_row_fires() {
     let silent = silent::<T3i, ()>(&[
-        restart_brings_the_link_up_and_holds_the_reported_position,
-        one_point_a_tick_is_sustained,
-        a_point_beyond_the_limits_is_scaled_back_on_a_straight_line,
-        a_queue_that_fills_asks_prim_to_wait_and_never_overflows,
         a_gap_in_the_numbers_is_an_invalid_command_until_pause,
         a_way_without_words_is_an_invalid_command,
         while_a_frame_is_outstanding_nothing_is_sent,
         the_first_of_two_points_without_words_is_an_invalid_command,
         a_command_without_a_word_is_invalid,
         points_before_the_report_are_refused,
-        pause_empties_the_queue_and_holds,
         while_prim_is_held_or_lost_the_position_stands,
-        a_cut_line_is_noticed_reported_and_mended_only_by_restart,
-        bytes_that_the_port_did_not_take_are_said_to_be_not_transmitted,
-        a_restart_without_an_answer_is_an_error_at_the_end_of_patience,
         a_robot_that_is_elsewhere_stays_so_until_it_is_sent_on,
         a_report_after_dtr_was_off_is_not_believed_to_be_where_it_was_sent,
-        a_restarted_t3i_does_not_move_and_says_so,
-        hold_on_the_panel_is_survived,
         follow::a_robot_off_its_path_gets_nothing_until_a_restart,
         follow::the_resolvers_have_a_second_to_come_near_a_reported_position,
     ]);

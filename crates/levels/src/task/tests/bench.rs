@@ -18,6 +18,7 @@ use taskdata::files::TaskData;
 
 use crate::{
     bench::{self, Tested, World},
+    environment::worker::{Turn, Worker},
     subtask::tests::data::data,
     task::Task,
 };
@@ -37,8 +38,7 @@ pub enum Mishap {
 /// The Subtask that a test sees.
 #[derive(Clone, Default)]
 pub struct SubtaskDouble {
-    receiver: Receiver,
-    left: u32,
+    worker: Worker,
     last: SubtaskCommand,
     pub outputs: SubtaskOutputs,
     pub received: Vec<SubtaskCommand>,
@@ -56,18 +56,19 @@ impl SubtaskDouble {
         if mishap == Some(Mishap::Silence) {
             return;
         }
-        let arrival = self.receiver.observe(command.number);
+        let is_replaced = self.worker.is_working();
+        let turn = self.worker.turn(command.number, WORK);
         // Fingers that open finish that, whatever comes.
         let last = self.last;
         let opens = matches!(last.command, SubtaskVerb::Release | SubtaskVerb::ReleaseTool);
-        if arrival == Arrival::New && self.left > 0 && opens {
+        if turn == Turn::Takes && is_replaced && opens {
             self.effect(&last);
         }
         let status = &mut self.outputs.status;
-        match arrival {
-            Arrival::New => {
+        match turn {
+            Turn::Takes => {
                 self.received.push(*command);
-                (self.left, self.last) = (WORK, *command);
+                self.last = *command;
                 let stands = matches!(
                     command.command,
                     SubtaskVerb::Pause | SubtaskVerb::GetEndeff | SubtaskVerb::Release
@@ -77,24 +78,21 @@ impl SubtaskDouble {
                 }
                 (status.report, status.reason) = (StatusReport::Executing, Reason::None);
             }
-            Arrival::Same if self.left > 0 => {
-                self.left -= 1;
-                if self.left == 0 {
-                    (status.report, status.reason) = match mishap {
-                        Some(Mishap::Error(reason)) => (StatusReport::Error, reason),
-                        _ => (StatusReport::Done, Reason::None),
-                    };
-                    if mishap.is_none() {
-                        self.effect(command);
-                    }
+            Turn::Ends => {
+                (status.report, status.reason) = match mishap {
+                    Some(Mishap::Error(reason)) => (StatusReport::Error, reason),
+                    _ => (StatusReport::Done, Reason::None),
+                };
+                if mishap.is_none() {
+                    self.effect(command);
                 }
             }
-            _ => {}
+            Turn::Waits => {}
         }
         let status = &mut self.outputs.status;
-        status.echo = self.receiver.echo;
+        status.echo = self.worker.echo();
         if self.joystick {
-            self.left = 0;
+            self.worker.stop();
             (status.report, status.reason) = (StatusReport::JoystickOn, Reason::JoystickOn);
         } else if status.report == StatusReport::JoystickOn {
             status.report = StatusReport::Error;
@@ -332,6 +330,20 @@ impl<'d> Bench<'d> {
         self.world.data_system.received.clear();
         self.command(line);
         self.finish()
+    }
+
+    /// What becomes of a line that is interrupted after each tick in which it executes: by another one, or a restart.
+    pub fn interrupted(mut self, line: &str, by: Option<&str>) -> impl Iterator<Item = Self> {
+        self.command(line);
+        self.at_every_tick().map(move |mut copy| {
+            match by {
+                Some(other) => copy.command(other),
+                None => copy.restart(),
+            }
+            copy.finish();
+            copy.wait(10);
+            copy
+        })
     }
 
     /// The words that Subtask was sent since the last command began.

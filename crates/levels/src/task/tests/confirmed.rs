@@ -7,16 +7,15 @@ use interfaces::{
     subtask::{SubtaskStatus, SubtaskVerb},
 };
 
-use super::bench::{Bench, FINISHED};
+use super::{
+    bench::{Bench, FINISHED},
+    error,
+};
 
 pub(super) const SCENARIOS: &[fn()] = &[
-    move_is_not_finished_elsewhere_or_beside_the_destination,
     transfer_is_not_finished_while_something_is_held_or_nothing_was_placed,
     position_is_not_finished_while_the_object_is_held,
     object_that_is_gone_is_not_acquired,
-    robot_beside_its_end_at_location_goes_there,
-    tool_in_the_drum_is_finished_and_unconfirmed,
-    part_that_may_have_slid_is_finished_and_unconfirmed,
 ];
 
 /// Subtask reports done for the last order of a line, and its status is changed then. How the command ends.
@@ -40,10 +39,6 @@ fn end(
         }
     }
     panic!("no end: {:?}", bench.process);
-}
-
-const fn error(reason: Reason) -> (HwsReport, Reason) {
-    (HwsReport::Error, reason)
 }
 
 #[test]

@@ -56,7 +56,7 @@ fn every_order_of_task_leads_to_a_later_step() {
 }
 
 #[test]
-fn as_long_as_the_operator_does_not_have_the_robot_the_joystick_table_lets_the_command_go_on() {
+fn joystick_table_passes_while_control_is_automatic() {
     for subtask in [Lower::Pending, Lower::Executing, Lower::Done, Lower::Error, Lower::Lost] {
         for &outcome in Outcome::ALL {
             let verdict = joystick(Control::Automatic, &Operator { subtask, outcome });
@@ -66,7 +66,7 @@ fn as_long_as_the_operator_does_not_have_the_robot_the_joystick_table_lets_the_c
 }
 
 #[test]
-fn a_command_whose_gripper_has_a_number_of_none_is_refused() {
+fn command_with_an_invalid_gripper_number_is_refused() {
     let request =
         Request { asked: Asked::Now, verb: TaskVerb::Move, gripper: Gripper::Invalid, ..Request::default() };
     let Verdict::Decided(decision) = accept((), &request) else { panic!() };

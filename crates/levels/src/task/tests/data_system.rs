@@ -12,47 +12,18 @@ use interfaces::{
 use rcs_core::name::Name16;
 
 use super::{
+    FROM_TRAY, HOME, LET_GO, NOWHERE, PAUSE, SAFE, SHUTDOWN, STARTUP, TRANSFER, TRANSFER_AND_STAY,
     bench::{Answer, Bench, FINISHED},
     error,
 };
 use crate::task::data_system::{ANSWER_LIMIT, MAX_TRIES};
 
 pub(super) const SCENARIOS: &[fn()] = &[
-    startup_sends_abort_initiate_and_startup,
-    a_data_system_that_is_not_connected_is_not_waited_for,
-    with_db_done_no_answer_is_waited_for,
-    moves_from_and_to_the_mbd_are_told_and_no_others,
-    the_data_base_is_told_before_the_robot_leaves,
-    a_slow_data_system_is_waited_for,
-    a_silent_data_system_is_asked_again_and_then_an_error,
-    a_late_answer_to_an_update_that_was_repeated_is_not_believed,
-    an_update_that_is_not_taken_is_kept_and_told_before_the_next_object_moves,
-    an_update_that_is_not_taken_is_told_at_the_end_of_the_next_startup,
-    an_answer_that_comes_after_the_command_has_failed_settles_the_update,
-    a_data_system_that_does_not_let_itself_be_connected_is_an_error,
-    the_serial_number_of_the_command_goes_to_the_data_system,
-    an_object_that_was_taken_elsewhere_is_not_told_as_taken_from_the_mbd,
-    a_position_tells_what_was_let_go_before_it_was_replaced,
-    the_next_command_tells_what_was_let_go_before_another_was_replaced,
-    release_tool_tells_where_the_tool_is,
-    what_was_put_into_a_tray_is_told_with_its_sector,
-    what_an_abandoned_command_has_taken_out_of_a_tray_is_told,
-    a_part_that_was_lost_is_not_told_for_the_next_one,
-    two_parts_of_a_name_keep_their_serial_numbers,
-    a_hand_that_cannot_be_read_changes_nothing,
-    the_sector_is_that_in_which_the_part_was_let_go,
-    a_transfer_that_is_accepted_in_the_tick_of_the_grasp_tells,
-    refixture_tells_first_what_is_owed,
-    a_deleted_command_takes_nothing,
-    what_the_robot_holds_is_not_forgotten_for_what_it_cannot_take,
-    a_transfer_tells_where_it_puts_what_the_robot_had,
+    late_answer_to_a_repeated_update_is_ignored,
+    repeated_position_updates_the_object_it_released,
+    parts_of_one_name_keep_their_serial_numbers,
+    refixture_sends_pending_updates_first,
 ];
-
-const STARTUP: &str = "STARTUP -- 0 -- 0 0 -- 0 -- 0";
-const SHUTDOWN: &str = "SHUTDOWN -- 0 -- 0 0 -- 0 -- 0";
-const TO_TRAY: &str = "TRANSFER PART +1 PFIXTURE 0 +1 UNIT_1 2 SAFE 0";
-const TO_TRAY_AND_STAY: &str = "TRANSFER PART +1 PFIXTURE 0 +1 UNIT_1 2 -- 0";
-const FROM_TRAY: &str = "MOVE PART +1 UNIT_1 2 +1 PFIXTURE 0 -- 0";
 
 /// What the last update says: item, serial number, position, sector.
 fn update(bench: &Bench<'_>) -> (String, String, String, i32) {
@@ -72,25 +43,25 @@ fn startup_sends_abort_initiate_and_startup() {
 }
 
 #[test]
-fn a_data_system_that_is_not_connected_is_not_waited_for() {
+fn unconnected_data_system_receives_nothing() {
     let mut bench = Bench::default();
-    for line in [TO_TRAY, FROM_TRAY] {
+    for line in [TRANSFER, FROM_TRAY] {
         assert_eq!(bench.run(line), FINISHED);
     }
     assert!(bench.asked().is_empty());
     let mut bench = Bench::connected();
     assert_eq!(bench.run(SHUTDOWN), FINISHED);
     bench.world.data_system.answer = Answer::Absent;
-    assert_eq!(bench.run(TO_TRAY), FINISHED);
+    assert_eq!(bench.run(TRANSFER), FINISHED);
     assert!(bench.asked().is_empty());
 }
 
 #[test]
-fn with_db_done_no_answer_is_waited_for() {
+fn db_done_waits_for_no_answer() {
     let mut bench = Bench::connected();
     bench.world.data_system.answer = Answer::Absent;
     bench.external.operator.db_done = true;
-    assert_eq!(bench.run(TO_TRAY), FINISHED);
+    assert_eq!(bench.run(TRANSFER), FINISHED);
     assert_eq!(bench.asked(), ["UPDATE"], "it is sent once");
     assert!(bench.memory.task.beliefs.owed.iter().all(Option::is_none), "it counts as taken");
     bench.external.operator.db_done = false;
@@ -98,14 +69,14 @@ fn with_db_done_no_answer_is_waited_for() {
 }
 
 #[test]
-fn moves_from_and_to_the_mbd_are_told_and_no_others() {
+fn only_moves_from_and_to_the_mbd_are_updates() {
     let mut bench = Bench::connected();
-    assert_eq!(bench.run(TO_TRAY), FINISHED);
+    assert_eq!(bench.run(TRANSFER), FINISHED);
     let words = |item: &str, position: &str, sector| {
         (item.to_owned(), "S-17".to_owned(), position.to_owned(), sector)
     };
     assert_eq!(update(&bench), words("PART", "UNIT_1", 2));
-    assert_eq!(bench.run(TO_TRAY_AND_STAY), FINISHED);
+    assert_eq!(bench.run(TRANSFER_AND_STAY), FINISHED);
     assert_eq!((bench.asked(), update(&bench)), (vec!["UPDATE"], words("PART", "UNIT_1", 2)));
     assert_eq!(bench.run(FROM_TRAY), FINISHED);
     assert_eq!((bench.asked(), update(&bench)), (vec!["UPDATE"], words("PART", "H_ROBOT", 0)));
@@ -116,14 +87,14 @@ fn moves_from_and_to_the_mbd_are_told_and_no_others() {
         assert_eq!(bench.run(line), FINISHED);
         assert!(bench.asked().is_empty(), "{line}");
     }
-    assert_eq!(bench.run("MOVE -- 0 -- 0 0 SAFE 0 -- 0"), FINISHED);
+    assert_eq!(bench.run(SAFE), FINISHED);
     assert!(bench.asked().is_empty());
 }
 
 #[test]
-fn the_data_base_is_told_before_the_robot_leaves() {
+fn update_precedes_the_departure_of_the_robot() {
     let mut bench = Bench::connected();
-    bench.command(TO_TRAY);
+    bench.command(TRANSFER);
     bench.until(|bench| !bench.asked().is_empty());
     assert_eq!(bench.sent().last(), Some(&"PLACE-OBJ"), "GOTO-ENDPT has not arrived yet");
     assert_eq!(bench.finish(), FINISHED);
@@ -131,10 +102,10 @@ fn the_data_base_is_told_before_the_robot_leaves() {
 }
 
 #[test]
-fn a_slow_data_system_is_waited_for() {
+fn slow_data_system_is_waited_for() {
     let mut bench = Bench::connected();
     bench.world.data_system.answer = Answer::After(200);
-    for line in [TO_TRAY, FROM_TRAY] {
+    for line in [TRANSFER, FROM_TRAY] {
         let before = bench.tick;
         assert_eq!(bench.run(line), FINISHED);
         assert!(bench.tick.since(before) > 200);
@@ -143,8 +114,8 @@ fn a_slow_data_system_is_waited_for() {
 }
 
 #[test]
-fn a_silent_data_system_is_asked_again_and_then_an_error() {
-    for line in [TO_TRAY, TO_TRAY_AND_STAY, FROM_TRAY] {
+fn silent_data_system_is_retried_and_then_reported() {
+    for line in [TRANSFER, TRANSFER_AND_STAY, FROM_TRAY] {
         let mut bench = Bench::connected();
         bench.world.data_system.answer = Answer::Absent;
         let before = bench.tick;
@@ -157,10 +128,10 @@ fn a_silent_data_system_is_asked_again_and_then_an_error() {
 }
 
 #[test]
-fn a_late_answer_to_an_update_that_was_repeated_is_not_believed() {
+fn late_answer_to_a_repeated_update_is_ignored() {
     let mut bench = Bench::connected();
     bench.world.data_system.answer = Answer::Absent;
-    bench.command(TO_TRAY);
+    bench.command(TRANSFER);
     while bench.world.data_system.received.len() < 2 {
         assert_eq!(bench.step().status.report, HwsReport::Executing);
     }
@@ -173,17 +144,17 @@ fn a_late_answer_to_an_update_that_was_repeated_is_not_believed() {
 }
 
 #[test]
-fn an_update_that_is_not_taken_is_kept_and_told_before_the_next_object_moves() {
+fn pending_update_precedes_the_next_object_motion() {
     for trouble in [Answer::Absent, Answer::Refuse] {
         let reason = if trouble == Answer::Refuse { Reason::DataBase } else { Reason::DataBaseSilent };
         let mut bench = Bench::connected();
         bench.world.data_system.answer = trouble;
-        assert_eq!(bench.run(TO_TRAY), error(reason));
+        assert_eq!(bench.run(TRANSFER), error(reason));
         let kept = update(&bench);
         // The robot alone can be moved.
-        assert_eq!(bench.run("MOVE -- 0 -- 0 0 SAFE 0 -- 0"), FINISHED);
+        assert_eq!(bench.run(SAFE), FINISHED);
         // An object cannot, while the update is not taken; nothing moves.
-        for line in [FROM_TRAY, TO_TRAY] {
+        for line in [FROM_TRAY, TRANSFER] {
             assert_eq!(bench.run(line), error(reason));
             assert_eq!((bench.sent(), update(&bench)), (vec![], kept.clone()));
         }
@@ -197,10 +168,10 @@ fn an_update_that_is_not_taken_is_kept_and_told_before_the_next_object_moves() {
 }
 
 #[test]
-fn an_update_that_is_not_taken_is_told_at_the_end_of_the_next_startup() {
+fn pending_update_follows_the_next_startup() {
     let mut bench = Bench::connected();
     bench.world.data_system.answer = Answer::Absent;
-    assert_eq!(bench.run(TO_TRAY), error(Reason::DataBaseSilent));
+    assert_eq!(bench.run(TRANSFER), error(Reason::DataBaseSilent));
     bench.world.data_system.answer = Answer::After(1);
     assert_eq!(bench.run(STARTUP), FINISHED);
     assert_eq!(bench.asked(), ["ABORT", "INITIATE", "STARTUP", "UPDATE"]);
@@ -216,10 +187,10 @@ fn an_update_that_is_not_taken_is_told_at_the_end_of_the_next_startup() {
 }
 
 #[test]
-fn an_answer_that_comes_after_the_command_has_failed_settles_the_update() {
+fn late_answer_after_a_failed_command_settles_the_update() {
     let mut bench = Bench::connected();
     bench.world.data_system.answer = Answer::Absent;
-    assert_eq!(bench.run(TO_TRAY), error(Reason::DataBaseSilent));
+    assert_eq!(bench.run(TRANSFER), error(Reason::DataBaseSilent));
     bench.world.data_system.answer = Answer::After(0);
     bench.wait(3);
     assert_eq!(bench.run(FROM_TRAY), FINISHED);
@@ -227,7 +198,7 @@ fn an_answer_that_comes_after_the_command_has_failed_settles_the_update() {
 }
 
 #[test]
-fn a_data_system_that_does_not_let_itself_be_connected_is_an_error() {
+fn refused_connection_is_reported() {
     for verb in [DataBaseVerb::Abort, DataBaseVerb::Initiate, DataBaseVerb::Startup] {
         for (answer, reason) in [(Answer::Refuse, Reason::DataBase), (Answer::Absent, Reason::DataBaseSilent)]
         {
@@ -236,7 +207,7 @@ fn a_data_system_that_does_not_let_itself_be_connected_is_an_error() {
             bench.world.data_system.except = Some((verb, answer));
             assert_eq!(bench.run(STARTUP), error(reason), "{verb}");
             // It is not connected: nothing is told.
-            assert_eq!(bench.run(TO_TRAY), FINISHED);
+            assert_eq!(bench.run(TRANSFER), FINISHED);
             assert!(bench.asked().is_empty());
         }
     }
@@ -244,12 +215,12 @@ fn a_data_system_that_does_not_let_itself_be_connected_is_an_error() {
         let mut bench = Bench::connected();
         bench.world.data_system.answer = answer;
         assert_eq!(bench.run(SHUTDOWN), error(reason));
-        assert_eq!(bench.run(TO_TRAY), FINISHED, "it counts as gone all the same");
+        assert_eq!(bench.run(TRANSFER), FINISHED, "it counts as gone all the same");
     }
 }
 
 #[test]
-fn the_serial_number_of_the_command_goes_to_the_data_system() {
+fn update_carries_the_serial_number_of_the_command() {
     let mut bench = Bench::connected();
     bench.command(FROM_TRAY);
     bench.external.hws.serial = Name16::new("LB-0042").unwrap();
@@ -266,7 +237,7 @@ fn told(bench: &mut Bench<'_>, line: &str) -> Vec<String> {
 
 /// An ACQUIRE that finds its object in the hand tells what its predecessor has not told, and nothing else.
 #[test]
-fn an_object_that_was_taken_elsewhere_is_not_told_as_taken_from_the_mbd() {
+fn acquire_of_an_object_taken_elsewhere_sends_no_update() {
     const FROM_FIXTURE: &str = "ACQUIRE PART +1 PFIXTURE 0 0 -- 0 -- 0";
     const FROM_SECTOR_2: &str = "ACQUIRE PART +1 UNIT_1 2 0 -- 0 -- 0";
     const FROM_SECTOR_1: &str = "ACQUIRE PART +1 UNIT_1 1 0 -- 0 -- 0";
@@ -281,7 +252,7 @@ fn an_object_that_was_taken_elsewhere_is_not_told_as_taken_from_the_mbd() {
     // The same, interrupted at any tick of the second command.
     let mut bench = Bench::connected();
     told(&mut bench, FROM_FIXTURE);
-    for mut bench in replaced(bench, FROM_SECTOR_2, PAUSE) {
+    for mut bench in bench.interrupted(FROM_SECTOR_2, Some(PAUSE)) {
         assert!(told(&mut bench, FROM_SECTOR_2).is_empty(), "tick {}", bench.tick);
     }
     // Taken elsewhere by a command that was interrupted.
@@ -291,7 +262,7 @@ fn an_object_that_was_taken_elsewhere_is_not_told_as_taken_from_the_mbd() {
     assert_eq!(bench.run(PAUSE), FINISHED);
     assert!(told(&mut bench, FROM_SECTOR_2).is_empty());
     // Taken there, by the same command, by a MOVE, and before the Data System was connected.
-    for first in [FROM_SECTOR_2, "MOVE PART +1 UNIT_1 2 +1 PFIXTURE 0 -- 0"] {
+    for first in [FROM_SECTOR_2, FROM_TRAY] {
         let mut bench = Bench::connected();
         bench.command(first);
         bench.until(|bench| bench.memory.subtask.status.held.object().is_some());
@@ -305,12 +276,8 @@ fn an_object_that_was_taken_elsewhere_is_not_told_as_taken_from_the_mbd() {
     assert_eq!(told(&mut bench, FROM_SECTOR_2), ["H_ROBOT"]);
 }
 
-const LET_GO: &str = "POSITION PART +1 PFIXTURE 0 0 -- 0 -- 0";
 const LET_GO_WITHOUT_NAME: &str = "POSITION -- 0 -- 0 0 PFIXTURE 0 -- 0";
 const TO_FIXTURE: &str = "TRANSFER PART +1 SAFE 0 +1 PFIXTURE 0 -- 0";
-const PAUSE: &str = "PAUSE -- 0 -- 0 0 -- 0 -- 0";
-const NOWHERE: &str = "MOVE -- 0 -- 0 0 NOWHERE 0 -- 0";
-const HOME: &str = "MOVE -- 0 -- 0 0 HOME 0 -- 0";
 const OTHER: &str = "TRANSFER BAR +1 PFIXTURE 0 +1 UNIT_1 1 SAFE 0";
 
 /// The positions that the Data System was told since the bench was asked last.
@@ -320,24 +287,14 @@ fn positions(bench: &mut Bench<'_>) -> Vec<String> {
     updates.map(|told| told.position.to_string()).collect()
 }
 
-/// What becomes of a line that is replaced after each tick in which it executes.
-fn replaced(mut bench: Bench<'static>, line: &str, by: &str) -> impl Iterator<Item = Bench<'static>> {
-    bench.command(line);
-    bench.at_every_tick().map(move |mut copy| {
-        copy.command(by);
-        copy.finish();
-        copy.wait(5);
-        copy
-    })
-}
-
 /// What becomes of a part that the data base has as the robot's when `line`, which lets it go, is replaced by `by`
 /// after each number of ticks: the benches in which the part lies in the fixture, and where it is said to be by then.
 fn let_go_while_replaced(line: &str, by: &str) -> Vec<(Bench<'static>, Vec<String>)> {
     let mut bench = Bench::connected();
     assert_eq!(told(&mut bench, FROM_TRAY), ["H_ROBOT"]);
     bench.world.data_system.received.clear();
-    let placed = replaced(bench, line, by).filter(|bench| bench.memory.subtask.status.placed.is_some());
+    let placed =
+        bench.interrupted(line, Some(by)).filter(|bench| bench.memory.subtask.status.placed.is_some());
     placed
         .map(|mut bench| {
             let told = positions(&mut bench);
@@ -349,7 +306,7 @@ fn let_go_while_replaced(line: &str, by: &str) -> Vec<(Bench<'static>, Vec<Strin
 /// The fingers have let the part go when the POSITION comes again. It has nothing to release, and tells of the part
 /// all the same.
 #[test]
-fn a_position_tells_what_was_let_go_before_it_was_replaced() {
+fn repeated_position_updates_the_object_it_released() {
     for line in [LET_GO, LET_GO_WITHOUT_NAME] {
         for by in [PAUSE, NOWHERE, HOME] {
             let mut untold = 0;
@@ -366,7 +323,7 @@ fn a_position_tells_what_was_let_go_before_it_was_replaced() {
 
 /// The command is not sent again: the next one about another object, or a STARTUP, tells first where the part is.
 #[test]
-fn the_next_command_tells_what_was_let_go_before_another_was_replaced() {
+fn next_command_updates_an_object_released_before() {
     for line in [LET_GO, LET_GO_WITHOUT_NAME, TO_FIXTURE] {
         for (next, then) in [(OTHER, &["UNIT_1"][..]), (STARTUP, &[])] {
             let mut untold = 0;
@@ -386,7 +343,7 @@ fn the_next_command_tells_what_was_let_go_before_another_was_replaced() {
 
 /// A tool that the drum gets from the robot is the robot's no longer, with an end-at location or without.
 #[test]
-fn release_tool_tells_where_the_tool_is() {
+fn release_tool_updates_the_tool() {
     for end_at in ["TOOL-SAFE", "--"] {
         let release = format!("RELEASE-TOOL TOOL-1 +1 -- 0 +1 -- 0 {end_at} 0");
         let bench = || {
@@ -399,7 +356,7 @@ fn release_tool_tells_where_the_tool_is() {
         };
         assert_eq!(told(&mut bench(), &release), ["TOOL-TRNS"], "{end_at}");
         // Replaced at any tick after the fingers have let go, and sent again.
-        for mut bench in replaced(bench(), &release, PAUSE) {
+        for mut bench in bench().interrupted(&release, Some(PAUSE)) {
             let mut positions = positions(&mut bench);
             positions.extend(told(&mut bench, &release));
             assert_eq!(positions, ["TOOL-TRNS"], "{end_at}, tick {}", bench.tick);
@@ -409,9 +366,9 @@ fn release_tool_tells_where_the_tool_is() {
 
 /// A part that an abandoned TRANSFER has put into a tray is told with its sector.
 #[test]
-fn what_was_put_into_a_tray_is_told_with_its_sector() {
+fn update_of_an_abandoned_transfer_carries_its_sector() {
     let mut untold = 0;
-    for (mut bench, positions) in let_go_while_replaced(TO_TRAY, PAUSE) {
+    for (mut bench, positions) in let_go_while_replaced(TRANSFER, PAUSE) {
         if positions.is_empty() {
             untold += 1;
             assert_eq!(told(&mut bench, OTHER), ["UNIT_1", "UNIT_1"]);
@@ -459,7 +416,7 @@ fn until(bench: &mut Bench<'_>, holds: impl Fn(&SubtaskStatus) -> bool) {
 /// the next one about an object, tells where it is. So it is if an earlier part of the same name was let go before, and
 /// that one is told of no more.
 #[test]
-fn what_an_abandoned_command_has_taken_out_of_a_tray_is_told() {
+fn object_taken_by_an_abandoned_command_is_updated() {
     const LINES: [&str; 4] = [
         "TRANSFER PART +1 UNIT_1 2 +1 PFIXTURE 0 SAFE 0",
         FROM_TRAY,
@@ -489,7 +446,7 @@ fn what_an_abandoned_command_has_taken_out_of_a_tray_is_told() {
             if below.held.object().is_some() {
                 held += 1;
                 bench.set(1, "PART", "PFIXTURE");
-                perform(&mut bench, "POSITION PART +1 PFIXTURE 0 0 -- 0 -- 0", "B");
+                perform(&mut bench, LET_GO, "B");
                 told.extend(parts(&mut bench));
                 told.retain(|told| *told != was("B", "H_ROBOT", 0));
                 assert_eq!(told, [was("B", "PFIXTURE", 0)], "{case}");
@@ -512,7 +469,7 @@ fn what_an_abandoned_command_has_taken_out_of_a_tray_is_told() {
 /// The robot has lost the part that it carried, with a Data System or without. What it takes then under the same name
 /// is another one.
 #[test]
-fn a_part_that_was_lost_is_not_told_for_the_next_one() {
+fn lost_part_is_not_updated_for_the_next_one() {
     let mut bench = Bench::connected();
     perform(&mut bench, FROM_TRAY, "A");
     bench.set(1, "", "PFIXTURE");
@@ -557,7 +514,7 @@ fn a_part_that_was_lost_is_not_told_for_the_next_one() {
 /// A part keeps its serial number while it is held, whatever commands call it that do not tell of it; the next part of
 /// the same name has its own.
 #[test]
-fn two_parts_of_a_name_keep_their_serial_numbers() {
+fn parts_of_one_name_keep_their_serial_numbers() {
     for next in [
         "TRANSFER PART +1 UNIT_1 1 +1 SAFE 0 -- 0",
         "MOVE PART +1 SAFE 0 +1 HOME 0 -- 0",
@@ -611,7 +568,7 @@ fn two_parts_of_a_name_keep_their_serial_numbers() {
 /// The hand cannot be read for a time, in which a command is accepted: what it holds keeps its serial number, and an
 /// object that was taken elsewhere is not told.
 #[test]
-fn a_hand_that_cannot_be_read_changes_nothing() {
+fn unreadable_gripper_keeps_serial_number_and_origin() {
     const ACQUIRE: &str = "ACQUIRE PART +1 UNIT_1 2 0 -- 0 -- 0";
     let begin = |bench: &mut Bench<'_>, line: &str, serial: &str| {
         order(bench, line, serial);
@@ -644,11 +601,11 @@ fn a_hand_that_cannot_be_read_changes_nothing() {
 
 /// The sector is that in which the fingers have opened, and not that of another command.
 #[test]
-fn the_sector_is_that_in_which_the_part_was_let_go() {
+fn update_carries_the_sector_of_the_release() {
     for (first, sector, next) in [
-        ("TRANSFER PART +1 PFIXTURE 0 +1 UNIT_1 2 SAFE 0", 2, "TRANSFER PART +1 UNIT_1 2 +1 UNIT_1 1 SAFE 0"),
+        (TRANSFER, 2, "TRANSFER PART +1 UNIT_1 2 +1 UNIT_1 1 SAFE 0"),
         ("TRANSFER PART +1 UNIT_1 2 +1 UNIT_1 1 SAFE 0", 1, "MOVE PART +1 UNIT_1 1 +1 SAFE 0 -- 0"),
-        ("TRANSFER PART +1 PFIXTURE 0 +1 UNIT_1 2 SAFE 0", 2, "MOVE PART +1 UNIT_1 2 +1 SAFE 0 -- 0"),
+        (TRANSFER, 2, "MOVE PART +1 UNIT_1 2 +1 SAFE 0 -- 0"),
     ] {
         let mut bench = Bench::connected();
         order(&mut bench, first, "A");
@@ -674,7 +631,7 @@ fn the_sector_is_that_in_which_the_part_was_let_go() {
 
 /// A TRANSFER that comes just when another command has grasped its part tells where it puts it.
 #[test]
-fn a_transfer_that_is_accepted_in_the_tick_of_the_grasp_tells() {
+fn transfer_accepted_in_the_tick_of_the_grasp_sends_its_update() {
     let mut bench = Bench::connected();
     order(&mut bench, FROM_TRAY, "A");
     for mut bench in bench.at_every_tick() {
@@ -688,7 +645,7 @@ fn a_transfer_that_is_accepted_in_the_tick_of_the_grasp_tells() {
 
 /// REFIXTURE, too, tells what is owed before it takes anything: no update is lost.
 #[test]
-fn refixture_tells_first_what_is_owed() {
+fn refixture_sends_pending_updates_first() {
     let mut bench = Bench::connected();
     bench.world.data_system.answer = Answer::Refuse;
     order(&mut bench, FROM_TRAY, "A");
@@ -706,7 +663,7 @@ fn refixture_tells_first_what_is_owed() {
 
 /// An operator who deletes the ledger deletes what its command would have taken.
 #[test]
-fn a_deleted_command_takes_nothing() {
+fn deleted_ledger_deletes_the_object_to_take() {
     let mut bench = Bench::connected();
     bench.command(FROM_TRAY);
     bench.wait(3);
@@ -723,7 +680,7 @@ fn a_deleted_command_takes_nothing() {
 
 /// The robot holds a part that is told of when it is let go, also if it is sent for another one meanwhile.
 #[test]
-fn what_the_robot_holds_is_not_forgotten_for_what_it_cannot_take() {
+fn held_part_keeps_its_update_during_a_refused_transfer() {
     let mut bench = Bench::connected();
     assert_eq!(told(&mut bench, FROM_TRAY), ["H_ROBOT"]);
     bench.command(OTHER);
@@ -735,7 +692,7 @@ fn what_the_robot_holds_is_not_forgotten_for_what_it_cannot_take() {
 
 /// V.4.1 has updates of moves from and to the MBD; a part that the data base has as the robot's is told of, too.
 #[test]
-fn a_transfer_tells_where_it_puts_what_the_robot_had() {
+fn transfer_updates_a_part_that_the_robot_held() {
     let mut bench = Bench::connected();
     assert_eq!(told(&mut bench, FROM_TRAY), ["H_ROBOT"]);
     assert_eq!(told(&mut bench, TO_FIXTURE), ["PFIXTURE"]);

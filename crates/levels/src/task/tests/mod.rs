@@ -19,38 +19,35 @@ use super::plan::{Plan, TaskVerb};
 use crate::subtask::tests::data::without;
 
 pub(super) const SCENARIOS: &[fn()] = &[
-    a_command_is_known_by_its_first_ten_characters,
-    transfer_fetches_places_and_leaves,
-    an_object_is_regripped_when_the_grips_differ,
-    move_moves_an_object_or_the_robot,
-    position_releases_what_is_held_first,
-    acquire_gets_the_gripper_and_the_object,
-    refixture_skips_what_is_done_already,
-    a_tool_is_inserted_and_released,
-    a_tool_is_acquired_and_removed,
-    a_free_gripper_before_the_drum_only_leaves,
-    a_tool_command_without_an_end_stays_where_it_is_and_without_a_name_means_the_tool_held,
-    a_tool_command_that_is_not_prepared_is_refused,
-    a_tool_command_is_refused_while_it_is_not_known_what_is_held,
-    a_tool_is_acquired_at_once_by_fingers_in_the_drum,
-    a_command_with_a_bad_name_is_refused_before_anything_moves,
-    a_refused_command_leaves_the_poses_of_the_one_before,
-    an_error_below_is_passed_up_by_every_command,
-    the_operator_takes_the_robot_from_a_command_and_gives_it_back,
-    the_operator_can_take_the_robot_between_two_commands,
-    a_command_that_comes_when_the_operator_takes_the_robot_is_not_executed,
+    release_tool_of_an_empty_gripper_only_leaves,
+    tool_command_without_names_stays_and_means_the_held_tool,
+    unprepared_tool_command_is_refused,
+    tool_command_with_unknown_contents_is_refused,
+    acquire_tool_in_the_drum_needs_no_motion,
+    command_with_a_bad_name_is_refused_before_any_motion,
+    failure_of_subtask_is_passed_up_by_every_command,
+    operator_takes_the_robot_during_a_command,
+    operator_takes_the_robot_between_commands,
     command_that_fails_its_check_is_refused_and_the_next_one_is_executed,
-    a_pause_is_accepted_while_the_operator_has_the_robot,
-    a_restarted_task_executes_nothing_old_and_is_connected,
-    each_location_of_a_command_has_a_pose_of_its_own,
 ];
 
-fn error(reason: Reason) -> (HwsReport, Reason) {
+const fn error(reason: Reason) -> (HwsReport, Reason) {
     (HwsReport::Error, reason)
 }
 
+const PAUSE: &str = "PAUSE -- 0 -- 0 0 -- 0 -- 0";
+const STARTUP: &str = "STARTUP -- 0 -- 0 0 -- 0 -- 0";
+const SHUTDOWN: &str = "SHUTDOWN -- 0 -- 0 0 -- 0 -- 0";
+const HOME: &str = "MOVE -- 0 -- 0 0 HOME 0 -- 0";
+const NOWHERE: &str = "MOVE -- 0 -- 0 0 NOWHERE 0 -- 0";
+const SAFE: &str = "MOVE -- 0 -- 0 0 SAFE 0 -- 0";
+const TRANSFER: &str = "TRANSFER PART +1 PFIXTURE 0 +1 UNIT_1 2 SAFE 0";
+const TRANSFER_AND_STAY: &str = "TRANSFER PART +1 PFIXTURE 0 +1 UNIT_1 2 -- 0";
+const FROM_TRAY: &str = "MOVE PART +1 UNIT_1 2 +1 PFIXTURE 0 -- 0";
+const LET_GO: &str = "POSITION PART +1 PFIXTURE 0 0 -- 0 -- 0";
+
 #[test]
-fn a_command_is_known_by_its_first_ten_characters() {
+fn command_is_known_by_its_first_ten_characters() {
     for verb in TaskVerb::ALL.iter().filter(|verb| **verb != TaskVerb::None) {
         assert_eq!(TaskVerb::of(&Name16::new(verb.text()).unwrap()), Some(*verb));
         let ten: String = verb.text().chars().take(10).collect();
@@ -64,18 +61,18 @@ fn a_command_is_known_by_its_first_ten_characters() {
 #[test]
 fn transfer_fetches_places_and_leaves() {
     let mut bench = Bench::default();
-    assert_eq!(bench.run("TRANSFER PART +1 PFIXTURE 0 +1 UNIT_1 2 SAFE 0"), FINISHED);
+    assert_eq!(bench.run(TRANSFER), FINISHED);
     assert_eq!(bench.sent(), ["GET-ENDEFF", "GET-OBJECT", "PLACE-OBJ", "GOTO-ENDPT"]);
     let [_, get, place, leave] = bench.world.subtask.received[..] else { panic!() };
     assert_eq!((get.site.location.as_str(), place.site.location.as_str()), ("PFIXTURE", "UNIT_1"));
     assert_eq!(leave.site.location.as_str(), "SAFE");
     assert_eq!((place.site.array.number(), place.source_grip, place.destination_grip), (1, 1, 1));
-    assert_eq!(bench.run("TRANSFER PART +1 PFIXTURE 0 +1 UNIT_1 2 -- 0"), FINISHED);
+    assert_eq!(bench.run(TRANSFER_AND_STAY), FINISHED);
     assert_eq!(bench.sent(), ["GET-ENDEFF", "GET-OBJECT", "PLACE-OBJ"]);
 }
 
 #[test]
-fn an_object_is_regripped_when_the_grips_differ() {
+fn object_is_regripped_when_the_grips_differ() {
     let mut bench = Bench::default();
     assert_eq!(bench.run("TRANSFER PART +1 PFIXTURE 0 -1 UNIT_1 2 SAFE 0"), FINISHED);
     assert_eq!(bench.sent(), ["GET-ENDEFF", "GET-OBJECT", "FIX-GRIP", "PLACE-OBJ", "GOTO-ENDPT"]);
@@ -94,17 +91,17 @@ fn move_moves_an_object_or_the_robot() {
     let mut bench = Bench::default();
     assert_eq!(bench.run("MOVE PART +1 UNIT_1 1 +1 PFIXTURE 0 -- 0"), FINISHED);
     assert_eq!(bench.sent(), ["GET-ENDEFF", "GET-OBJECT", "MOVE-OBJ>D"]);
-    assert_eq!(bench.run("MOVE -- 0 -- 0 0 SAFE 0 -- 0"), FINISHED);
+    assert_eq!(bench.run(SAFE), FINISHED);
     assert_eq!(bench.sent(), ["GOTO-DEST"]);
     assert!(bench.world.subtask.outputs.status.held.is_held(), "what is held is kept");
 }
 
 #[test]
-fn position_releases_what_is_held_first() {
+fn position_releases_the_held_object_first() {
     let mut bench = Bench::default();
     for held in ["BAR", "PART"] {
         bench.set(1, held, "PFIXTURE");
-        assert_eq!(bench.run("POSITION PART +1 PFIXTURE 0 0 -- 0 -- 0"), FINISHED);
+        assert_eq!(bench.run(LET_GO), FINISHED);
         assert_eq!(bench.sent(), ["RELEASE", ">POSITION"]);
     }
     assert_eq!(bench.run("POSITION -- 0 -- 0 0 SAFE 0 -- 0"), FINISHED);
@@ -121,7 +118,7 @@ fn acquire_gets_the_gripper_and_the_object() {
 }
 
 #[test]
-fn refixture_skips_what_is_done_already() {
+fn refixture_skips_completed_steps() {
     let line = "REFIXTURE PART +1 PFIXTURE 0 -1 PFIXTURE 0 -- 0";
     let mut bench = Bench::default();
     assert_eq!(bench.run(line), FINISHED);
@@ -139,7 +136,7 @@ const ACQUIRE: &str = "ACQUIRE-TOOL TOOL-1 0 -- 0 +1 TOOL-SAFE 0 -- 0";
 const REMOVE: &str = "REMOVE-TOOL TOOL-1 +1 -- 0 0 -- 0 TOOL-SAFE 0";
 
 #[test]
-fn a_tool_is_inserted_and_released() {
+fn insert_and_release_tool_are_done_once() {
     let mut bench = Bench::default();
     bench.set(3, "TOOL-1", "TOOL-SAFE");
     assert_eq!(bench.run(INSERT), FINISHED);
@@ -157,7 +154,7 @@ fn a_tool_is_inserted_and_released() {
 }
 
 #[test]
-fn a_tool_is_acquired_and_removed() {
+fn acquire_and_remove_tool_are_done_once() {
     let mut bench = Bench::default();
     assert_eq!(bench.run(ACQUIRE), FINISHED);
     assert_eq!(bench.sent(), ["GET-ENDEFF", "GOTO-DEST", "ACQUIRE-TOOL"]);
@@ -171,7 +168,7 @@ fn a_tool_is_acquired_and_removed() {
 }
 
 #[test]
-fn a_free_gripper_before_the_drum_only_leaves() {
+fn release_tool_of_an_empty_gripper_only_leaves() {
     for (line, sent) in [(RELEASE, &["GOTO-ENDPT"][..]), ("RELEASE-TOOL TOOL-1 +1 -- 0 0 -- 0 -- 0", &[])] {
         let mut bench = Bench::default();
         bench.set(3, "", "TOOL-TRNS");
@@ -183,7 +180,7 @@ fn a_free_gripper_before_the_drum_only_leaves() {
 }
 
 #[test]
-fn a_tool_command_without_an_end_stays_where_it_is_and_without_a_name_means_the_tool_held() {
+fn tool_command_without_names_stays_and_means_the_held_tool() {
     let mut bench = Bench::default();
     bench.set(3, "TOOL-1", "TOOL-TRNS");
     for (line, word) in [
@@ -201,7 +198,7 @@ fn a_tool_command_without_an_end_stays_where_it_is_and_without_a_name_means_the_
 }
 
 #[test]
-fn a_tool_command_that_is_not_prepared_is_refused() {
+fn unprepared_tool_command_is_refused() {
     for (line, gripper, object, at, reason) in [
         (INSERT, 3, "TOOL-1", "HOME", Reason::NotPrepared),
         (INSERT, 3, "", "TOOL-SAFE", Reason::NotPrepared),
@@ -226,7 +223,7 @@ fn a_tool_command_that_is_not_prepared_is_refused() {
 }
 
 #[test]
-fn a_tool_command_is_refused_while_it_is_not_known_what_is_held() {
+fn tool_command_with_unknown_contents_is_refused() {
     for (held, acquired) in
         [(Holding::Something, Reason::UnknownHeld), (Holding::NotKnown, Reason::HeldNotKnown)]
     {
@@ -252,7 +249,7 @@ fn a_tool_command_is_refused_while_it_is_not_known_what_is_held() {
 }
 
 #[test]
-fn a_tool_is_acquired_at_once_by_fingers_in_the_drum() {
+fn acquire_tool_in_the_drum_needs_no_motion() {
     let mut bench = Bench::default();
     bench.set(3, "", "TOOL-TRNS");
     assert_eq!((bench.run(ACQUIRE), bench.sent()), (FINISHED, vec!["ACQUIRE-TOOL"]));
@@ -262,7 +259,7 @@ fn a_tool_is_acquired_at_once_by_fingers_in_the_drum() {
 const REFUSED: &[(&str, Reason)] = &[
     ("DANCE -- 0 -- 0 0 -- 0 -- 0", Reason::UnknownCommand),
     ("MOVE NOBODY +1 UNIT_1 1 +1 SAFE 0 -- 0", Reason::UnknownObject),
-    ("MOVE -- 0 -- 0 0 NOWHERE 0 -- 0", Reason::UnknownLocation),
+    (NOWHERE, Reason::UnknownLocation),
     ("MOVE -- 0 -- 0 0 HOLSTER 1 -- 0", Reason::NoObjectNamed),
     ("MOVE -- 0 -- 0 0 -- 0 -- 0", Reason::NoDestination),
     ("MOVE PART +1 -- 0 +1 SAFE 0 -- 0", Reason::NoDestination),
@@ -291,7 +288,7 @@ const REFUSED: &[(&str, Reason)] = &[
 ];
 
 #[test]
-fn a_command_with_a_bad_name_is_refused_before_anything_moves() {
+fn command_with_a_bad_name_is_refused_before_any_motion() {
     for (line, reason) in REFUSED {
         let mut bench = Bench::default();
         assert_eq!(bench.run(line), error(*reason), "{line}");
@@ -303,9 +300,9 @@ fn a_command_with_a_bad_name_is_refused_before_anything_moves() {
 }
 
 #[test]
-fn a_refused_command_leaves_the_poses_of_the_one_before() {
+fn refused_command_keeps_the_published_poses() {
     let mut bench = Bench::default();
-    assert_eq!(bench.run("MOVE -- 0 -- 0 0 SAFE 0 -- 0"), FINISHED);
+    assert_eq!(bench.run(SAFE), FINISHED);
     let poses = bench.memory.task.poses;
     for (line, _) in REFUSED {
         bench.run(line);
@@ -314,9 +311,9 @@ fn a_refused_command_leaves_the_poses_of_the_one_before() {
 }
 
 #[test]
-fn an_error_below_is_passed_up_by_every_command() {
+fn failure_of_subtask_is_passed_up_by_every_command() {
     for (line, verb, gripper, object, at) in [
-        ("PAUSE -- 0 -- 0 0 -- 0 -- 0", SubtaskVerb::Pause, 1, "", ""),
+        (PAUSE, SubtaskVerb::Pause, 1, "", ""),
         ("TRANSFER PART +1 PFIXTURE 0 -1 UNIT_1 2 SAFE 0", SubtaskVerb::FixGrip, 1, "", ""),
         ("MOVE PART +1 PFIXTURE 0 -1 SAFE 0 -- 0", SubtaskVerb::MoveObjToDest, 1, "", ""),
         ("POSITION -- 0 -- 0 0 SAFE 0 -- 0", SubtaskVerb::Position, 1, "", ""),
@@ -342,9 +339,9 @@ fn an_error_below_is_passed_up_by_every_command() {
 }
 
 #[test]
-fn the_operator_takes_the_robot_from_a_command_and_gives_it_back() {
+fn operator_takes_the_robot_during_a_command() {
     let mut bench = Bench::default();
-    bench.command("MOVE -- 0 -- 0 0 SAFE 0 -- 0");
+    bench.command(SAFE);
     (0..3).for_each(|_| assert_eq!(bench.step().status.report, HwsReport::Executing));
     bench.world.subtask.joystick = true;
     bench.step();
@@ -355,7 +352,7 @@ fn the_operator_takes_the_robot_from_a_command_and_gives_it_back() {
     }
     assert_eq!(bench.sent(), ["GOTO-DEST", "S-PAUSE"], "one pause is enough");
     // Nothing is executed while the operator has the robot.
-    assert_eq!(bench.run("MOVE -- 0 -- 0 0 HOME 0 -- 0"), (HwsReport::JoystickOn, Reason::JoystickOn));
+    assert_eq!(bench.run(HOME), (HwsReport::JoystickOn, Reason::JoystickOn));
     assert!(bench.sent().is_empty());
     bench.world.subtask.joystick = false;
     bench.wait(5);
@@ -364,13 +361,13 @@ fn the_operator_takes_the_robot_from_a_command_and_gives_it_back() {
         assert_eq!((status.report, status.reason), (HwsReport::Error, Reason::JoystickOn));
     }
     assert!(bench.sent().is_empty(), "the interrupted command is not resumed");
-    assert_eq!(bench.run("MOVE -- 0 -- 0 0 HOME 0 -- 0"), FINISHED);
+    assert_eq!(bench.run(HOME), FINISHED);
 }
 
 #[test]
-fn the_operator_can_take_the_robot_between_two_commands() {
+fn operator_takes_the_robot_between_commands() {
     let mut bench = Bench::default();
-    assert_eq!(bench.run("MOVE -- 0 -- 0 0 SAFE 0 -- 0"), FINISHED);
+    assert_eq!(bench.run(SAFE), FINISHED);
     bench.world.subtask.joystick = true;
     bench.wait(30);
     assert_eq!(bench.sent(), ["GOTO-DEST", "S-PAUSE"]);
@@ -386,12 +383,10 @@ fn the_operator_can_take_the_robot_between_two_commands() {
 }
 
 #[test]
-fn a_command_that_comes_when_the_operator_takes_the_robot_is_not_executed() {
-    for (line, reason) in [
-        ("MOVE -- 0 -- 0 0 HOME 0 -- 0", Reason::JoystickOn),
-        ("MOVE -- 0 -- 0 0 NOWHERE 0 -- 0", Reason::UnknownLocation),
-        ("PAUSE -- 0 -- 0 0 -- 0 -- 0", Reason::JoystickOn),
-    ] {
+fn command_in_the_tick_of_manual_control_is_not_executed() {
+    for (line, reason) in
+        [(HOME, Reason::JoystickOn), (NOWHERE, Reason::UnknownLocation), (PAUSE, Reason::JoystickOn)]
+    {
         let mut bench = Bench::default();
         bench.world.subtask.joystick = true;
         bench.step();
@@ -409,45 +404,34 @@ fn a_command_that_comes_when_the_operator_takes_the_robot_is_not_executed() {
 #[test]
 fn command_that_fails_its_check_is_refused_and_the_next_one_is_executed() {
     let mut bench = Bench::default();
-    bench.command("TRANSFER PART +1 PFIXTURE 0 +1 UNIT_1 2 SAFE 0");
+    bench.command(TRANSFER);
     bench.external.hws.checked = Checked::Fails;
     assert_eq!(bench.finish(), error(Reason::CheckFailed));
     assert!(bench.sent().is_empty(), "nothing moves");
-    assert_eq!(bench.run("MOVE -- 0 -- 0 0 SAFE 0 -- 0"), FINISHED);
-    bench.command("PAUSE -- 0 -- 0 0 -- 0 -- 0");
+    assert_eq!(bench.run(SAFE), FINISHED);
+    bench.command(PAUSE);
     bench.external.hws.checked = Checked::Fails;
     assert_eq!(bench.finish(), FINISHED, "PAUSE is always accepted");
 }
 
 #[test]
-fn a_pause_is_accepted_while_the_operator_has_the_robot() {
+fn pause_during_manual_control_is_accepted() {
     let mut bench = Bench::default();
     bench.world.subtask.joystick = true;
     bench.wait(10);
-    bench.command("PAUSE -- 0 -- 0 0 -- 0 -- 0");
+    bench.command(PAUSE);
     (0..30).for_each(|_| assert_eq!(bench.step().status.report, HwsReport::JoystickOn));
     assert_eq!(bench.sent(), ["S-PAUSE", "S-PAUSE"]);
     bench.world.subtask.joystick = false;
     bench.wait(5);
     assert_eq!(bench.step().status.reason, Reason::JoystickOn);
-    assert_eq!(bench.run("PAUSE -- 0 -- 0 0 -- 0 -- 0"), FINISHED);
+    assert_eq!(bench.run(PAUSE), FINISHED);
 }
 
 #[test]
-fn a_restarted_task_executes_nothing_old_and_is_connected() {
-    let mut bench = Bench::connected();
-    bench.command("MOVE PART +1 UNIT_1 1 +1 SAFE 0 -- 0");
-    bench.step();
-    bench.restart();
-    assert_eq!(bench.finish(), error(Reason::Restarted));
-    assert_eq!(bench.run("MOVE PART +1 UNIT_1 1 +1 SAFE 0 -- 0"), FINISHED);
-    assert_eq!(bench.asked(), ["UPDATE"]);
-}
-
-#[test]
-fn each_location_of_a_command_has_a_pose_of_its_own() {
+fn each_location_of_a_command_has_its_own_pose() {
     let mut bench = Bench::default();
-    assert_eq!(bench.run("TRANSFER PART +1 PFIXTURE 0 +1 UNIT_1 2 SAFE 0"), FINISHED);
+    assert_eq!(bench.run(TRANSFER), FINISHED);
     let plan = Plan::look_up(&bench.external.hws, &bench.data).plan;
     for (command, site) in
         bench.world.subtask.received[1..].iter().zip([plan.source, plan.destination, plan.end_at])

@@ -11,51 +11,29 @@ use interfaces::{
 use rcs_core::name::{Name10, Name16};
 
 use super::{
-    ACQUIRE, INSERT, RELEASE, REMOVE,
+    ACQUIRE, FROM_TRAY, HOME, INSERT, LET_GO, NOWHERE, PAUSE, RELEASE, REMOVE, SHUTDOWN, STARTUP, TRANSFER,
+    TRANSFER_AND_STAY,
     bench::{Answer, Bench, FINISHED},
     error,
 };
 
 pub(super) const SCENARIOS: &[fn()] = &[
-    a_new_command_stops_what_is_under_way_before_it_is_answered,
-    a_command_that_replaces_nothing_is_accepted_in_the_tick_in_which_it_comes,
-    a_pause_that_is_replaced_is_waited_for,
-    a_restarted_task_stops_what_it_had_commanded,
-    the_operator_with_the_box_is_sent_nothing,
-    an_interrupted_transfer_goes_on,
-    a_transfer_that_stays_goes_back_to_its_object,
-    what_an_earlier_command_has_placed_does_not_count,
-    another_command_about_an_object_ends_what_was_interrupted,
-    a_part_in_the_pedestal_is_regripped_first,
-    an_interrupted_tool_command_goes_on,
-    a_tool_command_that_stays_is_finished_only_at_the_drum,
-    a_tool_command_whose_effect_has_come_only_leaves,
-    nothing_is_let_go_before_it_is_known_that_the_robot_can_leave,
-    position_releases_at_a_vise_only_what_is_clamped_or_confirmed,
-    position_releases_nothing_in_mid_air_unless_a_person_holds_it,
-    position_releases_in_a_nest,
-    a_confirmation_ends_when_the_robot_leaves_or_holds_nothing,
-    a_position_is_finished_when_the_data_system_knows_where_the_object_is,
-    the_books_follow_an_object_out_of_the_hand,
-    two_updates_are_kept_and_told_in_order,
-    what_is_told_survives_a_command_that_replaces_it,
-    an_interrupted_startup_says_that_nothing_is_told,
-    a_restarted_task_believes_what_it_believed,
-    a_link_that_fails_while_a_pause_stands_is_reported_and_no_failure,
-    updates_that_were_not_taken_are_told_in_their_order,
+    new_command_stops_the_running_one_before_it_is_answered,
+    replaced_pause_is_waited_for,
+    transfer_without_end_returns_to_its_object,
+    part_in_the_pedestal_is_regripped_first,
+    interrupted_tool_command_resumes,
+    tool_command_without_end_is_finished_only_at_the_drum,
+    tool_command_with_its_effect_only_leaves,
+    release_requires_a_known_way_out,
+    position_at_a_vise_releases_only_a_clamped_or_confirmed_part,
+    position_in_mid_air_releases_only_a_part_held_by_a_person,
+    two_pending_updates_are_sent_in_order,
+    unanswered_updates_are_sent_in_order,
 ];
 
-const PAUSE: &str = "PAUSE -- 0 -- 0 0 -- 0 -- 0";
-const STARTUP: &str = "STARTUP -- 0 -- 0 0 -- 0 -- 0";
-const SHUTDOWN: &str = "SHUTDOWN -- 0 -- 0 0 -- 0 -- 0";
-const HOME: &str = "MOVE -- 0 -- 0 0 HOME 0 -- 0";
-const NOWHERE: &str = "MOVE -- 0 -- 0 0 NOWHERE 0 -- 0";
-const TRANSFER: &str = "TRANSFER PART +1 PFIXTURE 0 +1 UNIT_1 2 SAFE 0";
-const TRANSFER_AND_STAY: &str = "TRANSFER PART +1 PFIXTURE 0 +1 UNIT_1 2 -- 0";
 const REGRIP: &str = "TRANSFER PART +1 PFIXTURE 0 -1 UNIT_1 2 SAFE 0";
-const FROM_TRAY: &str = "MOVE PART +1 UNIT_1 2 +1 PFIXTURE 0 -- 0";
-const SEAT: &str = "POSITION PART +1 PFIXTURE 0 0 -- 0 -- 0";
-const SEAT_BY_DESTINATION: &str = "POSITION PART 0 -- 0 +1 PFIXTURE 0 -- 0";
+const LET_GO_BY_DESTINATION: &str = "POSITION PART 0 -- 0 +1 PFIXTURE 0 -- 0";
 
 /// A bench whose robot is at no known place while it moves.
 fn moving_bench() -> Bench<'static> {
@@ -72,8 +50,8 @@ fn is_under_way(bench: &Bench<'_>) -> bool {
 }
 
 #[test]
-fn a_new_command_stops_what_is_under_way_before_it_is_answered() {
-    for line in [PAUSE, HOME, NOWHERE, STARTUP, SHUTDOWN, TRANSFER, SEAT, ACQUIRE] {
+fn new_command_stops_the_running_one_before_it_is_answered() {
+    for line in [PAUSE, HOME, NOWHERE, STARTUP, SHUTDOWN, TRANSFER, LET_GO, ACQUIRE] {
         let mut bench = Bench::default();
         bench.world.data_system.answer = Answer::After(2);
         bench.command(TRANSFER);
@@ -99,7 +77,7 @@ fn a_new_command_stops_what_is_under_way_before_it_is_answered() {
 }
 
 #[test]
-fn a_command_that_replaces_nothing_is_accepted_in_the_tick_in_which_it_comes() {
+fn command_without_predecessor_is_accepted_in_its_first_tick() {
     let mut bench = Bench::default();
     for line in [TRANSFER, HOME] {
         bench.command(line);
@@ -112,7 +90,7 @@ fn a_command_that_replaces_nothing_is_accepted_in_the_tick_in_which_it_comes() {
 }
 
 #[test]
-fn a_pause_that_is_replaced_is_waited_for() {
+fn replaced_pause_is_waited_for() {
     let mut bench = Bench::default();
     bench.command(TRANSFER);
     bench.wait(6);
@@ -132,7 +110,7 @@ fn a_pause_that_is_replaced_is_waited_for() {
 }
 
 #[test]
-fn a_restarted_task_stops_what_it_had_commanded() {
+fn restarted_task_stops_its_orders() {
     let mut bench = Bench::default();
     bench.command(TRANSFER);
     for mut bench in bench.at_every_tick() {
@@ -149,7 +127,7 @@ fn a_restarted_task_stops_what_it_had_commanded() {
 }
 
 #[test]
-fn the_operator_with_the_box_is_sent_nothing() {
+fn manual_control_sends_nothing_to_subtask() {
     let mut bench = Bench::default();
     bench.command(TRANSFER);
     bench.wait(6);
@@ -166,30 +144,12 @@ fn the_operator_with_the_box_is_sent_nothing() {
 /// What comes between a command and the same command again: another one, or a restart.
 const INTERRUPTIONS: [Option<&str>; 4] = [Some(PAUSE), Some(NOWHERE), Some(HOME), None];
 
-/// What becomes of a command that is interrupted after each tick in which it executes.
-fn interrupted(
-    mut bench: Bench<'static>,
-    line: &str,
-    by: Option<&'static str>,
-) -> impl Iterator<Item = Bench<'static>> {
-    bench.command(line);
-    bench.at_every_tick().map(move |mut copy| {
-        match by {
-            Some(other) => copy.command(other),
-            None => copy.restart(),
-        }
-        copy.finish();
-        copy.wait(10);
-        copy
-    })
-}
-
 #[test]
-fn an_interrupted_transfer_goes_on() {
+fn interrupted_transfer_resumes() {
     for (line, by) in
         [TRANSFER, TRANSFER_AND_STAY, REGRIP].into_iter().flat_map(|line| INTERRUPTIONS.map(|by| (line, by)))
     {
-        for mut bench in interrupted(moving_bench(), line, by) {
+        for mut bench in moving_bench().interrupted(line, by) {
             let case = format!("{line}, {by:?}, tick {}", bench.tick);
             let (placed, told) = (bench.memory.subtask.status.placed.is_some(), updates(&bench).len());
             assert_eq!(bench.run(line), FINISHED, "{case}");
@@ -213,7 +173,7 @@ fn an_interrupted_transfer_goes_on() {
 }
 
 #[test]
-fn a_transfer_that_stays_goes_back_to_its_object() {
+fn transfer_without_end_returns_to_its_object() {
     let other_grip = "TRANSFER PART +1 PFIXTURE 0 -1 UNIT_1 2 -- 0";
     for line in [TRANSFER_AND_STAY, other_grip] {
         let mut bench = moving_bench();
@@ -238,7 +198,7 @@ fn a_transfer_that_stays_goes_back_to_its_object() {
 }
 
 #[test]
-fn what_an_earlier_command_has_placed_does_not_count() {
+fn object_placed_by_an_earlier_command_does_not_count() {
     let mut bench = moving_bench();
     assert_eq!(bench.run(TRANSFER), FINISHED);
     bench.command(TRANSFER);
@@ -250,7 +210,7 @@ fn what_an_earlier_command_has_placed_does_not_count() {
 }
 
 #[test]
-fn another_command_about_an_object_ends_what_was_interrupted() {
+fn command_for_another_object_ends_the_interrupted_one() {
     let mut bench = moving_bench();
     bench.command(TRANSFER);
     bench.until(|bench| bench.memory.task.subtask.command == SubtaskVerb::GotoEndpt);
@@ -261,7 +221,7 @@ fn another_command_about_an_object_ends_what_was_interrupted() {
 }
 
 #[test]
-fn a_part_in_the_pedestal_is_regripped_first() {
+fn part_in_the_pedestal_is_regripped_first() {
     for (line, words) in [
         (REGRIP, &["FIX-GRIP", "PLACE-OBJ", "GOTO-ENDPT"][..]),
         ("MOVE PART +1 PFIXTURE 0 -1 SAFE 0 -- 0", &["FIX-GRIP", "MOVE-OBJ>D"]),
@@ -278,7 +238,7 @@ fn a_part_in_the_pedestal_is_regripped_first() {
 }
 
 #[test]
-fn an_interrupted_tool_command_goes_on() {
+fn interrupted_tool_command_resumes() {
     for (line, object, at) in [
         (INSERT, "TOOL-1", "TOOL-SAFE"),
         (RELEASE, "TOOL-1", "TOOL-TRNS"),
@@ -288,7 +248,7 @@ fn an_interrupted_tool_command_goes_on() {
         for by in [Some(PAUSE), None] {
             let mut bench = moving_bench();
             bench.set(3, object, at);
-            for mut bench in interrupted(bench, line, by) {
+            for mut bench in bench.interrupted(line, by) {
                 let case = format!("{line}, {by:?}, tick {}", bench.tick);
                 assert_eq!(bench.run(line), FINISHED, "{case}");
                 let status = &bench.memory.subtask.status;
@@ -319,7 +279,7 @@ fn staying(line: &str, holds: &str, at: &str) -> Bench<'static> {
 }
 
 #[test]
-fn a_tool_command_that_stays_is_finished_only_at_the_drum() {
+fn tool_command_without_end_is_finished_only_at_the_drum() {
     for (line, holds) in STAYING {
         let mut bench = staying(line, holds, "TOOL-TRNS");
         assert_eq!(bench.run(line), FINISHED, "{line}");
@@ -333,7 +293,7 @@ fn a_tool_command_that_stays_is_finished_only_at_the_drum() {
 
 /// The command was cut off before its effect was seen.
 #[test]
-fn a_tool_command_whose_effect_has_come_only_leaves() {
+fn tool_command_with_its_effect_only_leaves() {
     for (line, held, at, sent) in [
         (RELEASE, "", "HOME", &["GOTO-ENDPT"][..]),
         (RELEASE, "", "TOOL-SAFE", &[]),
@@ -341,18 +301,18 @@ fn a_tool_command_whose_effect_has_come_only_leaves() {
     ] {
         let mut bench = Bench::default();
         bench.set(3, "TOOL-1", "TOOL-TRNS");
-        let mut bench = interrupted(bench, line, Some(PAUSE)).nth(2).unwrap();
+        let mut bench = bench.interrupted(line, Some(PAUSE)).nth(2).unwrap();
         bench.set(3, held, at);
         assert_eq!((bench.run(line), bench.sent()), (FINISHED, sent.to_vec()), "{line}, {at}");
     }
 }
 
 #[test]
-fn nothing_is_let_go_before_it_is_known_that_the_robot_can_leave() {
+fn release_requires_a_known_way_out() {
     for (at, reason) in [("", Reason::UnknownStart), ("HOME", Reason::NoTrajectory)] {
         let mut bench = Bench::default();
         bench.set(1, "PART", at);
-        assert_eq!(bench.run(SEAT), error(reason), "{at}");
+        assert_eq!(bench.run(LET_GO), error(reason), "{at}");
         assert!(bench.sent().is_empty());
     }
 }
@@ -376,10 +336,10 @@ const STAY_AT_FIXTURE: &str = "POSITION -- 0 -- 0 0 PFIXTURE 0 -- 0";
 const STAY_AT_HOME: &str = "POSITION -- 0 -- 0 0 HOME 0 -- 0";
 
 #[test]
-fn position_releases_at_a_vise_only_what_is_clamped_or_confirmed() {
+fn position_at_a_vise_releases_only_a_clamped_or_confirmed_part() {
     for held in [part(), Holding::Something, Holding::NotKnown] {
         // Hold-and-seat: the command names an object at the fixture (VIII.2).
-        assert_eq!(brought(held, "PFIXTURE").run(SEAT), FINISHED, "{held:?}");
+        assert_eq!(brought(held, "PFIXTURE").run(LET_GO), FINISHED, "{held:?}");
     }
     assert_eq!(brought(part(), "PFIXTURE").run(STAY_AT_FIXTURE), error(Reason::NotClamped));
     for clamping in ["HOME", "PFIXTURE"] {
@@ -396,7 +356,7 @@ fn position_releases_at_a_vise_only_what_is_clamped_or_confirmed() {
 }
 
 #[test]
-fn position_releases_nothing_in_mid_air_unless_a_person_holds_it() {
+fn position_in_mid_air_releases_only_a_part_held_by_a_person() {
     let cases = [
         (part(), Reason::HeldElsewhere),
         (Holding::Something, Reason::UnknownHeld),
@@ -421,7 +381,7 @@ fn position_releases_nothing_in_mid_air_unless_a_person_holds_it() {
 }
 
 #[test]
-fn position_releases_in_a_nest() {
+fn position_in_a_nest_releases() {
     let mut bench = Bench::default();
     bench.set(2, "CYLINDER", "V-VFIXTURE");
     assert_eq!(bench.run("POSITION -- 0 -- 0 0 V-VFIXTURE 0 -- 0"), FINISHED);
@@ -439,7 +399,7 @@ fn confirmed(mut bench: Bench<'static>, by: Support) -> Bench<'static> {
 }
 
 #[test]
-fn a_confirmation_ends_when_the_robot_leaves_or_holds_nothing() {
+fn confirmation_ends_when_the_robot_leaves_or_holds_nothing() {
     let counts = |bench: &Bench<'_>| bench.memory.task.confirmed.is_some();
     let mut bench = confirmed(brought(part(), "HOME"), Support::ByHand);
     assert!(counts(&bench));
@@ -464,8 +424,8 @@ fn updates(bench: &Bench<'_>) -> Vec<(String, i32)> {
 
 /// The robot arrives before the Data System answers: the answer is waited for, and nothing is told twice.
 #[test]
-fn a_position_is_finished_when_the_data_system_knows_where_the_object_is() {
-    for seat in [SEAT, SEAT_BY_DESTINATION] {
+fn position_waits_for_its_update() {
+    for seat in [LET_GO, LET_GO_BY_DESTINATION] {
         let mut bench = Bench::connected();
         assert_eq!(bench.run(FROM_TRAY), FINISHED);
         bench.world.data_system.answer = Answer::After(100);
@@ -477,8 +437,8 @@ fn a_position_is_finished_when_the_data_system_knows_where_the_object_is() {
 }
 
 #[test]
-fn the_books_follow_an_object_out_of_the_hand() {
-    for seat in [SEAT, SEAT_BY_DESTINATION] {
+fn release_updates_the_database() {
+    for seat in [LET_GO, LET_GO_BY_DESTINATION] {
         let mut bench = Bench::connected();
         assert_eq!(bench.run(FROM_TRAY), FINISHED);
         assert_eq!(updates(&bench), [("H_ROBOT".to_owned(), 0)]);
@@ -499,7 +459,7 @@ fn the_books_follow_an_object_out_of_the_hand() {
     // An object that the data base does not know as the robot's is none of its business.
     let mut bench = Bench::connected();
     assert_eq!(bench.run("MOVE PART +1 PFIXTURE 0 +1 PFIXTURE 0 -- 0"), FINISHED);
-    assert_eq!(bench.run(SEAT), FINISHED);
+    assert_eq!(bench.run(LET_GO), FINISHED);
     assert!(updates(&bench).is_empty());
 }
 
@@ -509,12 +469,12 @@ fn owing_two(trouble: Answer) -> Bench<'static> {
     let mut bench = Bench::connected();
     bench.world.data_system.answer = trouble;
     bench.run(FROM_TRAY);
-    bench.run(SEAT);
+    bench.run(LET_GO);
     bench
 }
 
 #[test]
-fn two_updates_are_kept_and_told_in_order() {
+fn two_pending_updates_are_sent_in_order() {
     for trouble in [Answer::Absent, Answer::Refuse] {
         for line in [TRANSFER, FROM_TRAY, "ACQUIRE PART +1 UNIT_1 2 0 -- 0 -- 0", STARTUP] {
             let mut bench = owing_two(trouble);
@@ -531,7 +491,7 @@ fn two_updates_are_kept_and_told_in_order() {
 }
 
 #[test]
-fn what_is_told_survives_a_command_that_replaces_it() {
+fn pending_update_survives_a_replaced_command() {
     for by in [PAUSE, HOME, NOWHERE] {
         let mut bench = Bench::connected();
         bench.world.data_system.answer = Answer::Absent;
@@ -548,7 +508,7 @@ fn what_is_told_survives_a_command_that_replaces_it() {
 }
 
 #[test]
-fn an_interrupted_startup_says_that_nothing_is_told() {
+fn interrupted_startup_leaves_the_connection_closed() {
     let mut bench = Bench::default();
     assert_eq!(bench.memory.task.connection, Connection::Closed);
     bench.command(STARTUP);
@@ -565,7 +525,7 @@ fn an_interrupted_startup_says_that_nothing_is_told() {
 }
 
 #[test]
-fn a_restarted_task_believes_what_it_believed() {
+fn restarted_task_keeps_its_estimates() {
     // It is connected, and tells what it owes, in order.
     let mut bench = owing_two(Answer::Refuse);
     bench.restart();
@@ -577,7 +537,7 @@ fn a_restarted_task_believes_what_it_believed() {
     // It knows what the robot carries.
     bench.restart();
     bench.step();
-    assert_eq!(bench.run(SEAT), FINISHED);
+    assert_eq!(bench.run(LET_GO), FINISHED);
     assert_eq!(updates(&bench), [("PFIXTURE".to_owned(), 0)]);
     // What is taken after the restart was told before it.
     let mut bench = Bench::connected();
@@ -600,7 +560,7 @@ fn a_restarted_task_believes_what_it_believed() {
 }
 
 #[test]
-fn a_link_that_fails_while_a_pause_stands_is_reported_and_no_failure() {
+fn link_failure_during_a_standing_pause_is_no_error() {
     let mut bench = Bench::default();
     assert_eq!(bench.run(PAUSE), FINISHED);
     bench.world.subtask.outputs.status.reason = Reason::LinkOff;
@@ -612,12 +572,12 @@ fn a_link_that_fails_while_a_pause_stands_is_reported_and_no_failure() {
 
 /// The Data System begins to answer when it has been told the first of two updates again.
 #[test]
-fn updates_that_were_not_taken_are_told_in_their_order() {
+fn unanswered_updates_are_sent_in_order() {
     let mut bench = Bench::connected();
     bench.world.data_system.answer = Answer::Absent;
     bench.run(FROM_TRAY);
     bench.world.data_system.received.clear();
-    bench.command(SEAT);
+    bench.command(LET_GO);
     bench.until(|bench| !bench.world.data_system.received.is_empty());
     bench.world.data_system.answer = Answer::After(1);
     assert_eq!(bench.finish(), FINISHED);

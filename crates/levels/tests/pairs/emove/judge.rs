@@ -8,9 +8,10 @@ use interfaces::{
 };
 use levels::emove::grippers::FingerVerb;
 
-use super::{Event, Fingered, Pair, is_done};
+use super::{Around, Fingered, Pair, is_done};
 use crate::{
     data::place,
+    frame::{Event, Scene},
     robot::{self, is_at},
     search::{Mishap, World as _, Wrong},
 };
@@ -18,35 +19,41 @@ use crate::{
 impl<G: Fingered> Pair<G> {
     /// Something that counts as held has been let go, or half of it.
     const fn lets_go(&self) -> bool {
-        self.emove.held.is_letting_go(true)
+        self.upper.state.held.is_letting_go(true)
     }
 
     /// What is reported done is done.
     ///
     /// `before` is the pair as it was when the processes read it.
-    pub(super) fn judge(&self, before: &Self, event: &Event<G::Fingers>) -> Result<(), Wrong> {
-        let open = G::are_open(before.fingers);
+    pub(super) fn judge(
+        &self,
+        before: &Self,
+        event: &Event<<Around<G> as Scene>::Does>,
+    ) -> Result<(), Wrong> {
+        let open = G::are_open(before.scene.fingers);
         if event.mishap == Mishap::RestartUpper && before.lets_go() && !self.lets_go() && !open {
             return Err("a restarted E-move does not know that it lets go");
         }
-        let status = &self.emove_out.status;
-        let robot_moves = before.robot.report == PrimReport::Executing;
-        let fingers_move = before.gripper.reports_executing();
-        let refused = self.emove.execution.receiver.adopted && status.report == StatusReport::Error;
+        let status = &self.upper.out.status;
+        let robot_moves = before.scene.robot.report == PrimReport::Executing;
+        let fingers_move = before.lower.reports_executing();
+        let refused = self.upper.state.execution.receiver.adopted && status.report == StatusReport::Error;
         if refused && (fingers_move || robot_moves) {
             return Err("restarted is reported before what was ordered is at rest");
         }
         self.judge_motion(before)?;
         let number = self.command.number;
-        if !is_done(&self.emove_out, number) || is_done(&before.emove_out, number) {
+        if !is_done(&self.upper.out, number) || is_done(&before.upper.out, number) {
             return Ok(());
         }
         match self.command.command {
-            EmoveVerb::GraspObj if before.apart > G::LATE => Err("done, and nothing is between the fingers"),
+            EmoveVerb::GraspObj if before.scene.apart > G::LATE => {
+                Err("done, and nothing is between the fingers")
+            }
             EmoveVerb::GraspObj if status.held.object() != self.command.object => {
                 Err("done, and the object is not held")
             }
-            EmoveVerb::GraspObj if !before.gripper.presses() => Err("done, and nothing presses the object"),
+            EmoveVerb::GraspObj if !before.lower.presses() => Err("done, and nothing presses the object"),
             EmoveVerb::Release if !open => Err("done, and the fingers are not open"),
             EmoveVerb::Release if status.held != Holding::Nothing => Err("done, and something is held"),
             EmoveVerb::Pause if fingers_move => Err("done, and the fingers move"),
@@ -61,20 +68,20 @@ impl<G: Fingered> Pair<G> {
     /// to it with open fingers. It stands still while they close or let go. What they hold is not brought to an
     /// opening.
     fn judge_motion(&self, before: &Self) -> Result<(), Wrong> {
-        let (now, then) = (&self.emove_out, &before.emove_out);
+        let (now, then) = (&self.upper.out, &before.upper.out);
         let sends = now.prim.number != then.prim.number && robot::moves(now.prim.command);
         let orders = *G::number(&mut { *now }) != *G::number(&mut { *then });
-        let order = before.emove.grippers.order();
-        let opens = G::are_open(before.fingers);
+        let order = before.upper.state.grippers.order();
+        let opens = G::are_open(before.scene.fingers);
         let grasps = matches!(order, FingerVerb::Grasp | FingerVerb::Release);
-        if sends && grasps && before.gripper.reports_executing() {
+        if sends && grasps && before.lower.reports_executing() {
             return Err("the robot is moved while the fingers close or let go");
         }
-        if orders && self.emove.grippers.order() == FingerVerb::Stand && G::hold(before.fingers) {
+        if orders && self.upper.state.grippers.order() == FingerVerb::Stand && G::hold(before.scene.fingers) {
             return Err("what is held is brought to an opening");
         }
         match (before.is_at_object(), self.is_at_object()) {
-            (true, false) if before.lets_go() && G::touch(before.fingers) => {
+            (true, false) if before.lets_go() && G::touch(before.scene.fingers) => {
                 Err("the robot leaves while the fingers have not let go")
             }
             (false, true) if self.command.command == EmoveVerb::MovToObj && !opens => {
@@ -88,23 +95,23 @@ impl<G: Fingered> Pair<G> {
     fn judge_arrival(&self, before: &Self) -> Result<(), Wrong> {
         let named = place(self.command.site.location.as_str());
         let at_object = matches!(self.command.command, EmoveVerb::MovToObj | EmoveVerb::MovObjTo);
-        let goal = if at_object { self.object_at } else { Pose::from_frame(&named.frame) };
-        let status = &self.emove_out.status;
+        let goal = if at_object { self.scene.object_at } else { Pose::from_frame(&named.frame) };
+        let status = &self.upper.out.status;
         // An object that is held is not gone to.
         if self.command.command == EmoveVerb::MovToObj && status.held.object() == self.command.object {
             return Ok(());
         }
-        if !is_at(&goal, &before.robot.at) {
+        if !is_at(&goal, &before.scene.robot.at) {
             return Err("done, and the robot is not there");
         }
         if status.at.is_none_or(|at| at.site.location != self.command.site.location) {
             return Err("done, and E-move does not know that the robot is there");
         }
         match self.command.command {
-            EmoveVerb::MovToObj if !G::are_open(before.fingers) && before.apart > G::LATE => {
+            EmoveVerb::MovToObj if !G::are_open(before.scene.fingers) && before.scene.apart > G::LATE => {
                 Err("done, and the fingers are not open")
             }
-            EmoveVerb::MovObjTo if before.apart > G::LATE && !before.lets_go() => {
+            EmoveVerb::MovObjTo if before.scene.apart > G::LATE && !before.lets_go() => {
                 Err("done, and nothing is between the fingers")
             }
             _ => Ok(()),
@@ -115,9 +122,9 @@ impl<G: Fingered> Pair<G> {
     ///
     /// `before` is the pair a tick before, in which nothing was commanded.
     pub(super) fn judge_held(&self, before: &Self) -> Result<(), Wrong> {
-        let holds = G::hold(self.fingers);
-        let presses = holds && self.gripper.presses();
-        let wrong = match self.emove_out.status.held {
+        let holds = G::hold(self.scene.fingers);
+        let presses = holds && self.lower.presses();
+        let wrong = match self.upper.out.status.held {
             Holding::Nothing if holds => "at rest, and what is held counts as nothing",
             Holding::Object(_) if !presses && !self.lets_go() => {
                 "at rest, and something counts as held that is not, nor is being let go"

@@ -10,40 +10,40 @@ impl<G: Fingered> Pair<G> {
     pub(super) fn alike(&self) -> Vec<u8> {
         let mut image = Image::new(self.tick, G::LIMIT, G::COUNTERS);
         let mut it = self.clone();
-        forget(&mut it.emove);
-        it.gripper.execution().reason = Reason::None;
+        forget(&mut it.upper.state);
+        it.lower.execution().reason = Reason::None;
         // Rows that order something lead to later steps: none of them fires twice in a command.
-        it.emove.execution.last_order = None;
-        it.emove.ordered_at = Default::default();
-        it.emove.held.forget_places();
+        it.upper.state.execution.last_order = None;
+        it.upper.state.ordered_at = Default::default();
+        it.upper.state.held.forget_places();
         if it.is_settled() {
-            G::forget_order(&mut it.emove_out);
+            G::forget_order(&mut it.upper.out);
         }
-        it.robot.forget_order(&mut it.emove_out, it.emove.motion.goal().is_none());
-        it.gripper.forget(it.tick);
+        it.scene.robot.forget_order(&mut it.upper.out, it.upper.state.motion.goal().is_none());
+        it.lower.forget(it.tick);
         image.add(&it.command);
-        image.add(&it.emove);
-        image.add(&it.emove_out.prim);
-        image.add(&it.emove_out.poses);
-        image.add(&it.emove_out.quick_change);
-        image.add(&it.emove_out.status.echo);
-        image.add(&it.emove_out.status.report);
-        it.gripper.add_to(&it.emove_out, &mut image);
-        image.add(&it.gripper.sensors(it.fingers));
-        it.robot.add_to(&mut image);
-        image.add(&it.quick_change);
-        image.bytes.extend([it.apart, it.left.0.unwrap_or(u8::MAX), it.left.1]);
+        image.add(&it.upper.state);
+        image.add(&it.upper.out.prim);
+        image.add(&it.upper.out.poses);
+        image.add(&it.upper.out.quick_change);
+        image.add(&it.upper.out.status.echo);
+        image.add(&it.upper.out.status.report);
+        it.lower.add_to(&it.upper.out, &mut image);
+        image.add(&it.lower.sensors(it.scene.fingers));
+        it.scene.robot.add_to(&mut image);
+        image.add(&it.scene.quick_change);
+        image.bytes.extend([it.scene.apart, it.early.unwrap_or(u8::MAX), it.mishaps]);
         image.bytes
     }
 
     /// What does not count any more begins again.
     pub(super) fn renumber(&mut self) {
-        let (emove, out) = (&mut self.emove, &mut self.emove_out);
+        let (emove, out) = (&mut self.upper.state, &mut self.upper.out);
         renumber_poses(emove, out);
         let echo = &mut emove.execution.receiver.echo;
         rebase_echoes(&mut [&mut self.command.number, echo, &mut out.status.echo]);
-        self.gripper.renumber(G::commander(emove), G::number(out));
-        rebase(emove.motion.commander(), &mut [&mut out.prim.number, &mut self.robot.echo]);
-        rebase(emove.exchange.commander(), &mut [&mut out.quick_change.number, &mut self.quick_change]);
+        self.lower.renumber(G::commander(emove), G::number(out));
+        rebase(emove.motion.commander(), &mut [&mut out.prim.number, &mut self.scene.robot.echo]);
+        rebase(emove.exchange.commander(), &mut [&mut out.quick_change.number, &mut self.scene.quick_change]);
     }
 }

@@ -8,9 +8,10 @@ use interfaces::{
 };
 use levels::execution::Outcome;
 
-use super::{Event, LATE, Pair};
+use super::{Does, LATE, Pair};
 use crate::{
     data::data,
+    frame::Event,
     parts_gripper, robot,
     search::{Mishap, Wrong},
 };
@@ -18,7 +19,7 @@ use crate::{
 impl Pair {
     /// Is it where the robot is to stand for a command?
     fn is_goal(&self, command: &SubtaskCommand, at: &Pose) -> bool {
-        let Some((_, pose)) = self.commands.iter().find(|(_, pose)| pose.number == command.pose) else {
+        let Some((_, pose)) = self.lines.iter().find(|(_, pose)| pose.number == command.pose) else {
             return false;
         };
         let base = pose.pose.to_frame().expect("commands have frames");
@@ -30,24 +31,24 @@ impl Pair {
     }
 
     pub(super) fn is_destination(&self, at: &Pose) -> bool {
-        let mut places = self.commands.iter().filter(|(command, _)| command.command == SubtaskVerb::PlaceObj);
+        let mut places = self.lines.iter().filter(|(command, _)| command.command == SubtaskVerb::PlaceObj);
         places.any(|(command, _)| self.is_goal(command, at))
     }
 
     /// Does E-move give an order that moves robot or fingers?
     fn orders_motion(&self, before: &Self) -> bool {
-        let (now, then) = (&self.emove_out, &before.emove_out);
+        let (now, then) = (&self.lower.out, &before.lower.out);
         (now.prim.number != then.prim.number && robot::moves(now.prim.command))
             || (now.grip.number != then.grip.number && parts_gripper::moves(now.grip.command))
     }
 
     fn is_done(&self, number: u32) -> bool {
-        let execution = &self.subtask.execution;
+        let execution = &self.upper.state.execution;
         execution.outcome == Outcome::Done && execution.receiver.echo == number
     }
 
     /// `before` is the pair as it was when the processes read it.
-    pub(super) fn judge(&self, before: &Self, event: Event) -> Result<(), Wrong> {
+    pub(super) fn judge(&self, before: &Self, event: &Event<Does>) -> Result<(), Wrong> {
         self.judge_orders(before, event)?;
         let number = self.command.number;
         if !self.is_done(number) {
@@ -55,9 +56,9 @@ impl Pair {
         }
         // What is placed already may be found so while a robot whose motion has failed comes to rest.
         let at_once = matches!(self.command.command, SubtaskVerb::PlaceObj | SubtaskVerb::GetEndeff);
-        let out = &before.emove_out;
-        let fingers = self.command.command == SubtaskVerb::Pause && before.grip.is_moving(&out.grip);
-        let robot = !at_once && before.robot.is_moving(&out.prim);
+        let out = &before.lower.out;
+        let fingers = self.command.command == SubtaskVerb::Pause && before.scene.grip.is_moving(&out.grip);
+        let robot = !at_once && before.scene.robot.is_moving(&out.prim);
         if self.orders_motion(before) || fingers || robot {
             return Err("done, and something moves");
         }
@@ -66,22 +67,22 @@ impl Pair {
 
     /// Nothing of a command that was replaced is ordered. The robot stands still while the fingers close or let go, and
     /// at the object when they close.
-    fn judge_orders(&self, before: &Self, event: Event) -> Result<(), Wrong> {
-        let (now, then) = (&self.emove_out, &before.emove_out);
+    fn judge_orders(&self, before: &Self, event: &Event<Does>) -> Result<(), Wrong> {
+        let (now, then) = (&self.lower.out, &before.lower.out);
         let fresh = event.told.is_some() || event.mishap != Mishap::None;
-        if self.orders_motion(before) && !before.own && !fresh {
+        if self.orders_motion(before) && !before.scene.own && !fresh {
             return Err("an order of a command that was replaced");
         }
         let holds = matches!(then.grip.command, GripVerb::OpenGrip | GripVerb::CloseGrip);
         let sends = now.prim.number != then.prim.number && robot::moves(now.prim.command);
-        if sends && holds && before.grip.is_busy(&then.grip) {
+        if sends && holds && before.scene.grip.is_busy(&then.grip) {
             return Err("the robot is moved while the fingers close or let go");
         }
-        let (order, last) = (self.subtask_out.emove.command, before.subtask_out.emove.command);
+        let (order, last) = (self.upper.out.emove.command, before.upper.out.emove.command);
         // What is held has not been gone to.
-        let arrived = before.own && order == EmoveVerb::GraspObj && last == EmoveVerb::MovToObj;
+        let arrived = before.scene.own && order == EmoveVerb::GraspObj && last == EmoveVerb::MovToObj;
         let empty = !then.status.held.is_held();
-        if arrived && empty && !self.is_goal(&self.command, &before.robot.at) {
+        if arrived && empty && !self.is_goal(&self.command, &before.scene.robot.at) {
             return Err("the fingers close, and the robot is not at the object");
         }
         Ok(())
@@ -89,15 +90,17 @@ impl Pair {
 
     /// What is reported done is done.
     fn judge_end(&self, before: &Self) -> Result<(), Wrong> {
-        let (status, held) = (&before.emove_out.status, before.emove_out.status.held.object());
-        let there = self.is_goal(&self.command, &before.robot.at);
+        let (status, held) = (&before.lower.out.status, before.lower.out.status.held.object());
+        let there = self.is_goal(&self.command, &before.scene.robot.at);
         match self.command.command {
-            SubtaskVerb::GetObject if before.apart > LATE => Err("done, and nothing is between the fingers"),
+            SubtaskVerb::GetObject if before.scene.apart > LATE => {
+                Err("done, and nothing is between the fingers")
+            }
             SubtaskVerb::GetObject | SubtaskVerb::MoveObjToDest if held != self.command.object => {
                 Err("done, and the object is not held")
             }
-            SubtaskVerb::PlaceObj if !before.let_go => Err("done, and the object is not placed"),
-            SubtaskVerb::PlaceObj | SubtaskVerb::Release if before.grip.full => {
+            SubtaskVerb::PlaceObj if !before.scene.let_go => Err("done, and the object is not placed"),
+            SubtaskVerb::PlaceObj | SubtaskVerb::Release if before.scene.grip.full => {
                 Err("done, and something is between the fingers")
             }
             SubtaskVerb::GotoDest | SubtaskVerb::MoveObjToDest if !there => {

@@ -1,0 +1,64 @@
+//! E-move as Subtask sees it: what its orders do to its status.
+
+use interfaces::{
+    StatusReport,
+    emove::{
+        EmoveCommand, EmoveStatus, EmoveVerb, Holding, LocatedObject, ObjectGrip, PlacedObject, Standing,
+    },
+};
+
+/// Does the robot leave its place for an order?
+pub const fn moves(verb: EmoveVerb) -> bool {
+    matches!(
+        verb,
+        EmoveVerb::MovToLoc
+            | EmoveVerb::MovToObj
+            | EmoveVerb::MovObjTo
+            | EmoveVerb::MovToVu
+            | EmoveVerb::MovToHol
+    )
+}
+
+/// A new order is taken.
+pub const fn take(status: &mut EmoveStatus, number: u32) {
+    (status.echo, status.report) = (number, StatusReport::Executing);
+}
+
+/// The effect of an order that is done.
+pub fn effect(status: &mut EmoveStatus, order: &EmoveCommand) {
+    let EmoveCommand { object, grip, site, .. } = *order;
+    match order.command {
+        EmoveVerb::GraspObj | EmoveVerb::AcquireTool => {
+            grasp(status, ObjectGrip { object: object.unwrap_or_default(), grip });
+            status.drum |= order.command == EmoveVerb::AcquireTool;
+        }
+        EmoveVerb::InsertTool => status.drum = true,
+        EmoveVerb::RemoveTool => status.drum = false,
+        EmoveVerb::Release => release(status),
+        EmoveVerb::ReleaseTool => (status.held, status.drum) = (Holding::Nothing, false),
+        EmoveVerb::LocateObj => {
+            status.located = object.map(|object| LocatedObject { object, site });
+        }
+        EmoveVerb::QcDetach => (status.end_effector_id, status.exchange) = (None, None),
+        EmoveVerb::QcAttach => (status.end_effector_id, status.exchange) = (order.end_effector_id, None),
+        verb if moves(verb) => {
+            let grip = Some(grip).filter(|_| verb != EmoveVerb::MovToLoc);
+            status.at = Some(Standing { site, grip });
+        }
+        _ => {}
+    }
+}
+
+/// The fingers have grasped an object.
+pub const fn grasp(status: &mut EmoveStatus, object: ObjectGrip) {
+    (status.held, status.placed, status.located) = (Holding::Object(object), None, None);
+}
+
+/// The fingers have released what they held, where the robot is.
+pub fn release(status: &mut EmoveStatus) {
+    if let Holding::Object(ObjectGrip { object, grip }) = status.held {
+        let site = status.at.unwrap_or_default().site;
+        status.placed = Some(PlacedObject { object, grip, site });
+    }
+    status.held = Holding::Nothing;
+}

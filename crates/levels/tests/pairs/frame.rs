@@ -1,0 +1,270 @@
+//! What all pairs have in common: two processes, the commands that come, mishaps, and how a tick goes.
+
+use std::{fmt::Debug, sync::Arc};
+
+use interfaces::{
+    CommonMemory, ExternalInputs,
+    process::{Inputs, Process},
+};
+use rcs_core::tick::Tick;
+use taskdata::files::TaskData;
+
+use crate::{
+    data::data,
+    search::{Mishap, World, Wrong},
+};
+
+pub type Data = TaskData<'static>;
+
+/// A process between two ticks.
+pub trait Stepped: Clone {
+    fn step(&mut self, inputs: &Inputs<'_, Data>);
+    /// Begin again, with the outputs of before.
+    fn restart(&mut self);
+}
+
+/// The state of a process, and what it has written.
+pub struct Half<P: Process<Data>> {
+    pub state: P::State,
+    pub out: P::Outputs,
+}
+
+impl<P: Process<Data, State: Copy, Outputs: Copy>> Clone for Half<P> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+
+impl<P: Process<Data, State: Copy, Outputs: Copy>> Copy for Half<P> {}
+
+impl<P: Process<Data, State: Copy + Default, Outputs: Copy + Default>> Default for Half<P> {
+    fn default() -> Self {
+        Self { state: P::State::default(), out: P::Outputs::default() }
+    }
+}
+
+impl<P: Process<Data, State: Copy + Default, Outputs: Copy> + Default> Stepped for Half<P> {
+    fn step(&mut self, inputs: &Inputs<'_, Data>) {
+        let mut process = P::default();
+        process.restore(self.state);
+        process.step(inputs, &mut self.out);
+        self.state = *process.state();
+    }
+
+    fn restart(&mut self) {
+        self.state = P::State::default();
+    }
+}
+
+/// What is around the two processes of a pair, and what must hold of them.
+pub trait Scene: Clone {
+    type Upper: Stepped;
+    type Lower: Stepped;
+    /// A command that can come.
+    type Line: Clone;
+    /// The command in the buffer of the commander.
+    type Command: Copy;
+    /// What is around them does in a tick.
+    type Does: Copy + Debug;
+
+    /// Ticks of a long time.
+    const LONG: u64;
+    /// What can happen to the processes.
+    const MISHAPS: &'static [Mishap] = Mishap::RESTARTS;
+    /// A command can come in the tick of a mishap.
+    const COMMANDS_IN_MISHAPS: bool = false;
+
+    /// What can happen around them in the next tick.
+    fn choices(pair: &Pair<Self>) -> Vec<Choice<Self::Does>>;
+    /// The last command has ended.
+    fn has_ended(pair: &Pair<Self>) -> bool;
+    /// A command can come although the last one has not ended.
+    fn is_other(pair: &Pair<Self>, line: &Self::Line) -> bool;
+    /// A command can come when the last one has ended.
+    fn may(_pair: &Pair<Self>, _line: &Self::Line) -> bool {
+        true
+    }
+    /// Write a command.
+    fn command(pair: &mut Pair<Self>, nth: usize);
+    /// What else an event changes before the tick.
+    fn begin(_pair: &mut Pair<Self>, _event: &Event<Self::Does>) {}
+    /// What the processes read.
+    fn inputs(pair: &Pair<Self>) -> (CommonMemory, ExternalInputs);
+    /// What is around them reads what was written in the tick before, and does something.
+    ///
+    /// # Errors
+    /// What is wrong with what it was commanded.
+    fn act(pair: &mut Pair<Self>, event: &Event<Self::Does>, memory: &CommonMemory) -> Result<(), Wrong>;
+    /// Note what `judge` asks for in later ticks.
+    fn note(_pair: &mut Pair<Self>, _before: &Pair<Self>) {}
+    /// What must hold in each tick. `before` is the pair as it was when the processes read it.
+    ///
+    /// # Errors
+    /// What does not hold.
+    fn judge(pair: &Pair<Self>, before: &Pair<Self>, event: &Event<Self::Does>) -> Result<(), Wrong>;
+    /// What must hold when nothing changes any more.
+    ///
+    /// # Errors
+    /// What does not hold.
+    fn judge_rest(_pair: &Pair<Self>, _before: &Pair<Self>, _event: &Event<Self::Does>) -> Result<(), Wrong> {
+        Ok(())
+    }
+    /// What does not count any more begins again.
+    fn renumber(pair: &mut Pair<Self>);
+    /// As [`World::image`].
+    fn image(pair: &Pair<Self>) -> Vec<u8>;
+    /// As [`World::rests`].
+    fn rests(pair: &Pair<Self>) -> bool;
+    /// As [`World::pauses`].
+    fn pauses(pair: &Pair<Self>) -> bool;
+}
+
+/// Something that can happen around the processes.
+#[derive(Clone, Copy, Debug)]
+pub struct Choice<Does> {
+    pub does: Does,
+    /// Whatever was ordered ends in this tick.
+    pub prompt: bool,
+    /// So many mishaps.
+    pub mishaps: u8,
+    /// It can happen in a tick like any other.
+    pub short: bool,
+    /// It can be that a long time has passed in which nothing else happened.
+    pub long: bool,
+    /// It happens only without a command or a mishap.
+    pub quiet: bool,
+}
+
+impl<Does> Choice<Does> {
+    pub const fn new(does: Does, prompt: bool) -> Self {
+        Self { does, prompt, mishaps: 0, short: true, long: false, quiet: false }
+    }
+}
+
+#[derive(Clone, Copy, Debug)]
+pub struct Event<Does> {
+    /// A command that comes, from 0 in the list of commands.
+    pub told: Option<usize>,
+    pub does: Does,
+    pub mishap: Mishap,
+    /// Mishaps that are left are fewer by so many.
+    pub mishaps: u8,
+    /// A long time has passed in which nothing else happened.
+    pub long: bool,
+}
+
+#[derive(Clone)]
+pub struct Pair<S: Scene> {
+    pub tick: Tick,
+    pub lines: Arc<[S::Line]>,
+    /// Commands that may still come before the last one has ended; any number if none is given.
+    pub early: Option<u8>,
+    /// Mishaps that may still happen.
+    pub mishaps: u8,
+    pub command: S::Command,
+    pub upper: S::Upper,
+    pub lower: S::Lower,
+    pub scene: S,
+}
+
+impl<S: Scene<Upper: Default, Command: Default>> Pair<S> {
+    /// A pair before its first tick: these commands can come, so many of them `early`, and so many mishaps.
+    pub fn new(
+        lines: impl Into<Arc<[S::Line]>>,
+        (early, mishaps): (Option<u8>, u8),
+        lower: S::Lower,
+        scene: S,
+    ) -> Self {
+        Self {
+            tick: Tick(10_000),
+            lines: lines.into(),
+            early,
+            mishaps,
+            command: S::Command::default(),
+            upper: S::Upper::default(),
+            lower,
+            scene,
+        }
+    }
+}
+
+impl<S: Scene> Pair<S> {
+    /// No command, or one of those that can come.
+    fn told(&self) -> impl Iterator<Item = Option<usize>> + use<S> {
+        let (ended, early) = (S::has_ended(self), self.early != Some(0));
+        let may = |line| (ended || (early && S::is_other(self, line))) && S::may(self, line);
+        let told: Vec<_> = (0..self.lines.len()).filter(|nth| may(&self.lines[*nth])).collect();
+        core::iter::once(None).chain(told.into_iter().map(Some))
+    }
+}
+
+impl<S: Scene> World for Pair<S> {
+    type Event = Event<S::Does>;
+
+    fn events(&self) -> Vec<(Self::Event, bool)> {
+        let (choices, mut events) = (S::choices(self), Vec::new());
+        for mishap in Mishap::choices(self.mishaps, S::MISHAPS) {
+            for told in self.told() {
+                for &Choice { does, prompt, mishaps, short, long, quiet: only_quiet } in &choices {
+                    let mishaps = mishaps + u8::from(mishap != Mishap::None);
+                    if mishaps > self.mishaps || (mishaps > 0 && told.is_some() && !S::COMMANDS_IN_MISHAPS) {
+                        continue;
+                    }
+                    let event = Event { told, does, mishap, mishaps, long: false };
+                    let quiet = told.is_none() && mishaps == 0;
+                    if short && (quiet || !only_quiet) {
+                        events.push((event, quiet && prompt));
+                    }
+                    if quiet && long {
+                        events.push((Event { long: true, ..event }, true));
+                    }
+                }
+            }
+        }
+        events
+    }
+
+    fn step(&mut self, event: Self::Event) -> Result<(), Wrong> {
+        if let Some(nth) = event.told {
+            if !S::has_ended(self) {
+                self.early = self.early.map(|early| early - 1);
+            }
+            S::command(self, nth);
+        }
+        self.mishaps -= event.mishaps;
+        S::begin(self, &event);
+        let before = self.clone();
+        self.tick = if event.long { Tick(self.tick.0 + S::LONG) } else { self.tick.next() };
+        let (mut upper, mut lower) = (self.upper.clone(), self.lower.clone());
+        match event.mishap {
+            Mishap::RestartUpper => upper.restart(),
+            Mishap::RestartLower => lower.restart(),
+            Mishap::None | Mishap::SilentLower | Mishap::Slip => {}
+        }
+        let (memory, external) = S::inputs(self);
+        let data = data();
+        let inputs = Inputs { tick: self.tick, memory: &memory, external: &external, data: &data };
+        upper.step(&inputs);
+        if event.mishap != Mishap::SilentLower {
+            lower.step(&inputs);
+        }
+        S::act(self, &event, &memory)?;
+        (self.upper, self.lower) = (upper, lower);
+        S::note(self, &before);
+        S::judge(self, &before, &event)?;
+        S::renumber(self);
+        S::judge_rest(self, &before, &event)
+    }
+
+    fn image(&self) -> Vec<u8> {
+        S::image(self)
+    }
+
+    fn rests(&self) -> bool {
+        S::rests(self)
+    }
+
+    fn pauses(&self) -> bool {
+        S::pauses(self)
+    }
+}
