@@ -268,7 +268,7 @@ fn values_are_written_while_their_processes_stand() {
     wait_ticks(&mut client, 150);
     ask(&mut client, &["PAUSE"]);
     wait_ticks(&mut client, 100);
-    for line in ["write task.ledger NONE", "write emove.beliefs.located NONE", "db-done on"] {
+    for line in ["write task.ledger NONE", "write emove.estimates.located NONE", "db-done on"] {
         let refused = client.ask(line).unwrap().unwrap_err();
         assert!(refused.contains(" runs: `board "), "{line}: {refused}");
     }
@@ -276,14 +276,14 @@ fn values_are_written_while_their_processes_stand() {
     wait_ticks(&mut client, 5);
     for (line, why) in [
         ("write emove.status.held NONE", "one of task.ledger, "),
-        ("write emove.beliefs.placed LINKBAR1", "write emove.beliefs.placed NONE was expected"),
-        ("write emove.beliefs.held LINKBAR1_BH 9", "a grip of LINKBAR1_BH was expected"),
-        ("write emove.beliefs.held LINKBAR1_BH 2", "the sensors of the gripper"),
+        ("write emove.estimates.placed LINKBAR1", "write emove.estimates.placed NONE was expected"),
+        ("write emove.estimates.held LINKBAR1_BH 9", "a grip of LINKBAR1_BH was expected"),
+        ("write emove.estimates.held LINKBAR1_BH 2", "the sensors of the gripper"),
     ] {
         let refused = client.ask(line).unwrap().unwrap_err();
         assert!(refused.contains(why), "{line}: {refused}");
     }
-    ask(&mut client, &["write task.ledger NONE", "write emove.beliefs.located NONE", "db-done on"]);
+    ask(&mut client, &["write task.ledger NONE", "write emove.estimates.located NONE", "db-done on"]);
     let answer = client.ask("write grip.calibration NONE").unwrap().unwrap();
     assert!(answer.ends_with("grip.calibration was known, is NONE"), "{answer}");
     wait_ticks(&mut client, 5);

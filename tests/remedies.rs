@@ -331,7 +331,7 @@ fn is_held_at_home(memory: &CommonMemory) -> bool {
 
 /// The name of what the gripper holds is lost.
 fn without_name(it: &mut Operated) {
-    it.please(&["board 2 stop"]).wait(4).please(&["write emove.beliefs.held NONE"]).wait(4);
+    it.please(&["board 2 stop"]).wait(4).please(&["write emove.estimates.held NONE"]).wait(4);
     it.please(&["board 2 go"]).wait(8);
     assert_eq!(it.memory().emove.status.held, Holding::Something);
 }

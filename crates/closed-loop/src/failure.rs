@@ -351,7 +351,7 @@ mod tests {
                 memory.subtask.emove.site.location = Name10::new("VISE").unwrap();
                 let site = Site { location: Name10::new("BENCH").unwrap(), ..Site::default() };
                 let from = RobotPlace { site, ..RobotPlace::default() };
-                memory.emove.beliefs.place = Some(from);
+                memory.emove.estimates.place = Some(from);
             },
             |memory| memory.emove.status.reason = Reason::NoTrajectory,
             |memory| memory.subtask.status.reason = Reason::NoTrajectory,

@@ -7,7 +7,7 @@ use interfaces::{
     CommonMemory, DataBaseCommand, DeviceOutputs, ExternalInputs, GripOutputs, Header, OutsidePedestal,
     Reason,
     device::single_step,
-    emove::{Beliefs, Grasped, Located, PlacedObject},
+    emove::{Estimates, Grasped, Located, PlacedObject},
     grip::{GripCommand, GripReport, GripVerb},
     hws::{HwsReport, Ledger},
     operator::{BOARDS, Variable, Write, board_bit, process_bit},
@@ -391,31 +391,31 @@ fn believing() -> Rig {
     assert_eq!(rig.finish(ProcessId::ALL, 2000), FINISHED);
     let mut state = rig.ladder.state();
     state.subtask.regrip = Some(Regrip::default());
-    state.task.data_system.beliefs.owed[0] = Some(DataBaseCommand::default());
-    state.emove.adopt(&Beliefs {
+    state.task.data_system.updates.pending[0] = Some(DataBaseCommand::default());
+    state.emove.adopt(&Estimates {
         placed: Some(PlacedObject::default()),
         located: Some(Located::default()),
         held: Some(Grasped::default()),
-        ..state.emove.beliefs()
+        ..state.emove.estimates()
     });
     rig.ladder.restore(&state);
     rig.before.task.ledger = Some(Ledger::default());
-    rig.before.task.beliefs.owed = state.task.data_system.beliefs.owed;
+    rig.before.task.updates.pending = state.task.data_system.updates.pending;
     rig.before.subtask.regrip = state.subtask.regrip;
-    rig.before.emove.beliefs = state.emove.beliefs();
+    rig.before.emove.estimates = state.emove.estimates();
     rig
 }
 
 /// The variables that have a value.
 fn believed(memory: &CommonMemory) -> Vec<Variable> {
-    let beliefs = &memory.emove.beliefs;
+    let estimates = &memory.emove.estimates;
     let has = |variable: &Variable| match variable {
         Variable::Ledger => memory.task.ledger.is_some(),
-        Variable::Owed => memory.task.beliefs.owed[0].is_some(),
+        Variable::Pending => memory.task.updates.pending[0].is_some(),
         Variable::Regrip => memory.subtask.regrip.is_some(),
-        Variable::Held => beliefs.held.is_some(),
-        Variable::Placed => beliefs.placed.is_some(),
-        Variable::Located => beliefs.located.is_some(),
+        Variable::Held => estimates.held.is_some(),
+        Variable::Placed => estimates.placed.is_some(),
+        Variable::Located => estimates.located.is_some(),
         Variable::Calibration => memory.grip.calibration.is_some(),
     };
     Variable::ALL.iter().copied().filter(has).collect()

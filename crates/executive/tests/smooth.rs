@@ -6,7 +6,7 @@ use egm::{
     pose::{Vector, norm},
 };
 use geometry::frame::{Frame, Vector as Inches};
-use levels::prim::motion::{Motion, limits::Limits as MotionLimits};
+use levels::prim::motion::{PrimMotion, limits::Limits as MotionLimits};
 
 const TICK: u64 = 40_000_000;
 const CYCLE: u64 = 4_032_000;
@@ -14,7 +14,7 @@ const CYCLE: u64 = 4_032_000;
 /// Points of a motion of Prim, mm: 30 in at 12 in/s, and around a corner without a stop.
 fn points() -> Vec<Vector> {
     let start = Frame::identity();
-    let mut motion = Motion::at_rest(&start);
+    let mut motion = PrimMotion::at_rest(&start);
     let limits = MotionLimits::from_counts(4, 120, 8).unwrap();
     let mut points = vec![[0.0; 3]];
     for (goal, brake) in [([30.0, 0.0, 0.0], Some(3.0)), ([30.0, 20.0, 5.0], None)] {

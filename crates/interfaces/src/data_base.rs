@@ -82,19 +82,19 @@ pub struct Carried {
     /// Sector there, if it has one.
     pub sector: Option<i32>,
     /// The data base is told wherever it is let go, and not only in the MBD.
-    pub told: bool,
+    pub followed: bool,
 }
 
 /// What Task believes of the Data System. It is an output, so that a Task that is restarted has it
 /// (docs/design/recovery.md "Data base"; extension).
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
-pub struct DataBaseBeliefs {
+pub struct DataBaseUpdates {
     /// A STARTUP has succeeded, and no SHUTDOWN came since.
     pub connected: bool,
     /// A STARTUP has begun, and neither succeeded nor was followed by a SHUTDOWN.
     pub connecting: bool,
     /// The updates that have not been taken, the oldest first.
-    pub owed: [Option<DataBaseCommand>; KEPT_UPDATES],
+    pub pending: [Option<DataBaseCommand>; KEPT_UPDATES],
     /// What the command in the ledger takes, until it is held; none if the data base is not told where it is let go.
     pub taking: Option<Carried>,
     /// What the robot held last: by a command that is told of, or after a MOVE or an ACQUIRE. It stays if the part is

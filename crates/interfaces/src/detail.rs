@@ -37,7 +37,7 @@ impl Detail {
                 Self::Near(memory.emove.nearest)
             }
             (ProcessId::Emove, Fault::Reason(Reason::NoTrajectory)) => {
-                let believed = &memory.emove.beliefs;
+                let believed = &memory.emove.estimates;
                 let from = believed.place.or(believed.way.map(|way| way.from));
                 from.map_or(Self::None, |from| {
                     Self::Pair(
@@ -76,7 +76,7 @@ impl Detail {
 
 /// The place of E-move, seen from where the resolvers say that the robot is.
 fn off_place(memory: &CommonMemory) -> Option<NearPlace> {
-    let place = memory.emove.beliefs.place?;
+    let place = memory.emove.estimates.place?;
     let present = memory.changing_pose(memory.prim.status.sensor_pose?)?.to_frame().ok()?;
     Some(NearPlace::seen(place.site.location, &place.pose.to_frame().ok()?, &present))
 }
@@ -169,7 +169,7 @@ mod tests {
     fn a_trajectory_that_is_missing_is_named_by_its_ends() {
         let mut memory = CommonMemory::default();
         let from = RobotPlace { site: named("BENCH"), ..RobotPlace::default() };
-        memory.emove.beliefs.place = Some(from);
+        memory.emove.estimates.place = Some(from);
         memory.subtask.emove.site = named("VISE");
         let mut hws = HwsCommand { destination: Some(Name16::clipped("TRAY")), ..HwsCommand::default() };
         let text = said(ProcessId::Emove, Reason::NoTrajectory, &hws, &memory);
@@ -205,7 +205,7 @@ mod tests {
     fn a_reason_that_emove_reports_has_the_detail_of_emove() {
         let mut memory = CommonMemory::default();
         let from = RobotPlace { site: named("BENCH"), ..RobotPlace::default() };
-        memory.emove.beliefs.place = Some(from);
+        memory.emove.estimates.place = Some(from);
         memory.subtask.emove.site = named("VISE");
         let hws = HwsCommand::default();
         let said = |memory: &CommonMemory| Detail::of_command(Reason::NoTrajectory, &hws, memory);

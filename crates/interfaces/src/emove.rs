@@ -335,7 +335,7 @@ pub struct Exchange {
 /// State of the world that E-move cannot read from a sensor alone. It is an output, so that E-move has it again after a
 /// restart; each belief counts only as long as no sensor contradicts it.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
-pub struct Beliefs {
+pub struct Estimates {
     /// Where the robot stands.
     pub place: Option<RobotPlace>,
     /// The path that it is on.
@@ -439,7 +439,7 @@ pub struct EmoveOutputs {
     /// To the vision system.
     pub vision: VisionRequest,
     /// What E-move believes (extension).
-    pub beliefs: Beliefs,
+    pub estimates: Estimates,
     /// The known places that are nearest, the nearest first, while it is not known where the robot is
     /// (extension).
     pub nearest: [Option<NearPlace>; 2],

@@ -7,7 +7,7 @@ use rcs_core::{Plain, handshake::Lower, name::Name16};
 use super::words::{location, name};
 use crate::{
     ChangingPose, Header, Reason, Unconfirmed,
-    data_base::{Connection, DataBaseBeliefs, DataBaseCommand},
+    data_base::{Connection, DataBaseCommand, DataBaseUpdates},
     emove::Standing,
     operator::Support,
     subtask::{SubtaskCommand, SubtaskVerb},
@@ -93,7 +93,7 @@ pub struct Ledger {
     /// Its last command to Subtask, except PAUSE.
     pub last: SubtaskVerb,
     /// The Data System has got the update for its move, or needs none; until its object is taken again.
-    pub told: bool,
+    pub reported: bool,
 }
 
 /// A person has confirmed that what the gripper holds will not fall when it opens. The statement counts as long as the
@@ -122,8 +122,8 @@ pub struct TaskOutputs {
     pub data_base: DataBaseCommand,
     /// Is the Data System told of moves (extension)?
     pub connection: Connection,
-    /// Task's beliefs about the Data System (extension).
-    pub beliefs: DataBaseBeliefs,
+    /// Connection to the Data System, and updates (extension).
+    pub updates: DataBaseUpdates,
     /// The last command about an object or a tool that is not finished (extension).
     pub ledger: Option<Ledger>,
     /// A person's statement about what the gripper holds, as long as it counts (extension).

@@ -67,7 +67,7 @@ pub enum Support {
 /// Most values that are written in a tick.
 pub const WRITES: usize = 4;
 
-/// The variables that a person may write (IV.2.6; SPECNOTES.md): beliefs that no sensor tells alone. None of them moves
+/// The variables that a person may write (IV.2.6; SPECNOTES.md): facts that no sensor measures. None of them moves
 /// the robot, fingers or air by itself, and each counts only as long as no sensor contradicts it. The text is the
 /// variable's path in common memory.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
@@ -76,19 +76,19 @@ pub enum Variable {
     #[text = "task.ledger"]
     Ledger,
     /// Task: the updates that the Data System has not taken. Without them it is not told of those moves.
-    #[text = "task.beliefs.owed"]
-    Owed,
+    #[text = "task.updates.pending"]
+    Pending,
     /// Subtask: the part in the pedestal's hand.
     #[text = "subtask.regrip"]
     Regrip,
     /// E-move: what the gripper holds. Without it what is felt has no name.
-    #[text = "emove.beliefs.held"]
+    #[text = "emove.estimates.held"]
     Held,
     /// E-move: the object that was let go last, and where. Without it an interrupted command places it again.
-    #[text = "emove.beliefs.placed"]
+    #[text = "emove.estimates.placed"]
     Placed,
     /// E-move: what vision has located. Without it a new picture is taken.
-    #[text = "emove.beliefs.located"]
+    #[text = "emove.estimates.located"]
     Located,
     /// Grip: scale and offset of the sensors. Without them the next motion that needs an opening calibrates.
     #[text = "grip.calibration"]
@@ -114,7 +114,7 @@ impl Variable {
     #[must_use]
     pub const fn owner(self) -> ProcessId {
         match self {
-            Self::Ledger | Self::Owed => ProcessId::Task,
+            Self::Ledger | Self::Pending => ProcessId::Task,
             Self::Regrip => ProcessId::Subtask,
             Self::Held | Self::Placed | Self::Located => ProcessId::Emove,
             Self::Calibration => ProcessId::Grip,
@@ -127,7 +127,7 @@ impl Variable {
         match self {
             Self::Regrip => Form::Object,
             Self::Held => Form::ObjectGrip,
-            Self::Ledger | Self::Owed | Self::Placed | Self::Located | Self::Calibration => Form::Nothing,
+            Self::Ledger | Self::Pending | Self::Placed | Self::Located | Self::Calibration => Form::Nothing,
         }
     }
 }

@@ -110,7 +110,7 @@ pub struct SubtaskStatus {
 }
 
 /// The part that Subtask has given to the pedestal's hand. It is an output, so that a Subtask that is
-/// restarted knows it (docs/design/recovery.md "Beliefs"); it counts as long as the hand feels something.
+/// restarted knows it (docs/design/recovery.md "Estimates"); it counts as long as the hand feels something.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct Regrip {
     /// The object.

@@ -67,6 +67,7 @@ pub mod rows;
 pub mod subtask;
 pub mod t3i;
 pub mod task;
+pub mod variables;
 
 /// The types of the control processes, each under its identifier in `interfaces::for_each_process!`.
 pub mod processes {

@@ -5,7 +5,7 @@ use std::{path::Path, sync::OnceLock};
 
 use interfaces::emove::{EmoveCommand, EmoveVerb, GoneTo, ObjectGrip, RobotPlace};
 use levels::{
-    emove::motion::route::{Ahead, Goal, LegGoal, Planning, Route},
+    emove::motion::route::{Ahead, EmoveGoal, LegGoal, Planning, Route},
     places::robot_at,
 };
 use rcs_core::name::{Name10, Name16};
@@ -79,7 +79,7 @@ fn planned(
     from: Option<&RobotPlace>,
 ) -> Result<Vec<(String, i32)>, Planning> {
     let command = command(verb, object, grip, to);
-    let goal = Goal::new(&command, &to.frame, &data())?;
+    let goal = EmoveGoal::new(&command, &to.frame, &data())?;
     let from = from.ok_or(Planning::NoStart)?;
     Ok(legs(Route::between(from, &goal.place(&command), &data())?))
 }
@@ -147,7 +147,7 @@ fn the_view_at_unit_1_is_approached_from_above() {
     let route = planned(EmoveVerb::MovToVu, "LINKBAR1_BH", 2, &tray, Some(&from)).unwrap();
     assert_eq!(route, texts(&[("HOM-SAF-3", 100), ("UNIT-V1", 100), ("goal D/A+10rwz", 40), ("goal", 40)]));
     let command = command(EmoveVerb::MovToVu, "LINKBAR1_BH", 2, &tray);
-    let goal = Goal::new(&command, &tray.frame, &data()).unwrap();
+    let goal = EmoveGoal::new(&command, &tray.frame, &data()).unwrap();
     assert_eq!(goal.opening, Some(500));
     let view = data().movetable_named(&Name10::new("GR-PIC").unwrap()).unwrap();
     assert_ne!(view, MovtabId::NULL);

@@ -11,7 +11,7 @@ use geometry::{
     kinematics::{Joints, Margin, T3},
 };
 use interfaces::device::KNOB_FULL;
-use levels::prim::motion::{Motion, limits::Limits};
+use levels::prim::motion::{PrimMotion, limits::Limits};
 use plant::{arm::Arm, description::Actuators};
 use rcs_core::tick::TICK_S;
 use taskdata::files::TrajPara;
@@ -120,7 +120,7 @@ impl Robot {
         mut look: impl FnMut(usize, &Joints),
     ) -> (Vec<Flown>, Option<Trouble>) {
         let mut flown = Vec::new();
-        let mut motion = Motion::at_rest(&self.tool());
+        let mut motion = PrimMotion::at_rest(&self.tool());
         for (number, (goal, parameters)) in points.iter().enumerate() {
             let margin = T3.margin(&self.joints);
             let mut one = Flown { ticks: 0, held_back: 0, margin };
@@ -174,7 +174,7 @@ fn beyond(plate: &Plate, near: &Joints) -> Option<(usize, f64)> {
 /// Number of ticks of Prim's motion from rest at a frame to each point, without the limits of link and arm.
 #[must_use]
 pub fn time(start: &Frame, points: &[(Frame, TrajPara)]) -> Vec<u32> {
-    let mut motion = Motion::at_rest(start);
+    let mut motion = PrimMotion::at_rest(start);
     let mut times = Vec::new();
     for (number, (goal, parameters)) in points.iter().enumerate() {
         let through = (number + 1 < points.len()).then(|| f64::from(parameters.brk_dst) / 100.0);

@@ -13,7 +13,7 @@ use interfaces::{
 };
 use levels::{
     emove::{
-        motion::route::{Goal, LegGoal, Planning, Route},
+        motion::route::{EmoveGoal, LegGoal, Planning, Route},
         robot_place::is_same_pose,
         tables::{Action, Records, records::records},
     },
@@ -214,9 +214,9 @@ impl<'a> Walk<'a> {
         }
     }
 
-    fn goal_and_route(&self, command: &EmoveCommand, at: &Location) -> Result<(Goal, Route), Planning> {
+    fn goal_and_route(&self, command: &EmoveCommand, at: &Location) -> Result<(EmoveGoal, Route), Planning> {
         let found = self.found.filter(|_| command.command == EmoveVerb::MovToObj);
-        let goal = Goal::new(command, &found.unwrap_or(at.frame), &self.data)?;
+        let goal = EmoveGoal::new(command, &found.unwrap_or(at.frame), &self.data)?;
         let to = goal.place(command);
         let mut route = if is_same_pose(&self.place, &to) {
             Route::here(&self.place, &to, goal.opening)
@@ -228,7 +228,7 @@ impl<'a> Walk<'a> {
     }
 
     /// Adds the legs of a route with their times, and the entries of the task data that it uses.
-    fn route(&self, phase: &mut Phase, command: &EmoveCommand, goal: &Goal, mut route: Route) {
+    fn route(&self, phase: &mut Phase, command: &EmoveCommand, goal: &EmoveGoal, mut route: Route) {
         let departure = self.place.pose.to_frame().unwrap_or_else(|_| Frame::identity());
         let (depart, between, approach) = (route.depart, route.between, route.approach);
         self.path_entries(phase, command, depart, between, approach);

@@ -157,15 +157,15 @@ mod tests {
     use super::*;
     use crate::proto::wire::{Fields, Value};
     use levels::execution::Course;
-    use levels::prim::tables::{Attendance, Kind, Operator, TABLES, number};
+    use levels::prim::tables::{Attendance, CommandKind, PrimOperator, TABLES, number};
     use rcs_core::table::Variables as _;
 
     fn prim() -> HeaderPlace {
         headers().into_iter().find(|place| place.field == "prim").unwrap()
     }
 
-    fn attended(operator: Operator) -> Header {
-        let attendance = Attendance { course: Course::Continue, kind: Kind::Motion, operator };
+    fn attended(operator: PrimOperator) -> Header {
+        let attendance = Attendance { course: Course::Continue, kind: CommandKind::Motion, operator };
         let values = Values { step: 1, variables: attendance.code() };
         let decided = Decided { table: number::ATTEND, row: 2 };
         Header {
@@ -180,9 +180,9 @@ mod tests {
     #[test]
     fn values_are_told_by_their_names() {
         let attend = TABLES[usize::from(number::ATTEND) - 1];
-        let basis = attended(Operator::Moves).basis.unwrap();
+        let basis = attended(PrimOperator::Moves).basis.unwrap();
         assert_eq!(values_text(attend, basis.values), "course Continue, kind Motion, operator Moves");
-        let told: Vec<_> = beside(prim().process, &attended(Operator::Idle)).collect();
+        let told: Vec<_> = beside(prim().process, &attended(PrimOperator::Idle)).collect();
         assert_eq!(told, ["ATTEND row 2 (course Continue, kind Motion, operator Idle)"]);
     }
 
@@ -212,7 +212,7 @@ mod tests {
     #[test]
     fn a_message_changes_with_values_and_rest_and_not_with_the_tick() {
         let place = prim();
-        let (fired, other) = (attended(Operator::Idle), attended(Operator::Moves));
+        let (fired, other) = (attended(PrimOperator::Idle), attended(PrimOperator::Moves));
         let later =
             Header { stamp: Tick(8), basis: fired.basis.map(|b| Basis { tick: Tick(8), ..b }), ..fired };
         let resting = Header { stamp: Tick(9), ..fired };

@@ -79,7 +79,7 @@ impl<'a> CommandJudge<'a> {
 pub fn present(memory: &CommonMemory) -> Present {
     let status = &memory.subtask.status;
     Present {
-        place: memory.emove.beliefs.place.unwrap_or_default(),
+        place: memory.emove.estimates.place.unwrap_or_default(),
         gripper: status.end_effector_id,
         held: match status.held {
             Holding::Object(held) => Some((held.object, held.grip)),

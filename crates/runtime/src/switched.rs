@@ -205,7 +205,7 @@ impl Switched {
 /// The reason why the workstation controller cannot take over (IV.4.1); `None` if it can.
 pub fn obstacle(memory: &CommonMemory, last: &HwsCommand, has_data_system: bool) -> Option<String> {
     let needs = "the workstation controller is connected with";
-    let place = memory.emove.beliefs.place.map(|place| place.site.location);
+    let place = memory.emove.estimates.place.map(|place| place.site.location);
     if place.is_none_or(|location| location.as_str() != HOME) {
         let found = place.map_or("no known location".to_owned(), |location| location.to_string());
         return Some(format!("{needs} the robot at {HOME}, it is at {found}: move it there before the line"));

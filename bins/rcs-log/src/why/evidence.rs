@@ -8,7 +8,7 @@ use geometry::pose::WireFrame;
 use interfaces::{ExternalInputs, prim::PrimVerb};
 use levels::{
     ladder::{LadderState, ProcessId},
-    prim::{sensors::Reading, tables},
+    prim::{sensors::GuardReading, tables},
 };
 use rcs_core::{
     Plain,
@@ -192,7 +192,8 @@ impl Guard {
         self.sensor = Some(*sensor);
         let Some(state) = &self.state else { return };
         let devices = &moment.external.devices;
-        let Reading { guard, value } = state.prim.calibration.read(sensor, devices, command.end_effector_id);
+        let GuardReading { guard, value } =
+            state.prim.calibration.read(sensor, devices, command.end_effector_id);
         self.met |= guard == tables::Guard::Met;
         let nearer = |last: f64| if sensor.threshold < 0 { last.min(value) } else { last.max(value) };
         self.nearest = Some(self.nearest.map_or(value, nearer));

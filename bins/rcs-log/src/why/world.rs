@@ -43,7 +43,7 @@ impl Motion {
     fn note(&mut self, memory: &CommonMemory) {
         let number = memory.emove.prim.number;
         if number != self.number {
-            *self = Self { number, way: memory.emove.beliefs.way };
+            *self = Self { number, way: memory.emove.estimates.way };
         }
     }
 }

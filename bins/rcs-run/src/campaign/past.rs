@@ -13,11 +13,11 @@ use std::collections::BTreeSet;
 use depc::link::LinkCounters;
 use interfaces::{CommonMemory, ProcessId, pose_range};
 use levels::{
-    emove::gripper::Gripper,
+    emove::gripper::EmoveGripper,
     execution::{Execution, Outcome},
     grip::calibration::{Readings, Steady},
     ladder::LadderState,
-    pedestal::table::tables::Phase,
+    pedestal::table::tables::TablePhase,
     prim::state::RESTART_TICKS,
     rows::Rows,
 };
@@ -39,7 +39,7 @@ pub fn forget(memory: &mut CommonMemory, ladder: &mut LadderState, now: Tick) {
     }
     let table = &mut ladder.table;
     table.motor.sent = Tick(0);
-    if table.phase == Phase::Valid && table.execution.outcome != Outcome::Executing {
+    if table.phase == TablePhase::Valid && table.execution.outcome != Outcome::Executing {
         table.since = Tick(0);
     }
     for gripper in [&mut ladder.grip, &mut ladder.hand] {
@@ -74,9 +74,9 @@ fn count_commands(memory: &mut CommonMemory, ladder: &mut LadderState, now: Tick
         subtask: &mut ladder.subtask.pedestal, pedestal => pedestal.execution;
         emove: ladder.emove.motion.commander(), prim => prim.execution;
         emove: ladder.emove.exchange.commander(), quick_change => quick_change.execution;
-        emove: ladder.emove.grippers.commander(Gripper::Parts), grip => grip.execution;
-        emove: ladder.emove.grippers.commander(Gripper::V), v_grip => v_grip.execution;
-        emove: ladder.emove.grippers.commander(Gripper::Tool), tool_grip => tool_grip.execution;
+        emove: ladder.emove.grippers.commander(EmoveGripper::Parts), grip => grip.execution;
+        emove: ladder.emove.grippers.commander(EmoveGripper::V), v_grip => v_grip.execution;
+        emove: ladder.emove.grippers.commander(EmoveGripper::Tool), tool_grip => tool_grip.execution;
         prim: &mut ladder.prim.t3i, t3i => t3i;
         pedestal: &mut ladder.pedestal.hand, hand => hand.execution;
         pedestal: &mut ladder.pedestal.table, table => table.execution;

@@ -46,7 +46,7 @@ fn meant(scene: &Scene<'_>, object: &str, near: &Vector, reported: Option<&Frame
 
 /// Where E-move reports a part that the camera has found.
 fn report(scene: &Scene<'_>) -> Option<Frame> {
-    scene.memory.emove.beliefs.located.and_then(|located| located.pose.to_frame().ok())
+    scene.memory.emove.estimates.located.and_then(|located| located.pose.to_frame().ok())
 }
 
 /// The frames that the camera may find for a part that lies in a tray: the part may be turned by half a turn.

@@ -268,9 +268,9 @@ fn a_part_that_the_camera_has_found_outside_its_sector_is_located() {
         })
     };
     let claim = Claim::Located { object: name("LINKBAR1_BH"), near };
-    bench.memory.emove.beliefs.located = located(&sector);
+    bench.memory.emove.estimates.located = located(&sector);
     assert_eq!(bench.check(&claim), Ok(()));
-    bench.memory.emove.beliefs.located = located(&near);
+    bench.memory.emove.estimates.located = located(&near);
     assert!(bench.check(&claim).is_err(), "nothing lies where it is reported");
 }
 
@@ -282,7 +282,7 @@ fn a_part_that_moves_before_its_picture_is_false_and_after_it_not_sensed() {
     let claim = Claim::Located { object: name("LINKBAR1_BH"), near };
     assert_eq!(bench.not_sensed(&claim), None, "nothing was located");
     let away = Claim::Located { object: name("LINKBAR1"), near };
-    bench.memory.emove.beliefs.located = Some(interfaces::emove::Located {
+    bench.memory.emove.estimates.located = Some(interfaces::emove::Located {
         object: name("LINKBAR1"),
         pose: geometry::pose::Pose::from_frame(&near),
         ..interfaces::emove::Located::default()
@@ -293,7 +293,7 @@ fn a_part_that_moves_before_its_picture_is_false_and_after_it_not_sensed() {
     assert!(bench.check(&away).is_err());
     // Nothing lies where it was seen.
     let nowhere = Frame::identity();
-    bench.memory.emove.beliefs.located = Some(interfaces::emove::Located {
+    bench.memory.emove.estimates.located = Some(interfaces::emove::Located {
         object: name("LINKBAR1"),
         pose: geometry::pose::Pose::from_frame(&nowhere),
         ..interfaces::emove::Located::default()

@@ -11,7 +11,7 @@ use rcs_core::handshake::Lower;
 use super::{
     EmoveInputs, State,
     grasp::{grasp_of, gripper_on, sizes},
-    gripper::Gripper,
+    gripper::EmoveGripper,
     gripper_exchange::seat_pose,
     grippers::{FingerOrder, FingerVerb},
     motion::{
@@ -20,7 +20,7 @@ use super::{
         route::FULL_OPENING,
     },
     robot_place::{commanded_pose, gone_to, robot_at},
-    tables::{Action, Ordered, StateVariables},
+    tables::{Action, EmoveRecipient, StateVariables},
     tool_drum::start_of,
 };
 use crate::halt::Commanding as _;
@@ -31,7 +31,7 @@ const HAND_FORCE: i32 = 30;
 
 /// The process to which an action gives an order. Fingers that open on the way to a goal are not waited for,
 /// but the motion before must have come to its end.
-const fn ordered(action: Action) -> Option<Ordered> {
+const fn ordered(action: Action) -> Option<EmoveRecipient> {
     match action {
         Action::RobotInit
         | Action::Open
@@ -40,19 +40,21 @@ const fn ordered(action: Action) -> Option<Ordered> {
         | Action::DeltaMove(_)
         | Action::CalSensor(_)
         | Action::Centre
-        | Action::Align => Some(Ordered::Prim),
-        Action::GoUntil(_) => Some(Ordered::GoUntil),
-        Action::GoWhile(Relative::InsNear) => Some(Ordered::Nearing),
-        Action::GoWhile(_) => Some(Ordered::Prim),
+        | Action::Align => Some(EmoveRecipient::Prim),
+        Action::GoUntil(_) => Some(EmoveRecipient::GoUntil),
+        Action::GoWhile(Relative::InsNear) => Some(EmoveRecipient::Nearing),
+        Action::GoWhile(_) => Some(EmoveRecipient::Prim),
         Action::OpenToApproach
         | Action::Close
         | Action::OpenToDepart
         | Action::OpenFully
-        | Action::Calibrate => Some(Ordered::Gripper),
-        Action::CloseForHolster => Some(Ordered::GripperInHolster),
-        Action::Lock | Action::Unlock => Some(Ordered::QuickChange),
-        Action::Flood | Action::FloodAgain | Action::Precise | Action::PreciseAgain => Some(Ordered::Vision),
-        Action::Pause | Action::StopRobot => Some(Ordered::All),
+        | Action::Calibrate => Some(EmoveRecipient::Gripper),
+        Action::CloseForHolster => Some(EmoveRecipient::GripperInHolster),
+        Action::Lock | Action::Unlock => Some(EmoveRecipient::QuickChange),
+        Action::Flood | Action::FloodAgain | Action::Precise | Action::PreciseAgain => {
+            Some(EmoveRecipient::Vision)
+        }
+        Action::Pause | Action::StopRobot => Some(EmoveRecipient::All),
         _ => None,
     }
 }
@@ -72,8 +74,13 @@ impl State {
         }
         if let Some(ordered) = ordered(action) {
             self.ordered = ordered;
-            self.uses_prim |=
-                matches!(ordered, Ordered::Prim | Ordered::GoUntil | Ordered::Nearing | Ordered::All);
+            self.uses_prim |= matches!(
+                ordered,
+                EmoveRecipient::Prim
+                    | EmoveRecipient::GoUntil
+                    | EmoveRecipient::Nearing
+                    | EmoveRecipient::All
+            );
         }
         match action {
             Action::Wait => {}
@@ -272,7 +279,7 @@ impl State {
                 FingerOrder { order: FingerVerb::Grasp, opening: sizes.grasp_size, force: sizes.grasp_force }
             }
             Action::CloseByHand => {
-                let opening = Gripper::attached(inputs.memory).closed();
+                let opening = EmoveGripper::attached(inputs.memory).closed();
                 FingerOrder { order: FingerVerb::Grasp, opening, force: HAND_FORCE }
             }
             Action::Calibrate => FingerOrder { order: FingerVerb::Calibrate, ..FingerOrder::default() },

@@ -10,11 +10,11 @@ use rcs_core::handshake::Lower;
 
 use super::{
     EmoveInputs, State,
-    gripper::Gripper,
+    gripper::EmoveGripper,
     localization::returning::offset_of_place,
     robot_place::{commanded_pose, offset},
     senses::Senses,
-    tables::{Fingers, Holster, Lock, Mate},
+    tables::{EmoveHolster, Fingers, Lock, Mate},
 };
 use crate::{
     confirm::{Evidence, Proof},
@@ -121,7 +121,7 @@ pub static REMOVED: Goal = Goal {
 
 /// The fingers stand at the size of the object; those of the parts gripper feel it.
 fn is_grasped(senses: &Senses<'_>, memory: &CommonMemory) -> Proof {
-    let attached = Gripper::attached(memory);
+    let attached = EmoveGripper::attached(memory);
     if senses.fingers() != Fingers::Gripping {
         return Proof::of(Evidence::NotHeld);
     }
@@ -144,7 +144,7 @@ impl State {
         outputs: &EmoveOutputs,
     ) -> Proof {
         let memory = inputs.memory;
-        let force = if Gripper::attached(memory).has_stops() {
+        let force = if EmoveGripper::attached(memory).has_stops() {
             Proof::unsensed(Unconfirmed::GraspForce)
         } else {
             Proof::HOLDS
@@ -190,7 +190,7 @@ impl State {
             EmoveVerb::Release => is_free(),
             EmoveVerb::QcAttach => Proof::when(senses.mate() == Mate::Right, Evidence::GripperOff)
                 .and(Proof::when(senses.lock() == Lock::Locked, Evidence::Ring))
-                .and(Proof::when(senses.holster() != Holster::Full, Evidence::GripperOff)),
+                .and(Proof::when(senses.holster() != EmoveHolster::Full, Evidence::GripperOff)),
             EmoveVerb::QcDetach => Proof::when(senses.mate() == Mate::None, Evidence::GripperOn),
             EmoveVerb::Withdraw => at_command(),
             EmoveVerb::InsertTool => {

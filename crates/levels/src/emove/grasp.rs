@@ -7,7 +7,7 @@ use interfaces::{
 use rcs_core::name::Name16;
 use taskdata::files::{EndEffPara, TaskData};
 
-use super::{EmoveInputs, gripper::Gripper, robot_place::commanded_pose};
+use super::{EmoveInputs, gripper::EmoveGripper, robot_place::commanded_pose};
 
 /// Grip number of a holster object with the gripper on the robot; its approach size is the opening with which
 /// the gripper goes through the holster.
@@ -25,7 +25,7 @@ pub(super) fn sizes<'d>(command: &EmoveCommand, data: &TaskData<'d>) -> Option<&
 
 /// The grasp that a command asks for.
 pub(super) fn grasp_of(command: &EmoveCommand, inputs: &EmoveInputs<'_>) -> Grasped {
-    let gripper = Gripper::attached(inputs.memory);
+    let gripper = EmoveGripper::attached(inputs.memory);
     Grasped {
         object: ObjectGrip { object: command.object.unwrap_or_default(), grip: command.grip },
         parameters: command.object_parameters,
@@ -39,7 +39,7 @@ pub(super) fn grasp_of(command: &EmoveCommand, inputs: &EmoveInputs<'_>) -> Gras
 /// The grasp of a named object with a grip; `None` if no finger feels anything, or the task data lack the object.
 pub(super) fn named_grasp(object: Name16, grip: i32, inputs: &EmoveInputs<'_>) -> Option<Grasped> {
     let (parameters, _) = inputs.data.object(&object, grip)?;
-    let gripper = Gripper::attached(inputs.memory);
+    let gripper = EmoveGripper::attached(inputs.memory);
     if gripper.felt(inputs.memory) != Felt::Something {
         return None;
     }

@@ -28,7 +28,7 @@ const STOP_BAND: i32 = 5;
 
 /// The gripper on the robot; the code is `endeff-id#` (III.3.6 to III.3.8).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
-pub enum Gripper {
+pub enum EmoveGripper {
     /// None: the robot is bare.
     None,
     /// Parts gripper.
@@ -47,7 +47,7 @@ pub(super) const fn is_open(memory: &CommonMemory) -> bool {
     matches!(memory.quick_change.status.ring, RingPosition::Unlocked | RingPosition::Between)
 }
 
-impl Gripper {
+impl EmoveGripper {
     /// The gripper with an id; an id that none has counts as none (Quick Change passes no such id on).
     #[must_use]
     pub fn of(id: Option<u8>) -> Self {

@@ -17,7 +17,7 @@ use geometry::{
 };
 use interfaces::{
     CommonMemory, EmoveOutputs, Reason,
-    emove::{Beliefs, EmoveCommand, EmoveVerb, Exchange},
+    emove::{EmoveCommand, EmoveVerb, Estimates, Exchange},
     location::Site,
     quick_change::{QuickChangeCommand, QuickChangeReport, QuickChangeVerb, RingPosition},
 };
@@ -31,11 +31,11 @@ use taskdata::files::TaskData;
 use super::{
     EmoveInputs,
     grasp::gripper_on,
-    gripper::{Gripper, is_open},
+    gripper::{EmoveGripper, is_open},
     localization::{ASIDE_INCHES, LOST_RADIANS, path::beside},
     motion::relative::Relative,
     robot_place::{base, gone_to, is_led, present_frame, robot_at},
-    tables::{Along, Holster, Lock, Ring, Shut},
+    tables::{EmoveHolster, ExchangePosition, Lock, Ring, Shut},
 };
 
 /// The robot is at the seat within this, in: much less than a relative move is long.
@@ -50,7 +50,7 @@ const CLEAR: f64 = 0.3;
 const ABOVE: f64 = 0.6;
 
 /// The points of the exchange in a holster.
-struct Points {
+struct HolsterPoints {
     above: Frame,
     fast: Frame,
     slow: Frame,
@@ -59,7 +59,7 @@ struct Points {
     up: Frame,
 }
 
-impl Points {
+impl HolsterPoints {
     /// The points in a holster with the pose `base`.
     fn of(site: &Site, base: &Frame, data: &TaskData<'_>) -> Option<Self> {
         let moved =
@@ -76,30 +76,30 @@ impl Points {
     }
 
     /// Where a frame is along them.
-    fn along(&self, present: &Frame) -> Along {
+    fn along(&self, present: &Frame) -> ExchangePosition {
         let at = |point: &Frame| norm(&(present.position - point.position));
         let segments = [
-            (beside(present, &self.above, &self.fast), ASIDE_INCHES, Along::Out),
-            (beside(present, &self.fast, &self.slow), ASIDE_INCHES, Along::Coming),
-            (beside(present, &self.slow, &self.back), ABOVE, Along::Sliding),
-            (beside(present, &self.back, &self.lift), ASIDE_INCHES, Along::Lifting),
-            (beside(present, &self.lift, &self.up), ASIDE_INCHES, Along::Raising),
+            (beside(present, &self.above, &self.fast), ASIDE_INCHES, ExchangePosition::Out),
+            (beside(present, &self.fast, &self.slow), ASIDE_INCHES, ExchangePosition::Coming),
+            (beside(present, &self.slow, &self.back), ABOVE, ExchangePosition::Sliding),
+            (beside(present, &self.back, &self.lift), ASIDE_INCHES, ExchangePosition::Lifting),
+            (beside(present, &self.lift, &self.up), ASIDE_INCHES, ExchangePosition::Raising),
         ];
         let within = segments.into_iter().filter(|(distance, limit, _)| distance <= limit);
         let nearest = within.min_by(|(a, ..), (b, ..)| a.total_cmp(b));
         let turned = self.slow.distance(present).radians > LOST_RADIANS;
         if at(&self.slow) <= AT_POINT && !turned {
-            Along::Seat
+            ExchangePosition::Seat
         } else if at(&self.back) <= AT_LOW && !turned {
-            Along::Low
+            ExchangePosition::Low
         } else if at(&self.above) <= ABOVE {
-            Along::Above
+            ExchangePosition::Above
         } else if at(&self.up) <= CLEAR {
-            Along::Clear
+            ExchangePosition::Clear
         } else {
             match nearest {
                 Some((.., segment)) if !turned => segment,
-                _ => Along::Off,
+                _ => ExchangePosition::Off,
             }
         }
     }
@@ -114,38 +114,38 @@ const HOLSTER_SENSORS: u8 = 0x0F;
 
 /// The state of a gripper's own holster, by its four sensors. ASSUMED: the parts gripper's is the right holster, the
 /// v-gripper's the left, the tool gripper's the centre.
-pub(super) fn holster(gripper: Option<u8>, memory: &CommonMemory) -> Holster {
+pub(super) fn holster(gripper: Option<u8>, memory: &CommonMemory) -> EmoveHolster {
     let status = &memory.prim.status;
-    let bits = match Gripper::of(gripper) {
-        Gripper::None => return Holster::Empty,
-        Gripper::Parts => status.holster_right,
-        Gripper::V => status.holster_left,
-        Gripper::Tool => status.holster_centre,
+    let bits = match EmoveGripper::of(gripper) {
+        EmoveGripper::None => return EmoveHolster::Empty,
+        EmoveGripper::Parts => status.holster_right,
+        EmoveGripper::V => status.holster_left,
+        EmoveGripper::Tool => status.holster_centre,
     };
     match bits & HOLSTER_SENSORS {
-        0 => Holster::Empty,
-        HOLSTER_SENSORS => Holster::Full,
-        _ => Holster::Partial,
+        0 => EmoveHolster::Empty,
+        HOLSTER_SENSORS => EmoveHolster::Full,
+        _ => EmoveHolster::Partial,
     }
 }
 
 /// Position of the robot in the exchange of the command.
-pub(super) fn along(command: &EmoveCommand, inputs: &EmoveInputs<'_>) -> Along {
+pub(super) fn along(command: &EmoveCommand, inputs: &EmoveInputs<'_>) -> ExchangePosition {
     if !is_exchange(command.command) {
-        return Along::Off;
+        return ExchangePosition::Off;
     }
     let base = base(command, inputs.memory, inputs.data);
-    let points = base.and_then(|base| Points::of(&command.site, &base, inputs.data));
+    let points = base.and_then(|base| HolsterPoints::of(&command.site, &base, inputs.data));
     match (points, present_frame(inputs.memory)) {
         (Some(points), Some(present)) => points.along(&present),
-        _ => Along::Off,
+        _ => ExchangePosition::Off,
     }
 }
 
 /// Are the fingers at the opening with which the gripper goes through its holster?
 pub(super) fn shut(command: &EmoveCommand, inputs: &EmoveInputs<'_>) -> Shut {
     let opening = gripper_on(command, inputs.data).map(|on| on.appr_size);
-    let attached = Gripper::attached(inputs.memory);
+    let attached = EmoveGripper::attached(inputs.memory);
     match opening {
         _ if attached.is_uncalibrated(inputs.memory) => Shut::Raw,
         Some(opening) if attached.stands_at(opening, inputs.memory) => Shut::Shut,
@@ -156,7 +156,7 @@ pub(super) fn shut(command: &EmoveCommand, inputs: &EmoveInputs<'_>) -> Shut {
 /// Where a gripper is left in the holster of a command.
 pub(super) fn seat_pose(command: &EmoveCommand, memory: &CommonMemory, data: &TaskData<'_>) -> Option<Pose> {
     let base = base(command, memory, data)?;
-    Some(Pose::from_frame(&Points::of(&command.site, &base, data)?.slow))
+    Some(Pose::from_frame(&HolsterPoints::of(&command.site, &base, data)?.slow))
 }
 
 /// The quick change, and the gripper on it.
@@ -165,23 +165,23 @@ pub struct GripperExchange {
     /// Commands to Quick Change.
     commander: Commander,
     /// The gripper on the robot in the tick before.
-    attached: Gripper,
+    attached: EmoveGripper,
     /// The holster in which the robot changes a gripper.
     holster: Option<Exchange>,
 }
 
 impl GripperExchange {
-    pub(super) const fn adopt(&mut self, beliefs: &Beliefs) {
-        self.holster = beliefs.exchange;
+    pub(super) const fn adopt(&mut self, estimates: &Estimates) {
+        self.holster = estimates.exchange;
     }
 
     /// Adopt the gripper that was on in the tick before.
-    pub const fn adopt_gripper(&mut self, attached: Gripper) {
+    pub const fn adopt_gripper(&mut self, attached: EmoveGripper) {
         self.attached = attached;
     }
 
-    pub(super) const fn write_to(&self, beliefs: &mut Beliefs) {
-        beliefs.exchange = self.holster;
+    pub(super) const fn write_to(&self, estimates: &mut Estimates) {
+        estimates.exchange = self.holster;
     }
 
     pub(super) fn start(&mut self, tick: Tick, memory: &CommonMemory) {
@@ -232,10 +232,10 @@ impl GripperExchange {
     /// Then it is on, and its pins have a bad contact. What it holds is not known until they read as before.
     /// A gripper that its own holster feels, while the robot is in no holster, has been torn off the ring.
     pub(super) fn is_misread(&self, memory: &CommonMemory) -> bool {
-        let read = Gripper::attached(memory);
+        let read = EmoveGripper::attached(memory);
         let locked = memory.quick_change.status.ring == RingPosition::Locked;
-        let rests = self.holster.is_none() && holster(self.attached.id(), memory) == Holster::Full;
-        locked && self.attached != Gripper::None && read != self.attached && !rests
+        let rests = self.holster.is_none() && holster(self.attached.id(), memory) == EmoveHolster::Full;
+        locked && self.attached != EmoveGripper::None && read != self.attached && !rests
     }
 
     /// The gripper on the robot. Pins with a bad contact do not make the robot bare: Subtask would fetch the gripper
@@ -246,7 +246,7 @@ impl GripperExchange {
 
     /// Which gripper is on. True if it is another one than before.
     pub(super) fn sense_gripper(&mut self, memory: &CommonMemory) -> bool {
-        let attached = Gripper::attached(memory);
+        let attached = EmoveGripper::attached(memory);
         attached != mem::replace(&mut self.attached, attached)
     }
 
@@ -274,9 +274,9 @@ impl GripperExchange {
             return;
         };
         let base = exchange.place.pose.to_frame().ok();
-        let points = base.and_then(|base| Points::of(&exchange.place.site, &base, inputs.data));
-        let along = points.map_or(Along::Off, |points| points.along(&present));
-        if along == Along::Off && !is_led(inputs.memory) {
+        let points = base.and_then(|base| HolsterPoints::of(&exchange.place.site, &base, inputs.data));
+        let along = points.map_or(ExchangePosition::Off, |points| points.along(&present));
+        if along == ExchangePosition::Off && !is_led(inputs.memory) {
             self.holster = None;
         }
     }

@@ -27,7 +27,7 @@ use rcs_core::{
     tick::Tick,
 };
 
-use super::gripper::Gripper;
+use super::gripper::EmoveGripper;
 
 /// A command to the attached gripper, whichever of the three it is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
@@ -76,7 +76,7 @@ pub struct Grippers {
     /// Commands to Tool-Grip.
     tool: Commander,
     /// The gripper that has the last order.
-    to: Gripper,
+    to: EmoveGripper,
     /// The last order.
     order: FingerVerb,
     /// Size commanded last to jaws, 0.01 in.
@@ -98,10 +98,10 @@ impl Grippers {
 
     /// In the first tick after a restart: the attached gripper may still execute an earlier command.
     pub fn adopt(&mut self, memory: &CommonMemory) {
-        let (attached, written) = (Gripper::attached(memory), &memory.emove);
+        let (attached, written) = (EmoveGripper::attached(memory), &memory.emove);
         self.order = match attached {
-            Gripper::None => return,
-            Gripper::Parts => match written.grip.command {
+            EmoveGripper::None => return,
+            EmoveGripper::Parts => match written.grip.command {
                 GripVerb::None => return,
                 GripVerb::Pause => FingerVerb::Pause,
                 GripVerb::Position => FingerVerb::Stand,
@@ -109,8 +109,8 @@ impl Grippers {
                 GripVerb::CloseGrip => FingerVerb::Grasp,
                 GripVerb::UpInit => FingerVerb::Calibrate,
             },
-            Gripper::V | Gripper::Tool => {
-                let jaws = if attached == Gripper::V { &written.v_grip } else { &written.tool_grip };
+            EmoveGripper::V | EmoveGripper::Tool => {
+                let jaws = if attached == EmoveGripper::V { &written.v_grip } else { &written.tool_grip };
                 self.size = jaws.size;
                 match jaws.command {
                     JawsVerb::None => return,
@@ -133,13 +133,13 @@ impl Grippers {
     /// The attached gripper has the last order.
     #[must_use]
     pub fn are_ordered(&self, memory: &CommonMemory) -> bool {
-        self.to == Gripper::attached(memory)
+        self.to == EmoveGripper::attached(memory)
     }
 
     /// Another gripper is on: its process wakes, and answers nothing that it was told before it was left.
     pub fn note_gripper(&mut self, memory: &CommonMemory) {
-        if Gripper::attached(memory) != Gripper::None {
-            self.to = Gripper::None;
+        if EmoveGripper::attached(memory) != EmoveGripper::None {
+            self.to = EmoveGripper::None;
         }
     }
 
@@ -172,12 +172,12 @@ impl Grippers {
         memory: &CommonMemory,
         outputs: &mut EmoveOutputs,
     ) {
-        let attached = Gripper::attached(memory);
-        self.to = if attached.is_asleep(memory) { Gripper::None } else { attached };
+        let attached = EmoveGripper::attached(memory);
+        self.to = if attached.is_asleep(memory) { EmoveGripper::None } else { attached };
         self.order = request.order;
         match self.to {
-            Gripper::None => {}
-            Gripper::Parts => {
+            EmoveGripper::None => {}
+            EmoveGripper::Parts => {
                 outputs.grip = GripCommand {
                     number: self.commander(self.to).send(tick),
                     command: match request.order {
@@ -193,8 +193,8 @@ impl Grippers {
                     end_effector_id: self.to.id(),
                 };
             }
-            Gripper::V => outputs.v_grip = self.jaws_command(request, tick),
-            Gripper::Tool => outputs.tool_grip = self.jaws_command(request, tick),
+            EmoveGripper::V => outputs.v_grip = self.jaws_command(request, tick),
+            EmoveGripper::Tool => outputs.tool_grip = self.jaws_command(request, tick),
         }
     }
 
@@ -225,15 +225,15 @@ impl Grippers {
     /// How far the last order has come. `Lost` if the gripper that has it is no longer the attached one.
     #[must_use]
     pub fn status(&self, tick: Tick, memory: &CommonMemory) -> Lower {
-        let attached = Gripper::attached(memory);
+        let attached = EmoveGripper::attached(memory);
         if attached != self.to {
             return Lower::Lost;
         }
         let (commander, jaws) = match attached {
-            Gripper::None => return Lower::Done,
-            Gripper::Parts => return self.parts.status_of(tick, &memory.grip),
-            Gripper::V => (&self.v, &memory.v_grip),
-            Gripper::Tool => (&self.tool, &memory.tool_grip),
+            EmoveGripper::None => return Lower::Done,
+            EmoveGripper::Parts => return self.parts.status_of(tick, &memory.grip),
+            EmoveGripper::V => (&self.v, &memory.v_grip),
+            EmoveGripper::Tool => (&self.tool, &memory.tool_grip),
         };
         let report = jaws.status.report;
         match commander.status_of(tick, jaws) {
@@ -257,15 +257,15 @@ impl Grippers {
     /// Why the last order failed: what the process says, or what can be seen from here.
     #[must_use]
     pub fn fault(&self, tick: Tick, memory: &CommonMemory) -> Reason {
-        let attached = Gripper::attached(memory);
+        let attached = EmoveGripper::attached(memory);
         let said = attached.jaws(memory).map_or(memory.grip.status.reason, |jaws| jaws.status.reason);
-        if attached != self.to || attached == Gripper::None {
+        if attached != self.to || attached == EmoveGripper::None {
             Reason::WrongGripper
         } else if self.status(tick, memory) == Lower::Lost {
             Reason::NeighbourLost
         } else if said != Reason::None {
             said
-        } else if attached == Gripper::Parts {
+        } else if attached == EmoveGripper::Parts {
             Reason::GripUnattainable
         } else {
             Reason::JawsStuck
@@ -280,11 +280,11 @@ impl Grippers {
 
     /// The handshake with a gripper; that with the parts gripper for none. Searches renumber its commands
     /// (docs/evidence.md).
-    pub const fn commander(&mut self, of: Gripper) -> &mut Commander {
+    pub const fn commander(&mut self, of: EmoveGripper) -> &mut Commander {
         match of {
-            Gripper::None | Gripper::Parts => &mut self.parts,
-            Gripper::V => &mut self.v,
-            Gripper::Tool => &mut self.tool,
+            EmoveGripper::None | EmoveGripper::Parts => &mut self.parts,
+            EmoveGripper::V => &mut self.v,
+            EmoveGripper::Tool => &mut self.tool,
         }
     }
 }

@@ -4,7 +4,7 @@
 use geometry::pose::Pose;
 use interfaces::{
     CommonMemory,
-    emove::{Beliefs, EmoveCommand, EmoveVerb, Grasped, Holding, PlacedObject, RobotPlace, Seat},
+    emove::{EmoveCommand, EmoveVerb, Estimates, Grasped, Holding, PlacedObject, RobotPlace, Seat},
     grip::Felt,
     prim::PrimReport,
 };
@@ -13,12 +13,12 @@ use rcs_core::{Plain, handshake::Lower};
 use super::{
     EmoveInputs,
     grasp::sizes,
-    gripper::{Gripper, is_open},
+    gripper::{EmoveGripper, is_open},
     grippers::{FingerVerb, Grippers},
     localization::{LOST_INCHES, LOST_RADIANS},
     motion::route::FULL_OPENING,
     robot_place::{is_led, may_push, near, present_frame},
-    tables::{Fingers, Load},
+    tables::{EmoveLoad, Fingers},
 };
 use crate::execution::{Execution, Outcome};
 
@@ -55,14 +55,14 @@ pub struct HeldObject {
 }
 
 impl HeldObject {
-    pub(super) const fn adopt(&mut self, beliefs: &Beliefs) {
-        (self.held, self.grasping, self.empty) = (beliefs.held, beliefs.grasping, beliefs.empty);
-        (self.seat, self.disturbed, self.placed) = (beliefs.seat, beliefs.disturbed, beliefs.placed);
+    pub(super) const fn adopt(&mut self, estimates: &Estimates) {
+        (self.held, self.grasping, self.empty) = (estimates.held, estimates.grasping, estimates.empty);
+        (self.seat, self.disturbed, self.placed) = (estimates.seat, estimates.disturbed, estimates.placed);
     }
 
-    pub(super) const fn write_to(&self, beliefs: &mut Beliefs) {
-        (beliefs.held, beliefs.grasping, beliefs.empty) = (self.held, self.grasping, self.empty);
-        (beliefs.seat, beliefs.disturbed, beliefs.placed) = (self.seat, self.disturbed, self.placed);
+    pub(super) const fn write_to(&self, estimates: &mut Estimates) {
+        (estimates.held, estimates.grasping, estimates.empty) = (self.held, self.grasping, self.empty);
+        (estimates.seat, estimates.disturbed, estimates.placed) = (self.seat, self.disturbed, self.placed);
     }
 
     /// In the first tick after a restart: a release may have been cut off.
@@ -139,12 +139,12 @@ impl HeldObject {
     }
 
     /// What was held when the command came.
-    pub(super) const fn load(&self, is_misread: bool) -> Load {
+    pub(super) const fn load(&self, is_misread: bool) -> EmoveLoad {
         match self.held {
-            None if self.carrying && self.gripper_gone => Load::GripperGone,
-            None if self.carrying => Load::Lost,
-            Some(_) if self.carrying && is_misread => Load::PinsFail,
-            _ => Load::Kept,
+            None if self.carrying && self.gripper_gone => EmoveLoad::GripperGone,
+            None if self.carrying => EmoveLoad::Lost,
+            Some(_) if self.carrying && is_misread => EmoveLoad::PinsFail,
+            _ => EmoveLoad::Kept,
         }
     }
 
@@ -164,7 +164,7 @@ impl HeldObject {
         inputs: &EmoveInputs<'_>,
     ) -> Option<Grasped> {
         let (tick, memory) = (inputs.tick, inputs.memory);
-        let attached = Gripper::attached(memory);
+        let attached = EmoveGripper::attached(memory);
         // Before the fingers have closed they feel nothing: that says nothing of what they will hold.
         let closing = grippers.order() == FingerVerb::Grasp && grippers.are_moving(tick, memory);
         self.empty |= grippers.has_let_go(tick, memory);
@@ -201,7 +201,7 @@ impl HeldObject {
         let looks = grasps && execution.outcome == Outcome::Executing;
         let status = grippers.status(inputs.tick, inputs.memory);
         let moving = matches!(status, Lower::Pending | Lower::Executing);
-        let presses = Gripper::attached(inputs.memory).presses(inputs.memory);
+        let presses = EmoveGripper::attached(inputs.memory).presses(inputs.memory);
         !looks && !moving && presses && !self.empty
     }
 
@@ -269,7 +269,7 @@ impl HeldObject {
         let memory = inputs.memory;
         let Some(held) = self.held else { return };
         let letting_go = self.is_letting_go(at.is_some());
-        let gripper = Gripper::of(held.gripper);
+        let gripper = EmoveGripper::of(held.gripper);
         // A part that was held with little force leaves the fingers where they are when it falls: only the
         // force tells.
         let felt = letting_go || !gripper.feels_nothing(memory);
@@ -279,7 +279,7 @@ impl HeldObject {
             && gripper
                 .opening(memory)
                 .is_some_and(|opening| !gripper.still_grips(opening, held.grasp_size, held.opening));
-        let gone = Gripper::attached(memory) != gripper;
+        let gone = EmoveGripper::attached(memory) != gripper;
         let unfelt = self.unfelt > UNFELT_TICKS;
         let has_let_go = grippers.has_let_go(inputs.tick, memory);
         if slipped || unfelt || gone || has_let_go {
@@ -302,7 +302,7 @@ impl HeldObject {
     /// What the gripper holds: what was grasped and is still felt, else what its sensors say. `is_misread` says that
     /// the id pins have a bad contact.
     pub(super) fn holding(&self, is_misread: bool, memory: &CommonMemory) -> Holding {
-        let attached = Gripper::attached(memory);
+        let attached = EmoveGripper::attached(memory);
         match (self.held, attached.felt(memory)) {
             (None, _) if is_misread && self.empty => Holding::Nothing,
             _ if is_misread => Holding::NotKnown,
@@ -326,7 +326,7 @@ impl HeldObject {
     ) -> Fingers {
         let memory = inputs.memory;
         let grasp_size = sizes(command, inputs.data).map_or(0, |sizes| sizes.grasp_size);
-        let gripper = Gripper::attached(memory);
+        let gripper = EmoveGripper::attached(memory);
         let gripping = match gripper.opening(memory) {
             Some(opening) => gripper.grips(opening, grasp_size),
             None => self.held.is_some(),
@@ -341,7 +341,7 @@ impl HeldObject {
     /// Does something count as held that the fingers have been told to let go of, or do not feel or press at rest?
     fn is_half_let_go(&self, at_place: bool, grippers: &Grippers, inputs: &EmoveInputs<'_>) -> bool {
         let Some(held) = self.held else { return false };
-        let (gripper, memory) = (Gripper::of(held.gripper), inputs.memory);
+        let (gripper, memory) = (EmoveGripper::of(held.gripper), inputs.memory);
         let around = gripper.felt(memory) != Felt::Nothing && gripper.presses(memory);
         self.is_letting_go(at_place) || (!around && !grippers.are_moving(inputs.tick, memory))
     }
@@ -358,7 +358,7 @@ impl HeldObject {
         let held = self.held.and_then(|held| data.end_eff(held.parameters));
         let size = held.or_else(|| sizes(command, data)).map_or(FULL_OPENING, |sizes| sizes.depart_size);
         let now = match holding {
-            Holding::Something | Holding::NotKnown => Gripper::attached(memory).opening(memory),
+            Holding::Something | Holding::NotKnown => EmoveGripper::attached(memory).opening(memory),
             Holding::Nothing | Holding::Object(_) => None,
         };
         now.map_or(size, |now| size.max(now.saturating_add(LEAST_RELEASE).min(FULL_OPENING)))

@@ -68,10 +68,10 @@ use self::{
     grippers::Grippers,
     held_object::HeldObject,
     localization::Localization,
-    motion::{Motion, flight::Progress},
-    tables::{Action, Ordered, StateVariables, Step, attend::attend, number},
+    motion::{EmoveMotion, flight::Progress},
+    tables::{Action, EmoveRecipient, StateVariables, Step, attend::attend, number},
     tool_drum::ToolDrum,
-    vision::Vision,
+    vision::EmoveVision,
 };
 use crate::execution::{Course, Execution};
 
@@ -86,7 +86,7 @@ pub struct State {
     /// Step of its table.
     pub step: Step,
     /// The process that has its last order.
-    pub ordered: Ordered,
+    pub ordered: EmoveRecipient,
     /// It has ordered something of Prim, or waits until Prim has ended what it did before.
     pub uses_prim: bool,
     /// The points that were sent when it gave its last order.
@@ -102,9 +102,9 @@ pub struct State {
     /// Where the robot is.
     pub localization: Localization,
     /// The motion of the command.
-    pub motion: Motion,
+    pub motion: EmoveMotion,
     /// Pictures.
-    pub vision: Vision,
+    pub vision: EmoveVision,
 }
 
 /// The E-move process.

@@ -10,15 +10,15 @@ use taskdata::files::TaskData;
 use super::{
     EmoveInputs, State,
     grasp::{gripper_on, sizes},
-    gripper::Gripper,
+    gripper::EmoveGripper,
     motion::{
         flight::{Flight, Progress},
         relative::{self, Relative},
-        route::{Goal, Planning},
+        route::{EmoveGoal, Planning},
     },
     tables::{
-        Attached, CommandClass, Coupling, ExchangeWork, HolsterData, Knowledge, Ordered, Pause, Record,
-        Records, Request, Target, ToolWork,
+        Attached, CommandClass, Coupling, EmoveRecipient, EmoveRecord, EmoveTarget, ExchangeWork,
+        HolsterData, Knowledge, Pause, Records, Request, ToolWork,
     },
     vision::view_of,
 };
@@ -42,11 +42,11 @@ const fn class(verb: EmoveVerb) -> CommandClass {
 
 /// The gripper on the robot, seen from the command.
 fn attached(command: &EmoveCommand, memory: &CommonMemory) -> Attached {
-    match Gripper::attached(memory) {
-        Gripper::None => Attached::None,
+    match EmoveGripper::attached(memory) {
+        EmoveGripper::None => Attached::None,
         _ if command.end_effector_id.is_none() => Attached::Right,
         attached if command.end_effector_id == attached.id() => Attached::Right,
-        Gripper::Parts | Gripper::V | Gripper::Tool => Attached::Wrong,
+        EmoveGripper::Parts | EmoveGripper::V | EmoveGripper::Tool => Attached::Wrong,
     }
 }
 
@@ -54,7 +54,7 @@ fn attached(command: &EmoveCommand, memory: &CommonMemory) -> Attached {
 fn holster(command: &EmoveCommand, data: &TaskData<'_>) -> HolsterData {
     if class(command.command) != CommandClass::Exchange {
         HolsterData::Found
-    } else if Gripper::of(command.end_effector_id) == Gripper::None {
+    } else if EmoveGripper::of(command.end_effector_id) == EmoveGripper::None {
         HolsterData::NoGripper
     } else if gripper_on(command, data).is_none() {
         HolsterData::NoOpening
@@ -74,16 +74,16 @@ const fn coupling(memory: &CommonMemory) -> Coupling {
 }
 
 /// The location of a motion command that is no gripper change.
-fn target(command: &EmoveCommand, data: &TaskData<'_>) -> Target {
+fn target(command: &EmoveCommand, data: &TaskData<'_>) -> EmoveTarget {
     match Relative::QcaBack.record(&command.site, data) {
-        Some(_) if command.command == EmoveVerb::MovToLoc => Target::Holster,
-        _ => Target::Plain,
+        Some(_) if command.command == EmoveVerb::MovToLoc => EmoveTarget::Holster,
+        _ => EmoveTarget::Plain,
     }
 }
 
 /// A record of the task data, for a command that needs it.
-const fn record(is_needed: bool, is_found: bool) -> Record {
-    if is_needed && !is_found { Record::Missing } else { Record::Found }
+const fn record(is_needed: bool, is_found: bool) -> EmoveRecord {
+    if is_needed && !is_found { EmoveRecord::Missing } else { EmoveRecord::Found }
 }
 
 impl State {
@@ -97,7 +97,8 @@ impl State {
         let (memory, data) = (inputs.memory, inputs.data);
         let verb = command.command;
         let planned = self.plan(command, inputs);
-        (self.ordered, self.uses_prim, self.ordered_at) = (Ordered::Nothing, false, Progress::default());
+        (self.ordered, self.uses_prim, self.ordered_at) =
+            (EmoveRecipient::Nothing, false, Progress::default());
         self.motion.begin(planned.unwrap_or_default());
         self.vision.begin();
         self.held.begin();
@@ -137,10 +138,12 @@ impl State {
             | EmoveVerb::MovToVu
             | EmoveVerb::MovToHol => {
                 let base = self.vision.base_frame(command, inputs)?;
-                let goal = Goal::new(command, &base, inputs.data)?;
+                let goal = EmoveGoal::new(command, &base, inputs.data)?;
                 let begin = self.localization.origination(holding, inputs)?;
                 let mut flight = Flight::plan(&goal, &goal.place(command), &begin, inputs.data)?;
-                if let (Some(route), Gripper::None) = (&mut flight.route, Gripper::attached(inputs.memory)) {
+                if let (Some(route), EmoveGripper::None) =
+                    (&mut flight.route, EmoveGripper::attached(inputs.memory))
+                {
                     route.opening = None;
                 }
                 Ok(flight)

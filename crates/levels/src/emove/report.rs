@@ -2,7 +2,7 @@
 
 use interfaces::{
     EmoveOutputs, Reason, StatusReport, Unconfirmed,
-    emove::{Beliefs, EmoveStatus, EmoveVerb, Offset, Pins},
+    emove::{EmoveStatus, EmoveVerb, Estimates, Offset, Pins},
     operator::{Variable, Write},
     prim::PrimReport,
 };
@@ -11,7 +11,7 @@ use rcs_core::handshake::Lower;
 use super::{
     EmoveInputs, State,
     grasp::named_grasp,
-    gripper::Gripper,
+    gripper::EmoveGripper,
     localization::returning::offset_of_place,
     robot_place::{present_frame, standing},
 };
@@ -20,28 +20,28 @@ use crate::execution::Outcome;
 impl State {
     /// The estimates of all parts.
     #[must_use]
-    pub fn beliefs(&self) -> Beliefs {
-        let mut beliefs = Beliefs::default();
-        self.write_to(&mut beliefs);
-        beliefs
+    pub fn estimates(&self) -> Estimates {
+        let mut estimates = Estimates::default();
+        self.write_to(&mut estimates);
+        estimates
     }
 
     /// Write the estimates of all parts.
-    fn write_to(&self, beliefs: &mut Beliefs) {
-        self.held.write_to(beliefs);
-        self.exchange.write_to(beliefs);
-        self.drum.write_to(beliefs);
-        self.localization.write_to(beliefs);
-        self.vision.write_to(beliefs);
+    fn write_to(&self, estimates: &mut Estimates) {
+        self.held.write_to(estimates);
+        self.exchange.write_to(estimates);
+        self.drum.write_to(estimates);
+        self.localization.write_to(estimates);
+        self.vision.write_to(estimates);
     }
 
     /// Adopt the estimates.
-    pub fn adopt(&mut self, beliefs: &Beliefs) {
-        self.held.adopt(beliefs);
-        self.exchange.adopt(beliefs);
-        self.drum.adopt(beliefs);
-        self.localization.adopt(beliefs);
-        self.vision.adopt(beliefs);
+    pub fn adopt(&mut self, estimates: &Estimates) {
+        self.held.adopt(estimates);
+        self.exchange.adopt(estimates);
+        self.drum.adopt(estimates);
+        self.localization.adopt(estimates);
+        self.vision.adopt(estimates);
     }
 
     /// `status-report` and its reason. `joystick-on` lasts as long as the box is active (V.2.2), whatever was done
@@ -74,8 +74,8 @@ impl State {
         let (holding, place) = (self.holding(memory), self.localization.place());
         let (report, reason, unconfirmed) = self.outcome(inputs);
         outputs.header = self.execution.rows.header(inputs.tick, self.step.text());
-        outputs.dormant = Gripper::attached(memory).dormancy();
-        self.write_to(&mut outputs.beliefs);
+        outputs.dormant = EmoveGripper::attached(memory).dormancy();
+        self.write_to(&mut outputs.estimates);
         outputs.nearest = self.localization.surroundings().nearest;
         outputs.status = EmoveStatus {
             echo: self.execution.receiver.echo,
@@ -104,7 +104,7 @@ impl State {
     /// Take over a value that a person writes (IV.2.6). E-move was not stepped in the tick before: its state and its
     /// outputs have the same estimates, or it has been restarted and adopts those of the outputs.
     pub(super) fn write(&mut self, write: &Write, inputs: &EmoveInputs<'_>, outputs: &mut EmoveOutputs) {
-        self.adopt(&outputs.beliefs);
+        self.adopt(&outputs.estimates);
         match (write.variable, write.object) {
             (Variable::Placed, _) => self.held.forget_placed(),
             (Variable::Located, _) => self.vision.forget(),
@@ -117,6 +117,6 @@ impl State {
             }
             _ => {}
         }
-        self.write_to(&mut outputs.beliefs);
+        self.write_to(&mut outputs.estimates);
     }
 }

@@ -11,12 +11,12 @@ use rcs_core::handshake::Lower;
 
 use super::{
     EmoveInputs, State,
-    gripper::Gripper,
+    gripper::EmoveGripper,
     grippers::FingerVerb,
     robot_place::present_frame,
     senses::Senses,
     tables::{
-        Opening, Pause, PlaceKnowledge, Records, Request, Situation, StateVariables, Step, Subordinates,
+        EmoveOpening, Pause, PlaceKnowledge, Records, Request, Situation, StateVariables, Step, Subordinates,
         Watch,
         e_pause::EPauseStep,
         known, number,
@@ -30,9 +30,9 @@ use crate::{
 
 /// Do the fingers stand at an opening, 0.01 in, without air that moves them from there?
 fn stands_at(opening: i32, memory: &CommonMemory) -> bool {
-    let attached = Gripper::attached(memory);
+    let attached = EmoveGripper::attached(memory);
     let goes = attached.has_air(!attached.closes_for(opening), memory);
-    attached != Gripper::None && attached.stands_at(opening, memory) && !goes
+    attached != EmoveGripper::None && attached.stands_at(opening, memory) && !goes
 }
 
 impl State {
@@ -87,11 +87,12 @@ impl State {
     fn start(&mut self, inputs: &EmoveInputs<'_>, outputs: &EmoveOutputs) {
         let memory = inputs.memory;
         self.motion.start(inputs.external.operator.robot_init);
-        self.adopt(&outputs.beliefs);
+        self.adopt(&outputs.estimates);
         // Another gripper may have come in the meantime; one whose pins read as none may still be on.
-        let (before, now) = (Gripper::of(outputs.status.end_effector_id), Gripper::attached(memory));
-        let is_same = now == Gripper::None || now == before;
-        self.exchange.adopt_gripper(if is_same { before } else { Gripper::None });
+        let (before, now) =
+            (EmoveGripper::of(outputs.status.end_effector_id), EmoveGripper::attached(memory));
+        let is_same = now == EmoveGripper::None || now == before;
+        self.exchange.adopt_gripper(if is_same { before } else { EmoveGripper::None });
         self.grippers.adopt(memory);
         self.held.start(self.grippers.order());
     }
@@ -231,15 +232,15 @@ impl State {
     }
 
     /// The opening for the goal of the route. While a release is under way, no opening is ordered.
-    fn opening(&self, gripper: Lower, inputs: &EmoveInputs<'_>) -> Opening {
+    fn opening(&self, gripper: Lower, inputs: &EmoveInputs<'_>) -> EmoveOpening {
         match self.motion.opening() {
-            None => Opening::Free,
-            Some(_) if self.is_letting_go() => Opening::Free,
-            Some((_, true)) => Opening::Sent,
+            None => EmoveOpening::Free,
+            Some(_) if self.is_letting_go() => EmoveOpening::Free,
+            Some((_, true)) => EmoveOpening::Sent,
             Some((opening, false)) if gripper == Lower::Done && stands_at(opening, inputs.memory) => {
-                Opening::Reached
+                EmoveOpening::Reached
             }
-            Some((_, false)) => Opening::Due,
+            Some((_, false)) => EmoveOpening::Due,
         }
     }
 }

@@ -10,13 +10,13 @@ use rcs_core::{handshake::Lower, state_variables};
 
 use super::{
     EmoveInputs, State,
-    gripper::Gripper,
+    gripper::EmoveGripper,
     gripper_exchange::{along, holster, shut},
     motion::route::Ahead,
     tables::{
-        Along, At, AtDrum, Bias, Calibration, Departure, FingerMotion, Fingers, Holster, Knowledge, Link,
-        Lock, Mate, Opening, PlaceKnowledge, Reach, Readiness, ReleaseWork, Ring, Shut, Sight, Spread,
-        Subordinates, Tooling, Tries, known,
+        At, AtDrum, Bias, Departure, EmoveCalibration, EmoveHolster, EmoveLink, EmoveOpening, EmoveReach,
+        ExchangePosition, FingerMotion, Fingers, Knowledge, Lock, Mate, PlaceKnowledge, Readiness,
+        ReleaseWork, Ring, Shut, Sight, Spread, Subordinates, Tooling, Tries, known,
     },
     vision::{can_aim, sight},
 };
@@ -28,7 +28,7 @@ pub struct Senses<'a> {
     command: &'a EmoveCommand,
     inputs: &'a EmoveInputs<'a>,
     subordinates: &'a Subordinates,
-    along: Along,
+    along: ExchangePosition,
 }
 
 impl<'a> Senses<'a> {
@@ -53,8 +53,8 @@ impl<'a> Senses<'a> {
         self.inputs.memory
     }
 
-    fn attached(&self) -> Gripper {
-        Gripper::attached(self.memory())
+    fn attached(&self) -> EmoveGripper {
+        EmoveGripper::attached(self.memory())
     }
 
     fn holding(&self) -> Holding {
@@ -89,7 +89,7 @@ impl Senses<'_> {
 
     /// The opening of the fingers for the goal.
     #[must_use]
-    pub const fn opening(&self) -> Opening {
+    pub const fn opening(&self) -> EmoveOpening {
         self.subordinates.opening
     }
 
@@ -107,8 +107,12 @@ impl Senses<'_> {
 
     /// The calibration of the attached gripper.
     #[must_use]
-    pub fn calibration(&self) -> Calibration {
-        if self.attached().is_uncalibrated(self.memory()) { Calibration::Missing } else { Calibration::Done }
+    pub fn calibration(&self) -> EmoveCalibration {
+        if self.attached().is_uncalibrated(self.memory()) {
+            EmoveCalibration::Missing
+        } else {
+            EmoveCalibration::Done
+        }
     }
 
     /// Is the object held?
@@ -130,7 +134,7 @@ impl Senses<'_> {
         let attached = self.attached();
         let opening = self.state.held.depart_opening(self.holding(), self.command, self.inputs);
         let open = attached.is_open(opening, self.memory());
-        let at_rest = attached == Gripper::None || self.subordinates.gripper == Lower::Done;
+        let at_rest = attached == EmoveGripper::None || self.subordinates.gripper == Lower::Done;
         match (attached.is_uncalibrated(self.memory()), open && at_rest) {
             (true, _) => Spread::Unknown,
             (false, true) => Spread::Open,
@@ -168,13 +172,13 @@ impl Senses<'_> {
 
     /// The holster.
     #[must_use]
-    pub fn holster(&self) -> Holster {
+    pub fn holster(&self) -> EmoveHolster {
         holster(self.command.end_effector_id, self.memory())
     }
 
     /// Where the robot is in the exchange.
     #[must_use]
-    pub const fn along(&self) -> Along {
+    pub const fn along(&self) -> ExchangePosition {
         self.along
     }
 
@@ -216,7 +220,7 @@ impl Senses<'_> {
 
     /// Do the open fingers stay within the object's array?
     #[must_use]
-    pub fn reach(&self) -> Reach {
+    pub fn reach(&self) -> EmoveReach {
         self.state.vision.reach(self.command, self.inputs)
     }
 
@@ -228,8 +232,8 @@ impl Senses<'_> {
 
     /// The link.
     #[must_use]
-    pub const fn link(&self) -> Link {
-        if self.memory().prim.status.link_running { Link::Up } else { Link::Down }
+    pub const fn link(&self) -> EmoveLink {
+        if self.memory().prim.status.link_running { EmoveLink::Up } else { EmoveLink::Down }
     }
 
     /// Status of Prim; done as long as the command does not need it.

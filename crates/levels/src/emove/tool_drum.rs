@@ -16,7 +16,7 @@ use geometry::{
 };
 use interfaces::{
     CommonMemory,
-    emove::{Beliefs, CalibratedAt, EmoveCommand, EmoveVerb, GoneTo, RobotPlace},
+    emove::{CalibratedAt, EmoveCommand, EmoveVerb, Estimates, GoneTo, RobotPlace},
     location::Site,
 };
 use rcs_core::Plain;
@@ -29,7 +29,7 @@ use super::{
     robot_place::{base, commanded_pose, is_led, near, present_frame, robot_at},
     tables::{
         AtDrum, Bias,
-        drum::{AtTheDrum, Belief, Tool, drum},
+        drum::{AtTheDrum, Belief, EmoveTool, drum},
         number,
     },
 };
@@ -52,7 +52,7 @@ const WIDE: f64 = 3.0;
 const UNMOVED: f64 = 0.1;
 
 /// The points at the drum, as frames.
-struct Points {
+struct DrumPoints {
     near: Frame,
     inside: Frame,
     slid: Frame,
@@ -60,7 +60,7 @@ struct Points {
     around: Frame,
 }
 
-impl Points {
+impl DrumPoints {
     /// The points at a drum with the pose `base`.
     fn of(site: &Site, base: &Frame, data: &TaskData<'_>) -> Option<Self> {
         let moved =
@@ -107,7 +107,7 @@ impl Points {
         } else if is_deep && (AROUND..aside - SEATED / 2.0).contains(&right) {
             AtDrum::Sliding
         } else if is_clear {
-            AtDrum::Beside
+            AtDrum::Clear
         } else {
             AtDrum::Off
         }
@@ -123,7 +123,7 @@ const fn is_tool_command(verb: EmoveVerb) -> bool {
 
 /// Where a frame is at a drum.
 fn locate(drum: &RobotPlace, memory: &CommonMemory, data: &TaskData<'_>) -> AtDrum {
-    let points = drum.pose.to_frame().ok().and_then(|base| Points::of(&drum.site, &base, data));
+    let points = drum.pose.to_frame().ok().and_then(|base| DrumPoints::of(&drum.site, &base, data));
     match (points, present_frame(memory)) {
         (Some(points), Some(present)) => points.locate(&present),
         _ => AtDrum::Off,
@@ -138,7 +138,7 @@ pub(super) fn start_of(
     memory: &CommonMemory,
     data: &TaskData<'_>,
 ) -> Option<Pose> {
-    let points = Points::of(&command.site, &base(command, memory, data)?, data)?;
+    let points = DrumPoints::of(&command.site, &base(command, memory, data)?, data)?;
     let start = if relative == Relative::AcqSlideOn { points.aside } else { points.inside };
     let end = data.moved(&start, relative.record(&command.site, data)?.movetable);
     let stand = commanded_pose(memory)?.to_frame().ok()?;
@@ -159,12 +159,12 @@ pub struct ToolDrum {
 }
 
 impl ToolDrum {
-    pub(super) const fn adopt(&mut self, beliefs: &Beliefs) {
-        (self.half_way, self.calibrated) = (beliefs.drum, beliefs.calibrated);
+    pub(super) const fn adopt(&mut self, estimates: &Estimates) {
+        (self.half_way, self.calibrated) = (estimates.drum, estimates.calibrated);
     }
 
-    pub(super) const fn write_to(&self, beliefs: &mut Beliefs) {
-        (beliefs.drum, beliefs.calibrated) = (self.half_way, self.calibrated);
+    pub(super) const fn write_to(&self, estimates: &mut Estimates) {
+        (estimates.drum, estimates.calibrated) = (self.half_way, self.calibrated);
     }
 
     pub(super) const fn half_way(&self) -> Option<&RobotPlace> {
@@ -251,7 +251,7 @@ impl ToolDrum {
         });
         let situation = AtTheDrum {
             at: locate(&half_way, inputs.memory, inputs.data),
-            tool: if grasped_here { Tool::Grasped } else { Tool::Loose },
+            tool: if grasped_here { EmoveTool::Grasped } else { EmoveTool::Loose },
             outcome: execution.outcome,
         };
         let decision = drum((), &situation);

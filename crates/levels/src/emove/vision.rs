@@ -12,7 +12,7 @@ use geometry::{
 use interfaces::{
     CommonMemory, EmoveOutputs,
     device::{Picture, VisionRequest, VisionResponse, VisionStatus},
-    emove::{Beliefs, EmoveCommand, EmoveVerb, Located, LocatedObject, RobotPlace},
+    emove::{EmoveCommand, EmoveVerb, Estimates, Located, LocatedObject, RobotPlace},
     pose_range,
     prim::PrimReport,
 };
@@ -21,9 +21,9 @@ use taskdata::files::{MovtabId, PoseId, TaskData, TrajParaId, VisionPara};
 
 use super::{
     EmoveInputs,
-    motion::route::{Goal, Planning},
+    motion::route::{EmoveGoal, Planning},
     robot_place::{is_led, may_push, near, present_frame},
-    tables::{Action, Reach, Sight, Tries, VisionAnswer},
+    tables::{Action, EmoveReach, Sight, Tries, VisionAnswer},
 };
 
 /// Ticks after which vision counts as silent (4 s).
@@ -108,7 +108,7 @@ fn request(number: u32, picture: Picture, variation: u8, view: &VisionPara) -> V
 }
 
 /// From where the camera is moved next, and how.
-struct Aim {
+struct CameraAim {
     /// Where the tool is.
     tool: Frame,
     /// View movetable of the object.
@@ -118,13 +118,13 @@ struct Aim {
 }
 
 /// From where LOCATE-OBJ moves the camera next, and how; `None` if the resolvers or the task data do not say.
-fn aim(command: &EmoveCommand, inputs: &EmoveInputs<'_>) -> Option<Aim> {
+fn aim(command: &EmoveCommand, inputs: &EmoveInputs<'_>) -> Option<CameraAim> {
     if command.command != EmoveVerb::LocateObj {
         return None;
     }
     let data = inputs.data;
     let approach = data.view_approach(&command.object?, command.grip, &command.site.place())?;
-    Some(Aim {
+    Some(CameraAim {
         tool: present_frame(inputs.memory)?,
         view: view_of(command, data)?.movetable,
         parameters: data.path(approach).last()?.para,
@@ -172,7 +172,7 @@ pub(super) struct View {
 
 /// Pictures of the camera.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
-pub struct Vision {
+pub struct EmoveVision {
     /// Requests to vision: number and tick of the last one.
     commander: Commander,
     /// Pictures without a result in this step.
@@ -181,13 +181,13 @@ pub struct Vision {
     located: Option<Located>,
 }
 
-impl Vision {
-    pub(super) const fn adopt(&mut self, beliefs: &Beliefs) {
-        self.located = beliefs.located;
+impl EmoveVision {
+    pub(super) const fn adopt(&mut self, estimates: &Estimates) {
+        self.located = estimates.located;
     }
 
-    pub(super) const fn write_to(&self, beliefs: &mut Beliefs) {
-        beliefs.located = self.located;
+    pub(super) const fn write_to(&self, estimates: &mut Estimates) {
+        estimates.located = self.located;
     }
 
     pub(super) fn start(&mut self, answer: &VisionResponse) {
@@ -263,10 +263,10 @@ impl Vision {
 
     /// Would the open fingers at the object that the second picture shows stay within its array? A place that is in
     /// none has no edge, and what the task data lack is named by the motion to the object.
-    pub(super) fn reach(&self, command: &EmoveCommand, inputs: &EmoveInputs<'_>) -> Reach {
+    pub(super) fn reach(&self, command: &EmoveCommand, inputs: &EmoveInputs<'_>) -> EmoveReach {
         let data = inputs.data;
         let inside = || {
-            let Aim { tool, view, .. } = aim(command, inputs)?;
+            let CameraAim { tool, view, .. } = aim(command, inputs)?;
             let place = command.site.place();
             let array = data.array(place.array)?;
             let corner = data.locpt(place.locpt).map(|corner| corner.frame);
@@ -275,10 +275,10 @@ impl Vision {
             let out = data.steps_out(array, &base, &sector);
             let part = part_frame(&looked_at(&tool, view, data), &inputs.external.devices.vision);
             let command = EmoveCommand { command: EmoveVerb::MovToObj, ..*command };
-            let goal = Goal::new(&command, &part, data).ok()?;
+            let goal = EmoveGoal::new(&command, &part, data).ok()?;
             Some(stays_in_array(&sector, &goal.frame, inches(goal.opening?), &out))
         };
-        if inside() == Some(false) { Reach::Outside } else { Reach::Inside }
+        if inside() == Some(false) { EmoveReach::Outside } else { EmoveReach::Inside }
     }
 
     /// Ask vision for a picture.
@@ -310,7 +310,7 @@ impl Vision {
         command: &EmoveCommand,
         inputs: &EmoveInputs<'_>,
     ) -> Option<View> {
-        let (object, Aim { tool, view, parameters }) = (command.object?, aim(command, inputs)?);
+        let (object, CameraAim { tool, view, parameters }) = (command.object?, aim(command, inputs)?);
         let seen = &inputs.external.devices.vision;
         let middle = looked_at(&tool, view, inputs.data);
         let (target, part) = if action == Action::Align {

@@ -5,7 +5,7 @@ use interfaces::grip::{GripCommand, GripVerb};
 use rcs_core::Plain;
 
 use super::tables::{
-    Command, Flow,
+    AirFlow, GripActivity,
     command::{Acceptance, Commanded, TargetOpening, command},
 };
 use crate::execution::Course;
@@ -20,7 +20,7 @@ pub(super) const SUPPLY_FORCE: f64 = 80.0;
 
 /// Goal of the current command: a copy, because the buffer of a commander that restarts is empty.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
-pub struct Goal {
+pub struct GripGoal {
     /// What to do.
     pub verb: GripVerb,
     /// Opening, or the grasp size, in.
@@ -31,7 +31,7 @@ pub struct Goal {
     pub speed: Option<f64>,
 }
 
-impl From<&GripCommand> for Goal {
+impl From<&GripCommand> for GripGoal {
     fn from(command: &GripCommand) -> Self {
         Self {
             verb: command.command,
@@ -42,7 +42,7 @@ impl From<&GripCommand> for Goal {
     }
 }
 
-impl Goal {
+impl GripGoal {
     /// Can a gripper of this sort reach opening and force?
     #[must_use]
     pub fn is_attainable(&self) -> bool {
@@ -56,17 +56,17 @@ impl Goal {
     }
 
     /// The greatest flow that is not faster than the commanded speed; the fine flow is the slowest.
-    pub(super) fn greatest_flow(&self) -> Flow {
+    pub(super) fn greatest_flow(&self) -> AirFlow {
         match self.speed {
-            None => Flow::Coarse,
-            Some(speed) if speed >= 4.0 => Flow::Coarse,
-            Some(speed) if speed >= 1.0 => Flow::Medium,
-            Some(_) => Flow::Fine,
+            None => AirFlow::Coarse,
+            Some(speed) if speed >= 4.0 => AirFlow::Coarse,
+            Some(speed) if speed >= 1.0 => AirFlow::Medium,
+            Some(_) => AirFlow::Fine,
         }
     }
 
     /// Consult COMMAND.
-    pub(super) fn command(&self, course: Course, accepted: bool) -> Command {
+    pub(super) fn command(&self, course: Course, accepted: bool) -> GripActivity {
         let commanded = Commanded {
             course,
             acceptance: if accepted { Acceptance::Accepted } else { Acceptance::Refused },

@@ -74,7 +74,8 @@ use self::{
     servoed::{PartsGripper, Servoed},
     state::State,
     tables::{
-        Action, Duty, Phase, Situation, StateVariables, Step, accept::accept, number, of_command, up_init,
+        Action, GripDuty, GripPhase, Situation, StateVariables, Step, accept::accept, number, of_command,
+        up_init,
     },
 };
 use crate::execution::Course;
@@ -90,7 +91,7 @@ pub struct Servo<S> {
 ///
 /// # Errors
 /// The row that decides.
-fn calibrating(phase: Phase, situation: &Situation) -> Result<Duty, Choice<Action, Phase>> {
+fn calibrating(phase: GripPhase, situation: &Situation) -> Result<GripDuty, Choice<Action, GripPhase>> {
     match up_init::up_init(phase, situation) {
         Verdict::Decided(decision) => Err(decision.of(number::UP_INIT)),
         Verdict::Passed(()) => match up_init::calibration(phase, situation) {
@@ -140,9 +141,9 @@ impl<S: Servoed, Data: ?Sized> Process<Data> for Servo<S> {
                 }
                 choice.action
             }
-            Ok(Duty::Nothing) => Action::Keep,
-            Ok(Duty::Refused) => Action::Refuse,
-            Ok(Duty::Command) => {
+            Ok(GripDuty::Nothing) => Action::Keep,
+            Ok(GripDuty::Refused) => Action::Refuse,
+            Ok(GripDuty::Command) => {
                 let choice = of_command(state.goal.verb, state.step, &situation);
                 state.execution.rows.decide(&choice);
                 state.step = choice.next;
@@ -167,8 +168,8 @@ impl<S: Servoed, Data: ?Sized> Process<Data> for Servo<S> {
     fn write(&mut self, write: &Write, _: &Inputs<'_, Data>, outputs: &mut GripOutputs) {
         if write.variable == Variable::Calibration {
             (self.state.calibration, outputs.calibration) = (None, None);
-            if self.state.phase == Phase::Valid {
-                self.state.phase = Phase::Adopting;
+            if self.state.phase == GripPhase::Valid {
+                self.state.phase = GripPhase::Adopting;
             }
         }
     }

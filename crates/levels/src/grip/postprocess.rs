@@ -11,7 +11,7 @@ use rcs_core::tick::Tick;
 use super::{
     calibration::{Readings, Steady, calibration},
     state::State,
-    tables::{Action, Flow, Gripper, Phase, StateVariables},
+    tables::{Action, AirFlow, Attachment, GripPhase, StateVariables},
 };
 use crate::execution::Outcome;
 
@@ -50,8 +50,8 @@ impl State {
             | Action::GiveUp => {}
         }
         self.valves = match seen.situation.gripper {
-            Gripper::Attached => self.bits(action),
-            Gripper::Detached => 0,
+            Attachment::Attached => self.bits(action),
+            Attachment::Detached => 0,
         };
     }
 
@@ -69,12 +69,12 @@ impl State {
             | Action::Forget => 0,
             Action::Keep | Action::Adopt | Action::Pause => self.valves,
             Action::Open(flow) => match flow.min(limit) {
-                Flow::Fine => valve::SUPPLY | valve::OPEN_FINE,
-                Flow::Medium => valve::SUPPLY | valve::OPEN_MEDIUM,
-                Flow::Coarse => valve::SUPPLY | valve::OPEN_COARSE,
+                AirFlow::Fine => valve::SUPPLY | valve::OPEN_FINE,
+                AirFlow::Medium => valve::SUPPLY | valve::OPEN_MEDIUM,
+                AirFlow::Coarse => valve::SUPPLY | valve::OPEN_COARSE,
             },
             Action::Close(flow) => close(flow.min(limit)),
-            Action::AwaitFinger => close(limit.min(Flow::Medium)),
+            Action::AwaitFinger => close(limit.min(AirFlow::Medium)),
             Action::Begin | Action::CloseFully => CLOSE_FULLY,
             Action::NoteClosed | Action::OpenFully | Action::Widen => OPEN_FULLY,
             Action::NoteOpen | Action::Vent => valve::VENT,
@@ -107,20 +107,20 @@ impl State {
             echo: execution.receiver.echo,
             report,
             reason: execution.reason,
-            initialized: self.phase == Phase::Valid,
+            initialized: self.phase == GripPhase::Valid,
             finger_height: FINGER_HEIGHT,
-            felt: if self.phase == Phase::Valid { self.felt } else { Felt::NotKnown },
+            felt: if self.phase == GripPhase::Valid { self.felt } else { Felt::NotKnown },
             valves: self.valves,
             ..GripStatus::default()
         };
-        if seen.situation.gripper == Gripper::Attached {
+        if seen.situation.gripper == Attachment::Attached {
             status.position = hundredths(seen.measured.mean_opening);
             status.velocity = hundredths(seen.measured.velocity);
             status.left_force = rounded(seen.measured.left);
             status.right_force = rounded(seen.measured.right);
         }
         let step = if self.is_calibrating() { self.phase.text() } else { self.step.text() };
-        let known = matches!(self.phase, Phase::Valid | Phase::Adopting);
+        let known = matches!(self.phase, GripPhase::Valid | GripPhase::Adopting);
         GripOutputs {
             header: execution.rows.header(tick, step),
             status,
@@ -130,10 +130,10 @@ impl State {
     }
 }
 
-const fn close(flow: Flow) -> u8 {
+const fn close(flow: AirFlow) -> u8 {
     match flow {
-        Flow::Fine => valve::SUPPLY | valve::CLOSE_FINE,
-        Flow::Medium => valve::SUPPLY | valve::CLOSE_MEDIUM,
-        Flow::Coarse => valve::SUPPLY | valve::CLOSE_COARSE,
+        AirFlow::Fine => valve::SUPPLY | valve::CLOSE_FINE,
+        AirFlow::Medium => valve::SUPPLY | valve::CLOSE_MEDIUM,
+        AirFlow::Coarse => valve::SUPPLY | valve::CLOSE_COARSE,
     }
 }

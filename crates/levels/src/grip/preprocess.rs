@@ -18,14 +18,14 @@ use rcs_core::{
 
 use super::{
     calibration::{Steady, is_plausible, value},
-    goal::{CLOSED_END, Goal},
+    goal::{CLOSED_END, GripGoal},
     presence::{self, CONTACT, MISSED_AT_END},
     servoed::Servoed,
     state::{Sensed, State, Touch, WINDOW},
     tables::{
-        Addressee, Calibrating, Clock, Command, Flow, Grasp, Gripper, Measured, Motion, Opening, Phase,
-        Reach, Request, Rest, Sensors, Situation, StateVariables, Step,
-        command::{Adoption, Beginning, StartBuffer, Started, Written, start},
+        Addressee, AirFlow, Attachment, Calibrating, Clock, Grasp, GripActivity, GripMotion, GripOpening,
+        GripPhase, GripReach, GripRest, Measured, Request, Sensors, Situation, StateVariables, Step,
+        command::{Adoption, GripBeginning, StartBuffer, Started, Written, start},
     },
 };
 use crate::execution::{Asked, Outcome};
@@ -78,7 +78,7 @@ impl State {
         let (gripper, sensors) = S::sensors(&inputs.external.devices);
         let connection = S::connection(&inputs.external.devices);
         let (arrival, asked) = self.observe((inputs.tick, command.number), gripper, outputs);
-        let goal = Goal::from(command);
+        let goal = GripGoal::from(command);
         if arrival == Arrival::New {
             self.goal = goal;
         }
@@ -99,17 +99,17 @@ impl State {
                 verb: command.command,
                 addressee: addressee::<S>(command),
                 gripper,
-                reach: if goal.is_attainable() { Reach::Within } else { Reach::Beyond },
+                reach: if goal.is_attainable() { GripReach::Within } else { GripReach::Beyond },
             },
             situation: Situation {
-                command: Command::Nothing,
+                command: GripActivity::Nothing,
                 gripper,
                 readings: self.readings(inputs.tick),
                 clock: self.clock(inputs.tick),
-                motion: if self.still_ticks >= STILL_TICKS { Motion::Still } else { Motion::Moving },
+                motion: if self.still_ticks >= STILL_TICKS { GripMotion::Still } else { GripMotion::Moving },
                 felt: self.felt,
                 sensors: self.sensors(connection, &measured),
-                rest: if self.settled >= SETTLE_TICKS { Rest::Rested } else { Rest::Waiting },
+                rest: if self.settled >= SETTLE_TICKS { GripRest::Rested } else { GripRest::Waiting },
                 opening: self.opening(step, &measured),
                 grasp: self.grasp(step, &measured),
             },
@@ -121,7 +121,7 @@ impl State {
     fn observe(
         &mut self,
         (tick, number): (Tick, u32),
-        gripper: Gripper,
+        gripper: Attachment,
         outputs: &GripOutputs,
     ) -> (Arrival, Asked) {
         let woken = outputs.header.republished;
@@ -133,7 +133,7 @@ impl State {
         let (arrival, asked) = self.execution.observe(tick, number);
         if starting {
             let started = Started {
-                beginning: if woken { Beginning::Wake } else { Beginning::Start },
+                beginning: if woken { GripBeginning::Wake } else { GripBeginning::Start },
                 written: if outputs.calibration.is_some() { Written::Calibration } else { Written::Nothing },
                 gripper,
                 buffer: if self.execution.receiver.adopted {
@@ -153,17 +153,17 @@ impl State {
     }
 
     /// Take the readings of this tick.
-    fn sample(&mut self, gripper: Gripper, now: &GripSensors) {
+    fn sample(&mut self, gripper: Attachment, now: &GripSensors) {
         self.sensed = match (gripper, self.sensed) {
-            (Gripper::Detached, _) => {
+            (Attachment::Detached, _) => {
                 self.steady = Steady::default();
                 None
             }
-            (Gripper::Attached, None) => {
+            (Attachment::Attached, None) => {
                 self.steady = Steady::default();
                 Some(Sensed { last: *now, window: [now.potentiometer; WINDOW] })
             }
-            (Gripper::Attached, Some(Sensed { last, window: [newest, second, third, _] })) => {
+            (Attachment::Attached, Some(Sensed { last, window: [newest, second, third, _] })) => {
                 self.steady.note(now, &last);
                 Some(Sensed { last: *now, window: [now.potentiometer, newest, second, third] })
             }
@@ -227,7 +227,7 @@ impl State {
             Calibrating::Late
         } else if self.steady.ticks < STEADY_TICKS {
             Calibrating::Unsteady
-        } else if self.phase == Phase::Venting && !plausible() {
+        } else if self.phase == GripPhase::Venting && !plausible() {
             Calibrating::Implausible
         } else {
             Calibrating::Steady
@@ -237,27 +237,27 @@ impl State {
     fn clock(&self, tick: Tick) -> Clock {
         let [fine, medium, coarse] = LIMIT_TICKS;
         let limit = match self.goal.greatest_flow() {
-            Flow::Fine => fine,
-            Flow::Medium => medium,
-            Flow::Coarse => coarse,
+            AirFlow::Fine => fine,
+            AirFlow::Medium => medium,
+            AirFlow::Coarse => coarse,
         };
         if tick.since(self.since) > limit { Clock::Expired } else { Clock::Running }
     }
 
     /// The opening, seen from the commanded one.
-    fn opening(&self, step: Step, measured: &Measured) -> Opening {
+    fn opening(&self, step: Step, measured: &Measured) -> GripOpening {
         let (opening, dead_band) = match step {
             Step::Start | Step::Move => (measured.opening, DEAD_BAND),
             Step::Settle => (measured.mean_opening, REST_BAND),
         };
         match opening - self.goal.opening {
-            e if e > FAR => Opening::VeryWide,
-            e if e > MIDDLE => Opening::Wide,
-            e if e > dead_band => Opening::BitWide,
-            e if e >= -dead_band => Opening::Right,
-            e if e >= -MIDDLE => Opening::BitNarrow,
-            e if e >= -FAR => Opening::Narrow,
-            _ => Opening::VeryNarrow,
+            e if e > FAR => GripOpening::VeryWide,
+            e if e > MIDDLE => GripOpening::Wide,
+            e if e > dead_band => GripOpening::BitWide,
+            e if e >= -dead_band => GripOpening::Right,
+            e if e >= -MIDDLE => GripOpening::BitNarrow,
+            e if e >= -FAR => GripOpening::Narrow,
+            _ => GripOpening::VeryNarrow,
         }
     }
 

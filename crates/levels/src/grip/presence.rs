@@ -14,8 +14,10 @@ use super::{
     goal::{CLOSED_END, OPEN_END},
     state::{Sensed, State, Touch},
     tables::{
-        Measured, Phase,
-        presence::{ClosedEnd, Contact, Contacts, Count, Pads, Period, Stillness, Validity, presence, touch},
+        GripPhase, Measured,
+        presence::{
+            ClosedEnd, Contacts, Count, GripContact, Pads, Period, Stillness, Validity, presence, touch,
+        },
     },
 };
 
@@ -45,12 +47,12 @@ impl State {
         };
         self.still_ticks = if still { self.still_ticks.saturating_add(1) } else { 0 };
         let is_valid = before.is_some()
-            && self.phase == Phase::Valid
+            && self.phase == GripPhase::Valid
             && self.sensed.is_some_and(|sensed| is_plausible(&sensed.last, measured));
         let touch = touch(self.felt, &pads(measured, still)).action;
         self.touch_ticks = if touch == self.touch { self.touch_ticks.saturating_add(1) } else { 1 };
         self.touch = touch;
-        let contact = Contact {
+        let contact = GripContact {
             readings: if is_valid { Validity::Valid } else { Validity::Invalid },
             touch,
             period: if self.touch_ticks >= FELT_TICKS { Period::Long } else { Period::Short },

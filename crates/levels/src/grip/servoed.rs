@@ -6,7 +6,7 @@ use interfaces::{
     grip::GripCommand,
 };
 
-use super::tables::Gripper;
+use super::tables::Attachment;
 
 /// The sensor words and the command of a servoed gripper.
 ///
@@ -25,7 +25,7 @@ pub trait Servoed {
     /// The command buffer.
     fn command(memory: &CommonMemory) -> &GripCommand;
     /// The sensor words, and whether their gripper is attached.
-    fn sensors(devices: &DeviceInputs) -> (Gripper, GripSensors);
+    fn sensors(devices: &DeviceInputs) -> (Attachment, GripSensors);
     /// How the controller is connected with them.
     fn connection(devices: &DeviceInputs) -> Connection;
 }
@@ -42,11 +42,11 @@ impl Servoed for PartsGripper {
         &memory.emove.grip
     }
 
-    fn sensors(devices: &DeviceInputs) -> (Gripper, GripSensors) {
+    fn sensors(devices: &DeviceInputs) -> (Attachment, GripSensors) {
         let quick_change = &devices.quick_change;
         let locked = quick_change.locked && !quick_change.unlocked;
         let attached = locked && quick_change.end_effector_id == Self::END_EFFECTOR_ID;
-        (if attached { Gripper::Attached } else { Gripper::Detached }, devices.grip)
+        (if attached { Attachment::Attached } else { Attachment::Detached }, devices.grip)
     }
 
     fn connection(devices: &DeviceInputs) -> Connection {

@@ -8,8 +8,8 @@ use rcs_core::{Actions, Plain, tick::Tick};
 
 use super::{
     calibration::{Readings, Steady},
-    goal::Goal,
-    tables::{Phase, Step},
+    goal::GripGoal,
+    tables::{GripPhase, Step},
 };
 use crate::execution::Execution;
 
@@ -44,7 +44,7 @@ pub struct State {
     /// Step of its table.
     pub step: Step,
     /// Its goal.
-    pub goal: Goal,
+    pub goal: GripGoal,
     /// Since when it has not been waiting, or the calibration has been under way.
     pub since: Tick,
     /// Ticks in [`Step::Settle`].
@@ -52,7 +52,7 @@ pub struct State {
     /// Ticks below the grasp size without force.
     pub missed: u8,
     /// Step of UP-INIT.
-    pub phase: Phase,
+    pub phase: GripPhase,
     /// Scale and offset of the sensors, once they are known, or of the time before a restart.
     pub calibration: Option<Calibration>,
     /// Readings at the closed end, while calibrating.
@@ -79,6 +79,9 @@ impl State {
     /// A calibration, or an opening without one, is under way.
     #[must_use]
     pub fn is_calibrating(&self) -> bool {
-        matches!(self.phase, Phase::Closing | Phase::Opening | Phase::Venting | Phase::Widening)
+        matches!(
+            self.phase,
+            GripPhase::Closing | GripPhase::Opening | GripPhase::Venting | GripPhase::Widening
+        )
     }
 }

@@ -11,7 +11,7 @@ use rcs_core::tick::Tick;
 use super::{
     state::State,
     tables::{
-        Action, Gripper, StateVariables,
+        Action, Attachment, StateVariables,
         valves::{Air, Supply, valves},
     },
 };
@@ -68,7 +68,7 @@ impl State {
             reason: self.execution.reason,
             ..JawsStatus::default()
         };
-        if seen.situation.gripper == Gripper::Attached {
+        if seen.situation.gripper == Attachment::Attached {
             status.size = hundredths(seen.opening);
             status.felt = seen.felt;
             status.velocity = hundredths(seen.velocity);

@@ -11,7 +11,7 @@ use super::{
     kind::{JawsKind, Parameters},
     state::{State, WINDOW},
     tables::{
-        Addressee, Gripper, Motion, Request, Situation, Size, StateVariables, Stop,
+        Addressee, Attachment, JawsMotion, Request, Situation, Size, StateVariables, Stop,
         presence::{Closing, JawReading, JawTravel, Settling, presence},
         valves::Mated,
     },
@@ -73,7 +73,7 @@ impl State {
         let motion = if connection.is_old() {
             // The fingers may move, and their time stands.
             (self.since, self.gripping_ticks) = (self.since.next(), 0);
-            Motion::Moving
+            JawsMotion::Moving
         } else {
             self.motion(&window, stop, inputs.tick)
         };
@@ -96,18 +96,18 @@ impl State {
     }
 
     /// Take the reading of this tick.
-    fn sample(&mut self, gripper: Gripper, counts: u16) -> [u16; WINDOW] {
+    fn sample(&mut self, gripper: Attachment, counts: u16) -> [u16; WINDOW] {
         self.window = match (gripper, self.window) {
-            (Gripper::Detached, _) => None,
-            (Gripper::Attached, None) => Some([counts; WINDOW]),
-            (Gripper::Attached, Some([newest, second, third, _])) => Some([counts, newest, second, third]),
+            (Attachment::Detached, _) => None,
+            (Attachment::Attached, None) => Some([counts; WINDOW]),
+            (Attachment::Attached, Some([newest, second, third, _])) => Some([counts, newest, second, third]),
         };
         self.air_ticks = self.air_ticks.saturating_add(1);
         self.attached_ticks = if self.window.is_some() { self.attached_ticks.saturating_add(1) } else { 0 };
         self.window.unwrap_or_default()
     }
 
-    fn motion(&mut self, window: &[u16; WINDOW], stop: Stop, tick: Tick) -> Motion {
+    fn motion(&mut self, window: &[u16; WINDOW], stop: Stop, tick: Tick) -> JawsMotion {
         let (least, most) =
             window.iter().fold((u16::MAX, 0), |(least, most), &c| (least.min(c), most.max(c)));
         let still = most.abs_diff(least) <= STILL_COUNTS && self.air_ticks >= START_TICKS;
@@ -115,17 +115,17 @@ impl State {
         self.gripping_ticks =
             if grips { self.gripping_ticks.saturating_add(1).min(PRESSED_TICKS) } else { 0 };
         if still && (!grips || self.gripping_ticks == PRESSED_TICKS) {
-            Motion::Stopped
+            JawsMotion::Stopped
         } else if tick.since(self.since) > LIMIT_TICKS {
-            Motion::Endless
+            JawsMotion::Endless
         } else {
-            Motion::Moving
+            JawsMotion::Moving
         }
     }
 
     /// Consult PRESENCE.
-    fn felt(&self, motion: Motion, stop: Stop, opening: f64, parameters: &Parameters) -> Felt {
-        let settled = motion == Motion::Stopped && self.attached_ticks >= SETTLED_TICKS;
+    fn felt(&self, motion: JawsMotion, stop: Stop, opening: f64, parameters: &Parameters) -> Felt {
+        let settled = motion == JawsMotion::Stopped && self.attached_ticks >= SETTLED_TICKS;
         let is_within = (parameters.closed..=parameters.opened).contains(&opening);
         let reading = JawReading {
             readings: if settled { Settling::Settled } else { Settling::Unsettled },
@@ -141,12 +141,12 @@ fn opening_at(counts: f64) -> f64 {
     (counts - POTENTIOMETER_OFFSET) / POTENTIOMETER_SCALE
 }
 
-fn gripper(quick_change: &QuickChangeSensors, parameters: &Parameters) -> Gripper {
+fn gripper(quick_change: &QuickChangeSensors, parameters: &Parameters) -> Attachment {
     let locked = quick_change.locked && !quick_change.unlocked;
     if locked && quick_change.end_effector_id == parameters.end_effector_id {
-        Gripper::Attached
+        Attachment::Attached
     } else {
-        Gripper::Detached
+        Attachment::Detached
     }
 }
 

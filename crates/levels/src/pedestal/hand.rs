@@ -6,7 +6,7 @@ use interfaces::{
     grip::GripCommand,
 };
 
-use crate::grip::{Servo, servoed::Servoed, tables::Gripper};
+use crate::grip::{Servo, servoed::Servoed, tables::Attachment};
 
 /// The gripper on the rotary table. It has finger position and force sensing and nothing else, and is always
 /// there.
@@ -31,7 +31,7 @@ impl Servoed for PedestalHand {
         &memory.pedestal.hand
     }
 
-    fn sensors(devices: &DeviceInputs) -> (Gripper, GripSensors) {
+    fn sensors(devices: &DeviceInputs) -> (Attachment, GripSensors) {
         let pedestal = &devices.pedestal;
         let sensors = GripSensors {
             potentiometer: pedestal.potentiometer,
@@ -39,7 +39,7 @@ impl Servoed for PedestalHand {
             strain_right: pedestal.strain_right,
             beams: 0,
         };
-        (Gripper::Attached, sensors)
+        (Attachment::Attached, sensors)
     }
 
     fn connection(devices: &DeviceInputs) -> Connection {

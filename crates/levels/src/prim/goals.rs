@@ -6,8 +6,8 @@ use rcs_core::tick::TICK_S;
 
 use super::{
     motion::segment::FrameData,
-    state::{Goal as Target, State},
-    tables::{Link, Posture, Rest, Samples, Situation},
+    state::{PrimGoal, State},
+    tables::{Posture, PrimLink, PrimRest, Samples, Situation},
 };
 use crate::{
     confirm::{Evidence, Proof},
@@ -77,16 +77,16 @@ impl State {
         resolvers: Option<&Frame>,
         lag_ms: u16,
     ) -> Proof {
-        let rests = |rest: Rest| Proof::when(rest == Rest::Arrived, Evidence::Moving);
+        let rests = |rest: PrimRest| Proof::when(rest == PrimRest::Arrived, Evidence::Moving);
         match verb {
             PrimVerb::None | PrimVerb::Pause => {
                 let still = matches!(situation.posture, Posture::Unpositioned | Posture::Standing);
                 Proof::when(still, Evidence::Moving)
             }
-            PrimVerb::RobotInit => Proof::when(situation.link == Link::Running, Evidence::Elsewhere),
+            PrimVerb::RobotInit => Proof::when(situation.link == PrimLink::Running, Evidence::Elsewhere),
             PrimVerb::GotoPt | PrimVerb::DeltaMove | PrimVerb::GoWhile => match resolvers {
                 None => Proof::unsensed(Unconfirmed::Position),
-                Some(_) => Proof::when(situation.goal == Rest::Arrived, Evidence::Elsewhere),
+                Some(_) => Proof::when(situation.goal == PrimRest::Arrived, Evidence::Elsewhere),
             },
             PrimVerb::GoThru => {
                 self.target.goal.as_ref().map_or(Proof::HOLDS, |goal| passes(goal, resolvers, lag_ms))
@@ -99,9 +99,9 @@ impl State {
 }
 
 /// The robot passes a through point, as far behind its command as it follows.
-fn passes(goal: &Target, resolvers: Option<&Frame>, lag_ms: u16) -> Proof {
+fn passes(goal: &PrimGoal, resolvers: Option<&Frame>, lag_ms: u16) -> Proof {
     let Some(present) = resolvers else { return Proof::unsensed(Unconfirmed::Position) };
-    let Target { frame, limits, through } = goal;
+    let PrimGoal { frame, limits, through } = goal;
     let within = through.unwrap_or_default() + limits.velocity * (f64::from(lag_ms) / 1000.0 + HOPS_S);
     let distance = FrameData::frame(frame).distance(present).path();
     Proof::when(distance <= within, Evidence::Elsewhere)

@@ -71,7 +71,7 @@ impl Coordinates {
 
 /// A manual motion.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
-pub struct Manual {
+pub struct PrimManual {
     /// The box has the robot in this tick.
     pub engaged: bool,
     /// Coordinates of the motion.
@@ -119,7 +119,7 @@ fn towards(from: [f64; 3], to: &Vector, most: f64) -> Vector {
     if length > most { from + change * (most / length) } else { *to }
 }
 
-impl Manual {
+impl PrimManual {
     /// No motion is commanded: the velocity ramps down.
     pub fn release(&mut self) {
         self.engaged = false;

@@ -52,7 +52,7 @@ use taskdata::files::TaskData;
 use self::{
     state::State,
     tables::{
-        Action, Attendance, Kind, StateVariables,
+        Action, Attendance, CommandKind, StateVariables,
         attend::{Attention, attend},
         link::LinkStep,
         number,
@@ -118,7 +118,8 @@ impl State {
     /// # Errors
     /// The action if they are not.
     fn attend(&mut self, course: Course, seen: &mut StateVariables) -> Result<Course, Action> {
-        let attendance = Attendance { course, kind: Kind::of(seen.verb), operator: seen.situation.operator };
+        let attendance =
+            Attendance { course, kind: CommandKind::of(seen.verb), operator: seen.situation.operator };
         let attention = attend(self.execution.outcome, &attendance);
         self.execution.rows.beside(&attention.of(number::ATTEND));
         self.execution.outcome = attention.next;

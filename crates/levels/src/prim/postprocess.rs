@@ -16,12 +16,12 @@ use rcs_core::{handshake::Lower, tick::Tick};
 use taskdata::files::TaskData;
 
 use super::{
-    manual::Manual,
-    motion::Motion,
+    manual::PrimManual,
+    motion::PrimMotion,
     state::{Standstill, State},
     tables::{
-        Action, FirstPause, Path, StateVariables, Way, number,
-        path_clock::{Flow, path_clock},
+        Action, FirstPause, Path, PrimPath, StateVariables, number,
+        path_clock::{PathProgress, path_clock},
         record_pose::{Recording, record_pose},
     },
 };
@@ -60,12 +60,12 @@ impl State {
                 self.command_t3i(T3iVerb::Restart, inputs.tick, &mut outputs.t3i);
             }
             Action::TakePosition => {
-                self.motion = seen.feedback.as_ref().map(Motion::at_rest);
+                self.motion = seen.feedback.as_ref().map(PrimMotion::at_rest);
                 self.execution.finish();
             }
             Action::Resume => {
-                self.motion = seen.feedback.as_ref().map(Motion::at_rest);
-                self.way = Way::Lost;
+                self.motion = seen.feedback.as_ref().map(PrimMotion::at_rest);
+                self.way = PrimPath::Lost;
                 self.standstill = Standstill::default();
             }
             Action::Yield => {
@@ -99,7 +99,7 @@ impl State {
         if let (Some(motion), Some(goal)) = (&mut self.motion, &self.target.goal) {
             motion.go(&goal.frame.frame(), &goal.limits, goal.through);
         }
-        self.way = Way::Kept;
+        self.way = PrimPath::Kept;
         self.standstill = Standstill::default();
     }
 
@@ -112,7 +112,7 @@ impl State {
     /// The condition has come: publish where the resolvers see the robot, or without them where it was sent,
     /// and stop it.
     fn detect(&mut self, seen: &StateVariables, outputs: &mut PrimOutputs) {
-        let commanded = self.motion.as_ref().map(Motion::frame);
+        let commanded = self.motion.as_ref().map(PrimMotion::frame);
         let [_, _, detected, _] = &mut outputs.poses;
         self.publish(detected, seen.resolvers.or(commanded).as_ref().map(Pose::from_frame));
         self.halt();
@@ -121,7 +121,7 @@ impl State {
 
     fn drop_position(&mut self) {
         self.motion = None;
-        self.manual = Manual::default();
+        self.manual = PrimManual::default();
     }
 
     /// Write a command with a new number to T3I.
@@ -151,12 +151,12 @@ impl State {
         self.execution.rows.beside(&clock.of(number::PATH_CLOCK));
         self.execution.rows.beside(&record.of(number::RECORD_POSE));
         match clock.action {
-            Flow::Repeat => {}
-            Flow::Advance => {
+            PathProgress::Repeat => {}
+            PathProgress::Advance => {
                 self.advance(inputs.external.devices.joystick.velocity);
                 self.command_t3i(T3iVerb::Point, inputs.tick, &mut outputs.t3i);
             }
-            Flow::Abandon => {
+            PathProgress::Abandon => {
                 self.drop_position();
                 self.command_t3i(T3iVerb::Pause, inputs.tick, &mut outputs.t3i);
             }

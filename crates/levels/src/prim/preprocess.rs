@@ -19,13 +19,13 @@ use rcs_core::handshake::{Lower, successor};
 use taskdata::files::{SensorPara, TaskData};
 
 use super::{
-    manual::{Coordinates, Manual, is_moved},
+    manual::{Coordinates, PrimManual, is_moved},
     motion::{limits::Limits, segment::FrameData},
-    sensors::Reading,
-    state::{Goal, Standstill, State, Target},
+    sensors::GuardReading,
+    state::{PrimGoal, PrimTarget, Standstill, State},
     tables::{
-        Button, Devices, Guard, Interface, Kind, Link, Missing, Operator, Passage, Position, Posture,
-        Request, Rest, Samples, Situation, StateVariables, Switches, Way,
+        Button, CommandKind, Devices, Guard, Interface, Passage, Position, Posture, PrimLink, PrimMissing,
+        PrimOperator, PrimPath, PrimRest, Request, Samples, Situation, StateVariables, Switches,
     },
 };
 use crate::{execution::Asked, halt::Above, places::pose_of};
@@ -73,7 +73,7 @@ impl State {
             report: report(interface, t3i),
             restarts: self.restarts.so_far(inputs.tick),
             way: self.way,
-            link: if feedback.is_some() { Link::Running } else { Link::Down },
+            link: if feedback.is_some() { PrimLink::Running } else { PrimLink::Down },
             passage: match &self.motion {
                 Some(motion) if motion.is_passing() => Passage::Passing,
                 Some(_) | None => Passage::UnderWay,
@@ -100,7 +100,7 @@ impl State {
             if let Some(motion) = &mut self.motion {
                 motion.stand();
             }
-            self.manual = Manual::default();
+            self.manual = PrimManual::default();
         }
     }
 
@@ -109,9 +109,9 @@ impl State {
         let missing = match target(command, inputs) {
             Ok(target) => {
                 self.target = target;
-                self.way = Way::Kept;
+                self.way = PrimPath::Kept;
                 self.standstill = Standstill::default();
-                Missing::Nothing
+                PrimMissing::Nothing
             }
             Err(missing) => missing,
         };
@@ -163,12 +163,12 @@ impl State {
         inputs: &Inputs<'_, TaskData<'_>>,
         posture: Posture,
         resolvers: Option<Frame>,
-    ) -> (Rest, Rest) {
+    ) -> (PrimRest, PrimRest) {
         let before = mem::replace(&mut self.resolver_frame, inputs.memory.t3i.status.resolver_frame);
         let ended = &mut self.standstill;
         if posture != Posture::Standing {
             *ended = Standstill::default();
-            return (Rest::UnderWay, Rest::UnderWay);
+            return (PrimRest::UnderWay, PrimRest::UnderWay);
         }
         let near = |other: Option<Frame>| match (resolvers, other) {
             (Some(here), Some(other)) => {
@@ -190,20 +190,20 @@ impl State {
     fn guard(&mut self, inputs: &Inputs<'_, TaskData<'_>>) -> Guard {
         let (devices, end_effector) = (&inputs.external.devices, self.target.end_effector_id);
         let read = |sensor: SensorPara| self.calibration.read(&sensor, devices, end_effector);
-        let Reading { guard, value } = self.target.sensor.map(read).unwrap_or_default();
+        let GuardReading { guard, value } = self.target.sensor.map(read).unwrap_or_default();
         self.sensed = rounded(value);
         guard
     }
 
     /// The readings of CAL-SENSOR: only those of one rest count together.
-    fn samples(&mut self, inputs: &Inputs<'_, TaskData<'_>>, rest: Rest) -> Samples {
+    fn samples(&mut self, inputs: &Inputs<'_, TaskData<'_>>, rest: PrimRest) -> Samples {
         let DeviceInputs { force, field, .. } = &inputs.external.devices;
         self.calibration.watch_power(force);
         if field.force.is_old() {
             // The bias stays: the sensor has had power.
             return Samples::Faulty;
         }
-        if rest != Rest::Arrived {
+        if rest != PrimRest::Arrived {
             self.calibration.begin();
         }
         self.calibration.progress(force)
@@ -218,18 +218,18 @@ impl State {
 
 impl Standstill {
     /// Has the robot rested for so many `ticks`?
-    const fn rest(&self, ticks: u32) -> Rest {
+    const fn rest(&self, ticks: u32) -> PrimRest {
         if ticks >= SETTLED {
-            Rest::Arrived
+            PrimRest::Arrived
         } else if self.finished >= PATIENCE {
-            Rest::Late
+            PrimRest::Late
         } else {
-            Rest::Settling
+            PrimRest::Settling
         }
     }
 }
 
-impl Kind {
+impl CommandKind {
     /// What a command is.
     pub(super) const fn of(verb: PrimVerb) -> Self {
         match verb {
@@ -245,30 +245,30 @@ impl Kind {
 }
 
 /// A command with its records, or the first of them that is missing.
-fn target(command: &PrimCommand, inputs: &Inputs<'_, TaskData<'_>>) -> Result<Target, Missing> {
+fn target(command: &PrimCommand, inputs: &Inputs<'_, TaskData<'_>>) -> Result<PrimTarget, PrimMissing> {
     let verb = command.command;
     let sensor = match verb {
-        PrimVerb::None => return Err(Missing::Command),
+        PrimVerb::None => return Err(PrimMissing::Command),
         PrimVerb::GoUntil | PrimVerb::GoWhile => {
-            Some(*command.sensor.and_then(|sensor| inputs.data.sensor(&sensor)).ok_or(Missing::Sensor)?)
+            Some(*command.sensor.and_then(|sensor| inputs.data.sensor(&sensor)).ok_or(PrimMissing::Sensor)?)
         }
         _ => None,
     };
-    let goal = if Kind::of(verb) == Kind::Motion { Some(goal(command, inputs)?) } else { None };
-    Ok(Target { verb, goal, sensor, end_effector_id: command.end_effector_id })
+    let goal = if CommandKind::of(verb) == CommandKind::Motion { Some(goal(command, inputs)?) } else { None };
+    Ok(PrimTarget { verb, goal, sensor, end_effector_id: command.end_effector_id })
 }
 
 /// Goal and limits of a motion.
-fn goal(command: &PrimCommand, inputs: &Inputs<'_, TaskData<'_>>) -> Result<Goal, Missing> {
-    let pose = pose_of(command.pose, inputs.memory, inputs.data).ok_or(Missing::Pose)?;
+fn goal(command: &PrimCommand, inputs: &Inputs<'_, TaskData<'_>>) -> Result<PrimGoal, PrimMissing> {
+    let pose = pose_of(command.pose, inputs.memory, inputs.data).ok_or(PrimMissing::Pose)?;
     let by = command.movetable;
     if !by.is_null() && inputs.data.movetable(by).is_none() {
-        return Err(Missing::Movetable);
+        return Err(PrimMissing::Movetable);
     }
     let id = command.trajectory_parameters;
-    let para = inputs.data.traj_para(id).ok_or(Missing::Parameters)?;
-    let limits = Limits::from_counts(para.acc_fac, para.vel_max, para.smooth).ok_or(Missing::Limits)?;
-    Ok(Goal {
+    let para = inputs.data.traj_para(id).ok_or(PrimMissing::Parameters)?;
+    let limits = Limits::from_counts(para.acc_fac, para.vel_max, para.smooth).ok_or(PrimMissing::Limits)?;
+    Ok(PrimGoal {
         frame: FrameData::from(&inputs.data.moved(&pose, by)),
         limits,
         through: (command.command == PrimVerb::GoThru).then(|| inches(para.brk_dst)),
@@ -298,9 +298,9 @@ const fn position(verb: PrimVerb) -> Position {
 }
 
 /// Does the operator move the robot?
-fn operator(joystick: &JoystickBox) -> Operator {
+fn operator(joystick: &JoystickBox) -> PrimOperator {
     let on = switches(joystick) != Switches::Off && joystick.velocity > 0;
-    if on && is_moved(joystick) { Operator::Moves } else { Operator::Idle }
+    if on && is_moved(joystick) { PrimOperator::Moves } else { PrimOperator::Idle }
 }
 
 /// T3I's check of the report after the last RESTART: none before T3I has echoed the RESTART, or while it starts the

@@ -31,7 +31,7 @@ const SEATED: u8 = 0x0C;
 
 /// The bias of the force sensor and how it is taken. Counts, in the order tool Fx, Fy, Fz, My.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
-pub struct Calibration {
+pub struct ForceCalibration {
     /// The reading without load, if it was taken and the sensor has had power ever since.
     pub bias: Option<[f64; FORCE_AXES]>,
     /// Sum of the readings taken so far.
@@ -42,21 +42,21 @@ pub struct Calibration {
 
 /// What the sensor of a guarded move says.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Reading {
+pub struct GuardReading {
     /// Has the condition come?
     pub guard: Guard,
     /// lb or in lb, or 1 while a switch is on.
     pub value: f64,
 }
 
-impl Default for Reading {
+impl Default for GuardReading {
     /// Nothing is watched.
     fn default() -> Self {
         Self::switch(false)
     }
 }
 
-impl Reading {
+impl GuardReading {
     const FAULTY: Self = Self { guard: Guard::Faulty, value: 0.0 };
 
     fn switch(on: bool) -> Self {
@@ -76,7 +76,7 @@ fn tool_axes(force: &ForceSensor) -> Option<[f64; FORCE_AXES]> {
     Some([off(force.z), -off(force.y), off(force.x), off(force.moment)])
 }
 
-impl Calibration {
+impl ForceCalibration {
     /// Each tick: a bias does not outlive the power of its sensor.
     pub fn watch_power(&mut self, force: &ForceSensor) {
         if !force.valid {
@@ -125,14 +125,19 @@ impl Calibration {
 
     /// What a sensor says in this tick. `end_effector` is the id of the gripper that is on, if one is.
     #[must_use]
-    pub fn read(&self, sensor: &SensorPara, devices: &DeviceInputs, end_effector: Option<u8>) -> Reading {
+    pub fn read(
+        &self,
+        sensor: &SensorPara,
+        devices: &DeviceInputs,
+        end_effector: Option<u8>,
+    ) -> GuardReading {
         let connection = match sensor.source {
             SensorSource::Fx | SensorSource::Fy | SensorSource::Fz | SensorSource::My => devices.field.force,
             SensorSource::Near | SensorSource::Seated => devices.field.holsters,
             SensorSource::Beam => devices.field.grip,
         };
         if connection.is_old() {
-            return Reading::FAULTY;
+            return GuardReading::FAULTY;
         }
         let along = |axis| self.force(axis, FORCE_COUNTS_PER_LB, &devices.force);
         let value = match sensor.source {
@@ -144,34 +149,34 @@ impl Calibration {
             SensorSource::Seated => return holster(&devices.holsters, sensor.which, SEATED),
             SensorSource::Beam => return beam(devices.grip.beams, sensor.which, end_effector),
         };
-        let Some(value) = value else { return Reading::FAULTY };
+        let Some(value) = value else { return GuardReading::FAULTY };
         let threshold = f64::from(sensor.threshold);
         let met = if threshold < 0.0 { value <= threshold } else { value >= threshold };
-        Reading { guard: if met { Guard::Met } else { Guard::Clear }, value }
+        GuardReading { guard: if met { Guard::Met } else { Guard::Clear }, value }
     }
 }
 
 /// Do both sensors of a pair see the ears?
-fn holster(sensors: &HolsterSensors, which: i32, pair: u8) -> Reading {
+fn holster(sensors: &HolsterSensors, which: i32, pair: u8) -> GuardReading {
     match which {
-        1 => Reading::switch(sensors.right & pair == pair),
-        2 => Reading::switch(sensors.left & pair == pair),
-        3 => Reading::switch(sensors.centre & pair == pair),
-        _ => Reading::FAULTY,
+        1 => GuardReading::switch(sensors.right & pair == pair),
+        2 => GuardReading::switch(sensors.left & pair == pair),
+        3 => GuardReading::switch(sensors.centre & pair == pair),
+        _ => GuardReading::FAULTY,
     }
 }
 
 /// Is a beam broken, 1 to 8, or any (0)? Grippers without beams cannot tell.
-fn beam(beams: u8, which: i32, end_effector: Option<u8>) -> Reading {
+fn beam(beams: u8, which: i32, end_effector: Option<u8>) -> GuardReading {
     let mask = match u32::try_from(which) {
         Ok(0) => u8::MAX,
         Ok(number) => 1_u8.checked_shl(number.saturating_sub(1)).unwrap_or(0),
         Err(_) => 0,
     };
     if mask == 0 || end_effector != Some(BEAM_GRIPPER) {
-        return Reading::FAULTY;
+        return GuardReading::FAULTY;
     }
-    Reading::switch(beams & mask != 0)
+    GuardReading::switch(beams & mask != 0)
 }
 
 #[cfg(test)]
@@ -190,8 +195,8 @@ mod tests {
         DeviceInputs { force, ..DeviceInputs::default() }
     }
 
-    fn calibrated(at: &ForceSensor) -> Calibration {
-        let mut calibration = Calibration::default();
+    fn calibrated(at: &ForceSensor) -> ForceCalibration {
+        let mut calibration = ForceCalibration::default();
         while calibration.progress(at) == Samples::Wanted {
             calibration.sample(at);
         }
@@ -225,8 +230,8 @@ mod tests {
     fn what_cannot_be_trusted_is_faulty() {
         let good = force(2048);
         let watched = sensor(SensorSource::Fx, 0, 25);
-        let read = |c: &Calibration, force| c.read(&watched, &devices(force), Some(3)).guard;
-        let mut calibration = Calibration::default();
+        let read = |c: &ForceCalibration, force| c.read(&watched, &devices(force), Some(3)).guard;
+        let mut calibration = ForceCalibration::default();
         assert_eq!(read(&calibration, good), Guard::Faulty, "never calibrated");
         calibration = calibrated(&good);
         assert_eq!(read(&calibration, good), Guard::Clear);
@@ -245,7 +250,7 @@ mod tests {
 
     #[test]
     fn a_holster_sensor_is_a_pair() {
-        let calibration = Calibration::default();
+        let calibration = ForceCalibration::default();
         for (which, sensors) in [
             (1, HolsterSensors { right: 0x0F, ..HolsterSensors::default() }),
             (2, HolsterSensors { left: 0x0F, ..HolsterSensors::default() }),
@@ -275,7 +280,7 @@ mod tests {
         let mut devices = DeviceInputs::default();
         devices.grip.beams = 0x82;
         let read = |which, id| {
-            Calibration::default().read(&sensor(SensorSource::Beam, which, 0), &devices, Some(id)).guard
+            ForceCalibration::default().read(&sensor(SensorSource::Beam, which, 0), &devices, Some(id)).guard
         };
         for beam in 1..=8 {
             assert_eq!(read(beam, 1), if beam == 2 || beam == 8 { Guard::Met } else { Guard::Clear });

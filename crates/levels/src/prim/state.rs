@@ -6,16 +6,16 @@ use rcs_core::{Plain, handshake::Commander, tick::Tick};
 use taskdata::files::SensorPara;
 
 use super::{
-    manual::Manual,
-    motion::{Motion, limits::Limits, segment::FrameData},
-    sensors::Calibration,
-    tables::{Restarts, Step, Way, link::LinkStep},
+    manual::PrimManual,
+    motion::{PrimMotion, limits::Limits, segment::FrameData},
+    sensors::ForceCalibration,
+    tables::{PrimPath, Restarts, Step, link::LinkStep},
 };
 use crate::execution::Execution;
 
 /// Where a motion goes.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
-pub struct Goal {
+pub struct PrimGoal {
     /// `^-pose` with `^-movtab` applied.
     pub frame: FrameData,
     /// Limits of `^-traj-para`.
@@ -26,11 +26,11 @@ pub struct Goal {
 
 /// The last command that was accepted, with its records looked up.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
-pub struct Target {
+pub struct PrimTarget {
     /// What to do.
     pub verb: PrimVerb,
     /// The goal of a motion.
-    pub goal: Option<Goal>,
+    pub goal: Option<PrimGoal>,
     /// `"sensor"` of a guarded move.
     pub sensor: Option<SensorPara>,
     /// `endeff-id#-in`.
@@ -88,21 +88,21 @@ pub struct State {
     /// The last restarts.
     pub restarts: RestartTimes,
     /// The path to the goal.
-    pub way: Way,
+    pub way: PrimPath,
     /// Commands to T3I.
     pub t3i: Commander,
     /// What is to be done.
-    pub target: Target,
+    pub target: PrimTarget,
     /// The commanded motion, if Prim commands the robot.
-    pub motion: Option<Motion>,
+    pub motion: Option<PrimMotion>,
     /// The motion of the joystick box.
-    pub manual: Manual,
+    pub manual: PrimManual,
     /// The end of a motion.
     pub standstill: Standstill,
     /// The resolver frame of the tick before, if it was valid.
     pub resolver_frame: Option<WireFrame>,
     /// The force sensor.
-    pub calibration: Calibration,
+    pub calibration: ForceCalibration,
     /// What the sensor of the guarded move reads.
     pub sensed: i32,
     /// The record button was pressed in the tick before.

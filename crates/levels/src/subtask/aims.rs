@@ -26,7 +26,7 @@ pub const GRIPPERS: [&str; 3] = ["GRIPPER-1", "GRIPPER-2", "GRIPPER-3"];
 
 /// What a command to E-move is aimed at: an object, a location, or an object at a location.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
-pub struct Aim {
+pub struct SubtaskAim {
     /// The object, if there is one.
     pub object: Option<Name16>,
     /// Its grip.
@@ -46,16 +46,16 @@ pub struct Aim {
 pub struct Aims {
     /// GET-ENDEFF: the holster of the attached gripper. FIX-GRIP: the object brought to the pedestal.
     /// Tool commands: the drum.
-    pub first: Aim,
+    pub first: SubtaskAim,
     /// GET-ENDEFF: the holster of the wanted gripper. FIX-GRIP: the robot out of the pedestal's way.
-    pub second: Aim,
+    pub second: SubtaskAim,
     /// FIX-GRIP: the object taken from the pedestal, at the pose of the first.
-    pub third: Aim,
+    pub third: SubtaskAim,
     /// Poses of the first and the second aim.
     pub poses: [Pose; 2],
 }
 
-impl Aim {
+impl SubtaskAim {
     /// What the command of Task names.
     #[must_use]
     pub const fn of_command(command: &SubtaskCommand) -> Self {
@@ -172,10 +172,10 @@ impl Aims {
     /// FIX-GRIP: the object at the pedestal in both grips, and the place where the robot waits.
     fn pedestal(command: &SubtaskCommand, data: &TaskData<'_>) -> Result<Self, Missing> {
         let (pedestal, safe) = (point(named::PEDESTAL, data)?, point(named::PED_SAFE, data)?);
-        let at = Aim::at(pedestal.site(), command.end_effector_id);
+        let at = SubtaskAim::at(pedestal.site(), command.end_effector_id);
         Ok(Self {
             first: at.with_object(command.object, command.source_grip, data)?,
-            second: Aim::at(safe.site(), command.end_effector_id),
+            second: SubtaskAim::at(safe.site(), command.end_effector_id),
             third: at.with_object(command.object, command.destination_grip, data)?,
             poses: [Pose::from_frame(&pedestal.frame), Pose::from_frame(&safe.frame)],
         })
@@ -184,8 +184,8 @@ impl Aims {
     /// Tool commands: the transfer location, with the object as Task gave it.
     fn drum(command: &SubtaskCommand, data: &TaskData<'_>) -> Result<Self, Missing> {
         let location = point(named::TOOL_TRNS, data)?;
-        let at = Aim::at(location.site(), command.end_effector_id);
-        let first = Aim {
+        let at = SubtaskAim::at(location.site(), command.end_effector_id);
+        let first = SubtaskAim {
             object: command.object,
             grip: command.source_grip,
             parameters: command.object_parameters,
@@ -197,7 +197,7 @@ impl Aims {
 }
 
 /// The holster of the gripper with an id: the location point that is assigned to its object (VII.7.3).
-fn holster(id: u8, grip: i32, data: &TaskData<'_>, pose: &mut Pose) -> Result<Aim, Missing> {
+fn holster(id: u8, grip: i32, data: &TaskData<'_>, pose: &mut Pose) -> Result<SubtaskAim, Missing> {
     let name = usize::from(id).checked_sub(1).and_then(|position| GRIPPERS.get(position));
     let object = Name16::clipped(name.ok_or(Missing::Holster)?);
     let record = data.object_named(&object).ok_or(Missing::Holster)?;
@@ -208,7 +208,7 @@ fn holster(id: u8, grip: i32, data: &TaskData<'_>, pose: &mut Pose) -> Result<Ai
     let point = LocptId::new(assigned.number);
     let locpt = data.locpt(point).ok_or(Missing::Holster)?;
     *pose = Pose::from_frame(&locpt.frame);
-    Aim::at(Site::point(locpt.name, point), Some(id)).with_object(Some(object), grip, data)
+    SubtaskAim::at(Site::point(locpt.name, point), Some(id)).with_object(Some(object), grip, data)
 }
 
 /// A location point by name.

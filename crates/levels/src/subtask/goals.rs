@@ -9,11 +9,11 @@ use interfaces::{
 
 use super::{
     pedestal_hand::pedestal_hand,
-    tables::{Exchange, GripHeld, Gripper, PedestalHand, Situation, Where},
+    tables::{GripHeld, PedestalLoad, Situation, SubtaskExchange, SubtaskGripper, Where},
 };
 use crate::{
     confirm::{Evidence, Proof},
-    emove::gripper::Gripper as Attached,
+    emove::gripper::EmoveGripper,
     goal::{AT_PLACE, Goal, Sensor},
     held::Held,
 };
@@ -136,12 +136,14 @@ pub(super) fn proof(
     let out_of_drum = || Proof::when(!emove.drum, Evidence::InsideDrum);
     match command.command {
         SubtaskVerb::None | SubtaskVerb::Pause => Proof::HOLDS,
-        SubtaskVerb::GetEndeff => Proof::when(situation.gripper == Gripper::Right, Evidence::GripperOff)
-            .and(Proof::when(emove.pins == Pins::Agree, Evidence::PinsDiffer))
-            .and(Proof::when(situation.exchange == Exchange::None, Evidence::InHolster)),
+        SubtaskVerb::GetEndeff => {
+            Proof::when(situation.gripper == SubtaskGripper::Right, Evidence::GripperOff)
+                .and(Proof::when(emove.pins == Pins::Agree, Evidence::PinsDiffer))
+                .and(Proof::when(situation.exchange == SubtaskExchange::None, Evidence::InHolster))
+        }
         SubtaskVerb::GetObject => is_held().with_part(emove.seat),
         SubtaskVerb::FixGrip => {
-            let free = pedestal_hand(pedestal) == PedestalHand::Free;
+            let free = pedestal_hand(pedestal) == PedestalLoad::Free;
             is_held()
                 .and(in_destination_grip())
                 .and(Proof::when(free, Evidence::InPedestal))
@@ -168,7 +170,7 @@ pub(super) fn proof(
 
 /// The grasp force of what is held: only the parts gripper senses it.
 pub(crate) fn force(end_effector_id: Option<u8>) -> Proof {
-    if Attached::of(end_effector_id).has_stops() {
+    if EmoveGripper::of(end_effector_id).has_stops() {
         Proof::unsensed(Unconfirmed::GraspForce)
     } else {
         Proof::HOLDS

@@ -19,8 +19,8 @@ use taskdata::files::{PedPara, TaskData};
 use super::{
     pedestal_hand::pedestal_hand,
     tables::{
-        Pedestal, PedestalData,
-        by_hand::{HeldByHand, Manual, Manually, Refused, Regripping, RobotThere, by_hand},
+        PedestalData, SubtaskPedestal,
+        by_hand::{HeldByHand, ManualOrder, Manually, Refused, Regripping, RobotThere, by_hand},
     },
 };
 use crate::{emove::robot_place::present_frame, places::named};
@@ -33,12 +33,12 @@ const WIDE: i32 = 450;
 
 /// The state variables of BY-HAND for an order. `tick` is the tick in which it is sent, `memory` common memory before.
 #[must_use]
-pub fn manual(order: &HandOrder, tick: Tick, memory: &CommonMemory, data: &TaskData<'_>) -> Manual {
+pub fn manual(order: &HandOrder, tick: Tick, memory: &CommonMemory, data: &TaskData<'_>) -> ManualOrder {
     let (below, above) = (&memory.pedestal, &memory.task.subtask);
     let status = &memory.subtask.status;
     let is_new = above.number != status.echo;
     let executes = status.report == StatusReport::Executing;
-    Manual {
+    ManualOrder {
         order: order.command,
         regripping: if is_new || (executes && above.command == SubtaskVerb::FixGrip) {
             Regripping::Yes
@@ -46,13 +46,13 @@ pub fn manual(order: &HandOrder, tick: Tick, memory: &CommonMemory, data: &TaskD
             Regripping::No
         },
         pedestal: if below.header.stamp != tick.previous() {
-            Pedestal::Silent
+            SubtaskPedestal::Silent
         } else if below.status.report == PedestalReport::Executing
             || below.status.echo != memory.subtask.pedestal.number
         {
-            Pedestal::Moving
+            SubtaskPedestal::Moving
         } else {
-            Pedestal::Done
+            SubtaskPedestal::Done
         },
         data: match para(order.object.as_ref(), data) {
             Some(_) => PedestalData::Found,

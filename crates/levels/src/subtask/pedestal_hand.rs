@@ -9,7 +9,7 @@ use taskdata::files::PedPara;
 
 use super::{
     state::State,
-    tables::{Hand, Part, Pedestal, PedestalHand, Turn},
+    tables::{HandOpening, PedestalLoad, SubtaskPart, SubtaskPedestal, Turn},
 };
 use crate::held::Held;
 
@@ -20,8 +20,8 @@ const AT_ANGLE: u32 = 10;
 
 impl State {
     /// Once a tick: compare the sensors of the hand with Subtask's belief. While the hand moves the belief is kept.
-    pub(super) fn sense_hand(&mut self, status: &PedestalStatus, pedestal: Pedestal) {
-        if pedestal != Pedestal::Moving && pedestal_hand(status) == PedestalHand::Free {
+    pub(super) fn sense_hand(&mut self, status: &PedestalStatus, pedestal: SubtaskPedestal) {
+        if pedestal != SubtaskPedestal::Moving && pedestal_hand(status) == PedestalLoad::Free {
             self.regrip = None;
         }
     }
@@ -35,29 +35,29 @@ impl State {
     }
 
     /// Who has the object of the command.
-    pub(super) fn part(&self, held: Held, status: &PedestalStatus, command: &SubtaskCommand) -> Part {
+    pub(super) fn part(&self, held: Held, status: &PedestalStatus, command: &SubtaskCommand) -> SubtaskPart {
         let right = self.regrip.is_some_and(|regrip| Some(regrip.object) == command.object);
         match (held, pedestal_hand(status)) {
-            (Held::NotKnown, PedestalHand::HoldsPart) if right => Part::Touched,
-            (Held::NotKnown, _) => Part::NotKnown,
-            (_, PedestalHand::Unsure) => Part::Unsure,
-            (_, PedestalHand::HoldsPart) if !right => Part::Other,
-            (Held::Right, PedestalHand::HoldsPart) => Part::Both,
-            (Held::Something, PedestalHand::HoldsPart) => Part::Touched,
-            (Held::Nothing | Held::Other, PedestalHand::HoldsPart) => Part::Hand,
-            (Held::Right, PedestalHand::Free) => Part::Robot,
-            (Held::Something, PedestalHand::Free) => Part::Unknown,
-            (Held::Nothing | Held::Other, PedestalHand::Free) => Part::Neither,
+            (Held::NotKnown, PedestalLoad::HoldsPart) if right => SubtaskPart::Touched,
+            (Held::NotKnown, _) => SubtaskPart::NotKnown,
+            (_, PedestalLoad::Unsure) => SubtaskPart::Unsure,
+            (_, PedestalLoad::HoldsPart) if !right => SubtaskPart::Other,
+            (Held::Right, PedestalLoad::HoldsPart) => SubtaskPart::Both,
+            (Held::Something, PedestalLoad::HoldsPart) => SubtaskPart::Touched,
+            (Held::Nothing | Held::Other, PedestalLoad::HoldsPart) => SubtaskPart::Hand,
+            (Held::Right, PedestalLoad::Free) => SubtaskPart::Robot,
+            (Held::Something, PedestalLoad::Free) => SubtaskPart::Unknown,
+            (Held::Nothing | Held::Other, PedestalLoad::Free) => SubtaskPart::Neither,
         }
     }
 }
 
 /// Whether a part is in the hand. Contact before GRIP, or after an opening, does not count.
-pub(super) const fn pedestal_hand(status: &PedestalStatus) -> PedestalHand {
+pub(super) const fn pedestal_hand(status: &PedestalStatus) -> PedestalLoad {
     match status.felt {
-        Felt::Something if status.gripped => PedestalHand::HoldsPart,
-        Felt::NotKnown if status.gripped => PedestalHand::Unsure,
-        Felt::Nothing | Felt::Something | Felt::NotKnown => PedestalHand::Free,
+        Felt::Something if status.gripped => PedestalLoad::HoldsPart,
+        Felt::NotKnown if status.gripped => PedestalLoad::Unsure,
+        Felt::Nothing | Felt::Something | Felt::NotKnown => PedestalLoad::Free,
     }
 }
 
@@ -78,6 +78,10 @@ pub(super) const fn turned(para: &PedPara) -> i32 {
 }
 
 /// Is the hand open for an object?
-pub(super) const fn hand(status: &PedestalStatus, para: &PedPara) -> Hand {
-    if status.grip_size.saturating_add(OPEN_WITHIN) >= para.appr { Hand::Open } else { Hand::Narrow }
+pub(super) const fn hand(status: &PedestalStatus, para: &PedPara) -> HandOpening {
+    if status.grip_size.saturating_add(OPEN_WITHIN) >= para.appr {
+        HandOpening::Open
+    } else {
+        HandOpening::Narrow
+    }
 }

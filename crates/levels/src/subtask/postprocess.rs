@@ -11,12 +11,12 @@ use interfaces::{
 use taskdata::files::TaskData;
 
 use super::{
-    aims::Aim,
+    aims::SubtaskAim,
     manual,
     pedestal_hand::{pedestal_hand, turned},
     preprocess::location_pose,
     state::State,
-    tables::{Action, Flip, Holster, Ordered, Pedestal, PedestalHand, StateVariables},
+    tables::{Action, Flip, PedestalLoad, StateVariables, SubtaskHolster, SubtaskPedestal, SubtaskRecipient},
 };
 use crate::execution::Outcome;
 
@@ -30,15 +30,15 @@ impl State {
         outputs: &mut SubtaskOutputs,
     ) {
         let command = &inputs.memory.task.subtask;
-        let (own, aims) = (Aim::of_command(command), self.aims);
+        let (own, aims) = (SubtaskAim::of_command(command), self.aims);
         let ped = self.ped_para;
         let both = action == Action::Pause && self.pause_pedestal(seen, inputs, outputs);
         if action == Action::PedGrip {
             self.give(command);
         }
-        let mut send = |verb, aim: &Aim| {
+        let mut send = |verb, aim: &SubtaskAim| {
             let number = self.emove.send(inputs.tick);
-            self.ordered = if both { Ordered::Both } else { Ordered::Emove };
+            self.ordered = if both { SubtaskRecipient::Both } else { SubtaskRecipient::Emove };
             outputs.emove = EmoveCommand { number, ..aim.command(verb, inputs.data) };
         };
         match action {
@@ -64,8 +64,8 @@ impl State {
             }
             Action::MovToLoc => send(EmoveVerb::MovToLoc, &own),
             Action::Release => send(EmoveVerb::Release, &own),
-            Action::MovToHol(Holster::Own) => send(EmoveVerb::MovToHol, &aims.first),
-            Action::MovToHol(Holster::Wanted) => send(EmoveVerb::MovToHol, &aims.second),
+            Action::MovToHol(SubtaskHolster::Own) => send(EmoveVerb::MovToHol, &aims.first),
+            Action::MovToHol(SubtaskHolster::Wanted) => send(EmoveVerb::MovToHol, &aims.second),
             Action::QcDetach => send(EmoveVerb::QcDetach, &aims.first),
             Action::QcAttach => send(EmoveVerb::QcAttach, &aims.second),
             Action::MovObjToPed => send(EmoveVerb::MovObjTo, &aims.first),
@@ -119,7 +119,7 @@ impl State {
         inputs: &Inputs<'_, TaskData<'_>>,
         outputs: &mut SubtaskOutputs,
     ) {
-        self.ordered = Ordered::Pedestal;
+        self.ordered = SubtaskRecipient::Pedestal;
         outputs.pedestal = PedestalCommand {
             cycle: inputs.tick,
             number: self.pedestal.send(inputs.tick),
@@ -155,7 +155,7 @@ impl State {
     ) -> bool {
         match outputs.pedestal.command {
             PedestalVerb::None => false,
-            PedestalVerb::Pause => seen.subordinates.pedestal == Pedestal::Moving,
+            PedestalVerb::Pause => seen.subordinates.pedestal == SubtaskPedestal::Moving,
             PedestalVerb::PreGrip | PedestalVerb::Grip | PedestalVerb::Flip | PedestalVerb::Release => {
                 self.command_pedestal(PedestalVerb::Pause, 0, 0, 0, inputs, outputs);
                 true
@@ -207,7 +207,7 @@ impl State {
             at: below.at,
             offset: below.offset,
             drum: below.drum,
-            pedestal_part: pedestal_hand(&inputs.memory.pedestal.status) != PedestalHand::Free,
+            pedestal_part: pedestal_hand(&inputs.memory.pedestal.status) != PedestalLoad::Free,
         };
         outputs.regrip = self.regrip;
     }

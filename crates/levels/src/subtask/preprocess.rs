@@ -12,14 +12,15 @@ use rcs_core::handshake::Lower;
 use taskdata::files::TaskData;
 
 use super::{
-    aims::{Aim, Aims},
+    aims::{Aims, SubtaskAim},
     goals::proof,
     manual::{manual, robot_there},
     pedestal_hand::{hand, pedestal_hand, turn},
     state::State,
     tables::{
-        Drum, Exchange, GripHeld, Gripper, Hindrance, Leaving, Named, Ordered, Pedestal, PedestalData,
-        Request, Robot, Situation, StateVariables, Subordinates, Vision, Where, by_hand::RobotThere,
+        GripHeld, Interlock, Leaving, Named, PedestalData, Request, Situation, StateVariables, Subordinates,
+        SubtaskDrum, SubtaskExchange, SubtaskGripper, SubtaskPedestal, SubtaskRecipient, SubtaskRobot,
+        SubtaskVision, Where, by_hand::RobotThere,
     },
 };
 use crate::{
@@ -45,7 +46,7 @@ impl State {
             replaced: replaced(command, emove, pedestal, inputs),
             verb: command.command,
             request,
-            hindrance: Hindrance {
+            interlock: Interlock {
                 asked,
                 pedestal: pedestal_hand(&inputs.memory.pedestal.status),
                 verb: command.command,
@@ -79,7 +80,7 @@ impl State {
     /// Look up what a new command needs beside the location that Task names: the locations that Subtask names
     /// itself, and for FIX-GRIP how the pedestal takes the object. What is complete is kept.
     fn look_up(&mut self, command: &SubtaskCommand, inputs: &Inputs<'_, TaskData<'_>>) -> Request {
-        self.ordered = Ordered::Nothing;
+        self.ordered = SubtaskRecipient::Nothing;
         let emove = &inputs.memory.emove.status;
         let aims = Aims::new(command, emove.end_effector_id, emove.exchange, inputs.data);
         let ped_para = match command.command {
@@ -114,21 +115,25 @@ impl State {
             seat: emove.seat,
             vision: vision(emove, is_at(self.located_at), command, inputs.data),
             gripper: match emove.end_effector_id {
-                None => Gripper::None,
-                Some(id) if command.end_effector_id.is_none_or(|wanted| wanted == id) => Gripper::Right,
-                Some(_) => Gripper::Wrong,
+                None => SubtaskGripper::None,
+                Some(id) if command.end_effector_id.is_none_or(|wanted| wanted == id) => {
+                    SubtaskGripper::Right
+                }
+                Some(_) => SubtaskGripper::Wrong,
             },
             exchange: match emove.exchange {
-                None => Exchange::None,
-                Some(id) if command.end_effector_id.is_none_or(|wanted| wanted == id) => Exchange::Wanted,
-                Some(_) => Exchange::Other,
+                None => SubtaskExchange::None,
+                Some(id) if command.end_effector_id.is_none_or(|wanted| wanted == id) => {
+                    SubtaskExchange::Wanted
+                }
+                Some(_) => SubtaskExchange::Other,
             },
             station: if is_at(self.gone_to) { station(emove, command) } else { Where::Elsewhere },
             placed: placed(emove, command),
             drum: match emove.at {
-                _ if emove.drum => Drum::Inside,
-                Some(_) => Drum::Outside,
-                None => Drum::Unplaced,
+                _ if emove.drum => SubtaskDrum::Inside,
+                Some(_) => SubtaskDrum::Outside,
+                None => SubtaskDrum::Unplaced,
             },
             named: named(command),
             part: self.part(held, pedestal, command),
@@ -143,16 +148,16 @@ impl State {
         self.emove.status_of(inputs.tick, &inputs.memory.emove)
     }
 
-    fn pedestal(&self, inputs: &Inputs<'_, TaskData<'_>>) -> Pedestal {
+    fn pedestal(&self, inputs: &Inputs<'_, TaskData<'_>>) -> SubtaskPedestal {
         let pedestal = &inputs.memory.pedestal;
         match self.pedestal.status_of(inputs.tick, pedestal) {
-            Lower::Pending | Lower::Executing => Pedestal::Moving,
-            Lower::Done => Pedestal::Done,
+            Lower::Pending | Lower::Executing => SubtaskPedestal::Moving,
+            Lower::Done => SubtaskPedestal::Done,
             Lower::Error | Lower::Joystick if pedestal.status.report == PedestalReport::CannotDo => {
-                Pedestal::Cannot
+                SubtaskPedestal::Cannot
             }
-            Lower::Error | Lower::Joystick => Pedestal::Faulty,
-            Lower::Lost => Pedestal::Silent,
+            Lower::Error | Lower::Joystick => SubtaskPedestal::Faulty,
+            Lower::Lost => SubtaskPedestal::Silent,
         }
     }
 }
@@ -161,12 +166,12 @@ impl State {
 fn replaced(
     command: &SubtaskCommand,
     emove: Lower,
-    pedestal: Pedestal,
+    pedestal: SubtaskPedestal,
     inputs: &Inputs<'_, TaskData<'_>>,
 ) -> Replaced {
     let written = &inputs.memory.subtask;
     let robot = Below::of(emove, written.emove.command == EmoveVerb::Pause);
-    let turning = if pedestal == Pedestal::Moving { Lower::Executing } else { Lower::Done };
+    let turning = if pedestal == SubtaskPedestal::Moving { Lower::Executing } else { Lower::Done };
     let part = Below::of(turning, written.pedestal.command == PedestalVerb::Pause);
     let on = inputs.memory.emove.status.report == StatusReport::JoystickOn;
     Replaced {
@@ -194,17 +199,17 @@ pub(super) fn location_pose(command: &SubtaskCommand, inputs: &Inputs<'_, TaskDa
 }
 
 /// Must vision find the object of a command? `is_at` is true if the last pictures were taken at its location.
-fn vision(emove: &EmoveStatus, is_at: bool, command: &SubtaskCommand, data: &TaskData<'_>) -> Vision {
+fn vision(emove: &EmoveStatus, is_at: bool, command: &SubtaskCommand, data: &TaskData<'_>) -> SubtaskVision {
     let located = emove.located.is_some_and(|located| {
         is_at && Some(located.object) == command.object && located.site == command.site
     });
     let view = command.object.and_then(|object| data.view(&object, &command.site.place()));
     if !view.is_some_and(|(_, view)| view.enabled) {
-        Vision::NotNeeded
+        SubtaskVision::NotNeeded
     } else if located {
-        Vision::Done
+        SubtaskVision::Done
     } else {
-        Vision::Needed
+        SubtaskVision::Needed
     }
 }
 
@@ -226,17 +231,17 @@ fn placed(emove: &EmoveStatus, command: &SubtaskCommand) -> Where {
 }
 
 /// Where the robot is, for FIX-GRIP.
-fn robot(emove: &EmoveStatus, aims: &Aims) -> Robot {
-    let Some(at) = emove.at else { return Robot::Away };
-    let is_at = |aim: &Aim| aim.site.name().is_some() && at.site == aim.site;
+fn robot(emove: &EmoveStatus, aims: &Aims) -> SubtaskRobot {
+    let Some(at) = emove.at else { return SubtaskRobot::Away };
+    let is_at = |aim: &SubtaskAim| aim.site.name().is_some() && at.site == aim.site;
     if is_at(&aims.first) && at.grip == Some(aims.first.grip) {
-        Robot::First
+        SubtaskRobot::First
     } else if is_at(&aims.third) && at.grip == Some(aims.third.grip) {
-        Robot::Third
+        SubtaskRobot::Third
     } else if is_at(&aims.second) {
-        Robot::Safe
+        SubtaskRobot::Safe
     } else {
-        Robot::Away
+        SubtaskRobot::Away
     }
 }
 

@@ -7,7 +7,7 @@ use taskdata::files::PedPara;
 
 use super::{
     aims::Aims,
-    tables::{Ordered, Step},
+    tables::{Step, SubtaskRecipient},
 };
 use crate::execution::Execution;
 
@@ -19,7 +19,7 @@ pub struct State {
     /// Step of its table.
     pub step: Step,
     /// The process that has its last order.
-    pub ordered: Ordered,
+    pub ordered: SubtaskRecipient,
     /// Commands to E-move.
     pub emove: Commander,
     /// Commands to the Active Pedestal.

@@ -52,7 +52,7 @@ use self::tables::{
     Action, StateVariables,
     follow::follow,
     number, of_command,
-    receive::{Intake, receive},
+    receive::{T3iIntake, receive},
     report::report,
 };
 
@@ -110,7 +110,7 @@ impl<Data: ?Sized> Process<Data> for T3i {
         let choice = of_command(state.command, state.step, &state.situation(seen));
         state.step = choice.next;
         // The last row decides: that of RECEIVE if it refuses the command.
-        if matches!(taken.action, Intake::Ignore | Intake::Refuse) {
+        if matches!(taken.action, T3iIntake::Ignore | T3iIntake::Refuse) {
             state.rows.decide(&choice);
             state.rows.decide(&taken.of(number::RECEIVE));
         } else {

@@ -21,14 +21,14 @@ use super::{
     tables::{
         Action, Before, StateVariables, Step,
         follow::Supervision,
-        receive::{Intake, ReceiveStep},
+        receive::{ReceiveStep, T3iIntake},
         report::Comparison,
     },
 };
 
 impl State {
     /// Do with the command in the buffer what RECEIVE says.
-    pub(super) fn take(&mut self, intake: Intake, seen: &StateVariables) {
+    pub(super) fn take(&mut self, intake: T3iIntake, seen: &StateVariables) {
         let arrival = seen.request.arrival;
         if matches!(arrival, Arrival::New | Arrival::Restarted) {
             self.command = seen.command.command;
@@ -37,14 +37,14 @@ impl State {
             self.step = Step::first(self.command);
         }
         match intake {
-            Intake::Keep | Intake::Ignore => {}
-            Intake::Restart => {
+            T3iIntake::Keep | T3iIntake::Ignore => {}
+            T3iIntake::Restart => {
                 self.empty();
                 self.host.forgive();
                 self.left = None;
             }
-            Intake::Pause | Intake::Refuse => self.empty(),
-            Intake::Append => self.append(seen.command.frame),
+            T3iIntake::Pause | T3iIntake::Refuse => self.empty(),
+            T3iIntake::Append => self.append(seen.command.frame),
         }
     }
 

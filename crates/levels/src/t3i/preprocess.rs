@@ -18,8 +18,9 @@ use super::{
     postprocess::resolver_frame,
     state::{GRACE_TICKS, State},
     tables::{
-        Above, Answer, Dtr, Feedback, Followed, Grace, Line, Link, Point, Queue, Reported, Request,
-        Restarting, Situation, Start, StateVariables, Trouble, Way, Words, receive::ReceiveStep,
+        Answer, Dtr, Feedback, Followed, Grace, LinkStart, NextPosition, Point, PointQueue, Reported,
+        Request, Restarting, Situation, StateVariables, T3iCommander, T3iLine, T3iLink, Trouble, Words,
+        receive::ReceiveStep,
     },
 };
 
@@ -54,10 +55,10 @@ impl State {
         let answer = Answer {
             dtr: if devices.link_ready || devices.link_unsent { Dtr::On } else { Dtr::Off },
             start: match event {
-                _ if restart => Start::Begun,
-                HostEvent::Lost => Start::Begun,
-                HostEvent::Started => Start::Reported,
-                HostEvent::None | HostEvent::Acknowledged => Start::Over,
+                _ if restart => LinkStart::Begun,
+                HostEvent::Lost => LinkStart::Begun,
+                HostEvent::Started => LinkStart::Reported,
+                HostEvent::None | HostEvent::Acknowledged => LinkStart::Over,
             },
             words: if self.sent.is_some() { Words::Sent } else { Words::Nothing },
             place,
@@ -65,11 +66,11 @@ impl State {
         };
         let live = prim.header.stamp == inputs.tick.previous() && !prim.header.republished;
         let line = if self.host.can_send() {
-            Line::Free
+            T3iLine::Free
         } else if self.host.is_running() {
-            Line::Busy
+            T3iLine::Busy
         } else {
-            Line::Down
+            T3iLine::Down
         };
         let feedback = Feedback {
             restart: if restart { Restarting::Asked } else { Restarting::Before },
@@ -82,9 +83,9 @@ impl State {
             feedback,
             resolvers,
             command,
-            prim: if live { Above::Live } else { Above::Still },
+            prim: if live { T3iCommander::Live } else { T3iCommander::Still },
             line,
-            advance: if line == Line::Free && live { self.advance(arrival, &command) } else { None },
+            advance: if line == T3iLine::Free && live { self.advance(arrival, &command) } else { None },
         }
     }
 
@@ -147,12 +148,12 @@ impl State {
         }
     }
 
-    fn link(&self) -> Link {
+    fn link(&self) -> T3iLink {
         match self.host.fault() {
-            _ if self.following == Following::OffPath => Link::Failed,
-            LinkFault::None if self.host.is_running() => Link::Running,
-            LinkFault::None => Link::Starting,
-            _ => Link::Failed,
+            _ if self.following == Following::OffPath => T3iLink::Failed,
+            LinkFault::None if self.host.is_running() => T3iLink::Running,
+            LinkFault::None => T3iLink::Starting,
+            _ => T3iLink::Failed,
         }
     }
 
@@ -179,11 +180,11 @@ impl State {
             line: seen.line,
             prim: seen.prim,
             queue: match self.queued {
-                0 => Queue::Empty,
-                1 => Queue::One,
-                _ => Queue::More,
+                0 => PointQueue::Empty,
+                1 => PointQueue::One,
+                _ => PointQueue::More,
             },
-            way: if seen.advance.is_some() { Way::Sendable } else { Way::Unsendable },
+            way: if seen.advance.is_some() { NextPosition::Sendable } else { NextPosition::Unsendable },
         }
     }
 }

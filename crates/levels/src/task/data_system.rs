@@ -10,7 +10,7 @@
 
 use interfaces::{
     DataBaseCommand, DataBaseStatus, ExternalInputs, TaskOutputs,
-    data_base::{Carried, Connection, DataBaseBeliefs, DataBaseReport, DataBaseVerb, KEPT_UPDATES},
+    data_base::{Carried, Connection, DataBaseReport, DataBaseUpdates, DataBaseVerb, KEPT_UPDATES},
     emove::{Holding, PlacedObject},
     hws::Ledger,
     subtask::{SubtaskStatus, SubtaskVerb},
@@ -26,9 +26,9 @@ use super::{
     plan::{Plan, TaskVerb},
     tables::{
         DataBase, Update,
-        item::{Carrying, Following, Notice, Released, Taken, Taking, follow, take},
-        load::{Carry, Load, NotedObject, Occasion, PickUp, TakeOrder, carry, pick_up},
-        pending::{Change, Event, Pending, Queue, Unsent, queue, update},
+        item::{Carrying, Notice, Released, Taken, Taking, TaskFollowing, follow, take},
+        load::{Carry, EndedCommand, NotedObject, Occasion, PickUp, TakeOrder, carry, pick_up},
+        pending::{Change, Event, Pending, QueueChange, Unsent, queue, update},
     },
 };
 use crate::held::Held;
@@ -50,14 +50,14 @@ pub struct DataSystem {
     /// How often it was written.
     pub tries: u8,
     /// What is believed of it: an output, adopted again after a restart.
-    pub beliefs: DataBaseBeliefs,
+    pub updates: DataBaseUpdates,
 }
 
 impl DataSystem {
     /// In its first tick Task takes over what it believed before a restart, and the command that it wrote
     /// last.
     pub const fn adopt(&mut self, written: &TaskOutputs, tick: Tick) {
-        (self.beliefs, self.request) = (written.beliefs, written.data_base);
+        (self.updates, self.request) = (written.updates, written.data_base);
         let number = written.data_base.number;
         self.commander = Commander { number, sent: tick, started: number != 0 };
     }
@@ -74,7 +74,7 @@ impl DataSystem {
 
     /// Each tick, before anything else: remove an accepted update from the queue.
     pub fn observe(&mut self, status: &DataBaseStatus, tick: Tick) {
-        let [first, _] = self.beliefs.owed;
+        let [first, _] = self.updates.pending;
         let is_first_sent = first
             .is_some_and(|first| DataBaseCommand { number: self.request.number, ..first } == self.request);
         let is_accepted = is_first_sent && self.status(status, tick) == DataBase::Done;
@@ -83,13 +83,13 @@ impl DataSystem {
 
     /// Consult QUEUE; `new` is the update of [`Event::New`].
     fn change(&mut self, event: Event, new: Option<DataBaseCommand>) {
-        let [first, second] = self.beliefs.owed;
-        self.beliefs.owed = match queue((), &Change { event, pending: self.pending() }).action {
-            Queue::Keep => [first, second],
-            Queue::RemoveFirst => [second, None],
-            Queue::StoreFirst => [new, None],
-            Queue::StoreSecond => [first, new],
-            Queue::Clear => [None; KEPT_UPDATES],
+        let [first, second] = self.updates.pending;
+        self.updates.pending = match queue((), &Change { event, pending: self.pending() }).action {
+            QueueChange::Keep => [first, second],
+            QueueChange::RemoveFirst => [second, None],
+            QueueChange::StoreFirst => [new, None],
+            QueueChange::StoreSecond => [first, new],
+            QueueChange::Clear => [None; KEPT_UPDATES],
         };
     }
 
@@ -109,7 +109,7 @@ impl DataSystem {
     /// Is the Data System told of moves? `executing` is the command that is.
     #[must_use]
     pub const fn connection(&self, executing: Option<TaskVerb>) -> Connection {
-        match (self.beliefs.connected, self.beliefs.connecting, executing) {
+        match (self.updates.connected, self.updates.connecting, executing) {
             (true, _, _) => Connection::Open,
             (false, true, Some(TaskVerb::Startup)) => Connection::Opening,
             (false, true, _) => Connection::Interrupted,
@@ -119,7 +119,7 @@ impl DataSystem {
 
     /// The number of pending updates.
     const fn pending(&self) -> Pending {
-        match self.beliefs.owed {
+        match self.updates.pending {
             [None, _] => Pending::None,
             [Some(_), None] => Pending::One,
             [Some(_), Some(_)] => Pending::Two,
@@ -132,7 +132,7 @@ impl DataSystem {
         let unsent = Unsent {
             pending: self.pending(),
             connection: self.connection(Some(plan.verb)),
-            due: if plan.update_due { Notice::Tell } else { Notice::Omit },
+            due: if plan.update_due { Notice::Send } else { Notice::Omit },
         };
         update((), &unsent).action
     }
@@ -140,8 +140,8 @@ impl DataSystem {
     /// What the robot carried last, compared with an object.
     #[must_use]
     pub fn carrying(&self, object: Name16) -> Carrying {
-        match self.beliefs.carried {
-            Some(carried) if carried.item == object && carried.told => Carrying::Followed,
+        match self.updates.carried {
+            Some(carried) if carried.item == object && carried.followed => Carrying::Followed,
             Some(carried) if carried.item == object => Carrying::Known,
             Some(_) | None => Carrying::Other,
         }
@@ -163,23 +163,23 @@ impl DataSystem {
 
     /// Send a reconfiguration command: one without an item.
     pub fn reconfigure(&mut self, command: DataBaseVerb, tick: Tick, outputs: &mut TaskOutputs) {
-        (self.beliefs.connected, self.beliefs.connecting) = (false, true);
+        (self.updates.connected, self.updates.connecting) = (false, true);
         self.send(DataBaseCommand { command, ..DataBaseCommand::default() }, tick, outputs);
     }
 
     /// The Data System takes commands.
     pub const fn connect(&mut self) {
-        (self.beliefs.connected, self.beliefs.connecting) = (true, false);
+        (self.updates.connected, self.updates.connecting) = (true, false);
     }
 
     /// A command about an object or a tool is accepted: consult FOLLOW and TAKE.
     pub fn accept(&mut self, plan: &Plan, below: &SubtaskStatus) {
-        self.beliefs.taking = None;
+        self.updates.taking = None;
         let Some(item) = plan.object else { return };
-        let following = Following {
+        let following = TaskFollowing {
             connection: self.connection(None),
             origin: plan.origin(),
-            due: if plan.update_due { Notice::Tell } else { Notice::Omit },
+            due: if plan.update_due { Notice::Send } else { Notice::Omit },
             carrying: self.carrying(item),
         };
         let is_released = below.placed.is_some_and(|placed| placed.object == item);
@@ -193,18 +193,18 @@ impl DataSystem {
         match action {
             Taking::Keep | Taking::Note => {}
             Taking::Follow => {
-                if let Some(carried) = self.beliefs.carried.as_mut().filter(|carried| carried.item == item) {
-                    carried.told = true;
+                if let Some(carried) = self.updates.carried.as_mut().filter(|carried| carried.item == item) {
+                    carried.followed = true;
                 }
             }
             Taking::Drop | Taking::Replace => {
-                self.beliefs.carried = self.beliefs.carried.filter(|carried| carried.item != item);
+                self.updates.carried = self.updates.carried.filter(|carried| carried.item != item);
             }
         }
         if matches!(action, Taking::Note | Taking::Replace) {
             let site = plan.source.site().unwrap_or_default();
             let (serial, location, sector) = (plan.serial, site.location, site.sector);
-            self.beliefs.taking = Some(Carried { item, serial, location, sector, told: true });
+            self.updates.taking = Some(Carried { item, serial, location, sector, followed: true });
         }
     }
 
@@ -215,17 +215,17 @@ impl DataSystem {
                 None | Some(SubtaskVerb::None | SubtaskVerb::GetEndeff) => TakeOrder::Before,
                 Some(_) => TakeOrder::Given,
             },
-            held: Held::of(held, self.beliefs.taking.map(|taking| taking.item)),
+            held: Held::of(held, self.updates.taking.map(|taking| taking.item)),
         };
         match pick_up((), &noted).action {
             PickUp::Keep => {}
-            PickUp::Carry => self.beliefs.carried = self.beliefs.taking.take(),
+            PickUp::Carry => self.updates.carried = self.updates.taking.take(),
         }
     }
 
     /// A command has ended or sends its update: consult CARRY about its object.
     pub fn carry(&mut self, occasion: Occasion, plan: &Plan, held: Held) {
-        let load = Load {
+        let load = EndedCommand {
             occasion,
             verb: plan.verb,
             held,
@@ -234,15 +234,15 @@ impl DataSystem {
         };
         let (item, serial) = (plan.object.unwrap_or_default(), plan.serial);
         let site = plan.destination.site().or(plan.source.site()).unwrap_or_default();
-        let here = Carried { item, serial, location: site.location, sector: site.sector, told: false };
-        let before = self.beliefs.carried.filter(|carried| carried.item == item);
+        let here = Carried { item, serial, location: site.location, sector: site.sector, followed: false };
+        let before = self.updates.carried.filter(|carried| carried.item == item);
         let there = before.unwrap_or_default();
-        self.beliefs.carried = match carry((), &load).action {
+        self.updates.carried = match carry((), &load).action {
             Carry::Keep => return,
-            Carry::Drop => self.beliefs.carried.filter(|_| before.is_none()),
+            Carry::Drop => self.updates.carried.filter(|_| before.is_none()),
             Carry::Note => Some(here),
-            Carry::Follow => Some(Carried { told: true, ..here }),
-            Carry::KeepSerial => Some(Carried { serial: there.serial, told: true, ..here }),
+            Carry::Follow => Some(Carried { followed: true, ..here }),
+            Carry::KeepSerial => Some(Carried { serial: there.serial, followed: true, ..here }),
             Carry::KeepPlace => Some(Carried { location: there.location, sector: there.sector, ..here }),
         };
     }
@@ -260,7 +260,7 @@ impl DataSystem {
 
     /// REPORT-ITEM: append an update about what the robot has carried and released.
     pub fn append_released(&mut self, placed: &PlacedObject) {
-        if let Some(Carried { item, serial, .. }) = self.beliefs.carried.take() {
+        if let Some(Carried { item, serial, .. }) = self.updates.carried.take() {
             self.append(item, serial, placed.site.location, placed.site.sector);
         }
     }
@@ -272,7 +272,7 @@ impl DataSystem {
 
     /// Send the oldest pending update.
     pub fn send_pending(&mut self, tick: Tick, outputs: &mut TaskOutputs) {
-        let [first, _] = self.beliefs.owed;
+        let [first, _] = self.updates.pending;
         if let Some(update) = first {
             self.send(update, tick, outputs);
         }
@@ -281,8 +281,8 @@ impl DataSystem {
     /// The Data System is disconnected; pending updates are dropped.
     pub fn disconnect(&mut self, tick: Tick, outputs: &mut TaskOutputs) {
         self.change(Event::Discard, None);
-        (self.beliefs.taking, self.beliefs.carried) = (None, None);
+        (self.updates.taking, self.updates.carried) = (None, None);
         self.reconfigure(DataBaseVerb::Abort, tick, outputs);
-        self.beliefs.connecting = false;
+        self.updates.connecting = false;
     }
 }

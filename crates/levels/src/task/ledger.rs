@@ -29,7 +29,7 @@ pub enum Placed {
 
 /// Is the part in the pedestal's hand?
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
-pub enum Part {
+pub enum TaskPart {
     /// No.
     Elsewhere,
     /// Yes, alone or together with the robot.
@@ -90,8 +90,11 @@ pub fn is_from_elsewhere(
     carried: Option<&Carried>,
 ) -> bool {
     let source = |command: &HwsCommand| (command.source, command.source_sector);
-    match ledger.map(|ledger| (&ledger.command, ledger.told)).filter(|(last, _)| last.object == plan.object) {
-        Some((last, told)) => told || source(last) != source(command),
+    match ledger
+        .map(|ledger| (&ledger.command, ledger.reported))
+        .filter(|(last, _)| last.object == plan.object)
+    {
+        Some((last, reported)) => reported || source(last) != source(command),
         None => !plan.source.site().zip(carried).is_some_and(|(site, carried)| {
             Some(carried.item) == plan.object
                 && (carried.location, carried.sector) == (site.location, site.sector)
@@ -108,11 +111,11 @@ pub fn is_taken(ledger: Option<&Ledger>, object: &Name16) -> bool {
 }
 
 /// The ledger when a command has been accepted. A command that is about no object says nothing of one that
-/// is. One that has to take its object again has told nothing yet.
+/// is. One that has to take its object again has reported nothing yet.
 #[must_use]
 pub fn opened(ledger: Option<Ledger>, command: &HwsCommand, plan: &Plan) -> Option<Ledger> {
     if !plan.is_about_something() || plan.resumed != Resumed::Not {
-        return ledger.map(|ledger| Ledger { told: ledger.told && !plan.update_due, ..ledger });
+        return ledger.map(|ledger| Ledger { reported: ledger.reported && !plan.update_due, ..ledger });
     }
-    Some(Ledger { command: content(command), last: SubtaskVerb::None, told: plan.from_elsewhere })
+    Some(Ledger { command: content(command), last: SubtaskVerb::None, reported: plan.from_elsewhere })
 }

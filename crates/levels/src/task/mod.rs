@@ -46,7 +46,7 @@ use taskdata::files::TaskData;
 use self::{
     state::State,
     tables::{
-        Action, Operator, StateVariables, Takeover,
+        Action, StateVariables, Takeover, TaskOperator,
         joystick::{Control, joystick},
         number,
     },
@@ -102,12 +102,12 @@ impl<'d> Process<TaskData<'d>> for Task {
     fn write(&mut self, write: &Write, _: &Inputs<'_, TaskData<'d>>, outputs: &mut TaskOutputs) {
         match write.variable {
             Variable::Ledger => {
-                (outputs.ledger, outputs.beliefs.taking) = (None, None);
-                self.state.data_system.beliefs = outputs.beliefs;
+                (outputs.ledger, outputs.updates.taking) = (None, None);
+                self.state.data_system.updates = outputs.updates;
             }
-            Variable::Owed => {
-                outputs.beliefs.owed = [None; KEPT_UPDATES];
-                self.state.data_system.beliefs = outputs.beliefs;
+            Variable::Pending => {
+                outputs.updates.pending = [None; KEPT_UPDATES];
+                self.state.data_system.updates = outputs.updates;
             }
             _ => {}
         }
@@ -129,7 +129,7 @@ impl State {
     /// # Errors
     /// None: it withholds no command.
     fn joystick(&mut self, course: Course, seen: &mut StateVariables) -> Result<Course, Action> {
-        let operator = Operator { subtask: seen.subordinates.subtask, outcome: self.execution.outcome };
+        let operator = TaskOperator { subtask: seen.subordinates.subtask, outcome: self.execution.outcome };
         seen.subordinates.takeover = match joystick(self.control, &operator) {
             Verdict::Passed(takeover) => takeover,
             Verdict::Decided(decision) => {

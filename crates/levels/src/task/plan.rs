@@ -10,8 +10,8 @@ use rcs_core::{
 use taskdata::files::{EndEffId, TaskData};
 
 use super::tables::{
-    Destination, Regrip, SiteData, ToolData, WayOut,
-    item::{Origin, Takes},
+    Destination, SiteData, TaskRegrip, ToolData, WayOut,
+    item::{Takes, TaskOrigin},
 };
 use crate::places::{Missing, is_in_mbd, named};
 
@@ -84,7 +84,7 @@ pub enum Grips {
 
 /// `endeff-id#` of the gripper for the object (VII.7.2).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
-pub enum Gripper {
+pub enum TaskGripper {
     /// It can be one of a gripper, or no object is named.
     Valid,
     /// It cannot.
@@ -144,9 +144,9 @@ pub struct Found {
     /// What was not found of the object, or else of the first location that lacks something.
     pub missing: Missing,
     /// `endeff-id#` of the gripper for the object.
-    pub gripper: Gripper,
+    pub gripper: TaskGripper,
     /// Must the object be regripped on the pedestal?
-    pub regrip: Regrip,
+    pub regrip: TaskRegrip,
     /// The way from the tool drum to the end-at location.
     pub way_out: WayOut,
 }
@@ -216,9 +216,9 @@ impl Plan {
         };
         let has_data = object.is_none_or(|object| data.ped_para(&object).is_some());
         let regrip = match plan.grips() {
-            Grips::Same => Regrip::None,
-            Grips::Different if has_data => Regrip::Possible,
-            Grips::Different => Regrip::NoData,
+            Grips::Same => TaskRegrip::None,
+            Grips::Different if has_data => TaskRegrip::Possible,
+            Grips::Different => TaskRegrip::NoData,
         };
         Found { plan, missing, gripper, regrip, way_out: plan.way_out(data) }
     }
@@ -252,8 +252,8 @@ impl Plan {
 
     /// The place where the object was taken.
     #[must_use]
-    pub const fn origin(&self) -> Origin {
-        if self.from_elsewhere { Origin::Elsewhere } else { Origin::Source }
+    pub const fn origin(&self) -> TaskOrigin {
+        if self.from_elsewhere { TaskOrigin::Elsewhere } else { TaskOrigin::Source }
     }
 
     /// What the command takes, of what it names.
@@ -332,14 +332,14 @@ impl Plan {
 
 /// The number of the gripper for an object. The tool commands need the tool gripper also if no object is
 /// named.
-fn gripper(verb: TaskVerb, object: Option<&Name16>, data: &TaskData<'_>) -> (Option<u8>, Gripper) {
+fn gripper(verb: TaskVerb, object: Option<&Name16>, data: &TaskData<'_>) -> (Option<u8>, TaskGripper) {
     let id = match object {
         None if verb.is_for_tools() => TOOL_GRIPPER.into(),
         _ => object.and_then(|object| data.obj_grips(object)).map_or(0, |grips| grips.endeff_id),
     };
     match u8::try_from(id) {
-        Ok(id) => ((id != 0).then_some(id), Gripper::Valid),
-        Err(_) => (None, Gripper::Invalid),
+        Ok(id) => ((id != 0).then_some(id), TaskGripper::Valid),
+        Err(_) => (None, TaskGripper::Invalid),
     }
 }
 

@@ -15,7 +15,7 @@ use super::{
     ledger::opened,
     plan::{Plan, PlanSite, TaskVerb},
     state::State,
-    tables::{Action, Ordered, StateVariables, Takeover, joystick::Control, load::Occasion},
+    tables::{Action, StateVariables, Takeover, TaskRecipient, joystick::Control, load::Occasion},
 };
 use crate::{
     execution::{Outcome, Report},
@@ -102,22 +102,22 @@ impl State {
                 self.data_system.connect();
                 self.finish(inputs, outputs);
             }
-            Action::ConnectAndTell => {
+            Action::ConnectAndSend => {
                 self.data_system.connect();
                 self.order().send_pending(tick, outputs);
             }
-            Action::TellOwed => self.order().send_pending(tick, outputs),
-            Action::AskAgain => self.order().send_again(tick, outputs),
+            Action::SendPending => self.order().send_pending(tick, outputs),
+            Action::SendAgain => self.order().send_again(tick, outputs),
             Action::Update => self.report_item(inputs, outputs),
             Action::UpdateAndGotoEndpt => {
                 self.report_item(inputs, outputs);
                 self.send(SubtaskVerb::GotoEndpt, &plan.end_at, inputs, outputs);
             }
-            Action::TellOwedAndPosition => {
+            Action::SendPendingAndPosition => {
                 self.data_system.send_pending(tick, outputs);
                 self.send(SubtaskVerb::Position, plan.position_site(), inputs, outputs);
             }
-            Action::AwaitUpdate => self.ordered = Ordered::DataSystem,
+            Action::AwaitUpdate => self.ordered = TaskRecipient::DataSystem,
             Action::Finish => self.finish(inputs, outputs),
             Action::Fail(reason) => self.execution.fail(reason),
             Action::PassUp => {
@@ -133,7 +133,7 @@ impl State {
         self.data_system.carry(Occasion::Finish, &plan, held);
         if self.is_in_ledger(outputs) {
             outputs.ledger = None;
-            self.data_system.beliefs.taking = None;
+            self.data_system.updates.taking = None;
         }
         self.execution.finish();
     }
@@ -145,7 +145,7 @@ impl State {
 
     /// The Data System, which has the last order from now on.
     const fn order(&mut self) -> &mut DataSystem {
-        self.ordered = Ordered::DataSystem;
+        self.ordered = TaskRecipient::DataSystem;
         &mut self.data_system
     }
 
@@ -154,7 +154,7 @@ impl State {
         let held = Held::of(inputs.memory.subtask.status.held, self.plan.object);
         self.plan.update_due = false;
         if let Some(ledger) = &mut outputs.ledger {
-            ledger.told = true;
+            ledger.reported = true;
         }
         let plan = self.plan;
         self.order().report_item(&plan, held, inputs.tick, outputs);
@@ -168,7 +168,7 @@ impl State {
         inputs: &Inputs<'_, TaskData<'_>>,
         outputs: &mut TaskOutputs,
     ) {
-        self.ordered = Ordered::Subtask;
+        self.ordered = TaskRecipient::Subtask;
         let about = self.plan.is_about_something() && verb != SubtaskVerb::Pause;
         if let Some(ledger) = outputs.ledger.as_mut().filter(|_| about) {
             ledger.last = verb;
@@ -213,7 +213,7 @@ impl State {
         };
         let executing = Some(self.plan.verb).filter(|_| execution.outcome == Outcome::Executing);
         outputs.connection = self.data_system.connection(executing);
-        outputs.beliefs = self.data_system.beliefs;
+        outputs.updates = self.data_system.updates;
         outputs.header = execution.rows.header(inputs.tick, self.step.text());
         let finished = report == HwsReport::Finished;
         outputs.status = HwsStatus {

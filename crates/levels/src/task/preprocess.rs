@@ -11,13 +11,13 @@ use taskdata::files::TaskData;
 
 use super::{
     goals::proof,
-    ledger::{Part, is_from_elsewhere, is_taken, placed, resumed},
+    ledger::{TaskPart, is_from_elsewhere, is_taken, placed, resumed},
     plan::{Found, Plan, PlanSite, Resumed, TOOL_GRIPPER, TaskVerb},
     state::State,
-    support::Support,
+    support::TaskSupport,
     tables::{
-        Drum, Ends, Ordered, Preconditions, Request, Situation, StateVariables, Station, Subordinates,
-        Takeover, Tool, Way,
+        Ends, Preconditions, Request, Situation, StateVariables, Station, Subordinates, Takeover, TaskDrum,
+        TaskRecipient, TaskRoute, TaskTool,
         item::{
             Area, Carrying, Continuation, InLedger, Move, Notice, Place, Release, Taker, released, update_due,
         },
@@ -43,7 +43,7 @@ impl State {
         self.data_system.observe_grasp(below.held, ledger);
         self.note_support(inputs);
         let (plan, request, preconditions) = if asked == Asked::Now {
-            self.ordered = Ordered::Nothing;
+            self.ordered = TaskRecipient::Nothing;
             let found = Plan::look_up(command, inputs.data);
             let plan = Plan { resumed: resumed(command, ledger), ..found.plan };
             let replaces = plan.is_about_something() && plan.resumed == Resumed::Not;
@@ -106,7 +106,7 @@ impl State {
     fn plan(&self, plan: &Plan, inputs: &Inputs<'_, TaskData<'_>>) -> Plan {
         let (below, ledger) = (&inputs.memory.subtask.status, inputs.memory.task.ledger.as_ref());
         let held = Held::of(below.held, plan.object);
-        let carried = self.data_system.beliefs.carried.as_ref();
+        let carried = self.data_system.updates.carried.as_ref();
         let from_elsewhere = plan.verb == TaskVerb::Acquire
             && held == Held::Right
             && is_from_elsewhere(&inputs.external.hws, plan, ledger, carried);
@@ -117,8 +117,8 @@ impl State {
                 verb: plan.verb,
                 origin: plan.origin(),
                 ledger: match ledger {
-                    Some(ledger) if plan.resumed != Resumed::Not && ledger.told => InLedger::Told,
-                    Some(_) if plan.resumed != Resumed::Not => InLedger::Untold,
+                    Some(ledger) if plan.resumed != Resumed::Not && ledger.reported => InLedger::Reported,
+                    Some(_) if plan.resumed != Resumed::Not => InLedger::Unreported,
                     Some(_) | None => InLedger::Other,
                 },
                 held,
@@ -127,7 +127,7 @@ impl State {
                 carrying: plan.object.map_or(Carrying::Other, |object| self.data_system.carrying(object)),
             },
         );
-        Plan { update_due: due.action == Notice::Tell, ..plan }
+        Plan { update_due: due.action == Notice::Send, ..plan }
     }
 
     /// Consult RELEASED about the object that Subtask reports as released.
@@ -169,19 +169,21 @@ impl State {
             ends: ends(&plan.end_at, below),
             update: self.data_system.update(plan),
             tool: match below.held {
-                _ if below.end_effector_id != Some(TOOL_GRIPPER) => Tool::None,
-                Holding::Nothing => Tool::Free,
-                Holding::Object(held) if plan.object.is_none_or(|object| object == held.object) => Tool::Held,
-                Holding::Object(_) => Tool::None,
-                Holding::Something | Holding::NotKnown => Tool::Unsure,
+                _ if below.end_effector_id != Some(TOOL_GRIPPER) => TaskTool::None,
+                Holding::Nothing => TaskTool::Free,
+                Holding::Object(held) if plan.object.is_none_or(|object| object == held.object) => {
+                    TaskTool::Held
+                }
+                Holding::Object(_) => TaskTool::None,
+                Holding::Something | Holding::NotKnown => TaskTool::Unsure,
             },
             station: station(below.at.map(|at| at.site.location)),
-            drum: if below.drum { Drum::Inside } else { Drum::Outside },
+            drum: if below.drum { TaskDrum::Inside } else { TaskDrum::Outside },
             way: way(below.at, plan, inputs.data),
-            support: Support::sense(below, plan, self.confirmed.as_ref(), inputs.external, inputs.data),
+            support: TaskSupport::sense(below, plan, self.confirmed.as_ref(), inputs.external, inputs.data),
             resumed: plan.resumed,
             placed: placed(plan, below, inputs.memory.task.ledger.as_ref()),
-            part: if below.pedestal_part { Part::InPedestal } else { Part::Elsewhere },
+            part: if below.pedestal_part { TaskPart::InPedestal } else { TaskPart::Elsewhere },
         }
     }
 }
@@ -233,16 +235,16 @@ fn station(at: Option<Name10>) -> Station {
 }
 
 /// The way from where the robot is to the position of a POSITION, as far as the names of the locations tell.
-fn way(at: Option<Standing>, plan: &Plan, data: &TaskData<'_>) -> Way {
-    let Some(at) = at else { return Way::NoStart };
-    let Some(to) = plan.position_site().site() else { return Way::Here };
+fn way(at: Option<Standing>, plan: &Plan, data: &TaskData<'_>) -> TaskRoute {
+    let Some(at) = at else { return TaskRoute::NoStart };
+    let Some(to) = plan.position_site().site() else { return TaskRoute::Here };
     let from = at.site;
     if from.has_location_of(&to) {
         // Between the sectors of a tray no trajectory is needed.
-        if (from.array, from.sector) == (to.array, to.sector) { Way::Here } else { Way::Leads }
+        if (from.array, from.sector) == (to.array, to.sector) { TaskRoute::Here } else { TaskRoute::Leads }
     } else if data.trajectory(&from.place(), &to.place()).is_some() {
-        Way::Leads
+        TaskRoute::Leads
     } else {
-        Way::NoTrajectory
+        TaskRoute::NoTrajectory
     }
 }

@@ -6,7 +6,7 @@ use rcs_core::{Plain, handshake::Commander};
 use super::{
     data_system::DataSystem,
     plan::Plan,
-    tables::{Ordered, Step, joystick::Control},
+    tables::{Step, TaskRecipient, joystick::Control},
 };
 use crate::execution::Execution;
 
@@ -18,7 +18,7 @@ pub struct State {
     /// Step of its table.
     pub step: Step,
     /// The neighbour that has its last order.
-    pub ordered: Ordered,
+    pub ordered: TaskRecipient,
     /// What has the robot.
     pub control: Control,
     /// The command with its names looked up.

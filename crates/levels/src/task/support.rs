@@ -16,7 +16,7 @@ use crate::places::named;
 
 /// What keeps an object from falling when the gripper opens.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
-pub enum Support {
+pub enum TaskSupport {
     /// Nothing that is known.
     None,
     /// The sector of a tray or the nest at which the robot stands with the object.
@@ -27,7 +27,7 @@ pub enum Support {
     Secured,
 }
 
-impl Support {
+impl TaskSupport {
     /// The support of what the gripper holds, for the command of a plan.
     #[must_use]
     pub fn sense(

@@ -14,7 +14,7 @@ use interfaces::{
     quick_change::{QuickChangeReport, RingPosition},
 };
 use levels::{
-    emove::{self, Emove, gripper::Gripper},
+    emove::{self, Emove, gripper::EmoveGripper},
     execution::{Execution, Outcome},
     places::robot_at,
 };
@@ -33,7 +33,7 @@ pub type Line = (EmoveVerb, Option<&'static str>);
 
 /// The process of a gripper, its outputs, and its fingers.
 pub trait Fingered: Stepped {
-    const GRIPPER: Gripper;
+    const GRIPPER: EmoveGripper;
     /// The object, its grip, and where the robot stands.
     const OBJECT: (&'static str, i32, &'static str);
     /// The greatest age that is within the time limit of a command, ticks.
@@ -117,8 +117,8 @@ pub fn first<G: Fingered>(commands: &[Line], early: Option<u8>, restarts: u8) ->
     };
     let mut pair = Pair::new(commands, (early, restarts), G::first(), around);
     let Half { state: emove, out } = &mut pair.upper;
-    out.beliefs.place = Some(stands);
-    emove.adopt(&out.beliefs);
+    out.estimates.place = Some(stands);
+    emove.adopt(&out.estimates);
     emove.exchange.adopt_gripper(G::GRIPPER);
     out.status.end_effector_id = G::GRIPPER.id();
     emove.execution.receiver.started = true;

@@ -7,9 +7,9 @@ use interfaces::{
     process::Inputs,
 };
 use levels::{
-    emove::{self, gripper::Gripper},
+    emove::{self, gripper::EmoveGripper},
     execution::{Execution, Outcome},
-    grip::{self, tables::Phase},
+    grip::{self, tables::GripPhase},
 };
 use rcs_core::{handshake::Commander, tick::Tick};
 
@@ -49,7 +49,7 @@ impl Stepped for Grip {
 }
 
 impl Fingered for Grip {
-    const GRIPPER: Gripper = Gripper::Parts;
+    const GRIPPER: EmoveGripper = EmoveGripper::Parts;
     const OBJECT: (&'static str, i32, &'static str) = ("LINKBAR1", 2, "PFIXTURE");
     const LIMIT: u64 = 150;
     const COUNTERS: &'static [(&'static str, u8)] =
@@ -68,7 +68,7 @@ impl Fingered for Grip {
         Self {
             half: Half {
                 state: grip::state::State {
-                    phase: Phase::Valid,
+                    phase: GripPhase::Valid,
                     calibration,
                     ..grip::state::State::default()
                 },
@@ -156,7 +156,7 @@ impl Fingered for Grip {
     }
 
     fn commander(state: &mut emove::State) -> &mut Commander {
-        state.grippers.commander(Gripper::Parts)
+        state.grippers.commander(EmoveGripper::Parts)
     }
 
     fn forget(&mut self, tick: Tick) {

@@ -16,7 +16,7 @@ use interfaces::{
 };
 use levels::{
     execution::Outcome,
-    grip::{self, tables::Phase},
+    grip::{self, tables::GripPhase},
     pedestal::{Hand, Pedestal},
 };
 
@@ -53,7 +53,7 @@ pub type Pair = frame::Pair<Around>;
 pub fn first(mishaps: u8, commands: &[PedestalVerb]) -> Pair {
     let calibration = Some(calibration());
     let mut hand = Half::<Hand> {
-        state: grip::state::State { phase: Phase::Valid, calibration, ..grip::state::State::default() },
+        state: grip::state::State { phase: GripPhase::Valid, calibration, ..grip::state::State::default() },
         out: GripOutputs { calibration, ..GripOutputs::default() },
     };
     hand.state.execution.receiver.started = true;

@@ -12,7 +12,7 @@ use interfaces::{
     process::Inputs,
 };
 use levels::{
-    emove::{self, gripper::Gripper},
+    emove::{self, gripper::EmoveGripper},
     execution::{Execution, Outcome},
     jaws::{
         CylindricalPartGripper, Jaws as Real, JawsKind, POTENTIOMETER_OFFSET, POTENTIOMETER_SCALE,
@@ -42,7 +42,7 @@ pub enum Fingers {
 
 /// What is different between the two.
 pub trait Side: JawsKind + Clone + Default {
-    const GRIPPER: Gripper;
+    const GRIPPER: EmoveGripper;
     const OBJECT: (&'static str, i32, &'static str);
     /// Grasp size of the object, in.
     const PART: f64;
@@ -53,12 +53,12 @@ pub trait Side: JawsKind + Clone + Default {
 }
 
 impl Side for CylindricalPartGripper {
-    const GRIPPER: Gripper = Gripper::V;
+    const GRIPPER: EmoveGripper = EmoveGripper::V;
     const OBJECT: (&'static str, i32, &'static str) = ("SHAFT", -1, "V-VFIXTURE");
     const PART: f64 = 1.4;
 
     fn commander(state: &mut emove::State) -> &mut Commander {
-        state.grippers.commander(Gripper::V)
+        state.grippers.commander(EmoveGripper::V)
     }
 
     fn order(outputs: &mut EmoveOutputs) -> &mut JawsCommand {
@@ -71,12 +71,12 @@ impl Side for CylindricalPartGripper {
 }
 
 impl Side for ToolGripper {
-    const GRIPPER: Gripper = Gripper::Tool;
+    const GRIPPER: EmoveGripper = EmoveGripper::Tool;
     const OBJECT: (&'static str, i32, &'static str) = ("DRILL-2", 1, "TOOL-SAFE");
     const PART: f64 = 1.75;
 
     fn commander(state: &mut emove::State) -> &mut Commander {
-        state.grippers.commander(Gripper::Tool)
+        state.grippers.commander(EmoveGripper::Tool)
     }
 
     fn order(outputs: &mut EmoveOutputs) -> &mut JawsCommand {
@@ -118,7 +118,7 @@ impl<S: Side> Stepped for Jaws<S> {
 }
 
 impl<S: Side> Fingered for Jaws<S> {
-    const GRIPPER: Gripper = S::GRIPPER;
+    const GRIPPER: EmoveGripper = S::GRIPPER;
     const OBJECT: (&'static str, i32, &'static str) = S::OBJECT;
     const LIMIT: u64 = 100;
     const COUNTERS: &'static [(&'static str, u8)] =

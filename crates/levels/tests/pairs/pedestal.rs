@@ -8,7 +8,7 @@ use interfaces::{
 };
 use levels::{
     execution::Outcome,
-    pedestal::{Pedestal, Table, table::tables::Phase},
+    pedestal::{Pedestal, Table, table::tables::TablePhase},
 };
 use rcs_core::tick::Tick;
 
@@ -392,7 +392,10 @@ impl Pair {
     fn is_timed(&self) -> bool {
         let phase = self.lower.state.phase;
         self.lower.state.execution.outcome == Outcome::Executing
-            || matches!(phase, Phase::Adopting | Phase::Seeking | Phase::Setting | Phase::Parking)
+            || matches!(
+                phase,
+                TablePhase::Adopting | TablePhase::Seeking | TablePhase::Setting | TablePhase::Parking
+            )
     }
 
     /// The motor does not take its order, and the table knows.

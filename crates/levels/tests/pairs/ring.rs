@@ -94,8 +94,8 @@ pub fn first(early: u8, faults: u8) -> Pair {
     let commands = [EmoveVerb::Pause, EmoveVerb::QcAttach, EmoveVerb::QcDetach];
     let mut pair = Pair::new(commands, (Some(early), faults), ring, around);
     let (emove, out) = (&mut pair.upper.state, &mut pair.upper.out);
-    (out.beliefs.place, out.beliefs.empty) = (Some(stands), true);
-    emove.adopt(&out.beliefs);
+    (out.estimates.place, out.estimates.empty) = (Some(stands), true);
+    emove.adopt(&out.estimates);
     emove.execution.receiver.started = true;
     pair.lower.state.execution.receiver.started = true;
     out.dormant.grip = true;

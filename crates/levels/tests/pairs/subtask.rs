@@ -24,7 +24,7 @@ use interfaces::{
     subtask::{SubtaskCommand, SubtaskVerb},
 };
 use levels::{
-    emove::{Emove, gripper::Gripper, tables::Ordered},
+    emove::{Emove, gripper::EmoveGripper, tables::EmoveRecipient},
     execution::{Execution, Outcome},
     places::robot_at,
     subtask::Subtask,
@@ -96,10 +96,10 @@ pub fn first(object: &str, lines: &[Line], early: u8, mishaps: u8) -> Pair {
     };
     let mut pair = Pair::new(commands, (Some(early), mishaps), Half::default(), around);
     let Half { state: emove, out } = &mut pair.lower;
-    (out.beliefs.place, out.beliefs.empty) = (Some(stands), true);
-    emove.adopt(&out.beliefs);
-    emove.exchange.adopt_gripper(Gripper::Parts);
-    out.status.end_effector_id = Gripper::Parts.id();
+    (out.estimates.place, out.estimates.empty) = (Some(stands), true);
+    emove.adopt(&out.estimates);
+    emove.exchange.adopt_gripper(EmoveGripper::Parts);
+    out.status.end_effector_id = EmoveGripper::Parts.id();
     emove.execution.receiver.started = true;
     pair.upper.state.execution.receiver.started = true;
     pair
@@ -170,7 +170,7 @@ impl Scene for Around {
         pair.scene.grip.write(&mut memory, before);
         let status = &mut memory.quick_change.status;
         (status.echo, status.report) = (pair.scene.quick_change, QuickChangeReport::Locked);
-        (status.end_effector_id, status.ring) = (Gripper::Parts.id(), RingPosition::Locked);
+        (status.end_effector_id, status.ring) = (EmoveGripper::Parts.id(), RingPosition::Locked);
         (memory.task.header.stamp, memory.subtask.header.stamp) = (before, before);
         (memory.quick_change.header.stamp, memory.pedestal.header.stamp) = (before, before);
         memory.emove.header.stamp = if pair.scene.silent { before.previous() } else { before };
@@ -273,7 +273,7 @@ impl Pair {
     /// E-move waits for a picture.
     fn awaits_vision(&self) -> bool {
         self.lower.state.execution.outcome == Outcome::Executing
-            && self.lower.state.ordered == Ordered::Vision
+            && self.lower.state.ordered == EmoveRecipient::Vision
             && self.scene.vision.echo != self.lower.out.vision.number
     }
 

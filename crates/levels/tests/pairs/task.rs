@@ -14,7 +14,7 @@ use levels::{
         Task,
         data_system::{ANSWER_LIMIT, IN_HAND},
         plan::{Plan, TaskVerb},
-        tables::Ordered,
+        tables::TaskRecipient,
     },
 };
 use rcs_core::name::Name10;
@@ -110,16 +110,16 @@ impl Pair {
         let place = emove_command(EmoveVerb::Release, object.as_str(), command.source_grip, "PFIXTURE");
         self.scene.emove.held = Holding::Object(ObjectGrip { object, grip: place.grip });
         self.scene.emove.at = Some(Standing { site: place.site, grip: Some(place.grip) });
-        let carried = Some(Carried { item: object, told: true, ..Carried::default() });
-        self.upper.out.beliefs.carried = carried;
+        let carried = Some(Carried { item: object, followed: true, ..Carried::default() });
+        self.upper.out.estimates.carried = carried;
         self.connected(IN_HAND)
     }
 
     /// The Data System is connected, and has the object of the commands at a position; the fingers can finish a release
     /// in a pause.
     pub fn connected(mut self, position: &str) -> Self {
-        self.upper.out.beliefs.connected = true;
-        self.upper.state.data_system.beliefs = self.upper.out.beliefs;
+        self.upper.out.estimates.connected = true;
+        self.upper.state.data_system.updates = self.upper.out.estimates;
         (self.scene.lets_go, self.scene.recorded) = (true, Some(Name10::clipped(position)));
         self
     }
@@ -447,21 +447,21 @@ impl Pair {
     /// Has the Data System an object elsewhere than where it was let go, if that is known?
     fn is_untold(&self, before: &Self) -> bool {
         let placed = before.scene.emove.placed.map(|placed| placed.site.location).filter(|at| !at.is_empty());
-        self.upper.out.beliefs.connected
+        self.upper.out.estimates.connected
             && placed.zip(before.scene.recorded).is_some_and(|(at, recorded)| at != recorded)
     }
 
     /// Task waits for the Data System.
     fn awaits_data_base(&self) -> bool {
         self.upper.state.execution.outcome == Outcome::Executing
-            && self.upper.state.ordered == Ordered::DataSystem
+            && self.upper.state.ordered == TaskRecipient::DataSystem
     }
 
     /// While no command waits for the Data System, its last answer counts only if it takes an update that is owed.
     fn forget_request(&mut self) {
         let asked = &mut self.upper.state.data_system;
         (asked.tries, asked.commander.sent) = (0, self.tick);
-        if asked.request.command != DataBaseVerb::Update || asked.beliefs.owed[0].is_none() {
+        if asked.request.command != DataBaseVerb::Update || asked.updates.pending[0].is_none() {
             let number = asked.request.number;
             asked.request = DataBaseCommand { number, ..DataBaseCommand::default() };
             self.scene.data_base.report = DataBaseReport::Idle;

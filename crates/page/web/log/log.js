@@ -9,7 +9,7 @@ import { Series } from './series.js';
 /**
  * Topics that only the list of fields and the pictures of the cell need: they are read when they are shown.
  */
-const LATER = ['/emove/beliefs', '/joint_states', '/prim/poses', '/tf'];
+const LATER = ['/emove/estimates', '/joint_states', '/prim/poses', '/tf'];
 const RUN = 'rcs-run';
 const END = 'rcs-end';
 

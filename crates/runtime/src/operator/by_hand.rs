@@ -98,8 +98,8 @@ pub fn check_confirmation(by: Support, memory: &CommonMemory, data: &TaskData<'_
     };
     let held =
         below.held.object().map_or_else(|| "what the gripper may hold".to_owned(), |held| held.to_string());
-    match (by, support::Support::of_place(below, None, data)) {
-        (Support::Clamped, support::Support::Jaws) => {
+    match (by, support::TaskSupport::of_place(below, None, data)) {
+        (Support::Clamped, support::TaskSupport::Jaws) => {
             Ok(format!("{held} counts as clamped at {} as long as the robot stands there", at.site.location))
         }
         (Support::Clamped, _) => Err(format!(

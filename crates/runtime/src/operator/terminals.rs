@@ -269,10 +269,13 @@ mod tests {
             ("execute", "execute PROCESS"),
             ("db-done", "db-done on or off"),
             ("write", "write VARIABLE VALUE"),
-            ("write emove.status.held NONE", "task.ledger, task.beliefs.owed, subtask.regrip"),
-            ("write emove.beliefs.placed BLOCK", "write emove.beliefs.placed NONE was expected; found BLOCK"),
-            ("write emove.beliefs.held BLOCK", "NONE or OBJECT GRIP"),
-            ("write emove.beliefs.held BLOCK 100", "found BLOCK 100"),
+            ("write emove.status.held NONE", "task.ledger, task.updates.pending, subtask.regrip"),
+            (
+                "write emove.estimates.placed BLOCK",
+                "write emove.estimates.placed NONE was expected; found BLOCK",
+            ),
+            ("write emove.estimates.held BLOCK", "NONE or OBJECT GRIP"),
+            ("write emove.estimates.held BLOCK 100", "found BLOCK 100"),
             ("write subtask.regrip BLOCK 1", "NONE or OBJECT was expected"),
         ] {
             assert!(entry(line).unwrap_err().contains(word), "{line}: {:?}", entry(line));
@@ -347,14 +350,14 @@ mod tests {
         let mut terminals = Terminals::default();
         let mut memory = standing(&[ProcessId::Emove]);
         let located = Located { object: Name16::clipped("LINKBAR1"), ..Located::default() };
-        memory.emove.beliefs.located = Some(located);
+        memory.emove.estimates.located = Some(located);
         let mut enter = |line: &str, memory: &CommonMemory| {
             terminals.enter(entry(line).unwrap(), Tick(1), memory, &TaskData::default())
         };
-        let located = "write emove.beliefs.located NONE";
-        assert_eq!(enter(located, &memory).unwrap(), "emove.beliefs.located was LINKBAR1, is NONE");
+        let located = "write emove.estimates.located NONE";
+        assert_eq!(enter(located, &memory).unwrap(), "emove.estimates.located was LINKBAR1, is NONE");
         for line in ["placed", "held", "placed"] {
-            let line = format!("write emove.beliefs.{line} NONE");
+            let line = format!("write emove.estimates.{line} NONE");
             assert!(enter(&line, &memory).unwrap().ends_with("was NONE, is NONE"), "{line}");
         }
         assert!(enter(located, &memory).unwrap_err().contains("4 values are written"));
@@ -387,7 +390,7 @@ mod tests {
         let ask = |line: &str, memory: &CommonMemory| {
             Terminals::default().enter(entry(line).unwrap(), Tick(1), memory, &store.view())
         };
-        let held = "write emove.beliefs.held LINKBAR1_BH 2";
+        let held = "write emove.estimates.held LINKBAR1_BH 2";
         assert!(ask(held, &memory).unwrap_err().contains("the gripper holds nothing"));
         memory.quick_change.status.end_effector_id = Some(1);
         memory.grip.status.felt = Felt::NotKnown;
@@ -396,12 +399,12 @@ mod tests {
         (memory.grip.status.initialized, memory.grip.status.position) = (true, 20);
         assert!(ask(held, &memory).unwrap_err().contains("they stand at 0.20 in"));
         memory.grip.status.position = 400;
-        assert_eq!(ask(held, &memory).unwrap(), "emove.beliefs.held was NONE, is LINKBAR1_BH 2");
+        assert_eq!(ask(held, &memory).unwrap(), "emove.estimates.held was NONE, is LINKBAR1_BH 2");
         memory.grip.header.republished = true;
         assert!(ask(held, &memory).unwrap_err().contains("run its process"), "its sensors are not read");
         for (line, why) in [
-            ("write emove.beliefs.held LINKBAR9 2", "no object form"),
-            ("write emove.beliefs.held LINKBAR1_BH 9", "a grip of LINKBAR1_BH was expected: +2; found +9"),
+            ("write emove.estimates.held LINKBAR9 2", "no object form"),
+            ("write emove.estimates.held LINKBAR1_BH 9", "a grip of LINKBAR1_BH was expected: +2; found +9"),
             ("write subtask.regrip LCLEVIS_IH", "the pedestal's hand holds nothing"),
         ] {
             let found = ask(line, &memory).unwrap_err();

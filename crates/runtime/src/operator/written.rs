@@ -7,7 +7,7 @@ use interfaces::{
     grip::Felt,
     operator::{Form, Variable, Write, may_be_written},
 };
-use levels::emove::gripper::Gripper;
+use levels::emove::gripper::EmoveGripper;
 use rcs_core::name::Name16;
 use taskdata::files::TaskData;
 
@@ -102,7 +102,7 @@ fn is_felt(variable: Variable, memory: &CommonMemory) -> Result<(), String> {
             let status = &memory.pedestal.status;
             ("the pedestal's hand", if status.gripped { status.felt } else { Felt::Nothing }, ProcessId::Hand)
         }
-        _ => ("the gripper", Gripper::attached(memory).felt(memory), ProcessId::Grip),
+        _ => ("the gripper", EmoveGripper::attached(memory).felt(memory), ProcessId::Grip),
     };
     let board = process.board();
     match felt {
@@ -118,7 +118,7 @@ fn is_felt(variable: Variable, memory: &CommonMemory) -> Result<(), String> {
 
 /// Check that the opening of the fingers is that of a grip of the object.
 fn is_so_wide(object: &Name16, grip: i32, memory: &CommonMemory, data: &TaskData<'_>) -> Result<(), String> {
-    let gripper = Gripper::attached(memory);
+    let gripper = EmoveGripper::attached(memory);
     let size = data.object(object, grip).map_or(0, |(_, sizes)| sizes.grasp_size);
     match gripper.opening(memory) {
         Some(opening) if gripper.grips(opening, size) => Ok(()),
@@ -139,21 +139,21 @@ fn new_value(write: &Write) -> String {
 }
 
 fn old_value(variable: Variable, memory: &CommonMemory) -> String {
-    let (task, beliefs) = (&memory.task, &memory.emove.beliefs);
+    let (task, estimates) = (&memory.task, &memory.emove.estimates);
     let value = match variable {
         Variable::Ledger => task.ledger.map(|ledger| ledger.command.to_string()),
-        Variable::Owed => {
-            let owed = task.beliefs.owed.iter().flatten();
+        Variable::Pending => {
+            let owed = task.updates.pending.iter().flatten();
             let owed: Vec<String> =
                 owed.map(|update| format!("{} at {}", update.item, update.position)).collect();
             (!owed.is_empty()).then(|| owed.join(", "))
         }
         Variable::Regrip => memory.subtask.regrip.map(|regrip| regrip.object.to_string()),
-        Variable::Held => beliefs.held.map(|held| format!("{} {}", held.object.object, held.object.grip)),
-        Variable::Placed => beliefs
+        Variable::Held => estimates.held.map(|held| format!("{} {}", held.object.object, held.object.grip)),
+        Variable::Placed => estimates
             .placed
             .map(|placed| format!("{} {} at {}", placed.object, placed.grip, placed.site.location)),
-        Variable::Located => beliefs.located.map(|located| located.object.to_string()),
+        Variable::Located => estimates.located.map(|located| located.object.to_string()),
         Variable::Calibration => memory.grip.calibration.map(|_| "known".to_owned()),
     };
     value.unwrap_or_else(|| NONE.to_owned())

@@ -233,10 +233,10 @@ mod tests {
             ("TA", "TAI "),
             ("LOC SAFE-", "LOC SAFE-P "),
             ("wr", "write "),
-            ("write emove.beliefs.h", "write emove.beliefs.held "),
-            ("write emove.beliefs.held NO", "write emove.beliefs.held NONE "),
+            ("write emove.estimates.h", "write emove.estimates.held "),
+            ("write emove.estimates.held NO", "write emove.estimates.held NONE "),
             (":S held <= LINKBAR1_B", ":S held <= LINKBAR1_BH "),
-            ("write emove.beliefs.held LINKBAR1_BH +2", "write emove.beliefs.held LINKBAR1_BH +2 "),
+            ("write emove.estimates.held LINKBAR1_BH +2", "write emove.estimates.held LINKBAR1_BH +2 "),
             ("xyz", "xyz"),
         ] {
             assert_eq!(completed(line), full, "{line}");

@@ -401,8 +401,8 @@ mod tests {
             (6, "188 LOAD 641 LOAD GO", "board 6 go"),
             (6, "DB-DONE", "db-done on"),
             (6, "% r DB-DONE", "db-done off"),
-            (2, ":S located <= NONE", "write emove.beliefs.located NONE"),
-            (2, ":S emove.beliefs.held <= LINKBAR1_BH 2", "write emove.beliefs.held LINKBAR1_BH 2"),
+            (2, ":S located <= NONE", "write emove.estimates.located NONE"),
+            (2, ":S emove.estimates.held <= LINKBAR1_BH 2", "write emove.estimates.held LINKBAR1_BH 2"),
             (6, ":S regrip <= LCLEVIS_IH", "write subtask.regrip LCLEVIS_IH"),
         ] {
             assert_eq!(Bench::new(board).asks(line), requests, "{board}: {line}");
@@ -422,7 +422,7 @@ mod tests {
             (4, "TDEF", "word of board 6"),
             (6, "NONSENSE", "not a word of the terminal"),
             (6, "BOARD 3", "BOARD 0, 2, 4, 6, 8 or 12"),
-            (6, ":S command-in <= MOVE", "task.ledger, task.beliefs.owed, subtask.regrip"),
+            (6, ":S command-in <= MOVE", "task.ledger, task.updates.pending, subtask.regrip"),
             (6, "% lld", "no other routine"),
             (2, "DB-DONE", "word of board 6"),
             (6, ":S located <= NONE", "a variable that can be written was expected"),

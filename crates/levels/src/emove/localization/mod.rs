@@ -13,7 +13,7 @@ pub mod track;
 use geometry::{frame::Frame, pose::Pose};
 use interfaces::{
     CommonMemory,
-    emove::{Beliefs, EmoveCommand, GoneTo, RobotPlace, Way},
+    emove::{EmoveCommand, Estimates, GoneTo, RobotPlace, Way},
     location::Site,
     track::{Course, Track},
 };
@@ -56,12 +56,12 @@ pub struct Localization {
 }
 
 impl Localization {
-    pub(super) fn adopt(&mut self, beliefs: &Beliefs) {
-        (self.place, self.way, self.track) = (beliefs.place, beliefs.way, beliefs.track);
+    pub(super) fn adopt(&mut self, estimates: &Estimates) {
+        (self.place, self.way, self.track) = (estimates.place, estimates.way, estimates.track);
     }
 
-    pub(super) fn write_to(&self, beliefs: &mut Beliefs) {
-        (beliefs.place, beliefs.way, beliefs.track) = (self.place, self.way, self.track);
+    pub(super) fn write_to(&self, estimates: &mut Estimates) {
+        (estimates.place, estimates.way, estimates.track) = (self.place, self.way, self.track);
     }
 
     /// The place of the robot, unless it has been moved away from there. If it is moved back, as by the joystick box,

@@ -33,8 +33,8 @@ use crate::{
         robot_place::{self, THERE_INCHES, THERE_RADIANS, commanded_pose, near, present_frame},
         tables::{
             Knowledge,
-            resume::{Offset, Stance, Standing, stance},
-            returning::{Freight, Lost, Near, Origin, Return, returning},
+            resume::{EmoveOffset, EmoveStanding, Stance, stance},
+            returning::{EmoveOrigin, Freight, Lost, Near, Return, returning},
         },
     },
     places::is_in_mbd,
@@ -61,7 +61,7 @@ pub(in crate::emove) struct Origination {
     /// Or the path, of which a motion was interrupted.
     pub way: Option<Way>,
     /// The present frame, seen from the place.
-    pub offset: Offset,
+    pub offset: EmoveOffset,
     /// How the robot comes there.
     pub rejoin: Option<Rejoin>,
     /// It comes to the end of the depart leg.
@@ -144,10 +144,10 @@ fn to_way(present: &Frame, way: &Way, data: &TaskData<'_>) -> Option<Rejoin> {
 /// Why it must not.
 pub(in crate::emove) fn settle_at(
     at: &RobotPlace,
-    offset: Offset,
+    offset: EmoveOffset,
     data: &TaskData<'_>,
 ) -> Result<Option<Rejoin>, Planning> {
-    match stance((), &Standing { offset }).action {
+    match stance((), &EmoveStanding { offset }).action {
         Stance::Stay => Ok(None),
         Stance::Correct => {
             let parameters = parameters_at(at, data).ok_or(Planning::NoSpeed)?;
@@ -160,8 +160,13 @@ pub(in crate::emove) fn settle_at(
 
 /// The present frame, seen from the place of the robot. A closing vise shifts the hand, and leaves the commanded
 /// pose where it is; the joystick box moves both.
-fn offset(at: &RobotPlace, present: Option<&Frame>, holding: Holding, inputs: &EmoveInputs<'_>) -> Offset {
-    let Ok(goal) = at.pose.to_frame() else { return Offset::Unseen };
+fn offset(
+    at: &RobotPlace,
+    present: Option<&Frame>,
+    holding: Holding,
+    inputs: &EmoveInputs<'_>,
+) -> EmoveOffset {
+    let Ok(goal) = at.pose.to_frame() else { return EmoveOffset::Unseen };
     let is_there = |frame: &Frame| near(frame, &goal, THERE_INCHES, THERE_RADIANS);
     let is_sent_there = || {
         let commanded = commanded_pose(inputs.memory).and_then(|pose| pose.to_frame().ok());
@@ -172,14 +177,14 @@ fn offset(at: &RobotPlace, present: Option<&Frame>, holding: Holding, inputs: &E
         gripped || at.gone_to == GoneTo::Drum
     };
     match present {
-        Some(present) if is_there(present) => Offset::There,
+        Some(present) if is_there(present) => EmoveOffset::There,
         Some(present) if is_clamped() => {
             let is_shifted = is_sent_there() && near(present, &goal, CLAMP_INCHES, CLAMP_RADIANS);
-            if is_shifted { Offset::There } else { Offset::Clamped }
+            if is_shifted { EmoveOffset::There } else { EmoveOffset::Clamped }
         }
-        Some(_) => Offset::Beside,
-        None if is_sent_there() => Offset::There,
-        None => Offset::Unseen,
+        Some(_) => EmoveOffset::Moved,
+        None if is_sent_there() => EmoveOffset::There,
+        None => EmoveOffset::Unseen,
     }
 }
 
@@ -192,7 +197,7 @@ pub(in crate::emove) fn offset_of_place(
     inputs: &EmoveInputs<'_>,
 ) -> Deviation {
     match robot_place::offset(&at.pose, present) {
-        Deviation::Slight | Deviation::Off if offset(at, present, holding, inputs) == Offset::There => {
+        Deviation::Slight | Deviation::Off if offset(at, present, holding, inputs) == EmoveOffset::There => {
             Deviation::None
         }
         seen => seen,
@@ -226,7 +231,7 @@ impl Localization {
     ) -> Result<Origination, Planning> {
         let data = inputs.data;
         let nowhere =
-            Origination { place: None, way: None, offset: Offset::There, rejoin: None, is_out: false };
+            Origination { place: None, way: None, offset: EmoveOffset::There, rejoin: None, is_out: false };
         let present = present_frame(inputs.memory);
         if let Some(place) = self.place() {
             return Ok(Origination {
@@ -243,7 +248,7 @@ impl Localization {
         let (left, way) = (self.place, self.way);
         let resting = resting_place(&present, data);
         let out = left.and_then(|nest| out_of(&nest, &present, data));
-        let back = Origination { offset: Offset::Beside, ..nowhere };
+        let back = Origination { offset: EmoveOffset::Moved, ..nowhere };
         let to_place =
             |place: RobotPlace, rejoin| Origination { place: Some(place), rejoin: Some(rejoin), ..back };
         let parameters = |at: &RobotPlace| parameters_at(at, data).ok_or(Planning::NoSpeed);
@@ -287,10 +292,10 @@ impl Localization {
             },
             course: self.track.course,
             origin: match (left.map(|left| left.gone_to), self.way) {
-                (Some(GoneTo::Drum), _) => Origin::Drum,
-                (Some(_), _) => Origin::Place,
-                (None, Some(_)) => Origin::Way,
-                (None, None) => Origin::None,
+                (Some(GoneTo::Drum), _) => EmoveOrigin::Drum,
+                (Some(_), _) => EmoveOrigin::Place,
+                (None, Some(_)) => EmoveOrigin::Way,
+                (None, None) => EmoveOrigin::None,
             },
             freight: if clampable { Freight::Clampable } else { Freight::Free },
             near: match (nest, resting) {

@@ -24,7 +24,7 @@ use crate::emove::{
     robot_place::{is_cut_off, is_led},
     tables::{
         Knowledge, PlaceKnowledge,
-        track::{Line, Mover, Record, Step, Tracking, track},
+        track::{EmoveLine, Mover, TrackChange, TrackStep, Tracking, track},
     },
 };
 
@@ -181,25 +181,25 @@ impl Localization {
                 true => Mover::Box,
                 false => Mover::Hold,
             },
-            line: if is_cut_off(memory) { Line::Failed } else { Line::Sound },
+            line: if is_cut_off(memory) { EmoveLine::Failed } else { EmoveLine::Sound },
             step: match back {
-                _ if near => Step::Near,
-                Some(_) => Step::Back,
-                None => Step::Far,
+                _ if near => TrackStep::Near,
+                Some(_) => TrackStep::Back,
+                None => TrackStep::Far,
             },
         };
         match track((), &tracking).action {
-            Record::Keep => {}
-            Record::Note if record.course == Course::Known => record.end = *present,
-            Record::Note => {
+            TrackChange::Keep => {}
+            TrackChange::Note if record.course == Course::Known => record.end = *present,
+            TrackChange::Note => {
                 let by_hand = record.by_hand;
                 *record = Track { course: Course::Known, by_hand, end: *present, ..Track::default() };
             }
-            Record::Begin => begin(record, present),
-            Record::Add if add(record, present) => {}
-            Record::Shorten => cut(record, back.unwrap_or_default(), present),
-            Record::Add | Record::Break => record.course = Course::Broken,
-            Record::Drift => record.course = Course::Adrift,
+            TrackChange::Begin => begin(record, present),
+            TrackChange::Add if add(record, present) => {}
+            TrackChange::Shorten => cut(record, back.unwrap_or_default(), present),
+            TrackChange::Add | TrackChange::Break => record.course = Course::Broken,
+            TrackChange::Drift => record.course = Course::Adrift,
         }
     }
 }

@@ -20,14 +20,14 @@ use interfaces::{
 use rcs_core::Plain;
 use taskdata::files::{TaskData, TrajParaId};
 
-use super::route::{Ahead, Goal, Leg, LegGoal, Planning, Route, slower};
+use super::route::{Ahead, EmoveGoal, EmoveLeg, LegGoal, Planning, Route, slower};
 use crate::emove::{
     localization::{
         path::route_of,
         returning::{Origination, settle_at},
     },
     robot_place::{is_same_goal, is_same_pose},
-    tables::resume::{Beginning, GoalOf, LegNow, Robot, Start, WayBack, resume},
+    tables::resume::{EmoveRobot, GoalOf, LegNow, MotionBeginning, MotionStart, WayBack, resume},
 };
 
 /// The motion of a command.
@@ -79,13 +79,13 @@ pub struct Rejoin {
 
 impl Back {
     /// The next leg back. `None` if a record is missing.
-    fn leg(&self, data: &TaskData<'_>) -> Option<Leg> {
+    fn leg(&self, data: &TaskData<'_>) -> Option<EmoveLeg> {
         let (_, from) = self.route.point(self.next, data)?;
         let (frame, to) = match self.next.checked_sub(1) {
             Some(point) => self.route.point(point, data)?,
             None => (self.route.from.pose.to_frame().ok()?, from),
         };
-        Some(Leg { at: LegGoal::Computed(frame), parameters: slower(from, to, data) })
+        Some(EmoveLeg { at: LegGoal::Computed(frame), parameters: slower(from, to, data) })
     }
 
     /// Note that it has been commanded.
@@ -148,16 +148,16 @@ fn from_outside(from: &RobotPlace, to: &RobotPlace, data: &TaskData<'_>) -> Resu
 }
 
 /// The state variables of RESUME for a goal.
-fn start(goal: &RobotPlace, begin: &Origination, data: &TaskData<'_>) -> Start {
+fn start(goal: &RobotPlace, begin: &Origination, data: &TaskData<'_>) -> MotionStart {
     let robot = match (&begin.place, &begin.way) {
-        (Some(_), _) => Robot::AtPlace,
-        (None, Some(_)) => Robot::OnWay,
-        (None, None) => Robot::Lost,
+        (Some(_), _) => EmoveRobot::AtPlace,
+        (None, Some(_)) => EmoveRobot::OnWay,
+        (None, None) => EmoveRobot::Lost,
     };
     let is_here = begin.place.is_some_and(|from| is_same_pose(&from, goal));
-    let Some(way) = begin.way.as_ref().filter(|_| robot == Robot::OnWay) else {
+    let Some(way) = begin.way.as_ref().filter(|_| robot == EmoveRobot::OnWay) else {
         let goal = if is_here { GoalOf::Place } else { GoalOf::Another };
-        return Start { robot, goal, back: WayBack::Free, leg: LegNow::Later };
+        return MotionStart { robot, goal, back: WayBack::Free, leg: LegNow::Later };
     };
     let route = route_of(way, data).unwrap_or_default();
     let departs = way.next < route.depart_points(data);
@@ -167,7 +167,7 @@ fn start(goal: &RobotPlace, begin: &Origination, data: &TaskData<'_>) -> Start {
         && route.depart_points(data) == 0
         && matches!(way.from.gone_to, GoneTo::Object(_) | GoneTo::Brought(_))
         && matches!(way.to.gone_to, GoneTo::Object(_));
-    Start {
+    MotionStart {
         robot,
         goal: if is_same_goal(&way.to, goal) { GoalOf::Way } else { GoalOf::Another },
         back: if closed { WayBack::Closed } else { WayBack::Free },
@@ -181,7 +181,7 @@ impl Flight {
     /// # Errors
     /// Why there is none.
     pub(in crate::emove) fn plan(
-        goal: &Goal,
+        goal: &EmoveGoal,
         to: &RobotPlace,
         begin: &Origination,
         data: &TaskData<'_>,
@@ -192,29 +192,29 @@ impl Flight {
             return Ok(flight(Route { opening: goal.opening, ..from_outside(nest, to, data)? }, None));
         }
         match (resume((), &start(to, begin, data)).action, begin.place, begin.way) {
-            (Beginning::Depart, Some(from), _) => {
+            (MotionBeginning::Depart, Some(from), _) => {
                 Ok(flight(Route { opening: goal.opening, ..Route::between(&from, to, data)? }, None))
             }
-            (Beginning::Settle, Some(from), _) => {
+            (MotionBeginning::Settle, Some(from), _) => {
                 let back = settle_at(&from, begin.offset, data)?;
                 let route = Route::here(&from, to, goal.opening);
                 Ok(Self { rejoin: rejoin.or(back), ..flight(route, None) })
             }
-            (Beginning::GoOn, _, Some(way)) => {
+            (MotionBeginning::GoOn, _, Some(way)) => {
                 let on = Route { commanded: way.next, opening: goal.opening, ..route_of(&way, data)? };
                 Ok(flight(on, None))
             }
-            (Beginning::GoOut, _, Some(way)) => {
+            (MotionBeginning::GoOut, _, Some(way)) => {
                 let out = Route::between(&way.from, to, data)?;
                 Ok(flight(Route { commanded: way.next, opening: goal.opening, ..out }, None))
             }
-            (Beginning::GoBack, _, Some(way)) => {
+            (MotionBeginning::GoBack, _, Some(way)) => {
                 let (route, then) = (route_of(&way, data)?, Route::between(&way.from, to, data)?);
                 let back = Back { route, next: way.next, complete: false };
                 let commanded = route.depart_points(data);
                 Ok(flight(Route { commanded, opening: goal.opening, ..then }, Some(back)))
             }
-            (Beginning::RefuseBack, ..) => Err(Planning::ForwardOnly),
+            (MotionBeginning::RefuseBack, ..) => Err(Planning::ForwardOnly),
             _ => Err(Planning::NoStart),
         }
     }
@@ -222,7 +222,7 @@ impl Flight {
     /// What lies ahead: first the way itself, if the robot is beside it, then the way back, then the route.
     pub(in crate::emove) fn ahead(&self, data: &TaskData<'_>) -> Ahead {
         match (&self.back, &self.route) {
-            _ if self.rejoin.is_some() => Ahead::Beside,
+            _ if self.rejoin.is_some() => Ahead::Rejoin,
             (Some(back), _) if !back.complete => {
                 if back.leg(data).is_some() {
                     Ahead::Through
@@ -249,14 +249,14 @@ impl Flight {
         is_straight: bool,
         rest: Pose,
         data: &TaskData<'_>,
-    ) -> (Option<Leg>, Option<Way>) {
+    ) -> (Option<EmoveLeg>, Option<Way>) {
         if let Some(rejoin) = &mut self.rejoin {
             let (next, parameters) = (rejoin.next(track), rejoin.parameters);
             if rejoin.ahead() == 0 {
                 self.rejoin = None;
             }
             let frame = next.and_then(|pose| pose.to_frame().ok());
-            return (frame.map(|frame| Leg { at: LegGoal::Computed(frame), parameters }), None);
+            return (frame.map(|frame| EmoveLeg { at: LegGoal::Computed(frame), parameters }), None);
         }
         if let Some(back) = self.back.as_mut().filter(|back| !back.complete) {
             let leg = back.leg(data);

@@ -25,7 +25,7 @@ use taskdata::files::{MovtabId, TrajParaId};
 use self::{flight::Flight, relative::Relative, route::LegGoal};
 use super::{
     EmoveInputs,
-    tables::{Contact, Initialization, Pause},
+    tables::{EmoveContact, Initialization, Pause},
 };
 
 /// Ticks for which a GO-UNTIL may stay not-detected (1 s): the robot stands, and what has not come by then
@@ -43,7 +43,7 @@ pub(super) enum Slot {
 
 /// The motion of the current command.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
-pub struct Motion {
+pub struct EmoveMotion {
     /// Commands to Prim.
     commander: Commander,
     /// The motion, if the command is a motion command.
@@ -56,7 +56,7 @@ pub struct Motion {
     robot_init: u32,
 }
 
-impl Motion {
+impl EmoveMotion {
     /// In the first tick: only an `.R` that is entered from now on counts.
     pub(super) const fn start(&mut self, robot_init: u32) {
         self.robot_init = robot_init;
@@ -88,11 +88,11 @@ impl Motion {
         }
     }
 
-    pub(super) fn contact(&self, memory: &CommonMemory) -> Contact {
+    pub(super) fn contact(&self, memory: &CommonMemory) -> EmoveContact {
         match memory.prim.status.report {
-            PrimReport::DetectedErr => Contact::Met,
-            _ if self.undetected > PATIENCE => Contact::Missed,
-            _ => Contact::Awaited,
+            PrimReport::DetectedErr => EmoveContact::Met,
+            _ if self.undetected > PATIENCE => EmoveContact::Missed,
+            _ => EmoveContact::Awaited,
         }
     }
 

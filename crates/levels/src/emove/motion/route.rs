@@ -53,7 +53,7 @@ pub enum Planning {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Ahead {
     /// A point on the way back to where the robot was before a person moved it.
-    Beside,
+    Rejoin,
     /// Nothing: the robot is at the goal, or has been sent there.
     Nothing,
     /// A point to go through.
@@ -96,7 +96,7 @@ pub struct Route {
 
 /// A point of a route that Prim is to be sent to.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Leg {
+pub struct EmoveLeg {
     /// Where it is.
     pub at: LegGoal,
     /// Parameters.
@@ -119,7 +119,7 @@ pub enum LegGoal {
 
 /// The goal of a command, looked up.
 #[derive(Clone, Copy, Debug)]
-pub struct Goal {
+pub struct EmoveGoal {
     /// Where the tool is to be.
     pub frame: Frame,
     /// Opening of the fingers, 0.01 in; `None` if it does not matter.
@@ -128,7 +128,7 @@ pub struct Goal {
     pub gone_to: GoneTo,
 }
 
-impl Goal {
+impl EmoveGoal {
     /// The goal of a motion command. `base` is the pose of the command, or where vision found the object.
     ///
     /// # Errors
@@ -334,11 +334,11 @@ impl Route {
 
     /// The next leg. `None` if a record is missing or the route is complete.
     #[must_use]
-    pub fn leg(&self, data: &TaskData<'_>) -> Option<Leg> {
+    pub fn leg(&self, data: &TaskData<'_>) -> Option<EmoveLeg> {
         let record = |pose: u32, movetable: MovtabId| LegGoal::Record { pose, movetable };
         let Some((part, point)) = self.next_point(data) else {
             let at = record(self.goal, MovtabId::NULL);
-            return (!self.complete).then_some(Leg { at, parameters: self.stop });
+            return (!self.complete).then_some(EmoveLeg { at, parameters: self.stop });
         };
         let at = match (point.target, part) {
             (Target::Pose(id), _) => record(id.number(), MovtabId::NULL),
@@ -355,7 +355,7 @@ impl Route {
         };
         let reversed = part == Part::Depart && takes_out(&self.from, data);
         let parameters = if reversed { slower(point.para, self.behind(data)?, data) } else { point.para };
-        Some(Leg { at, parameters })
+        Some(EmoveLeg { at, parameters })
     }
 
     /// Parameters of the point before the next one, on the way out of a place by its approach path.

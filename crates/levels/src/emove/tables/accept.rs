@@ -72,7 +72,7 @@ pub enum ToolWork {
 
 /// The location of a motion command.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
-pub enum Target {
+pub enum EmoveTarget {
     /// No holster, or the command is there to go to one.
     Plain,
     /// A holster, as a plain location.
@@ -97,7 +97,7 @@ pub struct Request {
     /// A tool command.
     pub drum: ToolWork,
     /// The location of the command.
-    pub target: Target,
+    pub target: EmoveTarget,
 }
 
 decision_table! {

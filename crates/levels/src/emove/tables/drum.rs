@@ -19,7 +19,7 @@ pub enum AtDrum {
     /// Between there and the strike plate: the fingers are half around the tool in the drum.
     Sliding,
     /// To the right of the tool, clear of it, at the strike plate or before it.
-    Beside,
+    Clear,
 }
 
 /// The bias of the force sensor: the reading that counts as no force (V.1.1 CAL-SENSOR).
@@ -35,7 +35,7 @@ pub enum Bias {
 
 /// What the fingers have in the drum.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
-pub enum Tool {
+pub enum EmoveTool {
     /// They have closed on a tool, and nothing has moved it since.
     Grasped,
     /// They have not.
@@ -48,7 +48,7 @@ pub struct AtTheDrum {
     /// Where the robot is at the drum.
     pub at: AtDrum,
     /// What its fingers have there.
-    pub tool: Tool,
+    pub tool: EmoveTool,
     /// How far the current command has come.
     pub outcome: Outcome,
 }
@@ -73,6 +73,6 @@ decision_table! {
         2: at: Inside, tool: Grasped, outcome: Idle | Done | Error | Joystick  => Stand;
         3: at: Inside, tool: Grasped, outcome: Executing                       => Keep;
         4: at: Inside, tool: Loose                                             => Keep;
-        5: at: Before | Entering | Sliding | Beside                            => Keep;
+        5: at: Before | Entering | Sliding | Clear                            => Keep;
     }
 }

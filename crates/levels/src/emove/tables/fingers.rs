@@ -12,7 +12,7 @@ decision_table! {
             1:  work: Busy                                                          => consult;
         }
         Moving {
-            2:  release: UnderWay, ahead: Through | Stop | Beside                   => Fail(ReleaseNotEnded);
+            2:  release: UnderWay, ahead: Through | Stop | Rejoin                   => Fail(ReleaseNotEnded);
             3:  opening: Free | Reached                                             => consult;
             4:  opening: Sent, gripper: Pending | Executing, ahead: Stop | Nothing  => Wait;
             5:  opening: Sent                                                       => consult;

@@ -24,7 +24,7 @@ decision_table! {
             4:  held: Something, at: Elsewhere | Before | InDrum  => Fail(AlreadyHolding);
             5:  held: NotKnown,  at: Elsewhere | Before | InDrum  => Fail(HeldNotKnown);
             6:  place: Searching | Unknown                        => Fail(UnknownStart);
-            7:  ahead: Beside                                     => GotoPt  -> Correcting;
+            7:  ahead: Rejoin                                     => GotoPt  -> Correcting;
         }
         Start | Correcting {
             8:  held: Right | Nothing | Something | NotKnown      => Close   -> Closing;

@@ -13,7 +13,7 @@ decision_table! {
         }
         /// Nothing done yet.
         Start {
-            2:  held: Nothing, ahead: Beside                              => GotoPt   -> Correcting;
+            2:  held: Nothing, ahead: Rejoin                              => GotoPt   -> Correcting;
         }
         /// The robot is going back to where pictures are taken.
         Correcting {

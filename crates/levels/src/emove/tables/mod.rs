@@ -42,13 +42,14 @@ use rcs_core::{
 
 pub(super) use self::variables::known;
 pub use self::{
-    accept::{Attached, CommandClass, Coupling, ExchangeWork, Request, Target, ToolWork},
+    accept::{Attached, CommandClass, Coupling, EmoveTarget, ExchangeWork, Request, ToolWork},
     drum::{AtDrum, Bias},
-    records::{HolsterData, Record, Records},
+    records::{EmoveRecord, HolsterData, Records},
     variables::{
-        Along, At, Calibration, Contact, Departure, FingerMotion, Fingers, Holster, Initialization,
-        Knowledge, Link, Load, Lock, Mate, Opening, Ordered, Pause, PlaceKnowledge, Reach, Readiness,
-        ReleaseWork, Ring, Shut, Sight, Spread, Tooling, Tries, VisionAnswer,
+        At, Departure, EmoveCalibration, EmoveContact, EmoveHolster, EmoveLink, EmoveLoad, EmoveOpening,
+        EmoveReach, EmoveRecipient, ExchangePosition, FingerMotion, Fingers, Initialization, Knowledge, Lock,
+        Mate, Pause, PlaceKnowledge, Readiness, ReleaseWork, Ring, Shut, Sight, Spread, Tooling, Tries,
+        VisionAnswer,
     },
 };
 use super::{
@@ -84,15 +85,15 @@ pub struct Subordinates {
     /// The command.
     pub verb: EmoveVerb,
     /// Is still held what was held?
-    pub load: Load,
+    pub load: EmoveLoad,
     /// The process that has the last order.
-    pub ordered: Ordered,
+    pub ordered: EmoveRecipient,
     /// Status of Prim; done as long as the command does not need it.
     pub prim: Lower,
     /// The condition of a guarded move.
-    pub contact: Contact,
+    pub contact: EmoveContact,
     /// The opening of the fingers for the goal.
-    pub opening: Opening,
+    pub opening: EmoveOpening,
     /// Status of the attached gripper.
     pub gripper: Lower,
     /// The locking ring.

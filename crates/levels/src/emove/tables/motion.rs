@@ -15,7 +15,7 @@ decision_table! {
             3: ahead: Missing  => Fail(BadRecord);
             4: ahead: Stop     => GotoPt  -> Stopping;
             5: ahead: Nothing  => Arrive;
-            6: ahead: Beside   => GotoPt  -> Rejoining;
+            6: ahead: Rejoin   => GotoPt  -> Rejoining;
         }
         /// On the final motion.
         Stopping {

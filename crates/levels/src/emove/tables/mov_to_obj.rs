@@ -11,7 +11,7 @@ decision_table! {
         2: held: Other | Something                       => Fail(AlreadyHolding);
         3: held: NotKnown                                => Fail(HeldNotKnown);
         4: held: Right, work: Busy                       => consult;
-        5: held: Right, ahead: Beside                    => consult;
+        5: held: Right, ahead: Rejoin                    => consult;
         6: held: Right, ahead: Nothing                   => Finish;
         7: held: Right, ahead: Through | Stop | Missing  => Fail(AlreadyHolding);
     }

@@ -10,7 +10,7 @@ use crate::{
 
 /// A record of the task data that a command names.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
-pub enum Record {
+pub enum EmoveRecord {
     /// It is there.
     Found,
     /// It is not.
@@ -33,9 +33,9 @@ pub enum HolsterData {
 #[derive(Clone, Copy, Debug, Default, Variables)]
 pub struct Records {
     /// Sizes of object and grip for GRASP-OBJ and ACQUIRE-TOOL: END-EFF-PARA.
-    pub sizes: Record,
+    pub sizes: EmoveRecord,
     /// How LOCATE-OBJ sees the object: VISION-PARA.
-    pub view: Record,
+    pub view: EmoveRecord,
     /// The gripper's holster for QC-ATTACH and QC-DETACH.
     pub holster: HolsterData,
     /// The relative moves of the command.

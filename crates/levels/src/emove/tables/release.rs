@@ -13,7 +13,7 @@ decision_table! {
         /// Nothing done yet.
         Start {
             2: held: Nothing, spread: Open  => Finish;
-            3: ahead: Beside                => GotoPt        -> Correcting;
+            3: ahead: Rejoin                => GotoPt        -> Correcting;
         }
         /// The robot is going back to its place.
         Correcting {}

@@ -4,7 +4,7 @@ use rcs_core::{Actions, Plain, Variables, decision_table};
 
 /// Where the robot is when the command comes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
-pub enum Robot {
+pub enum EmoveRobot {
     /// At a known place.
     AtPlace,
     /// On the way of a motion that was interrupted.
@@ -44,9 +44,9 @@ pub enum LegNow {
 
 /// The state variables.
 #[derive(Clone, Copy, Debug, Variables)]
-pub struct Start {
+pub struct MotionStart {
     /// Where the robot is.
-    pub robot: Robot,
+    pub robot: EmoveRobot,
     /// The goal.
     pub goal: GoalOf,
     /// The way.
@@ -57,7 +57,7 @@ pub struct Start {
 
 /// How a motion command begins.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Actions)]
-pub enum Beginning {
+pub enum MotionBeginning {
     /// Depart from the place where the robot is.
     Depart,
     /// The robot is at the goal, or beside it: STANCE decides.
@@ -77,7 +77,7 @@ pub enum Beginning {
 decision_table! {
     /// RESUME: from where a motion command begins (docs/design/recovery.md "On the way"). A robot that is lost has
     /// come back before, as RETURN says. Planning consults it when a motion command comes; no header names its rows.
-    pub RESUME: fn resume(self::Start) -> self::Beginning {
+    pub RESUME: fn resume(self::MotionStart) -> self::MotionBeginning {
         1: robot: AtPlace, goal: Way | Another                              => Depart;
         2: robot: AtPlace, goal: Place                                      => Settle;
         3: robot: Lost                                                      => RefuseStart;
@@ -90,12 +90,12 @@ decision_table! {
 
 /// The present frame, seen from the place of the robot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
-pub enum Offset {
+pub enum EmoveOffset {
     /// It is there: within 0.02 in and 0.1 degree. A robot that was sent there, and holds a part that may be clamped, is
     /// there within 0.1 in.
     There,
     /// A person has moved it, by no more than 0.5 in and 2 degrees.
-    Beside,
+    Moved,
     /// So has somebody, and what it holds may be clamped.
     Clamped,
     /// The resolvers do not tell, and it was not sent there.
@@ -104,9 +104,9 @@ pub enum Offset {
 
 /// The state variables.
 #[derive(Clone, Copy, Debug, Variables)]
-pub struct Standing {
+pub struct EmoveStanding {
     /// Where the robot is.
-    pub offset: Offset,
+    pub offset: EmoveOffset,
 }
 
 /// What precedes a command that ends at the place of the robot, or does its work there.
@@ -125,9 +125,9 @@ pub enum Stance {
 decision_table! {
     /// STANCE: a robot at its place, seen by its resolvers, before a command that ends there (MOV-…) or does its work
     /// there (LOCATE-OBJ, GRASP-OBJ, RELEASE). Planning consults it when such a command comes; no header names its rows.
-    pub STANCE: fn stance(self::Standing) -> self::Stance {
+    pub STANCE: fn stance(self::EmoveStanding) -> self::Stance {
         1: offset: There    => Stay;
-        2: offset: Beside   => Correct;
+        2: offset: Moved   => Correct;
         3: offset: Clamped  => RefuseOff;
         4: offset: Unseen   => RefuseStart;
     }

@@ -7,7 +7,7 @@ pub use interfaces::track::Course;
 
 /// Where the record of its path leads back to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
-pub enum Origin {
+pub enum EmoveOrigin {
     /// Nowhere: there is none, or it is not known where it begins.
     None,
     /// A place.
@@ -47,7 +47,7 @@ pub struct Lost {
     /// What is known of its path.
     pub course: Course,
     /// Where that begins.
-    pub origin: Origin,
+    pub origin: EmoveOrigin,
     /// What it has brought away.
     pub freight: Freight,
     /// What is near.

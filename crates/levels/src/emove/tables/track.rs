@@ -18,7 +18,7 @@ pub enum Mover {
 
 /// The link to the robot controller, seen from the arm.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
-pub enum Line {
+pub enum EmoveLine {
     /// It has not failed.
     Sound,
     /// It has failed, or Prim restarts it: the arm may sink.
@@ -27,7 +27,7 @@ pub enum Line {
 
 /// The present pose, seen from the end of the record.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
-pub enum Step {
+pub enum TrackStep {
     /// Near it: no farther than the robot moves in a few ticks.
     Near,
     /// Far from it, and near another part of the record: E-move has moved the robot back along it.
@@ -46,14 +46,14 @@ pub struct Tracking {
     /// What moves the robot.
     pub mover: Mover,
     /// The link.
-    pub line: Line,
+    pub line: EmoveLine,
     /// The present pose.
-    pub step: Step,
+    pub step: TrackStep,
 }
 
 /// What is done with the record.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Actions)]
-pub enum Record {
+pub enum TrackChange {
     /// Nothing.
     Keep,
     /// Drop it, and note the present pose.
@@ -74,7 +74,7 @@ decision_table! {
     /// TRACK: the path on which the joystick box moves the robot away from its last known place or way is recorded,
     /// so that the robot can go back on it (docs/design/recovery.md "Return"). Preprocess consults it every tick;
     /// no header names its rows.
-    pub TRACK: fn track(self::Tracking) -> self::Record {
+    pub TRACK: fn track(self::Tracking) -> self::TrackChange {
         1:  place: Known                                          => Note;
         2:  course: None | Adrift                                 => Keep;
         3:  line: Failed                                          => Drift;

@@ -39,7 +39,7 @@ pub enum Pause {
 
 /// The process that has the last order of the current command.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
-pub enum Ordered {
+pub enum EmoveRecipient {
     /// Nothing was ordered yet.
     Nothing,
     /// Prim. Fingers that open on the way are not waited for here.
@@ -62,7 +62,7 @@ pub enum Ordered {
 
 /// The condition of a guarded move.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
-pub enum Contact {
+pub enum EmoveContact {
     /// It has not come.
     Awaited,
     /// It has ended a GO-WHILE.
@@ -73,7 +73,7 @@ pub enum Contact {
 
 /// The opening of the fingers for the goal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
-pub enum Opening {
+pub enum EmoveOpening {
     /// None is needed, or a release must end first.
     Free,
     /// The fingers are at rest at it, and it was not ordered.
@@ -106,7 +106,7 @@ pub enum ReleaseWork {
 
 /// The calibration of the attached gripper (VI.3.1 UP-INIT).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
-pub enum Calibration {
+pub enum EmoveCalibration {
     /// The gripper is calibrated, or needs no calibration.
     Done,
     /// The gripper must be calibrated first.
@@ -115,7 +115,7 @@ pub enum Calibration {
 
 /// What was held when the command came.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
-pub enum Load {
+pub enum EmoveLoad {
     /// It is held still, or nothing was.
     Kept,
     /// It is no longer between the fingers.
@@ -149,7 +149,7 @@ pub enum Spread {
 
 /// The DEPC link.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
-pub enum Link {
+pub enum EmoveLink {
     /// Prim does not command the robot.
     Down,
     /// It does.
@@ -241,7 +241,7 @@ pub enum Lock {
 
 /// Where the robot is in the exchange that the command asks for, by the resolvers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
-pub enum Along {
+pub enum ExchangePosition {
     /// Nowhere on it.
     Off,
     /// Above the gripper, clear of the holster: where a bare robot comes from.
@@ -277,7 +277,7 @@ pub enum Shut {
 
 /// What the four sensors of the command's holster see (V.1.2 hol-R-status …).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
-pub enum Holster {
+pub enum EmoveHolster {
     /// Nothing.
     Empty,
     /// Something, but no gripper at its seat.
@@ -323,7 +323,7 @@ pub enum Sight {
 
 /// Where the open fingers would be at the object that vision has found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
-pub enum Reach {
+pub enum EmoveReach {
     /// Within the array of the object's sector, or at a place that is no sector.
     Inside,
     /// Beyond the edge of the array.

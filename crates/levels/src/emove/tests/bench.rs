@@ -72,18 +72,18 @@ pub fn moved(frame: Frame, movetables: &[&str]) -> Frame {
 pub type Bench = bench::Bench<Emove, Cell, TaskData<'static>>;
 
 /// A command of Subtask: object, its grip, location and gripper.
-pub type Line = (EmoveVerb, &'static str, i32, &'static str, u8);
+pub type EmoveLine = (EmoveVerb, &'static str, i32, &'static str, u8);
 
 /// How a command ends.
 pub type End = (StatusReport, Reason);
 
 impl<'d> Tested<TaskData<'d>> for Emove {
-    type Order = Line;
+    type Order = EmoveLine;
     type End = End;
     const LONGEST: u64 = 1000;
 
     /// Its location and the records of the object are looked up as Subtask would.
-    fn order(memory: &mut CommonMemory, (verb, object, grip, location, gripper): Line, number: u32) {
+    fn order(memory: &mut CommonMemory, (verb, object, grip, location, gripper): EmoveLine, number: u32) {
         let (object, place) = (Name16::clipped(object), Name16::clipped(location));
         let data = data();
         let mut command = EmoveCommand {
@@ -156,7 +156,7 @@ impl Bench {
     }
 
     /// The same with a line.
-    pub fn begin(&mut self, line: Line) {
+    pub fn begin(&mut self, line: EmoveLine) {
         self.wait(2);
         self.send(line);
     }
@@ -176,12 +176,12 @@ impl Bench {
     }
 
     /// [`Self::run`] of a line.
-    pub fn perform(&mut self, (verb, object, grip, location, gripper): Line) -> End {
+    pub fn perform(&mut self, (verb, object, grip, location, gripper): EmoveLine) -> End {
         self.run(verb, object, grip, location, gripper)
     }
 
     /// Perform a line. How near the robot comes to each of some frames, in.
-    pub fn pass<const N: usize>(&mut self, line: Line, frames: [Frame; N]) -> [f64; N] {
+    pub fn pass<const N: usize>(&mut self, line: EmoveLine, frames: [Frame; N]) -> [f64; N] {
         let mut nearest = [f64::INFINITY; N];
         self.world.log.clear();
         self.begin(line);
@@ -245,7 +245,7 @@ impl Bench {
     pub fn forget_empty(&mut self) {
         self.wait(3);
         self.restart();
-        self.memory.emove.beliefs.empty = false;
+        self.memory.emove.estimates.empty = false;
         assert_eq!(self.pause(), DONE);
     }
 
@@ -257,7 +257,7 @@ impl Bench {
     }
 
     /// Copies of the cell in each tick in which a command executes.
-    pub fn during(&self, line: Line) -> impl Iterator<Item = Self> {
+    pub fn during(&self, line: EmoveLine) -> impl Iterator<Item = Self> {
         let mut bench = self.clone();
         bench.world.log.clear();
         bench.send(line);
@@ -303,7 +303,7 @@ impl Bench {
 }
 
 /// Commands that move the robot, its fingers or a tool, but none of an exchange or RELEASE.
-pub const ORDINARY: &[Line] = &[
+pub const ORDINARY: &[EmoveLine] = &[
     (EmoveVerb::MovToLoc, "", 0, "HOME", 1),
     (EmoveVerb::MovToObj, "BLOCK", 1, "BENCH", 1),
     (EmoveVerb::MovObjTo, "BLOCK", 1, "BENCH", 1),
@@ -319,27 +319,27 @@ pub const ORDINARY: &[Line] = &[
 ];
 
 /// A command with a gripper at its holster.
-fn at_holster(verb: EmoveVerb, grip: i32, gripper: u8) -> Line {
+fn at_holster(verb: EmoveVerb, grip: i32, gripper: u8) -> EmoveLine {
     let (object, holster) =
         [("GRIPPER-1", "HOLSTER-R"), ("GRIPPER-2", "HOLSTER-L"), ("GRIPPER-3", "HOLSTER-C")]
             [usize::from(gripper) - 1];
     (verb, object, grip, holster, gripper)
 }
 
-pub fn attach(gripper: u8) -> Line {
+pub fn attach(gripper: u8) -> EmoveLine {
     at_holster(EmoveVerb::QcAttach, 2, gripper)
 }
 
-pub fn detach(gripper: u8) -> Line {
+pub fn detach(gripper: u8) -> EmoveLine {
     at_holster(EmoveVerb::QcDetach, 1, gripper)
 }
 
 /// The robot brings a gripper to its holster, in grip 1, or comes bare to fetch it, in grip 2.
-pub fn to_holster(grip: i32, gripper: u8) -> Line {
+pub fn to_holster(grip: i32, gripper: u8) -> EmoveLine {
     at_holster(EmoveVerb::MovToHol, grip, gripper)
 }
 
-pub const PAUSE: Line = (EmoveVerb::Pause, "", 0, "", 0);
+pub const PAUSE: EmoveLine = (EmoveVerb::Pause, "", 0, "", 0);
 
 /// How a command that executes is interrupted before it is sent again.
 pub const INTERRUPTIONS: &[fn(&mut Bench)] = &[

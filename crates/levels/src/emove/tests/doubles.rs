@@ -82,7 +82,7 @@ pub struct Cell {
     pub grip: Grip,
     pub v_grip: Jaws,
     pub tool_grip: Jaws,
-    vision: Vision,
+    vision: EmoveVision,
     /// The real processes, instead of the doubles of Quick Change and the grippers.
     pub real: Option<Real>,
     /// Neighbours that write nothing.
@@ -119,7 +119,7 @@ pub struct Scene {
 }
 
 impl Deref for Cell {
-    type Target = Scene;
+    type EmoveTarget = Scene;
 
     fn deref(&self) -> &Scene {
         &self.scene
@@ -161,7 +161,7 @@ impl Cell {
             grip: Grip::default(),
             v_grip: Jaws::new((50, 350)),
             tool_grip: Jaws::new((100, 400)),
-            vision: Vision::default(),
+            vision: EmoveVision::default(),
             real,
             dead: Vec::new(),
         }
@@ -602,11 +602,11 @@ impl Jaws {
 
 /// Vision: answers what it is told to, a little off the middle of the picture.
 #[derive(Clone, Default)]
-pub struct Vision {
+pub struct EmoveVision {
     left: u32,
 }
 
-impl Vision {
+impl EmoveVision {
     fn step(&mut self, memory: &CommonMemory, external: &mut ExternalInputs, world: &mut Scene) {
         let (request, answer) = (&memory.emove.vision, &mut external.devices.vision);
         if request.number != answer.echo {

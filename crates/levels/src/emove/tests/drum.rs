@@ -19,7 +19,7 @@ use super::{
 use crate::{
     emove::tables::{
         AtDrum,
-        drum::{AtTheDrum, Belief, Tool, drum},
+        drum::{AtTheDrum, Belief, EmoveTool, drum},
     },
     execution::Outcome,
 };
@@ -541,7 +541,7 @@ fn robot_moved_away_from_the_drum_forgets_the_tool_command() {
         interrupt(&mut bench, InsertTool, "INS-IN", at(-1.0, 0.0));
         bench.world.frame = away;
         bench.wait(3);
-        assert!(bench.memory.emove.beliefs.drum.is_none());
+        assert!(bench.memory.emove.estimates.drum.is_none());
         assert_eq!(run(&mut bench, InsertTool), error(Reason::UnknownStart));
     }
 }
@@ -558,7 +558,7 @@ fn tool_commands_refuse_an_unknown_object() {
         bench.world.dead.push("gripper");
         bench.memory.tool_grip.status.felt = felt;
         let state = bench.process.state_mut();
-        state.adopt(&interfaces::emove::Beliefs { empty: false, ..state.beliefs() });
+        state.adopt(&interfaces::emove::Estimates { empty: false, ..state.estimates() });
         assert_eq!(run(&mut bench, verb), error(reason), "{verb}");
     }
 }
@@ -570,12 +570,12 @@ fn drum_table_decides_the_interrupted_tool_command() {
         (decision.row, decision.action)
     };
     for outcome in [Outcome::Idle, Outcome::Done, Outcome::Error, Outcome::Joystick] {
-        assert_eq!(row(AtDrum::Off, Tool::Grasped, outcome), (1, Belief::Leave));
-        assert_eq!(row(AtDrum::Inside, Tool::Grasped, outcome), (2, Belief::Stand));
-        assert_eq!(row(AtDrum::Inside, Tool::Loose, outcome), (4, Belief::Keep));
+        assert_eq!(row(AtDrum::Off, EmoveTool::Grasped, outcome), (1, Belief::Leave));
+        assert_eq!(row(AtDrum::Inside, EmoveTool::Grasped, outcome), (2, Belief::Stand));
+        assert_eq!(row(AtDrum::Inside, EmoveTool::Loose, outcome), (4, Belief::Keep));
     }
-    assert_eq!(row(AtDrum::Inside, Tool::Grasped, Outcome::Executing), (3, Belief::Keep));
-    for at in [AtDrum::Before, AtDrum::Entering, AtDrum::Sliding, AtDrum::Beside] {
-        assert_eq!(row(at, Tool::Grasped, Outcome::Done), (5, Belief::Keep));
+    assert_eq!(row(AtDrum::Inside, EmoveTool::Grasped, Outcome::Executing), (3, Belief::Keep));
+    for at in [AtDrum::Before, AtDrum::Entering, AtDrum::Sliding, AtDrum::Clear] {
+        assert_eq!(row(at, EmoveTool::Grasped, Outcome::Done), (5, Belief::Keep));
     }
 }

@@ -315,7 +315,7 @@ fn exchange_resumes_after_the_operator_led_the_robot_out_and_back() {
     bench.lead(|bench| {
         bench.world.frame.position.z += 30.0;
         bench.wait(3);
-        assert!(bench.memory.emove.beliefs.exchange.is_some());
+        assert!(bench.memory.emove.estimates.exchange.is_some());
         bench.world.frame = stopped;
     });
     assert_eq!(bench.pause(), DONE);
@@ -392,7 +392,7 @@ fn fingers_stuck_in_a_release_have_not_released() {
     assert_eq!(stuck.finish(), error(Reason::JawsStuck));
     stuck.world.mishaps.clear();
     assert_eq!(stuck.pause(), DONE);
-    assert_eq!(stuck.memory.emove.beliefs.placed, None);
+    assert_eq!(stuck.memory.emove.estimates.placed, None);
     assert!(matches!(stuck.memory.emove.status.held, Holding::Object(_)));
     // The robot does not leave with it, whether E-move is restarted or not.
     for restarted in [false, true] {
@@ -408,14 +408,14 @@ fn fingers_stuck_in_a_release_have_not_released() {
     assert_eq!(stuck.run(MovObjTo, "SHAFT", 1, "BENCH", 2), DONE, "it is there");
     assert_eq!(stuck.perform((Release, "SHAFT", 1, "BENCH", 2)), DONE);
     assert_eq!(stuck.memory.emove.status.held, Holding::Nothing);
-    assert!(stuck.memory.emove.beliefs.placed.is_some());
+    assert!(stuck.memory.emove.estimates.placed.is_some());
     // A restarted E-move still knows that it lets go.
     bench.command(Release, "SHAFT", 1, "BENCH", 2);
     bench.wait(3);
     bench.restart_and_finish();
     bench.wait(10);
     assert_eq!(bench.pause(), DONE);
-    assert!(bench.memory.emove.beliefs.placed.is_some());
+    assert!(bench.memory.emove.estimates.placed.is_some());
 }
 
 /// The operator opens the gripper a little, and closes it again.

@@ -5,7 +5,7 @@ use interfaces::emove::EmoveVerb;
 
 use crate::{
     emove::tables::{
-        Along, At, Held, Holster, Lock, Mate, Readiness, Shut, Situation, Step,
+        At, EmoveHolster, ExchangePosition, Held, Lock, Mate, Readiness, Shut, Situation, Step,
         exchange::ExchangeSituation,
         of_command,
         qc_attach::{QcAttachSituation, QcLiftSituation},
@@ -21,11 +21,11 @@ fn pairs<A: Copy, B: Copy>(all: &[A], with: &'static [B]) -> Vec<(A, B)> {
 }
 
 /// What the tables of both commands test.
-type Exchange = ((((Mate, Lock), Holster), Along), At);
+type Exchange = ((((Mate, Lock), EmoveHolster), ExchangePosition), At);
 
 /// The values of what the tables of both commands test.
 fn exchanges() -> Vec<Exchange> {
-    pairs(&pairs(&pairs(&pairs(Mate::ALL, Lock::ALL), Holster::ALL), Along::ALL), At::ALL)
+    pairs(&pairs(&pairs(&pairs(Mate::ALL, Lock::ALL), EmoveHolster::ALL), ExchangePosition::ALL), At::ALL)
 }
 
 /// What the tables of QC-ATTACH test.

@@ -392,7 +392,11 @@ fn object_at_the_edge_of_its_tray_is_refused() {
         let array_id = data().array_named(&Name16::clipped(array));
         bench.memory.subtask.emove.site.array = array_id.unwrap_or_default();
         assert_eq!(bench.finish(), end, "{array} {y} {z} {angle}");
-        assert_eq!(bench.memory.emove.beliefs.located.is_some(), end == DONE, "the next command looks again");
+        assert_eq!(
+            bench.memory.emove.estimates.located.is_some(),
+            end == DONE,
+            "the next command looks again"
+        );
     }
 }
 
@@ -457,7 +461,7 @@ fn picture_from_a_sinking_arm_is_discarded() {
     assert_eq!(bench.run(MovToVu, "BLOCK", 1, "BENCH", 1), DONE);
     bench.world.prim.sag.z = 0.3;
     assert_eq!(bench.run(LocateObj, "BLOCK", 1, "BENCH", 1), error(Reason::VisionImplausible));
-    assert!(bench.memory.emove.beliefs.located.is_none());
+    assert!(bench.memory.emove.estimates.located.is_none());
     bench.world.prim.sag.z = 0.0;
     assert_eq!(bench.run(LocateObj, "BLOCK", 1, "BENCH", 1), DONE);
 }
@@ -467,10 +471,10 @@ fn located_object_is_discarded_after_a_lost_link() {
     let mut bench = Bench::ready("HOME", 1);
     assert_eq!(bench.run(MovToVu, "BLOCK", 1, "BENCH", 1), DONE);
     assert_eq!(bench.run(LocateObj, "BLOCK", 1, "BENCH", 1), DONE);
-    assert!(bench.memory.emove.beliefs.located.is_some());
+    assert!(bench.memory.emove.estimates.located.is_some());
     (bench.world.prim.report, bench.world.prim.reason) = (PrimReport::T3LinkOff, Reason::LinkOff);
     bench.wait(3);
-    assert!(bench.memory.emove.beliefs.located.is_none());
+    assert!(bench.memory.emove.estimates.located.is_none());
 }
 
 #[test]

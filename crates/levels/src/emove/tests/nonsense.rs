@@ -13,7 +13,7 @@ use proptest::prelude::*;
 use rcs_core::{Plain, plain::to_bytes};
 
 use super::bench::{Bench, frame_of, given, moved};
-use crate::emove::{Emove, gripper::Gripper};
+use crate::emove::{Emove, gripper::EmoveGripper};
 
 const OBJECTS: [&str; 6] = ["", "BLOCK", "SHAFT", "CUTTER", "GRIPPER-1", "GRIPPER-3"];
 const LOCATIONS: [&str; 6] = ["", "HOME", "BENCH", "HOLSTER-R", "HOLSTER-C", "TOOL-TRNS"];
@@ -121,14 +121,14 @@ proptest! {
             let image: [u8; EmoveOutputs::SIZE] = to_bytes(is);
             let twice: [u8; EmoveOutputs::SIZE] = to_bytes(&again);
             prop_assert!(image == twice);
-            let attached = Gripper::attached(&before);
+            let attached = EmoveGripper::attached(&before);
             prop_assert_eq!(is.dormant, attached.dormancy());
-            prop_assert!(was.grip.number == is.grip.number || attached == Gripper::Parts);
-            prop_assert!(was.v_grip.number == is.v_grip.number || attached == Gripper::V);
-            prop_assert!(was.tool_grip.number == is.tool_grip.number || attached == Gripper::Tool);
+            prop_assert!(was.grip.number == is.grip.number || attached == EmoveGripper::Parts);
+            prop_assert!(was.v_grip.number == is.v_grip.number || attached == EmoveGripper::V);
+            prop_assert!(was.tool_grip.number == is.tool_grip.number || attached == EmoveGripper::Tool);
             // Id pins that name no gripper over a locked ring say nothing.
             let locked = before.quick_change.status.ring == RingPosition::Locked;
-            prop_assert!(!is.status.held.is_held() || attached != Gripper::None || locked);
+            prop_assert!(!is.status.held.is_held() || attached != EmoveGripper::None || locked);
         }
     }
 }

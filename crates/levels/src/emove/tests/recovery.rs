@@ -1,21 +1,23 @@
 //! Motions that are interrupted and sent again, or followed by another command (docs/design/recovery.md
-//! "On the way", "Replaced", "Beliefs").
+//! "On the way", "Replaced", "Estimates").
 
 use geometry::frame::{Frame, Vector};
 use interfaces::{
     Reason, StatusReport,
     emove::{
-        Beliefs,
         EmoveVerb::{self, LocateObj, MovObjTo, MovToLoc, MovToObj, MovToVu, QcAttach, Release},
+        Estimates,
     },
     prim::{PrimReport, PrimVerb},
 };
 
 use super::{
-    bench::{Bench, DONE, INTERRUPTIONS, Line, ORDINARY, error, frame_of, moved},
+    bench::{Bench, DONE, EmoveLine, INTERRUPTIONS, ORDINARY, error, frame_of, moved},
     doubles::Mishap,
 };
-use crate::emove::tables::resume::{Beginning, GoalOf, LegNow, Robot, Start, WayBack, resume};
+use crate::emove::tables::resume::{
+    EmoveRobot, GoalOf, LegNow, MotionBeginning, MotionStart, WayBack, resume,
+};
 
 pub const SCENARIOS: &[fn()] = &[
     motion_at_an_object_resumes_forward_only,
@@ -23,8 +25,8 @@ pub const SCENARIOS: &[fn()] = &[
     loss_of_subtask_stops_everything,
 ];
 
-const TO_VISE: Line = (MovObjTo, "BLOCK", 1, "VISE", 1);
-const TO_HOME: Line = (MovToLoc, "", 0, "HOME", 0);
+const TO_VISE: EmoveLine = (MovObjTo, "BLOCK", 1, "VISE", 1);
+const TO_HOME: EmoveLine = (MovToLoc, "", 0, "HOME", 0);
 
 /// A robot at the bench with a block in its fingers.
 fn loaded() -> Bench {
@@ -238,8 +240,8 @@ fn loss_of_subtask_stops_everything() {
 
 #[test]
 fn restarted_emove_keeps_its_estimates() {
-    let beliefs = |bench: &Bench| {
-        let Beliefs { place, held, placed, located, exchange, .. } = bench.memory.emove.beliefs;
+    let estimates = |bench: &Bench| {
+        let Estimates { place, held, placed, located, exchange, .. } = bench.memory.emove.estimates;
         (place, held, placed, located, exchange)
     };
     // Before the grasp what vision has located, after it what is held, and then what was let go.
@@ -256,11 +258,11 @@ fn restarted_emove_keeps_its_estimates() {
             bench.world.object = Some(75);
         }
         assert_eq!(bench.run(verb, "BLOCK", 1, location, 1), DONE, "{verb}");
-        let before = beliefs(&bench);
+        let before = estimates(&bench);
         bench.restart_and_finish();
-        assert_eq!(beliefs(&bench), before, "after {verb}");
+        assert_eq!(estimates(&bench), before, "after {verb}");
         bench.stop();
-        assert_eq!(beliefs(&bench), before, "after {verb}");
+        assert_eq!(estimates(&bench), before, "after {verb}");
     }
     assert!(bench.memory.emove.status.placed.is_some());
     // What the sensors contradict is not believed.
@@ -274,7 +276,7 @@ fn restarted_emove_keeps_its_estimates() {
     bench.restart_and_finish();
     let status = bench.memory.emove.status;
     assert_eq!((status.at.is_some(), status.held.is_held()), (false, false));
-    // A change of a gripper is one of the beliefs.
+    // A change of a gripper is one of the estimates.
     let mut bench = Bench::ready("HOLSTER-R", 1);
     bench.world.frame = moved(frame_of("HOLSTER-R"), &["QCA-LIFT"]);
     bench.world.prim.by_steps = true;
@@ -444,23 +446,23 @@ fn unlocked_ring_refuses_every_motion() {
 #[test]
 fn motion_begins_where_the_robot_is() {
     let row = |robot, goal, back, leg| {
-        let decision = resume((), &Start { robot, goal, back, leg });
+        let decision = resume((), &MotionStart { robot, goal, back, leg });
         (decision.row, decision.action)
     };
     for &goal in GoalOf::ALL {
         for &back in WayBack::ALL {
             for &leg in LegNow::ALL {
                 let another = match (leg, back) {
-                    (LegNow::Depart, _) => (5, Beginning::GoOut),
-                    (LegNow::Later, WayBack::Free) => (6, Beginning::GoBack),
-                    (LegNow::Later, WayBack::Closed) => (7, Beginning::RefuseBack),
+                    (LegNow::Depart, _) => (5, MotionBeginning::GoOut),
+                    (LegNow::Later, WayBack::Free) => (6, MotionBeginning::GoBack),
+                    (LegNow::Later, WayBack::Closed) => (7, MotionBeginning::RefuseBack),
                 };
-                let on_way = if goal == GoalOf::Way { (4, Beginning::GoOn) } else { another };
+                let on_way = if goal == GoalOf::Way { (4, MotionBeginning::GoOn) } else { another };
                 let here = goal == GoalOf::Place;
-                let at_place = if here { (2, Beginning::Settle) } else { (1, Beginning::Depart) };
-                assert_eq!(row(Robot::AtPlace, goal, back, leg), at_place);
-                assert_eq!(row(Robot::Lost, goal, back, leg), (3, Beginning::RefuseStart));
-                assert_eq!(row(Robot::OnWay, goal, back, leg), on_way);
+                let at_place = if here { (2, MotionBeginning::Settle) } else { (1, MotionBeginning::Depart) };
+                assert_eq!(row(EmoveRobot::AtPlace, goal, back, leg), at_place);
+                assert_eq!(row(EmoveRobot::Lost, goal, back, leg), (3, MotionBeginning::RefuseStart));
+                assert_eq!(row(EmoveRobot::OnWay, goal, back, leg), on_way);
             }
         }
     }

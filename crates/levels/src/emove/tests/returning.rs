@@ -8,14 +8,14 @@ use interfaces::{
 };
 
 use super::{
-    bench::{Bench, DONE, INTERRUPTIONS, Line, error, frame_of, moved},
+    bench::{Bench, DONE, EmoveLine, INTERRUPTIONS, error, frame_of, moved},
     drum::SIZE,
 };
 use crate::emove::tables::{
     Knowledge,
-    resume::{Offset, Stance, Standing, stance},
-    returning::{Freight, Lost, Near, Origin, Return, returning},
-    track::{Line as Path, Mover, Record, Step, Tracking, track},
+    resume::{EmoveOffset, EmoveStanding, Stance, stance},
+    returning::{EmoveOrigin, Freight, Lost, Near, Return, returning},
+    track::{EmoveLine as Path, Mover, TrackChange, TrackStep, Tracking, track},
 };
 
 pub const SCENARIOS: &[fn()] = &[
@@ -25,11 +25,11 @@ pub const SCENARIOS: &[fn()] = &[
     motion_to_a_held_object_corrects_at_its_place_only,
 ];
 
-const TO_HOME: Line = (MovToLoc, "", 0, "HOME", 0);
-const TO_VISE: Line = (MovToLoc, "", 0, "VISE", 0);
-const BLOCK_TO_VISE: Line = (MovObjTo, "BLOCK", 1, "VISE", 1);
-const BLOCK_TO_BENCH: Line = (MovObjTo, "BLOCK", 1, "BENCH", 1);
-const TO_BLOCK: Line = (MovToObj, "BLOCK", 1, "BENCH", 1);
+const TO_HOME: EmoveLine = (MovToLoc, "", 0, "HOME", 0);
+const TO_VISE: EmoveLine = (MovToLoc, "", 0, "VISE", 0);
+const BLOCK_TO_VISE: EmoveLine = (MovObjTo, "BLOCK", 1, "VISE", 1);
+const BLOCK_TO_BENCH: EmoveLine = (MovObjTo, "BLOCK", 1, "BENCH", 1);
+const TO_BLOCK: EmoveLine = (MovToObj, "BLOCK", 1, "BENCH", 1);
 
 /// The joystick box moves the robot while E-PAUSE stands, 0.15 in in a tick at most.
 fn jog(bench: &mut Bench, by: [f64; 3]) {
@@ -56,11 +56,11 @@ fn jog_and_turn(bench: &mut Bench, by: [f64; 3], turn: [f64; 3]) {
 }
 
 fn course(bench: &Bench) -> Course {
-    bench.memory.emove.beliefs.track.course
+    bench.memory.emove.estimates.track.course
 }
 
 /// A robot with a block in its fingers, which it has brought to a place.
-fn brought(place: Line) -> Bench {
+fn brought(place: EmoveLine) -> Bench {
     let mut bench = Bench::ready("HOME", 1);
     assert_eq!(bench.perform(TO_BLOCK), DONE);
     bench.hold("BLOCK", 75, 1);
@@ -218,7 +218,7 @@ fn motion_back_by_hand_shortens_the_recorded_path() {
     ] {
         jog(&mut bench, by);
     }
-    assert_eq!((course(&bench), bench.memory.emove.beliefs.track.count), (Course::Tracked, 1));
+    assert_eq!((course(&bench), bench.memory.emove.estimates.track.count), (Course::Tracked, 1));
     let far = moved(frame_of("HOME"), &[]);
     let far = Frame { position: far.position + Vector::new(4.0, 0.0, 0.0), ..far };
     let [near] = bench.pass(TO_HOME, [far]);
@@ -361,7 +361,7 @@ fn path_is_recorded_up_to_its_capacity() {
     // A straight one has two ends, also a turn.
     let mut bench = Bench::ready("HOME", 1);
     jog(&mut bench, [20.0, 0.0, 0.0]);
-    assert_eq!(bench.memory.emove.beliefs.track.count, 1);
+    assert_eq!(bench.memory.emove.estimates.track.count, 1);
     jog_and_turn(&mut bench, [0.0; 3], [0.0, 0.3, 0.0]);
     assert_eq!(course(&bench), Course::Tracked);
     assert_eq!(bench.perform(TO_HOME), DONE);
@@ -384,17 +384,17 @@ fn tool_moved_in_the_drum_is_inserted_again() {
 fn return_table_decides_by_record_and_surroundings() {
     for &resolvers in Knowledge::ALL {
         for &course in Course::ALL {
-            for &origin in Origin::ALL {
+            for &origin in EmoveOrigin::ALL {
                 for &freight in Freight::ALL {
                     for &near in Near::ALL {
                         let lost = Lost { resolvers, course, origin, freight, near };
                         let safe = resolvers == Knowledge::Known
                             && course != Course::Adrift
-                            && origin != Origin::Drum
+                            && origin != EmoveOrigin::Drum
                             && freight == Freight::Free;
                         let expected = match (safe, course, origin, near) {
                             (false, ..) => Return::Refuse,
-                            (_, Course::Tracked, Origin::Place | Origin::Way, _) => Return::Retrace,
+                            (_, Course::Tracked, EmoveOrigin::Place | EmoveOrigin::Way, _) => Return::Retrace,
                             (.., Near::Resting) => Return::Straight,
                             (.., Near::Nest) => Return::Out,
                             (.., Near::Nothing) => Return::Refuse,
@@ -406,8 +406,8 @@ fn return_table_decides_by_record_and_surroundings() {
         }
     }
     let stances = [Stance::Stay, Stance::Correct, Stance::RefuseOff, Stance::RefuseStart];
-    for (&offset, expected) in Offset::ALL.iter().zip(stances) {
-        assert_eq!(stance((), &Standing { offset }).action, expected, "{offset:?}");
+    for (&offset, expected) in EmoveOffset::ALL.iter().zip(stances) {
+        assert_eq!(stance((), &EmoveStanding { offset }).action, expected, "{offset:?}");
     }
 }
 
@@ -418,23 +418,23 @@ fn track_table_decides_by_what_moves_the_robot() {
         course: Course::Known,
         mover: Mover::Box,
         line: Path::Sound,
-        step: Step::Near,
+        step: TrackStep::Near,
     };
     let tracked = Tracking { course: Course::Tracked, ..known };
     for (tracking, row, expected) in [
-        (Tracking { place: Knowledge::Known, ..tracked }, 1, Record::Note),
-        (Tracking { course: Course::None, ..known }, 2, Record::Keep),
-        (Tracking { course: Course::Adrift, ..known }, 2, Record::Keep),
-        (Tracking { line: Path::Failed, ..known }, 3, Record::Drift),
-        (Tracking { line: Path::Failed, ..tracked }, 3, Record::Drift),
-        (Tracking { course: Course::Broken, ..known }, 4, Record::Keep),
-        (Tracking { mover: Mover::Hold, ..known }, 5, Record::Drift),
-        (known, 6, Record::Begin),
-        (Tracking { step: Step::Far, ..known }, 7, Record::Break),
-        (Tracking { mover: Mover::Emove, step: Step::Far, ..tracked }, 8, Record::Keep),
-        (tracked, 9, Record::Add),
-        (Tracking { step: Step::Back, ..tracked }, 10, Record::Shorten),
-        (Tracking { mover: Mover::Hold, step: Step::Far, ..tracked }, 11, Record::Break),
+        (Tracking { place: Knowledge::Known, ..tracked }, 1, TrackChange::Note),
+        (Tracking { course: Course::None, ..known }, 2, TrackChange::Keep),
+        (Tracking { course: Course::Adrift, ..known }, 2, TrackChange::Keep),
+        (Tracking { line: Path::Failed, ..known }, 3, TrackChange::Drift),
+        (Tracking { line: Path::Failed, ..tracked }, 3, TrackChange::Drift),
+        (Tracking { course: Course::Broken, ..known }, 4, TrackChange::Keep),
+        (Tracking { mover: Mover::Hold, ..known }, 5, TrackChange::Drift),
+        (known, 6, TrackChange::Begin),
+        (Tracking { step: TrackStep::Far, ..known }, 7, TrackChange::Break),
+        (Tracking { mover: Mover::Emove, step: TrackStep::Far, ..tracked }, 8, TrackChange::Keep),
+        (tracked, 9, TrackChange::Add),
+        (Tracking { step: TrackStep::Back, ..tracked }, 10, TrackChange::Shorten),
+        (Tracking { mover: Mover::Hold, step: TrackStep::Far, ..tracked }, 11, TrackChange::Break),
     ] {
         let decision = track((), &tracking);
         assert_eq!((decision.row, decision.action), (row, expected), "{tracking:?}");

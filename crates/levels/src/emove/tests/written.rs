@@ -1,7 +1,7 @@
-//! Beliefs that a person writes while E-move is not stepped.
+//! Estimates that a person writes while E-move is not stepped.
 
 use interfaces::{
-    emove::{Beliefs, EmoveVerb::MovObjTo, Holding, Located, ObjectGrip, PlacedObject},
+    emove::{EmoveVerb::MovObjTo, Estimates, Holding, Located, ObjectGrip, PlacedObject},
     operator::{Variable, Write},
     process::{Inputs, Process},
 };
@@ -75,11 +75,11 @@ fn written_estimates_are_cleared() {
     let located = Some(Located::default());
     for variable in [Variable::Placed, Variable::Located] {
         let state = &mut bench.process.state;
-        state.adopt(&Beliefs { placed, located, ..state.beliefs() });
+        state.adopt(&Estimates { placed, located, ..state.estimates() });
         bench.step();
         bench.put(variable, "", 0);
-        let beliefs = bench.memory.emove.beliefs;
-        let kept = (beliefs.placed.is_some(), beliefs.located.is_some());
+        let estimates = bench.memory.emove.estimates;
+        let kept = (estimates.placed.is_some(), estimates.located.is_some());
         assert_eq!(kept, (variable == Variable::Located, variable == Variable::Placed), "{variable}");
         bench.step();
         assert_eq!(bench.memory.emove.status.placed.is_some(), kept.0, "{variable}");

@@ -3,7 +3,7 @@
 use interfaces::grip::GripVerb;
 use rcs_core::{Actions, Plain, Variables, decision_table};
 
-use super::Gripper;
+use super::Attachment;
 use crate::execution::Course;
 
 /// The verdict of ACCEPT.
@@ -26,7 +26,7 @@ pub enum TargetOpening {
 
 /// The event after which START is consulted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
-pub enum Beginning {
+pub enum GripBeginning {
     /// The process starts.
     Start,
     /// It was dormant.
@@ -77,18 +77,18 @@ pub struct Commanded {
 #[derive(Clone, Copy, Debug, Variables)]
 pub struct Started {
     /// The event.
-    pub beginning: Beginning,
+    pub beginning: GripBeginning,
     /// The calibration in the output buffers.
     pub written: Written,
     /// Is the gripper there?
-    pub gripper: Gripper,
+    pub gripper: Attachment,
     /// The command buffer.
     pub buffer: StartBuffer,
 }
 
 decision_table! {
     /// COMMAND: the command that the tables below execute.
-    pub COMMAND: fn command(self::Commanded) -> super::Command {
+    pub COMMAND: fn command(self::Commanded) -> super::GripActivity {
         1: course: Rest                           => Nothing;
         2: course: Refuse                         => Refused;
         3: acceptance: Refused                    => Refused;
@@ -104,7 +104,7 @@ decision_table! {
     /// START: where the calibration begins with a process that starts or wakes. A process that became dormant during a
     /// calibration, before E-move knew the gripper, begins again. A gripper that is attached later may hold a part, and so
     /// may one that is attached when the process is restarted: UP-INIT calibrates it.
-    pub START: fn start(super::Phase, self::Started) -> self::Adoption {
+    pub START: fn start(super::GripPhase, self::Started) -> self::Adoption {
         Valid {
             1: otherwise                           => Keep;
         }
@@ -126,7 +126,7 @@ decision_table! {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::grip::tables::{Command, Phase};
+    use crate::grip::tables::{GripActivity, GripPhase};
 
     #[test]
     fn only_open_grip_to_the_open_end_needs_no_calibration() {
@@ -135,30 +135,34 @@ mod tests {
                 let commanded =
                     Commanded { course: Course::Continue, acceptance: Acceptance::Accepted, verb, target };
                 let is_wide = verb == GripVerb::OpenGrip && target == TargetOpening::OpenEnd;
-                assert_eq!(command((), &commanded).action == Command::OpenWide, is_wide, "{verb} {target}");
+                assert_eq!(
+                    command((), &commanded).action == GripActivity::OpenWide,
+                    is_wide,
+                    "{verb} {target}"
+                );
                 let refused = Commanded { acceptance: Acceptance::Refused, ..commanded };
-                assert_eq!(command((), &refused).action, Command::Refused);
+                assert_eq!(command((), &refused).action, GripActivity::Refused);
             }
         }
     }
 
     #[test]
     fn only_a_gripper_that_is_attached_at_boot_is_calibrated_by_itself() {
-        for &beginning in Beginning::ALL {
-            for &gripper in Gripper::ALL {
+        for &beginning in GripBeginning::ALL {
+            for &gripper in Attachment::ALL {
                 for &buffer in StartBuffer::ALL {
                     let started = Started { beginning, written: Written::Nothing, gripper, buffer };
                     let is_boot = (beginning, gripper, buffer)
-                        == (Beginning::Start, Gripper::Attached, StartBuffer::Empty);
-                    let expected = if is_boot { Phase::Missing } else { Phase::Deferred };
+                        == (GripBeginning::Start, Attachment::Attached, StartBuffer::Empty);
+                    let expected = if is_boot { GripPhase::Missing } else { GripPhase::Deferred };
                     assert_eq!(
-                        start(Phase::Missing, &started).next,
+                        start(GripPhase::Missing, &started).next,
                         expected,
                         "{beginning} {gripper} {buffer}"
                     );
-                    assert_eq!(start(Phase::Valid, &started).next, Phase::Valid);
+                    assert_eq!(start(GripPhase::Valid, &started).next, GripPhase::Valid);
                     let written = Started { written: Written::Calibration, ..started };
-                    assert_eq!(start(Phase::Missing, &written).next, Phase::Adopting);
+                    assert_eq!(start(GripPhase::Missing, &written).next, GripPhase::Adopting);
                 }
             }
         }

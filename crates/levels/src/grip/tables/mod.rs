@@ -10,6 +10,7 @@ pub mod presence;
 pub mod servo;
 pub mod up_init;
 
+pub use crate::variables::{Addressee, Attachment, Clock};
 use interfaces::{
     Reason,
     grip::{Felt, GripVerb},
@@ -32,7 +33,7 @@ pub enum Step {
 
 /// Step of UP-INIT: how far the calibration has come. It outlasts the commands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
-pub enum Phase {
+pub enum GripPhase {
     /// Never done: begins at once, since the gripper is there when the system is booted (VI.3.1).
     Missing,
     /// Never done, or interrupted: waits for UP-INIT. So begins a process whose gripper comes later, which is
@@ -54,36 +55,18 @@ pub enum Phase {
     Failed,
 }
 
-/// For which gripper a command is meant.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
-pub enum Addressee {
-    /// For this one, or the commander did not say.
-    This,
-    /// For another one.
-    Other,
-}
-
 /// Can a gripper of this sort reach the opening and the force of a command?
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
-pub enum Reach {
+pub enum GripReach {
     /// Yes, or the command names none.
     Within,
     /// No.
     Beyond,
 }
 
-/// Is the gripper there?
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
-pub enum Gripper {
-    /// It is mated and the quick change is locked.
-    Attached,
-    /// It is not.
-    Detached,
-}
-
 /// The command that is being executed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain, Actions)]
-pub enum Command {
+pub enum GripActivity {
     /// None: nothing was commanded yet, or it has ended.
     Nothing,
     /// None: it was refused, or found at the start and not executed.
@@ -128,25 +111,16 @@ pub enum Sensors {
 
 /// What the fingers do.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
-pub enum Motion {
+pub enum GripMotion {
     /// They move, or have come to rest only just now.
     Moving,
     /// They are at rest.
     Still,
 }
 
-/// Time of the command.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
-pub enum Clock {
-    /// Within its limit.
-    Running,
-    /// Over its limit.
-    Expired,
-}
-
 /// Have the readings settled since the valves went off?
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
-pub enum Rest {
+pub enum GripRest {
     /// Not yet.
     Waiting,
     /// Yes.
@@ -155,7 +129,7 @@ pub enum Rest {
 
 /// Opening of the fingers, seen from the commanded one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
-pub enum Opening {
+pub enum GripOpening {
     /// Much too narrow: a coarse flow cannot overshoot.
     VeryNarrow,
     /// Too narrow: a medium flow cannot overshoot.
@@ -197,7 +171,7 @@ pub enum Grasp {
 
 /// How much air flows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Plain)]
-pub enum Flow {
+pub enum AirFlow {
     /// 0.25 in/s.
     Fine,
     /// 1 in/s.
@@ -216,18 +190,18 @@ pub struct Request {
     /// For which gripper is it?
     pub addressee: Addressee,
     /// Is the gripper there?
-    pub gripper: Gripper,
+    pub gripper: Attachment,
     /// Are opening and force attainable?
-    pub reach: Reach,
+    pub reach: GripReach,
 }
 
 /// The state variables of a tick, for the tables of calibration and commands.
 #[derive(Clone, Copy, Debug, Variables)]
 pub struct Situation {
     /// The command that is being executed.
-    pub command: Command,
+    pub command: GripActivity,
     /// Is the gripper there?
-    pub gripper: Gripper,
+    pub gripper: Attachment,
     /// What the sensors read while calibrating.
     pub readings: Calibrating,
     /// Do the sensors agree with a calibration from before a restart?
@@ -235,13 +209,13 @@ pub struct Situation {
     /// Time of the command.
     pub clock: Clock,
     /// What the fingers do.
-    pub motion: Motion,
+    pub motion: GripMotion,
     /// What is between them.
     pub felt: Felt,
     /// Have the readings settled?
-    pub rest: Rest,
+    pub rest: GripRest,
     /// The opening, seen from the commanded one.
-    pub opening: Opening,
+    pub opening: GripOpening,
     /// What the fingers feel.
     pub grasp: Grasp,
 }
@@ -276,7 +250,7 @@ pub struct StateVariables {
 
 /// What [`up_init::CALIBRATION`] leaves to decide.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
-pub enum Duty {
+pub enum GripDuty {
     /// Nothing: the valves stay as they are.
     Nothing,
     /// Nothing: the valves go off with a command that is refused.
@@ -299,9 +273,9 @@ pub enum Action {
     /// The valves stay as they are; report done.
     Pause,
     /// Open with a flow, or a smaller one if the commanded speed asks for that.
-    Open(Flow),
+    Open(AirFlow),
     /// Close with a flow, or a smaller one if the commanded speed asks for that.
-    Close(Flow),
+    Close(AirFlow),
     /// Close on with one finger in contact; report `paused`.
     AwaitFinger,
     /// All valves off; report an error.

@@ -73,7 +73,7 @@ pub struct Pads {
 
 /// The state variables of [`PRESENCE`].
 #[derive(Clone, Copy, Debug, Variables)]
-pub struct Contact {
+pub struct GripContact {
     /// The readings.
     pub readings: Validity,
     /// What the fingers touch.
@@ -104,7 +104,7 @@ decision_table! {
 decision_table! {
     /// PRESENCE: what is between the fingers. A touch counts when it has lasted. An earlier contact is only evidence against
     /// *nothing*.
-    pub PRESENCE: fn presence(interfaces::grip::Felt, self::Contact) -> self::Count {
+    pub PRESENCE: fn presence(interfaces::grip::Felt, self::GripContact) -> self::Count {
         any {
             1: readings: Invalid             => Restart   -> NotKnown;
             2: touch: Free,    period: Long  => Continue  -> Nothing;
@@ -130,7 +130,7 @@ mod tests {
     fn invalid_readings_say_nothing_whatever_was_known() {
         for &felt in Felt::ALL {
             for &touch in Touch::ALL {
-                let contact = Contact { readings: Validity::Invalid, touch, period: Period::Long };
+                let contact = GripContact { readings: Validity::Invalid, touch, period: Period::Long };
                 let decision = presence(felt, &contact);
                 assert_eq!(
                     (decision.action, decision.next),
@@ -145,7 +145,7 @@ mod tests {
     fn short_touch_only_ends_nothing() {
         for &felt in Felt::ALL {
             for &touch in Touch::ALL {
-                let contact = Contact { readings: Validity::Valid, touch, period: Period::Short };
+                let contact = GripContact { readings: Validity::Valid, touch, period: Period::Short };
                 let is_doubtful = felt == Felt::Nothing && touch != Touch::Free;
                 let expected = if is_doubtful { Felt::NotKnown } else { felt };
                 assert_eq!(presence(felt, &contact).next, expected, "{felt} {touch}");

@@ -6,7 +6,7 @@ decision_table! {
     /// UP-INIT (VI.3.1): close and open the gripper and read the sensors at both ends of travel and without
     /// force. OPEN-GRIP without a calibration opens it to the end of travel. CALIBRATION, which is
     /// consulted after it, begins both.
-    pub UP_INIT: fn up_init(super::Phase, super::Situation) -> super::Action or () {
+    pub UP_INIT: fn up_init(super::GripPhase, super::Situation) -> super::Action or () {
         Missing | Deferred | Adopting | Valid | Failed {
             1:  otherwise                            => consult;
         }
@@ -43,7 +43,7 @@ decision_table! {
     /// commands wait for it. Later it runs by command alone, since a part may be held: commands that need
     /// the calibration are refused. OPEN-GRIP to the open end does not need it: what is held without a
     /// calibration can be released.
-    pub CALIBRATION: fn calibration(super::Phase, super::Situation) -> super::Action or super::Duty {
+    pub CALIBRATION: fn calibration(super::GripPhase, super::Situation) -> super::Action or super::GripDuty {
         Missing {
             1: gripper: Attached, command: Nothing          => Begin   -> Closing;
         }

@@ -10,7 +10,7 @@ use crate::{
     environment::air::{Gripper, Object},
     grip::{
         state::{State, Touch},
-        tables::{Phase, Step},
+        tables::{GripPhase, Step},
     },
 };
 
@@ -28,10 +28,10 @@ const WORLDS: [(bool, bool, bool); 4] =
     [(true, false, false), (true, true, false), (true, false, true), (false, false, false)];
 
 /// A process in the middle of things: state and world agree in nothing but by chance.
-fn beginning(phase: Phase, step: Step, attached: bool, world: &Gripper, remembered: &State) -> Bench {
+fn beginning(phase: GripPhase, step: Step, attached: bool, world: &Gripper, remembered: &State) -> Bench {
     let mut bench = Bench::without(world.clone());
     bench.attach(attached);
-    let known = matches!(phase, Phase::Valid | Phase::Adopting);
+    let known = matches!(phase, GripPhase::Valid | GripPhase::Adopting);
     bench.process.state = State {
         phase,
         step,
@@ -58,7 +58,7 @@ fn every_command_ends_from_every_state_whether_the_fingers_obey_or_not() {
             world.strain[0] = (0.0, 0.0);
         }
         for (phase, step) in
-            Phase::ALL.iter().flat_map(|phase| Step::ALL.iter().map(move |step| (phase, step)))
+            GripPhase::ALL.iter().flat_map(|phase| Step::ALL.iter().map(move |step| (phase, step)))
         {
             for verb in GripVerb::ALL {
                 let mut bench = beginning(*phase, *step, attached, &world, &remembered);

@@ -18,7 +18,7 @@ use self::bench::{Bench, CLOSE};
 use super::{
     Grip, calibration,
     state::State,
-    tables::{Phase, Step},
+    tables::{GripPhase, Step},
 };
 use crate::{
     coverage::silent,
@@ -296,7 +296,7 @@ fn a_calibration_that_is_slept_through_begins_again_unless_the_gripper_went() {
     bench.attach(true);
     let status = bench.wait(100).status;
     assert_eq!((status.initialized, status.valves), (false, 0));
-    assert_eq!(bench.process.state.phase, Phase::Deferred);
+    assert_eq!(bench.process.state.phase, GripPhase::Deferred);
 }
 
 #[test]
@@ -479,10 +479,10 @@ fn sensors_that_tell_nothing_are_not_calibrated() {
         breakage(&mut bench.world);
         let mut idle = bench.clone();
         assert_eq!(idle.wait(500).status.report, GripReport::Idle, "{fault}: no command fails");
-        assert_eq!(idle.process.state.phase, Phase::Failed);
+        assert_eq!(idle.process.state.phase, GripPhase::Failed);
         bench.command(GripVerb::CloseGrip, 0.6, 30);
         assert_eq!(reason(&mut bench), Reason::GripNotCalibrated, "{fault}");
-        assert_eq!(bench.process.state.phase, Phase::Failed);
+        assert_eq!(bench.process.state.phase, GripPhase::Failed);
         bench.world = Gripper::new(1.0, 16);
         bench.command(GripVerb::Position, 0.6, 0);
         assert_eq!(reason(&mut bench), Reason::GripNotCalibrated, "it is not tried again by itself");

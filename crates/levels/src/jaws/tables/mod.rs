@@ -9,6 +9,7 @@ pub mod presence;
 pub mod release;
 pub mod valves;
 
+pub use crate::variables::{Addressee, Attachment};
 use interfaces::{
     Reason,
     device::Connection,
@@ -30,27 +31,9 @@ pub enum Step {
     Move,
 }
 
-/// For which gripper a command is meant.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
-pub enum Addressee {
-    /// For that of this process, or the commander did not say.
-    This,
-    /// For another one.
-    Other,
-}
-
-/// Is the gripper of this process there?
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
-pub enum Gripper {
-    /// It is mated and the quick change is locked.
-    Attached,
-    /// It is not.
-    Detached,
-}
-
 /// What the fingers do.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
-pub enum Motion {
+pub enum JawsMotion {
     /// They move, may not have begun to, or do not press yet what they have closed on.
     Moving,
     /// They stand still.
@@ -89,16 +72,16 @@ pub struct Request {
     /// For which gripper is it?
     pub addressee: Addressee,
     /// Is the gripper there?
-    pub gripper: Gripper,
+    pub gripper: Attachment,
 }
 
 /// The state variables of a tick, for the tables of the commands.
 #[derive(Clone, Copy, Debug, Variables)]
 pub struct Situation {
     /// Is the gripper there?
-    pub gripper: Gripper,
+    pub gripper: Attachment,
     /// What the fingers do.
-    pub motion: Motion,
+    pub motion: JawsMotion,
     /// Where they are on their way.
     pub stop: Stop,
     /// Where they are, seen from the commanded size.

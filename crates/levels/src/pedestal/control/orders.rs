@@ -5,8 +5,8 @@ use interfaces::{
     pedestal::{PedestalCommand, PedestalVerb, TableStatus},
 };
 
-use super::tables::{Angle, Opening};
-use crate::{grip::goal::Goal, pedestal::table::is_within_limits};
+use super::tables::{PedestalAngle, PedestalOpening};
+use crate::{grip::goal::GripGoal, pedestal::table::is_within_limits};
 
 /// The command that opens or closes the hand, by the command of the pedestal; without its number.
 pub(super) fn hand_command(command: &PedestalCommand) -> GripCommand {
@@ -34,22 +34,26 @@ pub(super) const fn table_angle(command: &PedestalCommand, table: &TableStatus) 
 }
 
 /// Can the table turn as a command asks?
-pub(super) fn angle(command: &PedestalCommand, table: &TableStatus) -> Angle {
+pub(super) fn angle(command: &PedestalCommand, table: &TableStatus) -> PedestalAngle {
     match command.command {
-        PedestalVerb::Flip if table.position.is_none() => Angle::Unknown,
+        PedestalVerb::Flip if table.position.is_none() => PedestalAngle::Unknown,
         PedestalVerb::PreGrip | PedestalVerb::Flip if !is_within_limits(table_angle(command, table)) => {
-            Angle::Beyond
+            PedestalAngle::Beyond
         }
         PedestalVerb::PreGrip
         | PedestalVerb::Flip
         | PedestalVerb::Grip
         | PedestalVerb::Release
         | PedestalVerb::Pause
-        | PedestalVerb::None => Angle::Within,
+        | PedestalVerb::None => PedestalAngle::Within,
     }
 }
 
 /// Can the hand do what a command asks?
-pub(super) fn opening(command: &PedestalCommand) -> Opening {
-    if Goal::from(&hand_command(command)).is_attainable() { Opening::Within } else { Opening::Beyond }
+pub(super) fn opening(command: &PedestalCommand) -> PedestalOpening {
+    if GripGoal::from(&hand_command(command)).is_attainable() {
+        PedestalOpening::Within
+    } else {
+        PedestalOpening::Beyond
+    }
 }

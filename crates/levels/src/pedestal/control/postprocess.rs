@@ -13,7 +13,7 @@ use super::{
     orders::{hand_command, table_angle},
     preprocess::felt,
     state::State,
-    tables::{Action, Ordered, StateVariables},
+    tables::{Action, PedestalRecipient, StateVariables},
 };
 use crate::{execution::Report, pedestal::table::report_of};
 
@@ -33,7 +33,7 @@ impl State {
             Action::OpenAndTurn => {
                 self.command_hand(hand_command(&self.command), tick, outputs);
                 self.command_table(TableVerb::Turn, angle, tick, outputs);
-                self.ordered = Ordered::Both;
+                self.ordered = PedestalRecipient::Both;
             }
             Action::Calibrate => {
                 self.command_hand(
@@ -67,13 +67,13 @@ impl State {
     }
 
     fn command_hand(&mut self, command: GripCommand, tick: Tick, outputs: &mut PedestalOutputs) {
-        self.ordered = Ordered::Hand;
+        self.ordered = PedestalRecipient::Hand;
         outputs.hand = GripCommand { number: self.hand.send(tick), ..command };
     }
 
     /// A command to the table; the absolute angle in 0.1 degree.
     fn command_table(&mut self, command: TableVerb, angle: i32, tick: Tick, outputs: &mut PedestalOutputs) {
-        self.ordered = Ordered::Table;
+        self.ordered = PedestalRecipient::Table;
         outputs.table = TableCommand { number: self.table.send(tick), command, angle };
     }
 

@@ -13,7 +13,10 @@ use super::{
     goals::proof,
     orders::{angle, opening},
     state::State,
-    tables::{Calibration, Gripped, Object, Ordered, Request, Situation, StateVariables, Subordinates},
+    tables::{
+        Gripped, Object, PedestalCalibration, PedestalRecipient, Request, Situation, StateVariables,
+        Subordinates,
+    },
 };
 use crate::{
     execution::{Asked, Work},
@@ -41,7 +44,7 @@ impl State {
         }
         let (arrival, asked) = self.execution.observe(inputs.tick, command.number);
         if asked == Asked::Now {
-            (self.command, self.ordered) = (*command, Ordered::Nothing);
+            (self.command, self.ordered) = (*command, PedestalRecipient::Nothing);
         }
         let hand = self.hand.status_of(tick, &memory.hand);
         let table = self.table.status_of(tick, &memory.table);
@@ -53,9 +56,9 @@ impl State {
         let situation = Situation {
             object,
             calibration: if memory.hand.status.initialized {
-                Calibration::Known
+                PedestalCalibration::Known
             } else {
-                Calibration::Missing
+                PedestalCalibration::Missing
             },
             gripped: if self.gripped { Gripped::Yes } else { Gripped::No },
             fingers: match hand {

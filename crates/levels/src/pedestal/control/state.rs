@@ -3,7 +3,7 @@
 use interfaces::pedestal::PedestalCommand;
 use rcs_core::{Plain, handshake::Commander, tick::Tick};
 
-use super::tables::{Ordered, Step};
+use super::tables::{PedestalRecipient, Step};
 use crate::execution::Execution;
 
 /// State of the pedestal process.
@@ -18,7 +18,7 @@ pub struct State {
     /// `cycle-cnt` of the command that is echoed, executed or not.
     pub cycle: Tick,
     /// Who has its orders.
-    pub ordered: Ordered,
+    pub ordered: PedestalRecipient,
     /// Commands to the hand.
     pub hand: Commander,
     /// Commands to the table.

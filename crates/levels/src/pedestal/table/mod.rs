@@ -62,8 +62,8 @@ use interfaces::{
 use rcs_core::table::{Table as DecisionTable, Verdict};
 
 use self::tables::{
-    Action, Command, Duty, Situation, StateVariables, Step, accept::accept, calibrate::calibrate, number,
-    of_command,
+    Action, Situation, StateVariables, Step, TableActivity, TableDuty, accept::accept, calibrate::calibrate,
+    number, of_command,
 };
 use crate::execution::Course;
 
@@ -98,7 +98,7 @@ impl<Data: ?Sized> Process<Data> for Table {
             state.step = Step::Start;
         }
         let accepted = state.execution.accepts(accept(state.step, &seen.request));
-        let command = Command::of(course, accepted, state.command.command);
+        let command = TableActivity::of(course, accepted, state.command.command);
         let situation = Situation { command, ..seen.situation };
         match calibrate(state.phase, &situation) {
             Verdict::Decided(decision) => {
@@ -110,8 +110,8 @@ impl<Data: ?Sized> Process<Data> for Table {
                 }
                 decision.action
             }
-            Verdict::Passed(Duty::Nothing) => Action::Wait,
-            Verdict::Passed(Duty::Command) => {
+            Verdict::Passed(TableDuty::Nothing) => Action::Wait,
+            Verdict::Passed(TableDuty::Command) => {
                 let choice = of_command(state.command.command, state.step, &situation);
                 state.execution.rows.decide(&choice);
                 state.step = choice.next;

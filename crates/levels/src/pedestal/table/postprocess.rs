@@ -10,7 +10,7 @@ use rcs_core::tick::Tick;
 use super::{
     preprocess::{AT_LIMIT, LIMIT_MINUS, LIMIT_PLUS, steps},
     state::State,
-    tables::{Action, Phase, StateVariables},
+    tables::{Action, StateVariables, TablePhase},
 };
 use crate::execution::Outcome;
 
@@ -37,7 +37,7 @@ impl State {
             Action::Stop => self.stop(tick),
             Action::Finish => self.execution.finish(),
             Action::Lose(reason) => {
-                self.phase = Phase::Failed;
+                self.phase = TablePhase::Failed;
                 self.stop(tick);
                 self.execution.fail(reason);
             }
@@ -69,8 +69,8 @@ impl State {
     /// The outputs of this tick.
     pub(super) fn report(&self, seen: &StateVariables, tick: Tick) -> TableOutputs {
         let execution = &self.execution;
-        let calibrated = self.phase == Phase::Valid;
-        let adoptable = calibrated || self.phase == Phase::Adopting;
+        let calibrated = self.phase == TablePhase::Valid;
+        let adoptable = calibrated || self.phase == TablePhase::Adopting;
         let step = if self.is_calibrating() { self.phase.text() } else { self.step.text() };
         TableOutputs {
             header: execution.rows.header(tick, step),

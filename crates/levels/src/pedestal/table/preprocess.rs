@@ -14,7 +14,10 @@ use rcs_core::{
 
 use super::{
     state::State,
-    tables::{Angle, Clock, Command, Counter, Motor, Phase, Request, Situation, StateVariables, Turned},
+    tables::{
+        Clock, Counter, Motor, Request, Situation, StateVariables, TableActivity, TableAngle, TablePhase,
+        Turned,
+    },
 };
 
 /// Angle at the + limit, 0.1 degree (IV.1 step 3: the counter is set to zero there).
@@ -56,7 +59,7 @@ impl State {
             self.command = *command;
         }
         if starting && self.execution.receiver.adopted {
-            self.phase = Phase::Adopting;
+            self.phase = TablePhase::Adopting;
             (self.at_limit, self.since) = (outputs.at_limit.or(self.at_limit), inputs.tick);
             self.adopt(&outputs.motor, inputs.tick);
         }
@@ -73,7 +76,7 @@ impl State {
             arrival,
             request: Request { asked, verb: command.command, angle: angle(command) },
             situation: Situation {
-                command: Command::Nothing,
+                command: TableActivity::Nothing,
                 motor,
                 counter,
                 place: if self.is_there(sensors) { Turned::There } else { Turned::Elsewhere },
@@ -112,12 +115,14 @@ impl State {
     fn is_there(&self, sensors: &PedestalSensors) -> bool {
         let on = |angle: i32| sensors.motor_counter.abs_diff(steps(angle)) <= ON_GOAL.unsigned_abs();
         match self.phase {
-            Phase::Seeking => sensors.limit_plus && !sensors.limit_minus,
-            Phase::Setting => on(AT_LIMIT),
-            Phase::Parking => on(LIMIT_PLUS) && self.reads(LIMIT_PLUS, sensors),
-            Phase::Missing | Phase::Deferred | Phase::Adopting | Phase::Valid | Phase::Failed => {
-                on(self.command.angle) && self.reads(self.command.angle, sensors)
-            }
+            TablePhase::Seeking => sensors.limit_plus && !sensors.limit_minus,
+            TablePhase::Setting => on(AT_LIMIT),
+            TablePhase::Parking => on(LIMIT_PLUS) && self.reads(LIMIT_PLUS, sensors),
+            TablePhase::Missing
+            | TablePhase::Deferred
+            | TablePhase::Adopting
+            | TablePhase::Valid
+            | TablePhase::Failed => on(self.command.angle) && self.reads(self.command.angle, sensors),
         }
     }
 
@@ -136,10 +141,10 @@ impl State {
     }
 }
 
-fn angle(command: &TableCommand) -> Angle {
+fn angle(command: &TableCommand) -> TableAngle {
     match command.command {
-        TableVerb::Turn if !is_within_limits(command.angle) => Angle::Beyond,
-        TableVerb::Turn | TableVerb::Pause | TableVerb::Calibrate | TableVerb::None => Angle::Within,
+        TableVerb::Turn if !is_within_limits(command.angle) => TableAngle::Beyond,
+        TableVerb::Turn | TableVerb::Pause | TableVerb::Calibrate | TableVerb::None => TableAngle::Within,
     }
 }
 

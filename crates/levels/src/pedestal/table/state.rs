@@ -3,7 +3,7 @@
 use interfaces::{device::MotorCommand, pedestal::TableCommand};
 use rcs_core::{Plain, handshake::Commander, tick::Tick};
 
-use super::tables::{Phase, Step};
+use super::tables::{Step, TablePhase};
 use crate::execution::Execution;
 
 /// State of the table process.
@@ -18,7 +18,7 @@ pub struct State {
     /// When it came, or when the calibration began or ended, whichever was last.
     pub since: Tick,
     /// Step of CALIBRATE.
-    pub phase: Phase,
+    pub phase: TablePhase,
     /// Potentiometer at the + limit, counts, once it was read there, or of the time before a restart.
     pub at_limit: Option<u16>,
     /// Numbers of the orders to the motor.
@@ -34,6 +34,6 @@ pub struct State {
 impl State {
     /// A calibration is under way.
     pub(super) fn is_calibrating(&self) -> bool {
-        matches!(self.phase, Phase::Seeking | Phase::Setting | Phase::Parking)
+        matches!(self.phase, TablePhase::Seeking | TablePhase::Setting | TablePhase::Parking)
     }
 }

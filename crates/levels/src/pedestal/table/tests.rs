@@ -11,7 +11,7 @@ use rcs_core::tick::Tick;
 use super::{
     LIMIT_MINUS, LIMIT_PLUS, Table,
     preprocess::{AT_LIMIT, LIMIT_TICKS},
-    tables::Phase,
+    tables::TablePhase,
 };
 use crate::{
     bench::{self, Tested, World},
@@ -189,7 +189,7 @@ fn a_calibration_that_fails_fails_the_command_that_needs_it_and_no_other() {
             breakage(&mut table);
             let mut bench = Bench::new(table);
             assert_eq!(bench.execute((verb, -1000)), end, "{verb}");
-            assert_eq!(bench.process.state.phase, Phase::Failed);
+            assert_eq!(bench.process.state.phase, TablePhase::Failed);
         }
     }
 }
@@ -203,7 +203,7 @@ fn a_calibration_that_fails_does_not_count_for_a_refused_command_nor_for_none() 
         }
         let before = bench.wait(1).status;
         let mut outputs = bench.wait(1);
-        while bench.process.state.phase != Phase::Failed {
+        while bench.process.state.phase != TablePhase::Failed {
             outputs = bench.wait(1);
             assert_eq!((outputs.status.report, outputs.status.reason), (before.report, before.reason));
         }
@@ -218,7 +218,7 @@ fn a_command_that_is_refused_while_a_calibration_fails_keeps_its_reason() {
     let mut bench = astray();
     let failed = (1_u32..).find(|_| {
         bench.wait(1);
-        bench.process.state.phase == Phase::Failed
+        bench.process.state.phase == TablePhase::Failed
     });
     for ticks in (0..4).filter_map(|before| failed?.checked_sub(before)) {
         let mut bench = astray();
@@ -273,7 +273,7 @@ fn a_restarted_process_adopts_no_calibration_that_the_sensors_deny() {
         let status = bench.wait(LIMIT_TICKS as u32 + 10).status;
         assert_eq!((status.calibrated, status.position), (false, None));
         assert_eq!(bench.memory.table.at_limit, None);
-        assert_eq!(bench.process.state.phase, Phase::Deferred);
+        assert_eq!(bench.process.state.phase, TablePhase::Deferred);
         assert_eq!(bench.execute((TableVerb::Pause, 0)), DONE);
         (bench.world.off, bench.world.runs_on, bench.world.wrong) = (false, false, 0.0);
         assert_eq!(bench.execute((TableVerb::Turn, -2135)), DONE);

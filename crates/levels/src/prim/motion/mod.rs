@@ -41,13 +41,13 @@ use rcs_core::{Plain, tick::TICK_S};
 
 use self::{
     limits::Limits,
-    profile::{Along, Profile},
+    profile::{Profile, SegmentState},
     segment::{FrameData, Segment, SegmentOrder},
 };
 
 /// The commanded motion of the tool frame.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
-pub struct Motion {
+pub struct PrimMotion {
     /// The commanded frame.
     pub at: FrameData,
     /// Goal of the last order; the commanded frame after a halt.
@@ -62,7 +62,7 @@ pub struct Motion {
     pub halting: bool,
 }
 
-impl Motion {
+impl PrimMotion {
     /// At rest at a frame.
     #[must_use]
     pub fn at_rest(frame: &Frame) -> Self {
@@ -163,7 +163,7 @@ impl Motion {
         self.current = Some(Segment::new(&self.at.frame(), order));
         self.next = None;
         self.halting = false;
-        self.plan(&Along::default(), knob);
+        self.plan(&SegmentState::default(), knob);
     }
 
     /// Plan the current profile again if the velocity differs from the one it was planned for.
@@ -183,7 +183,7 @@ impl Motion {
 
     /// Plan the current segment from a state on it. What cannot be planned is left as it was: it ends at the
     /// goal, and the next tick tries again.
-    fn plan(&mut self, from: &Along, knob: u16) {
+    fn plan(&mut self, from: &SegmentState, knob: u16) {
         let Some(current) = &self.current else { return };
         let (order, length) = (current.order, current.length);
         let velocity = self.velocity(&order, knob);
@@ -224,7 +224,7 @@ impl Motion {
         self.residual = Some(at(begin, old));
         self.current = Some(Segment::new(&old.order.goal.frame(), order));
         self.next = None;
-        self.plan(&Along::default(), knob);
+        self.plan(&SegmentState::default(), knob);
         self.residual = Some(at(begin + late, old));
         self.current = self.current.map(|current| at(late, current));
     }

@@ -19,7 +19,7 @@ pub const NO_PATH: f64 = 1e-9;
 
 /// State along a segment.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
-pub struct Along {
+pub struct SegmentState {
     /// Path from the start, inches.
     pub position: f64,
     /// in/s, never negative but for rounding.
@@ -30,7 +30,7 @@ pub struct Along {
 
 /// A stretch of constant jerk.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
-pub struct Phase {
+pub struct JerkPhase {
     /// Seconds.
     pub duration: f64,
     /// in/s³.
@@ -41,20 +41,20 @@ pub struct Phase {
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct Profile {
     /// State at clock 0.
-    pub start: Along,
+    pub start: SegmentState,
     /// To the cruise velocity.
-    pub change: [Phase; 3],
+    pub change: [JerkPhase; 3],
     /// At the cruise velocity, seconds.
     pub cruise: f64,
     /// From the cruise velocity to rest.
-    pub stop: [Phase; 3],
+    pub stop: [JerkPhase; 3],
     /// It ends at the goal; otherwise where it comes to rest.
     pub to_goal: bool,
     /// Seconds since `start`.
     pub clock: f64,
 }
 
-impl Along {
+impl SegmentState {
     /// The state after `time` seconds of constant jerk.
     #[must_use]
     fn after(&self, time: f64, jerk: f64) -> Self {
@@ -68,7 +68,7 @@ impl Along {
 
     /// The state after all phases.
     #[must_use]
-    fn after_all(&self, phases: &[Phase; 3]) -> Self {
+    fn after_all(&self, phases: &[JerkPhase; 3]) -> Self {
         phases.iter().fold(*self, |state, phase| state.after(phase.duration, phase.jerk))
     }
 
@@ -80,12 +80,12 @@ impl Along {
 }
 
 /// Seconds of all phases.
-fn duration(phases: &[Phase; 3]) -> f64 {
+fn duration(phases: &[JerkPhase; 3]) -> f64 {
     phases.iter().map(|phase| phase.duration).sum()
 }
 
 /// The fastest change from a state to a velocity without acceleration.
-fn change(from: &Along, velocity: f64, limits: &Limits) -> [Phase; 3] {
+fn change(from: &SegmentState, velocity: f64, limits: &Limits) -> [JerkPhase; 3] {
     // A slow-down is a speed-up seen in a mirror.
     let side = if velocity >= from.settled(limits) { 1.0 } else { -1.0 };
     let gain = side * (velocity - from.velocity);
@@ -94,9 +94,9 @@ fn change(from: &Along, velocity: f64, limits: &Limits) -> [Phase; 3] {
     let peak = libm::sqrt((limits.jerk * gain + begin * begin / 2.0).max(0.0)).min(limits.acceleration);
     let level = gain - (peak * peak - begin * begin / 2.0) / limits.jerk;
     [
-        Phase { duration: ((peak - begin) / limits.jerk).max(0.0), jerk: side * limits.jerk },
-        Phase { duration: if peak > 0.0 { (level / peak).max(0.0) } else { 0.0 }, jerk: 0.0 },
-        Phase { duration: peak / limits.jerk, jerk: -side * limits.jerk },
+        JerkPhase { duration: ((peak - begin) / limits.jerk).max(0.0), jerk: side * limits.jerk },
+        JerkPhase { duration: if peak > 0.0 { (level / peak).max(0.0) } else { 0.0 }, jerk: 0.0 },
+        JerkPhase { duration: peak / limits.jerk, jerk: -side * limits.jerk },
     ]
 }
 
@@ -112,14 +112,14 @@ fn stopping_path(velocity: f64, limits: &Limits) -> f64 {
 }
 
 /// Where a profile with this cruise velocity ends if it does not cruise at all.
-fn end(from: &Along, velocity: f64, change_limits: &Limits, stop_limits: &Limits) -> f64 {
+fn end(from: &SegmentState, velocity: f64, change_limits: &Limits, stop_limits: &Limits) -> f64 {
     from.after_all(&change(from, velocity, change_limits)).position + stopping_path(velocity, stop_limits)
 }
 
 /// The highest cruise velocity from which the profile ends no later than at `goal`.
 ///
 /// `None` if the goal would be overrun, or if a dip to a lower `cap` would take more path than is left.
-fn cruise_velocity(from: &Along, goal: f64, cap: f64, up: &Limits, down: &Limits) -> Option<f64> {
+fn cruise_velocity(from: &SegmentState, goal: f64, cap: f64, up: &Limits, down: &Limits) -> Option<f64> {
     if end(from, cap, up, down) <= goal {
         return Some(cap);
     }
@@ -145,7 +145,7 @@ impl Profile {
     ///
     /// `None` if that is impossible from this state: then what was planned before stays best.
     #[must_use]
-    pub fn to_goal(from: &Along, goal: f64, cap: f64, up: &Limits, down: &Limits) -> Option<Self> {
+    pub fn to_goal(from: &SegmentState, goal: f64, cap: f64, up: &Limits, down: &Limits) -> Option<Self> {
         let nothing = Self { start: *from, to_goal: true, ..Self::default() };
         if goal - from.position < NO_PATH && from.velocity.abs() < NO_PATH {
             return Some(nothing);
@@ -153,7 +153,7 @@ impl Profile {
         let velocity = cruise_velocity(from, goal, cap, up, down)?;
         let left = goal - end(from, velocity, up, down);
         let cruise = if velocity > 0.0 { left / velocity } else { return None };
-        let level = Along { velocity, ..Along::default() };
+        let level = SegmentState { velocity, ..SegmentState::default() };
         let profile =
             Self { change: change(from, velocity, up), cruise, stop: change(&level, 0.0, down), ..nothing };
         Some(profile)
@@ -163,7 +163,7 @@ impl Profile {
     ///
     /// `None` if the goal would be overrun.
     #[must_use]
-    pub fn to_rest(from: &Along, goal: f64, limits: &Limits) -> Option<Self> {
+    pub fn to_rest(from: &SegmentState, goal: f64, limits: &Limits) -> Option<Self> {
         let change = change(from, 0.0, limits);
         (from.after_all(&change).position <= goal).then_some(Self { start: *from, change, ..Self::default() })
     }
@@ -188,12 +188,12 @@ impl Profile {
 
     /// The state at the present clock.
     #[must_use]
-    pub fn now(&self) -> Along {
-        let cruise = Phase { duration: self.cruise, jerk: 0.0 };
+    pub fn now(&self) -> SegmentState {
+        let cruise = JerkPhase { duration: self.cruise, jerk: 0.0 };
         let [a, b, c] = self.change;
         let [d, e, f] = self.stop;
         let mut left = self.clock;
-        let mut run = |state: Along, phases: &[Phase]| {
+        let mut run = |state: SegmentState, phases: &[JerkPhase]| {
             phases.iter().fold(state, |state, phase| {
                 let time = left.clamp(0.0, phase.duration.max(0.0));
                 left -= time;
@@ -218,7 +218,7 @@ mod tests {
         (1_i32..60, 1_i32..200, 1_i32..100).prop_map(|(a, v, s)| Limits::from_counts(a, v, s).unwrap())
     }
 
-    fn at(profile: &Profile, clock: f64) -> Along {
+    fn at(profile: &Profile, clock: f64) -> SegmentState {
         Profile { clock, ..*profile }.now()
     }
 
@@ -231,7 +231,7 @@ mod tests {
             up in limits(), down in limits(), goal in 1e-6_f64..200.0,
             cap in 0.01_f64..1.0, when in 0.0_f64..1.0, second in 0.0_f64..1.0,
         ) {
-            let first = Profile::to_goal(&Along::default(), goal, cap * up.velocity, &up, &down).unwrap();
+            let first = Profile::to_goal(&SegmentState::default(), goal, cap * up.velocity, &up, &down).unwrap();
             let when = when * first.braking_point().unwrap();
             let state = at(&first, when);
             let new = if second < 0.1 {
@@ -264,7 +264,7 @@ mod tests {
     fn a_long_move_is_as_long_as_the_book_says() {
         // 10 in/s, 10 in/s², 500 in/s³ over 30 in: 2 ramps of 1.02 s, and 19.8 in of cruise.
         let limits = Limits::from_counts(4, 100, 8).unwrap();
-        let profile = Profile::to_goal(&Along::default(), 30.0, 10.0, &limits, &limits).unwrap();
+        let profile = Profile::to_goal(&SegmentState::default(), 30.0, 10.0, &limits, &limits).unwrap();
         assert!((profile.remaining() - (2.0 * 1.02 + 1.98)).abs() < 1e-9, "{}", profile.remaining());
         assert!((profile.braking_point().unwrap() - 3.0).abs() < 1e-9);
     }
@@ -272,7 +272,7 @@ mod tests {
     #[test]
     fn a_goal_that_cannot_be_reached_any_more_is_refused() {
         let limits = Limits::from_counts(4, 100, 8).unwrap();
-        let fast = Along { position: 0.0, velocity: 10.0, acceleration: 0.0 };
+        let fast = SegmentState { position: 0.0, velocity: 10.0, acceleration: 0.0 };
         assert_eq!(Profile::to_goal(&fast, 4.0, 10.0, &limits, &limits), None);
         assert_eq!(Profile::to_rest(&fast, 4.0, &limits), None);
         assert!(Profile::to_rest(&fast, 5.2, &limits).is_some());

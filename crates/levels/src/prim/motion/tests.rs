@@ -9,7 +9,7 @@ use geometry::{
 use proptest::prelude::*;
 use rcs_core::tick::TICK_S;
 
-use super::{Motion, limits::Limits};
+use super::{PrimMotion, limits::Limits};
 
 /// A small generator (SplitMix64), so that a seed names a run.
 struct Random(u64);
@@ -107,7 +107,7 @@ struct Watch {
 }
 
 impl Watch {
-    fn new(motion: &Motion) -> Self {
+    fn new(motion: &PrimMotion) -> Self {
         Self {
             frames: VecDeque::from([motion.frame(); 4]),
             allowed: VecDeque::from([Allowed::default(); 3]),
@@ -115,7 +115,7 @@ impl Watch {
         }
     }
 
-    fn step(&mut self, motion: &mut Motion, knob: u16) -> Result<(), String> {
+    fn step(&mut self, motion: &mut PrimMotion, knob: u16) -> Result<(), String> {
         let before = *motion;
         motion.step(knob);
         let mut allowed = Allowed::default();
@@ -166,7 +166,7 @@ impl Watch {
 }
 
 /// While one segment is under way alone, the tool point is on its line and not beyond its goal.
-fn on_the_line(motion: &Motion) -> Result<(), String> {
+fn on_the_line(motion: &PrimMotion) -> Result<(), String> {
     let (None, Some(segment)) = (&motion.residual, &motion.current) else { return Ok(()) };
     let line = Vector::from(segment.translation);
     let missing = segment.order.goal.frame().position - motion.frame().position;
@@ -185,7 +185,7 @@ fn on_the_line(motion: &Motion) -> Result<(), String> {
 /// `moves` random moves under random interference; returns the ticks it took.
 fn run(seed: u64, moves: u32) -> Result<u64, String> {
     let mut random = Random(seed);
-    let mut motion = Motion::at_rest(&straight_down(Vector::new(-66.5, -5.5, -14.0)));
+    let mut motion = PrimMotion::at_rest(&straight_down(Vector::new(-66.5, -5.5, -14.0)));
     let mut watch = Watch::new(&motion);
     let (mut knob, mut goal) = (1000_u16, motion.frame());
     for number in 0..moves {
@@ -240,7 +240,7 @@ fn run(seed: u64, moves: u32) -> Result<u64, String> {
 }
 
 /// After a halt everything comes to rest, soon, and stays.
-fn rest(motion: &mut Motion, watch: &mut Watch, knob: u16) -> Result<(), String> {
+fn rest(motion: &mut PrimMotion, watch: &mut Watch, knob: u16) -> Result<(), String> {
     let all = [&motion.residual, &motion.current];
     let longest = all.into_iter().flatten().map(|s| {
         let slow = s.order.limits.share();
@@ -290,7 +290,7 @@ fn shifted(frame: &Frame, x: f64, y: f64) -> Frame {
 fn a_straight_passage_runs_at_full_speed() {
     let start = straight_down(Vector::new(-60.0, 0.0, 0.0));
     let (via, end) = (shifted(&start, 20.0, 0.0), shifted(&start, 40.0, 0.0));
-    let mut motion = Motion::at_rest(&start);
+    let mut motion = PrimMotion::at_rest(&start);
     motion.go(&via, &printed(), Some(12.0));
     let (mut slowest, mut last) = (f64::INFINITY, start);
     while !motion.is_at_rest() {
@@ -312,7 +312,7 @@ fn a_straight_passage_runs_at_full_speed() {
 fn a_corner_is_cut_within_the_brake_distance() {
     let start = straight_down(Vector::new(-60.0, 0.0, 0.0));
     let (via, end) = (shifted(&start, 20.0, 0.0), shifted(&start, 20.0, 20.0));
-    let mut motion = Motion::at_rest(&start);
+    let mut motion = PrimMotion::at_rest(&start);
     motion.go(&via, &printed(), Some(3.0));
     let mut nearest = f64::INFINITY;
     while !motion.is_at_rest() {
@@ -330,7 +330,7 @@ fn a_corner_is_cut_within_the_brake_distance() {
 fn zero_knob_holds_and_full_knob_goes_on() {
     let start = straight_down(Vector::new(-60.0, 0.0, 0.0));
     let goal = shifted(&start, 20.0, 0.0);
-    let mut motion = Motion::at_rest(&start);
+    let mut motion = PrimMotion::at_rest(&start);
     motion.go(&goal, &printed(), None);
     let mut watch = Watch::new(&motion);
     for tick in 0..200 {
@@ -352,7 +352,7 @@ fn zero_knob_holds_and_full_knob_goes_on() {
 fn a_point_without_brake_distance_is_passed_at_rest() {
     let start = straight_down(Vector::new(-60.0, 0.0, 0.0));
     let via = shifted(&start, 5.0, 0.0);
-    let mut motion = Motion::at_rest(&start);
+    let mut motion = PrimMotion::at_rest(&start);
     motion.go(&via, &printed(), Some(0.0));
     while !motion.is_passing() {
         motion.step(1000);
@@ -364,7 +364,7 @@ fn a_point_without_brake_distance_is_passed_at_rest() {
 #[test]
 fn a_halt_forgets_the_goal() {
     let start = straight_down(Vector::new(-60.0, 0.0, 0.0));
-    let mut motion = Motion::at_rest(&start);
+    let mut motion = PrimMotion::at_rest(&start);
     motion.go(&shifted(&start, 20.0, 0.0), &printed(), None);
     for _ in 0..30 {
         motion.step(1000);
@@ -380,7 +380,7 @@ fn a_halt_forgets_the_goal() {
 #[test]
 fn a_halt_before_the_first_tick_forgets_the_goal() {
     let start = straight_down(Vector::new(-60.0, 0.0, 0.0));
-    let mut motion = Motion::at_rest(&start);
+    let mut motion = PrimMotion::at_rest(&start);
     assert_eq!(motion.distance(), 0.0);
     motion.go(&shifted(&start, 20.0, 0.0), &printed(), None);
     motion.halt();
@@ -391,7 +391,7 @@ fn a_halt_before_the_first_tick_forgets_the_goal() {
 fn a_robot_that_has_stood_goes_on_to_its_goal_from_there() {
     let start = straight_down(Vector::new(-60.0, 0.0, 0.0));
     let goal = shifted(&start, 20.0, 0.0);
-    let mut motion = Motion::at_rest(&start);
+    let mut motion = PrimMotion::at_rest(&start);
     motion.go(&goal, &printed(), None);
     for _ in 0..30 {
         motion.step(1000);
@@ -432,7 +432,7 @@ proptest! {
         x in -3e7_f64..3e7,
     ) {
         let start = straight_down(Vector::new(-60.0, 0.0, 0.0));
-        let mut motion = Motion::at_rest(&start);
+        let mut motion = PrimMotion::at_rest(&start);
         motion.go(&shifted(&start, x, 0.0), &Limits::from_counts(a, v, s).unwrap(), None);
         for tick in 0..200 {
             motion.step(if tick % 70 < 60 { 1000 } else { 0 });

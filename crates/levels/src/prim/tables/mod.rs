@@ -83,7 +83,7 @@ pub enum Restarts {
 
 /// The path to the goal of the command.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
-pub enum Way {
+pub enum PrimPath {
     /// It is under way, or has ended.
     Kept,
     /// The link was restarted: the robot rests, and the path starts again.
@@ -92,7 +92,7 @@ pub enum Way {
 
 /// The operator with the joystick box (III.3.3).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
-pub enum Operator {
+pub enum PrimOperator {
     /// Does not move the robot.
     Idle,
     /// A frame switch is on, the velocity knob is not at zero, and a stick or button is moved beyond its
@@ -102,7 +102,7 @@ pub enum Operator {
 
 /// The DEPC link after a RESTART.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
-pub enum Link {
+pub enum PrimLink {
     /// It does not run yet.
     Down,
     /// It runs, and T3I feeds back a frame.
@@ -120,7 +120,7 @@ pub enum Passage {
 
 /// How a motion comes to rest (docs/design/motion.md "Rest").
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
-pub enum Rest {
+pub enum PrimRest {
     /// The robot does not stand where it was told to be.
     UnderWay,
     /// All points are finished; the resolvers are watched.
@@ -166,7 +166,7 @@ pub enum Switches {
 
 /// What a command is, for the joystick box.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
-pub enum Kind {
+pub enum CommandKind {
     /// ROBOT-INIT, CAL-SENSOR: it ends, and moves nothing afterwards.
     Single,
     /// GO-THRU, GOTO-PT, GO-UNTIL, GO-WHILE, DELTA-MOVE: it moves the robot.
@@ -195,7 +195,7 @@ pub enum Button {
 
 /// What a new command lacks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
-pub enum Missing {
+pub enum PrimMissing {
     /// Nothing: it can be executed.
     Nothing,
     /// A command word.
@@ -218,7 +218,7 @@ pub struct Request {
     /// Is the command new?
     pub asked: Asked,
     /// The first thing that it lacks.
-    pub missing: Missing,
+    pub missing: PrimMissing,
 }
 
 /// The state variables of [`attend::ATTEND`].
@@ -227,9 +227,9 @@ pub struct Attendance {
     /// What EXECUTE says.
     pub course: Course,
     /// What the command is.
-    pub kind: Kind,
+    pub kind: CommandKind,
     /// The operator.
-    pub operator: Operator,
+    pub operator: PrimOperator,
 }
 
 /// The devices behind field I/O, for [`field::FIELD`].
@@ -255,21 +255,21 @@ pub struct Situation {
     /// Does the command need a position?
     pub position: Position,
     /// The operator.
-    pub operator: Operator,
+    pub operator: PrimOperator,
     /// The link after a RESTART.
-    pub link: Link,
+    pub link: PrimLink,
     /// What T3I makes of the report to the last RESTART.
     pub report: ReportCheck,
     /// The RESTARTs of the last time.
     pub restarts: Restarts,
     /// The path to the goal.
-    pub way: Way,
+    pub way: PrimPath,
     /// The through point of a GO-THRU.
     pub passage: Passage,
     /// Rest at the goal of the command.
-    pub goal: Rest,
+    pub goal: PrimRest,
     /// Rest wherever the robot is.
-    pub rest: Rest,
+    pub rest: PrimRest,
     /// The sensor of a guarded move.
     pub guard: Guard,
     /// The bias of the force sensor.

@@ -7,7 +7,7 @@ use rcs_core::{Actions, Plain, decision_table};
 
 /// What happens on the path in a tick.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain, Actions)]
-pub enum Flow {
+pub enum PathProgress {
     /// The last command to T3I is repeated under its number.
     Repeat,
     /// The next point is sent.
@@ -19,7 +19,7 @@ pub enum Flow {
 decision_table! {
     /// PATH-CLOCK (docs/design/link.md "Path clock"): is the next point sent? A robot that does not follow
     /// must not be asked to jump, so that a lost link and a robot off its path leave no motion behind.
-    pub PATH_CLOCK: fn path_clock(super::Path) -> Flow {
+    pub PATH_CLOCK: fn path_clock(super::Path) -> PathProgress {
         1: first_pause: Due                                                    => Abandon;
         2: posture: Unpositioned                                               => Repeat;
         3: t3i: Silent | LinkOff | LinkSilent | LinkError | OffPath | Refused  => Abandon;

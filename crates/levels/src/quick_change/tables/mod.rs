@@ -5,6 +5,7 @@ pub mod qc_lock;
 pub mod qc_pause;
 pub mod qc_unlock;
 
+pub use crate::variables::Clock;
 use interfaces::{
     Reason,
     device::Connection,
@@ -35,15 +36,6 @@ pub enum Id {
     Legal,
     /// An id that no gripper has.
     Illegal,
-}
-
-/// Time for which the ring has been turning.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
-pub enum Clock {
-    /// Within the limit.
-    Running,
-    /// Over the limit.
-    Expired,
 }
 
 /// What a new command needs, for [`accept::ACCEPT`].

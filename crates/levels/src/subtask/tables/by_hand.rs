@@ -3,7 +3,7 @@
 use interfaces::pedestal::PedestalVerb;
 use rcs_core::{Actions, Plain, Variables, decision_table};
 
-use super::{Pedestal, PedestalData, PedestalHand};
+use super::{PedestalData, PedestalLoad, SubtaskPedestal};
 
 /// Is Subtask using the pedestal?
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
@@ -36,17 +36,17 @@ pub enum HeldByHand {
 
 /// An order of a person, for [`BY_HAND`].
 #[derive(Clone, Copy, Debug, Variables)]
-pub struct Manual {
+pub struct ManualOrder {
     /// The command.
     pub order: PedestalVerb,
     /// Is Subtask using the pedestal?
     pub regripping: Regripping,
     /// What the pedestal makes of the last command.
-    pub pedestal: Pedestal,
+    pub pedestal: SubtaskPedestal,
     /// The PED-PARA record of the object that the order names.
     pub data: PedestalData,
     /// The part in the pedestal's hand.
-    pub part: PedestalHand,
+    pub part: PedestalLoad,
     /// The robot at the pedestal.
     pub robot: RobotThere,
     /// Does the person hold the part?
@@ -86,7 +86,7 @@ decision_table! {
     /// BY-HAND: a person commands the Active Pedestal (an extension: IV.5 gives terminal 4 no such word). The
     /// order is sent only while Subtask does not use the pedestal. The hand opens on a part only if the robot
     /// or the person holds it, and the table turns only if the robot is clear.
-    pub BY_HAND: fn by_hand(Manual) -> Manually or () {
+    pub BY_HAND: fn by_hand(ManualOrder) -> Manually or () {
         1:  order: None                                      => consult;
         2:  regripping: Yes                                  => Refuse(Regripping);
         3:  pedestal: Silent                                 => Refuse(Silent);

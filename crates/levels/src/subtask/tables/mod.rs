@@ -8,8 +8,8 @@ pub mod fix_grip;
 pub mod get_endeff;
 pub mod get_object;
 pub mod goto;
-pub mod hindrance;
 pub mod insert_tool;
+pub mod interlock;
 pub mod move_obj_to_dest;
 pub mod ordered;
 pub mod place_obj;
@@ -26,10 +26,11 @@ use rcs_core::{
     handshake::{Arrival, Lower},
 };
 
-use self::by_hand::Manual;
+use self::by_hand::ManualOrder;
 pub use self::variables::{
-    Drum, Exchange, Flip, GripHeld, Gripper, Hand, Holster, Leaving, Named, Ordered, Part, Pedestal,
-    PedestalData, PedestalHand, Robot, Turn, Vision, Where,
+    Flip, GripHeld, HandOpening, Leaving, Named, PedestalData, PedestalLoad, SubtaskDrum, SubtaskExchange,
+    SubtaskGripper, SubtaskHolster, SubtaskPart, SubtaskPedestal, SubtaskRecipient, SubtaskRobot,
+    SubtaskVision, Turn, Where,
 };
 use super::goals;
 use crate::{
@@ -55,17 +56,17 @@ pub struct Request {
     pub missing: Missing,
 }
 
-/// A part in the pedestal's hand, for [`hindrance::HINDRANCE`].
+/// A part in the pedestal's hand, for [`interlock::INTERLOCK`].
 #[derive(Clone, Copy, Debug, Variables)]
-pub struct Hindrance {
+pub struct Interlock {
     /// Is the command new?
     pub asked: Asked,
     /// The part.
-    pub pedestal: PedestalHand,
+    pub pedestal: PedestalLoad,
     /// The command.
     pub verb: SubtaskVerb,
     /// End effector state.
-    pub gripper: Gripper,
+    pub gripper: SubtaskGripper,
     /// The robot, as the pedestal sees it.
     pub robot: Leaving,
 }
@@ -74,11 +75,11 @@ pub struct Hindrance {
 #[derive(Clone, Copy, Debug, Variables)]
 pub struct Subordinates {
     /// The process that has it.
-    pub ordered: Ordered,
+    pub ordered: SubtaskRecipient,
     /// Status of E-move.
     pub emove: Lower,
     /// Status of the pedestal.
-    pub pedestal: Pedestal,
+    pub pedestal: SubtaskPedestal,
 }
 
 /// The state variables of a tick, for the tables of the commands.
@@ -93,27 +94,27 @@ pub struct Situation {
     /// Where is it along the fingers?
     pub seat: Seat,
     /// Is vision needed?
-    pub vision: Vision,
+    pub vision: SubtaskVision,
     /// End effector state.
-    pub gripper: Gripper,
+    pub gripper: SubtaskGripper,
     /// An exchange that is half done.
-    pub exchange: Exchange,
+    pub exchange: SubtaskExchange,
     /// Where the robot stands: at the object of the command, in its source grip?
     pub station: Where,
     /// Where the object of the command was let go last: at its destination?
     pub placed: Where,
     /// The tool drum.
-    pub drum: Drum,
+    pub drum: SubtaskDrum,
     /// What the position is named by.
     pub named: Named,
     /// Who has the part that is regripped.
-    pub part: Part,
+    pub part: SubtaskPart,
     /// The rotary table.
     pub table: Turn,
     /// The hand of the pedestal.
-    pub hand: Hand,
+    pub hand: HandOpening,
     /// Where the robot is.
-    pub robot: Robot,
+    pub robot: SubtaskRobot,
 }
 
 /// What preprocess has found in a tick.
@@ -130,9 +131,9 @@ pub struct StateVariables {
     /// What a new command needs.
     pub request: Request,
     /// What hinders it.
-    pub hindrance: Hindrance,
+    pub interlock: Interlock,
     /// The order of a person to the pedestal.
-    pub manual: Manual,
+    pub manual: ManualOrder,
     /// How the last order of the command stands.
     pub subordinates: Subordinates,
     /// The goal of the command, compared with the statuses from below.
@@ -165,7 +166,7 @@ pub enum Action {
     /// RELEASE to E-move.
     Release,
     /// MOV-TO-HOL to E-move.
-    MovToHol(Holster),
+    MovToHol(SubtaskHolster),
     /// QC-DETACH to E-move, in the own holster.
     QcDetach,
     /// QC-ATTACH to E-move, in the wanted gripper's holster.
@@ -234,9 +235,9 @@ impl Commanding for Action {
 commands! {
     /// Consult the table of a command.
     pub fn of_command(SubtaskVerb, enum Step, Situation) -> Action {
-        others: EXECUTE, accept::ACCEPT, HALT, EFFECT, hindrance::HINDRANCE, ordered::ORDERED, CONFIRM,
+        others: EXECUTE, accept::ACCEPT, HALT, EFFECT, interlock::INTERLOCK, ordered::ORDERED, CONFIRM,
                 by_hand::BY_HAND;
-        before: EXECUTE, HALT, ACCEPT(request), HINDRANCE(hindrance), ORDERED(subordinates -> situation.work);
+        before: EXECUTE, HALT, ACCEPT(request), INTERLOCK(interlock), ORDERED(subordinates -> situation.work);
         after: EFFECT, CONFIRM;
         None | Pause: goals::REST               => s_pause::s_pause;
         GetEndeff: goals::ATTACHED              => get_endeff::get_endeff;

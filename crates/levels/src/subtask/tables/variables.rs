@@ -15,7 +15,7 @@ pub enum GripHeld {
 
 /// Must the object be found by vision (VII.7.6, en)?
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
-pub enum Vision {
+pub enum SubtaskVision {
     /// Its location is known well enough.
     #[text = "not needed"]
     NotNeeded,
@@ -36,7 +36,7 @@ pub enum Where {
 
 /// An exchange of grippers that is half done: the robot stands in a holster.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
-pub enum Exchange {
+pub enum SubtaskExchange {
     /// None: the robot is clear of the holsters.
     None,
     /// In the holster of the wanted gripper.
@@ -47,7 +47,7 @@ pub enum Exchange {
 
 /// End effector state (V.3.1): right, wrong, none.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
-pub enum Gripper {
+pub enum SubtaskGripper {
     /// No gripper is attached.
     None,
     /// The gripper for the object is attached.
@@ -67,7 +67,7 @@ pub enum Named {
 
 /// Pedestal status (V.3.1): what the Active Pedestal makes of the last command.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
-pub enum Pedestal {
+pub enum SubtaskPedestal {
     /// Hand or table are moving, or the command is not echoed yet.
     Moving,
     /// The command is done.
@@ -84,7 +84,7 @@ pub enum Pedestal {
 
 /// The robot and the tool drum.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
-pub enum Drum {
+pub enum SubtaskDrum {
     /// The fingers are around a tool in the drum.
     Inside,
     /// The robot stands at a place outside.
@@ -95,7 +95,7 @@ pub enum Drum {
 
 /// Who has the part that is regripped.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
-pub enum Part {
+pub enum SubtaskPart {
     /// The robot.
     Robot,
     /// Robot and pedestal.
@@ -131,7 +131,7 @@ pub enum Turn {
 
 /// The hand of the pedestal, by its opening.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
-pub enum Hand {
+pub enum HandOpening {
     /// As wide as the object needs it to come in.
     Open,
     /// Narrower.
@@ -140,7 +140,7 @@ pub enum Hand {
 
 /// Where the robot is, for FIX-GRIP.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
-pub enum Robot {
+pub enum SubtaskRobot {
     /// At the pedestal, for the source grip.
     First,
     /// At the pedestal, for the destination grip.
@@ -171,7 +171,7 @@ pub enum Flip {
 
 /// The part in the pedestal's hand.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
-pub enum PedestalHand {
+pub enum PedestalLoad {
     /// There is none.
     Free,
     /// It is there, alone or together with the robot.
@@ -182,7 +182,7 @@ pub enum PedestalHand {
 
 /// Which holster is moved to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
-pub enum Holster {
+pub enum SubtaskHolster {
     /// That of the attached gripper.
     Own,
     /// That of the wanted gripper.
@@ -200,7 +200,7 @@ pub enum PedestalData {
 
 /// The process that has the last order of the current command.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
-pub enum Ordered {
+pub enum SubtaskRecipient {
     /// Nothing was ordered yet.
     Nothing,
     /// E-move.

@@ -30,7 +30,7 @@ pub enum Point {
 
 /// The link, as a precondition of points.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
-pub enum Link {
+pub enum T3iLink {
     /// It runs.
     Running,
     /// No report has come yet.
@@ -50,7 +50,7 @@ pub enum Dtr {
 
 /// The start of the link.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
-pub enum Start {
+pub enum LinkStart {
     /// It goes on, or is over.
     Over,
     /// The link was lost in this tick, or is to be restarted.
@@ -132,7 +132,7 @@ pub enum Trouble {
 
 /// What the line can take in this tick.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
-pub enum Line {
+pub enum T3iLine {
     /// No position is known: nothing but a restart.
     Down,
     /// A frame is outstanding.
@@ -143,7 +143,7 @@ pub enum Line {
 
 /// Does Prim work?
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
-pub enum Above {
+pub enum T3iCommander {
     /// It has run in the last tick.
     Live,
     /// It is held, dormant or lost.
@@ -152,7 +152,7 @@ pub enum Above {
 
 /// Points that wait, before this tick's frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
-pub enum Queue {
+pub enum PointQueue {
     /// None: the output is the goal.
     Empty,
     /// One: another may come.
@@ -163,7 +163,7 @@ pub enum Queue {
 
 /// The position to send on the way to the oldest point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
-pub enum Way {
+pub enum NextPosition {
     /// It has words on the line.
     Sendable,
     /// It has none, or nothing is to be sent.
@@ -180,7 +180,7 @@ pub struct Request {
     /// The point of a POINT.
     pub point: Point,
     /// The link.
-    pub link: Link,
+    pub link: T3iLink,
 }
 
 /// The state variables of [`report::REPORT`].
@@ -189,7 +189,7 @@ pub struct Answer {
     /// The controller's DTR.
     pub dtr: Dtr,
     /// The start of the link.
-    pub start: Start,
+    pub start: LinkStart,
     /// What a report is compared with.
     pub words: Words,
     /// The report.
@@ -215,13 +215,13 @@ pub struct Situation {
     /// What there is to report as an error.
     pub trouble: Trouble,
     /// The line.
-    pub line: Line,
+    pub line: T3iLine,
     /// Prim.
-    pub prim: Above,
+    pub prim: T3iCommander,
     /// The queue.
-    pub queue: Queue,
+    pub queue: PointQueue,
     /// The way to the oldest point.
-    pub way: Way,
+    pub way: NextPosition,
 }
 
 /// What preprocess has found in a tick.
@@ -238,9 +238,9 @@ pub struct StateVariables {
     /// The command.
     pub command: T3iCommand,
     /// Does Prim work?
-    pub prim: Above,
+    pub prim: T3iCommander,
     /// The line.
-    pub line: Line,
+    pub line: T3iLine,
     /// As far as the limits allow towards the oldest point, the new one included.
     pub advance: Option<Advance>,
 }

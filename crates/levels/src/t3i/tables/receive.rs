@@ -4,7 +4,7 @@ use rcs_core::{Actions, Plain, decision_table};
 
 /// What to do with the command in the buffer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain, Actions)]
-pub enum Intake {
+pub enum T3iIntake {
     /// Go on with the current command.
     Keep,
     /// Empty the queue, forget all faults, and begin the link again.
@@ -22,7 +22,7 @@ pub enum Intake {
 decision_table! {
     /// RECEIVE (VI.1.1): is the command taken? A refusal lasts until RESTART or PAUSE, because the next
     /// point is already on its way when Prim reads of it; a failed link until RESTART.
-    pub RECEIVE: fn receive(enum ReceiveStep, super::Request) -> Intake {
+    pub RECEIVE: fn receive(enum ReceiveStep, super::Request) -> T3iIntake {
         any {
             1:  arrival: Nothing | Same                                      => Keep;
             2:  arrival: Restarted                                           => Keep     -> Refusing;

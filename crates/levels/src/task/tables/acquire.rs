@@ -11,11 +11,11 @@ decision_table! {
         }
         /// Nothing done yet.
         Start {
-            2: update: Owed         => TellOwed   -> Settling;
+            2: update: Pending         => SendPending   -> Settling;
         }
         /// The data base is told an earlier update again.
         Settling {
-            3: update: Owed         => TellOwed;
+            3: update: Pending         => SendPending;
         }
         Start | Settling {
             4: otherwise            => GetEndeff  -> Gripper;
@@ -26,11 +26,11 @@ decision_table! {
         }
         /// The object is being fetched.
         Object {
-            6: update: Due          => Update     -> Telling;
-            7: update: None | Owed  => Finish;
+            6: update: Due          => Update     -> Updating;
+            7: update: None | Pending  => Finish;
         }
         /// The data base is being told that the robot has the object.
-        Telling {
+        Updating {
             8: otherwise            => Finish;
         }
     }

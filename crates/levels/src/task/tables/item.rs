@@ -12,7 +12,7 @@ use crate::{
 
 /// The place where the object of a command was taken.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
-pub enum Origin {
+pub enum TaskOrigin {
     /// The source of the command, or it is not taken yet.
     Source,
     /// Another place: an ACQUIRE finds it in the gripper.
@@ -25,9 +25,9 @@ pub enum InLedger {
     /// It is another command.
     Other,
     /// It is the same, and has sent no update.
-    Untold,
+    Unreported,
     /// It is the same, and has sent its update.
-    Told,
+    Reported,
 }
 
 /// Places of the MBD.
@@ -54,7 +54,7 @@ pub enum Carrying {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain, Actions)]
 pub enum Notice {
     /// An update is sent.
-    Tell,
+    Send,
     /// None is sent.
     Omit,
 }
@@ -129,7 +129,7 @@ pub struct Move {
     /// The command.
     pub verb: TaskVerb,
     /// Where its object was taken.
-    pub origin: Origin,
+    pub origin: TaskOrigin,
     /// The command in the ledger.
     pub ledger: InLedger,
     /// What the gripper holds.
@@ -144,11 +144,11 @@ pub struct Move {
 
 /// A new command, for [`FOLLOW`].
 #[derive(Clone, Copy, Debug, Variables)]
-pub struct Following {
+pub struct TaskFollowing {
     /// Is the Data System connected?
     pub connection: Connection,
     /// Where the object was taken.
-    pub origin: Origin,
+    pub origin: TaskOrigin,
     /// The update of the command.
     pub due: Notice,
     /// What the robot carried last.
@@ -189,10 +189,10 @@ decision_table! {
     /// lost is taken again, and told of again.
     pub UPDATE_DUE: fn update_due(self::Move) -> self::Notice {
         1: origin: Elsewhere                                 => Omit;
-        2: ledger: Told, held: Right | Something | NotKnown  => Omit;
-        3: ledger: Told, placed: AtDestination | Left        => Omit;
-        4: area: Mbd                                         => Tell;
-        5: verb: Transfer, carrying: Followed                => Tell;
+        2: ledger: Reported, held: Right | Something | NotKnown  => Omit;
+        3: ledger: Reported, placed: AtDestination | Left        => Omit;
+        4: area: Mbd                                         => Send;
+        5: verb: Transfer, carrying: Followed                => Send;
         6: otherwise                                         => Omit;
     }
 }
@@ -200,11 +200,11 @@ decision_table! {
 decision_table! {
     /// FOLLOW: is the data base told where the object of a new command is released, also if the command is never
     /// finished?
-    pub FOLLOW: fn follow(self::Following) -> self::Notice {
+    pub FOLLOW: fn follow(self::TaskFollowing) -> self::Notice {
         1: connection: Closed | Opening | Interrupted  => Omit;
         2: origin: Elsewhere                           => Omit;
-        3: due: Tell                                   => Tell;
-        4: carrying: Followed                          => Tell;
+        3: due: Send                                   => Send;
+        4: carrying: Followed                          => Send;
         5: otherwise                                   => Omit;
     }
 }
@@ -215,11 +215,11 @@ decision_table! {
     /// the command has ended.
     pub TAKE: fn take(self::Taken) -> self::Taking {
         1: takes: Nothing                                                       => Keep;
-        2: held: Right, notice: Tell                                            => Follow;
+        2: held: Right, notice: Send                                            => Follow;
         3: held: Right                                                          => Keep;
-        4: takes: Object, held: Nothing | Other, released: Other, notice: Tell  => Replace;
+        4: takes: Object, held: Nothing | Other, released: Other, notice: Send  => Replace;
         5: held: Nothing | Other, released: Other                               => Drop;
-        6: takes: Object, notice: Tell                                          => Note;
+        6: takes: Object, notice: Send                                          => Note;
         7: otherwise                                                            => Keep;
     }
 }

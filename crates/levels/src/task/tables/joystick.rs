@@ -6,7 +6,7 @@ decision_table! {
     /// JOYSTICK (V.4.1 PAUSE): when the box becomes active, Task sends down a pause, also when no command is
     /// executing. What was interrupted is not resumed, and what was finished is reported no longer, since the
     /// operator may undo it.
-    pub JOYSTICK: fn joystick(enum Control, super::Operator) -> super::Takeover or super::Takeover {
+    pub JOYSTICK: fn joystick(enum Control, super::TaskOperator) -> super::Takeover or super::Takeover {
         /// The commands have the robot.
         Automatic {
             1: subtask: Pending | Executing | Done | Error | Lost   => consult(None);

@@ -3,7 +3,7 @@
 
 use rcs_core::{Actions, Plain, Variables, decision_table};
 
-use super::item::{Carrying, Origin};
+use super::item::{Carrying, TaskOrigin};
 use crate::{held::Held, task::plan::TaskVerb};
 
 /// The orders of the command in the ledger.
@@ -61,7 +61,7 @@ pub struct NotedObject {
 
 /// The state variables of [`CARRY`].
 #[derive(Clone, Copy, Debug, Variables)]
-pub struct Load {
+pub struct EndedCommand {
     /// The event.
     pub occasion: Occasion,
     /// The command.
@@ -69,7 +69,7 @@ pub struct Load {
     /// What the gripper holds.
     pub held: Held,
     /// Where the object was taken.
-    pub origin: Origin,
+    pub origin: TaskOrigin,
     /// What the robot carried last.
     pub carrying: Carrying,
 }
@@ -86,7 +86,7 @@ decision_table! {
     /// CARRY: what is noted of the object of a command when its update is sent, or when a MOVE or an ACQUIRE ends with the
     /// object in the gripper. Without an update a followed object keeps its serial number. An object that an ACQUIRE found
     /// in the gripper keeps the place where it was taken.
-    pub CARRY: fn carry(self::Load) -> self::Carry {
+    pub CARRY: fn carry(self::EndedCommand) -> self::Carry {
         1: occasion: Update, held: Right                                          => Follow;
         2: occasion: Update                                                       => Drop;
         3: verb: Move | Acquire, held: Right, origin: Source, carrying: Followed  => KeepSerial;
@@ -115,11 +115,11 @@ mod tests {
     fn update_sets_the_carried_object_whatever_was_carried() {
         for &carrying in Carrying::ALL {
             for &held in Held::ALL {
-                let load = Load {
+                let load = EndedCommand {
                     occasion: Occasion::Update,
                     verb: TaskVerb::Transfer,
                     held,
-                    origin: Origin::Source,
+                    origin: TaskOrigin::Source,
                     carrying,
                 };
                 let expected = if held == Held::Right { Carry::Follow } else { Carry::Drop };
@@ -132,11 +132,11 @@ mod tests {
     fn finished_command_without_its_object_in_the_gripper_changes_nothing() {
         for &verb in TaskVerb::ALL {
             for &held in Held::ALL {
-                let load = Load {
+                let load = EndedCommand {
                     occasion: Occasion::Finish,
                     verb,
                     held,
-                    origin: Origin::Source,
+                    origin: TaskOrigin::Source,
                     carrying: Carrying::Known,
                 };
                 let takes = held == Held::Right && matches!(verb, TaskVerb::Move | TaskVerb::Acquire);
@@ -149,13 +149,13 @@ mod tests {
     fn followed_object_keeps_its_serial_number_and_an_acquired_one_its_place() {
         let load = |origin, carrying| {
             let (occasion, verb, held) = (Occasion::Finish, TaskVerb::Acquire, Held::Right);
-            carry((), &Load { occasion, verb, held, origin, carrying }).action
+            carry((), &EndedCommand { occasion, verb, held, origin, carrying }).action
         };
-        assert_eq!(load(Origin::Source, Carrying::Followed), Carry::KeepSerial);
-        assert_eq!(load(Origin::Source, Carrying::Known), Carry::Note);
-        assert_eq!(load(Origin::Source, Carrying::Other), Carry::Note);
-        assert_eq!(load(Origin::Elsewhere, Carrying::Followed), Carry::Keep);
-        assert_eq!(load(Origin::Elsewhere, Carrying::Known), Carry::KeepPlace);
-        assert_eq!(load(Origin::Elsewhere, Carrying::Other), Carry::KeepPlace);
+        assert_eq!(load(TaskOrigin::Source, Carrying::Followed), Carry::KeepSerial);
+        assert_eq!(load(TaskOrigin::Source, Carrying::Known), Carry::Note);
+        assert_eq!(load(TaskOrigin::Source, Carrying::Other), Carry::Note);
+        assert_eq!(load(TaskOrigin::Elsewhere, Carrying::Followed), Carry::Keep);
+        assert_eq!(load(TaskOrigin::Elsewhere, Carrying::Known), Carry::KeepPlace);
+        assert_eq!(load(TaskOrigin::Elsewhere, Carrying::Other), Carry::KeepPlace);
     }
 }

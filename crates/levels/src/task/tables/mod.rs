@@ -30,14 +30,14 @@ use rcs_core::{
 
 use self::joystick::Control;
 pub use self::variables::{
-    DataBase, Destination, Drum, Ends, Ordered, Regrip, SiteData, Station, Tool, ToolData, Update, Way,
-    WayOut,
+    DataBase, Destination, Ends, SiteData, Station, TaskDrum, TaskRecipient, TaskRegrip, TaskRoute, TaskTool,
+    ToolData, Update, WayOut,
 };
 use super::{
     goals,
-    ledger::{Part, Placed},
-    plan::{Gripper, Grips, Handling, Plan, Resumed, TaskVerb},
-    support::Support,
+    ledger::{Placed, TaskPart},
+    plan::{Grips, Handling, Plan, Resumed, TaskGripper, TaskVerb},
+    support::TaskSupport,
 };
 use crate::{
     confirm::{CONFIRM, Proof},
@@ -66,7 +66,7 @@ pub enum Takeover {
 
 /// Does the operator take the robot or give it back? For [`joystick::JOYSTICK`].
 #[derive(Clone, Copy, Debug, Variables)]
-pub struct Operator {
+pub struct TaskOperator {
     /// Status of Subtask.
     pub subtask: Lower,
     /// How far the current command has come.
@@ -83,7 +83,7 @@ pub struct Request {
     /// Which name the task data lack: the object's, or that of the first location.
     pub missing: Missing,
     /// `endeff-id#` of the gripper for the object.
-    pub gripper: Gripper,
+    pub gripper: TaskGripper,
 }
 
 /// What a new command needs, for [`precondition::PRECONDITION`].
@@ -105,7 +105,7 @@ pub struct Preconditions {
     /// The object as a tool.
     pub tool: ToolData,
     /// Must the object be regripped on the pedestal?
-    pub regrip: Regrip,
+    pub regrip: TaskRegrip,
     /// The way from the tool drum to the end-at location.
     pub way_out: WayOut,
     /// Verdict of the check against the task data.
@@ -120,7 +120,7 @@ pub struct Subordinates {
     /// What is done about the joystick box.
     pub takeover: Takeover,
     /// The neighbour that has it.
-    pub ordered: Ordered,
+    pub ordered: TaskRecipient,
     /// Status of Subtask.
     pub subtask: Lower,
     /// State of the data base.
@@ -143,21 +143,21 @@ pub struct Situation {
     /// Pending update of the data base.
     pub update: Update,
     /// The tool gripper.
-    pub tool: Tool,
+    pub tool: TaskTool,
     /// Where the robot is.
     pub station: Station,
     /// The tool drum.
-    pub drum: Drum,
+    pub drum: TaskDrum,
     /// The way to the position.
-    pub way: Way,
+    pub way: TaskRoute,
     /// What keeps the object from falling when the gripper opens.
-    pub support: Support,
+    pub support: TaskSupport,
     /// Was the command sent before and not finished?
     pub resumed: Resumed,
     /// Has it placed its object already?
     pub placed: Placed,
     /// Is the part in the pedestal's hand?
-    pub part: Part,
+    pub part: TaskPart,
 }
 
 /// What preprocess has found in a tick.
@@ -231,17 +231,17 @@ pub enum Action {
     /// The Data System is connected: report finished.
     Connect,
     /// The Data System is connected; tell it the update that it has not taken.
-    ConnectAndTell,
+    ConnectAndSend,
     /// Tell the Data System the update that it has not taken.
-    TellOwed,
+    SendPending,
     /// Write the last command to the Data System again.
-    AskAgain,
+    SendAgain,
     /// Tell the Data System where the object now is.
     Update,
     /// Tell the Data System where the object now is, and GOTO-ENDPT to Subtask.
     UpdateAndGotoEndpt,
     /// Tell the Data System the update that it has not taken, and >POSITION to Subtask.
-    TellOwedAndPosition,
+    SendPendingAndPosition,
     /// Wait for the Data System, which has been told.
     AwaitUpdate,
     /// Report finished.

@@ -12,18 +12,18 @@ decision_table! {
         /// Nothing done yet.
         Start {
             2:  handling: NoObject                  => GotoDest       -> Moving;
-            3:  handling: Object, update: Owed      => TellOwed       -> Settling;
+            3:  handling: Object, update: Pending      => SendPending       -> Settling;
         }
         /// The data base is told an earlier update again.
         Settling {
-            4:  update: Owed                        => TellOwed;
+            4:  update: Pending                        => SendPending;
         }
         Start | Settling {
             5:  part: InPedestal, grips: Different  => FixGrip        -> Regripping;
-            6:  otherwise                           => GetEndeff      -> Gripper;
+            6:  otherwise                           => GetEndeff      -> TaskGripper;
         }
         /// The gripper is being fetched.
-        Gripper {
+        TaskGripper {
             7:  otherwise                           => GetObject      -> Object;
         }
         /// The object is being fetched.
@@ -37,11 +37,11 @@ decision_table! {
         }
         /// The object, or the robot alone, is on its way.
         Moving {
-            11: update: Due                         => Update         -> Telling;
-            12: update: None | Owed                 => Finish;
+            11: update: Due                         => Update         -> Updating;
+            12: update: None | Pending                 => Finish;
         }
         /// The data base is being told where the object is.
-        Telling {
+        Updating {
             13: otherwise                           => Finish;
         }
     }

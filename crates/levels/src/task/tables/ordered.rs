@@ -13,7 +13,7 @@ decision_table! {
         5:  ordered: Subtask,    subtask: Error | Joystick | Lost  => PassUp;
         6:  ordered: DataSystem, data_base: Executing              => consult(Busy);
         7:  ordered: DataSystem, data_base: Done                   => consult(Over);
-        8:  ordered: DataSystem, data_base: Overdue                => AskAgain;
+        8:  ordered: DataSystem, data_base: Overdue                => SendAgain;
         9:  ordered: DataSystem, data_base: Refused                => Fail(DataBase);
         10: ordered: DataSystem, data_base: Silent                 => Fail(DataBaseSilent);
     }

@@ -32,7 +32,7 @@ pub enum Event {
 
 /// A change of the queue.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Actions)]
-pub enum Queue {
+pub enum QueueChange {
     /// None.
     Keep,
     /// Remove the first update; the second one becomes the first.
@@ -68,7 +68,7 @@ pub struct Unsent {
 decision_table! {
     /// QUEUE: the pending updates. A full queue keeps the oldest one, which may have been sent, and the newest one, which
     /// says where the object is now.
-    pub QUEUE: fn queue(self::Change) -> self::Queue {
+    pub QUEUE: fn queue(self::Change) -> self::QueueChange {
         1: event: None                     => Keep;
         2: event: Accepted                 => RemoveFirst;
         3: event: New, pending: None       => StoreFirst;
@@ -81,8 +81,8 @@ decision_table! {
     /// UPDATE: the update that the next order to the Data System contains. Pending updates come first, also at the end of a
     /// STARTUP.
     pub UPDATE: fn update(self::Unsent) -> super::Update {
-        1: pending: One | Two, connection: Open | Opening  => Owed;
-        2: connection: Open, due: Tell                     => Due;
+        1: pending: One | Two, connection: Open | Opening  => Pending;
+        2: connection: Open, due: Send                     => Due;
         3: otherwise                                       => None;
     }
 }
@@ -115,14 +115,14 @@ mod tests {
                 model.remove(1);
             }
             kept = match (queue((), &Change { event, pending }).action, kept) {
-                (Queue::Keep, kept) => kept,
-                (Queue::RemoveFirst, [_, second]) => [second, None],
-                (Queue::StoreFirst, [first, _]) => {
+                (QueueChange::Keep, kept) => kept,
+                (QueueChange::RemoveFirst, [_, second]) => [second, None],
+                (QueueChange::StoreFirst, [first, _]) => {
                     assert_eq!(first, None);
                     [Some(number), None]
                 }
-                (Queue::StoreSecond, [first, _]) => [first, Some(number)],
-                (Queue::Clear, _) => [None; 2],
+                (QueueChange::StoreSecond, [first, _]) => [first, Some(number)],
+                (QueueChange::Clear, _) => [None; 2],
             };
             assert_eq!(kept.into_iter().flatten().collect::<Vec<_>>(), model, "{number}: {event:?}");
         }

@@ -28,22 +28,22 @@ decision_table! {
         }
         /// The held object is being released.
         Releasing {
-            11: update: Owed                                => TellOwedAndPosition  -> Leaving;
+            11: update: Pending                                => SendPendingAndPosition  -> Leaving;
             12: otherwise                                   => Position             -> Moving;
         }
         /// The robot is on its way.
         Moving {
-            13: update: Owed                                => TellOwed             -> Telling;
+            13: update: Pending                                => SendPending             -> Updating;
             14: otherwise                                   => Finish;
         }
         /// The robot is on its way, and the data base is being told where the object is.
         Leaving {
-            15: update: Owed                                => AwaitUpdate          -> Telling;
+            15: update: Pending                                => AwaitUpdate          -> Updating;
             16: otherwise                                   => Finish;
         }
         /// The data base is being told.
-        Telling {
-            17: update: Owed                                => TellOwed;
+        Updating {
+            17: update: Pending                                => SendPending;
             18: otherwise                                   => Finish;
         }
     }

@@ -13,11 +13,11 @@ decision_table! {
         }
         /// Nothing done yet.
         Start {
-            2:  update: Owed                => TellOwed       -> Settling;
+            2:  update: Pending                => SendPending       -> Settling;
         }
         /// The data base is told an earlier update again.
         Settling {
-            3:  update: Owed                => TellOwed;
+            3:  update: Pending                => SendPending;
         }
         Start | Settling {
             4:  part: InPedestal            => FixGrip        -> Regripping;

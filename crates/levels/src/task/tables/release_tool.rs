@@ -38,11 +38,11 @@ decision_table! {
             16: update: None | Due                                             => Finish;
         }
         Releasing | Leaving {
-            17: update: Owed                                                   => TellOwed     -> Telling;
+            17: update: Pending                                                   => SendPending     -> Updating;
         }
         /// The data base is being told where the tool is.
-        Telling {
-            18: update: Owed                                                   => TellOwed;
+        Updating {
+            18: update: Pending                                                   => SendPending;
             19: update: None | Due                                             => Finish;
         }
     }

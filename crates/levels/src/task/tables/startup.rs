@@ -23,12 +23,12 @@ decision_table! {
         }
         /// Startup was sent.
         Connecting {
-            5: update: Owed        => ConnectAndTell  -> Settling;
+            5: update: Pending        => ConnectAndSend  -> Settling;
             6: update: None | Due  => Connect;
         }
         /// The data base is told earlier updates again.
         Settling {
-            7: update: Owed        => TellOwed;
+            7: update: Pending        => SendPending;
             8: update: None | Due  => Finish;
         }
     }

@@ -14,11 +14,11 @@ decision_table! {
         }
         /// Nothing done yet.
         Start {
-            2:  update: Owed                                  => TellOwed            -> Settling;
+            2:  update: Pending                                  => SendPending            -> Settling;
         }
         /// The data base is told an earlier update again.
         Settling {
-            3:  update: Owed                                  => TellOwed;
+            3:  update: Pending                                  => SendPending;
         }
         Start | Settling {
             4:  placed: AtDestination                         => Wait                -> Placing;
@@ -42,18 +42,18 @@ decision_table! {
         }
         /// The object is being placed.
         Placing {
-            13: ends: Here,              update: Due          => Update              -> Telling;
-            14: ends: Here,              update: None | Owed  => Finish;
+            13: ends: Here,              update: Due          => Update              -> Updating;
+            14: ends: Here,              update: None | Pending  => Finish;
             15: ends: There | Elsewhere, update: Due          => UpdateAndGotoEndpt  -> Leaving;
-            16: ends: There | Elsewhere, update: None | Owed  => GotoEndpt           -> Leaving;
+            16: ends: There | Elsewhere, update: None | Pending  => GotoEndpt           -> Leaving;
         }
         /// The robot is on its way to the end-at location.
         Leaving {
-            17: update: Owed                                  => AwaitUpdate         -> Telling;
+            17: update: Pending                                  => AwaitUpdate         -> Updating;
             18: update: None | Due                            => Finish;
         }
         /// The data base is being told where the object is.
-        Telling {
+        Updating {
             19: otherwise                                     => Finish;
         }
     }

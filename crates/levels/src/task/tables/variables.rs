@@ -37,12 +37,12 @@ pub enum Update {
     /// The move of this command, from or to the MBD, when it is completed.
     Due,
     /// An earlier update, which is not accepted yet.
-    Owed,
+    Pending,
 }
 
 /// The tool gripper.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
-pub enum Tool {
+pub enum TaskTool {
     /// It is not on, or it holds another tool than the command names.
     None,
     /// It holds nothing.
@@ -68,7 +68,7 @@ pub enum Station {
 
 /// The fingers and the tool drum.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
-pub enum Drum {
+pub enum TaskDrum {
     /// They are not around a tool in it.
     Outside,
     /// They are.
@@ -77,7 +77,7 @@ pub enum Drum {
 
 /// Can the robot go to the position of a POSITION, as far as Task can tell?
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
-pub enum Way {
+pub enum TaskRoute {
     /// It is there.
     Here,
     /// It is elsewhere, and the task data have a trajectory.
@@ -99,7 +99,7 @@ pub enum WayOut {
 
 /// The neighbour that has the last order of the current command.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
-pub enum Ordered {
+pub enum TaskRecipient {
     /// Nothing was ordered yet.
     Nothing,
     /// Subtask.
@@ -143,7 +143,7 @@ pub enum ToolData {
 
 /// Must the object be regripped on the pedestal?
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
-pub enum Regrip {
+pub enum TaskRegrip {
     /// No: the source and destination grips are the same.
     None,
     /// Yes, and the object has a PED-PARA record (VII.7.4), or no object is named.

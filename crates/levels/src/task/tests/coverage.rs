@@ -10,9 +10,9 @@ use crate::{
     execution::{Asked, Outcome},
     task::{
         Task,
-        plan::{Gripper, TaskVerb},
+        plan::{TaskGripper, TaskVerb},
         tables::{
-            Action, Operator, Request, TABLES, Takeover,
+            Action, Request, TABLES, Takeover, TaskOperator,
             accept::accept,
             joystick::{Control, joystick},
         },
@@ -40,7 +40,7 @@ fn every_order_of_task_leads_to_a_later_step() {
     let others =
         [&["EXECUTE", "ACCEPT", "PRECONDITION", "HALT", "JOYSTICK", "ORDERED", "CONFIRM"][..], &UPDATES]
             .concat();
-    let no_orders = ["Wait", "Finish", "Fail", "PassUp", "Connect", "TellOwed"];
+    let no_orders = ["Wait", "Finish", "Fail", "PassUp", "Connect", "SendPending"];
     let mut orders = 0;
     for table in TABLES.iter().filter(|table| !others.contains(&table.name)) {
         let steps = table.steps.expect("a command has steps").variants;
@@ -59,7 +59,7 @@ fn every_order_of_task_leads_to_a_later_step() {
 fn joystick_table_passes_while_control_is_automatic() {
     for subtask in [Lower::Pending, Lower::Executing, Lower::Done, Lower::Error, Lower::Lost] {
         for &outcome in Outcome::ALL {
-            let verdict = joystick(Control::Automatic, &Operator { subtask, outcome });
+            let verdict = joystick(Control::Automatic, &TaskOperator { subtask, outcome });
             assert_eq!(verdict, Verdict::Passed(Takeover::None));
         }
     }
@@ -67,8 +67,12 @@ fn joystick_table_passes_while_control_is_automatic() {
 
 #[test]
 fn command_with_an_invalid_gripper_number_is_refused() {
-    let request =
-        Request { asked: Asked::Now, verb: TaskVerb::Move, gripper: Gripper::Invalid, ..Request::default() };
+    let request = Request {
+        asked: Asked::Now,
+        verb: TaskVerb::Move,
+        gripper: TaskGripper::Invalid,
+        ..Request::default()
+    };
     let Verdict::Decided(decision) = accept((), &request) else { panic!() };
     assert_eq!((decision.row, decision.action), (4, Action::Fail(Reason::WrongGripper)));
 }

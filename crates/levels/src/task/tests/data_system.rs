@@ -63,7 +63,7 @@ fn db_done_waits_for_no_answer() {
     bench.external.operator.db_done = true;
     assert_eq!(bench.run(TRANSFER), FINISHED);
     assert_eq!(bench.asked(), ["UPDATE"], "it is sent once");
-    assert!(bench.memory.task.beliefs.owed.iter().all(Option::is_none), "it counts as taken");
+    assert!(bench.memory.task.updates.pending.iter().all(Option::is_none), "it counts as taken");
     bench.external.operator.db_done = false;
     assert_eq!(bench.run(FROM_TRAY), error(Reason::DataBaseSilent));
 }
@@ -176,8 +176,8 @@ fn pending_update_follows_the_next_startup() {
     assert_eq!(bench.run(STARTUP), FINISHED);
     assert_eq!(bench.asked(), ["ABORT", "INITIATE", "STARTUP", "UPDATE"]);
     assert_eq!(bench.run(STARTUP), FINISHED);
-    assert_eq!(bench.asked(), ["ABORT", "INITIATE", "STARTUP"], "it is owed no longer");
-    // SHUTDOWN ends what was owed.
+    assert_eq!(bench.asked(), ["ABORT", "INITIATE", "STARTUP"], "it is pending no longer");
+    // SHUTDOWN ends what was pending.
     bench.world.data_system.answer = Answer::Absent;
     assert_eq!(bench.run(FROM_TRAY), error(Reason::DataBaseSilent));
     assert_eq!(bench.run(SHUTDOWN), error(Reason::DataBaseSilent));
@@ -442,7 +442,7 @@ fn object_taken_by_an_abandoned_command_is_updated() {
             let case = format!("{line}, {by}, tick {}, {earlier}", bench.tick);
             let mut told = parts(&mut bench);
             let below = bench.memory.subtask.status;
-            let has_begun = bench.memory.task.beliefs.taking.is_none();
+            let has_begun = bench.memory.task.updates.taking.is_none();
             if below.held.object().is_some() {
                 held += 1;
                 bench.set(1, "PART", "PFIXTURE");
@@ -643,7 +643,7 @@ fn transfer_accepted_in_the_tick_of_the_grasp_sends_its_update() {
     }
 }
 
-/// REFIXTURE, too, tells what is owed before it takes anything: no update is lost.
+/// REFIXTURE, too, tells what is pending before it takes anything: no update is lost.
 #[test]
 fn refixture_sends_pending_updates_first() {
     let mut bench = Bench::connected();
@@ -668,14 +668,14 @@ fn deleted_ledger_deletes_the_object_to_take() {
     bench.command(FROM_TRAY);
     bench.wait(3);
     assert_eq!(bench.run(PAUSE), FINISHED);
-    assert!(bench.memory.task.beliefs.taking.is_some());
+    assert!(bench.memory.task.updates.taking.is_some());
     let mut outputs = bench.memory.task;
     let (tick, memory, external, data) = (bench.tick, &bench.memory, &bench.external, &bench.data);
     let write = Write { variable: Variable::Ledger, ..Write::default() };
     bench.process.write(&write, &Inputs { tick, memory, external, data }, &mut outputs);
     bench.memory.task = outputs;
     bench.step();
-    assert_eq!((bench.memory.task.ledger, bench.memory.task.beliefs.taking), (None, None));
+    assert_eq!((bench.memory.task.ledger, bench.memory.task.updates.taking), (None, None));
 }
 
 /// The robot holds a part that is told of when it is let go, also if it is sent for another one meanwhile.

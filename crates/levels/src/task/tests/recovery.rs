@@ -432,7 +432,7 @@ fn position_waits_for_its_update() {
         assert_eq!(bench.run(seat), FINISHED);
         assert_eq!(updates(&bench), [("PFIXTURE".to_owned(), 0)]);
         assert_eq!(bench.sent(), ["RELEASE", ">POSITION"]);
-        assert!(bench.memory.task.beliefs.owed.iter().all(Option::is_none));
+        assert!(bench.memory.task.updates.pending.iter().all(Option::is_none));
     }
 }
 
@@ -503,7 +503,7 @@ fn pending_update_survives_a_replaced_command() {
         assert_eq!(bench.run("ACQUIRE BAR +1 PFIXTURE 0 0 -- 0 -- 0"), FINISHED);
         // It was written once more: the Data System has not answered the first.
         assert!(updates(&bench).len() <= 1);
-        assert!(bench.memory.task.beliefs.owed.iter().all(Option::is_none), "{by}");
+        assert!(bench.memory.task.updates.pending.iter().all(Option::is_none), "{by}");
     }
 }
 
@@ -546,7 +546,7 @@ fn restarted_task_keeps_its_estimates() {
     bench.until(|bench| !bench.asked().is_empty());
     bench.restart();
     bench.wait(12);
-    assert_eq!(bench.memory.task.beliefs.owed, [None; 2]);
+    assert_eq!(bench.memory.task.updates.pending, [None; 2]);
     // A STARTUP that a restart has cut off is not forgotten.
     let mut bench = Bench::default();
     bench.command(STARTUP);

@@ -2,7 +2,7 @@
 
 use geometry::pose::WireFrame;
 use interfaces::{Reason, emove::EmoveVerb, pose_range};
-use levels::{emove::gripper::Gripper, execution::Outcome};
+use levels::{emove::gripper::EmoveGripper, execution::Outcome};
 
 use super::Pair;
 use crate::image::{Image, rebase, rebase_echoes, renumber_poses};
@@ -88,12 +88,15 @@ impl Pair {
         let echo = &mut prim.execution.receiver.echo;
         rebase(emove.motion.commander(), &mut [&mut out.prim.number, echo, &mut below.status.echo]);
         if let Some(tool) = &mut self.tool {
-            rebase(emove.grippers.commander(Gripper::Tool), &mut [&mut out.tool_grip.number, tool.echo()]);
+            rebase(
+                emove.grippers.commander(EmoveGripper::Tool),
+                &mut [&mut out.tool_grip.number, tool.echo()],
+            );
         }
         let echo = match &mut self.change {
             Some(change) => {
                 rebase(
-                    emove.grippers.commander(Gripper::Parts),
+                    emove.grippers.commander(EmoveGripper::Parts),
                     &mut [&mut out.grip.number, change.grip_echo()],
                 );
                 change.echo()

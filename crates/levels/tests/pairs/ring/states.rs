@@ -1,7 +1,7 @@
 //! Which states of E-move and Quick Change are alike.
 
 use interfaces::{Reason, grip::GripCommand, prim::PrimCommand};
-use levels::{emove::gripper::Gripper, execution::Outcome};
+use levels::{emove::gripper::EmoveGripper, execution::Outcome};
 
 use super::{Fault, Pair, STEADY};
 use crate::image::{Image, forget, rebase, rebase_echoes, renumber_poses};
@@ -91,11 +91,11 @@ impl Pair {
         rebase_echoes(&mut [&mut self.command.number, echo, &mut out.status.echo]);
         rebase(emove.motion.commander(), &mut [&mut out.prim.number, &mut self.scene.robot.echo]);
         rebase(
-            emove.grippers.commander(Gripper::Parts),
+            emove.grippers.commander(EmoveGripper::Parts),
             &mut [&mut out.grip.number, &mut self.scene.grip.echo],
         );
         // V-Grip, whose id the pins may read, does not answer.
-        rebase(emove.grippers.commander(Gripper::V), &mut [&mut out.v_grip.number]);
+        rebase(emove.grippers.commander(EmoveGripper::V), &mut [&mut out.v_grip.number]);
         let echo = &mut ring.execution.receiver.echo;
         rebase(emove.exchange.commander(), &mut [&mut out.quick_change.number, echo, &mut below.echo]);
     }

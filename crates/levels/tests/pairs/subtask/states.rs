@@ -7,7 +7,7 @@ use interfaces::{
     grip::GripCommand,
     subtask::SubtaskCommand,
 };
-use levels::{emove::gripper::Gripper, execution::Outcome};
+use levels::{emove::gripper::EmoveGripper, execution::Outcome};
 use rcs_core::tick::Tick;
 
 use super::{Pair, is_over};
@@ -59,7 +59,7 @@ impl Pair {
         rebase(&mut subtask.emove, &mut [&mut out.emove.number, echo, &mut below.status.echo]);
         rebase(emove.motion.commander(), &mut [&mut below.prim.number, &mut self.scene.robot.echo]);
         rebase(
-            emove.grippers.commander(Gripper::Parts),
+            emove.grippers.commander(EmoveGripper::Parts),
             &mut [&mut below.grip.number, &mut self.scene.grip.echo],
         );
         rebase(

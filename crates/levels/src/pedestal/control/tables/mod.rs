@@ -24,7 +24,7 @@ use crate::{
 
 /// Can the table turn as a command asks?
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
-pub enum Angle {
+pub enum PedestalAngle {
     /// Yes, or it is not to turn.
     Within,
     /// The angle is beyond the limits.
@@ -35,7 +35,7 @@ pub enum Angle {
 
 /// Can the hand do what a command asks?
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
-pub enum Opening {
+pub enum PedestalOpening {
     /// Yes, or it is not to move.
     Within,
     /// Opening or force are beyond its range.
@@ -44,7 +44,7 @@ pub enum Opening {
 
 /// The processes that have the orders of the current command.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
-pub enum Ordered {
+pub enum PedestalRecipient {
     /// Nothing was ordered yet.
     Nothing,
     /// The hand.
@@ -70,7 +70,7 @@ pub enum Object {
 
 /// Are the sensors of the hand calibrated?
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
-pub enum Calibration {
+pub enum PedestalCalibration {
     /// Yes.
     Known,
     /// No.
@@ -94,9 +94,9 @@ pub struct Request {
     /// The command.
     pub verb: PedestalVerb,
     /// Can the table turn as it asks?
-    pub angle: Angle,
+    pub angle: PedestalAngle,
     /// Can the hand do what it asks?
-    pub opening: Opening,
+    pub opening: PedestalOpening,
 }
 
 /// How the orders of the command stand, for [`ordered::ORDERED`].
@@ -105,7 +105,7 @@ pub struct Subordinates {
     /// The command.
     pub verb: PedestalVerb,
     /// The processes that have its orders.
-    pub ordered: Ordered,
+    pub ordered: PedestalRecipient,
     /// Status of the hand.
     pub hand: Lower,
     /// Status of the table.
@@ -120,7 +120,7 @@ pub struct Situation {
     /// What the hand holds.
     pub object: Object,
     /// Are its sensors calibrated?
-    pub calibration: Calibration,
+    pub calibration: PedestalCalibration,
     /// Was it told to grip?
     pub gripped: Gripped,
     /// What has become of its last command, whichever command of the pedestal that was for.

@@ -8,7 +8,7 @@ decision_table! {
     /// it. A motor that does not take its order, does not come to rest in time or stands elsewhere ends it. A
     /// process that is restarted in the middle of a job stops the table and adopts the calibration from
     /// before, if counter and potentiometer agree.
-    pub CALIBRATE: fn calibrate(super::Phase, super::Situation) -> super::Action or super::Duty {
+    pub CALIBRATE: fn calibrate(super::TablePhase, super::Situation) -> super::Action or super::TableDuty {
         Missing {
             1:  command: Nothing                                     => SeekLimit         -> Seeking;
         }

@@ -7,6 +7,7 @@ pub mod pause;
 pub mod rest;
 pub mod turn;
 
+pub use crate::variables::Clock;
 use interfaces::{Reason, pedestal::TableVerb};
 use rcs_core::{Actions, Plain, Variables, commands, handshake::Arrival};
 
@@ -24,7 +25,7 @@ pub enum Step {
 
 /// Step of CALIBRATE: how far the calibration has come. It outlasts the commands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
-pub enum Phase {
+pub enum TablePhase {
     /// Never done: begins at once, since the table was booted just now (IV.5.1 step 10).
     Missing,
     /// Not done since the process was started in the middle of a job: the table may stand beside the robot,
@@ -47,7 +48,7 @@ pub enum Phase {
 
 /// Can the table turn to the commanded angle?
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
-pub enum Angle {
+pub enum TableAngle {
     /// Yes, or none is commanded.
     Within,
     /// It is beyond a limit.
@@ -56,7 +57,7 @@ pub enum Angle {
 
 /// The command that is being executed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
-pub enum Command {
+pub enum TableActivity {
     /// None: nothing was commanded yet, or it has ended.
     Nothing,
     /// None: it was refused, or found at the start and not executed.
@@ -69,7 +70,7 @@ pub enum Command {
     Turn,
 }
 
-impl Command {
+impl TableActivity {
     /// What EXECUTE and ACCEPT leave of a command.
     #[must_use]
     pub const fn of(course: Course, accepted: bool, verb: TableVerb) -> Self {
@@ -119,15 +120,6 @@ pub enum Turned {
     Elsewhere,
 }
 
-/// Time of the command, or of the calibration while one is under way.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
-pub enum Clock {
-    /// Within its limit.
-    Running,
-    /// Over its limit.
-    Expired,
-}
-
 /// What a new command needs, for [`accept::ACCEPT`].
 #[derive(Clone, Copy, Debug, Variables)]
 pub struct Request {
@@ -136,14 +128,14 @@ pub struct Request {
     /// The command.
     pub verb: TableVerb,
     /// Can the table turn to the angle?
-    pub angle: Angle,
+    pub angle: TableAngle,
 }
 
 /// The state variables of a tick, for the tables of calibration and commands.
 #[derive(Clone, Copy, Debug, Variables)]
 pub struct Situation {
     /// The command that is being executed.
-    pub command: Command,
+    pub command: TableActivity,
     /// What the motor does.
     pub motor: Motor,
     /// Do counter and potentiometer agree?
@@ -169,7 +161,7 @@ pub struct StateVariables {
 
 /// What [`calibrate::CALIBRATE`] leaves to decide.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
-pub enum Duty {
+pub enum TableDuty {
     /// Nothing.
     Nothing,
     /// The table of the command decides.

@@ -3,10 +3,10 @@
 use rcs_core::decision_table;
 
 decision_table! {
-    /// HINDRANCE: while the part is in the pedestal's hand, alone or together with the robot, only what
+    /// INTERLOCK: while the part is in the pedestal's hand, alone or together with the robot, only what
     /// finishes or undoes the regrip is done: a robot that leaves with it would tear it out. A robot that holds
     /// nothing and is clear of the pedestal may leave.
-    pub HINDRANCE: fn hindrance(super::Hindrance) -> super::Action or () {
+    pub INTERLOCK: fn interlock(super::Interlock) -> super::Action or () {
         1: asked: Before                                              => consult;
         2: pedestal: Free                                             => consult;
         3: verb: None | Pause | FixGrip | Release                     => consult;
