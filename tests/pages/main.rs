@@ -11,6 +11,7 @@ use whole_system_tests::root;
 mod columns;
 mod paths;
 mod words;
+mod type_names;
 
 /// Where pages are.
 const PLACES: [&str; 9] = [".", "docs", "docs/design", "data", "crates", "bins", "benches", "fuzz", "tests"];

@@ -53,7 +53,7 @@ pub enum DataBaseReport {
     Refused,
 }
 
-/// Is the Data System told of moves (IV.4.2)?
+/// Does the Data System receive updates (IV.4.2)?
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Connection {
     /// No: there was no STARTUP, or a SHUTDOWN.
@@ -66,11 +66,10 @@ pub enum Connection {
     Interrupted,
 }
 
-/// Updates that Task keeps until they are taken: one of an object that is taken, and one of where it is let
-/// go.
+/// Updates that Task keeps until they are accepted: one about an object that is taken, and one about its release.
 pub const KEPT_UPDATES: usize = 2;
 
-/// An item that the robot holds or is to take: what the data base is told when it is let go.
+/// An item that the robot holds or is to take: the content of the update when it is released.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct Carried {
     /// The object.
@@ -81,24 +80,24 @@ pub struct Carried {
     pub location: Name10,
     /// Sector there, if it has one.
     pub sector: Option<i32>,
-    /// The data base is told wherever it is let go, and not only in the MBD.
+    /// An update follows wherever it is released, and not only in the MBD.
     pub followed: bool,
 }
 
-/// What Task believes of the Data System. It is an output, so that a Task that is restarted has it
-/// (docs/design/recovery.md "Data base"; extension).
+/// The connection to the Data System, the pending updates and the carried object. They are an output, so that a
+/// restarted Task has them (docs/design/recovery.md "Data base"; extension).
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct DataBaseUpdates {
     /// A STARTUP has succeeded, and no SHUTDOWN came since.
     pub connected: bool,
     /// A STARTUP has begun, and neither succeeded nor was followed by a SHUTDOWN.
     pub connecting: bool,
-    /// The updates that have not been taken, the oldest first.
+    /// The updates that have not been accepted, the oldest first.
     pub pending: [Option<DataBaseCommand>; KEPT_UPDATES],
-    /// What the command in the ledger takes, until it is held; none if the data base is not told where it is let go.
+    /// The object that the command in the ledger takes, until it is held; none if no update follows at its release.
     pub taking: Option<Carried>,
-    /// What the robot held last: by a command that is told of, or after a MOVE or an ACQUIRE. It stays if the part is
-    /// lost, until another one of that name is taken.
+    /// The object that the robot held last: by a command with an update, or after a MOVE or an ACQUIRE. It stays if the
+    /// part is lost, until another one of that name is taken.
     pub carried: Option<Carried>,
 }
 

@@ -37,8 +37,8 @@ impl Detail {
                 Self::Near(memory.emove.nearest)
             }
             (ProcessId::Emove, Fault::Reason(Reason::NoTrajectory)) => {
-                let believed = &memory.emove.estimates;
-                let from = believed.place.or(believed.way.map(|way| way.from));
+                let estimates = &memory.emove.estimates;
+                let from = estimates.place.or(estimates.way.map(|way| way.from));
                 from.map_or(Self::None, |from| {
                     Self::Pair(
                         from.site.location,

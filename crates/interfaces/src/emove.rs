@@ -333,7 +333,7 @@ pub struct Exchange {
 }
 
 /// State of the world that E-move cannot read from a sensor alone. It is an output, so that E-move has it again after a
-/// restart; each belief counts only as long as no sensor contradicts it.
+/// restart; each estimate counts only as long as no sensor contradicts it.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct Estimates {
     /// Where the robot stands.
@@ -438,7 +438,7 @@ pub struct EmoveOutputs {
     pub dormant: Dormancy,
     /// To the vision system.
     pub vision: VisionRequest,
-    /// What E-move believes (extension).
+    /// Facts that E-move cannot sense again after a restart (extension).
     pub estimates: Estimates,
     /// The known places that are nearest, the nearest first, while it is not known where the robot is
     /// (extension).

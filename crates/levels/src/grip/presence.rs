@@ -1,9 +1,9 @@
 //! Part presence between the fingers of Grip, by strain gages and potentiometer alone.
 //!
 //! A part is between the fingers if both strain gages read a force and the fingers are above the closed end of travel,
-//! where fingers that press on each other read a force too. Nothing is between them if neither reads a force. Contact of
-//! one finger alone is not enough: a part that is held with little force may touch only one of them. A value counts after
-//! `FELT_TICKS`.
+//! where fingers that press on each other read a force too. Nothing is between them if neither reads a force. Contact
+//! of one finger alone is not enough: a part that is held with little force may touch only one of them. A value counts
+//! after `FELT_TICKS`.
 
 use interfaces::{
     device::{ADC_FULL_SCALE, GripSensors},

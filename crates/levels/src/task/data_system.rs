@@ -3,10 +3,10 @@
 //! While no Data System is connected, Task sends no updates and does not wait. Once connected, Task sends an update
 //! after each completed move from or to the MBD, and after the release of an object that the data base has as held by
 //! the robot. An update that is not accepted is pending, also when another command replaces the one that sent it, and
-//! when the object was released after its command had ended. Pending updates are sent before the next object is moved, at
-//! the end of a POSITION or RELEASE-TOOL, or at the end of the next STARTUP, so that the data base is never more than
-//! one command behind. With DB-DONE (Figure IV.1) each command is sent once and counts as done: the data base may lack
-//! it.
+//! when the object was released after its command had ended. Pending updates are sent before the next object is moved,
+//! at the end of a POSITION or RELEASE-TOOL, or at the end of the next STARTUP, so that the data base is never more
+//! than one command behind. With DB-DONE (Figure IV.1) each command is sent once and counts as done: the data base may
+//! lack it.
 
 use interfaces::{
     DataBaseCommand, DataBaseStatus, ExternalInputs, TaskOutputs,
@@ -49,13 +49,12 @@ pub struct DataSystem {
     pub request: DataBaseCommand,
     /// How often it was written.
     pub tries: u8,
-    /// What is believed of it: an output, adopted again after a restart.
+    /// Connection, pending updates and carried object: an output, adopted again after a restart.
     pub updates: DataBaseUpdates,
 }
 
 impl DataSystem {
-    /// In its first tick Task takes over what it believed before a restart, and the command that it wrote
-    /// last.
+    /// In its first tick Task adopts the outputs from before a restart, and its last command.
     pub const fn adopt(&mut self, written: &TaskOutputs, tick: Tick) {
         (self.updates, self.request) = (written.updates, written.data_base);
         let number = written.data_base.number;
@@ -106,7 +105,7 @@ impl DataSystem {
         }
     }
 
-    /// Is the Data System told of moves? `executing` is the command that is.
+    /// Does the Data System receive updates? `executing` is the current command.
     #[must_use]
     pub const fn connection(&self, executing: Option<TaskVerb>) -> Connection {
         match (self.updates.connected, self.updates.connecting, executing) {

@@ -102,8 +102,8 @@ decision_table! {
 
 decision_table! {
     /// START: where the calibration begins with a process that starts or wakes. A process that became dormant during a
-    /// calibration, before E-move knew the gripper, begins again. A gripper that is attached later may hold a part, and so
-    /// may one that is attached when the process is restarted: UP-INIT calibrates it.
+    /// calibration, before E-move knew the gripper, begins again. A gripper that is attached later may hold a part, and
+    /// so may one that is attached when the process is restarted: UP-INIT calibrates it.
     pub START: fn start(super::GripPhase, self::Started) -> self::Adoption {
         Valid {
             1: otherwise                           => Keep;

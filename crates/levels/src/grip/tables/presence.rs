@@ -102,8 +102,8 @@ decision_table! {
 }
 
 decision_table! {
-    /// PRESENCE: what is between the fingers. A touch counts when it has lasted. An earlier contact is only evidence against
-    /// *nothing*.
+    /// PRESENCE: what is between the fingers. A touch counts when it has lasted. An earlier contact is only evidence
+    /// against *nothing*.
     pub PRESENCE: fn presence(interfaces::grip::Felt, self::GripContact) -> self::Count {
         any {
             1: readings: Invalid             => Restart   -> NotKnown;

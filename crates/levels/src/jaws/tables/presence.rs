@@ -53,8 +53,8 @@ impl From<JawValves> for Closing {
 
 decision_table! {
     /// PRESENCE: what is between the fingers (VI.4 has no force sensors). At an end of their travel they hold nothing,
-    /// although an object as small as the opening of closed fingers reads the same. Fingers that seem to rest open while
-    /// air closes them have no air, or their potentiometer is stuck: they may close on something at any time.
+    /// although an object as small as the opening of closed fingers reads the same. Fingers that seem to rest open
+    /// while air closes them have no air, or their potentiometer is stuck: they may close on something at any time.
     pub PRESENCE: fn presence(self::JawReading) -> interfaces::grip::Felt {
         1: readings: Unsettled        => NotKnown;
         2: stop: Opened, closing: On  => NotKnown;

@@ -34,8 +34,8 @@ pub struct Supply {
 }
 
 decision_table! {
-    /// VALVES: air stays on after the end of a command, because a part is held only while the fingers press. Without the
-    /// gripper there is none.
+    /// VALVES: air stays on after the end of a command, because a part is held only while the fingers press. Without
+    /// the gripper there is none.
     pub VALVES: fn valves(self::Supply) -> self::Air {
         1: mated: Gone  => Off;
         2: set: Keep    => Keep;

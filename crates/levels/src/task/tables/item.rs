@@ -1,6 +1,6 @@
-//! Updates of the data base about an object (IV.4.2, IX.2; docs/design/recovery.md "Data base"): which moves it is told
-//! of, and where the robot has released an object. They are consulted while a command is looked up or accepted, and in
-//! each tick in which Subtask reports a released object. No header names their rows.
+//! Updates of the data base about an object (IV.4.2, IX.2; docs/design/recovery.md "Data base"): which moves are
+//! reported, and where the robot has released an object. The tables are consulted while a command is looked up or
+//! accepted, and in each tick in which Subtask reports a released object. No header names their rows.
 
 use interfaces::data_base::Connection;
 use rcs_core::{Actions, Plain, Variables, decision_table};
@@ -184,9 +184,9 @@ pub struct Place {
 }
 
 decision_table! {
-    /// UPDATE-DUE: is the data base told of the move of a new command? It is told of moves from and to the MBD, and by
-    /// TRANSFER of what it has as the robot's (an extension: SPECNOTES.md). An object that the command has certainly
-    /// lost is taken again, and told of again.
+    /// UPDATE-DUE: does a new command send an update? It does for moves from and to the MBD, and as a TRANSFER of an
+    /// object that the data base has in the robot (an extension: SPECNOTES.md). If the command has certainly lost its
+    /// object, it takes it again and sends the update again.
     pub UPDATE_DUE: fn update_due(self::Move) -> self::Notice {
         1: origin: Elsewhere                                 => Omit;
         2: ledger: Reported, held: Right | Something | NotKnown  => Omit;
@@ -198,7 +198,7 @@ decision_table! {
 }
 
 decision_table! {
-    /// FOLLOW: is the data base told where the object of a new command is released, also if the command is never
+    /// FOLLOW: does an update follow when the object of a new command is released, also if the command is never
     /// finished?
     pub FOLLOW: fn follow(self::TaskFollowing) -> self::Notice {
         1: connection: Closed | Opening | Interrupted  => Omit;

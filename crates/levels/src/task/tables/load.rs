@@ -83,9 +83,9 @@ decision_table! {
 }
 
 decision_table! {
-    /// CARRY: what is noted of the object of a command when its update is sent, or when a MOVE or an ACQUIRE ends with the
-    /// object in the gripper. Without an update a followed object keeps its serial number. An object that an ACQUIRE found
-    /// in the gripper keeps the place where it was taken.
+    /// CARRY: what is noted of the object of a command when its update is sent, or when a MOVE or an ACQUIRE ends with
+    /// the object in the gripper. Without an update a followed object keeps its serial number. An object that an
+    /// ACQUIRE found in the gripper keeps the place where it was taken.
     pub CARRY: fn carry(self::EndedCommand) -> self::Carry {
         1: occasion: Update, held: Right                                          => Follow;
         2: occasion: Update                                                       => Drop;

@@ -230,19 +230,19 @@ pub enum Action {
     Disconnect,
     /// The Data System is connected: report finished.
     Connect,
-    /// The Data System is connected; tell it the update that it has not taken.
+    /// The Data System is connected; send it the oldest pending update.
     ConnectAndSend,
-    /// Tell the Data System the update that it has not taken.
+    /// Send the oldest pending update to the Data System.
     SendPending,
-    /// Write the last command to the Data System again.
+    /// Send the last command to the Data System again.
     SendAgain,
-    /// Tell the Data System where the object now is.
+    /// Send to the Data System where the object now is.
     Update,
-    /// Tell the Data System where the object now is, and GOTO-ENDPT to Subtask.
+    /// Send to the Data System where the object now is, and GOTO-ENDPT to Subtask.
     UpdateAndGotoEndpt,
-    /// Tell the Data System the update that it has not taken, and >POSITION to Subtask.
+    /// Send the oldest pending update to the Data System, and >POSITION to Subtask.
     SendPendingAndPosition,
-    /// Wait for the Data System, which has been told.
+    /// Wait for the Data System, which has the update.
     AwaitUpdate,
     /// Report finished.
     Finish,

@@ -14,7 +14,7 @@ decision_table! {
             2:  handling: NoObject                  => GotoDest       -> Moving;
             3:  handling: Object, update: Pending      => SendPending       -> Settling;
         }
-        /// The data base is told an earlier update again.
+        /// An earlier update is sent again.
         Settling {
             4:  update: Pending                        => SendPending;
         }
@@ -40,7 +40,7 @@ decision_table! {
             11: update: Due                         => Update         -> Updating;
             12: update: None | Pending                 => Finish;
         }
-        /// The data base is being told where the object is.
+        /// The update says where the object is.
         Updating {
             13: otherwise                           => Finish;
         }

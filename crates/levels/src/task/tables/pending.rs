@@ -1,5 +1,5 @@
-//! The updates that the Data System has not accepted (IV.4.2, IX.2; docs/design/recovery.md "Data base"). No header names
-//! the rows.
+//! The updates that the Data System has not accepted (IV.4.2, IX.2; docs/design/recovery.md "Data base"). No header
+//! names the rows.
 
 use interfaces::data_base::Connection;
 use rcs_core::{Actions, Plain, Variables, decision_table};
@@ -66,8 +66,8 @@ pub struct Unsent {
 }
 
 decision_table! {
-    /// QUEUE: the pending updates. A full queue keeps the oldest one, which may have been sent, and the newest one, which
-    /// says where the object is now.
+    /// QUEUE: the pending updates. A full queue keeps the oldest one, which may have been sent, and the newest one,
+    /// which says where the object is now.
     pub QUEUE: fn queue(self::Change) -> self::QueueChange {
         1: event: None                     => Keep;
         2: event: Accepted                 => RemoveFirst;
@@ -78,8 +78,8 @@ decision_table! {
 }
 
 decision_table! {
-    /// UPDATE: the update that the next order to the Data System contains. Pending updates come first, also at the end of a
-    /// STARTUP.
+    /// UPDATE: the update that the next order to the Data System contains. Pending updates come first, also at the end
+    /// of a STARTUP.
     pub UPDATE: fn update(self::Unsent) -> super::Update {
         1: pending: One | Two, connection: Open | Opening  => Pending;
         2: connection: Open, due: Send                     => Due;

@@ -7,9 +7,9 @@ decision_table! {
     /// object if one is named. The position is the source location, or the destination if the source is null
     /// (SPECNOTES.md, contradiction 24). Nothing is released if the robot could not go there afterwards, or if
     /// the object would fall (an extension: SPECNOTES.md). A command that names an object at the fixture where
-    /// the robot stands belongs to hold-and-seat (VIII.2): there the ledge of the fixture supports the part. The
-    /// data base is told where an object is let go that it knows as the robot's (an extension: SPECNOTES.md),
-    /// also by a POSITION that is sent again when the object has been let go already.
+    /// the robot stands belongs to hold-and-seat (VIII.2): there the ledge of the fixture supports the part. An
+    /// object that the data base has in the robot causes an update at its release (an extension: SPECNOTES.md), also
+    /// if the POSITION is sent again after the release.
     pub POSITION: fn position(enum PositionStep, super::Situation) -> super::Action {
         any {
             1:  work: Busy                                  => Wait;
@@ -41,7 +41,7 @@ decision_table! {
             15: update: Pending                                => AwaitUpdate          -> Updating;
             16: otherwise                                   => Finish;
         }
-        /// The data base is being told.
+        /// The update is sent.
         Updating {
             17: update: Pending                                => SendPending;
             18: otherwise                                   => Finish;

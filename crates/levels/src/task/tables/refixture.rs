@@ -5,8 +5,8 @@ use rcs_core::decision_table;
 decision_table! {
     /// REFIXTURE (V.4.1): take an object, reorient it with the Active Pedestal, and hold it at the
     /// destination. For an object that is held already, as after ACQUIRE, the gripper is not fetched. Sent
-    /// again after an interruption it goes on with the part in the pedestal's hand. What the data base has not taken
-    /// it is told first, as by the other commands that take an object.
+    /// again after an interruption it goes on with the part in the pedestal's hand. Pending
+    /// updates are sent first, as by the other commands that take an object.
     pub REFIXTURE: fn refixture(enum RefixtureStep, super::Situation) -> super::Action {
         any {
             1:  work: Busy                  => Wait;
@@ -15,7 +15,7 @@ decision_table! {
         Start {
             2:  update: Pending                => SendPending       -> Settling;
         }
-        /// The data base is told an earlier update again.
+        /// An earlier update is sent again.
         Settling {
             3:  update: Pending                => SendPending;
         }

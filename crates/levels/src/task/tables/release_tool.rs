@@ -7,7 +7,7 @@ decision_table! {
     /// at once if the tool gripper is free and there. Sent again after an interruption it goes on: open
     /// fingers move out of the drum, and a robot with a free gripper that stands before the drum
     /// has only to leave. Without an end-at location the robot stays there, and one that has been sent
-    /// away since cannot be finished. The data base is told of a tool that it knows as the robot's (an
+    /// away since cannot be finished. A tool that the data base has in the robot causes an update (an
     /// extension: SPECNOTES.md).
     pub RELEASE_TOOL: fn release_tool(enum ReleaseToolStep, super::Situation) -> super::Action {
         any {
@@ -40,7 +40,7 @@ decision_table! {
         Releasing | Leaving {
             17: update: Pending                                                   => SendPending     -> Updating;
         }
-        /// The data base is being told where the tool is.
+        /// The update says where the tool is.
         Updating {
             18: update: Pending                                                   => SendPending;
             19: update: None | Due                                             => Finish;

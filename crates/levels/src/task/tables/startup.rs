@@ -26,7 +26,7 @@ decision_table! {
             5: update: Pending        => ConnectAndSend  -> Settling;
             6: update: None | Due  => Connect;
         }
-        /// The data base is told earlier updates again.
+        /// Earlier updates are sent again.
         Settling {
             7: update: Pending        => SendPending;
             8: update: None | Due  => Finish;

@@ -4,7 +4,7 @@ use rcs_core::decision_table;
 
 decision_table! {
     /// TRANSFER (V.4.1): move an object from one location to another, then go to the end-at location. The
-    /// data base is told as soon as the object is there, so that it is right also if the robot cannot leave.
+    /// update is sent as soon as the object is there, so that the data base is right also if the robot cannot leave.
     /// Sent again after an interruption it goes on: with the part in the pedestal's hand, or with an object
     /// that is placed already. If it is to stay there, and has been sent away since, it goes back to the
     /// object.
@@ -16,7 +16,7 @@ decision_table! {
         Start {
             2:  update: Pending                                  => SendPending            -> Settling;
         }
-        /// The data base is told an earlier update again.
+        /// An earlier update is sent again.
         Settling {
             3:  update: Pending                                  => SendPending;
         }
@@ -52,7 +52,7 @@ decision_table! {
             17: update: Pending                                  => AwaitUpdate         -> Updating;
             18: update: None | Due                            => Finish;
         }
-        /// The data base is being told where the object is.
+        /// The update says where the object is.
         Updating {
             19: otherwise                                     => Finish;
         }

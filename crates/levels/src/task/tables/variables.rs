@@ -31,8 +31,8 @@ pub enum DataBase {
 /// The update that the next order to the Data System contains.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain, Actions)]
 pub enum Update {
-    /// None: the object is not moved from or to the MBD, its move was reported, or no Data System is connected (DB-DONE,
-    /// IV.3.2).
+    /// None: the object is not moved from or to the MBD, its move was reported, or no Data System is connected
+    /// (DB-DONE, IV.3.2).
     None,
     /// The move of this command, from or to the MBD, when it is completed.
     Due,
