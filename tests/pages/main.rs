@@ -8,6 +8,7 @@ use std::{
 
 use whole_system_tests::root;
 
+mod chains;
 mod columns;
 mod paths;
 mod words;
