@@ -11,8 +11,8 @@ use whole_system_tests::root;
 mod chains;
 mod columns;
 mod paths;
-mod words;
 mod type_names;
+mod words;
 
 /// Where pages are.
 const PLACES: [&str; 9] = [".", "docs", "docs/design", "data", "crates", "bins", "benches", "fuzz", "tests"];
