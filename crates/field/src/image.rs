@@ -44,8 +44,8 @@ pub const LOST_MS: u32 = 1000;
 
 impl Mapping {
     /// Writes the words of the devices, in their order, into the inputs of the controller. The words of a device that
-    /// does not answer are those that it gave last, so its inputs keep their values, except those with `then`. While any
-    /// device is not fresh, the velocity knob is at 0 and the robot ramps to rest.
+    /// does not answer are those that it gave last, so its inputs keep their values, except those with `then`. While
+    /// any device is not fresh, the velocity knob is at 0 and the robot ramps to rest.
     pub fn apply(&self, devices: &[Seen<'_>], inputs: &mut DeviceInputs) {
         let mut health = FieldHealth::default();
         // The id pins come first: the gripper decides on the line of the potentiometer.
