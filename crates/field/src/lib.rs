@@ -1,7 +1,8 @@
 //! Field I/O: the points of a cell on the words of its couplers.
 //!
 //! A [`Mapping`] is read from a file, `data/field/NAME.toml`, and checked whole: every mistake has its line, and
-//! nothing is sent before the file is right. It says at which word of which device each point of [`interfaces::point`] is.
+//! nothing is sent before the file is right. It says at which word of which device each point of
+//! [`interfaces::point`] is.
 //!
 //! ```text
 //!   DeviceOutputs --collect--> words --> coupler --> valves          the controller's side
