@@ -108,7 +108,7 @@ fn a_terminal_that_disappears_ends_console_and_run() {
         .unwrap();
     drop(slave);
     let mut shown = Vec::new();
-    while !String::from_utf8_lossy(&shown).contains("OPERATING") {
+    while !String::from_utf8_lossy(&shown).contains("OPERATOR") {
         let mut bytes = [0; 4096];
         let count = screen.read(&mut bytes).unwrap();
         shown.extend_from_slice(&bytes[..count]);

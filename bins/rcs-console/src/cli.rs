@@ -38,6 +38,9 @@ pub struct Cli {
     /// Operate the run, instead of only looking at it; the run needs --clock real
     #[arg(long, conflicts_with_all = ["once", "tick"])]
     pub operate: bool,
+    /// The run ends when this console quits: set by `rcs-run --console`
+    #[arg(long, hide = true, requires = "run")]
+    pub ends_run: bool,
     /// The data.
     #[command(flatten)]
     pub data: crate::pages::DataArgument,

@@ -7,7 +7,7 @@ use closed_loop::{
 use executive::histogram::Histogram;
 use interfaces::{Decided, Fault, ProcessId};
 use levels::ladder::{Ladder, PROCESS_COUNT};
-use rcs_core::name::Name16;
+use rcs_core::{name::Name16, tick::Tick};
 use record::{
     Level,
     channels::{HeaderPlace, headers},
@@ -60,7 +60,10 @@ pub struct Story {
     lines: Vec<LogLine>,
     times: Histogram,
     watch: Box<Watch>,
-    alarms: Alarms,
+    /// Ticks in which a command other than PAUSE finished.
+    worked: Vec<Tick>,
+    /// The last tick.
+    last: u64,
     /// The account that the run made at its end; `None` while it is under way, or if it was killed.
     ended: Option<Option<Account>>,
     headers: Vec<HeaderPlace>,
@@ -78,7 +81,8 @@ impl Story {
             lines: Vec::new(),
             times: Histogram::default(),
             watch: Box::default(),
-            alarms: Alarms::default(),
+            worked: Vec::new(),
+            last: 0,
             ended: None,
             headers: headers(),
             limit,
@@ -87,6 +91,7 @@ impl Story {
 
     /// Add a tick. `before` is the picture of the tick before.
     pub fn note(&mut self, before: &Picture, now: &Picture) {
+        self.last = now.tick.0;
         for process in ProcessId::ALL.iter().copied() {
             let doing = doing(process, now);
             let known = &mut self.doings[process.position()];
@@ -100,11 +105,10 @@ impl Story {
             && failed(now) != failed(before)
             && let Some(failure) = self.watch.failure(Ladder::processes())
         {
-            self.alarms.failed(failure.clone());
             keep(&mut self.troubles, Trouble { tick: now.tick.0, failure }, self.limit);
         }
         if has_worked(&before.memory.task.status, &now.memory.task.status) {
-            self.alarms.worked(now.tick);
+            keep(&mut self.worked, now.tick, self.limit);
         }
         let counters = |picture: &Picture| picture.memory.t3i.status.counters.restarts;
         if counters(now) > counters(before) {
@@ -118,25 +122,25 @@ impl Story {
     /// Add messages derived from two successive ticks, for a source that has no lines on `/log`.
     pub fn remark(&mut self, before: &Picture, now: &Picture) {
         let said = remarks::remarks(&self.headers, &now.external.hws, &before.memory, &now.memory);
-        for remark in said {
-            let line = LogLine {
-                tick: now.tick,
-                level: remark.level,
-                source: remark.source,
-                text: remark.text,
-                code: remark.file.to_owned(),
-            };
-            keep(&mut self.lines, line, self.limit);
-        }
+        self.tell(said.into_iter().map(|remark| LogLine {
+            tick: now.tick,
+            level: remark.level,
+            source: remark.source,
+            text: remark.text,
+            code: remark.file.to_owned(),
+        }));
     }
 
-    /// Add the lines of a log.
-    pub fn tell(&mut self, lines: impl Iterator<Item = LogLine>) {
+    /// Add lines of `/log`.
+    pub fn tell(&mut self, lines: impl IntoIterator<Item = LogLine>) {
+        let mut is_new = false;
         for line in lines {
-            self.alarms.line(line.tick, &line.source, &line.code, &line.text);
-            self.lines.push(line);
+            keep(&mut self.lines, line, self.limit);
+            is_new = true;
         }
-        self.lines.sort_by_key(|line| line.tick);
+        if is_new {
+            self.lines.sort_by_key(|line| line.tick);
+        }
     }
 
     /// Take over the account that the run made at its end; `None` if it did not fail.
@@ -207,7 +211,43 @@ impl Story {
     /// What went wrong first, and what followed; `None` if there is no failure, or work has continued after it.
     #[must_use]
     pub fn account(&self) -> Option<Account> {
-        self.ended.clone().unwrap_or_else(|| self.alarms.account())
+        self.ended.clone().unwrap_or_else(|| self.account_until(u64::MAX))
+    }
+
+    /// What had gone wrong first at a tick, unless a command has finished since.
+    #[must_use]
+    pub fn failure(&self, tick: u64) -> Option<Failure> {
+        match &self.ended {
+            Some(Some(Account { first, .. })) if self.shown_at(first) <= tick => Some(first.clone()),
+            _ => self.account_until(tick).map(|account| account.first),
+        }
+    }
+
+    /// The tick whose picture shows a failure: the cell shows what happened in a tick with the next one, if there is one.
+    #[must_use]
+    pub fn shown_at(&self, failure: &Failure) -> u64 {
+        failure.shown_at().min(self.last)
+    }
+
+    /// True if the run ended because of this failure.
+    #[must_use]
+    pub fn is_ended_by(&self, failure: &Failure) -> bool {
+        matches!(&self.ended, Some(Some(account)) if account.first == *failure)
+    }
+
+    /// The account of everything seen up to a tick.
+    fn account_until(&self, tick: u64) -> Option<Account> {
+        let mut alarms = Alarms::default();
+        for line in self.lines(tick) {
+            alarms.line(line.tick, &line.source, &line.code, &line.text);
+        }
+        for trouble in until(&self.troubles, tick, |trouble| trouble.tick) {
+            alarms.failed(trouble.failure.clone());
+        }
+        if let Some(worked) = until(&self.worked, tick, |worked| worked.0).last() {
+            alarms.worked(*worked);
+        }
+        alarms.account()
     }
 
     /// Re-starts of the link up to a tick, oldest first.
@@ -286,7 +326,6 @@ fn nearest(ticks: impl Iterator<Item = u64>, tick: u64, forward: bool) -> Option
 mod tests {
     use super::*;
     use interfaces::{CommonMemory, ExternalInputs, Reason, t3i::LinkFault};
-    use rcs_core::tick::Tick;
 
     fn story(changes: &[fn(&mut CommonMemory)]) -> (Story, Picture) {
         let (external, memory) = (ExternalInputs::default(), CommonMemory::default());
@@ -355,10 +394,10 @@ mod tests {
             text: "contact".to_owned(),
             code: "contact.begins".to_owned(),
         };
-        story.tell([line(9, "cell")].into_iter());
+        story.tell([line(9, "cell")]);
         let first = |story: &Story| story.account().expect("there is a failure").first;
         assert_eq!(first(&story).tick, Tick(3), "the contact came later");
-        story.tell([line(3, "cell")].into_iter());
+        story.tell([line(3, "cell")]);
         let contact = first(&story);
         assert_eq!((contact.tick, contact.shown_at(), contact.text.as_str()), (Tick(2), 3, "contact"));
         story.end(None);

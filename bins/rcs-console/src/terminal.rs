@@ -71,6 +71,7 @@ pub fn show(cli: &Cli) -> Result<(), ConsoleError> {
         drawn: None,
         log: cli.log.clone(),
         operate: cli.operate,
+        ends_run: cli.ends_run,
         data: cli.data.to_path_buf(),
         watch: watch::place(),
         watched: Vec::new(),
@@ -157,6 +158,8 @@ struct Session {
     log: Option<PathBuf>,
     /// True to operate the run.
     operate: bool,
+    /// True if the run ends with this console.
+    ends_run: bool,
     /// Directory of the task data for listing blocks, if neither run nor log names one.
     data: PathBuf,
     /// File with the list of watched fields.
@@ -173,10 +176,11 @@ impl Session {
         self
     }
 
-    /// Give a new model the list of watched fields, and the blocks.
+    /// Give a new model the list of watched fields, the blocks, and the effect of quitting.
     fn equip(&mut self) {
         if let Console::Source(model, source, _) = &mut self.console {
             model.watch.clone_from(&self.watched);
+            model.ends_run = self.ends_run && source.about().state != State::Log;
             model.terminal.library = match source.blocks() {
                 Some(blocks) => Library::with(blocks.to_vec()),
                 None => Library::of(self.data.clone()),

@@ -1,5 +1,6 @@
 //! The console: its screens as text, and the program in a terminal.
 
+mod band;
 mod procedures;
 mod screens;
 mod terminal;

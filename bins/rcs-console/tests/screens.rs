@@ -175,15 +175,22 @@ fn a_wide_ladder_has_the_text_of_the_rows() {
     insta::assert_snapshot!("ladder-wide", drawn(&Scene::Source(&model, &log), PLAIN, 160, 30));
 }
 
-/// VI.6.2: boxes with lines between them, if there is room for them.
 #[test]
-fn a_large_ladder_has_boxes() {
+fn large_ladder_has_the_process_at_its_right_and_whole_commands() {
     let log = log();
     let model = model(Screen::Ladder, ProcessId::Emove, FAILURE + 2, &log);
-    insta::assert_snapshot!("ladder-boxes", drawn(&Scene::Source(&model, &log), PLAIN, 120, 40));
+    insta::assert_snapshot!("ladder-beside", drawn(&Scene::Source(&model, &log), PLAIN, 120, 40));
+    for (width, height) in [(120, 24), (120, 40), (200, 50)] {
+        let text = drawn(&Scene::Source(&model, &log), PLAIN, width, height);
+        let picture = model.picture.as_ref().unwrap();
+        for process in ProcessId::ALL {
+            let command = picture.command(*process);
+            assert!(text.contains(&command), "{command} is cut at {width} x {height}\n{text}");
+        }
+    }
     let look = Look { ascii: true, colour: false };
     let ascii = drawn(&Scene::Source(&model, &log), look, 120, 40);
-    assert!(ascii.is_ascii() && ascii.contains("!!E-move <= CAUSE"), "{ascii}");
+    assert!(ascii.is_ascii() && ascii.contains("!!E-move   <= CAUSE"), "{ascii}");
 }
 
 #[test]
@@ -318,10 +325,10 @@ fn the_keys_of_an_operator_ask_the_run() {
     model.robot_elsewhere = true;
     keys(&mut model, &run, "!!");
     assert_eq!(asked(&mut model), "joystick hold PRIM; board 4 stop", "the E-stops are at the robot");
-    keys(&mut model, &run, "6w35jjj\n\n");
+    keys(&mut model, &run, "6w-+jjj\n\n");
     assert_eq!(
         asked(&mut model),
-        "joystick frame WORLD; joystick velocity 300; joystick velocity 500; PAUSE"
+        "joystick frame WORLD; joystick velocity 900; joystick velocity 1000; PAUSE"
     );
     model.key(Key::Up, &run);
     assert_eq!(asked(&mut model), "");
@@ -345,7 +352,8 @@ fn text_at_the_terminal_of_an_operator_never_acts_as_keys() {
     let run = As(log(), State::Runs);
     let mut model = operating(Screen::Terminal, &run);
     for line in ["610 NO-SUCH-WORD 1", "job wait", "2 7", "hold", "quit", ".R"] {
-        keys(&mut model, &run, line);
+        let begin = if line.starts_with(|first: char| first.is_ascii_digit()) { ":" } else { "" };
+        keys(&mut model, &run, &format!("{begin}{line}"));
         model.key(Key::Left, &run);
         model.key(Key::PageUp, &run);
         assert_eq!(model.prompt, Some(Prompt::Request(line.to_owned())));
@@ -566,16 +574,20 @@ fn the_state_of_a_run_is_said() {
             .map(|line| format!("{}\n", line.trim_matches('"').trim_end()))
             .collect::<Vec<_>>()
     };
-    let head = |state, place, keys| line(state, place, keys)[1].clone();
-    assert!(head(State::Runs, Place::Last, "").contains("demo  tick 625  25.00 s  knob 100 %"));
-    assert!(
-        head(State::Runs, Place::At(600), "").contains("tick 600  24.00 s  knob 100 %  FROZEN, live is 625")
-    );
-    assert!(head(State::Runs, Place::Last, "p").contains("FROZEN"));
-    assert!(!head(State::Runs, Place::Last, "pp").contains("FROZEN"));
-    assert!(head(State::Silent(4), Place::Last, "").contains("NO NEW TICK FOR 4 s"));
-    assert!(head(State::Torn, Place::Last, "").contains("TORN"));
-    assert!(head(State::Over, Place::Last, "").contains("ENDED at tick 625"));
+    let says = |state, place, keys, expected: &str| {
+        let lines = line(state, place, keys)[1..4].join("");
+        assert!(lines.contains(expected), "{expected:?} is not in\n{lines}");
+        lines
+    };
+    says(State::Runs, Place::Last, "", " !! FAULT    E-move: vision sees no object");
+    says(State::Runs, Place::Last, "", "speed 100 %  tick 625  25.00 s");
+    says(State::Runs, Place::At(600), "", "tick 625, SHOWN 600");
+    says(State::Runs, Place::Last, "p", "tick 625, SHOWN 625");
+    assert!(!says(State::Runs, Place::Last, "pp", "VIEWER").contains("SHOWN"));
+    says(State::Silent(4), Place::Last, "", " ?? NO DATA  no new tick for 4 s");
+    says(State::Torn, Place::Last, "", "TORN");
+    says(State::Over, Place::Last, "", " ENDED");
+    says(State::Over, Place::Last, "", "next: o opens its log at the first cause");
     let news = line(State::Over, Place::Last, "a")[22].clone();
     assert!(news.contains("the run ended: Task says error"), "{news}");
 }
@@ -696,4 +708,68 @@ fn colour_repeats_a_mark() {
     let red = |y: &u16| buffer[(0, *y)].fg == ratatui::style::Color::Red;
     let (all, with_colour) = (marked.clone().count(), marked.filter(red).count());
     assert!(all > 1 && all == with_colour, "{all} marks, {with_colour} in red");
+}
+
+/// The keys that stop the robot are on every screen of a console that operates a run, also while something is typed.
+#[test]
+fn operator_always_sees_the_keys_that_stop_the_robot() {
+    let run = As(log(), State::Runs);
+    let last = |model: &Model| screen(model, &run).lines().last().map(str::to_owned).unwrap_or_default();
+    for kind in Screen::ALL {
+        let mut model = operating(kind, &run);
+        for typed in ["", "?", "x/", "\x1b"] {
+            keys(&mut model, &run, typed);
+            let line = last(&model);
+            assert!(line.contains("Space=stop") && line.contains("F1=E-stop"), "{kind:?} {typed:?}: {line}");
+        }
+    }
+    let mut model = operating(Screen::Ladder, &run);
+    keys(&mut model, &run, "? ");
+    assert_eq!(
+        model.operating.as_ref().unwrap().outbox,
+        ["stop"],
+        "Space stops while help covers the screen"
+    );
+    model.operating.as_mut().unwrap().lost = Some("gone".into());
+    assert!(!last(&model).contains("Space=stop"), "keys without effect are not offered");
+}
+
+/// A digit selects a screen everywhere; on the panels it turned the velocity knob of a running robot.
+#[test]
+fn digits_select_screens_on_every_screen() {
+    let run = As(log(), State::Runs);
+    for kind in Screen::ALL {
+        for (digit, wanted) in ('1'..='7').zip(Screen::ALL) {
+            let mut model = operating(kind, &run);
+            model.operating.as_mut().unwrap().outbox.clear();
+            keys(&mut model, &run, &digit.to_string());
+            assert_eq!((model.screen, &model.prompt), (wanted, &None), "{digit} on {kind:?}");
+            assert_eq!(model.operating.as_ref().unwrap().outbox, [""; 0], "{digit} on {kind:?}");
+        }
+        let mut model = operating(kind, &run);
+        model.operating.as_mut().unwrap().outbox.clear();
+        keys(&mut model, &run, "089");
+        assert_eq!((model.screen, &model.prompt), (kind, &None));
+        assert_eq!(model.operating.as_ref().unwrap().outbox, [""; 0]);
+    }
+}
+
+/// The band of a log is neither filled nor inverted, so that it does not look like the state of a robot.
+#[test]
+fn band_of_a_log_looks_different_from_that_of_a_run() {
+    use ratatui::style::{Color, Modifier};
+    let log = log();
+    let run = As(Recorded::open(&LOG.1).expect("the log can be read"), State::Runs);
+    for (source, is_live) in [(&log as &dyn Source, false), (&run as &dyn Source, true)] {
+        let model = model(Screen::Ladder, ProcessId::Task, 625, source);
+        for look in [PLAIN, Look { colour: true, ascii: true }] {
+            let mut terminal = Terminal::new(TestBackend::new(80, 24)).expect("there is a screen");
+            let scene = Scene::Source(&model, source);
+            terminal.draw(|frame| _ = draw(frame, &scene, look)).expect("the screen can be drawn");
+            let cell = &terminal.backend().buffer()[(30, 1)];
+            let is_filled = cell.bg != Color::Reset || cell.modifier.contains(Modifier::REVERSED);
+            assert_eq!(is_filled, is_live, "{look:?}");
+        }
+        assert_eq!(screen(&model, source).contains("LOG [!! FAULT]"), !is_live);
+    }
 }

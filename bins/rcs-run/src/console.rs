@@ -46,7 +46,10 @@ impl Console {
     /// [`Error::Console`] if it cannot be started.
     pub fn start(program: PathBuf, run: &RunName, stop: Arc<AtomicBool>) -> Result<Self, Error> {
         let mut command = Command::new(program);
-        let child = command.args(["--operate", "--run", run.as_str()]).spawn().map_err(Error::Console)?;
+        let child = command
+            .args(["--operate", "--ends-run", "--run", run.as_str()])
+            .spawn()
+            .map_err(Error::Console)?;
         let over = Arc::<AtomicBool>::default();
         let (stopped, ended) = (Arc::clone(&stop), Arc::clone(&over));
         let waiting = thread::spawn(move || watch(child, &stopped, &ended));

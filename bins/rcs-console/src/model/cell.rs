@@ -27,14 +27,14 @@ pub fn sections(picture: &Picture, cell: &Cell) -> Vec<Section> {
     vec![joints(devices), hand(&picture.memory, devices), holsters(devices), parts(cell), surroundings(cell)]
 }
 
-/// Drawings of the cell in two views, with the arm at the joint angles of the resolvers.
+/// Drawings of the cell in two views, with the arm at the joint angles of the resolvers, for a body of this size.
 #[must_use]
-pub fn drawn(picture: &Picture, drawing: &Drawing) -> Vec<Section> {
+pub fn drawn(picture: &Picture, drawing: &Drawing, width: usize, room: usize) -> Vec<Section> {
     let devices = &picture.external.devices;
     if !devices.resolvers.valid {
         return vec![joints(devices)];
     }
-    drawing.sections(&angles(devices))
+    drawing.sections(&angles(devices), width, room)
 }
 
 /// Joint angles from the resolvers, rad, shifted by full turns into the limits of the arm.

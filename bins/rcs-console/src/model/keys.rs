@@ -78,6 +78,9 @@ impl Model {
             self.type_on(prompt, key, source);
         } else if self.help {
             self.help = false;
+            if matches!(key, Key::Char(' ' | '!') | Key::F1) {
+                self.operate(key);
+            }
         } else if !self.take_over(key)
             && !self.is_of_the_terminal(key, source)
             && !self.operate(key)
@@ -261,7 +264,7 @@ impl Model {
     fn go_to_cause(&mut self, source: &dyn Source) {
         match source.story().account() {
             Some(Account { first, .. }) => {
-                self.go(first.shown_at(), source);
+                self.go(source.story().shown_at(&first), source);
                 self.process = process_named(&first.process).unwrap_or(self.process);
             }
             None => self.answer = Some("nothing has gone wrong that stops the work".to_owned()),

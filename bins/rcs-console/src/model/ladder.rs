@@ -66,7 +66,7 @@ const LINES: [(Branch, Item); 16] = [
 pub struct Mark {
     /// It reports a failure or an error.
     pub trouble: bool,
-    /// It is the process in which Task's failure originates.
+    /// It is the process that detected the first failure.
     pub cause: bool,
     /// It was not executed, or no data came from it.
     pub absent: bool,
@@ -119,10 +119,11 @@ pub struct Line {
 /// The ladder of a picture. `last` is the previous picture on the screen.
 #[must_use]
 pub fn lines(picture: &Picture, last: Option<&Picture>, story: &Story) -> Vec<Line> {
+    let (cause, cause_before) = (cause(picture, story), last.and_then(|last| cause(last, story)));
     let line = |(branch, item)| {
-        let mut line = line(branch, item, picture, story);
+        let mut line = line(branch, item, picture, cause);
         line.mark.changed = last.is_some_and(|last| {
-            let was = self::line(branch, item, last, story);
+            let was = self::line(branch, item, last, cause_before);
             let key = |line: &Line| (line.number, line.status.clone(), line.row.clone());
             match item {
                 // It gets a new command in every tick.
@@ -138,9 +139,18 @@ pub fn lines(picture: &Picture, last: Option<&Picture>, story: &Story) -> Vec<Li
     LINES.into_iter().map(line).collect()
 }
 
-fn line(branch: Branch, item: Item, picture: &Picture, story: &Story) -> Line {
+/// The process that detected the first failure; `None` if there is no failure, or if no process detected the first one.
+fn cause(picture: &Picture, story: &Story) -> Option<ProcessId> {
+    match (story.failure(picture.tick.0), story.present_trouble(picture)) {
+        (Some(failure), _) => story::process_named(&failure.process),
+        (None, Some(trouble)) => story::process_named(&trouble.failure.process),
+        (None, None) => None,
+    }
+}
+
+fn line(branch: Branch, item: Item, picture: &Picture, cause: Option<ProcessId>) -> Line {
     match item {
-        Item::Process(process) => process_line(branch, process, picture, story),
+        Item::Process(process) => process_line(branch, process, picture, cause),
         Item::Workstation => workstation(branch, picture),
         Item::DataSystem => data_system(branch, picture),
         Item::Vision => vision(branch, picture),
@@ -148,14 +158,12 @@ fn line(branch: Branch, item: Item, picture: &Picture, story: &Story) -> Line {
     }
 }
 
-fn process_line(branch: Branch, process: ProcessId, picture: &Picture, story: &Story) -> Line {
+fn process_line(branch: Branch, process: ProcessId, picture: &Picture, cause: Option<ProcessId>) -> Line {
     let info = &Ladder::processes()[process.position()];
     let (header, said) = (picture.memory.header(process), picture.memory.said(process));
     let absence = picture.absence(process);
     let fired = info.fired(header);
     let command = picture.command(process);
-    let cause =
-        story.present_trouble(picture).and_then(|trouble| story::process_named(&trouble.failure.process));
     let status = match absence {
         None => format!("{}{}", said.report, said.unconfirmed.suffix()),
         Some(absence @ Absence::Elsewhere) => format!("{} {}", said.report, absence.text()),
@@ -300,16 +308,15 @@ pub fn neighbour(process: ProcessId, by: usize, down: bool) -> ProcessId {
 /// What the process under the cursor does and why, one sentence each.
 #[must_use]
 pub fn explanation(process: ProcessId, picture: &Picture, story: &Story) -> [String; 2] {
-    let line = process_line(Branch::Level, process, picture, story);
+    let line = process_line(Branch::Level, process, picture, None);
     let row = match (line.row.as_str(), line.text.as_str()) {
         ("", _) => "no row has decided yet".to_owned(),
         (row, text) => format!("{row}: {text}"),
     };
     let first = format!("{}: {row}", line.name);
-    let second = match (story.present_trouble(picture), picture.fault(process)) {
-        (Some(trouble), _) => {
-            format!("TROUBLE since tick {}: {}", trouble.failure.tick, trouble.failure.text)
-        }
+    let present = || story.present_trouble(picture).map(|trouble| trouble.failure.clone());
+    let second = match (story.failure(picture.tick.0).or_else(present), picture.fault(process)) {
+        (Some(failure), _) => format!("TROUBLE since tick {}: {}", failure.tick, failure.text),
         (None, Some(fault)) => format!("TROUBLE: {}", fault.text()),
         (None, None) => match line.command.as_str() {
             "" => "no command".to_owned(),

@@ -1,5 +1,6 @@
 //! The state of the console without a terminal: keys and pictures change it; it selects screen, tick and process.
 
+pub mod band;
 pub mod buffers;
 pub mod cell;
 pub mod drawing;
@@ -213,6 +214,8 @@ pub struct Model {
     pub procedures: Progress,
     /// True if the robot and its E-stops are at a port.
     pub robot_elsewhere: bool,
+    /// True if the run ends when this console quits (`rcs-run --console`).
+    pub ends_run: bool,
     /// The operator's requests; `None` on a console without `--operate`.
     pub operating: Option<Operating>,
     /// The terminal of a board.
@@ -248,6 +251,7 @@ impl Model {
             answer: None,
             procedures: Progress::default(),
             robot_elsewhere: false,
+            ends_run: false,
             operating: None,
             terminal: BoardTerminal::default(),
             watch: Vec::new(),
@@ -299,6 +303,18 @@ impl Model {
     #[must_use]
     pub fn tick(&self) -> u64 {
         self.picture.as_ref().map_or(0, |picture| picture.tick.0)
+    }
+
+    /// True if the run accepts the requests of this console.
+    #[must_use]
+    pub fn operates(&self) -> bool {
+        self.operating.as_ref().is_some_and(|operating| operating.lost.is_none())
+    }
+
+    /// True if the job waits for an operator; a viewer cannot know it.
+    #[must_use]
+    pub fn job_waits(&self) -> bool {
+        self.operates() && self.operating.as_ref().is_some_and(Operating::job_waits)
     }
 
     /// True while the console asks whether to take the command over.

@@ -32,9 +32,9 @@ impl Model {
             Key::F1 | Key::Char('!') => {
                 operating.is_armed = true;
                 let what = if self.robot_elsewhere {
-                    "the E-stops are at the robot; F1 again holds Prim and stops board 4: the robot gets no further frame"
+                    "the E-stops are at the robot; F1 again holds Prim, and stops board 4"
                 } else {
-                    "F1 again presses the E-stop near the terminals: the arm sinks; Space is gentler (IV.3.1)"
+                    "F1 again presses the E-stop: the arm sinks; Space is gentler (IV.3.1)"
                 };
                 self.answer = Some(what.to_owned());
             }
@@ -50,7 +50,8 @@ impl Model {
     /// Carry out a key of the panel screen: of the joystick box, or of the key list. The first Enter names the key under
     /// the cursor, the second one presses it, so that a stray Enter starts nothing.
     fn work_a_panel(&mut self, key: Key, was_chosen: bool) -> bool {
-        let frame = self.joystick().frame;
+        let (frame, velocity) = (self.joystick().frame, self.joystick().velocity);
+        let knob = |velocity: u16| format!("joystick velocity {velocity}");
         let Some(operating) = &mut self.operating else { return false };
         let size = JOGS.get(operating.jog).copied().unwrap_or(JOGS[0]);
         let jog = |x: f64, y: f64| {
@@ -78,17 +79,14 @@ impl Model {
             Key::Char('z') => "joystick step PRIM".to_owned(),
             Key::Char('m') => "joystick record".to_owned(),
             Key::Char('M') => "joystick resume".to_owned(),
-            Key::Char('`') => "joystick velocity 0".to_owned(),
-            Key::Char(digit @ '0'..='9') => {
-                let tenths = digit.to_digit(10).filter(|tenths| *tenths > 0).unwrap_or(10);
-                format!("joystick velocity {}", tenths * u32::from(KNOB_FULL) / 10)
-            }
+            Key::Char('-') => knob(velocity.saturating_sub(KNOB_STEP)),
+            Key::Char('+' | '=') => knob(velocity.saturating_add(KNOB_STEP).min(KNOB_FULL)),
             Key::Char('s') => {
                 operating.jog = (operating.jog + 1) % JOGS.len();
                 return true;
             }
             Key::Char('j') => {
-                operating.cursor = (operating.cursor + 1).min(panels::KEYS.len() - 1);
+                operating.cursor = (operating.cursor + 1).min(panels::requests().count() - 1);
                 return true;
             }
             Key::Char('k') => {
@@ -96,7 +94,7 @@ impl Model {
                 return true;
             }
             Key::Enter => {
-                let chosen = panels::KEYS.get(operating.cursor).copied().unwrap_or_default();
+                let chosen = panels::request(operating.cursor);
                 if let Some(words) = chosen.strip_suffix(panels::TO_NAME) {
                     operating.back = 0;
                     self.prompt = Some(Prompt::Request(words.to_owned()));
@@ -107,7 +105,7 @@ impl Model {
                     self.answer = Some(format!("Enter again presses: {chosen}"));
                     return true;
                 }
-                chosen.to_owned()
+                chosen
             }
             _ => return false,
         };
@@ -147,6 +145,8 @@ impl Model {
     }
 }
 
+/// Change of the velocity knob by a key: a tenth of its range.
+const KNOB_STEP: u16 = KNOB_FULL / 10;
 /// Speed with the stick at full deflection and the velocity knob at its maximum, in/s (`levels::prim::manual`).
 const SPEED: f64 = 5.0;
 /// Acceleration of the stick's motion, in/s².

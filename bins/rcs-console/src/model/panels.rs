@@ -17,60 +17,69 @@ use super::{
 };
 use crate::rcs_console::source::Cell;
 
-/// The requests of the key list, in order.
-pub const KEYS: [&str; 45] = [
-    "job go",
-    "job wait",
-    "job skip",
-    "PAUSE",
-    "panel power on",
-    "panel power off",
-    "panel fault-reset",
-    "panel hydraulics enable",
-    "panel hydraulics disable",
-    "panel manual on",
-    "panel manual off",
-    "panel align",
-    "panel auto",
-    "panel cycle-start",
-    "panel interrupt",
-    "panel cancel",
-    "panel enter",
-    "panel hold on",
-    "panel hold off",
-    "release control-panel",
-    "release teach-pendant",
-    "release terminals",
-    "release joystick-box",
-    "release pedestal",
-    "joystick hold EMOVE",
-    "joystick free EMOVE",
-    "table power off",
-    "table power on",
-    "table mode manual",
-    "table run+ 25",
-    "table run- 25",
-    "table step+",
-    "table step-",
-    "table reset",
-    "table mode prog",
-    "pedestal pause",
-    "pedestal pre-grip OBJECT",
-    "pedestal grip OBJECT",
-    "pedestal flip 180",
-    "pedestal flip -180",
-    "pedestal release",
-    "pedestal release by hand",
-    "confirm clamped",
-    "confirm by hand",
-    "leave",
+/// The requests of the key list: a title and the words that follow it. An empty title has whole requests.
+const KEYS: [(&str, &[&str]); 7] = [
+    ("job", &["go", "wait", "skip"]),
+    ("", &["PAUSE", "leave", "joystick hold EMOVE", "joystick free EMOVE"]),
+    (
+        "panel",
+        &[
+            "power on",
+            "power off",
+            "fault-reset",
+            "hydraulics enable",
+            "hydraulics disable",
+            "manual on",
+            "manual off",
+            "align",
+            "auto",
+            "cycle-start",
+            "interrupt",
+            "cancel",
+            "enter",
+            "hold on",
+            "hold off",
+        ],
+    ),
+    ("release", &["control-panel", "teach-pendant", "terminals", "joystick-box", "pedestal"]),
+    (
+        "table",
+        &[
+            "power off",
+            "power on",
+            "mode manual",
+            "run+ 25",
+            "run- 25",
+            "step+",
+            "step-",
+            "reset",
+            "mode prog",
+        ],
+    ),
+    (
+        "pedestal",
+        &["pause", "pre-grip OBJECT", "grip OBJECT", "flip 180", "flip -180", "release", "release by hand"],
+    ),
+    ("confirm", &["clamped", "by hand"]),
 ];
 /// Word of a key that the operator replaces by a name before it is sent.
 pub const TO_NAME: &str = "OBJECT";
-/// Number of keys shown around the cursor.
-const SHOWN: usize = 3;
+/// Columns of a line of the key list.
+const WIDTH: usize = 79;
 
-/// The sections: box, controller, pedestal and keys, from top to bottom.
+/// The requests of the key list, in order.
+pub fn requests() -> impl Iterator<Item = String> {
+    let whole = |title: &str, words: &str| format!("{title} {words}").trim_start().to_owned();
+    KEYS.iter().flat_map(move |(title, all)| all.iter().map(move |words| whole(title, words)))
+}
+
+/// A request of the list; empty if there is none.
+#[must_use]
+pub fn request(at: usize) -> String {
+    requests().nth(at).unwrap_or_default()
+}
+
+/// The sections: the panels in their present state, and the key list.
 #[must_use]
 pub fn sections(
     devices: &DeviceInputs,
@@ -78,73 +87,66 @@ pub fn sections(
     cell: &Cell,
     operating: Option<&Operating>,
 ) -> Vec<Section> {
-    let mut sections =
-        vec![joystick_box(&devices.joystick, memory.prim.status.recording, operating), controller(cell)];
-    let mut lines = vec![pedestal(memory)];
+    let mut lines = joystick_box(&devices.joystick, memory.prim.status.recording, operating);
+    lines.extend(controller(cell));
+    lines.push(pedestal(memory));
     if let Cell::Shown(view) = cell {
         lines.push(rotary_table(&devices.pedestal, view.table));
     }
-    sections.push(Section::new("active pedestal", lines));
-    match operating {
-        Some(operating) => sections.push(keys(operating)),
-        None => sections.push(look_only()),
-    }
-    sections
+    let keys = match operating {
+        Some(operating) => keys(operating),
+        None => look_only(),
+    };
+    vec![Section::new("joystick box, robot controller, active pedestal", lines), keys]
 }
 
 fn look_only() -> Section {
-    let text = " This console looks only: start it with --operate to work on a run.";
+    let text = " This console only looks: start it with --operate to work on a run.";
     Section::new("keys", vec![Text::new(Tone::Faint, text)])
 }
 
 fn frame(joystick: &JoystickBox) -> &'static str {
     match BoxFrame::from_bits(joystick.frame) {
-        Some(BoxFrame::Off) => "no frame is on: the box moves nothing",
+        Some(BoxFrame::Off) => "no frame is on",
         Some(frame) => frame.text(),
-        None => "several switches are on: the box moves nothing",
+        None => "several frames are on: it moves nothing",
     }
 }
 
-fn joystick_box(joystick: &JoystickBox, recording: bool, operating: Option<&Operating>) -> Section {
+fn joystick_box(joystick: &JoystickBox, recording: bool, operating: Option<&Operating>) -> Vec<Text> {
     let held = Stepped::ALL.iter().filter(|process| joystick.hold & process.bit() != 0);
     let held: Vec<&str> = held.map(|process| process.process().text()).collect();
     let held = if held.is_empty() { "no process".to_owned() } else { held.join(", ") };
     let percent = u32::from(joystick.velocity) * 100 / u32::from(KNOB_FULL);
-    let bar = "#".repeat(usize::try_from(percent / 5).unwrap_or_default());
-    let mut lines = vec![
-        Text::plain(format!(" frame   {}", frame(joystick))),
-        Text::plain(format!(" knob    {percent:>3} %  {bar}")),
-        Text::plain(format!(" holds   {held}")),
-    ];
+    let mut lines =
+        vec![Text::plain(format!(" box       {}   knob {percent} %   holds {held}", frame(joystick)))];
     if recording {
         lines.push(Text::new(
             Tone::Marked,
-            " record  E-move and Prim are suspended until carriage return (M)",
+            " record    E-move and Prim are suspended until carriage return (M)",
         ));
     }
     if let Some(operating) = operating {
         let jog = JOGS.get(operating.jog).copied().unwrap_or_default();
         let keys = [
-            " w t o r=frame WORLD, TOOL, TOOL-ORIGIN, WRIST-ORIGIN   x=off".to_owned(),
-            " ` 1 ... 9 0=knob 0, 10 ... 90, 100 %   h=hold Prim   z=step Prim".to_owned(),
-            format!(" arrows=X Y   PgUp PgDn=Z   , .=roll   {{ }}=gripper   a key moves {jog:.2} in (s)"),
-            " m=record the pose   M=return after it".to_owned(),
+            "   w t o r=WORLD TOOL TOOL-ORIGIN WRIST-ORIGIN  x=off  - +=knob  h z=hold, step".to_owned(),
+            format!("   arrows=X Y  PgUp PgDn=Z  , .=roll  {{ }}=gripper  s={jog:.2} in  m=record M=return"),
         ];
         lines.extend(keys.map(|text| Text::new(Tone::Faint, text)));
     }
-    Section::new("joystick box", lines)
+    lines
 }
 
-fn controller(cell: &Cell) -> Section {
+fn controller(cell: &Cell) -> Vec<Text> {
     let view = match cell {
         Cell::Shown(view) => view,
         Cell::NotPublished => {
-            let text = " the robot is not simulated here: its panel and its E-stops are at the robot";
-            return Section::new("robot controller", vec![Text::new(Tone::Faint, text)]);
+            let text = " robot     not simulated here: its panel and its E-stops are at the robot";
+            return vec![Text::new(Tone::Faint, text)];
         }
         Cell::Recorded { .. } => {
-            let text = " a log has no panel: the messages of the controller are on screen 3";
-            return Section::new("robot controller", vec![Text::new(Tone::Faint, text)]);
+            let text = " robot     a log has no panel; the messages of the controller are on screen 3";
+            return vec![Text::new(Tone::Faint, text)];
         }
     };
     let t3 = &view.controller;
@@ -159,25 +161,20 @@ fn controller(cell: &Cell) -> Section {
     ];
     let lamps: Vec<_> = lamps.into_iter().flatten().collect();
     let aligned: String = t3.aligned.iter().map(|axis| if *axis { '*' } else { '.' }).collect();
-    let mut lines = vec![
-        Text::plain(format!(" stage   {}   lit: {}", t3.stage, lamps.join(", "))),
-        Text::plain(format!(" screen  {}   aligned {aligned}", t3.screen)),
-    ];
-    if !t3.cut.to_string().is_empty() {
-        lines.push(Text::new(Tone::Trouble, format!("!!no pressure: {}", t3.cut)));
+    let pressed: Vec<_> =
+        t3.estops.iter().zip(EStop::ALL).filter(|(is_in, _)| **is_in).map(|(_, site)| site.text()).collect();
+    let estops = match pressed.is_empty() {
+        true => Text::plain(format!(" E-stops   all five are out   aligned {aligned}")),
+        false => {
+            Text::new(Tone::Trouble, format!("!!E-stops   in: {}   aligned {aligned}", pressed.join(", ")))
+        }
+    };
+    let mut lines =
+        vec![Text::plain(format!(" robot     stage {}   lit: {}", t3.stage, lamps.join(", "))), estops];
+    if !t3.screen.as_str().is_empty() {
+        lines.push(Text::plain(format!(" screen    {}", t3.screen)));
     }
-    let pressed: Vec<_> = t3
-        .estops
-        .iter()
-        .zip(EStop::ALL)
-        .filter(|(pressed, _)| **pressed)
-        .map(|(_, site)| site.text())
-        .collect();
-    lines.push(match pressed.is_empty() {
-        true => Text::plain(" E-stops all five are out"),
-        false => Text::new(Tone::Trouble, format!("!!E-stops that are in: {}", pressed.join(", "))),
-    });
-    Section::new("robot controller", lines)
+    lines
 }
 
 /// The counter of the table, in degrees with two decimals (IV.1 step 3).
@@ -220,23 +217,57 @@ fn pedestal(memory: &CommonMemory) -> Text {
     Text::plain(format!(" hand {holds}, {opening:.2} in open; table {angle}; {command} {}", status.report))
 }
 
+/// All requests, with the one at the cursor in brackets.
 fn keys(operating: &Operating) -> Section {
-    let first = operating.cursor.saturating_sub(SHOWN / 2).min(KEYS.len().saturating_sub(SHOWN));
-    let line = |(at, key): (usize, &&str)| {
-        let (mark, tone) = if at == operating.cursor { ('>', Tone::Marked) } else { (' ', Tone::Plain) };
-        Text::new(tone, format!(" {mark} {key}"))
-    };
-    let shown = KEYS.iter().enumerate().skip(first).take(SHOWN).map(line);
-    let title = format!("keys, {} of {}: j k=choose, Enter=press", operating.cursor + 1, KEYS.len());
-    Section::new(title, shown.collect())
+    let mut lines = Vec::new();
+    let (mut line, mut number, mut at) = (String::new(), 0, 0);
+    for (title, all) in KEYS {
+        let mut title = if title.is_empty() { String::new() } else { format!(" {title}:") };
+        for words in all {
+            let is_chosen = number == operating.cursor;
+            let shown = if is_chosen { format!("[{words}]") } else { format!(" {words} ") };
+            let shown = std::mem::take(&mut title) + &shown;
+            if line.chars().count() + shown.chars().count() > WIDTH {
+                lines.push(Text::plain(std::mem::take(&mut line)));
+            }
+            line.push_str(&shown);
+            if is_chosen {
+                at = lines.len();
+            }
+            number += 1;
+        }
+    }
+    lines.push(Text::plain(line));
+    if let Some(line) = lines.get_mut(at) {
+        line.tone = Tone::Marked;
+    }
+    let title = format!("keys: j k=choose, Enter=press `{}`", request(operating.cursor));
+    Section { title, lines, at }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    fn text(section: Section) -> String {
-        section.lines.into_iter().map(|line| line.text).collect::<Vec<_>>().join("\n")
+    fn text(lines: Vec<Text>) -> String {
+        lines.into_iter().map(|line| line.text).collect::<Vec<_>>().join("\n")
+    }
+
+    /// The smallest terminal has room for all lines: 18 below the band, with the two titles.
+    #[test]
+    fn panels_with_all_requests_fit_the_smallest_terminal() {
+        let operating = Operating { cursor: 21, ..Operating::default() };
+        let cell = Cell::Shown(Box::default());
+        let all = sections(&DeviceInputs::default(), &CommonMemory::default(), &cell, Some(&operating));
+        let lines: Vec<_> = all.into_iter().flat_map(|section| section.lines).collect();
+        // A text on the screen of the robot controller takes a line more.
+        assert!(lines.len() < 18 - 2, "{}", text(lines));
+        assert!(lines.iter().all(|line| line.text.chars().count() <= 80), "{}", text(lines));
+        let said = text(lines);
+        for (_, words) in KEYS {
+            assert!(words.iter().all(|words| said.contains(words)), "{said}");
+        }
+        assert!(said.contains("[hold off]"), "{said}");
     }
 
     #[test]

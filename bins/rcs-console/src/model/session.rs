@@ -137,6 +137,13 @@ impl Operating {
         self.status.starts_with("the job waits")
     }
 
+    /// The operator who commands the run; `None` for nobody.
+    #[must_use]
+    pub fn commander(&self) -> Option<&str> {
+        let who = self.status.split("; ").nth(1)?.strip_suffix(" commands")?;
+        (who != "nobody").then_some(who)
+    }
+
     /// Number of the last request; 0 before the first.
     #[must_use]
     pub fn newest(&self) -> u32 {

@@ -9,7 +9,7 @@ use executive::memory::{
     Attached, OnStuck, ReadError, RunName, SET_UP_LIMIT, SharedMemoryError, cell::CellView, within_limit,
 };
 
-use super::{About, Cell, Source, State};
+use super::{About, Cell, Source, State, seen};
 use crate::rcs_console::{
     picture::{Picture, Timing},
     story::Story,
@@ -84,6 +84,9 @@ impl Live {
         self.pictures.push_back(picture);
         // The cell is published after the tick; if it cannot be read now, it is read with the next tick.
         if let Ok(Some(cell)) = self.run.cell() {
+            let tick = cell.tick.min(self.pictures.back().map_or(cell.tick, |picture| picture.tick)).next();
+            let lines = self.cells.back().map_or_else(Vec::new, |before| seen::lines(before, &cell, tick));
+            self.story.tell(lines);
             if self.cells.len() == KEPT {
                 self.cells.pop_front();
             }

@@ -3,6 +3,7 @@
 mod deltas;
 mod live;
 mod recorded;
+mod seen;
 
 pub use live::Live;
 pub use recorded::Recorded;

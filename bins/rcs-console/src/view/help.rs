@@ -3,38 +3,71 @@
 use ratatui::text::Line;
 
 use super::Look;
-use crate::rcs_console::model::Tone;
+use crate::rcs_console::model::{Model, Tone};
 
-/// The keys and their effects.
-const KEYS: [(&str, &str); 16] = [
-    ("1 ... 7", "screens: ladder, process, link, cell, terminal, panels, procedures"),
-    ("j k, arrows, PgUp PgDn", "choose a process; scroll"),
-    ("Enter, Esc", "the process under the cursor; back to the ladder"),
-    ("Tab, w, v, s", "screen 2: pane, watch, what is watched, source; v on 4: drawing"),
-    ("/", "show only lines with a text; Esc shows all again"),
-    ("p", "freeze the picture; the run goes on"),
-    ("[ ]  { }  Home End", "a tick, a second, first and last tick"),
-    ("g", "go to a tick by its number"),
-    ("n N", "next, previous change; on screen 2 of that process"),
-    ("t T", "next, previous trouble: a failure or a warning"),
-    ("c", "to the first cause of the last failure"),
-    ("a", "acknowledge the alarm in the line above the keys"),
-    ("o", "open the log of this run, at the first cause"),
-    ("Enter y s u r", "on screen 7: do a step, it is so, leave out, take back, anew"),
-    (":, Tab; Space h F1", "screen 5: a line, board; --operate: stop, hold, E-stop"),
-    ("q, Control-C", "quit; the run is not affected"),
+/// Keys and their effects on every console.
+const KEYS: [(&str, &str); 10] = [
+    ("1 ... 7", "screens, from every screen; 2: the process at the cursor"),
+    ("j k, arrows", "choose, scroll; PgUp PgDn by a page; Enter opens, Esc goes back"),
+    ("[ ]  { }  g", "one tick, one second back or forward; a tick by its number"),
+    ("Home End", "first tick, last tick"),
+    ("n N   t T", "next, previous change (on 2: of it); next, previous failure"),
+    ("c   o", "first cause of the failure; log of an ended run at its cause"),
+    ("p   a", "freeze the picture, the run continues; acknowledge the alarm"),
+    ("on 2", "Tab=pane  /=filter  s=source  w=watch a field  v=watched fields"),
+    ("on 4, 7", "v=drawing; Enter=do y=confirm s=leave out u=take back r=again"),
+    ("^L ^Z", "draw again; suspend until `fg`"),
+];
+/// Keys of an operator.
+const OPERATOR: [(&str, &str); 5] = [
+    ("Space", "velocity knob to 0: the robot ramps to rest; again: back"),
+    ("h", "hold Prim; again: release it (not on 5)"),
+    ("F1 or !, twice", "the E-stop near the terminals: the arm sinks"),
+    (":", "a request; on 5 also with a letter, and ^C stops the board"),
+    ("on 6", "box, panels and all requests: their keys are listed there"),
+];
+/// The signs and their meaning.
+const SIGNS: [&str; 2] = [
+    " >> running  || paused  [] stopped  XX E-stop  !! fault  LOG [ ]: recorded",
+    " !! failure  * gripper on the robot  - not stepped  > changed  ~ nearly fired",
 ];
 
-/// The marks and their meaning.
-const MARKS: &str = " !! trouble   * gripper on the robot   - not stepped, or lost   > new";
-
 /// The lines of the page.
-pub fn lines(look: Look) -> Vec<Line<'static>> {
-    let keys = KEYS.iter().map(|(key, does)| look.line(Tone::Plain, format!(" {key:<24} {does}")));
-    let words = [
-        MARKS,
-        " A row with seconds behind it fired that long ago; ~ marks a row that nearly fired.",
-        " Without --operate this program only reads: no key changes the run.",
-    ];
-    keys.chain(words.map(|text| look.line(Tone::Plain, text))).collect()
+pub fn lines(model: &Model, look: Look) -> Vec<Line<'static>> {
+    let quit = match (model.ends_run, model.operates()) {
+        (true, _) => "ENDS THE RUN: the robot ramps to rest first",
+        (false, true) => "quit; the run continues, motion by hand ends",
+        (false, false) => "quit; the run is not affected",
+    };
+    let operator =
+        if model.operates() { &OPERATOR[..] } else { &[("--operate", "also stops and commands a run")] };
+    let quit = ("q, ^C", quit);
+    let keys = KEYS.iter().chain(operator).chain([&quit]);
+    let keys = keys.map(|(key, does)| format!(" {key:<15} {does}"));
+    keys.chain(SIGNS.map(str::to_owned)).map(|text| look.line(Tone::Plain, text)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::rcs_console::{
+        model::{Operating, Screen},
+        view::{FRAME, LEAST},
+    };
+
+    #[test]
+    fn help_fits_the_smallest_terminal() {
+        let look = Look { colour: false, ascii: true };
+        for operating in [None, Some(Operating::default())] {
+            for ends_run in [false, true] {
+                let model = Model { operating: operating.clone(), ends_run, ..Model::new(Screen::Ladder) };
+                let lines = lines(&model, look);
+                assert!(lines.len() <= usize::from(LEAST.1) - FRAME, "{} lines", lines.len());
+                for line in &lines {
+                    assert!(line.width() <= usize::from(LEAST.0), "{line}");
+                }
+                assert_eq!(ends_run, lines.iter().any(|line| line.to_string().contains("ENDS THE RUN")));
+            }
+        }
+    }
 }

@@ -1,10 +1,13 @@
-//! The ladder in columns.
+//! The ladder: in columns, or on a large terminal the hierarchy beside the process at the cursor.
 
 use interfaces::ProcessId;
-use ratatui::{style::Modifier, text::Line};
+use ratatui::{
+    style::Modifier,
+    text::{Line, Span},
+};
 
 use super::{
-    Look, boxes,
+    Look, panes,
     text::{fit, rule, wrap},
 };
 use crate::rcs_console::{
@@ -16,10 +19,16 @@ use crate::rcs_console::{
     source::Source,
 };
 
-/// Largest number of additional columns for the command on a wide terminal.
-const MORE_COMMAND: usize = 24;
 /// Least number of columns for the text of a row.
 const LEAST_TEXT: usize = 24;
+/// Columns for a command on the smallest terminal.
+const COMMAND: usize = 19;
+/// Smallest body with the hierarchy beside the process: columns, and two lines per process or neighbour.
+const BESIDE: (usize, usize) = (120, 33);
+/// Columns of the hierarchy beside the process, without its row.
+const HIERARCHY: usize = 43;
+/// Least and most columns for its row.
+const ROW: (usize, usize) = (15, 30);
 
 /// Widths of the columns.
 struct Widths {
@@ -28,11 +37,13 @@ struct Widths {
 }
 
 impl Widths {
-    fn of(width: usize) -> Self {
+    /// Commands are not cut as long as there is room; the text of the rows gets the rest.
+    fn of(width: usize, ladder: &[ladder::Line]) -> Self {
         let extra = width.saturating_sub(80);
-        let command = extra.min(MORE_COMMAND);
-        let text = extra - command;
-        Self { command: 19 + command, text: if text >= LEAST_TEXT { text } else { 0 } }
+        let longest = ladder.iter().map(|line| line.command.chars().count()).max().unwrap_or_default();
+        let command = (longest + 1).clamp(COMMAND, COMMAND + extra);
+        let text = COMMAND + extra - command;
+        Self { command, text: if text >= LEAST_TEXT { text } else { 0 } }
     }
 }
 
@@ -45,15 +56,11 @@ pub fn body(
     width: usize,
     room: usize,
 ) -> Vec<Line<'static>> {
-    if width >= boxes::LEAST.0 && room >= boxes::LEAST.1 {
-        let drawn = ladder::lines(picture, model.last.as_ref(), source.story());
-        let mut lines = boxes::lines(&drawn, model.process, look, width);
-        lines.push(look.line(Tone::Plain, rule("", width)));
-        let below = explanation(model.process, picture, source, width, room.saturating_sub(lines.len()));
-        lines.extend(below.into_iter().map(|text| look.line(Tone::Plain, text)));
-        return lines;
+    let ladder = ladder::lines(picture, model.last.as_ref(), source.story());
+    if width >= BESIDE.0 && room >= BESIDE.1 {
+        return beside(&ladder, model, picture, source, look, width, room);
     }
-    let widths = Widths::of(width);
+    let widths = Widths::of(width, &ladder);
     let head = columns(
         &widths,
         "  ",
@@ -67,18 +74,78 @@ pub fn body(
         "what the row says",
     );
     let mut lines = vec![look.line(Tone::Plain, head)];
-    for line in ladder::lines(picture, model.last.as_ref(), source.story()) {
+    for line in ladder {
         let chosen = line.item == Item::Process(model.process);
         let drawn = look.line(line.mark.tone(), row(&widths, &line));
         lines.push(if chosen { drawn.patch_style(Modifier::REVERSED) } else { drawn });
     }
-    // In the smallest terminal there is room for two sentences only.
+    // In the smallest terminal there is room for one sentence only.
     if room > lines.len() + 2 {
         lines.push(look.line(Tone::Plain, rule("", width)));
     }
     let below = explanation(model.process, picture, source, width, room.saturating_sub(lines.len()));
     lines.extend(below.into_iter().map(|text| look.line(Tone::Plain, text)));
     lines
+}
+
+/// The hierarchy at the left with uncut commands, and the process at the cursor at the right.
+fn beside(
+    ladder: &[ladder::Line],
+    model: &Model,
+    picture: &Picture,
+    source: &dyn Source,
+    look: Look,
+    width: usize,
+    room: usize,
+) -> Vec<Line<'static>> {
+    let row = (width / 2).saturating_sub(HIERARCHY).clamp(ROW.0, ROW.1);
+    let left_width = HIERARCHY + row;
+    let left = ladder.iter().flat_map(|line| {
+        let chosen = line.item == Item::Process(model.process);
+        let lines = entry(line, row, left_width);
+        lines.into_iter().map(move |text| {
+            let drawn = look.line(line.mark.tone(), fit(&text, left_width));
+            if chosen { drawn.patch_style(Modifier::REVERSED) } else { drawn }
+        })
+    });
+    let empty = || look.line(Tone::Plain, " ".repeat(left_width));
+    let left = left.chain(std::iter::repeat_with(empty));
+    let (right, _) = panes::process(model, picture, source, look, width - left_width - 2, room);
+    let right = right.into_iter().chain(std::iter::repeat(Line::default()));
+    let separator = look.signs("│ ".to_owned());
+    left.zip(right)
+        .take(room)
+        .map(|(left, right)| {
+            let separator = [Span::raw(separator.clone())];
+            Line::from(spans(left).chain(separator).chain(spans(right)).collect::<Vec<_>>())
+        })
+        .collect()
+}
+
+/// The parts of a line with their own styles.
+fn spans(line: Line<'static>) -> impl Iterator<Item = Span<'static>> {
+    let style = line.style;
+    line.spans.into_iter().map(move |span| {
+        let style = style.patch(span.style);
+        span.style(style)
+    })
+}
+
+/// A process or neighbour in two lines or more: status and row, then the whole command.
+fn entry(line: &ladder::Line, row: usize, width: usize) -> Vec<String> {
+    let (mark, name) = (mark(&line.mark), name(line));
+    let shown = if line.item == Item::Robot { "" } else { &line.row };
+    let (echo, age) = (number(line.echo), age(line.age));
+    let first =
+        format!("{mark}{}{} {echo:>4} {}{age:>5}", fit(&name, 18), fit(&line.status, 12), fit(shown, row));
+    let indent = match line.branch {
+        Branch::Level => 0,
+        Branch::Beside | Branch::Last => 2,
+        Branch::Below | Branch::LastBelow => 4,
+    };
+    let command = format!("{}{:>7} {}", " ".repeat(indent), number(line.number), line.command);
+    let command = if line.command.is_empty() { Vec::new() } else { wrap(&command, width) };
+    std::iter::once(first).chain(command).collect()
 }
 
 /// The sentences about the process under the cursor, each in at most half of the available lines.
@@ -111,19 +178,39 @@ fn shortened(mut lines: Vec<String>, share: usize, width: usize) -> Vec<String> 
 }
 
 fn row(widths: &Widths, line: &ladder::Line) -> String {
-    let mark = match line.mark {
+    let row = if line.item == Item::Robot { "" } else { &line.row };
+    let (no, echo) = (number(line.number), number(line.echo));
+    columns(
+        widths,
+        &mark(&line.mark),
+        &name(line),
+        &line.command,
+        &no,
+        &line.status,
+        &echo,
+        row,
+        &age(line.age),
+        &line.text,
+    )
+}
+
+/// The two characters of the mark.
+fn mark(mark: &Mark) -> String {
+    match *mark {
         Mark { trouble: true, .. } => "!!".to_owned(),
         Mark { absent, on, changed, .. } => {
-            let first = if on {
-                '*'
-            } else if absent {
-                '-'
-            } else {
-                ' '
+            let first = match (on, absent) {
+                (true, _) => '*',
+                (false, true) => '-',
+                (false, false) => ' ',
             };
             format!("{first}{}", if changed { '>' } else { ' ' })
         }
-    };
+    }
+}
+
+/// The name in its branch of the hierarchy.
+fn name(line: &ladder::Line) -> String {
     let branch = match line.branch {
         Branch::Level => "",
         Branch::Beside => "├ ",
@@ -131,18 +218,22 @@ fn row(widths: &Widths, line: &ladder::Line) -> String {
         Branch::Below => "  ├ ",
         Branch::LastBelow => "  └ ",
     };
-    let name = match line.mark.cause {
+    match line.mark.cause {
         true => format!("{}<= CAUSE", fit(&format!("{branch}{}", line.name), 9)),
         false => format!("{branch}{}", line.name),
-    };
-    let number = |number: Option<u32>| number.map_or_else(String::new, |number| number.to_string());
-    let age = line.age.map_or_else(String::new, |age| match age {
-        age if age < 10.0 => format!("{age:.1}"),
-        age => format!("{age:.0}"),
-    });
-    let row = if line.item == Item::Robot { "" } else { &line.row };
-    let (no, echo) = (number(line.number), number(line.echo));
-    columns(widths, &mark, &name, &line.command, &no, &line.status, &echo, row, &age, &line.text)
+    }
+}
+
+fn number(number: Option<u32>) -> String {
+    number.map_or_else(String::new, |number| number.to_string())
+}
+
+fn age(age: Option<f64>) -> String {
+    match age {
+        None => String::new(),
+        Some(age) if age < 10.0 => format!("{age:.1}"),
+        Some(age) => format!("{age:.0}"),
+    }
 }
 
 #[expect(clippy::too_many_arguments, reason = "one argument a column")]

@@ -1,10 +1,11 @@
 //! Draws the model as a frame of text.
 //!
-//! Line 1 has the screens, line 2 the run, line 3 is a rule; the last line has the keys, the one before it the latest
-//! news. A mark or a word always expresses the same as a colour.
+//! Line 1 has the screens, lines 2 to 4 the state band; the last line has the keys, the one before it the latest news.
+//! A mark or a word always expresses the same as a colour.
 
-mod boxes;
+mod band;
 mod help;
+mod keys;
 mod ladder;
 mod panes;
 mod text;
@@ -24,19 +25,20 @@ use record::Level;
 
 use crate::rcs_console::{
     model::{
-        Model, Operating, Place, Prompt, Screen, Tone, cell, ladder as lines, link, panels, procedures,
-        take_over_sections,
-        terminal::{self, editor::Editor},
+        Model, Operating, Prompt, Screen, Tone, band::band as band_of, cell, ladder as lines, link, panels,
+        procedures, take_over_sections, terminal,
     },
     source::{About, Source, State},
 };
-use text::{fit, rule};
+use text::fit;
 pub use waiting::Waiting;
 
 /// Smallest size of a terminal: columns and lines.
 pub const LEAST: (u16, u16) = (80, 24);
+/// Lines of the state band.
+const BAND: usize = 3;
 /// Lines above and below the body.
-const FRAME: usize = 5;
+const FRAME: usize = BAND + 3;
 
 /// Capabilities of a terminal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -74,6 +76,7 @@ impl Look {
             '│' => '|',
             '├' | '└' | '┌' | '┐' | '┘' | '┤' | '┬' | '┴' => '+',
             '…' => '~',
+            '·' => '.',
             other if other.is_ascii() => other,
             _ => '?',
         };
@@ -132,14 +135,14 @@ fn screen(
     height: usize,
 ) -> (Vec<Line<'static>>, Reach) {
     let about = source.about();
-    let mut all = vec![
-        tabs(model.screen, look, width),
-        look.line(state_tone(about.state), fit(&run(model, source, &about, width), width)),
-        look.line(Tone::Plain, rule("", width)),
-    ];
-    let room = height - FRAME;
+    let mut all = vec![tabs(model.screen, look, width)];
+    // A block of 16 lines with its remarks needs the line of the next step.
+    let is_editing = model.screen == Screen::Terminal && model.terminal.editor.is_some();
+    let saved = usize::from(is_editing);
+    all.extend(band::lines(&band_of(model, source), look, width).into_iter().take(BAND - saved));
+    let room = height - FRAME + saved;
     let (body, reach) = match (&model.picture, model.help) {
-        (_, true) => (help::lines(look), Reach::default()),
+        (_, true) => (help::lines(model, look), Reach::default()),
         (None, false) => {
             (vec![look.line(Tone::Plain, " The run has published no tick yet.")], Reach::default())
         }
@@ -155,7 +158,8 @@ fn screen(
                 panes::column(&link::sections(picture, source.story(), &cell), model, look, width, room)
             }
             Screen::Cell if model.drawing.is_some() => {
-                let drawn = model.drawing.iter().flat_map(|drawing| cell::drawn(picture, drawing));
+                let drawn =
+                    model.drawing.iter().flat_map(|drawing| cell::drawn(picture, drawing, width, room));
                 panes::column(&drawn.collect::<Vec<_>>(), model, look, width, room)
             }
             Screen::Cell => {
@@ -191,7 +195,7 @@ fn screen(
     all.extend(body.into_iter().take(room));
     all.resize(height - 2, Line::default());
     all.push(news(model, source, &about, look, width));
-    all.push(look.line(Tone::Plain, fit(keys(model, about.state), width)));
+    all.push(look.line(Tone::Plain, keys::line(model, about.state, width)));
     (all, reach)
 }
 
@@ -209,41 +213,6 @@ fn tabs(screen: Screen, look: Look, width: usize) -> Line<'static> {
     let right = if width > 90 { "?=help  q=quit " } else { "?=help " };
     spans.push(Span::raw(format!("{right:>rest$}", rest = width.saturating_sub(used))));
     Line::from(spans)
-}
-
-const fn state_tone(state: State) -> Tone {
-    match state {
-        State::Silent(_) | State::Torn => Tone::Trouble,
-        State::Log | State::Runs | State::Over => Tone::Plain,
-    }
-}
-
-/// The line about the run: its name, tick, velocity knob, and state.
-fn run(model: &Model, source: &dyn Source, about: &About<'_>, width: usize) -> String {
-    let (_, last) = source.range().unwrap_or_default();
-    let knob = model.picture.as_ref().map_or(0, |picture| picture.external.devices.joystick.velocity / 10);
-    let seconds = model.picture.as_ref().map_or(0.0, crate::rcs_console::picture::Picture::seconds);
-    let tick = model.tick();
-    let place = format!("tick {tick}  {seconds:.2} s  knob {knob} %");
-    let operator = model.operating.as_ref().filter(|operating| operating.lost.is_none());
-    let operating = if operator.is_some() { "OPERATING" } else { "LOOK ONLY" };
-    let waits = if operator.is_some_and(Operating::job_waits) { "  JOB WAITS" } else { "" };
-    let (left, right) = match about.state {
-        State::Log => {
-            (format!(" LOG {}  tick {tick} of {last}  {seconds:.2} s  knob {knob} %", about.name), "RECORDED")
-        }
-        State::Over => (format!(" {}  ENDED at tick {last}  {place}", about.name), "LOOK ONLY"),
-        State::Silent(silent) => {
-            (format!(" {}  {place}  NO NEW TICK FOR {silent} s", about.name), "LOOK ONLY")
-        }
-        State::Torn => (format!(" {}  {place}  TORN: not of one tick, look again", about.name), "LOOK ONLY"),
-        State::Runs if model.place != Place::Last => {
-            (format!(" {}  {place}  FROZEN, live is {last}", about.name), operating)
-        }
-        State::Runs => (format!(" {}  {place}{waits}", about.name), operating),
-    };
-    let room = width.saturating_sub(right.len() + 1);
-    format!("{} {right}", fit(&left, room))
 }
 
 /// The news line: text input, answer to a key, alarm, or ending of the run.
@@ -313,48 +282,4 @@ fn ending(model: &Model) -> String {
     let status = &picture.memory.task.status;
     let commands = lines::present_commands(picture);
     format!("Task says {}{}; {commands}", status.report, status.unconfirmed.suffix())
-}
-
-fn keys(model: &Model, state: State) -> &'static str {
-    match (model.help, model.screen, state) {
-        (true, ..) => " any key goes back",
-        _ if model.taking_over().is_some() => {
-            " Enter=wait  P=PAUSE now  Esc=no  Space=stop, go  h=hold Prim  F1=E-stop"
-        }
-        (_, Screen::Terminal, _) if model.terminal.editor.as_ref().is_some_and(Editor::shows_change) => {
-            " Enter=write it and load it  Esc=back to the text"
-        }
-        (_, Screen::Terminal, _) if model.terminal.editor.is_some() => {
-            " arrows, letters=edit  F2=check, show the change  Esc=leave it as it was"
-        }
-        (_, Screen::Ladder, State::Over) => " Enter=process  o=open its log at the cause  j k=choose  q=quit",
-        (_, Screen::Ladder, State::Log) => {
-            " Enter=process  j k=choose  [ ] { }=tick, second  n=change  t=trouble  c=cause"
-        }
-        (_, Screen::Ladder, _) => {
-            " Enter=process  j k=choose  p=freeze  [ ]=tick  n=change  t=trouble  a=ack"
-        }
-        (_, Screen::Process, _) => {
-            " Esc=back  Tab=pane  j k=scroll  /=filter  w v=watch  s=source  [ ]=tick  n N"
-        }
-        (_, Screen::Terminal, _) if model.operating.is_none() => " Esc=back  :=words  Tab=board  j k=scroll",
-        (_, Screen::Panels, _) if model.operating.is_none() => " Esc=back",
-        (_, Screen::Terminal, _) => {
-            " Esc=back  Tab=board  letters, digits=a line  ^C=stop it  Space=stop  F1=E-stop"
-        }
-        (_, Screen::Procedures, _) if !model.procedures.is_open => " j k=choose  Enter=open  Esc=back",
-        (_, Screen::Procedures, _) if model.operating.is_none() => {
-            " Esc=list  j k=step  y=it is so  s=leave it out  u=take back  r=from the start"
-        }
-        (_, Screen::Procedures, _) => {
-            " Esc=list  Enter=do it  y=it is so  s=leave out  u=take back  r=anew  Space=stop"
-        }
-        (_, Screen::Panels, _) => " Esc=back  Space=stop, go  F1=E-stop  :=request  j k Enter=keys  s=jog",
-        (_, Screen::Cell, _) => {
-            " Esc=back  v=drawing, values  j k=scroll  [ ] { }=tick, second  n=change  t c"
-        }
-        (_, Screen::Link, _) => {
-            " Esc=back  j k=scroll  [ ] { }=tick, second  n=change  t=trouble  g=go to tick"
-        }
-    }
 }

@@ -32,7 +32,8 @@ pub fn process(
     let head = format!("{name}: {command}, number {number}, {report}{}", unconfirmed.suffix());
     let filter =
         if model.filter.is_empty() { String::new() } else { format!("  (lines with {:?})", model.filter) };
-    let mut lines = vec![look.line(Tone::Plain, super::fit(&format!(" {head}{filter}"), width))];
+    let head = wrap(&format!(" {head}{filter}"), width);
+    let mut lines: Vec<_> = head.into_iter().map(|text| look.line(Tone::Plain, text)).collect();
     let room = room.saturating_sub(lines.len());
     let (last, story) = (model.last.as_ref(), source.story());
     let sections = [

@@ -40,7 +40,7 @@ impl Waiting {
     pub(super) fn compose(&self, look: Look, width: usize, height: usize) -> Vec<Line<'static>> {
         let mut lines = vec![
             look.line(Tone::Plain, format!(" rcs-console{:>rest$}", "q=quit ", rest = width - 12)),
-            look.line(Tone::Plain, fit(" no run", width - 10) + "LOOK ONLY"),
+            look.line(Tone::Plain, fit(" ?? NO RUN", width)),
             look.line(Tone::Plain, rule("", width)),
             Line::default(),
         ];

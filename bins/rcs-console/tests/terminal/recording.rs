@@ -111,7 +111,7 @@ fn a_recording_shows_the_start_up_of_the_robot_and_a_taught_point() {
         }
     }
     let mut console = Terminal::start(&["--run", &name, "--operate"], directory.path(), &[]);
-    console.wait_for("OPERATING");
+    console.wait_for("OPERATOR");
     thread::sleep(pause);
     console.press("7");
     console.wait_for("IV.3.3");
@@ -125,7 +125,7 @@ fn a_recording_shows_the_start_up_of_the_robot_and_a_taught_point() {
     thread::sleep(pause);
     // The knob stays at 0 after the start-up.
     console.press(":joystick velocity 1000\r");
-    console.wait_for("knob 100 %");
+    console.wait_for("speed 100 %");
     teach(&mut console, pause);
     thread::sleep(pause * 2);
     console.escape(">5 Terminal");
@@ -145,7 +145,7 @@ fn a_recording_shows_the_start_up_of_the_robot_and_a_taught_point() {
         played.process(output.as_bytes());
         shown.push(played.screen().contents());
     }
-    for picture in ["the robot is at HOME, and Task says finished", "frame   WORLD", "generation 1"] {
+    for picture in ["the robot is at HOME, and Task says finished", "box       WORLD", "generation 1"] {
         assert!(shown.iter().any(|screen| screen.contains(picture)), "{picture} is not in the recording");
     }
     if let Some(file) = file {

@@ -32,7 +32,7 @@ pub use self::{screen::sections, words::known};
 pub const BOARDS: [u8; 6] = [0, 2, 4, 6, 8, 12];
 /// Number of typed lines that are kept.
 const KEPT: usize = 100;
-/// The characters that are keys on this screen while the run takes requests; all others begin a line.
+/// The characters that are keys on this screen while the run takes requests, besides digits; all others begin a line.
 const KEYS: &str = " !:?[]{}";
 
 /// The mode of a terminal (IV.2.6).
@@ -293,7 +293,11 @@ impl Model {
                 }
             }
             Key::Esc if board.shown.is_some() => board.shown = None,
-            Key::Char(typed) if !KEYS.contains(typed) => match &mut self.operating {
+            Key::Char('0' | '8' | '9') => {
+                self.answer = Some("a line that begins with a number begins with :".to_owned())
+            }
+            Key::Char(typed) if !KEYS.contains(typed) && !typed.is_ascii_digit() => match &mut self.operating
+            {
                 Some(operating) if runs && operating.lost.is_none() => {
                     operating.back = 0;
                     self.prompt = Some(super::Prompt::Request(typed.to_string()));

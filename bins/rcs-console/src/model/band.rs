@@ -1,0 +1,394 @@
+//! The state band: the state of the robot in one word, the reason, the next step of a person, and the main facts.
+
+use closed_loop::{account::Kind, failure::Failure};
+use interfaces::{
+    Fault, ProcessId,
+    device::KNOB_FULL,
+    emove::Holding,
+    hws::HwsReport,
+    operator::BOARDS,
+    station::{BoxFrame, EStop},
+};
+use os_io::units::shown;
+use rcs_core::tick::TICK_S;
+
+use super::{Model, Place};
+use crate::rcs_console::{
+    picture::{Absence, Picture},
+    source::{About, Cell, Source, State},
+    story::process_named,
+};
+
+/// Command that stops the motion and holds the position.
+const PAUSE: &str = "PAUSE";
+/// Result of a run that has finished its job.
+const FINISHED: &str = "finished";
+/// Ticks over which the speed of the hand is measured.
+const SPEED_TICKS: u64 = 5;
+/// A hand that is slower is at rest, in/s.
+const AT_REST: f64 = 0.05;
+
+/// State of the robot.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Condition {
+    /// It carries out commands.
+    Running,
+    /// It waits at rest: for a command, or for a person.
+    Paused,
+    /// It cannot move, because a person or a switch stops it.
+    Stopped,
+    /// An emergency stop has taken its pressure.
+    EStop,
+    /// Something has gone wrong.
+    Fault,
+    /// The run has finished its job.
+    Finished,
+    /// The run has ended without a failure that is known here.
+    Ended,
+    /// No valid data arrive.
+    NoData,
+}
+
+impl Condition {
+    /// The word on the screen.
+    #[must_use]
+    pub const fn word(self) -> &'static str {
+        match self {
+            Self::Running => "RUNNING",
+            Self::Paused => "PAUSED",
+            Self::Stopped => "STOPPED",
+            Self::EStop => "E-STOP",
+            Self::Fault => "FAULT",
+            Self::Finished => "FINISHED",
+            Self::Ended => "ENDED",
+            Self::NoData => "NO DATA",
+        }
+    }
+
+    /// A sign for the word, which needs neither colour nor a special font.
+    #[must_use]
+    pub const fn shape(self) -> &'static str {
+        match self {
+            Self::Running => ">>",
+            Self::Paused => "||",
+            Self::Stopped => "[]",
+            Self::EStop => "XX",
+            Self::Fault => "!!",
+            Self::Finished => "==",
+            Self::Ended => "--",
+            Self::NoData => "??",
+        }
+    }
+}
+
+/// A state with its reason.
+#[derive(Clone, Debug, PartialEq, Eq)]
+struct Finding {
+    condition: Condition,
+    why: String,
+    next: String,
+}
+
+impl Finding {
+    fn new(condition: Condition, why: impl Into<String>, next: impl Into<String>) -> Self {
+        Self { condition, why: why.into(), next: next.into() }
+    }
+}
+
+/// The content of the band.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Band {
+    /// State of the robot.
+    pub condition: Condition,
+    /// The reason, or the command in progress.
+    pub why: String,
+    /// The next step of a person; empty if there is none.
+    pub next: String,
+    /// Line of the job, hand, knob, tick, time, speed of the hand, name, and who commands: the most important first.
+    pub facts: Vec<String>,
+    /// `OPERATOR`, `VIEWER`, `ENDED` or `RECORDED`.
+    pub role: &'static str,
+    /// True for a log: the state is not the present state of a robot.
+    pub is_recorded: bool,
+}
+
+/// The data that the state is decided from.
+struct Scene<'a> {
+    model: &'a Model,
+    source: &'a dyn Source,
+    about: &'a About<'a>,
+    picture: &'a Picture,
+    cell: Cell,
+    /// What went wrong up to this tick, unless work has continued since.
+    failure: Option<Failure>,
+}
+
+/// The checks in the order of their importance: the first that applies gives the state.
+const CHECKS: [fn(&Scene<'_>) -> Option<Finding>; 7] =
+    [no_data, finished, emergency, failed, ended, stopped, paused];
+
+/// The band of a console. A frozen picture does not change it: it shows the present state of the run.
+#[must_use]
+pub fn band(model: &Model, source: &dyn Source) -> Band {
+    let about = source.about();
+    let is_recorded = about.state == State::Log;
+    let latest = if model.is_frozen(source) {
+        source.range().and_then(|(_, last)| source.picture(last))
+    } else {
+        None
+    };
+    let role = match about.state {
+        State::Log => "RECORDED",
+        State::Over => "ENDED",
+        _ if model.operates() => "OPERATOR",
+        _ => "VIEWER",
+    };
+    let Some(picture) = latest.as_ref().or(model.picture.as_ref()) else {
+        let why = "the run has published no tick yet".to_owned();
+        let (next, facts) = (String::new(), vec![about.name.to_owned()]);
+        return Band { condition: Condition::NoData, why, next, facts, role, is_recorded };
+    };
+    let tick = picture.tick.0;
+    let (cell, failure) = (source.cell(tick), source.story().failure(tick));
+    let scene = Scene { model, source, about: &about, picture, cell, failure };
+    let Finding { condition, why, next } =
+        CHECKS.iter().find_map(|check| check(&scene)).unwrap_or_else(|| running(&scene));
+    let next = match role {
+        "VIEWER" if !next.is_empty() && condition != Condition::NoData => {
+            format!("{next} (with --operate)")
+        }
+        _ => next,
+    };
+    let in_units = |text: String| shown(&text).into_owned();
+    Band { condition, why: in_units(why), next: in_units(next), facts: scene.facts(), role, is_recorded }
+}
+
+fn no_data(scene: &Scene<'_>) -> Option<Finding> {
+    let (why, next) = match scene.about.state {
+        State::Silent(seconds) => (
+            format!("no new tick for {seconds} s: the robot may still move"),
+            "look at the robot, then at the program of the run",
+        ),
+        State::Torn => ("TORN: the buffers are not of one tick".to_owned(), "the console reads them again"),
+        State::Log | State::Runs | State::Over => return None,
+    };
+    Some(Finding::new(Condition::NoData, why, next))
+}
+
+fn finished(scene: &Scene<'_>) -> Option<Finding> {
+    let is_last = scene.source.range().is_some_and(|(_, last)| scene.picture.tick.0 == last);
+    let is_finished = is_last && scene.about.result == Some(FINISHED);
+    is_finished.then(|| Finding::new(Condition::Finished, "the job is finished", ""))
+}
+
+fn emergency(scene: &Scene<'_>) -> Option<Finding> {
+    const NEXT: &str = "7, procedure III.6: release the button, then start the robot again";
+    if let Cell::Shown(view) = &scene.cell
+        && let Some((site, _)) = EStop::ALL.iter().zip(view.controller.estops).find(|(_, is_in)| *is_in)
+    {
+        return Some(Finding::new(Condition::EStop, format!("the E-stop {} is pressed", site.place()), NEXT));
+    }
+    let failure = scene.failure.as_ref().filter(|failure| failure.kind == Kind::EmergencyStop)?;
+    scene.lacks_pressure().then(|| {
+        let next = if scene.is_live() { NEXT.to_owned() } else { scene.next_in_log(failure) };
+        Finding::new(Condition::EStop, failure.text.clone(), next)
+    })
+}
+
+fn failed(scene: &Scene<'_>) -> Option<Finding> {
+    let failure = scene.failure.as_ref()?;
+    let task = &scene.picture.memory.task.status;
+    let is_reported = task.report == HwsReport::Error || scene.source.story().is_ended_by(failure);
+    let is_present = match failure.kind {
+        Kind::EmergencyStop | Kind::Power => scene.lacks_pressure(),
+        Kind::RobotController | Kind::Link => is_reported || !scene.picture.memory.t3i.status.link_running,
+        Kind::Process | Kind::OffPath | Kind::Job => is_reported,
+        Kind::Collision | Kind::Lost | Kind::Device | Kind::FalseReport | Kind::Misplaced | Kind::Program => {
+            true
+        }
+    };
+    is_present.then(|| {
+        let next = if scene.is_live() { scene.next_in_run(failure) } else { scene.next_in_log(failure) };
+        Finding::new(Condition::Fault, failure.text.clone(), next)
+    })
+}
+
+fn ended(scene: &Scene<'_>) -> Option<Finding> {
+    let is_last = scene.source.range().is_some_and(|(_, last)| scene.picture.tick.0 == last);
+    match (scene.about.state, scene.about.result) {
+        (State::Over, _) => {
+            let why = format!("last command: {}", scene.command());
+            Some(Finding::new(Condition::Ended, why, "o opens its log, which has the result"))
+        }
+        (State::Log, Some(result)) if is_last => Some(Finding::new(Condition::Ended, result, "")),
+        (State::Log, None) if is_last => {
+            Some(Finding::new(Condition::Ended, "the log has no end: its program was killed", ""))
+        }
+        _ => None,
+    }
+}
+
+fn stopped(scene: &Scene<'_>) -> Option<Finding> {
+    let external = &scene.picture.external;
+    let stopped = |why: String, next: String| Some(Finding::new(Condition::Stopped, why, next));
+    if let Some(board) = BOARDS.iter().find(|board| external.operator.is_stopped(**board)) {
+        let (what, word) = match board {
+            0 => ("the pulse is stopped".to_owned(), "SSGO"),
+            board => (format!("board {board} is stopped"), "GO"),
+        };
+        return stopped(what, format!("5, Tab to board {board}, `{word}` starts it"));
+    }
+    if scene.picture.absence(ProcessId::Prim) == Some(Absence::Held) && !scene.is_recording() {
+        return stopped("Prim is held at the joystick box".to_owned(), "h releases it".to_owned());
+    }
+    if external.devices.joystick.velocity == 0 {
+        return stopped("the velocity knob is at 0".to_owned(), "Space turns it back".to_owned());
+    }
+    let Cell::Shown(view) = &scene.cell else { return None };
+    match view.controller.cut.as_str() {
+        "" if view.controller.lamps.hold => {
+            stopped("HOLD is on at the robot controller".to_owned(), "6: `panel hold off`".to_owned())
+        }
+        "" => None,
+        cut => stopped(format!("no pressure: {cut}"), "7: the procedures start the robot".to_owned()),
+    }
+}
+
+fn paused(scene: &Scene<'_>) -> Option<Finding> {
+    let paused = |why: String, next: &str| Some(Finding::new(Condition::Paused, why, next));
+    let external = &scene.picture.external;
+    if scene.is_recording() {
+        let why = "a pose is recorded: E-move and Prim are suspended until carriage return";
+        return paused(why.to_owned(), "6: M is the carriage return");
+    }
+    if external.devices.joystick.frame != 0 {
+        let frame = BoxFrame::from_bits(external.devices.joystick.frame).map_or("several", BoxFrame::text);
+        return paused(format!("the joystick box is on, frame {frame}"), "6: x switches it off");
+    }
+    let before = scene.failure.as_ref().map_or_else(String::new, |failure| format!("; {}", failure.text));
+    if scene.model.job_waits() {
+        return paused(format!("the job waits{before}"), "`:job go` continues the job");
+    }
+    match (external.hws.number, external.hws.command.as_str()) {
+        (0, _) => paused("no command yet".to_owned(), ""),
+        (_, PAUSE) => paused(format!("{PAUSE} {}{before}", scene.picture.memory.task.status.report), ""),
+        _ => None,
+    }
+}
+
+fn running(scene: &Scene<'_>) -> Finding {
+    Finding::new(Condition::Running, scene.command(), "")
+}
+
+impl Scene<'_> {
+    fn is_live(&self) -> bool {
+        matches!(self.about.state, State::Runs)
+    }
+
+    fn is_recording(&self) -> bool {
+        self.picture.memory.prim.status.recording
+    }
+
+    fn command(&self) -> String {
+        self.picture.external.hws.in_words().to_string()
+    }
+
+    /// True if the robot has no pressure, or if no data say that it has.
+    fn lacks_pressure(&self) -> bool {
+        match &self.cell {
+            Cell::Shown(view) => !view.controller.cut.as_str().is_empty(),
+            Cell::NotPublished | Cell::Recorded { .. } => true,
+        }
+    }
+
+    /// What a person has to do before the same command can succeed, if it is known.
+    fn to_do(&self, failure: &Failure) -> Option<&'static str> {
+        match failure.kind {
+            Kind::Collision | Kind::Lost | Kind::Misplaced | Kind::FalseReport => {
+                Some("put the cell in order")
+            }
+            Kind::Device => Some("repair the device"),
+            _ => {
+                let process = process_named(&failure.process)?;
+                let picture = self.source.picture(self.source.story().shown_at(failure))?;
+                match picture.fault(process)? {
+                    Fault::Reason(reason) => reason.remedy(),
+                    Fault::Link(_) => None,
+                }
+            }
+        }
+    }
+
+    fn next_in_run(&self, failure: &Failure) -> String {
+        match failure.kind {
+            Kind::Power => return "7, procedure III.6: start the robot again".to_owned(),
+            Kind::RobotController => return "7: the procedures recover the robot".to_owned(),
+            _ => {}
+        }
+        let first = self.to_do(failure).map_or_else(String::new, |first| format!("{first}; "));
+        format!("{first}`:job go` sends PAUSE and the command again")
+    }
+
+    fn next_in_log(&self, failure: &Failure) -> String {
+        let remedy = self.to_do(failure).map_or_else(String::new, |remedy| format!("; to do: {remedy}"));
+        let shown = self.source.story().shown_at(failure);
+        let look = match (self.about.state, self.picture.tick.0 == shown) {
+            (State::Over, _) => "o opens its log at the first cause".to_owned(),
+            (_, false) => format!("c goes to the first cause, tick {shown}"),
+            (_, true) if failure.table.is_some() => "Enter shows the row that decided".to_owned(),
+            (_, true) => "4, v shows the cell; n the next change".to_owned(),
+        };
+        format!("{look}{remedy}")
+    }
+
+    /// The facts, the most important first.
+    fn facts(&self) -> Vec<String> {
+        let external = &self.picture.external;
+        let mut facts = Vec::new();
+        match &self.cell {
+            Cell::Shown(view) if view.job.lines > 0 => {
+                facts.push(format!("line {} of {}", view.job.begun, view.job.lines));
+            }
+            _ => facts.push(format!("command {}", external.hws.number)),
+        }
+        facts.push(match self.picture.memory.subtask.status.held {
+            Holding::Nothing => "holds nothing".to_owned(),
+            Holding::Something => "holds something".to_owned(),
+            Holding::NotKnown => "holding not known".to_owned(),
+            Holding::Object(grip) => format!("holds {}", grip.object),
+        });
+        facts.push(format!(
+            "speed {} %",
+            u32::from(external.devices.joystick.velocity) * 100 / u32::from(KNOB_FULL)
+        ));
+        let tick = self.picture.tick.0;
+        facts.push(match (self.about.state, self.model.place, self.source.range()) {
+            (State::Log, _, Some((_, last))) => format!("tick {tick} of {last}"),
+            (State::Log, ..) | (_, Place::Last, _) => format!("tick {tick}"),
+            (_, Place::At(_), _) => format!("tick {tick}, SHOWN {}", self.model.tick()),
+        });
+        facts.push(format!("{:.2} s", tick as f64 * TICK_S));
+        if let Some(speed) = self.hand_speed() {
+            facts.push(match speed {
+                speed if speed < AT_REST => "hand at rest".to_owned(),
+                speed => shown(&format!("hand {speed:.1} in/s")).into_owned(),
+            });
+        }
+        facts.push(self.about.name.to_owned());
+        if let Some(who) = self.model.operating.as_ref().and_then(|operating| operating.commander()) {
+            facts.push(format!("{who} commands"));
+        }
+        facts
+    }
+
+    /// Speed of the tool point by the resolvers, in/s; `None` if it is not known.
+    fn hand_speed(&self) -> Option<f64> {
+        let before = self.source.picture(self.picture.tick.0.checked_sub(SPEED_TICKS)?)?;
+        let seconds =
+            self.picture.tick.0.checked_sub(before.tick.0).filter(|ticks| *ticks > 0)? as f64 * TICK_S;
+        let place = |picture: &Picture| picture.memory.t3i.status.resolver_frame.map(|frame| frame.tool);
+        let (now, was) = (place(self.picture)?, place(&before)?);
+        let square = now.iter().zip(was).map(|(now, was)| f64::from(now - was).powi(2)).sum::<f64>();
+        Some(square.sqrt() / 100.0 / seconds)
+    }
+}
