@@ -223,7 +223,7 @@ impl Story {
         }
     }
 
-    /// The tick whose picture shows a failure: the cell shows what happened in a tick with the next one, if there is one.
+    /// The tick whose picture shows a failure. The cell shows what happened in a tick with the next one, if any.
     #[must_use]
     pub fn shown_at(&self, failure: &Failure) -> u64 {
         failure.shown_at().min(self.last)

@@ -335,7 +335,7 @@ impl Scene<'_> {
         let look = match (self.about.state, self.picture.tick.0 == shown) {
             (State::Over, _) => "o opens its log at the first cause".to_owned(),
             (_, false) => format!("c goes to the first cause, tick {shown}"),
-            (_, true) if failure.table.is_some() => "Enter shows the row that decided".to_owned(),
+            (_, true) if failure.table.is_some() => "c, then 2 shows the row that decided".to_owned(),
             (_, true) => "4, v shows the cell; n the next change".to_owned(),
         };
         format!("{look}{remedy}")

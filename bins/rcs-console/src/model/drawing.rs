@@ -297,7 +297,11 @@ impl Drawing {
         let padded = |lines: Vec<String>| lines.into_iter().chain(std::iter::repeat(String::new()));
         let pairs = padded(from_above).zip(padded(from_the_side)).take(length);
         let lines = pairs.map(|(left, right)| format!("{left:<columns$} │ {right}")).collect();
-        let legends = [above_legend, side_legend];
+        let of_view = |view: &str, legend: String| match legend.as_str() {
+            "" => legend,
+            _ => format!("{view}: {legend}"),
+        };
+        let legends = [of_view("above", above_legend), of_view("side", side_legend)];
         vec![section(format!("from above, and from the side along Y; {title}"), lines, &legends), nearest]
     }
 
@@ -383,7 +387,9 @@ mod tests {
                 let is_drawn = size(0).max(size(1)) >= LEAST && size(0).max(size(2)) >= LEAST;
                 assert!(!is_drawn || text.matches(name.as_str()).count() >= 2, "{name} at {width}\n{text}");
             }
-            let mut drawn = text.lines().filter(|line| !line.starts_with(" a "));
+            let mut drawn = text
+                .lines()
+                .filter(|line| ![" a ", " above: ", " side: "].iter().any(|legend| line.starts_with(legend)));
             assert!(drawn.all(|line| line.chars().count() <= width), "{text}");
         }
         assert!(Drawing::load(Path::new("nowhere")).err().unwrap().contains("cell.toml"));

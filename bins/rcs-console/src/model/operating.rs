@@ -47,7 +47,7 @@ impl Model {
         true
     }
 
-    /// Carry out a key of the panel screen: of the joystick box, or of the key list. The first Enter names the key under
+    /// Carry out a key of the panel screen: of the joystick box, or of the list. The first Enter names the key under
     /// the cursor, the second one presses it, so that a stray Enter starts nothing.
     fn work_a_panel(&mut self, key: Key, was_chosen: bool) -> bool {
         let (frame, velocity) = (self.joystick().frame, self.joystick().velocity);

@@ -254,9 +254,11 @@ mod tests {
     }
 
     /// The smallest terminal has room for all lines: 18 below the band, with the two titles.
+    #[expect(clippy::field_reassign_with_default, reason = "another field is private")]
     #[test]
     fn panels_with_all_requests_fit_the_smallest_terminal() {
-        let operating = Operating { cursor: 21, ..Operating::default() };
+        let mut operating = Operating::default();
+        operating.cursor = 21;
         let cell = Cell::Shown(Box::default());
         let all = sections(&DeviceInputs::default(), &CommonMemory::default(), &cell, Some(&operating));
         let lines: Vec<_> = all.into_iter().flat_map(|section| section.lines).collect();

@@ -7,7 +7,7 @@ use crate::rcs_console::{
 
 use super::text::fit;
 
-/// The keys of the present screen. While this console operates a run, the line begins with the keys that stop the robot.
+/// The keys of the present screen. While this console operates a run, the line begins with those that stop the robot.
 pub fn line(model: &Model, state: State, width: usize) -> String {
     let takes_requests = model.operates() && !matches!(state, State::Over | State::Log);
     let is_typing =
@@ -31,7 +31,6 @@ pub fn line(model: &Model, state: State, width: usize) -> String {
 
 /// The keys of a screen, the most important first.
 fn keys(model: &Model, state: State, takes_requests: bool) -> &'static [&'static str] {
-    const TIMES: [&str; 5] = ["[ ] { }=tick, second", "n=change", "t=trouble", "c=cause", "g=tick"];
     if model.help {
         return &["any other key goes back"];
     }
@@ -82,6 +81,8 @@ fn keys(model: &Model, state: State, takes_requests: bool) -> &'static [&'static
         (Screen::Cell, _) => {
             &["Esc=back", "v=drawing, values", "j k=scroll", "[ ] { }=tick, second", "t c", "n=change"]
         }
-        (Screen::Link, _) => &TIMES,
+        (Screen::Link, _) => {
+            &["Esc=back", "j k=scroll", "[ ] { }=tick, second", "c=cause", "t=trouble", "n=change", "g=tick"]
+        }
     }
 }
