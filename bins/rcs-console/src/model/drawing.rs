@@ -380,7 +380,7 @@ mod tests {
             let sections = drawing.sections(&HOME_JOINTS, width, room);
             let text = text(&sections);
             for sign in ["O", "#", "X", "·"] {
-                assert!(text.matches(sign).count() >= 2, "{sign}\n{text}");
+                assert!(text.contains(sign), "{sign}\n{text}");
             }
             for (name, low, high) in &drawing.blocks {
                 let size = |axis: usize| high[axis] - low[axis];
