@@ -132,7 +132,7 @@ mod tests {
     }
 
     #[test]
-    fn a_copy_that_fails_leaves_nothing() {
+    fn a_failed_copy_leaves_no_file() {
         let place = tempfile::tempdir().unwrap();
         // A directory of that name cannot be made, after many files were written.
         let blocked = "data/robots";

@@ -32,7 +32,7 @@ const KINDS: [Kind; 4] = [
 ];
 
 #[test]
-fn nothing_is_allocated_after_the_start() {
+fn no_heap_is_allocated_after_the_start() {
     let wanted =
         std::env::var("RCS_TICKS").map_or(TICKS, |text| text.parse().expect("RCS_TICKS is a number"));
     let boards = std::env::var("RCS_BOARDS").unwrap_or_else(|_| "one".to_owned());

@@ -23,7 +23,7 @@ fn text(bytes: &[u8]) -> String {
 }
 
 #[test]
-fn the_page_of_the_command_lines_is_what_the_programs_say() {
+fn the_page_of_the_command_lines_matches_the_programs() {
     let mut page = TOP.to_owned();
     for program in [rcs_run(), rcs_log(), rcs_console(), rcs_cell(), rcs_neighbour()] {
         let scratch = Scratch::new("pages");

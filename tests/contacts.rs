@@ -40,7 +40,7 @@ fn a_via_point_that_is_too_low_leads_into_the_tray() {
 }
 
 #[test]
-fn a_part_that_lies_where_another_is_put_is_run_into_and_the_job_goes_on_to_its_end() {
+fn a_part_in_an_occupied_sector_is_a_collision_and_the_job_ends() {
     let outcome = run_into("linkbar.job", "occupied", |scratch| {
         scratch.job_with(
             "linkbar.job",
@@ -56,7 +56,7 @@ fn a_part_that_lies_where_another_is_put_is_run_into_and_the_job_goes_on_to_its_
 }
 
 #[test]
-fn a_vise_that_was_taught_a_fifth_of_an_inch_beside_its_place_is_run_into() {
+fn a_vise_taught_a_fifth_of_an_inch_off_is_a_collision() {
     let outcome = run_into("linkbar", "beside", |scratch| {
         scratch.data_with(
             "poses.blk",
@@ -159,7 +159,7 @@ fn no_contact_is_permitted_that_no_job_needs() {
 }
 
 #[test]
-fn the_nearest_miss_of_a_good_run_is_told() {
+fn the_nearest_miss_of_a_good_run_is_reported() {
     let outcome = run("linkbar", 1, "nearest", |_| {});
     assert_eq!(outcome.status, Some(0), "{}", outcome.last_words);
     assert!(contacts(&outcome).is_empty());

@@ -70,7 +70,7 @@ fn a_silence_is_survived_below_three_ticks_and_where_the_robot_stood() {
 
 /// In a motion the robot goes on with its last speed, and comes to rest elsewhere: a person decides.
 #[test]
-fn a_silence_in_a_motion_ends_it_and_the_command_goes_on_when_it_is_sent_again() {
+fn a_silence_ends_the_motion_and_the_repeated_command_continues_it() {
     let line = "== MOVE LINKBAR1_BH +2 UNIT_1 4 +2 PFIXTURE 0 -- 0";
     let text = std::fs::read_to_string(root().join("data/jobs/linkbar.job")).expect("the linkbar");
     let again = text.replace(line, &format!("{line} expect error\n== PAUSE -- +0 -- 0 +0 -- 0 -- 0\n{line}"));
@@ -108,7 +108,7 @@ fn a_robot_that_falls_behind_is_stopped_while_the_distance_is_small() {
 
 /// PAUSE takes the position of the robot over, and the command goes on: this robot falls behind at full speed only.
 #[test]
-fn after_a_robot_fell_behind_pause_takes_its_position_over() {
+fn pause_adopts_the_position_of_a_robot_that_fell_behind() {
     let line = "== MOVE LINKBAR1_BH +2 UNIT_1 4 +2 PFIXTURE 0 -- 0";
     let text = std::fs::read_to_string(root().join("data/jobs/linkbar.job")).expect("the linkbar");
     let slow = "** joystick velocity 300";

@@ -85,7 +85,7 @@ fn in_front_of_the_vise_the_arm_sinks_and_keeps_the_part() {
 }
 
 #[test]
-fn at_home_and_safe_nothing_is_hit() {
+fn a_sagging_arm_at_home_and_safe_hits_no_body() {
     for place in ["HOME", "SAFE"] {
         // The stop comes behind the last command, and ends the job none the less.
         let text = format!("== MOVE -- +0 -- 0 +0 {place} 0 -- 0\n** estop pedestal\n** wait 10\n");
@@ -114,7 +114,7 @@ const RESTART: &str = "** after 60 estop terminals\n\
 const PAUSE: &str = "== PAUSE -- +0 -- 0 +0 -- 0 -- 0\n";
 
 #[test]
-fn a_job_that_starts_the_robot_again_goes_on() {
+fn a_job_that_restarts_the_robot_continues() {
     let text =
         format!("{RESTART}{PAUSE}== MOVE -- +0 -- 0 +0 SAFE 0 -- 0\n== MOVE -- +0 -- 0 +0 HOME 0 -- 0\n");
     let outcome = job("restart", &text);
@@ -137,7 +137,7 @@ fn without_the_last_keys_the_next_command_finds_no_link() {
 }
 
 #[test]
-fn the_first_of_all_runs_after_a_stop_knows_nothing_of_it() {
+fn the_first_run_after_a_stop_is_unaffected() {
     let stopped = job("stopped", "** estop control-panel\n== MOVE -- +0 -- 0 +0 SAFE 0 -- 0\n");
     assert_stopped(&stopped, "control panel");
     let next = job("next", "== MOVE -- +0 -- 0 +0 SAFE 0 -- 0\n");

@@ -252,7 +252,7 @@ fn a_command_that_failed_is_sent_again_if_that_was_asked_for() {
 
 /// The sensor of a holster fails for good. What a person has to do is said, and not tried.
 #[test]
-fn what_needs_a_person_is_said_and_not_tried_again() {
+fn failures_for_a_person_are_reported_and_not_retried() {
     let faults = |scratch: &Scratch| scratch.faults_of("holster-eye-off");
     let outcome = run_with("tool-change", 1, "retry-person", &["--retry", "3"], faults);
     assert_eq!(outcome.status, Some(1), "{}", outcome.last_words);
@@ -394,7 +394,7 @@ fn number(name: &str, otherwise: u64) -> u64 {
 }
 
 #[test]
-fn whatever_fails_no_run_crashes_hangs_or_lies() {
+fn every_fault_ends_in_a_true_report() {
     let first = number("RCS_FAULT_SEED", 28);
     let mut ends = [0, 0, 0];
     for seed in first..first + number("RCS_FAULT_RUNS", 6) {

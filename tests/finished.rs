@@ -49,7 +49,7 @@ fn a_part_in_another_sector_than_the_command_said_has_not_arrived() {
 }
 
 #[test]
-fn a_part_that_slid_in_the_fingers_lies_beside_its_place() {
+fn a_part_that_slid_in_the_fingers_lies_away_from_its_place() {
     // Two pounds hold the part, and give way where it rubs.
     let outcome = run("linkbar", 1, "finished-force", |scratch| {
         let weak = "-obj-  LINKBAR1         2     0300   0060   2 ";
@@ -59,7 +59,7 @@ fn a_part_that_slid_in_the_fingers_lies_beside_its_place() {
 }
 
 #[test]
-fn what_is_near_enough_is_said_in_the_cell_description() {
+fn tolerances_are_in_the_cell_description() {
     // The linkbar lies 0.15 in off by its data.
     let outcome = run("linkbar", 1, "finished-near", |scratch| {
         scratch.data_with("cell.toml", "placing_tolerance = 0.25", "placing_tolerance = 0.10");
@@ -99,7 +99,7 @@ fn a_part_that_was_pushed_out_of_the_fingers_is_named_with_where_it_lies() {
 }
 
 #[test]
-fn a_line_that_has_nothing_to_act_on_fails_in_words() {
+fn a_line_without_an_object_fails_with_a_message() {
     let nothing = job("finished-drum", "** drum grip\n");
     assert_fails(&nothing, &["in `** drum grip`", "the drum has nothing to grip: no tool is in its place"]);
     let nothing = job("finished-vise", "** machine LINKBAR1_BH LINKBAR1 PFIXTURE\n");

@@ -136,7 +136,7 @@ fn a_pedestal_that_cannot_turn_so_far_is_reported() {
 }
 
 #[test]
-fn a_tool_that_the_drum_does_not_let_go_is_not_torn_out() {
+fn a_tool_that_the_drum_holds_is_not_torn_out() {
     assert_fails_for("tool-change.job", "held-tool", Reason::Detected, |scratch| {
         scratch.job_with("tool-change.job", "** drum release", "%");
     });

@@ -109,7 +109,7 @@ fn a_jog_that_was_not_recorded_ends_straight_at_a_resting_place() {
 
 /// A linkbar in the fingers over its new sector of the tray, where a jog has moved it up.
 #[test]
-fn a_part_that_was_moved_off_its_sector_is_let_go_in_it() {
+fn a_part_moved_off_its_sector_is_released_in_it() {
     for moves in [&["frame WORLD", "up 12"][..], &["frame WORLD", "up 80"]] {
         let text = format!(
             "** tray UNIT_1 4 LINKBAR1_BH\n\
@@ -126,7 +126,7 @@ fn a_part_that_was_moved_off_its_sector_is_let_go_in_it() {
 }
 
 #[test]
-fn a_part_in_the_vise_is_let_go_only_where_it_was_brought() {
+fn a_part_in_the_vise_is_released_only_at_its_destination() {
     let begin = "** tray UNIT_1 4 LINKBAR1_BH\n** vise partial PFIXTURE\n\
                  == MOVE LINKBAR1_BH +2 UNIT_1 4 +2 PFIXTURE 0 -- 0\n** vise close PFIXTURE\n";
     let away = jog(&["frame WORLD", "stick 0 100 40"]);

@@ -45,7 +45,7 @@ fn the_linkbar_is_machined_and_brought_back() {
 }
 
 #[test]
-fn nothing_is_allocated_after_the_start() {
+fn no_heap_is_allocated_after_the_start() {
     let result = &linkbar().result;
     assert!(result["ticks"].as_u64().unwrap() > 1000);
     assert_eq!(result["allocations_after_start"], 0);
@@ -152,7 +152,7 @@ proptest! {
 
     /// Whatever the order of the processes, and though it changes from tick to tick, the run is the same.
     #[test]
-    fn the_order_of_the_processes_changes_nothing(orders in orders()) {
+    fn the_order_of_the_processes_does_not_matter(orders in orders()) {
         let Recorded { log, ticks } = recorded();
         let store = task_data(log).unwrap();
         let data = store.view();

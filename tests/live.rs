@@ -150,7 +150,7 @@ fn digest_without_viewers(ticks: u64) -> String {
 }
 
 #[test]
-fn viewers_of_both_subprotocols_get_what_the_log_gets() {
+fn viewers_of_both_subprotocols_get_the_messages_of_the_log() {
     let directory = tempdir().unwrap();
     let said = Said::default();
     let config = config(&directory, 400);
@@ -220,7 +220,7 @@ fn viewers_of_both_subprotocols_get_what_the_log_gets() {
 }
 
 #[test]
-fn ten_viewers_that_read_nothing_change_no_bit() {
+fn ten_stalled_viewers_do_not_change_the_run() {
     let directory = tempdir().unwrap();
     let said = Said::default();
     let config = RunConfig { clock: ClockKind::Fast, speed: 1, ..config(&directory, 3000) };

@@ -193,7 +193,7 @@ fn a_job_is_stopped_commanded_and_finished_and_the_log_gives_the_same_run() {
 }
 
 #[test]
-fn after_an_emergency_stop_the_operator_starts_the_robot_up_and_the_job_goes_on() {
+fn operator_restarts_the_robot_after_an_emergency_stop_and_the_job_continues() {
     let cell = Cell::start(TO_SAFE_AND_HOME, |config| config);
     let mut client = cell.client("anna");
     wait_ticks(&mut client, 150);
@@ -306,17 +306,17 @@ fn values_are_written_while_their_processes_stand() {
 
 /// LOAD (IV.2.4): a block counts from the next command on, and the log has its text.
 #[test]
-fn a_block_is_loaded_while_the_run_goes_on() {
-    load_while_the_run_goes_on(Boards::One);
+fn a_block_is_loaded_during_a_run() {
+    load_during_a_run(Boards::One);
 }
 
 /// The block reaches every board before the generation counts.
 #[test]
 fn a_block_is_loaded_by_boards_of_other_processes() {
-    load_while_the_run_goes_on(Boards::Split);
+    load_during_a_run(Boards::Split);
 }
 
-fn load_while_the_run_goes_on(boards: Boards) {
+fn load_during_a_run(boards: Boards) {
     let place = tempfile::tempdir().unwrap();
     let data = place.path().join("data");
     copy(&root().join("data"), &data);
@@ -551,7 +551,7 @@ fn motion_by_hand_ends_with_its_session() {
 }
 
 #[test]
-fn a_stick_that_is_centred_or_whose_frame_is_off_moves_nothing_later() {
+fn a_centred_stick_or_one_without_frame_causes_no_later_motion() {
     let stand_by = |config| RunConfig { stand_by: true, ..config };
     let cell = Cell::start(TO_SAFE_AND_HOME, stand_by);
     let mut client = cell.client("anna");
@@ -625,7 +625,7 @@ fn only_a_stop_is_carried_out_when_nobody_waits_for_it() {
 
 /// `rcs-run send` gives up while the run is stopped by a signal; the run goes on and does not carry out its command.
 #[test]
-fn a_command_to_a_stopped_run_is_discarded_when_the_run_goes_on() {
+fn a_command_to_a_stopped_run_is_discarded_on_resume() {
     let directory = tempfile::tempdir().unwrap();
     let (job, log) = (directory.path().join("safe.job"), directory.path().join("log.mcap"));
     std::fs::write(&job, "== MOVE -- 0 -- 0 0 SAFE 0 -- 0\n").unwrap();

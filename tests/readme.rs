@@ -97,22 +97,22 @@ fn run_samples(page: &str) -> usize {
 }
 
 #[test]
-fn the_samples_of_the_readme_are_what_is_printed() {
+fn samples_of_the_readme_match_the_output() {
     assert_eq!(run_samples("README.md"), 3, "the README shows a run, a failure and why");
 }
 
 #[test]
-fn the_samples_of_the_page_about_forks_are_what_is_printed() {
+fn samples_of_the_page_about_forks_match_the_output() {
     assert_eq!(run_samples("docs/fork.md"), 6, "the page shows a run, four forks and a comparison");
 }
 
 #[test]
-fn the_samples_of_the_first_tutorial_are_what_is_printed() {
+fn samples_of_the_first_tutorial_match_the_output() {
     assert_eq!(run_samples("docs/start.md"), 8, "the page shows runs, changes, a failure and a pose");
 }
 
 #[test]
-fn the_samples_of_the_tutorial_on_failures_are_what_is_printed() {
+fn samples_of_the_tutorial_on_failures_match_the_output() {
     assert_eq!(
         run_samples("docs/explain-a-failure.md"),
         8,
@@ -121,7 +121,7 @@ fn the_samples_of_the_tutorial_on_failures_are_what_is_printed() {
 }
 
 #[test]
-fn the_samples_of_the_tutorial_on_new_parts_are_what_is_printed() {
+fn samples_of_the_tutorial_on_new_parts_match_the_output() {
     assert_eq!(
         run_samples("docs/teach-a-part.md"),
         21,
@@ -130,6 +130,6 @@ fn the_samples_of_the_tutorial_on_new_parts_are_what_is_printed() {
 }
 
 #[test]
-fn the_sample_of_the_page_about_forms_is_what_is_printed() {
+fn sample_of_the_page_about_forms_matches_the_output() {
     assert_eq!(run_samples("docs/forms.md"), 1, "the page shows the path of a command");
 }

@@ -253,7 +253,7 @@ fn joystick_that_is_on_is_switched_off() {
 
 /// The remedy "press Hold again ... at the robot controller's panel".
 #[test]
-fn link_that_is_off_comes_back_with_hold() {
+fn a_disabled_link_restarts_with_hold() {
     let mut it = Operated::start(TO_SAFE);
     it.wait(50).please(&["panel hold on"]).fails(Reason::LinkOff);
     it.please(&["panel hold off"]).wait(100).go();
@@ -389,7 +389,7 @@ fn tool_command_waits_for_the_command_before_it() {
 
 /// TRANSFER to the pedestal is refused before anything moves.
 #[test]
-fn transfer_to_the_pedestal_is_refused_and_moves_nothing() {
+fn transfer_to_the_pedestal_is_refused_without_motion() {
     let mut it = Operated::start("** wait 10\n== MOVE -- 0 -- 0 0 SAFE 0 -- 0\n");
     let line = "TRANSFER LCLEVIS_IH +1 PFIXTURE 0 +1 PEDESTAL 0 HOME 0";
     it.wait(5);
@@ -474,7 +474,7 @@ fn part_in_the_pedestal_is_named_by_the_person() {
 
 /// A person turns the table back and forth; the regrip continues from the angle.
 #[test]
-fn table_is_turned_by_a_person_and_the_regrip_goes_on() {
+fn regrip_continues_after_a_person_turned_the_table() {
     let mut it = flipping();
     it.please(&["pedestal flip -20"])
         .wait(4)
@@ -503,7 +503,7 @@ fn table_without_a_known_angle_is_calibrated_after_the_part_is_taken_out() {
 
 /// The remedies of a robot in the drum: the same command again, and RELEASE-TOOL without a tool.
 #[test]
-fn robot_in_an_empty_drum_comes_out_with_release_tool() {
+fn release_tool_moves_the_robot_out_of_an_empty_drum() {
     let mut it = Operated::start(
         "== ACQUIRE-TOOL DRILL-2 +1 -- 0 +1 TOOL-SAFE 0 -- 0\n** drum release
 == REMOVE-TOOL DRILL-2 +1 -- 0 +1 -- 0 TOOL-SAFE 0\n",
@@ -697,19 +697,19 @@ fn gripper_is_put_away_after_its_holster_was_emptied() {
 /// Reasons with the scenario that follows their remedy; other reasons share the text.
 const SCENARIOS: &[(Reason, &str)] = &[
     (Reason::JoystickOn, "joystick_that_is_on_is_switched_off"),
-    (Reason::LinkOff, "link_that_is_off_comes_back_with_hold"),
+    (Reason::LinkOff, "a_disabled_link_restarts_with_hold"),
     (Reason::AlreadyHolding, "gripper_that_holds_another_object_places_it_first"),
     (Reason::HeldElsewhere, "object_held_in_mid_air_is_placed_with_transfer"),
     (Reason::NotClamped, "object_in_an_open_vise_is_released_after_the_vise_is_closed"),
     (Reason::UnknownHeld, "unknown_object_is_taken_out_by_hand_and_put_back"),
     (Reason::HeldNotKnown, "gripper_without_calibration_is_opened_by_hand"),
     (Reason::NotPrepared, "tool_command_waits_for_the_command_before_it"),
-    (Reason::PedestalOnly, "transfer_to_the_pedestal_is_refused_and_moves_nothing"),
+    (Reason::PedestalOnly, "transfer_to_the_pedestal_is_refused_without_motion"),
     (Reason::PartInPedestal, "part_in_the_pedestal_is_regripped_by_the_command_sent_again"),
     (Reason::PedestalHoldsOther, "part_in_the_pedestal_is_named_by_the_person"),
     (Reason::TableAngleUnknown, "table_without_a_known_angle_is_calibrated_after_the_part_is_taken_out"),
     (Reason::InDrum, "robot_in_the_drum_continues_with_the_tool_command"),
-    (Reason::NoToolInDrum, "robot_in_an_empty_drum_comes_out_with_release_tool"),
+    (Reason::NoToolInDrum, "release_tool_moves_the_robot_out_of_an_empty_drum"),
     (Reason::InHolster, "gripper_change_continues_with_the_same_command"),
     (Reason::ForwardOnly, "seat_motion_continues_with_the_same_command"),
     (Reason::NotDetected, "gripper_change_continues_after_the_eye_of_the_holster_is_repaired"),

@@ -144,7 +144,7 @@ fn a_field_that_is_absent_at_first_takes_the_rules_of_an_absent_one() {
 }
 
 #[test]
-fn rows_are_learned_and_are_no_difference() {
+fn row_numbers_are_mapped_and_are_not_a_difference() {
     let was = ["1 grip.fired none", "2 grip.fired open 1", "4 grip.fired open 2", "7 grip.fired open 1"];
     let is = ["1 grip.fired none", "2 grip.fired move 3", "4 grip.fired move 3", "7 grip.fired wait 1"];
     let found = compared(&was, &is, "");
@@ -186,7 +186,7 @@ fn a_process_that_is_gone_is_a_difference() {
 }
 
 #[test]
-fn another_end_is_a_difference_and_what_comes_after_it_is_not_compared() {
+fn another_end_is_a_difference_and_ends_the_comparison() {
     let was = "1\ta\t0\n2\ta\t1\n3\ta\t2\nend\tticks\t3\nend\tstatus\t0\n";
     let is = "1\ta\t0\n2\ta\t1\nend\tticks\t2\nend\tstatus\t1\n";
     let found = compare(was.as_bytes(), is.as_bytes(), &Renames::default()).expect("both are whole");
@@ -198,7 +198,7 @@ fn another_end_is_a_difference_and_what_comes_after_it_is_not_compared() {
 }
 
 #[test]
-fn what_is_no_trace_is_refused() {
+fn invalid_traces_are_refused() {
     let refused = |text: &str| {
         let found = compare(trace(&["1 a 0"]).as_bytes(), text.as_bytes(), &Renames::default());
         found.map(|found| found.to_string()).expect_err("it is no trace")
@@ -222,7 +222,7 @@ fn renames_that_say_too_much_are_refused() {
 }
 
 #[test]
-fn entries_that_nothing_needs_are_named() {
+fn unused_entries_are_named() {
     let renames = r#"
         renamed = [{ old = "a", new = "b" }, { old = "x", new = "y" }]
         value = [{ path = "b", old = "0", new = "none" }, { path = "b", old = "1", new = "one" }]
@@ -256,7 +256,7 @@ fn traced(change: impl FnOnce(&mut CommonMemory)) -> (Vec<String>, Vec<String>) 
 }
 
 #[test]
-fn a_trace_has_all_fields_and_then_what_changes() {
+fn a_trace_has_all_fields_and_then_the_changes() {
     let (first, later) = traced(|memory| {
         memory.emove.status.reason = Reason::ObjectLost;
         memory.emove.status.held = Holding::Something;

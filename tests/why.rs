@@ -154,7 +154,7 @@ fn a_contact_leads_to_the_line_of_the_data_that_the_robot_followed() {
 }
 
 #[test]
-fn a_process_that_rests_has_no_row_in_a_tick() {
+fn a_resting_process_fires_no_row() {
     let outcome = run("rests.job", 1, "why-rests", |scratch| {
         let job = "== MOVE -- +0 -- 0 +0 SAFE 0 -- 0\n** wait 50\n";
         std::fs::write(scratch.file("rests.job"), job).expect("the job can be written");
@@ -182,7 +182,7 @@ const ADDED_POSE: &str = "       0    -5022      736
 ";
 
 #[test]
-fn what_is_added_to_the_data_changes_no_run_that_does_not_use_it() {
+fn added_data_do_not_change_runs_that_do_not_use_them() {
     let outcome = run("linkbar", 1, "why-added", |_| {});
     let scratch = Scratch::new("added");
     scratch.data_with("poses.blk", "       0    -5022      636\n", ADDED_POSE);

@@ -233,7 +233,7 @@ fn a_data_system_that_is_killed_and_started_again_hears_the_update_once() {
 }
 
 #[test]
-fn a_controller_that_is_killed_tells_after_its_next_startup() {
+fn a_killed_controller_sends_pending_updates_after_its_next_startup() {
     for fate in [Fate::DiesBefore, Fate::DiesAfter] {
         let scratch = Scratch::new(&format!("killed-{fate:?}"));
         let file = scratch.file("items.db");

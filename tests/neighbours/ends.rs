@@ -57,7 +57,7 @@ fn assert_ended(ended: &Ended, status: Option<i32>, why: &str) {
 }
 
 #[test]
-fn who_goes_before_he_has_answered_ends_the_run_in_its_first_tick() {
+fn a_neighbour_that_leaves_before_its_answer_ends_the_run_in_its_first_tick() {
     for answers in 0..3 {
         let controller = Controller::start("early", "workstation", &TOO_LONG);
         let mut peer = controller.connect(Role::Workstation);
@@ -79,7 +79,7 @@ fn who_goes_before_he_has_answered_ends_the_run_in_its_first_tick() {
 }
 
 #[test]
-fn who_goes_while_others_are_waited_for_ends_the_run_in_its_first_tick() {
+fn a_neighbour_that_leaves_during_the_wait_ends_the_run_in_its_first_tick() {
     let controller = Controller::start("earlier", "workstation,pedestal", &TOO_LONG);
     drop(controller.connect(Role::Workstation));
     let pedestal = controller.connect(Role::Pedestal);
@@ -94,7 +94,7 @@ fn who_goes_while_others_are_waited_for_ends_the_run_in_its_first_tick() {
 }
 
 #[test]
-fn who_goes_between_two_commands_has_finished_even_if_one_failed() {
+fn a_neighbour_that_leaves_between_commands_has_finished() {
     let (controller, mut workstation) = start("between");
     assert_eq!(workstation.carry_out(&bare(1, "PAUSE")).0, "finished");
     assert_eq!(workstation.carry_out(&bare(2, "FROBNICATE")).0, "error");
@@ -105,7 +105,7 @@ fn who_goes_between_two_commands_has_finished_even_if_one_failed() {
 }
 
 #[test]
-fn who_goes_while_the_robot_moves_has_not_finished() {
+fn a_neighbour_that_leaves_during_a_motion_has_not_finished() {
     let (controller, workstation) = start_moving("amid");
     drop(workstation);
     let ended = controller.end();
@@ -115,7 +115,7 @@ fn who_goes_while_the_robot_moves_has_not_finished() {
 }
 
 #[test]
-fn who_is_disconnected_for_what_he_sent_has_not_finished() {
+fn a_neighbour_disconnected_for_a_protocol_error_has_not_finished() {
     let (controller, mut workstation) = start("violation");
     assert_eq!(workstation.carry_out(&bare(1, "PAUSE")).0, "finished");
     let mut status = Mailbox::initialized(HWSC_STATUS);
@@ -127,7 +127,7 @@ fn who_is_disconnected_for_what_he_sent_has_not_finished() {
 }
 
 #[test]
-fn an_emergency_stop_that_stands_ends_the_run_when_the_arm_lies_still() {
+fn an_unreset_emergency_stop_ends_the_run_when_the_arm_rests() {
     let (controller, mut workstation) = start("estop");
     workstation.begin_in_cell("estop terminals");
     while workstation.cell().trouble != Trouble::Emergency {
@@ -141,7 +141,7 @@ fn an_emergency_stop_that_stands_ends_the_run_when_the_arm_lies_still() {
 
 /// An end that was asked for, too.
 #[test]
-fn an_emergency_stop_that_stands_is_no_good_end_on_the_grid_either() {
+fn an_unreset_emergency_stop_is_a_failure_on_the_grid_too() {
     let controller = Controller::start("standing", "workstation", &["--json", "--clock", "real"]);
     let mut workstation = Workstation::connect(&controller);
     workstation.begin_in_cell("estop joystick-box");
@@ -176,7 +176,7 @@ const BY_HAND: [&str; 6] = [
 /// A command replaces the one that is executed: the robot stops, and goes on from there. The operator may
 /// bring it to HOME instead.
 #[test]
-fn a_robot_that_was_stopped_on_its_way_goes_on_or_is_brought_back_by_hand() {
+fn a_robot_stopped_on_its_way_continues_or_is_moved_back_by_hand() {
     let (controller, mut workstation) = start_moving("by-hand");
     assert_eq!(workstation.carry_out(&bare(3, "PAUSE")).0, "finished");
     for line in BY_HAND {

@@ -22,7 +22,7 @@ fn hang(mut peer: Peer) -> String {
 }
 
 #[test]
-fn who_hangs_is_disconnected_and_the_robot_goes_on() {
+fn hung_neighbour_is_disconnected_without_stopping_the_robot() {
     const HUNG: [Role; 3] = [Role::DataSystem, Role::Pedestal, Role::Vision];
     let outside = "workstation,data-system,pedestal,vision";
     let scratch = Scratch::new("hung");

@@ -119,7 +119,7 @@ fn a_block_that_the_workstation_controller_loads_counts_from_the_next_command_on
 }
 
 #[test]
-fn a_load_that_is_refused_changes_nothing() {
+fn a_refused_load_keeps_the_old_data() {
     let play = |cell: &Cell, workstation: &mut Workstation, text: &str, lines: &[(&str, &str)]| {
         finishes(workstation, &bare(1, "PAUSE"));
         cell.change(SAFE, text);
@@ -163,7 +163,7 @@ fn a_load_that_is_refused_changes_nothing() {
 }
 
 #[test]
-fn while_a_command_is_executed_nothing_is_loaded() {
+fn no_block_is_loaded_during_a_command() {
     Cell::new("busy").play(&[], |_, workstation| {
         finishes(workstation, &bare(1, "PAUSE"));
         workstation.send(&to_safe(2));

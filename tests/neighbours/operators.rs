@@ -185,7 +185,7 @@ fn a_command_that_a_stalled_line_delays_is_discarded() {
 }
 
 #[test]
-fn a_run_says_who_may_operate_it() {
+fn a_run_reports_who_may_operate_it() {
     for access in ["none", "owner"] {
         let cell = Cell::start(&format!("net-{access}"), "workstation", access);
         let why = cell.admission().expect_err("it is refused").to_string();

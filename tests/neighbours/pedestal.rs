@@ -259,7 +259,7 @@ fn a_pedestal_in_another_process_changes_not_a_bit() {
 }
 
 #[test]
-fn whatever_becomes_of_the_pedestal_the_command_ends_and_nothing_is_dropped() {
+fn every_failure_of_the_pedestal_ends_the_command_without_a_drop() {
     let controller = Controller::start("fates", "workstation,pedestal", &["--json", "--wait", "5"]);
     let mut shop = Shop::with_clevis(controller);
     // It was never there.
@@ -309,7 +309,7 @@ fn a_pedestal_that_is_killed_and_started_again_turns_the_next_part() {
 
 /// What a run says when its pedestal is not there.
 #[test]
-fn a_job_without_its_pedestal_says_so() {
+fn a_job_without_its_pedestal_is_refused_with_the_reason() {
     let scratch = Scratch::new("no-pedestal");
     let (socket, log) = (scratch.file("rcs.sock"), scratch.file("run.mcap"));
     let output = Command::new(rcs_run())

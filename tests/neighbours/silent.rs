@@ -72,7 +72,7 @@ fn fall_silent(mut peer: Peer, answers: usize, tell: &Sender<()>) {
 }
 
 #[test]
-fn a_run_ends_as_asked_for_while_a_tick_waits_for_a_neighbour() {
+fn a_run_can_be_ended_while_a_tick_waits_for_a_neighbour() {
     const STEPPED: [Role; 3] = [Role::Workstation, Role::Pedestal, Role::Vision];
     for silent in STEPPED {
         let (tell, heard) = channel();
@@ -163,7 +163,7 @@ fn a_command_that_is_lost_is_heard_again() {
 }
 
 #[test]
-fn a_garbled_answer_stands_among_the_events_and_the_command_is_asked_again() {
+fn a_garbled_answer_is_an_event_and_the_command_is_requested_again() {
     let (ended, heard) = connect_after(Some(b"what?"));
     let found = "a status of 14 bytes was expected, found 5";
     assert!(ended.page.contains(found), "{}", ended.page);

@@ -43,7 +43,7 @@ fn next(workstation: &mut Workstation, verb: &str, destination: &str) -> String 
 }
 
 #[test]
-fn the_workstation_commands_between_lines_of_the_job_and_the_job_goes_on() {
+fn the_workstation_commands_between_lines_of_the_job() {
     let lines = [hand_over(), go("SAFE"), go("HOME"), pause(), hand_over()];
     let controller = start("switching", &lines, "workstation", &[]);
     let mut first = Workstation::connect(&controller);
@@ -89,7 +89,7 @@ fn a_workstation_that_goes_amid_a_command_ends_the_run() {
 }
 
 #[test]
-fn what_must_precede_is_said() {
+fn missing_prerequisites_are_reported() {
     let refused = |name: &str, lines: &[String], outside: &str| -> Ended {
         let controller = start(name, lines, outside, &["--wait", "1"]);
         let ended = controller.end();

@@ -22,7 +22,7 @@ fn ask_until(client: &mut Client, workstation: &mut Workstation, request: &str, 
 }
 
 #[test]
-fn an_operator_takes_over_and_gives_back_and_nothing_of_the_time_between_is_executed() {
+fn commands_during_an_operator_session_are_not_executed_later() {
     let name = format!("taken-{}", std::process::id());
     let controller = Controller::start("taken", "workstation", &["--clock", "20x", "--run", &name]);
     let mut workstation = Workstation::connect(&controller);

@@ -124,7 +124,7 @@ fn pictures_that_fail_are_taken_again_and_given_up() {
 /// What is no answer to the present request is as if none had come: not a bit of what the controller does
 /// differs, and it says why.
 #[test]
-fn what_is_no_answer_moves_nothing_and_is_said() {
+fn invalid_answers_are_reported_and_cause_no_motion() {
     let silent = linkbar("silent", "1:off");
     let digest = after(&silent.page, "digest").to_owned();
     for (fault, said) in [
@@ -149,7 +149,7 @@ fn what_is_no_answer_moves_nothing_and_is_said() {
 }
 
 #[test]
-fn a_run_without_its_vision_says_so_and_begins() {
+fn a_run_without_its_vision_warns_and_starts() {
     let controller = Controller::start("blind", "vision", &["linkbar", "--wait", "1"]);
     let ended = controller.end();
     assert_eq!(ended.status, Some(1), "{}", ended.said);
@@ -168,7 +168,7 @@ fn a_run_without_its_vision_says_so_and_begins() {
 
 /// A vision system that works with other parts than the cell has would recognise none of them.
 #[test]
-fn vision_with_another_cell_description_ends_and_says_why() {
+fn vision_with_another_cell_description_ends_with_the_reason() {
     let scratch = Scratch::new("another-cell");
     scratch.data_with("cell.toml", "shape_tolerance = 0.06", "shape_tolerance = 0.05");
     let data = scratch.file("data").display().to_string();
@@ -187,7 +187,7 @@ fn vision_with_another_cell_description_ends_and_says_why() {
 
 /// The log of a run that vision has failed says what it was, and replays.
 #[test]
-fn the_log_says_why_and_replays_without_vision() {
+fn the_log_has_the_reason_and_replays_without_vision() {
     let program = rcs_neighbour();
     let scratch = Scratch::new("vision-why");
     let (log, socket) = (scratch.file("run.mcap"), scratch.file("rcs.sock").display().to_string());

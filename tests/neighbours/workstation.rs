@@ -70,7 +70,7 @@ fn digest_with(name: &str, what: impl FnOnce(&mut Workstation)) -> String {
 
 /// Refused commands say why, and no buffer of the controller differs from those of a run without them.
 #[test]
-fn refused_commands_say_why_and_nothing_moves() {
+fn refused_commands_report_the_reason_and_cause_no_motion() {
     let quiet = digest_with("quiet", |_| {});
     let disturbed = digest_with("disturbed", |workstation| {
         let good = command::encode(&bare(2, "MOVE")).expect("it fits");
@@ -211,7 +211,7 @@ fn a_command_that_task_does_not_know_fails_and_the_next_one_is_carried_out() {
 /// On the 40 ms grid the controller goes on alone, and numbers are synchronized when a workstation controller
 /// connects (IX.1).
 #[test]
-fn a_workstation_controller_that_comes_again_goes_on_from_the_echo() {
+fn a_reconnected_workstation_controller_continues_from_the_echo() {
     let controller = Controller::start("again", "workstation", &["--json", "--clock", "real"]);
     let mut first = Workstation::connect(&controller);
     assert_eq!(first.carry_out(&bare(1, "PAUSE")).0, "finished");

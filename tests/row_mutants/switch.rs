@@ -263,7 +263,7 @@ fn other() {}
 ";
 
     #[test]
-    fn a_changed_table_stands_beside_the_table_and_is_switched_on_by_its_number() {
+    fn a_changed_table_is_compiled_next_to_the_table_and_selected_by_number() {
         let table = &Table::read(Path::new("release.rs"), TEXT)[0];
         let mutants = crate::mutate::mutants(table);
         let finish = mutants.iter().find(|mutant| mutant.after.contains("Busy => Finish")).unwrap();

@@ -100,7 +100,7 @@ esac
 "#;
 
     #[test]
-    fn a_test_tells_which_changes_it_reaches_and_which_break_it() {
+    fn a_test_reports_the_changes_that_it_reaches_and_detects() {
         let directory = tempfile::tempdir().unwrap();
         let path = directory.path().join("program");
         fs::write(&path, SCRIPT).unwrap();

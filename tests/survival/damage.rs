@@ -59,7 +59,7 @@ fn clean_leaves_a_run_of_the_same_name_under_another_directory_alone() {
 
 /// In a `/dev/shm` of its own another user opens and empties what it can, while runs begin and end.
 #[test]
-fn another_user_opens_nothing_of_a_run_and_keeps_none_from_starting() {
+fn another_user_cannot_open_or_block_a_run() {
     if !geteuid().is_root() {
         eprintln!("only root can start a process of another user: not tried");
         return;

@@ -34,7 +34,7 @@ fn stopped_for_a_second(directory: &Path, more: &[&str]) -> Ended {
 }
 
 #[test]
-fn skipped_slots_are_counted_and_change_nothing() {
+fn skipped_slots_are_counted_and_have_no_other_effect() {
     let scratch = Scratch::new("stopped");
     let ended = stopped_for_a_second(&scratch.file(""), &["--log", "none"]);
     assert_eq!(ended.status, Some(0), "{}", ended.said);
@@ -54,7 +54,7 @@ fn skipped_slots_are_counted_and_change_nothing() {
 }
 
 #[test]
-fn the_robot_holds_and_goes_on_and_the_log_replays() {
+fn the_robot_holds_and_resumes_and_the_log_replays() {
     let scratch = Scratch::new("holds");
     let ended = stopped_for_a_second(&scratch.file(""), &["--overrun", "hold:5", "--log", "held.mcap"]);
     assert_eq!(ended.status, Some(0), "{}", ended.said);

@@ -9,7 +9,7 @@ use whole_system_tests::{
 };
 
 #[test]
-fn what_is_shared_is_the_owners_alone() {
+fn shared_files_belong_to_the_owner_alone() {
     let scratch = Scratch::new("modes");
     let mut run = Running::start(&scratch.file(""), "linkbar", &["--clock", "real", "--log", "none"]);
     drop(run.attach());

@@ -20,7 +20,7 @@ fn assert_goes_on(ended: &Ended, sentence: &str) {
 }
 
 #[test]
-fn without_shared_memory_nobody_looks_on_and_the_run_goes_on() {
+fn without_shared_memory_the_run_continues_unobserved() {
     let scratch = Scratch::new("no-memory");
     let full = "mount -t tmpfs -o size=64k tmpfs /dev/shm";
     let Some(ended) = apart(&scratch.file(""), full, &["--ticks", "500", "--log", "none"]) else {

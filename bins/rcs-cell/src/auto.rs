@@ -100,7 +100,7 @@ mod tests {
     }
 
     #[test]
-    fn it_does_not_undo_what_a_person_does() {
+    fn the_box_keeps_the_settings_of_a_person() {
         let (mut t3, mut operator) = (t3(), Operator::new(true));
         run(&mut t3, &operator, 30.0, true);
         assert!(operator.step_back() && !operator.step_back());

@@ -102,7 +102,7 @@ mod tests {
     }
 
     #[test]
-    fn a_robot_with_egm_is_behind_the_link_or_this_program_itself() {
+    fn a_robot_with_egm_is_remote_or_simulated_here() {
         programs::shipped::carry();
         let cli = |arguments: &[&str]| Cli::try_parse_from(["rcs-cell"].iter().chain(arguments));
         assert!(cli(&["--link", "x", "--egm", "6510,slack=20"]).is_ok());

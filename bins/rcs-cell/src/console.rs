@@ -177,7 +177,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_meant_is_found_and_what_is_wrong_is_said() {
+    fn abbreviations_resolve_and_mistakes_are_reported() {
         assert_eq!("  Control POWER on ".parse(), Ok(ConsoleCommand::Key(Key::ControlPower(true))));
         assert_eq!("align 3".parse(), Ok(ConsoleCommand::Key(Key::Align(Some(3)))));
         for key in [

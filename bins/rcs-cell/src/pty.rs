@@ -224,7 +224,7 @@ mod tests {
     }
 
     #[test]
-    fn all_bytes_pass_and_a_host_comes_and_goes() {
+    fn all_bytes_pass_while_a_host_connects_and_disconnects() {
         let place = tempfile::tempdir().unwrap();
         let path = place.path().join("t3");
         let mut pty = Pty::open(&path).unwrap();
@@ -266,7 +266,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_not_ours_is_left_alone() {
+    fn files_of_other_programs_are_kept() {
         let place = tempfile::tempdir().unwrap();
         let path = place.path().join("t3");
         fs::write(&path, "precious").unwrap();

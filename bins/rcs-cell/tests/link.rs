@@ -146,7 +146,7 @@ impl Host {
 }
 
 #[test]
-fn the_host_finds_the_robot_at_home_and_comes_back_where_it_left_it() {
+fn the_host_finds_the_robot_at_home_and_later_where_it_left_it() {
     let place = Place::new();
     let mut cell = Cell::start(&place.link(), &["--auto"]);
     cell.wait_for("waits for a host");

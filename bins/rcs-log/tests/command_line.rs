@@ -84,7 +84,7 @@ fn stdout(output: &Output) -> String {
 }
 
 #[test]
-fn info_tells_commands_and_failure() {
+fn info_prints_commands_and_failure() {
     let scratch = Scratch::new();
     let log = scratch.log("run.mcap", 1000);
     let output = rcs_log(&["info"], &[&log]);
@@ -160,7 +160,7 @@ fn an_answer_without_a_reader_ends_quietly() {
 }
 
 #[test]
-fn replay_takes_several_logs_and_says_which_cannot_be_used() {
+fn replay_takes_several_logs_and_names_unusable_ones() {
     let scratch = Scratch::new();
     let (one, two) = (scratch.log("one.mcap", 1000), scratch.log("two.mcap", 500));
     let output = rcs_log(&["replay"], &[&one, &two]);
@@ -204,7 +204,7 @@ fn diff_begins_with_the_rows_motions_and_times_that_changed() {
 }
 
 #[test]
-fn diff_tells_when_two_cells_begin_to_differ() {
+fn diff_reports_when_two_cells_begin_to_differ() {
     let scratch = Scratch::new();
     let one = scratch.log("one.mcap", 1000);
     let two = scratch.log_of_cell("two.mcap", 1000, |tick| u64::from(tick.0 >= 60) * 0xAB);

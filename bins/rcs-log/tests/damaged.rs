@@ -83,7 +83,7 @@ fn chunks(bytes: &[u8]) -> Vec<usize> {
 }
 
 #[test]
-fn damage_in_the_middle_is_told_and_the_rest_is_read() {
+fn damage_in_the_middle_is_reported_and_the_rest_is_read() {
     let place = tempfile::tempdir().unwrap();
     let path = with_a_bad_chunk(place.path());
     let output = rcs_log(&["info", "--json"], &[&path]);

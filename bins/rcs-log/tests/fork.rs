@@ -86,7 +86,7 @@ fn a_line_more_makes_all_that_follows_later() {
 }
 
 #[test]
-fn another_pose_moves_the_robot_and_stands_in_the_log_of_the_fork() {
+fn another_pose_moves_the_robot_and_is_in_the_log_of_the_fork() {
     let lower = LOGS.path().join("lower.mcap");
     let change = format!("{TRAY}-=40");
     let output = rcs_log(&["fork", text(&LINKBAR), "--tick", "500", "--set", &change, "-o", text(&lower)]);
@@ -188,7 +188,7 @@ fn a_log_that_this_program_does_not_repeat_is_not_forked() {
 }
 
 #[test]
-fn compare_tells_jobs_that_are_the_same_from_those_that_are_not() {
+fn compare_distinguishes_equal_and_different_jobs() {
     let new = tempfile::tempdir().expect("a directory for data");
     copy(Path::new(DATA), new.path());
     let same = rcs_log(&["compare", DATA, text(new.path()), "linkbar"]);

@@ -171,7 +171,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_done_about_skipped_slots_is_a_word() {
+    fn overrun_policy_parses_from_text() {
         let overrun = |text| Cli::try_parse_from(["rcs-run", "--overrun", text]).map(|cli| cli.run.overrun);
         assert_eq!(Cli::parse_from(["rcs-run"]).run.overrun, Policy::Count);
         assert_eq!(overrun("hold:3").ok(), Some(Policy::Hold(3)));

@@ -44,7 +44,7 @@ fn a_branch_that_is_not_interrupted_is_the_ordinary_run_bit_for_bit() {
 }
 
 #[test]
-fn a_single_branch_is_told_row_by_row() {
+fn a_single_branch_is_printed_row_by_row() {
     let text = rcs_run(&["campaign", "linkbar", "--at", "60", "--interrupt", "refused"]);
     assert!(text.starts_with("refused after tick 60, in `PAUSE`"), "{text}");
     for expected in ["the operator sends MOVE to NOWHERRE", "Task", "row", "Done at tick"] {
@@ -68,7 +68,7 @@ fn the_table_is_written_as_markdown() {
 
 /// Branches that were hurt in earlier campaigns (docs/evidence.md "Series").
 #[test]
-fn what_searches_have_found_hurts_nothing_any_more() {
+fn faults_found_by_searches_stay_fixed() {
     for (job, tick, kind) in [
         ("turned-part", "1564", "fault:id-pins-bad"),
         ("turned-part", "2528", "fault:air-lost+1:replaced"),
@@ -96,7 +96,7 @@ const REQUIRED: &str =
 /// A sample of the campaign: all jobs, all required kinds and the E-stop, at ticks that follow from the
 /// number of the job.
 #[test]
-fn a_sample_of_the_campaign_goes_on_and_hurts_nothing() {
+fn a_sample_of_the_campaign_recovers_without_damage() {
     let count = |row: &Value, name: &str| row[name].as_u64().expect("counts are numbers");
     let (mut branches, mut done) = (0, 0);
     for (number, job) in ["linkbar", "clevis", "turned-part", "tool-change"].into_iter().enumerate() {
@@ -191,7 +191,7 @@ fn false_confirmations_after_a_jog_stay_away() {
 
 /// A part is taken away before its picture. The command fails, which is true, and continues when the part is back.
 #[test]
-fn a_true_error_goes_on_after_its_remedy() {
+fn a_job_continues_after_the_remedy_of_its_error() {
     let campaign =
         json(&["campaign", "linkbar", "--at", "300", "--interrupt", "take:1", "--judge", "job", "--json"]);
     let branch = &campaign["branches"][0];

@@ -127,7 +127,7 @@ fn blocks_that_a_job_loads_are_checked_against_the_cell() {
 
 /// Two objects that differ in their vision ids alone; then the cell has parts of two sizes by these names.
 #[test]
-fn objects_that_only_the_camera_can_tell_apart_are_warned_of() {
+fn objects_that_only_the_camera_distinguishes_are_warned_of() {
     let place = Place::new();
     let data = place.data();
     let blocks = "BLOCK# 1 OFFSET 22000\n-obj- ONE 1 300 60 30 350   -obj- TWO 1 300 60 30 350\n\
@@ -485,7 +485,7 @@ fn findings_are_grouped_by_datum() {
 }
 
 #[test]
-fn a_data_error_is_shown_with_its_place_and_nothing_runs() {
+fn a_data_error_is_shown_with_its_place_and_prevents_the_run() {
     let place = Place::new();
     let data = place.data();
     let poses = data.join("poses.blk");
@@ -519,7 +519,7 @@ fn said_of(place: &Place, file: &str, from: &str, to: &str) -> [String; 2] {
 }
 
 #[test]
-fn a_name_that_only_the_cell_has_is_told_before_the_first_tick() {
+fn a_name_that_only_the_cell_has_is_reported_before_the_first_tick() {
     let place = Place::new();
     let unknown = |from: &str, to: &str, sentences: &[&str]| {
         for said in said_of(&place, "cell.toml", from, to) {
@@ -550,7 +550,7 @@ fn a_name_that_only_the_cell_has_is_told_before_the_first_tick() {
 }
 
 #[test]
-fn a_name_that_only_the_job_has_is_told_before_the_first_tick() {
+fn a_name_that_only_the_job_has_is_reported_before_the_first_tick() {
     let place = Place::new();
     let said = said_of(&place, "jobs/linkbar.job", "vise partial PFIXTURE", "vise partial PFIXTURE CLEVISS");
     for said in said {
@@ -711,7 +711,7 @@ fn an_interrupt_ends_the_run_in_order() {
 }
 
 #[test]
-fn another_program_looks_on_and_changes_nothing() {
+fn an_observing_program_changes_no_digest() {
     let child = command(&["--clock", "real", "--ticks", "40", "--json", "--log", "none"])
         .stdout(Stdio::piped())
         .stderr(Stdio::null())
@@ -742,7 +742,7 @@ fn another_program_looks_on_and_changes_nothing() {
 }
 
 #[test]
-fn what_a_killed_run_left_is_removed_by_clean() {
+fn clean_removes_the_remains_of_a_killed_run() {
     let mut child = command(&["--clock", "real", "--log", "none"])
         .stdout(Stdio::null())
         .stderr(Stdio::null())

@@ -67,7 +67,7 @@ fn text(bytes: &[u8]) -> String {
 }
 
 #[test]
-fn a_run_goes_on_without_standard_error() {
+fn a_run_continues_without_standard_error() {
     let place = tempfile::tempdir().unwrap();
     let job = place.path().join("fails.job");
     std::fs::write(&job, FAILS).unwrap();

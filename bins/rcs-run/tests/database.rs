@@ -64,7 +64,7 @@ fn in_hand() -> Item {
 }
 
 #[test]
-fn the_file_says_where_every_part_is() {
+fn the_file_gives_the_place_of_every_part() {
     let place = Place::new();
     let output = place.run(&format!("{CONNECT}{FETCH}"));
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
@@ -75,14 +75,14 @@ fn the_file_says_where_every_part_is() {
 }
 
 #[test]
-fn without_startup_nothing_is_told() {
+fn without_startup_no_update_is_sent() {
     let place = Place::new();
     assert!(place.run(FETCH).status.success());
     assert!(place.items().is_empty());
 }
 
 #[test]
-fn what_was_told_survives_a_run_that_is_killed() {
+fn sent_updates_survive_a_killed_run() {
     let place = Place::new();
     // An hour and more of waiting, some seconds of it in fast clock.
     let job = format!("{CONNECT}{FETCH}{}", "** wait 36000\n".repeat(100));
@@ -116,7 +116,7 @@ fn a_file_of_another_kind_is_refused_before_the_first_tick() {
 
 /// Before, the second run closed the session of the first, whose job failed.
 #[test]
-fn a_second_run_with_the_same_file_is_refused_and_the_first_goes_on() {
+fn a_second_run_with_the_same_file_is_refused_and_the_first_continues() {
     let place = Place::new();
     let first = place
         .command(&format!("{CONNECT}{FETCH}"), &["--clock", "5x", "--operator", "none"])

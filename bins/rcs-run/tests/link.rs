@@ -303,7 +303,7 @@ fn a_link_that_is_late_is_not_usable() {
 }
 
 #[test]
-fn nobody_at_the_port_is_no_link() {
+fn a_port_without_peer_is_not_a_link() {
     on_the_grid(|| {
         let place = Place::new();
         let _peer = Peer::plug(&place.port(), None);
@@ -317,7 +317,7 @@ fn nobody_at_the_port_is_no_link() {
 }
 
 #[test]
-fn a_port_that_is_unplugged_comes_back() {
+fn an_unplugged_port_is_reopened() {
     on_the_grid(|| {
         let place = Place::new();
         let first = Peer::plug(&place.port(), PROMPT);
@@ -540,7 +540,7 @@ fn a_pulled_cable_ends_the_run_with_its_reason() {
 }
 
 #[test]
-fn what_does_not_go_together_is_refused_at_once() {
+fn contradictory_options_are_refused_at_once() {
     for (arguments, says) in [
         (&["--robot", "serial:/dev/none", "--clock", "real"][..], "no serial port /dev/none"),
         (

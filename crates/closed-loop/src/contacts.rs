@@ -400,7 +400,7 @@ mod tests {
     }
 
     #[test]
-    fn a_collision_is_told_when_it_begins_and_when_it_ends_with_its_greatest_depth() {
+    fn a_collision_is_reported_at_its_start_and_at_its_end_with_its_depth() {
         let mut check = new_check();
         let lines = play(&mut check, &[(-0.2, MOVE), (0.3, MOVE), (0.7, MOVE), (0.2, GRASP), (-0.2, MOVE)]);
         assert_eq!(
@@ -422,7 +422,7 @@ mod tests {
     }
 
     #[test]
-    fn a_command_that_is_refused_moves_nothing() {
+    fn a_refused_command_causes_no_motion() {
         let mut memory = CommonMemory::default();
         memory.task.subtask.command = SubtaskVerb::Position;
         (memory.subtask.emove.command, memory.subtask.emove.number) = (EmoveVerb::MovToObj, 7);
@@ -449,7 +449,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_permitted_is_no_collision_and_what_is_too_deep_is_one() {
+    fn a_permitted_contact_is_a_collision_only_if_too_deep() {
         let mut permitted = new_check();
         assert!(play(&mut permitted, &[(0.05, GRASP), (0.1, GRASP), (-0.5, GRASP)]).is_empty());
         assert_eq!(permitted.verdict(), None);
@@ -461,7 +461,7 @@ mod tests {
     }
 
     #[test]
-    fn the_next_command_may_lead_away_from_what_the_last_one_touched() {
+    fn the_next_command_may_leave_the_contact_of_the_last_one() {
         let mut leaving = new_check();
         assert!(play(&mut leaving, &[(0.08, GRASP), (0.08, MOVE), (0.03, MOVE), (-0.5, MOVE)]).is_empty());
         let mut going_on = new_check();
@@ -472,7 +472,7 @@ mod tests {
     }
 
     #[test]
-    fn the_nearest_miss_is_of_what_may_never_be_touched() {
+    fn the_nearest_miss_is_of_a_body_that_may_never_be_touched() {
         let mut check = new_check();
         assert_eq!(check.margin(), MARGIN);
         let mut pass = |tick: u64, distance: f64| {

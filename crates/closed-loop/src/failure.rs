@@ -344,7 +344,7 @@ mod tests {
     }
 
     #[test]
-    fn a_reason_comes_with_its_names() {
+    fn a_reason_carries_its_names() {
         let watch = watched(&[
             |memory| {
                 memory.subtask.emove.command = EmoveVerb::MovToLoc;
@@ -364,7 +364,7 @@ mod tests {
     }
 
     #[test]
-    fn every_process_tells_its_command() {
+    fn every_process_reports_its_command() {
         let mut memory = CommonMemory::default();
         memory.emove.v_grip = JawsCommand { command: JawsVerb::Grasp, size: 200, ..JawsCommand::default() };
         memory.emove.tool_grip = JawsCommand {

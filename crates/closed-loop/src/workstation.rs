@@ -278,7 +278,7 @@ mod tests {
     }
 
     #[test]
-    fn tray_vise_and_machine_do_what_their_lines_say() {
+    fn tray_vise_and_machine_execute_their_lines() {
         let mut bench = Bench::new();
         bench.play("** tray UNIT_1 4 LINKBAR1_BH 50 -20 1500").unwrap();
         bench.play("** tray UNIT_2 7 SHAFT_BH").unwrap();

@@ -58,7 +58,7 @@ fn a_command_that_is_done_already_is_done_at_once() {
 }
 
 #[test]
-fn a_bad_command_is_refused_and_nothing_moves() {
+fn a_bad_command_is_refused_without_motion() {
     let mut rig = Rig::new();
     rig.command("PAUSE", "");
     assert_eq!(rig.finish(ProcessId::ALL, 2000), FINISHED);
@@ -283,7 +283,7 @@ impl Rig {
 }
 
 #[test]
-fn held_processes_are_not_lost_and_go_on_where_they_were() {
+fn held_processes_are_not_lost_and_resume() {
     let mut rig = Rig::new();
     rig.command("PAUSE", "");
     assert_eq!(rig.finish(ProcessId::ALL, 2000), FINISHED);
@@ -331,7 +331,7 @@ fn a_held_process_is_stepped_once_a_press() {
 
 /// `^C` and `GO` on each board, and the pulse, in the middle of a motion (IV.2.6).
 #[test]
-fn a_stopped_board_stands_and_goes_on() {
+fn a_stopped_board_pauses_and_resumes() {
     for board in BOARDS {
         let mut rig = Rig::new();
         rig.command("PAUSE", "");
@@ -428,7 +428,7 @@ const fn forget(variable: Variable) -> Option<Write> {
 
 /// `<=` (IV.2.6): a value is written while the process stands, and nothing else changes.
 #[test]
-fn a_value_is_written_into_a_process_that_stands() {
+fn a_value_is_written_into_a_stopped_process() {
     let upward: Vec<_> = ProcessId::ALL.iter().rev().copied().collect();
     for &variable in Variable::ALL {
         for order in [ProcessId::ALL, &upward] {
@@ -451,7 +451,7 @@ fn a_value_is_written_into_a_process_that_stands() {
 
 /// Nothing is written into a process that runs: the bits are those of a run without.
 #[test]
-fn nothing_is_written_into_a_process_that_runs() {
+fn a_running_process_refuses_a_written_value() {
     for &variable in Variable::ALL {
         let digests = [None, forget(variable)].map(|write| {
             let mut rig = believing();
@@ -609,7 +609,7 @@ proptest! {
 }
 
 #[test]
-fn a_state_that_is_restored_goes_on_with_the_same_bits() {
+fn a_restored_state_continues_bit_for_bit() {
     let mut rig = Rig::new();
     rig.command("PAUSE", "");
     assert_eq!(rig.finish(ProcessId::ALL, 2000), FINISHED);

@@ -368,7 +368,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_not_understood_is_answered_with_nak_and_forgotten() {
+    fn unknown_messages_are_answered_with_nak_and_discarded() {
         let (mut controller, mut robot) = running();
         let mut garbled = to([10, -6293, -636, -9000, 13500, 0], NO_FUNCTION);
         garbled.rx.bytes[15] ^= 1;
@@ -377,7 +377,7 @@ mod tests {
     }
 
     #[test]
-    fn every_limit_has_its_warning_and_nothing_moves() {
+    fn every_limit_has_its_warning_and_prevents_motion() {
         for (words, warning) in [
             ([57, -6293, -636, -9000, 13500, 0], Warning::Translation),
             ([0, -6293, -636, -9000, 13500, 230], Warning::Orientation),
@@ -501,7 +501,7 @@ mod tests {
     }
 
     #[test]
-    fn a_hold_completes_what_is_begun_and_keeps_the_next() {
+    fn a_hold_completes_the_current_step_and_keeps_the_next() {
         let (mut controller, mut robot) = running();
         controller.step(&to([10, -6293, -636, -9000, 13500, 0], [1, 2]), &mut robot);
         let mut held = to([20, -6293, -636, -9000, 13500, 0], NO_FUNCTION);

@@ -138,7 +138,7 @@ mod tests {
     }
 
     #[test]
-    fn other_words_are_their_own_frame_and_what_does_not_fit_is_not_kept() {
+    fn other_words_are_their_own_frame_and_excess_bytes_are_dropped() {
         let mut exact = ExactFrames::default();
         exact.offer(&WireFrame::from_frame(&tool(1.0)), &tool(3.0));
         let words = words(&tool(1.0));

@@ -157,7 +157,7 @@ mod tests {
     }
 
     #[test]
-    fn a_whole_turn_is_no_change() {
+    fn a_whole_turn_is_not_a_change() {
         let a = Plate { words: [0, 0, 0, 18_000, 9_000, -17_950] };
         let b = Plate { words: [0, 0, 0, -18_000, 9_000, 18_000] };
         assert_eq!(Limits::NBS.check(&a, &b), Ok(()));

@@ -245,7 +245,7 @@ mod tests {
     }
 
     #[test]
-    fn what_does_not_fit_is_refused() {
+    fn wrong_sizes_are_refused() {
         let mut frame = Frame::identity();
         frame.position.y = 327.68;
         assert_eq!(

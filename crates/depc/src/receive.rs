@@ -323,7 +323,7 @@ mod tests {
     }
 
     #[test]
-    fn restarts_in_a_row_are_one_also_behind_a_command() {
+    fn repeated_restarts_are_one_also_after_a_command() {
         let mut receiver = CommandReceiver::default();
         let mut line = command().to_vec();
         line.extend([0x05; 3]);
@@ -333,7 +333,7 @@ mod tests {
     }
 
     #[test]
-    fn a_command_with_anything_else_behind_it_is_not_executed() {
+    fn a_command_followed_by_other_text_is_not_executed() {
         for line in [[&command()[..], &[0x41]].concat(), [&[0x18], &command()[..]].concat(), vec![0x05, 0x18]]
         {
             let mut receiver = CommandReceiver::default();
@@ -343,7 +343,7 @@ mod tests {
     }
 
     #[test]
-    fn the_late_end_of_a_frame_before_its_second_copy_is_no_command() {
+    fn the_late_end_of_a_frame_before_its_copy_is_not_a_command() {
         // 3 bytes of the first copy, then the second: the first 16 of these 19 have a right checksum.
         let mut frame = [0; 16];
         DataCommand { function: NO_FUNCTION, plate: Plate { words: [-400, -6000, -800, 0, 9000, 0x03C7] } }
@@ -366,7 +366,7 @@ mod tests {
     }
 
     #[test]
-    fn a_report_is_found_behind_garbage_that_looks_like_one() {
+    fn a_report_is_found_after_garbage_that_looks_like_one() {
         let mut receiver = ReplyReceiver::default();
         let mut line = vec![0x41, 0xFF, 0xFF, 0x03, 0x06, 0xFF];
         line.extend(report());
@@ -395,7 +395,7 @@ mod tests {
     }
 
     #[test]
-    fn an_answer_is_read_behind_noise_that_could_begin_a_report() {
+    fn an_answer_is_read_after_noise_that_could_start_a_report() {
         for noise in [&[0xFF][..], &[0xFF, 0xFF], &[0x41]] {
             let mut receiver = ReplyReceiver::default();
             let line = [noise, &[0x06]].concat();

@@ -217,7 +217,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_allowed_is_commanded_at_once() {
+    fn a_permitted_command_is_sent_at_once() {
         let goal = tool([30, -6290, -640, -8950, 13450, 20]);
         let step = step(&Position::reported(HOME, &T3), &goal, &T3, &Limits::NBS).unwrap();
         assert_eq!((step.position.plate.words, step.reached), ([30, -6290, -640, -8950, 13450, 20], true));
@@ -269,7 +269,7 @@ mod tests {
     }
 
     #[test]
-    fn what_has_no_words_is_refused() {
+    fn codes_without_text_are_refused() {
         let home = Position::reported(HOME, &T3);
         let mut goal = HOME.to_tool(&T3);
         goal.position.x = 400.0;

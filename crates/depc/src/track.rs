@@ -152,7 +152,7 @@ mod tests {
     }
 
     #[test]
-    fn a_robot_beside_the_path_is_at_its_distance_between_two_points_too() {
+    fn a_robot_off_the_path_is_at_its_distance_between_two_points_too() {
         let track = track(20);
         for x in [7.2, 7.3, 7.4, 7.5] {
             let found = distance(&track, &at(x, 0.3), 200);
@@ -161,7 +161,7 @@ mod tests {
     }
 
     #[test]
-    fn a_rotation_counts_as_fourteen_inches_a_radian() {
+    fn a_radian_of_rotation_is_treated_as_fourteen_inches() {
         let track = track(3);
         let here = at(1.2, 0.0);
         for angle in [0.01, 0.1] {
@@ -173,7 +173,7 @@ mod tests {
     }
 
     #[test]
-    fn a_track_without_positions_has_no_distance_and_a_long_one_forgets() {
+    fn a_track_without_positions_has_no_distance_and_a_long_one_is_bounded() {
         assert_eq!(Track::default().distance(&at(0.0, 0.0), LAG_MS, 40, &T3), None);
         let track = track(60);
         let oldest = 0.4 * 29.0;

@@ -147,7 +147,7 @@ mod tests {
     const HOME: Plate = Plate { words: [0, -6293, -636, -9000, 13500, 0] };
 
     #[test]
-    fn joint_problems_are_told_apart() {
+    fn joint_problems_are_distinguished() {
         let at = |degrees: [f64; 6]| {
             let frame = T3.forward_plate(&degrees.map(f64::to_radians));
             joints_for(&T3, &Plate::from_frame(&frame, &HOME).unwrap(), &HOME_JOINTS).map(drop)

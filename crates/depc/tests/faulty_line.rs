@@ -43,7 +43,7 @@ fn without_faults_a_command_goes_out_every_tick() {
 }
 
 #[test]
-fn faults_neither_jump_nor_repeat_and_the_link_comes_back() {
+fn faults_cause_no_jump_and_no_repetition_and_the_link_recovers() {
     for seed in 0..20 {
         let mut session = Session::new(seed, &one_fault_a_tick(seed));
         for tick in 0..5000 {

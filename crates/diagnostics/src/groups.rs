@@ -88,7 +88,7 @@ mod tests {
     }
 
     #[test]
-    fn datum_of_most_findings_gets_all_of_them_and_comes_first() {
+    fn datum_with_the_most_findings_is_listed_first_with_all_of_them() {
         let blames = [
             blame(&["A/D-5", "UNIT-V1"], true),
             blame(&["HOME"], false),

@@ -66,7 +66,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_the_same_in_several_lines_is_told_once_with_the_other_lines() {
+    fn an_equal_finding_of_several_lines_is_reported_once() {
         let mut first = report("one", &[(1, "deep", Some("way")), (2, "other", None)]);
         let mut second = report(
             "two",

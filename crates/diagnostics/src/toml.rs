@@ -318,7 +318,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_toml_is_told_at_its_line_and_a_missing_key_at_its_table() {
+    fn invalid_toml_is_reported_at_its_line_and_a_missing_key_at_its_table() {
         let at = |text: &str| load(text).unwrap_err().in_line();
         assert!(
             at("motor = \n").starts_with("motors.toml: line 1, column 9: this is not TOML: "),

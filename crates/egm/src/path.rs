@@ -212,7 +212,7 @@ mod tests {
     }
 
     #[test]
-    fn a_steady_path_is_one_period_and_the_slack_behind() {
+    fn a_steady_path_lags_by_one_period_and_the_slack() {
         let mut path = moving(10);
         // Point 10 arrived at 400 ms, for 440 ms, and lies at 100 mm. The target is there 50 ms later.
         let (pose, speed) = path.target(449 * MS);

@@ -225,7 +225,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_pose_is_refused() {
+    fn invalid_poses_are_refused() {
         assert_eq!(Pose::new([0.0, f64::NAN, 0.0], [1.0, 0.0, 0.0, 0.0]), Err(Error::NotAPose));
         assert_eq!(Pose::new([0.0; 3], [0.5, 0.0, 0.0, 0.0]), Err(Error::NotAPose));
         assert_eq!(Pose::new([0.0; 3], [f64::INFINITY, 0.0, 0.0, 0.0]), Err(Error::NotAPose));

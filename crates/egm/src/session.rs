@@ -166,7 +166,7 @@ mod tests {
     }
 
     #[test]
-    fn old_messages_are_told_from_a_robot_that_counts_anew() {
+    fn old_messages_are_distinguished_from_a_robot_that_restarts_its_count() {
         let mut session = Session::default();
         for (seqno, arrival) in [
             (0, Arrival::New),

@@ -301,7 +301,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_field_is_refused_by_name() {
+    fn unknown_fields_are_refused_by_name() {
         let first = |bytes: &[u8]| Reader::new(bytes).next_field().map(|_| ());
         assert_eq!(first(&[0x08]), Err(Error::Truncated));
         assert_eq!(first(&[0x09, 1, 2, 3]), Err(Error::Truncated));

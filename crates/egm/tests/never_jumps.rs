@@ -218,7 +218,7 @@ fn a_robot_that_follows_is_moved() {
 }
 
 #[test]
-fn after_an_interruption_nothing_goes_on_by_itself() {
+fn an_interrupted_run_does_not_resume_by_itself() {
     let mut bench = Bench::new(1);
     bench.message();
     bench.happen(&Event::Begin { astray: false });
@@ -277,7 +277,7 @@ fn after_a_gap(moved: f64) -> u64 {
 }
 
 #[test]
-fn after_a_gap_the_path_goes_on_with_a_robot_that_kept_its_speed_alone() {
+fn after_a_gap_only_a_robot_that_kept_its_speed_continues() {
     assert_eq!((after_a_gap(35.0), after_a_gap(20.0)), (0, 0));
     assert_eq!((after_a_gap(0.0), after_a_gap(70.0)), (1, 1));
 }

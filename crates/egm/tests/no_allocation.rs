@@ -11,7 +11,7 @@ use os_io::alloc::{Counting, Section, allocations, is_installed};
 static ALLOCATOR: Counting = Counting;
 
 #[test]
-fn ten_thousand_messages_allocate_nothing() {
+fn ten_thousand_messages_do_not_allocate() {
     let mut host = Host::new(Settings::new(Limits::of_speed(400.0, 1.2)));
     let (mut buffer, mut answer) = ([0; MOST_BYTES], [0; MOST_BYTES]);
     assert!(is_installed());

@@ -333,7 +333,7 @@ fn sensor() -> impl Strategy<Value = Sensor> {
 
 proptest! {
     #[test]
-    fn what_we_write_the_oracle_writes_too(message in robot(), answer in sensor()) {
+    fn encoded_messages_equal_those_of_the_oracle(message in robot(), answer in sensor()) {
         let mut buffer = [0xA5; MOST_BYTES];
         let oracle = same::robot(&message).encode_to_vec();
         prop_assert_eq!(message.encode(&mut buffer), Ok(oracle.as_slice()));
@@ -346,7 +346,7 @@ proptest! {
     /// Bytes are flipped, cut and joined: `prost` accepts everything that this crate accepts, and decodes the same
     /// values.
     #[test]
-    fn what_we_accept_the_oracle_reads_the_same(
+    fn accepted_messages_decode_as_in_the_oracle(
         first in robot(),
         second in robot(),
         cut in any::<prop::sample::Index>(),

@@ -276,7 +276,7 @@ mod tests {
     }
 
     #[test]
-    fn work_that_fits_skips_nothing_and_work_that_does_not_skips_what_it_covers() {
+    fn only_work_longer_than_a_slot_skips_slots() {
         let mut grid = Grid::new(Scripted { now: Duration::ZERO, late: Vec::new() });
         assert_eq!(grid.wait(), 0);
         grid.time.now += Duration::from_millis(39);

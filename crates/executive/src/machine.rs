@@ -50,7 +50,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_machine_is_told_in_a_line() {
+    fn a_machine_is_described_in_one_line() {
         let mut machine =
             Machine { kernel: "6.1.0-rt".into(), preempt_rt: true, governors: vec!["performance".into()] };
         assert_eq!(machine.to_string(), "kernel 6.1.0-rt (PREEMPT_RT), frequency governor performance");

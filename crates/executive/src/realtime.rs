@@ -173,7 +173,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_verdict_names_what_was_refused_and_why() {
+    fn a_verdict_names_the_refused_command_and_the_reason() {
         let mut verdict = Verdict::default();
         assert_eq!(verdict.to_string(), "real time was not asked for");
         verdict.add("locked memory", Ok(()));

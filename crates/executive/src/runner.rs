@@ -220,7 +220,7 @@ mod tests {
     }
 
     #[test]
-    fn a_warm_up_changes_nothing() {
+    fn a_warm_up_leaves_the_state_unchanged() {
         let (mut one, mut other) = (Course::new(Chain::default()), Course::new(Chain::default()));
         let (mut runner, mut warmed) = (Runner::new(None), Runner::new(None));
         let external = ExternalInputs::default();

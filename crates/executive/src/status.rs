@@ -156,7 +156,7 @@ mod tests {
     use rcs_core::{name::Name16, tick::Tick};
 
     #[test]
-    fn every_process_is_told_in_its_own_words() {
+    fn every_process_is_described_in_its_own_words() {
         let (mut external, mut memory) = (ExternalInputs::default(), CommonMemory::default());
         external.hws.command = Name16::clipped("PAUSE");
         memory.subtask.emove.command = EmoveVerb::Pause;

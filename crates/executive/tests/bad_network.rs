@@ -155,7 +155,7 @@ proptest! {
 
 /// Control: the property above also holds for a host that never moves, or that is always interrupted.
 #[test]
-fn a_good_network_interrupts_nothing() {
+fn a_good_network_causes_no_interruption() {
     let mut bench = Bench::new("", WIDE);
     bench.run(250);
     assert!(bench.travelled > 500.0 && bench.begun == 1, "{} mm, {} times", bench.travelled, bench.begun);

@@ -244,7 +244,7 @@ fn a_board_with_other_data_or_in_a_taken_place_is_refused() {
 }
 
 #[test]
-fn a_board_that_is_replaced_goes_on_as_one_whose_processes_were_restarted() {
+fn a_replaced_board_behaves_like_restarted_processes() {
     let _alone = ALONE.lock().unwrap_or_else(PoisonError::into_inner);
     const TICKS: u64 = 800;
     let name = RunName::unique("replaced");

@@ -78,7 +78,7 @@ fn all_byte_values_pass_unchanged_both_ways() {
 }
 
 #[test]
-fn a_tick_takes_what_fits_and_leaves_the_rest_in_the_port() {
+fn a_tick_reads_a_buffer_and_leaves_the_rest_in_the_port() {
     let mut peer = Peer::new();
     let mut line = peer.line();
     peer.master.write_all(&[7; 100]).unwrap();
@@ -115,7 +115,7 @@ fn a_tick_allocates_nothing_not_even_when_the_port_goes() {
 }
 
 #[test]
-fn a_line_that_takes_nothing_more_is_reported_and_rests_for_a_tick() {
+fn a_blocked_line_is_reported_and_rests_for_a_tick() {
     let peer = Peer::new();
     let mut line = peer.line();
     let started = Instant::now();
@@ -133,7 +133,7 @@ fn a_line_that_takes_nothing_more_is_reported_and_rests_for_a_tick() {
 }
 
 #[test]
-fn a_port_that_comes_back_is_taken_over_and_begins_clean() {
+fn a_port_that_reappears_is_reopened_and_starts_clean() {
     let directory = tempfile::tempdir().unwrap();
     let path = directory.path().join("port");
     let plug = |peer: &Peer| {
@@ -164,7 +164,7 @@ fn a_port_that_comes_back_is_taken_over_and_begins_clean() {
 }
 
 #[test]
-fn what_cannot_be_opened_is_said() {
+fn unopenable_files_are_reported() {
     let open = |path: &Path| SerialLine::open(SerialSettings::new(path)).err();
     assert_eq!(open(Path::new("/dev/none")), Some(OpenError::Missing("/dev/none".into())));
     let null = open(Path::new("/dev/null"));

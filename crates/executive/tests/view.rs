@@ -39,7 +39,7 @@ fn ticks(history: &[Headers]) -> Vec<u64> {
 }
 
 #[test]
-fn a_reader_that_comes_late_sees_the_last_ten_seconds() {
+fn a_late_reader_sees_the_last_ten_seconds() {
     let name = RunName::unique("history");
     let mut publisher = Publisher::create(&name).expect("this machine has shared memory");
     let reader = Attached::open(&name).expect("the run lives");
@@ -65,7 +65,7 @@ fn a_reader_that_comes_late_sees_the_last_ten_seconds() {
 }
 
 #[test]
-fn a_warm_up_that_publishes_a_tick_again_changes_nothing() {
+fn a_warm_up_that_repeats_a_tick_leaves_the_state_unchanged() {
     let name = RunName::unique("again");
     let mut publisher = Publisher::create(&name).expect("this machine has shared memory");
     let reader = Attached::open(&name).expect("the run lives");
@@ -76,7 +76,7 @@ fn a_warm_up_that_publishes_a_tick_again_changes_nothing() {
 }
 
 #[test]
-fn the_headers_of_a_tick_are_whole_while_the_run_goes_on() {
+fn the_headers_of_a_tick_are_consistent_during_a_run() {
     let name = RunName::unique("whole");
     let mut publisher = Publisher::create(&name).expect("this machine has shared memory");
     let reader = Attached::open(&name).expect("the run lives");

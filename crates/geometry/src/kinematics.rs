@@ -293,7 +293,7 @@ mod tests {
     }
 
     #[test]
-    fn beyond_the_arm_there_is_nothing() {
+    fn a_pose_beyond_the_arm_has_no_joints() {
         let mut far = T3.forward(&HOME_JOINTS);
         far.position.y = -150.0;
         assert!(matches!(T3.inverse(&far, &HOME_JOINTS), Err(ReachError::TooFar { by }) if by > 0.0));

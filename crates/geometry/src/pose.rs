@@ -153,7 +153,7 @@ mod tests {
     }
 
     #[test]
-    fn three_points_on_a_line_are_no_pose() {
+    fn three_points_on_a_line_are_not_a_pose() {
         let flat = Pose { wrist: [0, 0, 0], tool: [100, 0, 0], finger: [200, 0, 0] };
         assert_eq!(flat.to_frame(), Err(PoseError::NoDirection));
         assert_eq!(Pose::default().to_frame(), Err(PoseError::NoDirection));

@@ -186,7 +186,7 @@ mod tests {
     }
 
     #[test]
-    fn a_robot_that_is_nowhere_is_told_what_is_near() {
+    fn a_lost_robot_reports_the_nearest_place() {
         let (mut memory, hws) = (CommonMemory::default(), HwsCommand::default());
         assert!(
             said(ProcessId::Emove, Reason::UnknownStart, &hws, &memory).starts_with(" (move it with the")

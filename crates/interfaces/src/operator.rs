@@ -216,7 +216,7 @@ mod tests {
     }
 
     #[test]
-    fn without_the_pulse_every_board_stands() {
+    fn without_the_pulse_every_board_stops() {
         let stopped = |board| OperatorInputs { stopped: board_bit(board), ..OperatorInputs::default() };
         for board in BOARDS {
             assert!(stopped(board).is_stopped(board) && stopped(0).is_stopped(board));

@@ -370,7 +370,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn each_process_stands_before_its_commander_on_the_way_up() {
+    fn each_process_precedes_its_commander_on_the_way_up() {
         let upward: Vec<_> = ProcessId::upward().collect();
         assert_eq!(upward.len(), PROCESS_COUNT);
         for (position, process) in upward.iter().enumerate() {

@@ -55,7 +55,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn suffix_names_what_is_unconfirmed() {
+    fn suffix_names_the_unconfirmed_goals() {
         assert_eq!(format!("finished{}", Unconfirmed::None.suffix()), "finished");
         assert_eq!(
             format!("finished{}", Unconfirmed::GraspForce.suffix()),

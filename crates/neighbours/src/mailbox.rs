@@ -274,7 +274,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_written_is_read_and_counted() {
+    fn written_values_are_read_and_counted() {
         let mut mailbox = Mailbox::initialized(HWSC_STATUS);
         assert_eq!((mailbox.mailgram(), mailbox.data()), (0, &[][..]));
         mailbox.write(&[1, 2, 3]).unwrap();
@@ -285,7 +285,7 @@ mod tests {
     }
 
     #[test]
-    fn a_copy_is_the_same_whatever_stood_there_before() {
+    fn a_copy_does_not_depend_on_the_previous_contents() {
         let mut small = Mailbox::initialized(HWSC_STATUS);
         small.write(&[7; 248]).unwrap();
         for place in [HWSC_STATUS, HWSC_COMMAND, VISION_PICTURE] {
@@ -302,7 +302,7 @@ mod tests {
     }
 
     #[test]
-    fn the_mailgram_number_never_comes_back_to_zero() {
+    fn the_mailgram_number_never_returns_to_zero() {
         let mut mailbox = Mailbox::initialized(PEDESTAL_STATUS);
         for _ in 0..=u32::from(u16::MAX) {
             mailbox.write(&[]).unwrap();
@@ -311,7 +311,7 @@ mod tests {
     }
 
     #[test]
-    fn what_does_not_fit_is_refused_and_changes_nothing() {
+    fn wrong_sizes_are_refused_without_effect() {
         let mut mailbox = Mailbox::initialized(HWSC_STATUS);
         mailbox.write(&[7; 248]).unwrap();
         let before = mailbox.clone();
@@ -324,7 +324,7 @@ mod tests {
     }
 
     #[test]
-    fn what_the_network_brings_is_taken_whole_or_not_at_all() {
+    fn network_messages_are_taken_whole_or_discarded() {
         let mut sent = Mailbox::initialized(HWSC_STATUS);
         sent.write(&[1, 2, 3]).unwrap();
         let mut mailbox = Mailbox::initialized(HWSC_STATUS);

@@ -141,7 +141,7 @@ mod tests {
     }
 
     #[test]
-    fn only_a_closed_pipe_is_no_error() {
+    fn only_a_closed_pipe_is_not_an_error() {
         let failed = |kind: ErrorKind| Err(io::Error::from(kind));
         assert!(answered(failed(ErrorKind::BrokenPipe)).is_ok());
         assert_eq!(answered(failed(ErrorKind::StorageFull)).unwrap_err().kind(), ErrorKind::StorageFull);

@@ -262,7 +262,7 @@ mod tests {
     }
 
     #[test]
-    fn a_failed_write_leaves_the_old_file_and_nothing_else() {
+    fn a_failed_write_leaves_only_the_old_file() {
         let place = tempfile::tempdir().unwrap();
         let file = place.path().join("file");
         fs::write(&file, "old").unwrap();
@@ -290,7 +290,7 @@ mod tests {
     }
 
     #[test]
-    fn an_output_is_no_input_that_does_not_exist_yet() {
+    fn an_output_is_not_an_input_that_does_not_exist_yet() {
         let place = tempfile::tempdir().unwrap();
         let (file, other) = (place.path().join("a"), place.path().join("d/../a"));
         fs::create_dir(place.path().join("d")).unwrap();
@@ -302,7 +302,7 @@ mod tests {
     }
 
     #[test]
-    fn an_output_is_no_input_under_any_name() {
+    fn an_output_is_not_an_input_under_any_name() {
         let place = tempfile::tempdir().unwrap();
         let (file, link, hard) = (place.path().join("a"), place.path().join("b"), place.path().join("c"));
         fs::write(&file, "").unwrap();

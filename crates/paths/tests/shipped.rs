@@ -74,7 +74,7 @@ fn stored_routes() {
 /// The part that the robot holds after each line: the bar from the tray to the vise, and after machining back to the
 /// tray.
 #[test]
-fn what_is_held_is_carried_along() {
+fn a_held_part_moves_with_the_hand() {
     let walked = walked("linkbar");
     let held: Vec<Option<&str>> = walked.lines.iter().map(|line| line.holds.as_deref()).collect();
     let [blank, bar] = ["LINKBAR1_BH with grip +2", "LINKBAR1 with grip +2"].map(Some);

@@ -377,7 +377,7 @@ mod tests {
     }
 
     #[test]
-    fn a_held_command_stands_and_goes_on_to_its_goal() {
+    fn a_held_command_stops_and_later_reaches_its_goal() {
         let mut arm = arm();
         let mut goal = HOME_JOINTS;
         goal[0] += 0.1;
@@ -393,7 +393,7 @@ mod tests {
     }
 
     #[test]
-    fn the_joints_carry_at_home_what_the_weights_come_to() {
+    fn the_joint_torques_at_home_equal_the_weights() {
         let arm = arm();
         let chain = Chain::new(&HOME_JOINTS);
         let loads = weights(&chain, &arm.actuators.hydraulics);

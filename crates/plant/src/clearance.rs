@@ -254,7 +254,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_near_is_listed_with_its_distance() {
+    fn near_pairs_are_listed_with_their_distance() {
         let (mut clearance, table) = (Clearance::default(), table());
         let near = |clearance: &mut Clearance, z: Real| {
             assert!(clearance.check(&Permits::default(), &hand(z), [&table].into_iter()).is_empty());
@@ -270,7 +270,7 @@ mod tests {
     }
 
     #[test]
-    fn what_may_touch_is_reported_where_it_is_deeper_than_it_may_be() {
+    fn permitted_contacts_are_reported_where_too_deep() {
         let (mut clearance, table) = (Clearance::default(), table());
         let some = permit(Some(0.1));
         assert!(clearance.check(&some, &hand(0.15 - metres(0.09)), [&table].into_iter()).is_empty());

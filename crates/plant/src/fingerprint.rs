@@ -270,7 +270,7 @@ mod tests {
     }
 
     #[test]
-    fn what_says_how_it_is_built_is_not() {
+    fn build_information_is_not_compared() {
         assert_eq!(bytes(&device()), bytes(&Device { description: [2.0; 9], ..device() }));
         assert_ne!(bytes(&device()), bytes(&Device { held: None, ..device() }));
         assert_ne!(bytes(&device()), bytes(&Device { speed: -0.5, ..device() }));

@@ -88,7 +88,7 @@ mod tests {
     const BAR: Rubbed = Rubbed { mass: 0.2, inertia: 1.8e-4, reach: 0.0425, arm: 0.005 };
 
     #[test]
-    fn what_friction_can_stop_stands() {
+    fn a_body_that_friction_can_stop_stays() {
         // Gravity for 2.5 ms needs 0.0049 N·s at the middle: 0.042 at the touched area, mostly as a moment.
         let fall = Motion { along: 0.0, across: -0.0245, turn: 0.0 };
         assert_eq!(BAR.after(&fall, 0.05), None);

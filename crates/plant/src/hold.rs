@@ -374,7 +374,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_beyond_a_limit_has_its_sign() {
+    fn the_excess_over_a_limit_has_its_sign() {
         assert_eq!((beyond(3.0, 2.0), beyond(-3.0, 2.0), beyond(1.0, 2.0)), (1.0, -1.0, 0.0));
     }
 

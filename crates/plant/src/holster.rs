@@ -305,7 +305,7 @@ mod tests {
     }
 
     #[test]
-    fn a_gripper_in_its_holster_touches_only_what_carries_it() {
+    fn a_gripper_in_its_holster_touches_only_its_supports() {
         let cell = cell();
         let holster = holster();
         let [thick, ..] = cell.holsters.ears;

@@ -192,7 +192,7 @@ mod tests {
     }
 
     #[test]
-    fn a_stick_at_the_centre_stops_whatever_its_time() {
+    fn a_stick_at_the_centre_stops_at_once() {
         for ticks in [0, 1, 500] {
             let mut joystick = Joystick::default();
             joystick.act(BoxAction::Stick { x: 0, y: 300, ticks: 250 });

@@ -226,7 +226,7 @@ mod tests {
     }
 
     #[test]
-    fn a_beam_is_broken_by_what_crosses_it() {
+    fn a_crossing_body_breaks_the_beam() {
         let half = Vector::new(0.01, 0.01, 0.05);
         let across = |z: Real| {
             segment_meets_box(Vector::new(0.0, -0.1, z), Vector::new(0.0, 0.1, z), &Pose::IDENTITY, half)

@@ -346,7 +346,7 @@ mod tests {
     }
 
     #[test]
-    fn fingers_that_nothing_moves_sleep_until_air_or_table_moves_them() {
+    fn resting_fingers_sleep_until_air_or_table_moves_them() {
         let (mut world, mut pedestal) = standing();
         let dt = world.integration_parameters.dt;
         let asleep = |world: &PhysicsWorld, pedestal: &Pedestal| {

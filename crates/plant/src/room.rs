@@ -279,7 +279,7 @@ mod tests {
     }
 
     #[test]
-    fn a_part_that_is_let_down_stands_in_its_nest() {
+    fn a_lowered_part_stands_in_its_nest() {
         let description = cell();
         let room = Room::new(&description);
         for nest in &description.nest {
@@ -299,7 +299,7 @@ mod tests {
 
     /// A running cell and the room report the same positions and contacts.
     #[test]
-    fn the_room_sees_what_the_cell_sees() {
+    fn the_room_and_the_cell_agree() {
         let description = cell();
         let room = Room::new(&description);
         for joints in [

@@ -269,7 +269,7 @@ mod tests {
     }
 
     #[test]
-    fn beside_the_pads_there_is_nothing() {
+    fn no_part_is_found_outside_the_pads() {
         let part = Pose::from_translation(Vector::new(metres(0.32), 0.0, 0.0));
         assert_eq!(squeeze(&part, &bar(), &FINGERS), None);
     }

@@ -48,14 +48,14 @@ fn a_misspelt_key_is_one_fault_and_the_right_one_is_named() {
 }
 
 #[test]
-fn an_unknown_key_is_a_fault_though_nothing_else_is_missing() {
+fn an_unknown_key_is_a_fault_in_a_complete_file() {
     let (underlined, message, nearest) = only("jaw_speed = 2.0", "colour = 3\njaw_speed = 2.0");
     assert_eq!((underlined.as_str(), nearest), ("colour", None));
     assert!(message.starts_with("gripper has no key colour; expected one of weight, jaw_speed"), "{message}");
 }
 
 #[test]
-fn a_missing_key_is_told_at_its_table() {
+fn a_missing_key_is_reported_at_its_table() {
     let told =
         said("stiffness = 2000.0                             # lb/in at the fingers, all of the arm", "# lb");
     assert_eq!(told, ["robot", "robot has no key stiffness, which it needs"]);
@@ -81,7 +81,7 @@ fn a_value_of_another_kind_is_underlined() {
 }
 
 #[test]
-fn a_word_that_is_none_of_those_that_may_stand_there_is_told_with_the_nearest() {
+fn an_unknown_word_is_reported_with_the_nearest_valid_one() {
     let (underlined, message, nearest) = only("mounted = \"parts\"", "mounted = \"part\"");
     assert_eq!(underlined, "\"part\"");
     assert_eq!(message, "quick_change.mounted: expected one of none, parts, v, tool, found \"part\"");
@@ -89,7 +89,7 @@ fn a_word_that_is_none_of_those_that_may_stand_there_is_told_with_the_nearest() 
 }
 
 #[test]
-fn a_value_out_of_range_is_told_with_the_range() {
+fn a_value_out_of_range_is_reported_with_the_range() {
     let told = said("start = [-90.0, 45.0,", "start = [-90.0, 145.0,");
     assert_eq!(
         told,
@@ -110,7 +110,7 @@ fn a_value_out_of_range_is_told_with_the_range() {
 }
 
 #[test]
-fn a_name_that_is_given_twice_is_told_where_it_stands_again() {
+fn a_duplicate_name_is_reported_at_its_second_place() {
     let told = said("name = \"LINKBAR1\"", "name = \"LINKBAR1_BH\"");
     assert_eq!(
         told,
@@ -122,7 +122,7 @@ fn a_name_that_is_given_twice_is_told_where_it_stands_again() {
 }
 
 #[test]
-fn a_part_that_fits_no_tray_is_told() {
+fn a_part_that_fits_no_tray_is_reported() {
     let told = said("size = [1.73, 2.56, 4.00]", "size = [1.73, 2.56, 24.00]");
     assert_eq!(told[0], "[1.73, 2.56, 24.00]");
     assert!(
@@ -150,7 +150,7 @@ fn names_in_the_list_of_contacts_and_in_nests_must_be_known() {
 }
 
 #[test]
-fn what_is_no_toml_is_told_with_its_line() {
+fn invalid_toml_is_reported_with_its_line() {
     let (text, faults) = faults(&[("tilt = 3.0  ", "tilt = = 3.0  ")]);
     let line = text[..text.find("tilt = = 3.0").unwrap()].matches('\n').count() + 1;
     assert!(!faults.is_empty());
@@ -160,7 +160,7 @@ fn what_is_no_toml_is_told_with_its_line() {
 }
 
 #[test]
-fn all_faults_are_told_at_once_in_the_order_of_the_text() {
+fn all_faults_are_reported_at_once_in_the_order_of_the_text() {
     let (_, faults) = faults(&[
         ("servo_lag_s = ", "servo_lags = "),
         ("speed = 0.5 ", "speed = -0.5 "),
@@ -187,7 +187,7 @@ fn all_faults_are_told_at_once_in_the_order_of_the_text() {
 }
 
 #[test]
-fn what_is_measured_by_a_value_that_cannot_be_read_is_not_judged() {
+fn values_relative_to_an_unreadable_value_are_not_judged() {
     for (from, to, entry) in [
         ("jaw = [6.0, 3.0, 3.25]", "jaw = [6.0, 3.0]", "vise.jaw"),
         ("inside = 21.0", "inside = \"21.0\"", "tray_shape.inside"),
@@ -206,7 +206,7 @@ fn what_is_measured_by_a_value_that_cannot_be_read_is_not_judged() {
 }
 
 #[test]
-fn a_box_that_holds_the_robot_at_the_start_is_told() {
+fn a_box_around_the_robot_at_the_start_is_reported() {
     let text = TEXT.replacen("centre = [-23.26, -63.90, -36.0]", "centre = [0.0, -63.90, -16.0]", 1);
     let description = CellDescription::from_toml(&text).expect("its numbers are sound");
     let error = Cell::new(&description, 1).err().expect("the robot stands in the table").to_string();

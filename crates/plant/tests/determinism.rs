@@ -88,17 +88,17 @@ fn saved_and_copied_cells_continue(rig: Rig, seed: u64, every: usize) {
 }
 
 #[test]
-fn a_cell_restored_in_the_middle_of_gripping_and_clamping_goes_on_with_the_same_bits() {
+fn a_cell_restored_during_gripping_and_clamping_continues_bit_for_bit() {
     saved_and_copied_cells_continue(scenes::clamping(5), 5, 50);
 }
 
 #[test]
-fn a_cell_restored_with_a_tool_in_the_drum_goes_on_with_the_same_bits() {
+fn a_cell_restored_with_a_tool_in_the_drum_continues_bit_for_bit() {
     saved_and_copied_cells_continue(scenes::drumming(5), 5, 50);
 }
 
 #[test]
-fn what_is_no_saved_cell_is_refused() {
+fn invalid_saved_cells_are_refused() {
     let cell = Cell::new(&description(), 1).unwrap();
     let bytes = cell.save().unwrap();
     let refused = |bytes: &[u8]| Cell::restore(&description(), bytes).map(|_| ()).unwrap_err();

@@ -110,7 +110,7 @@ fn resolvers_follow_the_joints() {
 }
 
 #[test]
-fn the_gripper_s_sensors_tell_opening_force_and_part() {
+fn gripper_sensors_measure_opening_force_and_part() {
     let mut rig = Rig::new(&description(), 1);
     let free = rig.inputs.grip;
     assert_eq!(free.beams, 0);
@@ -174,7 +174,7 @@ fn the_camera_finds_a_blank_and_its_angle() {
 }
 
 #[test]
-fn an_empty_sector_shows_nothing() {
+fn an_empty_sector_shows_no_part() {
     let mut rig = Rig::new(&description(), 5);
     rig.place("LINKBAR1_BH", 1, 0.0, 0.0, 0.0);
     rig.go(UNIT_V1.to_frame().unwrap(), 10.0);

@@ -169,7 +169,7 @@ fn a_tool_that_only_the_detents_keep_stays_too() {
 }
 
 #[test]
-fn an_empty_drum_has_nothing_to_grip() {
+fn an_empty_drum_grips_no_tool() {
     let mut rig = removed();
     let error = rig.cell.workstation(&WorkstationAction::DrumGrip).unwrap_err();
     assert!(matches!(error, WorkstationError::NothingToGrip), "{error}");
@@ -177,7 +177,7 @@ fn an_empty_drum_has_nothing_to_grip() {
 }
 
 #[test]
-fn the_drum_grips_only_what_is_in_its_place() {
+fn the_drum_grips_only_a_tool_in_its_place() {
     let mut rig = removed();
     until(&mut rig, (-2.0, 0.0), (-0.40, 0.0), 0.5, |_| false);
     rig.ticks(20);
@@ -188,7 +188,7 @@ fn the_drum_grips_only_what_is_in_its_place() {
 }
 
 #[test]
-fn a_tool_that_is_let_go_before_the_drum_falls() {
+fn a_tool_released_before_the_drum_falls() {
     let mut rig = removed();
     until(&mut rig, (-2.0, 0.0), (-0.60, 0.0), 0.5, |_| false);
     jaws(&mut rig, true);
@@ -202,7 +202,7 @@ fn a_tool_that_is_let_go_before_the_drum_falls() {
 }
 
 #[test]
-fn the_force_sensor_feels_weights_and_turns() {
+fn the_force_sensor_measures_weights_and_torques() {
     let mut rig = removed();
     let held = rig.inputs.force;
     jaws(&mut rig, true);

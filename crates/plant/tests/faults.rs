@@ -30,7 +30,7 @@ fn deliver(cell: &mut Cell, part: &str) -> Result<(), plant::WorkstationError> {
 }
 
 #[test]
-fn lost_air_keeps_the_grip_and_opens_nothing() {
+fn lost_air_keeps_the_grip_closed() {
     let mut rig = Rig::with_faults(&description(), 1, &plan("[[fault]]\nkind = \"air-lost\"\nfrom = 1500\n"));
     rig.place("LINKBAR1_BH", 4, 0.0, 0.0, 0.0);
     rig.pick(0.0, 0.0, 0.0, 30.0);
@@ -86,7 +86,7 @@ fn deliveries_go_wrong_as_planned() {
 }
 
 #[test]
-fn a_vise_that_is_stuck_says_so() {
+fn a_stuck_vise_is_reported() {
     let mut cell = cell("[[fault]]\nkind = \"stuck\"\ndevice = \"vise-jaw\"\n");
     let before = cell.vise_opening();
     cell.workstation(&WorkstationAction::VisePartial).unwrap();
@@ -110,7 +110,7 @@ fn a_moved_pedestal_takes_its_stand_and_its_hand_along() {
 }
 
 #[test]
-fn a_camera_that_is_off_stays_silent_and_a_blind_one_sees_nothing() {
+fn a_camera_without_power_is_silent_and_a_blind_one_finds_no_part() {
     let ask = |text: &str| {
         let mut cell = cell(text);
         let mut outputs = DeviceOutputs::default();
@@ -126,7 +126,7 @@ fn a_camera_that_is_off_stays_silent_and_a_blind_one_sees_nothing() {
 }
 
 #[test]
-fn a_saved_cell_goes_on_with_its_faults() {
+fn a_restored_cell_keeps_its_faults() {
     let text = "[[fault]]\nkind = \"pedestal-moved\"\nx = 0.5\n\
         [[fault]]\nkind = \"intermittent\"\nsensor = \"beam.1\"\nrate = 0.2\n\
         [[fault]]\nkind = \"slow\"\nsensor = \"grip.potentiometer\"\nby = 4\n";

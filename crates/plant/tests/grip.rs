@@ -64,7 +64,7 @@ fn lift_block(weight: f64, force: f64) -> Rig {
 }
 
 #[test]
-fn friction_decides_what_can_be_lifted() {
+fn friction_decides_which_part_can_be_lifted() {
     // Two pads of 30 lb at 0.30 carry 18 lb.
     let rig = lift_block(15.0, 30.0);
     assert!(rig.part().held && rig.part().position[2] > -12.5, "{:?} {:?}", rig.part(), rig.log);

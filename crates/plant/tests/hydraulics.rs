@@ -62,7 +62,7 @@ fn contacts(rig: &Rig) -> Vec<&CellEvent> {
 }
 
 #[test]
-fn from_home_and_safe_it_touches_nothing() {
+fn from_home_and_safe_the_arm_touches_no_body() {
     for start in [description().robot.start, SAFE] {
         let mut rig = Rig::new(&starting_at(start), 1);
         let droop = stop(&mut rig, EStop::ControlPanel);
@@ -77,7 +77,7 @@ fn from_home_and_safe_it_touches_nothing() {
 }
 
 #[test]
-fn over_the_vise_it_runs_into_it_and_says_what_becomes_of_the_part() {
+fn a_sagging_arm_over_the_vise_hits_it_and_reports_the_part() {
     let mut rig = Rig::new(&description(), 1);
     rig.place("LINKBAR1_BH", 4, 0.0, 0.0, 0.0);
     rig.vise(WorkstationAction::VisePartial);
@@ -108,7 +108,7 @@ fn the_fingers_keep_their_part_while_it_sinks() {
 }
 
 #[test]
-fn over_a_tray_it_runs_into_what_is_there() {
+fn a_sagging_arm_over_a_tray_hits_its_contents() {
     let mut rig = Rig::new(&description(), 1);
     rig.go(UNIT_V1.to_frame().unwrap(), 10.0);
     rig.go_and_stop(rig.grip_frame(4, 0.0, 0.0, 0.0, 4.0), 10.0);
@@ -123,7 +123,7 @@ fn over_a_tray_it_runs_into_what_is_there() {
 }
 
 #[test]
-fn a_sagging_arm_does_not_drive_through_what_it_lies_on() {
+fn a_sagging_arm_does_not_pass_through_its_support() {
     let mut rig = Rig::new(&description(), 1);
     rig.go_and_stop(FIX_V1.to_frame().unwrap(), 10.0);
     rig.go_and_stop(Rig::fixture(&FX1, 4.0, 0.0), 10.0);

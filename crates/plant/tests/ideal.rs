@@ -32,7 +32,7 @@ fn machine(from: &str, to: &str) -> Action {
 }
 
 #[test]
-fn the_ideal_cell_refuses_what_the_cell_refuses() {
+fn the_ideal_cell_and_the_cell_refuse_the_same_actions() {
     let actions = [
         place("LINKBAR1_BH", 4),
         place("LINKBAR1_BH", 4),

@@ -83,7 +83,7 @@ fn expected(text: &str, place: &Range<usize>, value: &str) -> Option<String> {
 }
 
 #[test]
-fn what_must_be_more_than_0_is_offered_no_other_number() {
+fn positive_values_get_only_positive_suggestions() {
     let text = fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/../../data/cell.toml")).unwrap();
     let mut positive = 0;
     for place in numbers(&text) {

@@ -67,7 +67,7 @@ fn the_fingers_move_across_the_radial_line_at_2135() {
 }
 
 #[test]
-fn sensors_tell_opening_force_angle_and_limits() {
+fn sensors_measure_opening_force_angle_and_limits() {
     let mut rig = Rig::new(&description(), 1);
     rig.table(MotorOrder::Turn, 100_000);
     let there = rig.inputs.pedestal;

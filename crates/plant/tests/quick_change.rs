@@ -157,7 +157,7 @@ fn a_plate_that_is_not_home_is_not_caught() {
 }
 
 #[test]
-fn a_ring_that_is_locked_beforehand_catches_nothing() {
+fn a_ring_locked_too_early_catches_no_gripper() {
     let mut rig = detach();
     air(&mut rig, LOCK);
     rig.go(over(&HOL_L, 14.0, 1.5), 10.0);
@@ -191,7 +191,7 @@ fn a_gripper_that_is_unlocked_in_the_air_falls_to_the_floor() {
 }
 
 #[test]
-fn a_gripper_that_is_let_go_over_a_full_holster_falls() {
+fn a_gripper_released_over_a_full_holster_falls() {
     let mut rig = Rig::new(&description(), 1);
     rig.go(HOL_V1.to_frame().unwrap(), 10.0);
     rig.go_and_stop(over(&HOL_L, 5.0, 0.0), 10.0);

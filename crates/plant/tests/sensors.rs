@@ -43,7 +43,7 @@ fn a_force_without_calibration_is_misjudged() {
 }
 
 #[test]
-fn resolvers_are_exact_unless_the_cell_says_otherwise() {
+fn resolvers_are_exact_by_default() {
     let read = |noise: f64| {
         let mut cell = description();
         cell.sensors.resolver_noise = noise;
@@ -70,7 +70,7 @@ fn resolvers_are_exact_unless_the_cell_says_otherwise() {
 }
 
 #[test]
-fn late_converters_show_what_was() {
+fn late_converters_show_old_values() {
     let mut cell = description();
     cell.sensors.converter_delay = 5;
     cell.gripper.parts.sensors.noise = 0.0;

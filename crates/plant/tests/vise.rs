@@ -48,7 +48,7 @@ fn a_bar_on_the_ledge_stands_if_it_leans_less_than_a_degree() {
 }
 
 #[test]
-fn only_what_is_clamped_and_seated_is_machined() {
+fn only_a_clamped_and_seated_part_is_machined() {
     let mut rig = Rig::new(&description(), 1);
     assert!(matches!(machine(&mut rig), Err(WorkstationError::NotClamped { .. })));
 
@@ -131,7 +131,7 @@ fn a_crash_forces_a_bar_out_of_the_vise() {
 }
 
 #[test]
-fn what_stands_does_not_creep() {
+fn a_body_at_rest_does_not_creep() {
     let mut rig = Rig::new(&description(), 1);
     put(&mut rig, upright(Vector::new(0.0375, 0.16, -1.249), 0.0));
     rig.ticks(50);
@@ -142,7 +142,7 @@ fn what_stands_does_not_creep() {
 }
 
 #[test]
-fn a_stack_of_five_stands_and_hardly_sinks() {
+fn a_stack_of_five_is_stable_and_hardly_sinks() {
     let mut rig = Rig::new(&description(), 1);
     let sector = description().tray("UNIT_1").unwrap().sector(4).unwrap();
     for layer in 0..5 {

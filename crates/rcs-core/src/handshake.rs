@@ -185,7 +185,7 @@ mod tests {
     }
 
     #[test]
-    fn a_restarted_receiver_does_not_execute_what_stands_there() {
+    fn a_restarted_receiver_does_not_execute_the_old_command() {
         let mut receiver = Receiver::default();
         assert_eq!(receiver.observe(7), Arrival::Restarted);
         assert_eq!(receiver.observe(7), Arrival::Restarted);
@@ -193,7 +193,7 @@ mod tests {
     }
 
     #[test]
-    fn an_old_status_is_not_believed() {
+    fn an_old_status_is_discarded() {
         let mut commander = Commander::default();
         commander.start_from(Tick(10), 0, 41);
         assert_eq!(commander.send(Tick(10)), 41 + FIRST_STEP);

@@ -77,7 +77,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_row_grows_old_while_the_stamp_goes_on() {
+    fn a_row_ages_while_the_stamp_advances() {
         let values = Values { step: 2, variables: 5 };
         let decided = Decided { table: 3, row: 4 };
         let header = Header {

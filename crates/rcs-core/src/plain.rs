@@ -502,7 +502,7 @@ mod tests {
     }
 
     #[test]
-    fn what_an_option_or_a_variant_does_not_carry_is_zero() {
+    fn unused_bytes_of_options_and_variants_are_zero() {
         assert_eq!(to_bytes::<3, _>(&Some(0x1234_u16)), [1, 0x34, 0x12]);
         assert_eq!(to_bytes::<3, _>(&None::<u16>), [0, 0, 0]);
         assert_eq!(from_bytes::<Option<u16>>(&[0, 0, 9]), Err(DecodeError::BadFill(9)));

@@ -428,7 +428,7 @@ mod tests {
     }
 
     #[test]
-    fn a_configuration_comes_back_and_what_is_left_out_is_as_without_options() {
+    fn a_configuration_round_trips_and_omitted_keys_have_defaults() {
         let config = RunConfig {
             overrun: Policy::Hold(3),
             robot: "serial:/dev/ttyS0,parity=even,silence=90".parse().unwrap(),

@@ -283,7 +283,7 @@ mod tests {
     use sessions::network::Role;
 
     #[test]
-    fn an_event_has_a_code_a_weight_and_a_source_beside_its_sentence() {
+    fn an_event_has_a_code_a_severity_a_source_and_a_sentence() {
         let fell = Event::Cell(CellEvent::Fell { part: "SHAFT".to_owned() });
         assert_eq!((fell.code(), fell.level(), fell.source()), ("cell.fell", Level::Error, "cell"));
         assert_eq!(fell.to_string(), "SHAFT lies on the floor");

@@ -303,7 +303,7 @@ mod tests {
     }
 
     #[test]
-    fn what_boards_are_to_load_comes_back() {
+    fn load_requests_of_boards_round_trip() {
         let directory = tempfile::tempdir().unwrap();
         let path = directory.path().join("load-1");
         assert!(read(&path).is_none());

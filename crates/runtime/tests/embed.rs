@@ -35,7 +35,7 @@ fn the_linkbar_finishes_and_is_observed() {
 }
 
 #[test]
-fn a_run_that_is_left_counts_as_stopped() {
+fn a_run_after_a_hang_up_is_stopped() {
     let mut run = Run::new(config("linkbar"), Box::new(())).unwrap();
     for tick in 1..=100 {
         assert!(run.step());
@@ -47,7 +47,7 @@ fn a_run_that_is_left_counts_as_stopped() {
 }
 
 #[test]
-fn a_run_that_is_told_to_stop_brings_the_robot_to_rest() {
+fn a_stop_request_brings_the_robot_to_rest() {
     let config = config("linkbar");
     let stop = Arc::clone(&config.stop);
     let mut run = Run::new(config, Box::new(())).unwrap();
@@ -63,7 +63,7 @@ fn a_run_that_is_told_to_stop_brings_the_robot_to_rest() {
 }
 
 #[test]
-fn what_cannot_be_run_is_refused_before_anything_moves() {
+fn an_impossible_run_is_refused_before_any_motion() {
     let error = Run::new(config("no-such-job"), Box::new(())).err().unwrap();
     assert!(
         matches!(&error, StartError::NoFile(file) if file.known.contains(&"linkbar".to_owned())),

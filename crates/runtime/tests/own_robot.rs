@@ -69,7 +69,7 @@ fn it_does_the_job_and_the_cell_follows_it() {
 }
 
 #[test]
-fn what_it_complains_of_ends_the_job_in_words() {
+fn a_complaint_of_the_workstation_ends_the_job_with_a_message() {
     let outcome = run(300);
     let Ending::Failed(account) = &outcome.ending else { panic!("it was stopped") };
     assert!(account.first.text.contains("the robot has left its path"), "{account}");

@@ -28,7 +28,7 @@ fn run(config: RunConfig, last: u64, mut look: impl FnMut(&Run, &Attached)) -> C
 }
 
 #[test]
-fn the_cell_shows_what_it_does() {
+fn the_cell_page_shows_the_state_of_the_cell() {
     let view = run(config("view"), 881, |_, _| {});
     let controller = &view.controller;
     assert_eq!((view.tick, controller.stage.as_str()), (Tick(881), "DEPC"));

@@ -284,7 +284,7 @@ mod tests {
     }
 
     #[test]
-    fn nothing_of_what_is_garbled_is_taken() {
+    fn garbled_data_are_not_used() {
         let mut bench = Bench::connected();
         let hand = GripOutputs::default();
         let mut orders = Mailbox::initialized(PEDESTAL_ORDERS);
@@ -316,7 +316,7 @@ mod tests {
     }
 
     #[test]
-    fn what_the_pedestal_refuses_is_said_once() {
+    fn a_refusal_of_the_pedestal_is_reported_once() {
         let mut bench = Bench::connected();
         for grip_size in 0..3 {
             let status = PedestalStatus { grip_size, ..PedestalStatus::default() };

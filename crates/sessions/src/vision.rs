@@ -340,7 +340,7 @@ mod tests {
     }
 
     #[test]
-    fn a_request_goes_out_with_its_picture_and_its_answer_comes_in() {
+    fn a_request_is_sent_with_its_picture_and_its_answer_is_received() {
         let mut bench = Bench::connected();
         bench.ask(65_539);
         let request = request::decode(&bench.outgoing(VISION_REQUEST)).unwrap();
@@ -383,7 +383,7 @@ mod tests {
     }
 
     #[test]
-    fn an_answer_is_read_only_if_vision_ready_input_says_so() {
+    fn an_answer_is_read_only_while_vision_ready_input_is_set() {
         let mut bench = Bench::connected();
         bench.ask(4);
         bench.say(&Areas { input: Ready::NotReady, ..answer(4) });
@@ -400,7 +400,7 @@ mod tests {
     }
 
     #[test]
-    fn answers_to_other_requests_and_garbled_ones_are_said_once_and_not_read() {
+    fn wrong_and_garbled_answers_are_reported_once_and_ignored() {
         let mut bench = Bench::connected();
         bench.ask(4);
         bench.say(&answer(9));
@@ -429,7 +429,7 @@ mod tests {
     }
 
     #[test]
-    fn who_comes_after_another_gets_the_request_that_is_not_answered() {
+    fn a_successor_gets_the_unanswered_request() {
         let mut bench = Bench::connected();
         bench.ask(4);
         bench.go();

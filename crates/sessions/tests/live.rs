@@ -179,7 +179,7 @@ fn a_client_without_a_known_subprotocol_is_refused() {
 }
 
 #[test]
-fn what_comes_once_is_sent_again_to_each_subscriber() {
+fn one_time_messages_are_sent_to_each_new_subscriber() {
     let (server, mut tap) = serve(Options::default());
     tap.message(1, 5, b"<robot/>");
     for _ in 0..2 {
@@ -213,7 +213,7 @@ fn wrong_messages_are_answered_and_end_the_session_at_last() {
 }
 
 #[test]
-fn messages_that_are_too_long_and_frames_that_are_none_close_the_connection() {
+fn oversized_messages_and_invalid_frames_close_the_connection() {
     let (server, _tap) = serve(Options::default());
     let mut socket = connect(server.address());
     // The server closes the connection before it has read all of the message.
@@ -246,7 +246,7 @@ fn ends(stream: &mut TcpStream) {
 }
 
 #[test]
-fn what_is_no_handshake_ends_the_connection() {
+fn an_invalid_handshake_ends_the_connection() {
     let (server, _tap) = serve(Options::default());
     for wrong in [
         "GET / HTTP/1.1\r\n\r\n",
@@ -266,7 +266,7 @@ fn what_is_no_handshake_ends_the_connection() {
 }
 
 #[test]
-fn clients_are_counted_and_one_more_is_told_so() {
+fn clients_are_counted_and_one_too_many_is_refused() {
     let (server, _tap) = serve(Options::default());
     let mut clients: Vec<_> = (0..CLIENTS).map(|_| connect(server.address())).collect();
     let (status, body) = try_connect(server.address(), None, "foxglove.sdk.v1").map(|_| ()).unwrap_err();
@@ -281,7 +281,7 @@ fn clients_are_counted_and_one_more_is_told_so() {
 }
 
 #[test]
-fn clients_that_take_nothing_are_disconnected_and_others_stay() {
+fn clients_that_do_not_read_are_disconnected_and_others_stay() {
     let patience = Duration::from_millis(400);
     let (server, mut tap) = serve(Options { patience, ..Options::default() });
     let mut reader = connect(server.address());
@@ -370,7 +370,7 @@ fn a_viewer_that_reads_slowly_receives_large_messages_and_stays() {
 }
 
 #[test]
-fn a_viewer_that_stops_reading_is_told_why_it_is_disconnected() {
+fn a_viewer_that_stops_reading_is_disconnected_with_a_reason() {
     let (sender, notices) = channel();
     let patience = Duration::from_millis(400);
     let (server, mut tap) = serve(Options { patience, notices: Some(sender), ..Options::default() });

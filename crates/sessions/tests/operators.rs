@@ -58,7 +58,7 @@ impl Bench {
 }
 
 #[test]
-fn a_request_reaches_the_run_and_its_answer_comes_back() {
+fn a_request_reaches_the_run_and_is_answered() {
     let bench = Bench::new();
     let mut client = bench.client("console");
     assert_eq!(client.run(), "linkbar-1");
@@ -78,7 +78,7 @@ fn a_request_reaches_the_run_and_its_answer_comes_back() {
 }
 
 #[test]
-fn a_session_that_says_nothing_is_told_once_until_it_speaks_again() {
+fn a_silent_session_is_reported_once_until_it_answers() {
     let bench = Bench::new();
     let mut client = bench.client("console");
     bench.expect("console", Event::Connected);
@@ -90,7 +90,7 @@ fn a_session_that_says_nothing_is_told_once_until_it_speaks_again() {
 }
 
 #[test]
-fn what_breaks_the_protocol_ends_its_session_and_no_other() {
+fn a_protocol_error_ends_only_its_session() {
     let bench = Bench::new();
     let mut good = bench.client("good");
     bench.expect("good", Event::Connected);
@@ -224,7 +224,7 @@ fn a_client_that_takes_no_answers_does_not_hold_the_run_up() {
 }
 
 #[test]
-fn there_is_room_for_eight_and_a_ninth_is_told() {
+fn a_ninth_client_is_refused_with_the_reason() {
     let bench = Bench::new();
     let mut clients: Vec<_> = (0..8).map(|number| bench.client(&format!("c{number}"))).collect();
     let name: Name = "ninth".parse().unwrap();

@@ -42,7 +42,7 @@ fn block_893_is_the_job_of_the_linkbar() {
 }
 
 #[test]
-fn what_is_no_command_is_not_loaded() {
+fn invalid_commands_are_not_loaded() {
     let store = store();
     let refused = |block, from, to| store.line_load(block, from, to).unwrap_err().to_string();
     assert_eq!(
@@ -57,7 +57,7 @@ fn what_is_no_command_is_not_loaded() {
 }
 
 #[test]
-fn a_wrong_command_is_told_where_it_stands() {
+fn a_wrong_command_is_reported_at_its_line() {
     let with = |line: &str| {
         let text = format!("BLOCK# 870 OFFSET 16000\n{line}\n");
         store().with_blocks(vec![Source { name: "more.blk".into(), text: text.into() }])

@@ -84,7 +84,7 @@ fn the_cell_and_the_data_agree() {
 }
 
 #[test]
-fn the_blank_is_picked_tilted_and_stands_upright_in_the_vise() {
+fn the_blank_is_picked_tilted_and_is_upright_in_the_vise() {
     let (store, _) = load();
     let data = store.view();
     let blank = name("LINKBAR1_BH");
@@ -109,7 +109,7 @@ fn the_blank_is_picked_tilted_and_stands_upright_in_the_vise() {
 }
 
 #[test]
-fn the_finished_part_is_let_go_just_above_the_tray() {
+fn the_finished_part_is_released_just_above_the_tray() {
     let (store, _) = load();
     let data = store.view();
     let part = name("LINKBAR1");
@@ -124,7 +124,7 @@ fn the_finished_part_is_let_go_just_above_the_tray() {
 }
 
 #[test]
-fn hold_and_seat_differ_by_what_the_text_says() {
+fn hold_and_seat_differ_as_documented() {
     let (store, _) = load();
     let data = store.view();
     let vise = at(&data, "PFIXTURE", 0, "H-LINKBAR1_BH");
@@ -138,7 +138,7 @@ fn hold_and_seat_differ_by_what_the_text_says() {
 }
 
 #[test]
-fn the_camera_stands_straight_above_the_sector() {
+fn the_camera_is_directly_above_the_sector() {
     let (store, _) = load();
     let data = store.view();
     let sector = at(&data, "UNIT_1", 1, "LINKBAR1_BH");

@@ -48,7 +48,7 @@ fn error_without_names_concerns_all_commands_but_pause() {
 }
 
 #[test]
-fn blocks_are_loaded_beside_known_errors_and_can_correct_them() {
+fn blocks_load_despite_known_errors_and_can_correct_them() {
     let wrong = spoilt("poses.blk", "   -4424    -4803      800", "   -4424    -4803     -200");
     assert!(wrong.faults().next().is_some_and(|fault| fault.message.contains("UNIT-V1")));
     let pose = |z: i32, name: &str| {

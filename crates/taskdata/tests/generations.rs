@@ -53,7 +53,7 @@ fn numbers(data: &TaskData<'_>) -> Vec<Option<u32>> {
 }
 
 #[test]
-fn what_is_replaced_keeps_its_number_and_what_is_derived_is_new() {
+fn a_replaced_record_keeps_its_number_and_derived_ones_are_new() {
     let base = loaded(BASE);
     let next = with(
         &base,
@@ -155,7 +155,7 @@ fn once<V: std::fmt::Debug + Copy + 'static>(
 proptest! {
     /// For any blocks loaded, every name keeps its number and has the values that were loaded last.
     #[test]
-    fn names_keep_their_numbers_and_say_what_was_said_last(
+    fn names_keep_their_numbers_and_their_last_message(
         reloads in prop::collection::vec((once(0..30, -200..0), once(0..30, 0_u8..10)), 1..4),
     ) {
         let all: Vec<(u8, i32)> = (0..10).map(|n| (n, -i32::from(n))).collect();

@@ -73,7 +73,7 @@ fn sensors_and_relative_moves_are_found_by_name_and_location() {
 }
 
 #[test]
-fn a_relative_move_names_what_there_is() {
+fn a_relative_move_names_its_object() {
     assert_eq!(
         said("  -rel- INS-IN lpt TOOL-TRNS 4 10 8 0 IN INS-FY"),
         ["no sensor is named INS-FY", "help: the nearest known name is INS-FX"]
@@ -124,7 +124,7 @@ fn a_sensor_can_trip_and_does_not_always_hold() {
 }
 
 #[test]
-fn a_misspelt_beginning_is_no_sensor() {
+fn a_misspelt_prefix_is_not_a_sensor() {
     assert_eq!(
         said("  -rel- INS-IN lpt TOOL-TRNS 4 10 8 0 IN\n  -rle- INS-FAR lpt TOOL-TRNS 4 10 8 0 IN"),
         [

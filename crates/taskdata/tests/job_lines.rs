@@ -227,7 +227,7 @@ fn after_a_restart_the_robot_may_go_from_home() {
 }
 
 #[test]
-fn what_happens_during_a_command_stands_before_it() {
+fn events_during_a_command_are_listed_before_it() {
     let steps = load("** after 50 joystick hold PRIM\n== MOVE -- +0 -- 0 +0 HOME 0 -- 0").unwrap();
     let held = Workstation::Joystick(BoxAction::Hold(Stepped::Prim.bit()));
     assert_eq!(steps[0], Step::After { ticks: 50, action: held });
@@ -365,7 +365,7 @@ fn every_mistake_has_its_message() {
 }
 
 #[test]
-fn a_serial_number_may_stand_behind_the_nine_fields() {
+fn a_serial_number_may_follow_the_nine_fields() {
     let serial = |line: &str| match load(line).unwrap_or_else(|report| panic!("{report}"))[..] {
         [Step::Command(command)] => command.serial,
         ref other => panic!("{line}: {other:?}"),

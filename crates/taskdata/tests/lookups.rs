@@ -240,7 +240,7 @@ fn a_file_has_an_end() {
 }
 
 #[test]
-fn an_owner_by_pose_stands_in_for_its_location_points() {
+fn an_owner_by_pose_replaces_its_location_points() {
     let store = store(&format!(
         "{CELL}\nBLOCK# 850 OFFSET 21000\n-traj FIX-B own FIX lpt B -ppt 4 100 8 300 lpt F\n"
     ));

@@ -334,7 +334,7 @@ error: objects/linkbar.blk: block 251 (offset 20000), line 6, column 3: there is
 }
 
 #[test]
-fn a_forgotten_entry_of_a_directory_is_told_once() {
+fn an_unused_entry_of_a_directory_is_reported_once() {
     let said = said("objects/linkbar.blk", "253 load ( object    )", "");
     let expected = r#"
 error: objects/linkbar.blk: line 22, column 1: block 253 (offset 20000) is loaded by no directory block; LINKBAR1_BH and 1 more name that are asked for stand there
@@ -369,7 +369,7 @@ error: objects/linkbar.blk: block 253 (offset 20000), line 5, column 3: depart s
 }
 
 #[test]
-fn tabs_are_told_once_a_file() {
+fn tabs_are_reported_once_per_file() {
     let mut sources = sources();
     let source = sources.iter_mut().find(|source| source.name == "movetables.blk").unwrap();
     source.text = source.text.replace("    ", "\t").into();
@@ -485,7 +485,7 @@ fn objects_differ_in_more_than_their_vision_ids() {
 }
 
 #[test]
-fn commands_are_no_task_data() {
+fn commands_are_not_task_data() {
     let said = said(
         "objects/linkbar.blk",
         r#"  -obj-  S-LINKBAR1_BH"#,
@@ -502,7 +502,7 @@ error: objects/linkbar.blk: block 254 (offset 20000), line 7, column 3: a comman
 }
 
 #[test]
-fn a_grip_stands_in_an_object_form() {
+fn a_grip_is_listed_in_an_object_form() {
     let said = said("objects/linkbar.blk", r#" -grip- H-LINKBAR1_BH    1"#, r#" -grip- H-LINKBAR1_BH    2"#);
     let expected = r#"
 error: objects/linkbar.blk: block 261 (offset 20000), line 5, column 9: H-LINKBAR1_BH has no grip 2 in an object form

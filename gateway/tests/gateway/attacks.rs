@@ -189,7 +189,7 @@ fn no_certificate_gets_beyond_its_role() {
 /// A neighbour listens to nobody but the gateway of its cell: another certificate of the same authority in its place is
 /// not asked.
 #[test]
-fn neighbour_believes_no_gateway_with_another_name() {
+fn a_neighbour_refuses_a_gateway_with_another_name() {
     let shop = Shop::new(&["hwsc-1", "other@127.0.0.1"]);
     let _run = shop.real_run();
     // A gateway that serves the cell's keys with the certificate of another server.
@@ -217,7 +217,7 @@ fn neighbour_believes_no_gateway_with_another_name() {
 
 /// The gateway connects to a router, for monitors. One that was taken over hears the status, and commands nothing.
 #[test]
-fn router_that_was_taken_over_commands_nothing_and_hears_no_claim() {
+fn a_compromised_router_can_neither_command_nor_read_claims() {
     let shop = Shop::new(&[VICTIM, "router@127.0.0.1"]);
     let _run = shop.real_run();
     let keys = shop.path("keys");

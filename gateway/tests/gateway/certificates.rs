@@ -66,7 +66,7 @@ fn sign(keys: &Path, name: &str, purpose: &str, validity: &[&str]) {
 }
 
 #[test]
-fn wrong_certificates_are_refused_and_the_log_says_why() {
+fn wrong_certificates_are_refused_and_logged_with_the_reason() {
     let shop = Shop::new(&["hwsc-1"]);
     let keys = shop.path("keys");
     make_keys(&shop.path("foreign"), "t9", &["hwsc-1"]);

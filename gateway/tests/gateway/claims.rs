@@ -10,7 +10,7 @@ use crate::{
 };
 
 #[test]
-fn workstation_behind_a_gateway_commands_the_run() {
+fn workstation_through_a_gateway_commands_the_run() {
     let shop = Shop::new(&["hwsc-1"]);
     let _run = shop.real_run();
     let gateway = shop.serve(&["workstation=hwsc-1"]);
@@ -57,7 +57,7 @@ fn certificate_without_permission_gets_no_claim() {
 }
 
 #[test]
-fn gateway_without_a_run_says_so_and_serves_the_run_that_starts_later() {
+fn gateway_without_a_run_warns_and_serves_the_run_that_starts_later() {
     let shop = Shop::new(&["hwsc-1"]);
     let gateway = shop.serve(&["workstation=hwsc-1"]);
     gateway.wait_for("no run listens at");
@@ -153,7 +153,7 @@ fn router_killed_in_a_motion_disturbs_no_claim_and_the_next_one_has_the_status()
 
 /// The manual's shift, with all four neighbours behind gateways: the same bits.
 #[test]
-fn shift_behind_gateways_has_the_digest_of_one_without() {
+fn shift_through_gateways_has_the_same_digest() {
     let roles = ["workstation", "data-system", "pedestal", "vision"];
     let shop = Shop::new(&roles);
     let outside = "workstation,data-system,pedestal,vision";

@@ -102,7 +102,7 @@ impl Operator {
 /// The stick is held by keep-alives of the operator: without them the motion ends after 250 ms, also through a gateway,
 /// which sends none of its own.
 #[test]
-fn stick_behind_a_gateway_is_held_by_keep_alives_and_released_without() {
+fn stick_through_a_gateway_is_released_without_keep_alives() {
     let shop = Shop::new(&["op-1"]);
     let run = shop.run(&["--stand-by", "--clock", "real", "--operator", "network"]);
     let gateway = shop.serve(&["operator=op-1"]);
@@ -135,7 +135,7 @@ fn send(shop: &Shop, name: &str, more: &[&str]) -> (bool, String) {
 }
 
 #[test]
-fn rcs_run_send_operates_a_run_behind_a_gateway() {
+fn rcs_run_send_operates_a_run_through_a_gateway() {
     let shop = Shop::new(&["op-1", "op-2"]);
     let _run = shop.run(&["--stand-by", "--clock", "real", "--operator", "network"]);
     let gateway = shop.serve(&["operator=op-1,op-2"]);

@@ -253,7 +253,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_not_there_is_named() {
+    fn missing_items_are_named() {
         let line = "-obj-  X  2";
         let text = |change| edited(change, line).unwrap_err().to_string();
         assert_eq!(text("o.blk:253:4:4=1"), "line 4 has no word 4: it is `-obj-  X  2`");

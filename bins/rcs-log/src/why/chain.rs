@@ -215,7 +215,7 @@ mod tests {
     }
 
     #[test]
-    fn commands_are_told_from_the_top() {
+    fn commands_are_listed_from_the_top() {
         let links = commands(&missed(), Root { process: ProcessId::Prim, tick: 5 });
         let said: Vec<_> = links.iter().map(|link| (link.tick, link.process.as_str())).collect();
         assert_eq!(said, [(1, "HWSC"), (2, "Task"), (3, "Subtask"), (4, "E-move")]);
@@ -223,7 +223,7 @@ mod tests {
     }
 
     #[test]
-    fn the_failure_goes_up_a_tick_a_level() {
+    fn a_failure_passes_one_level_per_tick() {
         let said: Vec<_> =
             up(&missed(), ProcessId::Emove, 6).into_iter().map(|link| (link.tick, link.process)).collect();
         assert_eq!(said, [(7, "Subtask".to_owned()), (8, "Task".to_owned())]);
@@ -238,7 +238,7 @@ mod tests {
 
     /// ORDERED passed the decision on while E-move was busy, so the condition that E-move has the order is not news.
     #[test]
-    fn a_table_above_tells_what_it_did_not_pass_on() {
+    fn a_table_above_reports_the_rows_that_it_consumed() {
         let history = history(&[
             |_, memory| memory.subtask.header.decided = Some(subtask("GET-OBJECT", 1)),
             |_, memory| memory.subtask.header.decided = Some(subtask("ORDERED", 4)),
@@ -249,7 +249,7 @@ mod tests {
     }
 
     #[test]
-    fn what_a_row_asks_for_and_the_one_before_did_not_is_news() {
+    fn new_conditions_are_absent_from_the_previous_row() {
         const fn row(number: u8, when: &'static [Condition]) -> Row {
             Row { number, steps: &["Wait"], when, action: "Go", argument: None, next: None }
         }

@@ -166,7 +166,7 @@ mod tests {
     use rcs_core::{handshake::Arrival, table::Variables as _};
 
     #[test]
-    fn what_processes_read_are_inputs() {
+    fn values_that_processes_read_are_inputs() {
         let leaves = record::layout::leaves(ExternalInputs::STRUCT);
         for read in ProcessId::ALL.iter().flat_map(|process| process.reads()) {
             assert!(leaves.iter().any(|leaf| leaf.path.starts_with(read)), "{read}");
@@ -181,7 +181,7 @@ mod tests {
     }
 
     #[test]
-    fn a_row_is_told_with_the_step_in_which_it_fired() {
+    fn a_row_is_reported_with_the_step_in_which_it_fired() {
         let any = Row {
             number: 1,
             steps: &[],

@@ -144,7 +144,7 @@ mod tests {
     }
 
     #[test]
-    fn each_kind_spoils_what_it_says_and_nothing_else() {
+    fn each_kind_of_fault_has_only_its_own_effect() {
         let response = VisionResponse {
             echo: 4,
             status: VisionStatus::Done,

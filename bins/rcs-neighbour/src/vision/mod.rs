@@ -228,7 +228,7 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_read_is_not_answered_and_the_next_request_is() {
+    fn an_unreadable_request_is_not_answered_and_the_next_one_is() {
         let mut vision = Vision::new(Path::new(CELL), Vec::new()).unwrap();
         let mut requests = Mailbox::initialized(VISION_REQUEST);
         let mut pictures = Mailbox::initialized(VISION_PICTURE);

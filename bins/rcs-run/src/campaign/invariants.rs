@@ -154,7 +154,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_said_to_be_held_is_true_or_not_known() {
+    fn the_reported_held_object_is_true_or_not_known() {
         let object = Holding::Object(ObjectGrip::default());
         assert!(untrue(&object, None).is_some() && untrue(&Holding::Nothing, Some("SHAFT")).is_some());
         assert_eq!(untrue(&object, Some("SHAFT")), None);

@@ -252,7 +252,7 @@ mod tests {
     }
 
     #[test]
-    fn a_command_that_is_not_echoed_is_none_of_the_past() {
+    fn a_command_without_echo_is_not_an_old_command() {
         let (mut memory, mut ladder, now) = fetching();
         let expected = forgotten((memory, ladder, now));
         (memory.emove.prim.number, ladder.emove.motion.commander().number) =

@@ -83,7 +83,7 @@ fn fingerprint(branch: &Branch<'_>) -> (Digest, u64) {
 }
 
 #[test]
-fn a_fork_goes_on_as_its_parent_bit_for_bit() {
+fn a_fork_continues_like_its_parent_bit_for_bit() {
     // STARTUP sends a statement about the robot to the Data System: at one of the forks an answer is pending.
     let facility = with_job(
         "== STARTUP -- +0 -- 0 +0 -- 0 -- 0\n\
@@ -196,7 +196,7 @@ fn the_monitor_finds_a_contact_that_was_planted() {
 
 /// A part at a place where no command has put it: every command finishes, and the world differs.
 #[test]
-fn the_monitor_finds_a_world_that_is_unlike_what_a_command_says() {
+fn the_monitor_reports_a_world_that_contradicts_a_finished_command() {
     let (facility, parent) = empty_move();
     let fork = under_way(&facility);
     let mut branch = fork.clone();
@@ -282,7 +282,7 @@ fn a_branch_in_a_known_state_ends_as_if_it_went_on() {
 
 /// A campaign that was killed while it wrote a line continues after the last complete line.
 #[test]
-fn a_campaign_goes_on_from_its_journal() {
+fn a_campaign_resumes_from_its_journal() {
     let (facility, parent) = empty_move();
     let plan = |at| Plan { at, series: series(&facility, "pause"), procedure: PROCEDURE };
     let plans = [60, 120].map(plan);

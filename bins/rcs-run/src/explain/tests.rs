@@ -157,7 +157,7 @@ fn a_regrip_leads_over_the_pedestal() {
 }
 
 #[test]
-fn what_cannot_be_read_is_refused() {
+fn unreadable_input_is_refused() {
     let store = store();
     let report = command_of("TRANSFER LINKBAR9 +2 PFIXTURE 0 +2 UNIT_1 1 SAFE 0", &store).unwrap_err();
     assert!(report.to_string().contains("LINKBAR9"), "{report}");

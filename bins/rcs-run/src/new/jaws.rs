@@ -263,7 +263,7 @@ mod tests {
     }
 
     #[test]
-    fn what_fits_nowhere_says_why() {
+    fn a_part_that_fits_nowhere_is_reported_with_the_reason() {
         let why = |wanted: &Wanted| chosen(wanted).err().unwrap_or_default().join("\n");
         assert!(why(&clevis(1.73, 3.5, 4.0)).contains("the jaws open for parts up to 3.00 in"));
         assert!(why(&clevis(1.73, 2.56, 1.0)).contains("comes 0.40 in above the jaws"));

@@ -65,7 +65,7 @@ fn a_smaller_clevis_is_machined_on_both_sides() {
 }
 
 #[test]
-fn a_longer_and_wider_linkbar_comes_back() {
+fn a_longer_and_wider_linkbar_round_trips() {
     assert_eq!(tried("BAR", "5x0.8x0.625", "LINKBAR1").map_err(|error| error.to_string()), Ok(3));
 }
 
@@ -80,7 +80,7 @@ fn a_longer_tool_goes_into_the_drum_and_out_of_it() {
 }
 
 #[test]
-fn what_lies_in_nests_moves_with_its_middle() {
+fn parts_in_nests_move_with_their_centre() {
     let diff =
         |name, size, like| made(name, size, like).map(|made| made.change.diff()).expect("it can be made");
     // Another tool in the same holder is held at the same place as the like one.

@@ -130,7 +130,7 @@ BLOCK# 612 OFFSET 21000
 ";
 
     #[test]
-    fn a_new_form_stands_behind_the_block() {
+    fn a_new_form_follows_the_block() {
         let changed = put_pose(TEXT, Some(610), "NEW-P", "...").unwrap();
         assert_eq!(changed.line, 7);
         assert!(changed.removed.is_empty());
@@ -152,7 +152,7 @@ BLOCK# 612 OFFSET 21000
     }
 
     #[test]
-    fn what_has_no_place_is_refused() {
+    fn values_without_a_place_are_refused() {
         let refused = |block| put_pose(TEXT, block, "NEW-P", "...").unwrap_err();
         assert!(refused(None).contains("--block"));
         assert!(refused(Some(99)).contains("it has 610, 612"));

@@ -117,7 +117,7 @@ fn gripper_on_the_robot_and_those_in_their_holsters_are_seen() {
 }
 
 #[test]
-fn an_empty_robot_holds_nothing_and_releases_nothing() {
+fn a_robot_without_object_holds_and_releases_none() {
     let bench = Bench::new();
     assert_eq!(bench.check(&Claim::HoldsNothing), Ok(()));
     let held = Claim::Holds { object: name("LINKBAR1"), place: Vec::new(), unseen: false };
@@ -155,7 +155,7 @@ fn a_part_that_a_person_takes_after_its_release_is_not_sensed() {
 }
 
 #[test]
-fn a_part_that_is_released_beside_its_goal_is_not_placed() {
+fn a_part_released_away_from_its_goal_is_not_placed() {
     let mut bench = Bench::new();
     let id = bench.put("LINKBAR1_BH", "UNIT_1", 4);
     bench.release(id);
@@ -169,7 +169,7 @@ fn a_part_that_is_released_beside_its_goal_is_not_placed() {
 }
 
 #[test]
-fn a_part_at_its_place_beside_another_that_a_person_has_put_there_is_not_sensed() {
+fn a_part_next_to_one_that_a_person_has_put_down_is_not_sensed() {
     let mut bench = Bench::new();
     let id = bench.put("LINKBAR1_BH", "UNIT_1", 4);
     bench.release(id);
@@ -216,7 +216,7 @@ fn a_part_that_was_grasped_off_its_place_for_an_unsensed_reason_is_placed_so() {
 }
 
 #[test]
-fn what_has_failed_within_the_age_of_a_reading_is_not_sensed() {
+fn failures_younger_than_a_reading_are_not_sensed() {
     let mut bench = Bench::new();
     bench.history.is_up = true;
     assert!(!bench.history.has_just_failed(Tick(1), Level::Prim), "nothing has failed");
@@ -229,7 +229,7 @@ fn what_has_failed_within_the_age_of_a_reading_is_not_sensed() {
 }
 
 #[test]
-fn a_place_in_the_fingers_that_is_reported_as_unconfirmed_covers_what_follows_from_it() {
+fn an_unconfirmed_place_in_the_fingers_covers_its_consequences() {
     let place = ("UNIT_1".into(), 4);
     let claims = [
         Claim::Holds { object: name("LINKBAR1"), place: Vec::new(), unseen: false },

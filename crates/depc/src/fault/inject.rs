@@ -368,7 +368,7 @@ mod tests {
     }
 
     #[test]
-    fn delay_moves_bytes_by_its_ticks_and_holds_back_what_follows() {
+    fn delay_moves_bytes_by_its_ticks_and_holds_back_later_bytes() {
         let got = arrived(Rule::new(FaultKind::Delay).window(1, 3).ticks(4), b"X");
         assert_eq!(got.iter().map(Vec::len).collect::<Vec<_>>(), [1, 0, 0, 0, 0, 1, 5, 1, 1, 1]);
     }
@@ -387,7 +387,7 @@ mod tests {
     }
 
     #[test]
-    fn what_a_line_cannot_hold_is_lost_and_counted() {
+    fn bytes_beyond_the_capacity_of_a_line_are_lost_and_counted() {
         let mut line = injector(&[Rule::new(FaultKind::Stall).rate(ALWAYS)]);
         ten(&mut line, &[0x55; 64]);
         assert_eq!(line.total().overflowed, 640 - 256);
@@ -424,7 +424,7 @@ mod tests {
     }
 
     #[test]
-    fn a_limit_of_one_fault_a_tick_is_kept() {
+    fn at_most_one_fault_per_tick_is_injected() {
         let mut plan = Plan::new(1).most_per_tick(1);
         plan.add(Rule::new(FaultKind::Drop).rate(500_000)).unwrap();
         plan.add(Rule::new(FaultKind::Duplicate).rate(500_000)).unwrap();

@@ -411,7 +411,7 @@ mod tests {
     }
 
     #[test]
-    fn what_makes_no_sense_is_refused() {
+    fn senseless_values_are_refused() {
         let nowhere = Rule { to_controller: false, to_host: false, ..Rule::new(Drop).rate(1) };
         for (rule, expected) in [
             (nowhere, Refusal::NoDirection),
@@ -429,7 +429,7 @@ mod tests {
     }
 
     #[test]
-    fn a_length_goes_with_a_rate_a_tick_or_a_delay() {
+    fn a_length_needs_a_rate_a_tick_or_a_delay() {
         for rule in [
             Rule::new(Stall).rate(10).ticks(1000),
             Rule::new(CtsLow).at(5).ticks(7),

@@ -33,7 +33,7 @@ fn running() -> Host {
 }
 
 #[test]
-fn one_frame_a_tick_is_kept_up() {
+fn one_frame_per_tick_is_sustained() {
     let mut host = running();
     assert_eq!(tick(&mut host, &[], &position(NO_FUNCTION)).1, HOME_FRAME);
     for _ in 0..10 {
@@ -65,7 +65,7 @@ fn a_nak_brings_the_same_bytes_and_not_for_ever() {
 }
 
 #[test]
-fn what_the_port_has_not_taken_is_lost_and_named() {
+fn unsent_bytes_of_the_port_are_lost_and_reported() {
     let mut host = running();
     assert_eq!(host.unsent(), HostEvent::None, "nothing was on the line");
     tick(&mut host, &[], &position([7, 9]));
@@ -92,7 +92,7 @@ fn what_the_port_has_not_taken_is_lost_and_named() {
 }
 
 #[test]
-fn without_an_answer_the_link_is_restarted_and_nothing_is_repeated() {
+fn without_an_answer_the_link_restarts_and_no_command_is_repeated() {
     let mut host = running();
     tick(&mut host, &[], &position([7, 9]));
     assert_eq!(tick(&mut host, &[], &position(NO_FUNCTION)), (HostEvent::None, vec![]));
@@ -175,7 +175,7 @@ fn a_report_that_nobody_asked_for_is_an_error_of_depc() {
 }
 
 #[test]
-fn a_report_outside_the_coding_is_not_believed() {
+fn a_report_outside_the_coding_is_discarded() {
     let mut host = Host::new(ANSWER_TICKS);
     let mut frame = [0; 16];
     Report { plate: Plate { words: [0, 0, 0, 0, -1, 0] } }.emit(&mut frame);
@@ -184,7 +184,7 @@ fn a_report_outside_the_coding_is_not_believed() {
 }
 
 #[test]
-fn a_report_closed_by_the_next_one_is_not_believed() {
+fn a_report_closed_by_the_next_one_is_discarded() {
     let mut frame = [0; 16];
     Report { plate: Plate { words: [1, 2, 3, 4, 9000, -114] } }.emit(&mut frame);
     let without_ff = [&frame[..13], &frame[14..]].concat();
@@ -240,7 +240,7 @@ fn a_controller_without_dtr_is_blamed_after_three_times_the_time_for_an_answer()
 }
 
 #[test]
-fn transmit_tells_whether_it_has_sent_the_intent() {
+fn transmit_reports_whether_it_has_sent_the_intent() {
     let sent = |host: &mut Host, intent: &Intent| {
         let mut tx = LinkBytes::default();
         host.receive(&LinkBytes::default(), true);
@@ -273,7 +273,7 @@ fn cancel_is_repeated_until_it_is_acknowledged() {
 }
 
 #[test]
-fn a_full_line_is_said_to_be_full() {
+fn a_full_line_is_reported_as_full() {
     let mut host = running();
     let mut tx = LinkBytes::default();
     tx.extend(&[0; 60]);
@@ -283,7 +283,7 @@ fn a_full_line_is_said_to_be_full() {
 }
 
 #[test]
-fn an_ack_for_nothing_and_the_second_of_two_change_nothing() {
+fn unexpected_and_repeated_acks_have_no_effect() {
     let mut host = running();
     for _ in 0..5 {
         assert_eq!(tick(&mut host, &[0x06], &Intent::Idle), (HostEvent::None, vec![]));
@@ -321,7 +321,7 @@ fn an_ack_among_noise_is_one_and_wins_over_a_nak() {
 }
 
 #[test]
-fn a_byte_of_a_broken_report_is_no_answer() {
+fn a_byte_of_a_broken_report_is_not_an_answer() {
     let mut frame = [0; 16];
     Report { plate: Plate { words: [0x0606, 0x1515, 3, 4, 5, 6] } }.emit(&mut frame);
     let mut host = running();
@@ -331,7 +331,7 @@ fn a_byte_of_a_broken_report_is_no_answer() {
 }
 
 #[test]
-fn a_cancel_whose_ack_is_lost_ends_with_dtr_and_the_next_report_begins_anew() {
+fn a_cancel_without_ack_ends_with_dtr_and_the_next_report_starts_over() {
     let mut host = running();
     assert_eq!(tick(&mut host, &[], &Intent::Cancel).1, [0x18]);
     for _ in 0..20 {
@@ -344,7 +344,7 @@ fn a_cancel_whose_ack_is_lost_ends_with_dtr_and_the_next_report_begins_anew() {
 }
 
 #[test]
-fn of_the_reports_to_several_restarts_the_last_is_believed() {
+fn the_last_report_to_several_restarts_is_used() {
     let at = |x| {
         let mut frame = [0; 16];
         Report { plate: Plate { words: [x, -6296, -635, -9000, 13495, 0] } }.emit(&mut frame);
@@ -386,7 +386,7 @@ fn a_late_nak_repeats_a_position_but_no_function() {
 }
 
 #[test]
-fn a_report_that_comes_late_at_the_start_is_believed_only_if_it_is_the_last() {
+fn a_late_report_at_the_start_is_used_only_if_it_is_the_last() {
     let mut host = Host::new(ANSWER_TICKS);
     let mut restarts = 0;
     for _ in 0..5 {
@@ -404,7 +404,7 @@ fn a_report_that_comes_late_at_the_start_is_believed_only_if_it_is_the_last() {
 }
 
 #[test]
-fn a_dtr_that_comes_and_goes_is_no_start() {
+fn a_dtr_pulse_is_not_a_start() {
     let mut host = Host::new(ANSWER_TICKS);
     for tick in 0..2 * START_ATTEMPTS {
         assert_eq!(host.fault(), LinkFault::None, "tick {tick}");
@@ -455,7 +455,7 @@ fn a_function_that_begins_again_after_a_cancel_is_asked_for_its_report() {
 }
 
 #[test]
-fn what_a_host_forgets_makes_no_difference() {
+fn discarded_host_state_has_no_effect() {
     let mut host = running();
     tick(&mut host, &[], &position(NO_FUNCTION));
     for (has_candidate, candidate) in [(true, HOME), (false, Plate::default())] {

@@ -34,7 +34,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_checksum_of_nothing_is_zero_and_the_fill_bytes_do_not_count() {
+    fn the_checksum_of_no_bytes_is_zero_and_excludes_the_fill_bytes() {
         assert_eq!(checksum(&[]), 0);
         assert_eq!(checksum(&[0xFF, 0xFF, 0x03]), checksum(&[0x03]));
         assert_eq!(checksum(&[0x03, 0xE7, 0x68, 0xFD, 0x85, 0xDC, 0xD8, 0x34, 0xB7]), 0x73);

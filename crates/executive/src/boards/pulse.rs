@@ -303,7 +303,7 @@ mod tests {
     }
 
     #[test]
-    fn a_fingerprint_tells_program_data_and_job_apart() {
+    fn fingerprints_of_program_data_and_job_differ() {
         let of = |commit, data, job| Fingerprint::of(commit, [&source(data)], [&source(job)]);
         let run = of("abc", "1", "2");
         assert_eq!(of("abc", "1", "2").difference(&run), None);

@@ -284,7 +284,7 @@ mod tests {
     }
 
     #[test]
-    fn what_hinders_an_arm_has_its_name() {
+    fn obstacles_of_an_arm_are_named() {
         let arm = arm(TEXT);
         let axes = [0.3, 0.2, -0.1, 0.4, 0.5, 0.6];
         let mut track = Track::begin(&arm, &axes);
@@ -315,7 +315,7 @@ mod tests {
     }
 
     #[test]
-    fn a_file_with_a_mistake_says_which() {
+    fn a_file_with_a_mistake_names_it() {
         for (from, to, word) in [
             ("signs = [1, 1", "signs = [1, 0", "arm.signs[1]: expected 1 or -1, found 0"),
             (
@@ -335,7 +335,7 @@ mod tests {
     }
 
     #[test]
-    fn all_mistakes_of_a_file_are_told_at_once() {
+    fn all_mistakes_of_a_file_are_reported_at_once() {
         let wrong = TEXT.replace("signs = [1, 1", "signs = [1, 0").replace("low = [-170.0", "low = [170.0");
         let wrong = wrong.replace("a1 = 320.0", "a9 = 320.0");
         let report = RobotFile::from_toml(&crate::egm::placement::source(&wrong)).unwrap_err();

@@ -378,7 +378,7 @@ mod tests {
     }
 
     #[test]
-    fn states_follow_from_what_happens() {
+    fn states_follow_the_events() {
         let mut bench = Bench::new(Tuning::default());
         let message = bench.cycles(3);
         assert_eq!((message.mci_state, message.motor_state), (Some(MciState::Running), Some(MotorState::On)));
@@ -395,7 +395,7 @@ mod tests {
     }
 
     #[test]
-    fn after_an_emergency_stop_egm_goes_on_only_if_it_was_set_up_so() {
+    fn egm_resumes_after_an_emergency_stop_only_if_configured() {
         for (do_not_restart, goes_on) in [(true, false), (false, true)] {
             let mut bench = Bench::new(Tuning { do_not_restart, ..Tuning::default() });
             bench.target.position[2] += 100.0;
@@ -415,7 +415,7 @@ mod tests {
     }
 
     #[test]
-    fn the_last_reference_stands_and_one_message_a_cycle_is_read() {
+    fn the_last_reference_is_used_and_one_message_per_cycle_is_read() {
         let mut bench = Bench::new(Tuning::default());
         bench.cycles(2);
         for step in 1..=5 {

@@ -122,7 +122,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_bad_about_it_is_seen_and_comes_from_the_seed() {
+    fn the_disorders_are_visible_and_follow_from_the_seed() {
         let quality =
             Quality { loss: 20.0, double: 10.0, jitter_ms: 20.0, delay_ms: 1.0, ..Default::default() };
         let all = arrivals(quality, 7);

@@ -254,7 +254,7 @@ mod tests {
     }
 
     #[test]
-    fn a_file_with_a_mistake_says_which() {
+    fn a_file_with_a_mistake_names_it() {
         for (wrong, word) in [
             (TEXT.replace("0.7071068, 0.0", "0.9, 0.0"), "world.orientation"),
             (TEXT.replace("[tool]", "[tools]"), "tools"),

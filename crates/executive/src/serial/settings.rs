@@ -124,7 +124,7 @@ mod tests {
     }
 
     #[test]
-    fn options_follow_behind_commas() {
+    fn options_follow_commas() {
         let settings: SerialSettings =
             "/dev/serial/by-id/usb-x:1,parity=odd,stop=2,baud=19200,cts=ignore".parse().unwrap();
         let expected = SerialSettings {
@@ -140,7 +140,7 @@ mod tests {
     }
 
     #[test]
-    fn mistakes_are_said_with_what_was_expected_and_found() {
+    fn mistakes_report_expected_and_found() {
         for (text, says) in [
             ("", "path of a port"),
             ("/dev/x,parity=mark", "none, even or odd; found mark"),

@@ -428,7 +428,7 @@ mod tests {
     }
 
     #[test]
-    fn what_the_buffer_cannot_hold_is_refused() {
+    fn values_beyond_the_buffer_are_refused() {
         assert_eq!(encode(&DataBaseCommand::default()), Err(EncodeError::Nothing));
         for sector in [-1, 36] {
             assert_eq!(encode(&update("A", "", "B", sector)), Err(EncodeError::Sector(sector)));

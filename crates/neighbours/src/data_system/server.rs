@@ -228,7 +228,7 @@ mod tests {
     }
 
     #[test]
-    fn what_names_no_item_or_place_is_refused() {
+    fn unknown_items_and_places_are_refused() {
         let mut client = Client::new();
         client.connect();
         for (item, position, why) in
@@ -241,7 +241,7 @@ mod tests {
     }
 
     #[test]
-    fn bytes_that_are_no_command_are_refused_and_change_nothing() {
+    fn invalid_command_bytes_are_refused_without_effect() {
         let mut client = Client::new();
         client.connect();
         let answer = client.server.execute(b"hello");

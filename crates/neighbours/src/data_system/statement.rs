@@ -239,7 +239,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_wrong_is_said_with_its_place() {
+    fn mistakes_are_reported_with_their_place() {
         let cases = [
             ("", "UPDATE expected at character 1, found the end"),
             ("DELETE ITEMS", "UPDATE expected at character 1, found DELETE"),

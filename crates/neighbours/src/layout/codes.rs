@@ -297,7 +297,7 @@ mod tests {
     const AT: At = At { field: "obj", byte: 40 };
 
     #[test]
-    fn zeros_behind_a_name_are_blanks_and_anything_in_it_is_named() {
+    fn zeros_after_a_name_are_blanks_and_invalid_bytes_are_named() {
         let name = |bytes: &'static [u8; 4]| -> Result<Name<4>, FieldError> { Chars::<4>::take(AT, bytes) };
         assert_eq!(name(b"AB\0 ").unwrap().as_str(), "AB");
         assert!(name(b"\0\0\0\0").unwrap().is_empty());

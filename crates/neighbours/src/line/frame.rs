@@ -146,7 +146,7 @@ mod tests {
     }
 
     #[test]
-    fn a_mailgram_stands_behind_its_address() {
+    fn a_mailgram_follows_its_address() {
         let mut mailbox = Mailbox::initialized(HWSC_COMMAND);
         mailbox.write(&[7, 8, 9]).unwrap();
         let mut bytes = Vec::new();
@@ -177,7 +177,7 @@ mod tests {
     }
 
     #[test]
-    fn data_are_cut_to_what_a_frame_holds() {
+    fn data_are_cut_to_the_size_of_a_frame() {
         let mut bytes = Vec::new();
         put(&mut bytes, DISCONNECT, &[b'x'; MAX_SIZE]);
         let frame = Frame::first(&bytes).unwrap().unwrap();

@@ -42,7 +42,7 @@ fn row() -> Header {
 }
 
 #[test]
-fn a_command_stands_at_its_bytes() {
+fn a_command_is_at_its_bytes() {
     let expected = [
         &b"\x02\x01\x00\x00\x00\x00\x00\x00"[..],
         b"\x07\x00\x00\x00FLIP      ",
@@ -56,7 +56,7 @@ fn a_command_stands_at_its_bytes() {
 }
 
 #[test]
-fn a_status_stands_at_its_bytes() {
+fn a_status_is_at_its_bytes() {
     let status = PedestalStatus {
         cycle_echo: Tick(0x0102),
         echo: 7,
@@ -174,7 +174,7 @@ fn the_words_of_the_devices_stand_at_their_bytes() {
 }
 
 #[test]
-fn what_is_no_layout_is_said() {
+fn invalid_layouts_are_reported() {
     let said = |error: PedestalError| error.to_string();
     assert_eq!(
         said(CommandLayout::decode(&[0; 33]).unwrap_err().into()),
@@ -230,7 +230,7 @@ proptest! {
 
     /// Changes one byte of a valid command: if the result decodes, encoding it gives the same bytes.
     #[test]
-    fn what_is_taken_is_what_stands_there(at in any::<prop::sample::Index>(), byte in any::<u8>()) {
+    fn an_accepted_message_is_complete(at in any::<prop::sample::Index>(), byte in any::<u8>()) {
         let mut bytes = CommandLayout::encode(&flip(7));
         let at = at.index(bytes.len());
         bytes[at] = byte;
@@ -317,7 +317,7 @@ impl Bench {
 }
 
 #[test]
-fn a_pedestal_that_is_booted_calibrates_and_one_that_replaces_another_moves_nothing() {
+fn a_booted_pedestal_calibrates_and_a_replacement_does_not_move() {
     let mut booted = Bench::joining(0);
     (0..3).for_each(|_| booted.tick());
     let (valves, motor) = booted.orders();
@@ -349,7 +349,7 @@ fn a_pedestal_that_is_booted_calibrates_and_one_that_replaces_another_moves_noth
 }
 
 #[test]
-fn what_stands_in_the_mailbox_when_a_line_is_mended_is_not_made_up_for() {
+fn old_mailbox_contents_are_not_executed_after_a_repair() {
     let mut bench = Bench::joining(0);
     bench.tick();
     bench.command(&PedestalCommand { command: PedestalVerb::Release, grasp_size: 250, ..flip(5) });
@@ -385,7 +385,7 @@ fn a_garbled_command_is_refused_by_its_number_and_the_next_one_is_taken() {
 }
 
 #[test]
-fn without_sensor_words_nothing_is_stepped_and_the_status_says_why() {
+fn without_sensor_words_no_process_steps_and_the_status_has_the_reason() {
     let mut bench = Bench::joining(0);
     (0..3).for_each(|_| bench.tick());
     let before = bench.orders();

@@ -147,7 +147,7 @@ mod tests {
     }
 
     #[test]
-    fn every_field_stands_at_its_byte() {
+    fn every_field_is_at_its_byte() {
         let bytes = areas().encode().unwrap();
         assert_eq!(bytes, *b"\x02\x00\x01\x00\x0C\x00\x04\x00\x02\x00\x96\x00\xB5\xFF\x6E\x0D\x11\x00");
         assert_eq!(Areas::decode(&bytes), Ok(areas()));
@@ -156,7 +156,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_response_says_why() {
+    fn invalid_responses_are_refused_with_the_reason() {
         let said = |at: usize, byte: u8| {
             let mut bytes = areas().encode().unwrap();
             bytes[at] = byte;
@@ -179,7 +179,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn no_bytes_panic_and_what_is_read_is_what_was_written(
+        fn arbitrary_bytes_do_not_panic_and_written_ones_round_trip(
             bytes in prop::collection::vec(any::<u8>(), 0..30),
             likely in any::<[u8; 12]>(),
         ) {

@@ -211,7 +211,7 @@ mod tests {
     }
 
     #[test]
-    fn every_field_stands_at_its_byte() {
+    fn every_field_is_at_its_byte() {
         let bytes = picture(1).encode();
         assert_eq!(bytes.len(), HEAD + PART);
         assert_eq!(bytes[..HEAD], *b"\x04\x00\x01\x00\x01\0\0\0\0\0\0\0\x08\x07\x06\x05\x04\x03\x02\x01");
@@ -224,7 +224,7 @@ mod tests {
     }
 
     #[test]
-    fn a_crowd_is_cropped_to_what_the_mailbox_holds() {
+    fn a_crowd_is_cropped_to_the_size_of_the_mailbox() {
         let mut crowd = picture(MAX_PARTS + 3);
         crowd.parts.reverse();
         assert_eq!(crowd.crop(), 3);
@@ -236,7 +236,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_picture_says_why() {
+    fn invalid_pictures_are_refused_with_the_reason() {
         let said = |change: fn(&mut Vec<u8>)| {
             let mut bytes = picture(2).encode();
             change(&mut bytes);
@@ -260,7 +260,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn no_bytes_panic_and_what_is_read_is_what_was_written(
+        fn arbitrary_bytes_do_not_panic_and_written_ones_round_trip(
             bytes in prop::collection::vec(any::<u8>(), 0..300),
             count in 0_u16..3,
         ) {

@@ -60,7 +60,7 @@ mod tests {
     }
 
     #[test]
-    fn every_field_stands_at_its_byte() {
+    fn every_field_is_at_its_byte() {
         let bytes = encode(&request());
         assert_eq!(bytes, *b"\x0C\x00\x04\x00\x02\x00\x11\x00\xFE\xFF\x5D\x02\x01\x00");
         assert_eq!(decode(&bytes), Ok(request()));
@@ -69,7 +69,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_request_says_why() {
+    fn invalid_requests_are_refused_with_the_reason() {
         let said = |at: usize, byte: u8| {
             let mut bytes = encode(&request());
             bytes[at] = byte;
@@ -84,7 +84,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn no_bytes_panic_and_what_is_read_is_what_was_written(
+        fn arbitrary_bytes_do_not_panic_and_written_ones_round_trip(
             bytes in prop::collection::vec(any::<u8>(), 0..30)
         ) {
             if let Ok(request) = decode(&bytes) {

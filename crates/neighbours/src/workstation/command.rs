@@ -114,7 +114,7 @@ pub(super) mod tests {
     }
 
     #[test]
-    fn every_field_stands_at_its_byte() {
+    fn every_field_is_at_its_byte() {
         let expected = [
             &b"    \x7E\x00\x07\x00            "[..],
             b"TRANSFER        LINKBAR1        17              ",
@@ -137,7 +137,7 @@ pub(super) mod tests {
     }
 
     #[test]
-    fn what_is_no_command_is_said() {
+    fn invalid_commands_are_reported() {
         let bytes = encode(&transfer(7)).unwrap();
         let spoilt = |at: usize, with: &[u8]| {
             let mut spoilt = bytes;
@@ -160,7 +160,7 @@ pub(super) mod tests {
 
     proptest! {
         #[test]
-        fn no_bytes_panic_and_what_is_read_can_be_written(bytes in prop::collection::vec(any::<u8>(), CommandLayout::BYTES)) {
+        fn arbitrary_bytes_do_not_panic_and_valid_ones_can_be_written(bytes in prop::collection::vec(any::<u8>(), CommandLayout::BYTES)) {
             let mut bytes = bytes;
             (bytes[4], bytes[5]) = (0, 0);
             if let Ok(command) = decode(&bytes) {

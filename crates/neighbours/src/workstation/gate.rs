@@ -283,7 +283,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_refused_does_not_reach_task_and_the_status_says_why() {
+    fn a_refused_command_does_not_reach_task_and_the_status_has_the_reason() {
         let mut bench = Bench::new();
         bench.command(&transfer(7));
         let other = HwsCommand { source_sector: Some(1), ..transfer(7) };

@@ -164,7 +164,7 @@ mod tests {
     }
 
     #[test]
-    fn every_field_stands_at_its_byte() {
+    fn every_field_is_at_its_byte() {
         let expected = [
             &[b' '; 20][..],
             b"\xEE\x00            TRANSFER        error           ",
@@ -182,7 +182,7 @@ mod tests {
     }
 
     #[test]
-    fn every_report_and_reason_comes_back_whole() {
+    fn every_report_and_reason_round_trips() {
         for &report in HwsReport::ALL {
             for &reason in Reason::ALL {
                 let failed = HwsStatus { report, reason, ..failed() };
@@ -194,7 +194,7 @@ mod tests {
     }
 
     #[test]
-    fn a_reason_is_told_with_its_names_and_without_its_remedy() {
+    fn a_reason_is_printed_with_its_names_and_without_its_remedy() {
         let detail = Detail::Pair(Name10::clipped("BENCH"), Name16::clipped("VISE"));
         let failed = HwsStatus { reason: Reason::NoTrajectory, ..failed() };
         let bytes = encode(&failed, Why::Reason(detail), TaskState::Runs, 0);
@@ -203,7 +203,7 @@ mod tests {
     }
 
     #[test]
-    fn a_finished_command_says_what_is_unconfirmed() {
+    fn a_finished_command_lists_unconfirmed_goals() {
         for &unconfirmed in Unconfirmed::ALL {
             let finished =
                 HwsStatus { report: HwsReport::Finished, reason: Reason::None, unconfirmed, ..failed() };

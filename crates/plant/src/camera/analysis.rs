@@ -298,7 +298,7 @@ mod tests {
     }
 
     #[test]
-    fn nothing_and_strangers_are_told_apart() {
+    fn an_empty_picture_and_an_unknown_part_are_distinguished() {
         assert_eq!(ask(Picture::FastFlood, 2, &[]).status, VisionStatus::NothingSeen);
         assert_eq!(ask(Picture::FastFlood, 2, &[bar(7.0, 0.0, 0.0)]).status, VisionStatus::NothingSeen);
         let stranger = seen(&before(), Vector::new(0.625, 2.0, 2.0), 0.5);
@@ -317,7 +317,7 @@ mod tests {
     }
 
     #[test]
-    fn a_bar_that_is_cut_by_the_edge_is_found_beside_its_middle_and_not_recognised() {
+    fn a_bar_cut_by_the_edge_is_found_off_its_middle_and_unrecognised() {
         // Its far third is outside the picture.
         let cut = bar(0.0, 4.6, 0.0);
         let flood = ask(Picture::FastFlood, 2, &[bar(0.0, 4.6, 0.0)]);
@@ -354,7 +354,7 @@ mod tests {
     }
 
     #[test]
-    fn recognition_fails_as_often_as_its_chance_says() {
+    fn recognition_fails_with_its_probability() {
         let mut description = cell().camera;
         description.failure = 0.25;
         let mut analysis = Analysis::new(&description, 1);
@@ -371,7 +371,7 @@ mod tests {
     }
 
     #[test]
-    fn what_changes_an_answer_changes_the_fingerprint_and_nothing_else_does() {
+    fn the_fingerprint_changes_exactly_with_the_answers() {
         let known = Analysis::fingerprint(&cell());
         let changed = |change: fn(&mut CellDescription)| {
             let mut cell = cell();

@@ -157,7 +157,7 @@ mod tests {
     }
 
     #[test]
-    fn what_hides_an_end_shifts_the_middle_and_shortens_the_face() {
+    fn an_occluded_end_shifts_the_centre_and_shortens_the_face() {
         let subject = plate(0.0, 0.0, |point| point.y < 0.7);
         let [long, wide] = subject.lengths();
         assert!((long - 4.0 * 6.0 / 9.0).abs() < 1e-12 && wide == 2.0, "{long} {wide}");
@@ -169,7 +169,7 @@ mod tests {
     }
 
     #[test]
-    fn a_subject_comes_back_from_its_raster() {
+    fn a_subject_round_trips_through_its_raster() {
         let subject = plate(1.0, -2.0, |point| point.y + 2.0 * point.z < -3.0);
         assert!((0.2..0.8).contains(&subject.share()), "{}", subject.share());
         let again = Subject::from_raster(*subject.face(), subject.reflectance(), subject.raster());

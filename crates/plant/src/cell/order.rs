@@ -193,7 +193,7 @@ mod tests {
     }
 
     #[test]
-    fn what_the_jobs_ask_for_is_admitted() {
+    fn commands_of_the_jobs_are_admitted() {
         let cell = cell();
         for action in [
             place("LINKBAR1_BH", "UNIT_1", 4),

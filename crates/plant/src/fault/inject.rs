@@ -345,7 +345,7 @@ mod tests {
     const FROM_3_TO_6: When = When { from: 3, until: 6, rate: None, ticks: 1 };
 
     #[test]
-    fn each_disorder_shows_what_it_says_and_only_in_its_window() {
+    fn each_disorder_has_its_effect_only_in_its_window() {
         for (disorder, expected) in [
             (Disorder::Off, [1010, 1020, 0, 0, 0, 1060]),
             (Disorder::Stuck(None), [1010, 1020, 1030, 1030, 1030, 1060]),
@@ -403,7 +403,7 @@ mod tests {
     }
 
     #[test]
-    fn a_delivery_meets_what_is_meant_for_it() {
+    fn a_delivery_gets_the_fault_that_is_meant_for_it() {
         let bar = || Some("BAR".to_owned());
         let late = When { from: 10, ..When::ALWAYS };
         let mut injector = injector(vec![

@@ -154,7 +154,7 @@ mod tests {
     }
 
     #[test]
-    fn a_picture_is_small_and_shows_what_was_answered() {
+    fn a_picture_is_small_and_shows_the_answer() {
         let found =
             VisionResponse { status: VisionStatus::Done, y: 100, recognised: Some(17), ..Default::default() };
         let doubt = VisionResponse { status: VisionStatus::NotRecognised, ..Default::default() };
@@ -181,7 +181,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_on_the_left_of_the_tool_is_on_the_left() {
+    fn the_left_side_of_the_tool_is_left_in_the_picture() {
         let camera = CellDescription::from_toml(include_str!("../../../../data/cell.toml")).unwrap().camera;
         let widest = camera.view / inches(camera.reference_range_mm / 1000.0);
         let canvas = Canvas { pixels: vec![0; SIZE * SIZE], widest };

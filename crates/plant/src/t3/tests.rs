@@ -190,7 +190,7 @@ fn both_jumps_are_there() {
 }
 
 #[test]
-fn steps_out_of_order_are_refused_and_change_nothing() {
+fn steps_out_of_order_are_refused_without_effect() {
     let all = [
         Key::ControlPower(true),
         Key::FaultReset,
@@ -236,7 +236,7 @@ fn axes_get_their_asterisks_one_by_one() {
 }
 
 #[test]
-fn a_wd_error_is_recovered_from_as_step_12_says() {
+fn a_wd_error_is_cleared_by_step_12() {
     let mut t3 = auto();
     t3.press(Key::CycleStart).unwrap();
     for _ in 0..200 {
@@ -257,7 +257,7 @@ fn a_wd_error_is_recovered_from_as_step_12_says() {
 }
 
 #[test]
-fn enter_begins_again_where_the_robot_stands() {
+fn enter_restarts_at_the_place_of_the_robot() {
     let mut t3 = running();
     assert_eq!(step(&mut t3, &frame([30, -6293, -636, -9000, 13500, 0], [0; 2]), true), [0x06]);
     assert_eq!(step(&mut t3, &[], false), []);
@@ -273,7 +273,7 @@ fn enter_begins_again_where_the_robot_stands() {
 }
 
 #[test]
-fn the_arm_follows_what_is_acknowledged_and_functions_run_on_arrival() {
+fn the_arm_follows_acknowledged_points_and_functions_run_on_arrival() {
     let mut t3 = running();
     for count in 1..=50_i16 {
         let sent = step(&mut t3, &frame([count * 20, -6293, -636, -9000, 13500, 0], [7, 9]), true);

@@ -312,7 +312,7 @@ mod tests {
     }
 
     #[test]
-    fn numbers_that_are_no_values_give_nothing() {
+    fn numbers_that_are_not_values_give_none() {
         for values in [Values { step: 2, variables: 0 }, Values { step: 0, variables: 6 }] {
             assert_eq!(CLOSE_DOOR.consult(values), None);
             assert_eq!(CLOSE_DOOR.values(values).count(), 0);

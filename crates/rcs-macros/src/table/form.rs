@@ -251,7 +251,7 @@ mod tests {
     }
 
     #[test]
-    fn row_without_conditions_says_otherwise() {
+    fn row_without_conditions_is_printed_as_otherwise() {
         let table = table("1: otherwise => Finish;").expect("the row is right");
         let (_, row) = table.rows().next().expect("a row");
         assert!(row.conditions.is_empty());

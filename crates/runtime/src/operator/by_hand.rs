@@ -173,7 +173,7 @@ mod tests {
     }
 
     #[test]
-    fn confirmations_parse_and_nothing_held_is_refused() {
+    fn confirmations_parse_and_an_empty_hand_is_refused() {
         assert_eq!(confirmation(&["clamped"]), Ok(Support::Clamped));
         assert_eq!(confirmation(&["by", "hand"]), Ok(Support::ByHand));
         assert!(confirmation(&["maybe"]).unwrap_err().contains("confirm clamped or confirm by hand"));

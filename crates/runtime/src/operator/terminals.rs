@@ -346,7 +346,7 @@ mod tests {
     }
 
     #[test]
-    fn a_value_is_written_for_a_tick_and_told_with_the_old_one() {
+    fn a_written_value_applies_in_one_tick_and_is_logged_with_the_old_one() {
         let mut terminals = Terminals::default();
         let mut memory = standing(&[ProcessId::Emove]);
         let located = Located { object: Name16::clipped("LINKBAR1"), ..Located::default() };
@@ -371,7 +371,7 @@ mod tests {
     }
 
     #[test]
-    fn db_done_changes_while_task_stands() {
+    fn db_done_changes_while_task_is_stopped() {
         let mut terminals = Terminals::default();
         let mut enter = |line: &str, memory: &CommonMemory| {
             terminals.enter(entry(line).unwrap(), Tick(1), memory, &TaskData::default())?;
@@ -384,7 +384,7 @@ mod tests {
     }
 
     #[test]
-    fn only_what_is_felt_gets_a_name_and_one_of_the_task_data() {
+    fn only_a_sensed_object_gets_a_name_of_the_task_data() {
         let (store, _) = Store::load(Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../data"))).unwrap();
         let mut memory = standing(&[ProcessId::Emove, ProcessId::Subtask]);
         let ask = |line: &str, memory: &CommonMemory| {

@@ -182,7 +182,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_kept_is_there_again_in_its_order_until_it_is_answered() {
+    fn stored_requests_return_in_order_until_answered() {
         let place = tempfile::tempdir().unwrap();
         let file = place.path().join("outbox");
         let mut outbox = Outbox::open(&file).unwrap();

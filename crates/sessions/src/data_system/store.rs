@@ -388,7 +388,7 @@ mod tests {
     }
 
     #[test]
-    fn items_without_a_number_are_told_apart_by_name() {
+    fn items_without_a_number_are_distinguished_by_name() {
         let mut store = Store::in_memory().unwrap();
         store.report("H_ROBOT", Said::default(), &item("", "A", "UNIT_1", 1)).unwrap();
         store.report("H_ROBOT", Said::default(), &item("", "B", "UNIT_1", 2)).unwrap();
@@ -405,7 +405,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_said_under_a_number_counts_once_whatever_others_have_said_since() {
+    fn a_numbered_message_is_executed_once() {
         let mut store = Store::in_memory().unwrap();
         let said = |number| Said { number, statement: "A is at UNIT_1" };
         assert!(store.report("H_ROBOT", said(7), &item("17", "A", "UNIT_1", 1)).unwrap());
@@ -485,7 +485,7 @@ mod tests {
     }
 
     #[test]
-    fn a_server_that_is_restarted_knows_its_clients_and_what_they_said() {
+    fn a_restarted_server_knows_its_clients_and_their_messages() {
         let place = tempfile::tempdir().unwrap();
         let file = place.path().join("items.db");
         let mut server = Server::new(Store::open(&file).unwrap());

@@ -71,7 +71,7 @@ fn an_answer_takes_its_time_and_is_given_once() {
 }
 
 #[test]
-fn a_command_that_stands_there_at_the_start_is_not_executed() {
+fn a_command_from_before_the_start_is_not_executed() {
     let mut system = here(Store::in_memory().unwrap(), 0, Pace::Wait);
     let command = DataBaseCommand { number: 9, command: DataBaseVerb::Abort, ..DataBaseCommand::default() };
     for tick in 1..10 {
@@ -81,7 +81,7 @@ fn a_command_that_stands_there_at_the_start_is_not_executed() {
 }
 
 #[test]
-fn what_is_told_goes_through_the_mailboxes_into_the_data_base() {
+fn updates_reach_the_database_through_the_mailboxes() {
     for pace in [Pace::Wait, Pace::Poll] {
         let mut client = Client::new(2, pace);
         client.connect();

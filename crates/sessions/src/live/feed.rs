@@ -406,7 +406,7 @@ mod tests {
     }
 
     #[test]
-    fn a_full_queue_drops_the_oldest_and_counts_but_keeps_what_comes_once() {
+    fn a_full_queue_drops_the_oldest_message_but_no_unique_one() {
         let feed = Feed::default();
         let mut tap = feed.tap();
         tap.channel(1, &TEXT);

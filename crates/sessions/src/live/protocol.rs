@@ -286,7 +286,7 @@ mod tests {
     use serde_json::Value;
 
     #[test]
-    fn binary_messages_are_little_endian_behind_their_code() {
+    fn binary_messages_are_little_endian_after_their_code() {
         assert_eq!(message(0x0102, 3, &[9, 8]), [1, 2, 1, 0, 0, 3, 0, 0, 0, 0, 0, 0, 0, 9, 8]);
         assert_eq!(time(258), [2, 2, 1, 0, 0, 0, 0, 0, 0]);
     }
@@ -305,7 +305,7 @@ mod tests {
     }
 
     #[test]
-    fn schemas_that_are_no_text_stand_in_base64() {
+    fn binary_schemas_are_in_base64() {
         let of = |schema_encoding, schema| {
             let text = channel(
                 7,

@@ -378,7 +378,7 @@ mod tests {
     }
 
     #[test]
-    fn a_channel_is_subscribed_once_and_let_go() {
+    fn a_channel_is_subscribed_once_and_unsubscribed() {
         let mut session = Session::default();
         let subscribed = [Action::Subscribe { channel: 1, subscription: 7, past_s: 0 }];
         assert_eq!(subscribe(&mut session, 7, 1), subscribed);
@@ -409,7 +409,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_message_is_answered_and_ends_the_session_at_last() {
+    fn invalid_messages_are_answered_and_finally_end_the_session() {
         let mut session = Session::default();
         let wrong = ["", "{", "[]", "null", r#"{"op":1}"#, r#"{"op":"fly"}"#, "{\"op\":\"subscribe\"}\u{7}"];
         for text in wrong {

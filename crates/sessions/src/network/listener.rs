@@ -93,7 +93,7 @@ mod tests {
     }
 
     #[test]
-    fn clients_that_send_nothing_keep_no_other_out() {
+    fn silent_clients_do_not_block_others() {
         let place = tempfile::tempdir().unwrap();
         let socket = place.path().join("rcs.sock");
         let address = Address::from(socket.clone());

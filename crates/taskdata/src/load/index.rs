@@ -431,7 +431,7 @@ mod tests {
     }
 
     #[test]
-    fn an_empty_index_finds_nothing() {
+    fn an_empty_index_finds_no_record() {
         let index = OwnedIndex::new(&[]);
         assert_eq!(
             (index.view().find(key(0, 0)), index.view().len(), index.view().is_empty()),

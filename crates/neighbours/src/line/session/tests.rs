@@ -75,7 +75,7 @@ fn a_session_begins_with_these_bytes() {
 }
 
 #[test]
-fn what_comes_in_front_of_admission_waits_for_it() {
+fn messages_before_admission_wait_for_it() {
     let now = Instant::now();
     let mut controller = Session::controller(ClockKind::Real, now);
     controller.receive(b"RCS2\x03\x00\x01\x00", now);
@@ -90,7 +90,7 @@ fn what_comes_in_front_of_admission_waits_for_it() {
 }
 
 #[test]
-fn a_neighbour_that_is_refused_is_told_why() {
+fn a_refused_neighbour_gets_the_reason() {
     let now = Instant::now();
     let mut controller = Session::controller(ClockKind::Real, now);
     let mut neighbour = Session::neighbour(Role::Workstation, now);
@@ -101,7 +101,7 @@ fn a_neighbour_that_is_refused_is_told_why() {
 }
 
 #[test]
-fn what_breaks_the_protocol_closes_the_session_with_a_reason() {
+fn a_protocol_error_closes_the_session_with_a_reason() {
     let frame = |address: u32, data: &[u8]| {
         let mut bytes = Vec::new();
         frame::put(&mut bytes, address, data);
@@ -136,7 +136,7 @@ fn what_breaks_the_protocol_closes_the_session_with_a_reason() {
 }
 
 #[test]
-fn what_is_no_hello_is_refused_at_its_first_wrong_byte() {
+fn an_invalid_hello_is_refused_at_its_first_wrong_byte() {
     let cases: [(&[u8], &str); 5] = [
         (b"GET / HTTP/1.1\r\n", "a hello was expected, found [47, 45, 54, 20]"),
         (b"R\x00", "a hello was expected, found [52, 00, 00, 00]"),

@@ -242,7 +242,7 @@ fn every_command_of_task_is_sent_as_the_job_has_it() {
 }
 
 #[test]
-fn an_error_of_task_ends_the_job_with_its_reason_and_nothing_more_is_sent() {
+fn an_error_of_task_ends_the_job_with_its_reason_and_stops_commands() {
     let steps = vec![command("MOVE"), command("ACQUIRE")];
     let mut task = Task { fails_at: Some(2), ..Task::default() };
     let mut hwsc = Hwsc::new(steps, 100);
@@ -304,7 +304,7 @@ fn a_line_has_so_many_retries_and_the_next_line_has_as_many() {
 }
 
 #[test]
-fn what_needs_a_person_is_not_tried_again() {
+fn failures_for_a_person_are_not_retried() {
     for reason in Reason::ALL.iter().filter(|reason| reason.remedy().is_some()) {
         let mut task = Task { fails_at: Some(2), reason: Some(*reason), ..Task::default() };
         let mut hwsc = Hwsc::new(vec![command("MOVE")], 100).with_retries(3);
@@ -343,7 +343,7 @@ fn a_command_that_was_lost_on_the_way_is_sent_again_and_executed_once() {
 }
 
 #[test]
-fn a_command_that_the_mailbox_refuses_ends_the_job_with_what_it_says() {
+fn a_command_that_the_mailbox_refuses_ends_the_job_with_the_reason() {
     let mut hwsc = Hwsc::new(vec![command("MOVE")], 100);
     let refused =
         Status { verdict: 3, reason: "command 8 comes next, found 4", ..answer(&HwsStatus::default()) };
@@ -355,7 +355,7 @@ fn a_command_that_the_mailbox_refuses_ends_the_job_with_what_it_says() {
 }
 
 #[test]
-fn a_workstation_is_told_the_line_without_what_says_when() {
+fn a_workstation_gets_the_line_without_its_time() {
     let mut later = later(2, ViseOpening::Open);
     later.text = "**  after 2   vise open  PFIXTURE".into();
     let mut jaws = Vise::default();
@@ -386,7 +386,7 @@ fn a_wait_takes_its_ticks_and_no_more() {
 }
 
 #[test]
-fn what_is_to_happen_later_happens_while_the_command_goes_on() {
+fn later_actions_happen_during_the_command() {
     let steps = vec![later(2, ViseOpening::Open), command("MOVE")];
     let (mut hwsc, mut task, mut jaws) = (Hwsc::new(steps, 100), Task::default(), Vise::default());
     let mut tick = 0;
@@ -402,7 +402,7 @@ fn what_is_to_happen_later_happens_while_the_command_goes_on() {
 }
 
 #[test]
-fn a_job_waits_for_what_is_to_happen_later() {
+fn a_job_waits_for_later_events() {
     let steps = vec![later(90, ViseOpening::Open), command("MOVE")];
     let (mut hwsc, mut task, mut jaws) = (Hwsc::new(steps, 100), Task::default(), Vise::default());
     let last = play(&mut hwsc, &mut task, &mut jaws);
@@ -424,7 +424,7 @@ fn the_operator_may_have_the_robot_between_commands_but_not_in_one() {
 }
 
 #[test]
-fn what_the_workstation_cannot_do_ends_the_job() {
+fn an_impossible_workstation_action_ends_the_job() {
     let mut hwsc = Hwsc::new(vec![action(ViseOpening::Open, "TABLE")], 100);
     play(&mut hwsc, &mut Task::default(), &mut Vise::default());
     assert_eq!(
@@ -437,7 +437,7 @@ fn what_the_workstation_cannot_do_ends_the_job() {
     assert_eq!(*hwsc.progress(), Progress::Failed(JobFailure::Workstation("no oil pressure".into())));
 }
 #[test]
-fn an_emergency_ends_the_job_at_once_whatever_goes_on() {
+fn an_emergency_ends_the_job_at_once_in_every_state() {
     for steps in [vec![command("MOVE")], vec![vise(ViseOpening::Open)], vec![]] {
         let mut jaws = Vise { emergency: Some("the hand is caught"), ..Vise::default() };
         let mut hwsc = Hwsc::new(steps, 100);
@@ -448,7 +448,7 @@ fn an_emergency_ends_the_job_at_once_whatever_goes_on() {
 }
 
 #[test]
-fn a_job_that_resets_an_emergency_goes_on_without_what_failed() {
+fn a_job_that_resets_an_emergency_continues_without_the_failed_command() {
     let reset =
         JobLine { step: Step::Workstation(RESET), text: "** reset".into(), line: 1, expects_error: false };
     let played = |last: &str| {

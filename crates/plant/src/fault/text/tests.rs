@@ -104,7 +104,7 @@ fn said(entry: &str) -> String {
 }
 
 #[test]
-fn mistakes_say_where_what_was_expected_and_what_was_found() {
+fn mistakes_report_place_expected_and_found() {
     for (entry, expected) in [
         ("kind = \"stuk\"", "line 5, column 8: fault[1].kind: expected one of drop, "),
         ("kind = \"stuk\"", ", found \"stuk\" (the nearest one is stuck)"),
@@ -198,7 +198,7 @@ fn all_mistakes_are_found_at_once() {
 }
 
 #[test]
-fn what_is_no_file_of_faults_is_refused() {
+fn invalid_fault_files_are_refused() {
     for (text, words) in [
         ("seed = \n", "line 1"),
         ("seed = 3\n", "expected at least one [[fault]], found none"),

@@ -150,7 +150,7 @@ fn a_late_answer_to_the_first_sending_counts_and_counts_once() {
 
 /// An update after STARTUP was taken as done if STARTUP was answered twice.
 #[test]
-fn an_answer_that_comes_twice_is_no_answer_to_what_follows() {
+fn a_repeated_answer_does_not_answer_the_next_request() {
     let place = tempfile::tempdir().unwrap();
     let (mut agent, handle) = agent(place.path(), ClockKind::Fast);
     let kept = update(1, "UNIT_1");
@@ -172,7 +172,7 @@ fn an_answer_that_comes_twice_is_no_answer_to_what_follows() {
 }
 
 #[test]
-fn answers_to_other_commands_and_half_answers_count_for_nothing() {
+fn answers_to_other_commands_and_partial_answers_are_ignored() {
     for (offset, summary) in [
         (1, Summary::Done),
         (u16::MAX, Summary::Done),
@@ -194,7 +194,7 @@ fn answers_to_other_commands_and_half_answers_count_for_nothing() {
 }
 
 #[test]
-fn of_a_garbled_status_nothing_is_taken_and_it_is_told_what_was_found() {
+fn a_garbled_status_is_ignored_and_reported_with_its_content() {
     let right = |bytes: &[u8]| done(bytes).remove(0);
     let garbles: [(&str, Garble); 6] = [
         ("a status of 14 bytes was expected, found 13", |status| status.truncate(13)),
@@ -228,7 +228,7 @@ fn of_a_garbled_status_nothing_is_taken_and_it_is_told_what_was_found() {
 }
 
 #[test]
-fn a_garbled_status_is_told_once_and_the_wait_goes_on() {
+fn a_garbled_status_is_reported_once_and_the_wait_continues() {
     let place = tempfile::tempdir().unwrap();
     let (agent, handle) = agent(place.path(), ClockKind::Fast);
     let mut agent = agent.with_patience(Duration::MAX);
@@ -311,7 +311,7 @@ fn a_run_that_is_interrupted_waits_for_no_silent_server() {
 }
 
 #[test]
-fn task_hears_nothing_of_a_silent_server_and_is_heard_when_it_asks_again() {
+fn task_gets_no_answer_of_a_silent_server_and_retries() {
     let place = tempfile::tempdir().unwrap();
     let (agent, handle) = agent(place.path(), ClockKind::Fast);
     let server = serve(&handle, |read, bytes| if read == 1 { Vec::new() } else { done(bytes) });

@@ -109,7 +109,7 @@ fn lost() -> Disconnect {
 }
 
 #[test]
-fn in_fast_clock_the_tick_waits_for_what_answers_it() {
+fn in_fast_clock_the_tick_waits_for_its_neighbours() {
     let (mut endpoint, mut session) = connected(Role::Workstation, ClockKind::Fast);
     let neighbour = thread::spawn(move || {
         // Answers each pulse with a command that contains its number.
@@ -177,7 +177,7 @@ fn a_neighbour_that_connects_again_finds_its_mailboxes_initialized_and_gets_all_
 }
 
 #[test]
-fn a_run_that_has_ended_tells_its_neighbour_and_admits_no_other() {
+fn an_ended_run_informs_its_neighbour_and_refuses_others() {
     let (endpoint, mut session) = connected(Role::Workstation, ClockKind::Fast);
     let handle = endpoint.handle();
     let neighbour = thread::spawn(move || while session.next() != Sent::Over {});
@@ -189,7 +189,7 @@ fn a_run_that_has_ended_tells_its_neighbour_and_admits_no_other() {
 }
 
 #[test]
-fn a_tick_that_waits_goes_on_when_the_neighbour_disconnects() {
+fn a_waiting_tick_continues_when_the_neighbour_disconnects() {
     let (mut endpoint, mut session) = connected(Role::Workstation, ClockKind::Fast);
     let neighbour = thread::spawn(move || {
         session.pulse();
@@ -202,7 +202,7 @@ fn a_tick_that_waits_goes_on_when_the_neighbour_disconnects() {
 
 /// After an interruption it is not known whether the neighbour would have answered: it counts as connected.
 #[test]
-fn a_tick_that_waits_goes_on_when_the_run_is_to_end() {
+fn a_waiting_tick_continues_when_the_run_ends() {
     let interrupted = Arc::new(AtomicBool::new(false));
     let (endpoint, mut session) = connected(Role::Workstation, ClockKind::Fast);
     let mut endpoint = endpoint.until(Arc::clone(&interrupted));

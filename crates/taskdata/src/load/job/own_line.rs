@@ -137,7 +137,7 @@ mod tests {
     use std::path::Path;
 
     #[test]
-    fn what_belongs_to_a_job_is_refused_by_its_words() {
+    fn words_of_a_job_are_refused_elsewhere() {
         let Ok((store, _)) = Store::load(Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../data")))
         else {
             panic!("the shipped data do not load")

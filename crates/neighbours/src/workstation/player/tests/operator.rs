@@ -129,7 +129,7 @@ fn a_job_waits_between_two_lines_and_a_line_is_skipped() {
 }
 
 #[test]
-fn a_wait_is_taken_back_and_a_job_that_plays_cannot_go_on() {
+fn a_wait_is_cancelled_and_a_playing_job_cannot_be_resumed() {
     let mut stage = Stage::commands();
     stage.hwsc.wait_for_operator().unwrap();
     stage.go_on();
@@ -162,7 +162,7 @@ fn a_failure_ends_the_job_only_if_no_operator_is_there() {
 }
 
 #[test]
-fn a_line_of_the_workstation_goes_on_while_the_operator_commands() {
+fn a_workstation_line_continues_while_the_operator_commands() {
     let steps = vec![vise(ViseOpening::Close), command("MOVE")];
     let mut stage = Stage::new(steps);
     stage.until(|stage| stage.jaws.told.len() == 1);
