@@ -32,11 +32,9 @@ pub fn job(name: &str) -> Vec<String> {
     ["run", name, "--json", "--data", data.as_str()].map(str::to_owned).to_vec()
 }
 
-/// A run that goes on.
 pub struct Running {
     /// Its process: the controller, or board 0.
     pub child: Child,
-    /// Its name in shared memory.
     pub name: RunName,
 }
 
@@ -116,20 +114,15 @@ impl Running {
     }
 }
 
-/// A run that is over.
 pub struct Ended {
     /// Exit status; none if a signal ended it.
     pub status: Option<i32>,
-    /// The signal that ended it.
     pub signal: Option<i32>,
-    /// The object on standard output.
     pub result: Value,
-    /// What stood on standard error.
     pub said: String,
 }
 
 impl Ended {
-    /// A program that has ended.
     #[must_use]
     pub fn of(output: &Output) -> Self {
         let said = String::from_utf8_lossy(&output.stderr).into_owned();

@@ -114,7 +114,6 @@ impl Bench {
     }
 }
 
-/// A run that goes on.
 struct Running<'a> {
     bench: &'a Bench,
     child: Child,
@@ -138,7 +137,6 @@ impl Running<'_> {
         })
     }
 
-    /// The boards' processes by number.
     fn boards(&self) -> BTreeMap<u8, Pid> {
         let main = self.child.id().to_string();
         let all = fs::read_dir("/proc").expect("there is /proc").flatten();
@@ -280,15 +278,12 @@ BLOCK# 991 OFFSET 21000
     bench.assert_log_replays();
 }
 
-/// A board that is killed.
 struct Kill {
     board: u8,
-    /// When.
     phase: &'static str,
     moment: fn(&CommonMemory) -> bool,
     /// What must be said of it.
     said: &'static str,
-    /// A part is held then.
     held: bool,
 }
 

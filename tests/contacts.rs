@@ -25,7 +25,6 @@ fn contacts(outcome: &Outcome) -> &[Value] {
     outcome.result["contacts"].as_array().expect("a result has contacts")
 }
 
-/// The contact of a pair.
 fn met<'a>(outcome: &'a Outcome, mover: &str, obstacle: &str) -> &'a Value {
     let one = contacts(outcome).iter().find(|one| one["mover"] == mover && one["obstacle"] == obstacle);
     one.unwrap_or_else(|| panic!("no {mover} in {obstacle}: {:?}", contacts(outcome)))

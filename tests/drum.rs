@@ -14,7 +14,6 @@ const OCCUPIED: &str = "\
 ";
 const INSERT: &str = "== INSERT-TOOL ENDMILL-1 +1 -- 0 +1 TOOL-SAFE 0 -- 0";
 const ACQUIRE: &str = "== ACQUIRE-TOOL DRILL-2 +1 -- 0 +1 TOOL-SAFE 0 -- 0";
-/// The drum is not free.
 const NOT_FREE: &str = "the tool meets something in front of the drum";
 /// What a finished INSERT-TOOL or RELEASE-TOOL reports.
 const UNCONFIRMED: &str = "the tool in the drum (the drum has no sensor)";

@@ -10,7 +10,6 @@ use record::replay;
 use serde_json::{Value, json};
 use whole_system_tests::{Outcome, Scratch, rcs_log, run, run_with};
 
-/// How a run ends.
 enum Ends {
     /// Finished, the part where it belongs.
     Well,
@@ -288,7 +287,6 @@ fn a_dark_blank_and_a_shiny_one_are_found_with_another_exposure() {
     assert!(black.last_words.contains("vision sees no object"), "{}", black.last_words);
 }
 
-/// Numbers for schedules.
 struct Numbers(u64);
 
 impl Numbers {
@@ -386,7 +384,6 @@ fn schedule(numbers: &mut Numbers) -> String {
     text
 }
 
-/// A number from the environment.
 fn number(name: &str, otherwise: u64) -> u64 {
     env::var(name).ok().map_or(otherwise, |text| {
         text.parse().unwrap_or_else(|_| panic!("{name}: a number was expected, found {text:?}"))

@@ -35,13 +35,11 @@ pub const COMMAND: &str = "cargo run --release -p whole-system-tests --bin golde
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Scenario {
-    /// Name of its files.
     pub name: String,
     /// What it shows, in a sentence.
     pub about: String,
     /// The job, of the data directory.
     pub job: String,
-    /// Seed of the run.
     #[serde(default = "one")]
     pub seed: u64,
     /// The fault plan, of the directory `faults` of the data.
@@ -68,11 +66,8 @@ const fn one() -> u64 {
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Change {
-    /// The file.
     pub file: String,
-    /// What it says.
     pub from: String,
-    /// What it is to say.
     pub to: String,
 }
 
@@ -82,7 +77,6 @@ pub struct Change {
 pub struct NewFile {
     /// Its path from the data directory.
     pub name: String,
-    /// What it says.
     pub text: String,
 }
 
@@ -95,33 +89,17 @@ struct Scenarios {
 /// Why a golden could not be made.
 #[derive(Debug, thiserror::Error)]
 pub enum Failed {
-    /// A file cannot be written.
     #[error("{}: {source}", path.display())]
-    File {
-        /// Which.
-        path: PathBuf,
-        /// Why.
-        source: io::Error,
-    },
-    /// There is nothing to change.
+    File { path: PathBuf, source: io::Error },
     #[error("{file} does not say {from:?}, which was to be changed")]
-    Change {
-        /// The file.
-        file: String,
-        /// What it should say.
-        from: String,
-    },
-    /// The program cannot be started.
+    Change { file: String, from: String },
     #[error("rcs-run cannot be started: {0}")]
     Start(io::Error),
     /// The run ended in another way than it should.
     #[error("exit status {expected} and {says:?} were expected, {} came with {last_words:?}", status(.found))]
     Ending {
-        /// Exit status of the scenario.
         expected: i32,
-        /// What was to be said.
         says: String,
-        /// Exit status of the run.
         found: Option<i32>,
         /// The last line on standard error.
         last_words: String,
@@ -135,10 +113,8 @@ pub enum Failed {
     /// The replay does something else than the run.
     #[error("the replay differs from the run that it was made of, from tick {0} to {1}")]
     Difference(u64, u64),
-    /// The run left no log.
     #[error("the run has no log that can be read: {source}; its last line is {last_line:?}")]
     NoLog {
-        /// Why.
         source: record::ReadError,
         /// The last line on standard error.
         last_line: String,
@@ -146,7 +122,6 @@ pub enum Failed {
     /// A trace needs all ticks.
     #[error("ticks are missing in the log before tick {0}")]
     Gap(Tick),
-    /// The traces cannot be compared.
     #[error(transparent)]
     Compare(#[from] CompareError),
 }
@@ -155,7 +130,6 @@ fn status(found: &Option<i32>) -> String {
     found.map_or("a signal".to_owned(), |status| format!("{status}"))
 }
 
-/// The directory of the goldens.
 #[must_use]
 pub fn directory() -> PathBuf {
     root().join("tests/goldens")
@@ -178,13 +152,11 @@ pub fn scenarios() -> Vec<Scenario> {
 }
 
 impl Scenario {
-    /// The golden.
     #[must_use]
     pub fn golden(&self) -> PathBuf {
         directory().join(&self.name).with_added_extension(golden::EXTENSION)
     }
 
-    /// Its summary for people.
     #[must_use]
     pub fn text(&self) -> PathBuf {
         directory().join(&self.name).with_added_extension("txt")
@@ -295,7 +267,6 @@ impl Scenario {
     }
 }
 
-/// A run that has ended.
 struct Run {
     ending: Ending,
     scratch: Scratch,
@@ -308,7 +279,6 @@ impl Run {
     }
 }
 
-/// How a run ended.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Ending {
     /// Exit status; none after a signal.
@@ -324,7 +294,6 @@ pub struct Made {
     text: String,
     /// The last line of the run on standard error.
     pub last_line: String,
-    /// The replay.
     pub played: Played,
 }
 

@@ -21,7 +21,6 @@ use std::{
 use serde_json::Value;
 use tempfile::TempDir;
 
-/// Root of the repository.
 #[must_use]
 pub fn root() -> &'static Path {
     let tests = Path::new(env!("CARGO_MANIFEST_DIR"));
@@ -121,7 +120,6 @@ impl Scratch {
         Self(directory.expect("a directory can be made"))
     }
 
-    /// A file in it.
     #[must_use]
     pub fn file(&self, name: &str) -> PathBuf {
         self.0.path().join(name)
@@ -224,13 +222,10 @@ pub fn copy(from: &Path, to: &Path) {
 
 /// What a run said at its end.
 pub struct Outcome {
-    /// Exit status.
     pub status: Option<i32>,
-    /// The object on standard output.
     pub result: Value,
     /// The last line on standard error; empty if there was none.
     pub last_words: String,
-    /// The log.
     pub log: PathBuf,
     _scratch: Scratch,
 }

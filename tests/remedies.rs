@@ -20,10 +20,8 @@ use whole_system_tests::root;
 
 /// Largest number of ticks for anything to happen: 16 minutes of the robot's time.
 const LIMIT: u32 = 24_000;
-/// Name of the session.
 const WHO: &str = "anna";
 
-/// A run with an operator.
 struct Operated {
     /// `None` after its end.
     run: Option<Run>,
@@ -73,7 +71,6 @@ impl Operated {
         self.run().last_tick().0
     }
 
-    /// Ask, whatever the answer.
     fn ask(&mut self, line: &str) -> Result<String, String> {
         let answer = self.run.as_mut().unwrap().ask(WHO, Event::Line(line.to_owned()));
         if answer.as_ref().is_err_and(|why| why.starts_with("the run has ended")) {
@@ -301,7 +298,6 @@ fn object_in_a_closed_vise_is_released_by_position() {
     assert!(!part.held && part.location == "PFIXTURE", "{part:?}");
 }
 
-/// The remedy "close the vise; ...".
 #[test]
 fn object_in_an_open_vise_is_released_after_the_vise_is_closed() {
     let mut it = Operated::start(&format!("{TO_VISE}{LEAVE}"));

@@ -14,7 +14,6 @@ use std::{
 use record::{Log, golden, replay};
 use whole_system_tests::{Outcome, run_with};
 
-/// Runs of an ordinary test.
 const FEW: u64 = 4;
 /// Jobs that are tried in turn.
 const JOBS: [&str; 4] = ["linkbar", "clevis", "turned-part", "tool-change"];

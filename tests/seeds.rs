@@ -16,7 +16,6 @@ use std::{
 
 use whole_system_tests::{Scratch, root, run};
 
-/// Jobs as they are shipped.
 const JOBS: [&str; 7] =
     ["linkbar", "clevis", "turned-part", "tool-change", "shift", "vise-and-back", "brush"];
 /// Jobs with a part that is put down at random, the sector from which it comes, and the others that are fit for it

@@ -35,7 +35,6 @@ use zstd::stream::{read::Decoder, write::Encoder};
 
 use crate::golden::{Ending, Failed};
 
-/// Extension of trace files.
 pub const EXTENSION: &str = "trace";
 /// Stands in place of the tick in the lines that say how the run ended.
 pub const END: &str = "end";

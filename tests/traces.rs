@@ -21,7 +21,6 @@ fn compared(was: &[&str], is: &[&str], renames: &str) -> Comparison {
     compare(trace(was).as_bytes(), trace(is).as_bytes(), &renames).expect("the traces can be compared")
 }
 
-/// The differences as text.
 fn differences(was: &[&str], is: &[&str], renames: &str) -> String {
     compared(was, is, renames).to_string()
 }

@@ -19,7 +19,6 @@ use crate::shipped;
 /// File of the cell description in a data directory.
 const CELL: &str = "cell.toml";
 
-/// The default data directory.
 #[must_use]
 pub fn default_data() -> PathBuf {
     let name = PathBuf::from(shipped::default_data());

@@ -29,7 +29,6 @@ const WRITTEN: usize = 12;
 /// Why two traces cannot be compared.
 #[derive(Debug, thiserror::Error)]
 pub enum CompareError {
-    /// The renames cannot be read.
     #[error(transparent)]
     Toml(#[from] toml::de::Error),
     /// A rename does not say what a star stands for.
@@ -40,7 +39,6 @@ pub enum CompareError {
         /// The text in the new version.
         new: String,
     },
-    /// The trace cannot be read.
     #[error("the {0} trace: {1}")]
     Unreadable(&'static str, io::Error),
     /// A line is not one of a trace, or of an earlier tick than the line before it.
@@ -50,18 +48,14 @@ pub enum CompareError {
         which: &'static str,
         /// The line, from 1.
         line: usize,
-        /// What stands there.
         found: String,
     },
-    /// The trace has no end.
     #[error("the {0} trace ends without saying how the run ended: make it again")]
     NoEnd(&'static str),
     /// Two fields of the old version are to be one of the new version.
     #[error("{first} and {second} of the old version both become {new}")]
     Twice {
-        /// One of them.
         first: String,
-        /// The other one.
         second: String,
         /// The path in the new version.
         new: String,
@@ -126,11 +120,9 @@ pub fn compare(was: impl BufRead, is: impl BufRead, renames: &Renames) -> Result
 /// A field of both versions, by its path in the new one.
 struct Slot {
     path: String,
-    /// Path in the old version.
     old_path: Option<String>,
     was: Option<String>,
     is: Option<String>,
-    /// Rules on its values.
     values: Vec<usize>,
     kind: Kind,
     /// A value came in this tick.
@@ -138,7 +130,6 @@ struct Slot {
 }
 
 enum Kind {
-    /// Its values are compared.
     Compared {
         /// Position among the differences, and since when the values differ.
         difference: Option<usize>,

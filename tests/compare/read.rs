@@ -11,9 +11,7 @@ use crate::trace::{END, TICKS};
 /// When a field has a value: in a tick, or at the end, which is after all ticks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Moment {
-    /// In a tick.
     Tick(u64),
-    /// When the run had ended.
     End,
 }
 

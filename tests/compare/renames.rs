@@ -21,11 +21,9 @@ pub struct Renames {
     pub dropped: Vec<Only>,
     /// Fields that only the new version has. A field that both versions have is compared nevertheless.
     pub added: Vec<Only>,
-    /// Values with another text.
     pub value: Vec<NewText>,
 }
 
-/// A field with another path.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Renamed {

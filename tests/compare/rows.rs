@@ -23,7 +23,6 @@ pub struct Pair {
     pub new: Row,
 }
 
-/// Table and row.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Row {
     table: String,
@@ -133,7 +132,6 @@ impl RowMap {
     }
 }
 
-/// The map as Markdown.
 impl fmt::Display for RowMap {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let changed = self.pairs.keys().filter(|pair| pair.old != pair.new).count();

@@ -34,7 +34,6 @@ pub struct Controller {
     said: Option<JoinHandle<String>>,
 }
 
-/// How a controller ended.
 pub struct Ended {
     pub status: Option<i32>,
     pub result: Value,
@@ -81,7 +80,6 @@ impl Controller {
         Self { child, address, scratch: Some(scratch), said: Some(said) }
     }
 
-    /// A file in its directory.
     pub fn file(&self, name: &str) -> PathBuf {
         self.scratch.as_ref().expect("it has one").file(name)
     }
@@ -112,7 +110,6 @@ impl Controller {
         self.scratch.take().expect("it has one")
     }
 
-    /// Wait for its end.
     pub fn end(self) -> Ended {
         self.end_with(|| {})
     }
@@ -136,7 +133,6 @@ impl Drop for Controller {
     }
 }
 
-/// A workstation controller.
 pub struct Workstation {
     pub peer: Peer,
     pub tick: u64,
@@ -262,7 +258,6 @@ pub fn bare(number: u32, verb: &str) -> HwsCommand {
     HwsCommand { number, command: Name16::clipped(verb), ..HwsCommand::default() }
 }
 
-/// A program of the examples.
 pub fn example(name: &str) -> PathBuf {
     root().join("examples").join(name)
 }

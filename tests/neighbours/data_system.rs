@@ -29,7 +29,6 @@ use super::bench::{Controller, Ended, Workstation, bare};
 /// What a Data System does with the first update.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Fate {
-    /// It answers, as always.
     Answers,
     /// It is killed before it has heard of it.
     DiesBefore,

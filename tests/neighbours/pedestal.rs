@@ -80,7 +80,6 @@ struct Shop {
 }
 
 impl Shop {
-    /// The robot holds the clevis.
     fn with_clevis(controller: Controller) -> Self {
         let workstation = Workstation::connect(&controller);
         let mut shop = Self { controller, workstation, number: 0 };
@@ -106,7 +105,6 @@ impl Shop {
         reason
     }
 
-    /// Let a pedestal in.
     fn admit(&mut self, fate: Fate) -> Guest {
         let guest = Guest::new(self.controller.connect(Role::Pedestal), fate);
         while !guest.is_there.load(Ordering::Acquire) {
@@ -148,7 +146,6 @@ type Remains = (System, u16);
 /// A pedestal on a thread, which ends when its fate or the line does.
 struct Guest {
     serving: JoinHandle<Remains>,
-    /// It has got a pulse.
     is_there: Arc<AtomicBool>,
 }
 

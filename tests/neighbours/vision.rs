@@ -213,7 +213,6 @@ fn the_log_has_the_reason_and_replays_without_vision() {
 /// What a scripted vision system does with the first request.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Fate {
-    /// It answers, as always.
     Answers,
     /// It is killed before it has read it.
     DiesAtOnce,

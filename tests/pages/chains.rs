@@ -5,9 +5,7 @@ use std::{collections::BTreeMap, env, fs, path::PathBuf};
 
 use whole_system_tests::{root, tables::files};
 
-/// The page.
 const PAGE: &str = "docs/design/tables.md";
-/// The head of its list.
 const HEAD: &str = "| process | commands | tables in their order |\n|---|---|---|\n";
 
 /// The names of tables by their functions, as [`chains`] needs them: `e_pause` of `e_pause` is `E-PAUSE`.

@@ -14,7 +14,6 @@ mod paths;
 mod type_names;
 mod words;
 
-/// Where pages are.
 const PLACES: [&str; 9] = [".", "docs", "docs/design", "data", "crates", "bins", "benches", "fuzz", "tests"];
 
 /// Every page of the repository: those in [`PLACES`] and in the directories right below them.
@@ -95,7 +94,6 @@ fn every_page_is_in_the_contents_once() {
     assert_eq!(listed, pages);
 }
 
-/// Widest line of prose, characters.
 const WIDEST: usize = 110;
 /// Pages that programs and tests write.
 const WRITTEN: [&str; 2] = ["traceability.md", "cli.md"];

@@ -7,7 +7,6 @@ use whole_system_tests::root;
 
 use super::{pages, prose};
 
-/// docs/words.toml.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Words {

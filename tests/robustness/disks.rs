@@ -7,7 +7,6 @@ use crate::{
     table::{Extent, Outcome, Row},
 };
 
-/// Ticks of a run.
 const TICKS: u64 = 400;
 
 /// Where a limit stands: the shell's commands that set it before the run, `SIZE` being a number of kilobytes,
@@ -35,7 +34,6 @@ fn attempt(commands: &str, size: u64, boards: &str) -> Outcome {
     outcome
 }
 
-/// All rows about disks.
 pub fn rows(extent: Extent) -> Vec<Row> {
     let mut rows = Vec::new();
     for (attack, commands, most) in LIMITS {

@@ -101,7 +101,6 @@ fn judge(output: &Output) -> Outcome {
     }
 }
 
-/// All rows about logs.
 pub fn rows(extent: Extent) -> Vec<Row> {
     let scratch = Scratch::new("logs");
     let place = scratch.file("");

@@ -39,7 +39,6 @@ fn files(path: PathBuf) -> Vec<PathBuf> {
     }
 }
 
-/// Write garbage to a place.
 fn scribble(file: &mut File, at: u64, bytes: u64, chance: &mut Chance) {
     let garbage: Vec<u8> = (0..bytes).map(|_| chance.byte()).collect();
     file.seek(SeekFrom::Start(at)).and_then(|_| file.write_all(&garbage)).expect("it can be written");

@@ -40,7 +40,6 @@ impl Process {
         child
     }
 
-    /// Be it.
     pub fn be(self, run: &str) -> ExitCode {
         let began = Instant::now();
         match self {

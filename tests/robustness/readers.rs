@@ -42,7 +42,6 @@ fn die_and_hang(directory: &Path, boards: &str, expected: &str, chance: &mut Cha
     judge(&ended)
 }
 
-/// All rows about readers.
 pub fn rows(extent: Extent) -> Vec<Row> {
     let scratch = Scratch::new("readers");
     let place = scratch.file("");

@@ -36,7 +36,6 @@ fn lives(run: &RunName) -> bool {
     processes.filter_map(|entry| fs::read(entry.path().join("cmdline")).ok()).any(is_board)
 }
 
-/// How a run ended.
 pub fn judge(ended: &Ended) -> Outcome {
     assert!(!ended.said.contains("panicked"), "{}", ended.said);
     match ended.status {

@@ -25,7 +25,6 @@ const SIGNALS: [(&str, Signal, Outcome); 7] = [
     ("SIGPIPE", Signal::PIPE, Outcome::WentOn),
 ];
 
-/// When a signal comes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Phase {
     /// In the first 30 ms of the program, before or after it has its handlers.
@@ -63,7 +62,6 @@ impl Phase {
         }
     }
 
-    /// Wait for it.
     fn wait(self, run: &mut Running, chance: &mut Chance) {
         let tick = match self {
             Self::Start => return thread::sleep(Duration::from_millis(chance.below(30))),
@@ -131,7 +129,6 @@ fn attempt(signal: (Signal, Outcome), phase: Phase, boards: &str, chance: &mut C
     outcome
 }
 
-/// All rows about signals.
 pub fn rows(extent: Extent) -> Vec<Row> {
     let mut rows = Vec::new();
     for (number, (name, signal, expected)) in SIGNALS.into_iter().enumerate() {

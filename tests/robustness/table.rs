@@ -47,18 +47,15 @@ impl Chance {
         usize::try_from(self.below(u64::try_from(limit).expect("64 bits"))).expect("it is below a usize")
     }
 
-    /// A byte.
     pub fn byte(&mut self) -> u8 {
         u8::try_from(self.below(256)).expect("it is below 256")
     }
 }
 
-/// How many cases are tried.
 #[derive(Clone, Copy)]
 pub struct Extent {
     /// A few cases of each row.
     pub sample: bool,
-    /// Seed of all random numbers.
     pub seed: u64,
 }
 
@@ -111,7 +108,6 @@ impl Row {
     }
 }
 
-/// The words of a panic.
 fn text(payload: &(dyn std::any::Any + Send)) -> String {
     let words = payload.downcast_ref::<String>().map(String::as_str);
     words.or_else(|| payload.downcast_ref::<&str>().copied()).unwrap_or("a panic without words").to_owned()
@@ -122,7 +118,6 @@ fn heads() -> Vec<String> {
     columns.map(str::to_owned).collect()
 }
 
-/// The rows for a terminal.
 pub fn plain(rows: &[Row]) -> String {
     let lines: Vec<Vec<String>> = std::iter::once(heads()).chain(rows.iter().map(Row::cells)).collect();
     let width = |column: usize| lines.iter().map(|line| line[column].chars().count()).max().unwrap_or(0);

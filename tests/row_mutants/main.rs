@@ -241,7 +241,6 @@ fn measured<'a>(
     Ok(tests)
 }
 
-/// What became of a change.
 enum Fate {
     Killed,
     /// Although this many tests reach it.

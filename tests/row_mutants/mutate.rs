@@ -8,14 +8,11 @@ use std::{
 
 use whole_system_tests::tables::{Row, Table, files};
 
-/// A row that is changed.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Mutant {
     /// The file, from the root of the repository.
     pub file: PathBuf,
-    /// Name of the table.
     table: String,
-    /// Number of the row.
     pub row: String,
     what: What,
     /// Lines of the file, from 0, and the text of the row before and after.
@@ -191,7 +188,6 @@ pub fn drawn(root: &Path, seed: u64, only: &str) -> io::Result<Vec<Mutant>> {
     Ok(drawn.into_iter().map(|(_, _, mutant)| mutant).collect())
 }
 
-/// A number below another one.
 fn pick(state: &mut u64, below: usize) -> usize {
     usize::try_from(random(state) % u64::try_from(below).unwrap_or(1)).unwrap_or(0)
 }

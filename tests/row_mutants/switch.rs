@@ -60,7 +60,6 @@ struct Head<'a> {
     step: Option<&'a str>,
     declares: bool,
     situation: &'a str,
-    /// What follows the parameters.
     result: &'a str,
 }
 

@@ -11,7 +11,6 @@ use std::{
 
 use crate::switch::{CHANGED, REACHED};
 
-/// A program of tests.
 #[derive(Clone, Debug)]
 pub struct Program {
     pub path: PathBuf,
@@ -40,7 +39,6 @@ impl Program {
         command
     }
 
-    /// The names of its tests.
     pub fn tests(&self) -> io::Result<Vec<String>> {
         let output = self.command().args(["--list", "--format=terse"]).stdout(Stdio::piped()).output()?;
         let listed = String::from_utf8_lossy(&output.stdout).into_owned();

@@ -13,7 +13,6 @@ use whole_system_tests::{
     rcs_run,
 };
 
-/// A user that owns nothing.
 const STRANGER: u32 = 65_534;
 
 fn count(variable: &str, usual: u64) -> u64 {

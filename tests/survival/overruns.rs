@@ -12,7 +12,6 @@ use whole_system_tests::{
 
 /// Ticks of a run that is stopped: enough to be punctual for a second also beside other runs.
 const TICKS: &str = "300";
-/// How long it is stopped.
 const STOPPED: Duration = Duration::from_millis(1_000);
 /// Slots that are skipped then, at least: the one that is being waited for may still come in time.
 const SKIPPED: u64 = 24;

@@ -15,7 +15,6 @@ const CRATES: [&str; 2] = ["crates", "bins"];
 pub struct Sources(BTreeMap<PathBuf, String>);
 
 impl Sources {
-    /// Read them.
     pub fn read() -> Self {
         let mut all = BTreeMap::new();
         for directory in CRATES.into_iter().chain(["tests", "gateway"]) {
@@ -24,12 +23,10 @@ impl Sources {
         Self(all)
     }
 
-    /// The files with their text.
     pub fn files(&self) -> impl Iterator<Item = (&Path, &str)> {
         self.0.iter().map(|(path, text)| (path.as_path(), text.as_str()))
     }
 
-    /// The text of a file.
     pub fn text(&self, path: &str) -> Option<&str> {
         self.0.get(Path::new(path)).map(String::as_str)
     }

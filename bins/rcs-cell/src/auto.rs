@@ -10,7 +10,6 @@ use plant::{
     t3::{Stage, T3Controller},
 };
 
-/// The automatic operator.
 #[derive(Debug)]
 pub struct Operator {
     on_duty: bool,

@@ -4,18 +4,15 @@ use std::str::FromStr;
 
 use plant::{EStop, Key};
 
-/// A line of the console.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ConsoleCommand {
     /// Press a key or turn a switch of the controller.
     Key(Key),
     /// Show the state of the controller and of the line.
     Status,
-    /// List the commands.
     Help,
     /// Wait this long before the next line, ms.
     Wait(u64),
-    /// End the program.
     Quit,
 }
 

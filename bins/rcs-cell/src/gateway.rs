@@ -22,7 +22,6 @@ use crate::{host_line::HostLine, line::Cadence, pty::Pty, shell::ShellError};
 /// Longest sleep, us: the program notices a signal within this time.
 const LONGEST_SLEEP: u64 = 20_000;
 
-/// The gateway.
 pub struct Gateway {
     start: Instant,
     host: HostLine,

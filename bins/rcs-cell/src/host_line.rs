@@ -34,7 +34,6 @@ impl HostLine {
         self.host
     }
 
-    /// The simulated serial line.
     #[must_use]
     pub const fn line(&self) -> &SerialLine {
         &self.line

@@ -31,13 +31,11 @@ use rustix::{
     termios::{OptionalActions, QueueSelector, tcflush, tcgetattr, tcsetattr},
 };
 
-/// Directory of the slaves.
 const SLAVES: &str = "/dev/pts";
 
 /// Errors of a pseudo-terminal and its link.
 #[derive(Debug, thiserror::Error)]
 pub enum PtyError {
-    /// Another program serves the path.
     #[error("{} is the link of another rcs-cell that still runs: stop it, or choose another path", .0.display())]
     Alive(PathBuf),
     /// The path names something that rcs-cell has not made.
@@ -46,14 +44,8 @@ pub enum PtyError {
     /// The directory of the path does not exist.
     #[error("there is no directory for the link {}", .0.display())]
     NoDirectory(PathBuf),
-    /// The link cannot be created.
     #[error("the link {} cannot be made: {source}", path.display())]
-    Link {
-        /// Path of the link.
-        path: PathBuf,
-        /// Error of the operating system.
-        source: io::Error,
-    },
+    Link { path: PathBuf, source: io::Error },
     /// The terminal cannot be opened or configured.
     #[error("no pseudo-terminal: {0}")]
     Terminal(#[from] Errno),

@@ -39,13 +39,10 @@ const LONGEST_SLEEP: u64 = 50_000;
 /// Longest time that one step simulates, s, after the program was stopped.
 const LONGEST_STEP_S: f64 = 2.0;
 
-/// Errors that end the program.
 #[derive(Debug, thiserror::Error)]
 pub enum ShellError {
-    /// The pseudo-terminal failed.
     #[error(transparent)]
     Pty(#[from] PtyError),
-    /// Standard input or waiting failed.
     #[error("standard input failed: {0}")]
     Io(#[from] io::Error),
 }

@@ -63,7 +63,6 @@ pub struct Cli {
 pub enum Colour {
     /// If the terminal has colours and NO_COLOR is not set
     Auto,
-    /// No colours
     Never,
 }
 

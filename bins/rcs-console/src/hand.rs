@@ -11,7 +11,6 @@ use crate::rcs_console::model::Operating;
 /// run considers the operator silent.
 const ASK: Duration = Duration::from_millis(100);
 
-/// The session.
 pub struct Hand {
     client: Client,
     asked: Option<Instant>,

@@ -7,7 +7,6 @@ use rcs_core::tick::{TICK_S, Tick};
 /// One tick: inputs, outputs and times, all of the same tick.
 #[derive(Clone)]
 pub struct Picture {
-    /// The tick.
     pub tick: Tick,
     /// The external inputs of the processes.
     pub external: ExternalInputs,
@@ -41,7 +40,6 @@ impl Picture {
         failure::command(process, &self.external.hws, &self.memory)
     }
 
-    /// Number of that command.
     #[must_use]
     pub fn command_number(&self, process: ProcessId) -> u32 {
         self.memory.command_number(process).unwrap_or(self.external.hws.number)
@@ -79,12 +77,10 @@ pub enum Absence {
     Stopped,
     /// It has written nothing in this tick.
     Lost,
-    /// It runs in another system.
     Elsewhere,
 }
 
 impl Absence {
-    /// The word on the screen.
     #[must_use]
     pub const fn text(self) -> &'static str {
         match self {

@@ -6,10 +6,8 @@ use executive::{boards, memory, memory::RunName};
 
 use crate::rcs_console::view::Waiting;
 
-/// Time between two searches.
 const SEARCH: Duration = Duration::from_secs(1);
 
-/// Searches for runs periodically.
 pub struct Search {
     /// The run that was named, if any.
     wanted: Option<RunName>,

@@ -30,7 +30,6 @@ pub struct Doing {
     pub step: Option<Name16>,
     /// `executing`, `done`, `not-detected` ...
     pub report: &'static str,
-    /// Reason of its failure.
     pub fault: Fault,
 }
 
@@ -46,13 +45,10 @@ pub struct Trouble {
 /// A re-start of the link to the robot.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Restart {
-    /// The tick.
     pub tick: u64,
-    /// Reason.
     pub reason: String,
 }
 
-/// The history of a run.
 pub struct Story {
     doings: [Vec<Doing>; PROCESS_COUNT],
     troubles: Vec<Trouble>,

@@ -82,11 +82,9 @@ pub fn show(cli: &Cli) -> Result<(), ConsoleError> {
     ended
 }
 
-/// The content of the screen.
 enum Console {
     /// A run or a log, and the session of an operator with the run.
     Source(Box<Model>, Box<dyn Source>, Option<Hand>),
-    /// The choice of a run.
     Waiting(Waiting, Search),
 }
 
@@ -147,7 +145,6 @@ fn stuck(limit: Duration) {
     process::exit(2);
 }
 
-/// The running console.
 struct Session {
     console: Console,
     look: Look,
@@ -156,7 +153,6 @@ struct Session {
     drawn: Option<Instant>,
     /// Path of the run's log, if it was named.
     log: Option<PathBuf>,
-    /// True to operate the run.
     operate: bool,
     /// True if the run ends with this console.
     ends_run: bool,
@@ -164,7 +160,6 @@ struct Session {
     data: PathBuf,
     /// File with the list of watched fields.
     watch: Option<PathBuf>,
-    /// The list in that file.
     watched: Vec<String>,
 }
 

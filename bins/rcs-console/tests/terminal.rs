@@ -25,10 +25,8 @@ use rustix::{
     termios::{Action, Termios, Winsize, tcflow, tcgetattr, tcsetwinsize},
 };
 
-/// Lines of the smallest terminal.
 const LINES: NonZero<u16> = NonZero::new(24).unwrap();
 const COLUMNS: NonZero<u16> = NonZero::new(80).unwrap();
-/// A job of one command.
 const TO_SAFE: &str = "== MOVE -- 0 -- 0 0 SAFE 0 -- 0\n";
 /// Time limit for a text to appear, on a busy machine.
 const PATIENCE: Duration = Duration::from_secs(30);
@@ -74,7 +72,6 @@ fn begin_console(
 /// Output of a program, each piece with its time.
 type Written = Vec<(Duration, Vec<u8>)>;
 
-/// A program in a terminal.
 struct Terminal {
     child: Child,
     keys: File,

@@ -33,9 +33,7 @@ const LISTED: usize = 40;
 /// Arguments of `diff`.
 #[derive(Clone, Debug, clap::Args)]
 pub struct Arguments {
-    /// The one log
     pub a: PathBuf,
-    /// The other log
     pub b: PathBuf,
     /// What is compared with what
     #[arg(long, value_enum, default_value_t = Align::Tick)]
@@ -44,7 +42,6 @@ pub struct Arguments {
     answer: Answer,
 }
 
-/// The differences between two runs.
 #[derive(Debug, Serialize)]
 struct Differences {
     /// Number of ticks that both logs have.
@@ -55,7 +52,6 @@ struct Differences {
     only_b: u64,
     /// Number of compared ticks that differ.
     different: u64,
-    /// Changed rows, motions and times.
     changes: Changes,
     first: Option<First>,
     /// Fields that differ, in the order of their first difference.

@@ -22,13 +22,11 @@ use crate::{
 /// Arguments of `info`.
 #[derive(Clone, Debug, clap::Args)]
 pub struct Arguments {
-    /// The log
     pub file: PathBuf,
     #[command(flatten)]
     answer: Answer,
 }
 
-/// Summary of a log.
 #[derive(Debug, Serialize)]
 pub struct Info {
     file: String,
@@ -60,7 +58,6 @@ pub struct Info {
     attachments: Vec<String>,
 }
 
-/// Timing of the run.
 #[derive(Debug, Serialize)]
 struct Times {
     /// Number of skipped slots of the 40 ms grid.

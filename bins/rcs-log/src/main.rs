@@ -118,21 +118,13 @@ struct Answer {
     json: bool,
 }
 
-/// Errors of examining a log.
 #[derive(Debug, thiserror::Error)]
 enum Error {
-    /// The log cannot be read.
     #[error("{}", .source.of(.path))]
-    Read {
-        /// Path of the log.
-        path: PathBuf,
-        /// The cause.
-        source: record::ReadError,
-    },
+    Read { path: PathBuf, source: record::ReadError },
     /// The log does not have the requested tick.
     #[error("{}: tick {tick} is not in the log, which has ticks {first} to {last}", path.display())]
     NoTick {
-        /// Path of the log.
         path: PathBuf,
         /// The requested tick.
         tick: u64,
@@ -147,26 +139,19 @@ enum Error {
     /// The task data cannot be used.
     #[error("the task data under {}:\n{report}", path.display())]
     Data {
-        /// Path of the directory.
         path: PathBuf,
         /// All errors of the task data.
         report: String,
     },
     /// The log cannot become a golden.
     #[error("{}: {source}", path.display())]
-    Golden {
-        /// Path of the log.
-        path: PathBuf,
-        /// The cause.
-        source: record::golden::GoldenError,
-    },
+    Golden { path: PathBuf, source: record::golden::GoldenError },
     /// The replay of this program differs from the log.
     #[error(
         "{}: this program differs from the log from tick {first} to {last}: name a log of this program",
         path.display()
     )]
     NotGolden {
-        /// Path of the log.
         path: PathBuf,
         /// First tick of the stretch that differs.
         first: u64,
@@ -175,41 +160,26 @@ enum Error {
     },
     /// A fork is not possible.
     #[error("{}: {source}", path.display())]
-    Fork {
-        /// Path of the log.
-        path: PathBuf,
-        /// The cause.
-        source: Box<fork::ForkError>,
-    },
+    Fork { path: PathBuf, source: Box<fork::ForkError> },
     /// A job cannot start with the given data.
     #[error("{source}")]
-    Start {
-        /// The cause.
-        source: Box<runtime::StartError>,
-    },
+    Start { source: Box<runtime::StartError> },
     /// The directories have no job to compare.
     #[error("neither {} nor {} has a job: name directories with jobs/NAME.job", .0.display(), .1.display())]
     NoJobs(PathBuf, PathBuf),
     /// The HTML page cannot be written.
     #[error("{}: {source}", path.display())]
-    Write {
-        /// Path of the page.
-        path: PathBuf,
-        /// Error of the operating system.
-        source: io::Error,
-    },
+    Write { path: PathBuf, source: io::Error },
     /// The server for viewers cannot start.
     #[error("viewers cannot connect at 127.0.0.1:{port}: {source}; --port names another one")]
     Port {
         /// The port on 127.0.0.1.
         port: u16,
-        /// Error of the operating system.
         source: io::Error,
     },
     /// The operating system supplies no random numbers.
     #[error(transparent)]
     NoRandom(#[from] sessions::live::NoRandom),
-    /// The answer cannot be written.
     #[error("the answer cannot be written: {0}")]
     Output(#[from] io::Error),
 }

@@ -20,7 +20,6 @@ const LOOK: Duration = Duration::from_millis(50);
 /// Arguments of `serve`.
 #[derive(Clone, Debug, clap::Args)]
 pub struct Arguments {
-    /// The log
     pub file: PathBuf,
     /// The port on 127.0.0.1; 0 for any that is free
     #[arg(long, value_name = "PORT", default_value_t = 8765)]
@@ -33,7 +32,6 @@ pub struct Arguments {
     live_origin: Vec<Origin>,
 }
 
-/// Parses a playing speed.
 fn rate(text: &str) -> Result<f64, String> {
     let rate: Option<f64> = text.parse().ok();
     rate.filter(|rate| (0.01..=1000.0).contains(rate))
@@ -79,7 +77,6 @@ pub fn serve(arguments: &Arguments) -> Result<ExitCode, Error> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// Computes when messages are due.
 struct Pace {
     rate: f64,
     /// Time stamp of the first message, ns, and the instant of sending it.

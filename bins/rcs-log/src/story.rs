@@ -16,11 +16,9 @@ use crate::Error;
 
 /// A tick with its decoded records.
 pub struct Moment {
-    /// The tick.
     pub tick: Tick,
     /// Number of missing ticks before it.
     pub gap: u64,
-    /// Inputs from outside the controller.
     pub external: ExternalInputs,
     /// Common memory at the start of the tick, which the processes read.
     pub before: CommonMemory,
@@ -84,7 +82,6 @@ fn decode(logged: &LoggedTick, before: CommonMemory) -> Result<Moment, ReadError
 /// A command of the workstation controller, as recorded.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct CommandStory {
-    /// The command as text.
     pub text: String,
     /// Tick in which Task took it.
     pub first_tick: u64,

@@ -70,7 +70,6 @@ fn with_a_bad_chunk(place: &Path) -> PathBuf {
     path
 }
 
-/// Offsets of the chunks.
 fn chunks(bytes: &[u8]) -> Vec<usize> {
     let (mut at, mut chunks) = (8, Vec::new());
     while at + 9 < bytes.len() {

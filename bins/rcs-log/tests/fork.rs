@@ -15,7 +15,6 @@ const DATA: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../data");
 /// The pose of the tray UNIT_1.
 const TRAY: &str = "datum poses.blk:612:3-5:3";
 
-/// Logs that several tests use.
 static LOGS: LazyLock<TempDir> = LazyLock::new(|| tempfile::tempdir().expect("a directory for logs"));
 static LINKBAR: LazyLock<PathBuf> = LazyLock::new(|| log("linkbar.mcap", |_| {}));
 static MISSING: LazyLock<PathBuf> = LazyLock::new(|| {

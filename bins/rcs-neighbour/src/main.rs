@@ -31,13 +31,11 @@ const FAILED: u8 = 1;
 /// Exit status of a usage, configuration or data error.
 const UNUSABLE: u8 = 2;
 
-/// Errors that end a neighbour.
 #[derive(Debug, thiserror::Error)]
 enum Error {
     /// The controller cannot be reached, or has closed the connection.
     #[error(transparent)]
     Peer(#[from] PeerError),
-    /// A command of earlier versions.
     #[error("{KEYS_MOVED}")]
     KeysMoved,
     /// The data base cannot be used.
@@ -50,24 +48,13 @@ enum Error {
     #[error(
         "camera and parts are {expected:016x}, those of the run {found:016x}: name the data of the run with --data"
     )]
-    AnotherCell {
-        /// Fingerprint of this process's description.
-        expected: u64,
-        /// Fingerprint of the run's description.
-        found: u64,
-    },
+    AnotherCell { expected: u64, found: u64 },
     /// Task data or the job have errors.
     #[error("{what} cannot be used")]
-    Data {
-        /// Name of the data.
-        what: String,
-        /// All problems found.
-        report: Box<Diagnostics>,
-    },
+    Data { what: String, report: Box<Diagnostics> },
     /// The job does not exist.
     #[error(transparent)]
     NoJob(#[from] diagnostics::UnknownFile),
-    /// The job failed.
     #[error("{0}")]
     Job(String),
 }
@@ -163,7 +150,6 @@ fn connect_again(
     connect(arguments, role).map(Some)
 }
 
-/// Connects to the controller.
 fn connect(arguments: &ControllerArguments, role: Role) -> Result<Peer, Error> {
     let wait = Duration::from_secs(arguments.wait);
     let address = &arguments.network;

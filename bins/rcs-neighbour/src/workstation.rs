@@ -24,7 +24,6 @@ use crate::{Error, cli::WorkstationArguments, connect};
 /// Ticks within which a command must be echoed over a network: 2 s.
 const NETWORK_TICKS: u64 = 50;
 
-/// Plays a job.
 pub fn play(arguments: &WorkstationArguments) -> Result<(), Error> {
     let job = job(arguments)?;
     let mut peer = connect(&arguments.controller, Role::Workstation)?;

@@ -22,7 +22,6 @@ use crate::{
     rcs_run::clock::Clock,
 };
 
-/// Bytes of a megabyte.
 const MEGABYTE: u64 = 1_000_000;
 
 /// Arguments of `run`.
@@ -198,7 +197,6 @@ pub struct BoardArguments {
 }
 
 impl RunArguments {
-    /// What to run.
     #[must_use]
     pub fn config(&self) -> RunConfig {
         let own = self.clone();
@@ -466,7 +464,6 @@ fn robot() -> impl TypedValueParser<Value = RobotConfig> {
     })
 }
 
-/// A port of this machine.
 fn port(text: &str) -> Result<u16, String> {
     text.parse()
         .map_err(|_| format!("a port from 0 to 65535 was expected, found {text}; a job stands before --live"))
@@ -475,8 +472,6 @@ fn port(text: &str) -> Result<u16, String> {
 /// Yes or no.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Switch {
-    /// Yes
     On,
-    /// No
     Off,
 }

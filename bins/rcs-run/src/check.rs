@@ -47,7 +47,6 @@ use crate::rcs_run::{
     ways,
 };
 
-/// The outcome as JSON.
 #[derive(Serialize)]
 struct Outcome {
     ok: bool,
@@ -65,7 +64,6 @@ struct Outcome {
     reach: Option<Reach>,
 }
 
-/// The findings of a datum.
 #[derive(Serialize)]
 struct OfDatum {
     datum: String,
@@ -255,7 +253,6 @@ impl Checked {
         text
     }
 
-    /// The findings as JSON.
     fn outcome(&self) -> Outcome {
         let all = || self.reports.iter().map(|(_, report)| report);
         let (errors, warnings) = (

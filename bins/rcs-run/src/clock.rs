@@ -7,7 +7,6 @@ use runtime::{ClockKind, config::MOST_SPEED};
 /// When ticks are run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Clock {
-    /// Whether there is a grid.
     pub kind: ClockKind,
     /// Ticks in 40 ms.
     pub speed: u8,

@@ -21,7 +21,6 @@ const PROGRAM: &str = "rcs-console";
 /// Time between two looks at the console.
 const LOOK: Duration = Duration::from_millis(20);
 
-/// The console of a run.
 pub struct Console {
     stop: Arc<AtomicBool>,
     /// Set when the run has ended.

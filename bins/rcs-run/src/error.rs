@@ -16,16 +16,12 @@ pub const UNUSABLE: u8 = 2;
 /// Exit status of a run that the user, an emergency stop or a lost link ended.
 pub const STOPPED: u8 = 3;
 
-/// Errors of a subcommand.
 #[derive(Debug, thiserror::Error)]
 pub enum Error {
-    /// A run cannot begin.
     #[error(transparent)]
     Start(#[from] StartError),
-    /// Shared memory cannot be inspected.
     #[error(transparent)]
     SharedMemory(#[from] SharedMemoryError),
-    /// A command cannot be explained.
     #[error("nothing can be explained: {0}")]
     Explain(String),
     /// The reach of a robot cannot be computed.
@@ -39,20 +35,10 @@ pub enum Error {
     New(String),
     /// An output file cannot be written.
     #[error("{} cannot be written: {source}", path.display())]
-    Write {
-        /// Path of the file.
-        path: PathBuf,
-        /// Error of the system.
-        source: io::Error,
-    },
+    Write { path: PathBuf, source: io::Error },
     /// A job of the list cannot be read.
     #[error("{} cannot be read: {source}", path.display())]
-    Unlisted {
-        /// Path of the job.
-        path: PathBuf,
-        /// Error of the system.
-        source: io::Error,
-    },
+    Unlisted { path: PathBuf, source: io::Error },
     /// A robot at a port, and no data that a person has named.
     #[error(
         "a robot at a port needs the data of its cell: --data DIR, or those of the program with --data built-in"
@@ -60,22 +46,14 @@ pub enum Error {
     BuiltInAtPort,
     /// A word that is no job, but nearly a subcommand.
     #[error("there is no job {word}: the nearest is the subcommand {subcommand}")]
-    Subcommand {
-        /// The word.
-        word: String,
-        /// The subcommand.
-        subcommand: String,
-    },
-    /// A run cannot be forked.
+    Subcommand { word: String, subcommand: String },
     #[error("the run cannot be forked: {0}")]
     Fork(String),
-    /// Invalid argument of a campaign.
     #[error("{0}")]
     Campaign(String),
     /// The simulated robot has no port.
     #[error("the simulated robot has no line to test: name a port with --robot serial:PATH")]
     NoLinkToTest,
-    /// Signals cannot be caught.
     #[error("the signal handler cannot be installed: {0}")]
     Signals(io::Error),
     /// The buffers of a run cannot be read.
@@ -99,10 +77,8 @@ pub enum Error {
         .0.display()
     )]
     NoConsole(PathBuf),
-    /// The console cannot be started.
     #[error("the console cannot be started: {0}")]
     Console(io::Error),
-    /// The result cannot be written.
     #[error("the result cannot be written: {0}")]
     Output(#[from] io::Error),
 }

@@ -13,7 +13,6 @@ const COMMENT: char = '%';
 /// Greatest length of a line, characters.
 const WIDEST: usize = 100;
 
-/// A job of the list.
 #[derive(Debug, Serialize)]
 struct Listed {
     job: String,

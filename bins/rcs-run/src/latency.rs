@@ -23,7 +23,6 @@ use serde::Serialize;
 
 use crate::rcs_run::{answer::answer, arguments::LatencyArguments, error::Error, interrupt::interruption};
 
-/// Length of a slot.
 const SLOT: Duration = Duration::from_millis(TICK_MS);
 /// Upper limit of the p99 wake-up latency for `good`, µs: a hundredth of a frame's time on the line.
 const GOOD_US: f64 = 200.0;
@@ -32,7 +31,6 @@ const USABLE_US: f64 = 2_000.0;
 /// Edges of the printed histogram, microseconds.
 const EDGES: [u64; 10] = [10, 20, 50, 100, 200, 500, 1_000, 2_000, 5_000, 40_000];
 
-/// The verdict on a machine.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Fitness {
@@ -40,12 +38,10 @@ pub enum Fitness {
     Good,
     /// Frames are on the line within their tick.
     Usable,
-    /// Ticks will be skipped.
     Poor,
 }
 
 impl Fitness {
-    /// The verdict on a measurement.
     fn of(summary: &Summary, skipped: u64) -> Self {
         if skipped > 0 || summary.p99 > USABLE_US {
             Self::Poor
@@ -69,7 +65,6 @@ impl Fitness {
     }
 }
 
-/// The result of a measurement.
 #[derive(Debug, Serialize)]
 struct Measurement {
     seconds: f64,
@@ -82,7 +77,6 @@ struct Measurement {
     machine: String,
     realtime: String,
     verdict: Fitness,
-    /// The verdict as a sentence.
     meaning: &'static str,
 }
 

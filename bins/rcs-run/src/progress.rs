@@ -15,7 +15,6 @@ use rcs_core::tick::Tick;
 use runtime::{Observer, TickReport, event::Event};
 use rustix::{process::getpgrp, termios::tcgetpgrp};
 
-/// Time between two updates.
 const PERIOD: Duration = Duration::from_millis(100);
 /// Number of levels shown: Task, Subtask, E-move, Prim, in the order of common memory.
 const LEVELS: usize = 4;

@@ -26,7 +26,6 @@ use taskdata::load::{Job, Store};
 
 use crate::rcs_run::error::Error;
 
-/// Reach of the arm.
 #[derive(Debug, Serialize)]
 pub struct Reach {
     robot: String,
@@ -66,7 +65,6 @@ struct Trouble {
     why: String,
 }
 
-/// The robot and its cell.
 struct Bench<'a> {
     placement: Placement,
     arm: Arm,
@@ -157,7 +155,6 @@ impl Bench<'_> {
         (count, out)
     }
 
-    /// Results per job and start.
     fn jobs(&self, data: &Path, store: &Store, starts: &[Axes]) -> Vec<Vec<JobReach>> {
         let known = &Known::default();
         let jobs: Vec<_> = JOBS.all(data).iter().filter_map(|path| Job::load(path, store).ok()).collect();

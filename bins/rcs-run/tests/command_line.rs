@@ -25,7 +25,6 @@ impl Place {
         Self(tempfile::tempdir().unwrap())
     }
 
-    /// A job file.
     fn job(&self, name: &str, text: &str) -> String {
         let path = self.0.path().join(name).with_extension("job");
         fs::write(&path, text).unwrap();

@@ -42,7 +42,6 @@ impl Place {
         Self(tempfile::tempdir().unwrap())
     }
 
-    /// Where the port is linked.
     fn port(&self) -> PathBuf {
         self.0.path().join("port")
     }
@@ -82,7 +81,6 @@ struct Peer {
     thread: Option<JoinHandle<(ControllerState, Exact)>>,
 }
 
-/// How a controller behaves.
 #[derive(Clone, Copy, Default)]
 struct Manner {
     /// It answers after this time, or never.
@@ -122,7 +120,6 @@ impl Peer {
         self.pull_robot().0
     }
 
-    /// The same, and the robot.
     fn pull_robot(mut self) -> (ControllerState, Exact) {
         self.stop.store(true, Ordering::Relaxed);
         self.thread.take().map(|thread| thread.join().unwrap()).unwrap()

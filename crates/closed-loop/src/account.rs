@@ -19,7 +19,6 @@ use crate::failure::Failure;
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Kind {
-    /// An E-stop was pressed.
     EmergencyStop,
     /// The robot has lost hydraulic pressure or power.
     Power,
@@ -35,7 +34,6 @@ pub enum Kind {
     Link,
     /// The robot is not where it was sent.
     OffPath,
-    /// A process reports an error.
     Process,
     /// A command was reported as finished, but its goal is not reached.
     FalseReport,
@@ -145,7 +143,6 @@ impl Account {
         Some(Self { first: failures.next()?, followed: failures.collect() })
     }
 
-    /// The account with more failures.
     #[must_use]
     pub fn with(self, more: impl IntoIterator<Item = Failure>) -> Self {
         let all: Vec<Failure> = self.failures().cloned().chain(more).collect();

@@ -69,9 +69,7 @@ impl fmt::Display for Commands {
 pub struct Collision {
     /// Link of the robot, or the carried part.
     pub mover: String,
-    /// The obstacle.
     pub obstacle: String,
-    /// Greatest depth, in.
     pub depth_in: f64,
     /// Position of the greatest depth, world coordinates, in.
     pub position_in: [f64; 3],
@@ -111,7 +109,6 @@ impl fmt::Display for Collision {
 pub enum ContactEvent {
     /// Two objects touch that must not.
     Begins(Collision),
-    /// The objects have separated.
     Ends(Collision),
 }
 
@@ -135,9 +132,7 @@ impl fmt::Display for ContactEvent {
 pub struct NearMiss {
     /// Link of the robot, or the carried part.
     pub mover: String,
-    /// The object.
     pub obstacle: String,
-    /// Distance, in.
     pub distance_in: f64,
     /// Position, world coordinates, in.
     pub position_in: [f64; 3],
@@ -194,7 +189,6 @@ impl ContactCheck {
         }
     }
 
-    /// Ignore near misses.
     #[must_use]
     pub fn without_near_misses(self) -> Self {
         Self { farthest: 0.0, ..self }
@@ -254,13 +248,11 @@ impl ContactCheck {
         self.open.contains_key(&contact.pair())
     }
 
-    /// All collisions.
     #[must_use]
     pub fn collisions(&self) -> &[Collision] {
         &self.collisions
     }
 
-    /// The nearest miss.
     #[must_use]
     pub const fn nearest(&self) -> Option<&NearMiss> {
         self.nearest.as_ref()

@@ -134,7 +134,6 @@ impl<L> Course<L> {
         let _ = shadow.step(tick, before, external, data, after, &mut |_| {});
     }
 
-    /// The ladder.
     #[must_use]
     pub const fn levels(&self) -> &L {
         &self.levels

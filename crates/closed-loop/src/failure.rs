@@ -20,7 +20,6 @@ pub const PROCESSES: usize = PROCESS_COUNT;
 /// Something that went wrong in a run. The names of the fields are those of the JSON object.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Failure {
-    /// Tick in which it began.
     #[serde(with = "number")]
     pub tick: Tick,
     /// What kind of failure it is.
@@ -31,7 +30,6 @@ pub struct Failure {
     pub table: Option<String>,
     /// The row that fired, from 1.
     pub row: Option<u8>,
-    /// The failure in one sentence.
     pub text: String,
     /// The link to the robot is lost, or the robot was stopped: not a failure of the job.
     #[serde(skip)]
@@ -227,7 +225,6 @@ mod tests {
 
     #[derive(Clone, Copy, Debug, Variables)]
     struct Situation {
-        /// Where the fingers are.
         fingers: Fingers,
     }
 

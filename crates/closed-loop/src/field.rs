@@ -37,32 +37,19 @@ const OUTPUTS: usize = 0x0800;
 pub enum FieldError {
     /// The mapping does not make a plan.
     #[error("{device}: {source}")]
-    Plan {
-        /// The device.
-        device: String,
-        /// What is wrong.
-        source: PlanError,
-    },
+    Plan { device: String, source: PlanError },
     /// Only couplers with process data are emulated.
     #[error("{device}: only devices of the kind bk9000 with registers can be simulated")]
-    NotEmulated {
-        /// The device.
-        device: String,
-    },
+    NotEmulated { device: String },
     /// The emulated device is not ready.
     #[error("{device} is not ready after its set-up")]
-    NotReady {
-        /// The device.
-        device: String,
-    },
+    NotReady { device: String },
 }
 
 /// Something that has happened to a device.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FieldEvent {
-    /// The device.
     pub device: String,
-    /// What has happened.
     pub what: Happened,
 }
 
@@ -75,7 +62,6 @@ pub enum Happened {
     Back(u32),
     /// Its outputs are safe until an operator releases it.
     Tripped(Trip),
-    /// It was released.
     Released,
     /// Its release was refused: an output is asked for that may not be on at rest, or it does not answer.
     Refused,
@@ -182,7 +168,6 @@ impl SimulatedField {
         Ok(field)
     }
 
-    /// The mapping.
     #[must_use]
     pub fn mapping(&self) -> &Mapping {
         &self.mapping

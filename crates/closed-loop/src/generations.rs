@@ -73,7 +73,6 @@ impl Generations {
         &self.reloads
     }
 
-    /// Number of reloads in effect.
     #[must_use]
     pub fn done(&self) -> usize {
         usize::try_from(self.number).unwrap_or(usize::MAX)

@@ -43,7 +43,6 @@ impl Default for Given {
 pub struct RobotInputs {
     /// The bytes that have arrived.
     pub rx: LinkBytes,
-    /// DTR of the robot controller.
     pub ready: bool,
     /// True if bytes of an earlier tick have not left.
     pub unsent: bool,

@@ -10,13 +10,11 @@ use crate::{Turn, World, workstation::orders};
 /// The ideal cell with the other equipment of the workstation. Nothing in it is judged.
 #[derive(Clone, Debug)]
 pub struct IdealWorkstation {
-    /// The cell.
     pub cell: Ideal,
     loads: Vec<u32>,
 }
 
 impl IdealWorkstation {
-    /// A workstation with a cell.
     #[must_use]
     pub const fn new(cell: Ideal) -> Self {
         Self { cell, loads: Vec::new() }

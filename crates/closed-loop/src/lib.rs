@@ -83,7 +83,6 @@ pub struct ClosedLoop<L = Present, W: World = SimulatedWorkstation> {
 
 /// What a source of commands, or an operator, sees and changes after a tick.
 pub struct Desk<'a, W = SimulatedWorkstation> {
-    /// The tick.
     pub tick: Tick,
     /// Common memory after the tick.
     pub memory: &'a CommonMemory,
@@ -93,7 +92,6 @@ pub struct Desk<'a, W = SimulatedWorkstation> {
     pub gate: &'a mut Gate,
     /// The cell and the other equipment of the workstation.
     pub workstation: &'a mut W,
-    /// The task data.
     pub generations: &'a Generations,
 }
 
@@ -285,13 +283,11 @@ impl<L, W: World> ClosedLoop<L, W> {
         self.gate.command()
     }
 
-    /// Task's end of the mailboxes.
     #[must_use]
     pub const fn gate(&self) -> &Gate {
         &self.gate
     }
 
-    /// The task data.
     #[must_use]
     pub const fn generations(&self) -> &Generations {
         &self.generations

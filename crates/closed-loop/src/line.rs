@@ -11,9 +11,7 @@ const LATE: u16 = 5;
 /// The line to the simulated robot controller.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct RobotLine {
-    /// The faults of a plan.
     plan: Option<Injector>,
-    /// Fault of the next answer.
     armed: Option<FaultKind>,
     /// Carries out the fault of the last answer that was hit.
     answer: Option<Injector>,

@@ -37,7 +37,6 @@ impl<W: World> Commander<W> for Hwsc {
     }
 }
 
-/// The command mailbox of a [`Commander`].
 #[derive(Clone, Debug)]
 pub struct CommandBox(Mailbox);
 
@@ -110,7 +109,6 @@ where
 /// The emulator of the workstation controller with a job, and its command mailbox. A copy continues from the same line.
 #[derive(Clone, Debug)]
 pub struct JobPlayer {
-    /// The emulator.
     pub hwsc: Hwsc,
     command_box: CommandBox,
 }

@@ -22,7 +22,6 @@ impl Default for Present {
 }
 
 impl Present {
-    /// The ladder.
     #[must_use]
     pub const fn ladder(&self) -> &Ladder {
         &self.ladder

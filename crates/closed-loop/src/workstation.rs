@@ -30,7 +30,6 @@ pub struct Emergency {
 /// The cell, with its emergencies and failures.
 #[derive(Clone)]
 pub struct SimulatedWorkstation {
-    /// The cell.
     pub cell: Cell,
     /// The couplers between the controller and the cell, if there are any.
     pub field: Option<Box<SimulatedField>>,
@@ -55,7 +54,6 @@ pub struct WorkstationState {
 }
 
 impl SimulatedWorkstation {
-    /// A workstation with a cell.
     pub fn new(cell: Cell) -> Self {
         Self { cell, field: None, state: WorkstationState::default() }
     }

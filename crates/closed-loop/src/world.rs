@@ -29,7 +29,6 @@ pub trait World: Workstation {
 /// A tick whose processes have run.
 #[derive(Clone, Copy, Debug)]
 pub struct Turn<'a> {
-    /// The tick.
     pub tick: Tick,
     /// The command that Task has read.
     pub hws: &'a HwsCommand,

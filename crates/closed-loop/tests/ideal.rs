@@ -29,11 +29,9 @@ struct Point {
     emove: EmoveVerb,
     prim: PrimVerb,
     report: PrimReport,
-    /// Joints of the arm.
     joints: Joints,
 }
 
-/// A job that has ended.
 struct Played {
     progress: Progress,
     tick: Tick,

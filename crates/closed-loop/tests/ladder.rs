@@ -195,7 +195,6 @@ proptest! {
 enum Mishap {
     /// A process is not stepped for some ticks.
     Late(ProcessId, u8),
-    /// A process forgets everything.
     Restart(ProcessId),
 }
 
@@ -421,7 +420,6 @@ fn believed(memory: &CommonMemory) -> Vec<Variable> {
     Variable::ALL.iter().copied().filter(has).collect()
 }
 
-/// NONE for a variable.
 const fn forget(variable: Variable) -> Option<Write> {
     Some(Write { variable, object: None, grip: 0 })
 }

@@ -13,10 +13,8 @@ const WORDS: usize = 256;
 /// Text in the registers of the identity.
 const IDENTITY: &[u8; 14] = b"BK9000 emulate";
 
-/// A fault of a coupler.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum CouplerFault {
-    /// No fault.
     #[default]
     None,
     /// Its answers are good, but its inputs stand still.
@@ -27,18 +25,19 @@ pub enum CouplerFault {
     Terminals(u16),
 }
 
-/// State of the watchdog.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Watchdog {
     /// No output was written since the start, or since the reset.
     Idle,
-    /// It fires at this time.
-    Active { until: u64 },
+    Active {
+        until: u64,
+    },
     /// It has fired; the first word of the reset was written, or not.
-    Fired { is_resetting: bool },
+    Fired {
+        is_resetting: bool,
+    },
 }
 
-/// An emulated coupler.
 #[derive(Clone, Debug)]
 pub struct Emulated {
     kind: Kind,

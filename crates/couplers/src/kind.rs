@@ -22,7 +22,6 @@ pub enum Fallback {
     Hold,
 }
 
-/// Facts about a kind.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Facts {
     /// Addresses of the input registers of the process data.
@@ -44,7 +43,6 @@ impl Kind {
         Self::from_text(name)
     }
 
-    /// Facts about the kind.
     #[must_use]
     pub const fn facts(self) -> Facts {
         match self {

@@ -14,14 +14,12 @@ pub const MOST_OUT: usize = 121;
 /// Words of all spans of a direction, one after the other. Bits are packed 16 per word, the first one lowest.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub struct InWords {
-    /// The words.
     pub words: [u16; MOST_IN],
 }
 
 /// Words of all spans of outputs, as [`InWords`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub struct OutWords {
-    /// The words.
     pub words: [u16; MOST_OUT],
 }
 
@@ -52,9 +50,7 @@ pub enum Area {
     Coil,
     /// Inputs of one bit.
     Discrete,
-    /// Input registers.
     Input,
-    /// Registers that can be written.
     Holding,
 }
 
@@ -75,11 +71,8 @@ impl Area {
 /// Consecutive registers, or bits for [`Area::Coil`] and [`Area::Discrete`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub struct Span {
-    /// The table.
     pub area: Area,
-    /// First address.
     pub first: u16,
-    /// Number of addresses.
     pub count: u16,
 }
 
@@ -95,9 +88,7 @@ impl Span {
 /// Description of a device for its session.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Plan {
-    /// Unit number in each request.
     pub unit: u8,
-    /// Kind of coupler.
     pub kind: Kind,
     /// Behaviour of the outputs when the watchdog fires.
     pub fallback: Fallback,
@@ -109,7 +100,6 @@ pub struct Plan {
     pub reads: Vec<Span>,
     /// Spans to write; the output image consists of them.
     pub writes: Vec<Span>,
-    /// The safe output image.
     pub safe: OutWords,
     /// Bits of outputs that may be on while nothing moves.
     pub rest: OutWords,
@@ -122,36 +112,20 @@ pub struct Plan {
 pub enum PlanError {
     /// An image has too many words, or too many bits for a request.
     #[error("{found} words in an image, at most {most} were expected")]
-    TooLong {
-        /// Greatest number of words.
-        most: usize,
-        /// Number of words found.
-        found: usize,
-    },
+    TooLong { most: usize, found: usize },
     /// A span of outputs cannot be written.
     #[error("outputs are coils or holding registers, found {found}")]
-    NotWritable {
-        /// Table of the span.
-        found: Area,
-    },
+    NotWritable { found: Area },
     /// A span is empty, or ends beyond 65535.
     #[error("{count} addresses from {first:#06x}: between 1 and the last address 0xffff were expected")]
-    BadSpan {
-        /// First address.
-        first: u16,
-        /// Number of addresses.
-        count: u16,
-    },
+    BadSpan { first: u16, count: u16 },
     /// Registers are not process data of the kind.
     #[error("registers {first:#06x} to {last:#06x} are not {direction} of a {kind}")]
     NotProcessData {
-        /// Kind of coupler.
         kind: Kind,
         /// `inputs` or `outputs`.
         direction: &'static str,
-        /// First address.
         first: u16,
-        /// Last address.
         last: u16,
     },
     /// Nothing is read, so that the device could be lost without notice.
@@ -159,12 +133,7 @@ pub enum PlanError {
     NoInputs,
     /// The kind cannot fall back in this way.
     #[error("a {kind} cannot fall back to {fallback}")]
-    NoFallback {
-        /// Kind of coupler.
-        kind: Kind,
-        /// Fallback that was asked for.
-        fallback: Fallback,
-    },
+    NoFallback { kind: Kind, fallback: Fallback },
     /// The watchdog cannot be set to this time, or not be set above the time after which data are stale.
     #[error("a watchdog of {found} ms, expected at least {least} ms")]
     BadWatchdog {

@@ -40,16 +40,16 @@ const MOST_ENDING: u64 = 150 * MS;
 /// Time in which the counter of a device's program must change.
 const MOST_STILL: u64 = 2000 * MS;
 
-/// Phase of the connection.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Phase {
     /// Not connected; the next attempt may begin at this time.
-    Closed { next: u64 },
+    Closed {
+        next: u64,
+    },
     /// Connected; the device must be set up.
     Setup,
     /// Connected again; the device must be as it was left.
     Back,
-    /// Process data are exchanged.
     Open,
 }
 
@@ -127,13 +127,11 @@ impl Session {
         })
     }
 
-    /// The plan of the device.
     #[must_use]
     pub const fn plan(&self) -> &Plan {
         &self.plan
     }
 
-    /// The state of the device.
     #[must_use]
     pub const fn report(&self) -> &Report {
         &self.report
@@ -366,7 +364,6 @@ fn refused_write(fault: Fault) -> Stop {
     }
 }
 
-/// A buffer for an answer.
 const fn buffer() -> [u8; MOST_FRAME_BYTES] {
     [0; MOST_FRAME_BYTES]
 }

@@ -11,7 +11,6 @@ use crate::{
     session::Session,
 };
 
-/// A device in simulated time.
 #[derive(Clone, Debug)]
 pub struct Simulated {
     session: Session,
@@ -62,19 +61,16 @@ impl Simulated {
         self.line.is_broken = true;
     }
 
-    /// The state of the device.
     #[must_use]
     pub const fn report(&self) -> &Report {
         self.session.report()
     }
 
-    /// The session.
     #[must_use]
     pub const fn session(&self) -> &Session {
         &self.session
     }
 
-    /// The coupler.
     #[must_use]
     pub const fn coupler(&self) -> &Emulated {
         &self.line.coupler

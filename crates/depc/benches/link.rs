@@ -1,8 +1,6 @@
 //! Speed of the link: writing a frame, reading one, and a whole exchange of both ends over a line with and without
 //! faults.
 
-#![expect(missing_docs, reason = "criterion_group! makes a public function without a doc comment")]
-
 use std::hint::black_box;
 
 use criterion::{Criterion, criterion_group, criterion_main};

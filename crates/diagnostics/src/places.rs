@@ -17,7 +17,6 @@ pub struct Position {
     pub begin: u32,
 }
 
-/// A source with findings.
 struct Lines<'s> {
     text: &'s str,
     blocks: Vec<BlockLines>,

@@ -52,7 +52,6 @@ impl Diagnostic {
     }
 }
 
-/// A finding in plain text.
 struct Plain<'a>(&'a Diagnostic);
 
 impl fmt::Display for Plain<'_> {

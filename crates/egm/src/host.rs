@@ -85,7 +85,6 @@ pub struct Sample {
     pub counters: Counters,
 }
 
-/// A target that was sent.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Sent {
     at: u64,

@@ -14,7 +14,6 @@ pub const FIXED64: u8 = 1;
 pub const BYTES: u8 = 2;
 /// Wire type of four bytes.
 pub const FIXED32: u8 = 5;
-/// Greatest field number.
 const MOST_FIELDS: u64 = (1 << 29) - 1;
 
 /// A value on the wire.

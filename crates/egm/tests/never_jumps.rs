@@ -15,24 +15,26 @@ const LIMITS: Limits = Limits::of_speed(400.0, 1.2);
 const MS: u64 = 1_000_000;
 const CYCLE: u64 = 4_032_000;
 
-/// An event of the test.
 #[derive(Clone, Debug)]
 enum Event {
     /// This number of cycles passes; `lost` is the percentage of lost messages.
-    Cycles { count: u16, lost: u8 },
+    Cycles {
+        count: u16,
+        lost: u8,
+    },
     /// Time passes without a message, ms.
     Silence(u16),
     /// The last message arrives again.
     Double,
     /// The robot is moved to another position.
     Pushed([f64; 3]),
-    /// The robot's states change.
     States(u8),
     /// A path begins at the sample's start pose, or at another pose.
-    Begin { astray: bool },
+    Begin {
+        astray: bool,
+    },
     /// The next point, relative to the previous one, mm and rad.
     Point([f64; 3], [f64; 3]),
-    /// The path is stopped.
     Stop,
     /// Bytes that are not a message.
     Garbage(Vec<u8>),

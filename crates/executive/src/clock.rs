@@ -22,7 +22,6 @@ use rustix::{
     time::{Timespec, clock_gettime},
 };
 
-/// Length of a slot.
 pub const SLOT: Duration = Duration::from_millis(TICK_MS);
 /// Time before a slot at which [`Grid::wake_early`] wakes. It is long enough for a late wake-up and a warm-up of the
 /// tick with cold caches (some 0.1 ms), and short compared with a slot: it keeps a core awake for at most 1.25 % of the
@@ -69,7 +68,6 @@ impl Time for Monotonic {
 pub struct Grid<T> {
     time: T,
     start: Duration,
-    /// Length of a slot.
     length: Duration,
     slot: u64,
     ticks: u64,

@@ -22,7 +22,6 @@ pub struct Summary {
     pub p50: f64,
     /// 99 of 100 values are at most this.
     pub p99: f64,
-    /// The largest value.
     pub max: f64,
 }
 
@@ -33,14 +32,12 @@ impl Default for Histogram {
 }
 
 impl Histogram {
-    /// Add a value.
     pub fn add(&mut self, nanoseconds: u64) {
         self.counts[bucket(nanoseconds)] += 1;
         self.total += 1;
         self.max = self.max.max(nanoseconds);
     }
 
-    /// Number of values.
     #[must_use]
     pub const fn count(&self) -> u64 {
         self.total
@@ -82,7 +79,6 @@ fn bucket(value: u64) -> usize {
     ((u64::from(octave) + 1) * PER_OCTAVE + within).min(BUCKETS as u64 - 1) as usize
 }
 
-/// Largest value of a bucket.
 fn upper_edge(index: usize) -> u64 {
     let index = index as u64;
     if index < PER_OCTAVE {

@@ -2,7 +2,6 @@
 
 use std::{fmt, fs};
 
-/// The properties found.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Machine {
     /// Release of the kernel, or the reason why it is unknown.

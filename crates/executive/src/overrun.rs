@@ -19,7 +19,6 @@ use closed_loop::rest::{AT_LAST, RestWatch};
 /// Number of consecutive ticks, one second, that must be on time before a holding robot continues.
 pub const PUNCTUAL: u32 = 25;
 
-/// The reaction to skipped slots.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Policy {
     /// They are only counted.
@@ -64,7 +63,6 @@ impl fmt::Display for Policy {
 /// Slots that were skipped in a row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Overrun {
-    /// Number of slots.
     pub slots: u64,
     /// The part of the previous tick that took longest; `None` if that tick ended in time and the thread was woken too
     /// late.
@@ -85,7 +83,6 @@ impl fmt::Display for Overrun {
     }
 }
 
-/// The present reaction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Reaction {
     None,
@@ -93,7 +90,6 @@ enum Reaction {
     Holding {
         punctual: u32,
     },
-    /// The robot comes to rest.
     Stopping {
         because: Overrun,
         ticks: u32,

@@ -33,19 +33,15 @@ const STACK_BYTES: usize = 512 * 1024;
 /// microseconds.
 const IDLE_STATES: &str = "/dev/cpu_dma_latency";
 
-/// A request and its outcome.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Item {
-    /// The request.
     pub what: String,
     /// Reason of the refusal; `None` if it was granted.
     pub refused: Option<String>,
 }
 
-/// The outcomes of all requests.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Verdict {
-    /// The requests.
     pub items: Vec<Item>,
 }
 
@@ -84,7 +80,6 @@ impl fmt::Display for Verdict {
 
 /// The granted requests. Idle states are limited until this is dropped.
 pub struct RealTime {
-    /// The outcomes of all requests.
     pub verdict: Verdict,
     _idle_states: Option<File>,
 }

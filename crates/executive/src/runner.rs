@@ -15,7 +15,6 @@ use crate::{
 };
 use closed_loop::course::{Course, Levels};
 
-/// Runs a course.
 pub struct Runner<L> {
     times: Box<Histogram>,
     stage_times: StageTimes,

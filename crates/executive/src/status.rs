@@ -12,14 +12,12 @@ use serde::Serialize;
 use crate::memory::layout::Pulse;
 use closed_loop::failure::command;
 
-/// Status of a process.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct ProcessStatus {
     /// The manual's name.
     pub process: &'static str,
     /// Its present command; empty for none.
     pub command: String,
-    /// Its status report.
     pub status: &'static str,
     /// What no sensor confirms about its finished command; empty if the sensors confirm the goal.
     pub unconfirmed: &'static str,
@@ -37,17 +35,14 @@ pub struct ProcessStatus {
     pub lost: bool,
 }
 
-/// Status of a run.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Status {
-    /// Name of the run.
     pub run: String,
     /// The announced state of the run, as a phrase after its name; `None` if it runs, or if its state is unknown.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub phase: Option<String>,
     /// The tick that was run last.
     pub tick: u64,
-    /// Simulated time, s.
     pub simulated_s: f64,
     /// Number of slots of the 40 ms grid that were skipped.
     pub skipped: u64,
@@ -59,7 +54,6 @@ pub struct Status {
     pub over: bool,
     /// Fault of the line to the robot; `None` if there is none.
     pub link: Option<&'static str>,
-    /// The processes from Task down.
     pub processes: Vec<ProcessStatus>,
 }
 

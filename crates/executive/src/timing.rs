@@ -16,17 +16,13 @@ use crate::histogram::{Histogram, Summary};
 pub enum Stage {
     /// Receive from a serial line, exchange of task data, and log entries before the controller runs.
     Inputs,
-    /// A control process.
     Process(ProcessId),
     /// Common memory: carried over from the previous tick, and published.
     Buffers,
     /// Digest, and the watch for failures.
     Bookkeeping,
-    /// Send over a serial line.
     Line,
-    /// Transfer to the log.
     Log,
-    /// The simulated cell.
     Cell,
     /// Workstation controller, Data System, progress line.
     Workstation,
@@ -42,7 +38,6 @@ const OTHERS: [Stage; 7] = [
     Stage::Cell,
     Stage::Workstation,
 ];
-/// Number of parts.
 pub const PARTS: usize = PROCESS_COUNT + OTHERS.len();
 
 impl Stage {

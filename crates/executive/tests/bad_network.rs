@@ -35,7 +35,6 @@ struct Bench {
     /// Start of the path, and the number of its points.
     path: Option<(Pose, u32)>,
     begun: u32,
-    /// Sample of the previous message.
     last: Option<Sample>,
     travelled: f64,
     messages: u32,

@@ -139,7 +139,6 @@ impl InPoint {
         value.clamp(*range.start(), *range.end())
     }
 
-    /// The line of the gripper that is on.
     fn line_of(&self, gripper: u8) -> Option<crate::scale::Line> {
         let own = usize::from(gripper).checked_sub(1).and_then(|index| *self.by_gripper.get(index)?);
         own.or(self.line)
@@ -170,7 +169,6 @@ impl InPoint {
 }
 
 impl Slot {
-    /// The value in an image.
     pub(crate) fn get(&self, image: &[u16]) -> i64 {
         let word = |offset: usize| image.get(self.word + offset).copied().unwrap_or_default();
         let wide = || {

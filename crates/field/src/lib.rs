@@ -18,7 +18,6 @@
 //! as not fresh ([`interfaces::device::FieldHealth`]): an old value is never replaced by zero.
 
 #![forbid(unsafe_code)]
-#![warn(missing_docs)]
 
 mod image;
 mod mapping;

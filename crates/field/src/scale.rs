@@ -11,21 +11,15 @@ const BROKEN: f64 = 0.03;
 #[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Eq)]
 #[serde(rename_all = "lowercase")]
 pub enum Format {
-    /// One bit.
     Bit,
-    /// A register.
     #[default]
     U16,
-    /// A register with a sign.
     I16,
-    /// Two registers.
     U32,
-    /// Two registers with a sign.
     I32,
 }
 
 impl Format {
-    /// Its word in mapping files.
     #[must_use]
     pub const fn text(self) -> &'static str {
         match self {
@@ -37,7 +31,6 @@ impl Format {
         }
     }
 
-    /// Registers.
     #[must_use]
     pub const fn registers(self) -> u16 {
         match self {
@@ -46,7 +39,6 @@ impl Format {
         }
     }
 
-    /// Its values.
     #[must_use]
     pub const fn range(self) -> RangeInclusive<i64> {
         match self {

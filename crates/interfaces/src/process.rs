@@ -26,11 +26,9 @@ pub struct Inputs<'a, Data: ?Sized> {
 pub trait Process<Data: ?Sized> {
     /// The whole state of the process: plain data, logged, restorable.
     type State: Plain;
-    /// Its output buffers.
     type Outputs: Plain;
     /// The state variables of a tick, and other results of preprocess.
     type StateVariables;
-    /// Actions of the tables.
     type Action;
 
     /// The manual's name.
@@ -57,7 +55,6 @@ pub trait Process<Data: ?Sized> {
     /// written in the tick before.
     fn write(&mut self, _: &Write, _: &Inputs<'_, Data>, _: &mut Self::Outputs) {}
 
-    /// The state of the process.
     fn state(&self) -> &Self::State;
 
     /// The same, to go on from another state.
@@ -71,7 +68,6 @@ pub trait Process<Data: ?Sized> {
         self.postprocess(action, &seen, inputs, outputs);
     }
 
-    /// Continue from a saved state.
     fn restore(&mut self, state: Self::State) {
         *self.state_mut() = state;
     }

@@ -24,21 +24,17 @@ use crate::{
 /// The goal of the command, compared with the sensors.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Evidence {
-    /// The goal holds.
     Holds,
     /// Nothing contradicts it, and a part of it has no sensor.
     Unsensed,
     /// The robot is not at the goal.
     Elsewhere,
-    /// The robot still moves.
     Moving,
     /// The object is not held.
     NotHeld,
     /// The object is held in another grip.
     OtherGrip,
-    /// Something is still held.
     StillHeld,
-    /// Something unknown is held.
     Unknown,
     /// The sensors do not show whether something is held.
     NotKnown,
@@ -75,7 +71,6 @@ pub enum Evidence {
 pub enum Reading {
     /// They may be older than the end of the command.
     Awaited,
-    /// They are newer.
     Newest,
 }
 
@@ -84,16 +79,13 @@ pub enum Reading {
 pub struct Claim {
     /// Its goal, compared with the sensors.
     pub evidence: Evidence,
-    /// How new the readings are.
     pub reading: Reading,
 }
 
 /// What [`CONFIRM`] can ask for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Actions)]
 pub enum Doubt {
-    /// Wait for a newer reading.
     Wait,
-    /// Report an error.
     Fail(Reason),
 }
 
@@ -127,14 +119,12 @@ decision_table! {
 /// The goal of a command, compared with the sensors.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Proof {
-    /// What they say.
     pub evidence: Evidence,
     /// The part without a sensor.
     pub unconfirmed: Unconfirmed,
 }
 
 impl Proof {
-    /// The sensors confirm the goal.
     pub const HOLDS: Self = Self::of(Evidence::Holds);
 
     /// The sensors say this, and see the whole goal.
@@ -196,7 +186,6 @@ impl Proof {
         }
     }
 
-    /// Nothing contradicts the goal.
     #[must_use]
     pub const fn is_done(self) -> bool {
         matches!(self.evidence, Evidence::Holds | Evidence::Unsensed)

@@ -32,13 +32,9 @@ use crate::{halt::Halt, rows::Rows};
 /// How far the current command has come.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Outcome {
-    /// Nothing was commanded yet.
     Idle,
-    /// Under way.
     Executing,
-    /// Finished.
     Done,
-    /// Failed.
     Error,
     /// Given up, because the operator took the robot.
     Joystick,
@@ -61,13 +57,11 @@ impl Outcome {
 /// What to do with the tables of the current command.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain, Actions)]
 pub enum Course {
-    /// Leave everything as it is.
     Rest,
     /// Report that the command was not executed, because the process was restarted.
     Refuse,
     /// Consult the tables, from the first step.
     Begin,
-    /// Consult the tables.
     Continue,
 }
 
@@ -100,7 +94,6 @@ decision_table! {
 pub enum Asked {
     /// No: the current command goes on.
     Before,
-    /// Yes.
     Now,
 }
 
@@ -108,7 +101,6 @@ pub enum Asked {
 /// watches or calibrates.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Actions)]
 pub enum Refusal {
-    /// Report an error.
     Fail(Reason),
 }
 
@@ -124,9 +116,7 @@ pub enum Work {
 /// A row that has ordered something of a process below.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub struct LastOrder {
-    /// Its table.
     pub table: u8,
-    /// Its number.
     pub row: u8,
     /// The state variables of its table at that time, as one number.
     pub variables: u64,
@@ -134,10 +124,8 @@ pub struct LastOrder {
 
 /// The actions with which a command ends, for [`CONFIRM`](crate::confirm::CONFIRM).
 pub trait Ending: Sized {
-    /// Nothing new.
     const WAIT: Self;
 
-    /// Report an error.
     fn fail(reason: Reason) -> Self;
 
     /// The action reports the command as done.
@@ -147,15 +135,11 @@ pub trait Ending: Sized {
 /// The current command of a process and how far it has come.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct Execution {
-    /// Echo and adoption.
     pub receiver: Receiver,
-    /// How far it has come.
     pub outcome: Outcome,
-    /// Why it failed.
     pub reason: Reason,
     /// Part of its goal that no sensor has confirmed at its end.
     pub unconfirmed: Unconfirmed,
-    /// The rows for the header.
     pub rows: Rows,
     /// The command is new and neither accepted nor refused yet.
     pub waiting: bool,
@@ -170,9 +154,7 @@ pub struct Execution {
 /// How far a command has come, for the process above.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Report {
-    /// How far it has come.
     pub outcome: Outcome,
-    /// Why it failed.
     pub reason: Reason,
     /// Part of the goal that no sensor has confirmed, for a command that is done.
     pub unconfirmed: Unconfirmed,
@@ -236,12 +218,10 @@ impl Execution {
         asked == Asked::Now && !self.waiting && !is_refused
     }
 
-    /// The command is finished.
     pub fn finish(&mut self) {
         self.outcome = Outcome::Done;
     }
 
-    /// The command failed.
     pub fn fail(&mut self, reason: Reason) {
         (self.outcome, self.reason) = (Outcome::Error, reason);
     }

@@ -10,7 +10,6 @@ use rcs_core::Plain;
 /// What confirms a goal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Sensor {
-    /// The resolvers of the robot.
     Resolvers,
     /// The commanded motion of the process itself.
     #[text = "commanded motion"]
@@ -24,7 +23,6 @@ pub enum Sensor {
     /// The force sensor at the wrist.
     #[text = "force sensor"]
     Force,
-    /// The potentiometer of the fingers.
     #[text = "potentiometer of the fingers"]
     Fingers,
     /// The strain gages of the fingers.
@@ -39,7 +37,6 @@ pub enum Sensor {
     /// The four sensors of a holster.
     #[text = "holster sensors"]
     HolsterSensors,
-    /// The vision system.
     Camera,
     /// Potentiometer and strain gages of the pedestal's hand.
     #[text = "sensors of the pedestal's hand"]
@@ -55,12 +52,10 @@ pub enum Sensor {
     Below,
 }
 
-/// The goal of a command.
 #[derive(Debug)]
 pub struct Goal {
     /// What must hold.
     pub holds: &'static str,
-    /// What confirms it.
     pub sensors: &'static [Sensor],
     /// The tolerance, with its unit; empty if the reading has two values.
     pub tolerance: &'static str,
@@ -71,12 +66,10 @@ pub struct Goal {
     pub unconfirmed: &'static [Unconfirmed],
 }
 
-/// A command with its goal.
 #[derive(Clone, Copy, Debug)]
 pub struct Declared {
     /// The command, as the manual writes it; empty for the state before the first one.
     pub command: &'static str,
-    /// Its goal.
     pub goal: &'static Goal,
 }
 

@@ -34,7 +34,6 @@ pub struct ProcessInfo {
     pub name: &'static str,
     /// Its tables; `table` of a [`Decided`] counts them from 1.
     pub tables: &'static [&'static Table],
-    /// The goals of its commands.
     pub goals: &'static [Declared],
 }
 
@@ -87,7 +86,6 @@ macro_rules! ladder {
             pub buttons: u8,
         }
 
-        /// All control processes.
         #[derive(Clone, Debug, Default)]
         pub struct Ladder {
             $( $field: $id, )+
@@ -96,7 +94,6 @@ macro_rules! ladder {
         }
 
         impl Ladder {
-            /// Step a process.
             fn step_one(
                 &mut self,
                 process: ProcessId,
@@ -123,7 +120,6 @@ macro_rules! ladder {
                 match process { $( ProcessId::$id => self.$field = $id::default(), )+ }
             }
 
-            /// What all processes remember.
             #[must_use]
             pub fn state(&self) -> LadderState {
                 fn of<P: Process<TaskData<'static>>>(process: &P) -> P::State {

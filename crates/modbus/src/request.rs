@@ -233,7 +233,6 @@ impl<'a> Request<'a> {
         }
     }
 
-    /// Checks quantities and addresses.
     fn check(&self) -> Result<(), Error> {
         match *self {
             Self::ReadCoils(read) | Self::ReadDiscreteInputs(read) => read.check(MOST_READ_BITS),

@@ -173,7 +173,6 @@ pub struct Memory<'a> {
     pub input_registers: &'a [u16],
 }
 
-/// The value at an address.
 fn at<T: Copy>(table: &[T], address: u16) -> Result<T, Exception> {
     table.get(usize::from(address)).copied().ok_or(Exception::IllegalDataAddress)
 }

@@ -157,7 +157,6 @@ proptest! {
     }
 }
 
-/// One request of each function.
 fn one_of_each() -> Vec<Owned> {
     let one = |function| Owned {
         function,

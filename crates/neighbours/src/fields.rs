@@ -4,7 +4,6 @@ use std::fmt;
 
 use rcs_core::name::Name16;
 
-/// Errors of decoding a field.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FieldError {
     /// The data end before the end of the field.
@@ -18,23 +17,19 @@ pub enum FieldError {
         field: &'static str,
         /// Offset of the character in the data, bytes.
         at: usize,
-        /// The character.
         found: u8,
     },
     /// The word is not a value of the field.
     Word {
         /// The field, in the manual's words.
         field: &'static str,
-        /// The word.
         found: Name16,
     },
     /// The integer differs from the required one.
     Expected {
         /// The field, in the manual's words.
         field: &'static str,
-        /// The required value.
         expected: &'static str,
-        /// The integer.
         found: u16,
     },
     /// The floating-point number is infinite or NaN.
@@ -46,7 +41,6 @@ pub enum FieldError {
     Code {
         /// The field, in the manual's words.
         field: &'static str,
-        /// The code.
         found: u16,
     },
 }
@@ -79,7 +73,6 @@ impl std::error::Error for FieldError {}
 pub struct RangeError {
     /// The field, in the manual's words.
     pub field: &'static str,
-    /// The integer.
     pub found: i32,
 }
 

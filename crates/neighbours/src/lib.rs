@@ -16,7 +16,6 @@
 //! ([`interfaces::DataBaseCommand`]), which this crate encodes.
 
 #![forbid(unsafe_code)]
-#![warn(missing_docs)]
 
 pub mod data_system;
 pub mod fields;

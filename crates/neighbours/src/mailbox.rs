@@ -17,32 +17,22 @@ pub const HEAD: usize = 8;
 /// A mailbox of Table IX.1.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Place {
-    /// Name in the table.
     pub name: &'static str,
-    /// Address in common memory.
     pub address: u32,
     /// Size including the head, bytes.
     pub size: usize,
 }
 
-/// HWSC to RCS Command.
 pub const HWSC_COMMAND: Place = Place { name: "HWSC to RCS Command", address: 0xF_6000, size: 256 };
-/// HWSC from RCS Status.
 pub const HWSC_STATUS: Place = Place { name: "HWSC from RCS Status", address: 0xF_6200, size: 256 };
-/// Data System from RCS Command.
 pub const DATA_SYSTEM_COMMAND: Place =
     Place { name: "Data System from RCS Command", address: 0xF_7000, size: 512 };
-/// Data System to RCS Status.
 pub const DATA_SYSTEM_STATUS: Place =
     Place { name: "Data System to RCS Status", address: 0xF_7300, size: 256 };
-/// Pedestal from RCS Command.
 pub const PEDESTAL_COMMAND: Place = Place { name: "Pedestal from RCS Command", address: 0xF_5000, size: 256 };
-/// Pedestal to RCS Status.
 pub const PEDESTAL_STATUS: Place = Place { name: "Pedestal to RCS Status", address: 0xF_5300, size: 256 };
-/// Pedestal Gripper to RCS Status.
 pub const PEDESTAL_GRIPPER_STATUS: Place =
     Place { name: "Pedestal Gripper to RCS Status", address: 0xF_5600, size: 256 };
-/// Pedestal Table to RCS Status.
 pub const PEDESTAL_TABLE_STATUS: Place =
     Place { name: "Pedestal Table to RCS Status", address: 0xF_5900, size: 256 };
 
@@ -82,30 +72,13 @@ pub const TABLE: [Place; 8] = [
 pub enum MailboxError {
     /// The data do not fit into the mailbox.
     #[error("{mailbox}: at most {room} bytes of data were expected, found {found}")]
-    TooLong {
-        /// The mailbox.
-        mailbox: Place,
-        /// Bytes available for data.
-        room: usize,
-        /// Bytes to write.
-        found: usize,
-    },
+    TooLong { mailbox: Place, room: usize, found: usize },
     /// The image of the mailbox has the wrong size.
     #[error("{mailbox}: {} bytes were expected, found {found}", .mailbox.size)]
-    Size {
-        /// The mailbox.
-        mailbox: Place,
-        /// Bytes found.
-        found: usize,
-    },
+    Size { mailbox: Place, found: usize },
     /// The length word is greater than the mailbox size or less than the head.
     #[error("{mailbox}: a length of {HEAD} to {} was expected, found {found}", .mailbox.size)]
-    Length {
-        /// The mailbox.
-        mailbox: Place,
-        /// The length word.
-        found: u16,
-    },
+    Length { mailbox: Place, found: u16 },
 }
 
 impl fmt::Display for Place {
@@ -159,7 +132,6 @@ impl Mailbox {
         mailbox
     }
 
-    /// The place of this mailbox.
     #[must_use]
     pub const fn place(&self) -> Place {
         self.place
@@ -229,7 +201,6 @@ impl Mailbox {
         Ok(())
     }
 
-    /// The data.
     #[must_use]
     pub fn data(&self) -> &[u8] {
         &self.bytes[HEAD..usize::from(self.word(0))]

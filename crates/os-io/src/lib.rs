@@ -5,6 +5,7 @@
 //! panic; clippy denies the macros of the standard library elsewhere. Everything that reads a file named by a person
 //! uses [`files`]. [`alloc`] counts what is allocated in sections of a program.
 
+#![warn(missing_docs)]
 #![deny(unsafe_code)]
 
 pub mod alloc;

@@ -13,7 +13,6 @@ use std::{
 
 /// Millimetres of an inch.
 const MM: f64 = 25.4;
-/// Newtons of a pound (force).
 const NEWTON: f64 = 4.448_221_615_260_5;
 
 /// The units of this process: true for millimetres.
@@ -127,7 +126,6 @@ const UNITS: [Unit; 4] = [
 /// `3.0 x 1.5 in`.
 const BETWEEN: [&str; 8] = ["", ",", "x", "to", "and", "or", "Y", "Z"];
 
-/// A number in a text.
 struct Number {
     start: usize,
     end: usize,

@@ -35,7 +35,6 @@ const STYLES: &[(&str, &str)] = &[
     ("view/layout.css", include_str!("../web/view/layout.css")),
     ("view/print.css", include_str!("../web/view/print.css")),
 ];
-/// The modules.
 const MODULES: &[(&str, &str)] = &[
     ("app.js", include_str!("../web/app.js")),
     ("cell/frames.js", include_str!("../web/cell/frames.js")),
@@ -86,7 +85,6 @@ const MODULES: &[(&str, &str)] = &[
     ("view/why.js", include_str!("../web/view/why.js")),
 ];
 
-/// What a page shows.
 #[derive(Clone, Copy, Debug)]
 pub enum Content<'a> {
     /// A packed log ([`crate::pack`]).
@@ -180,7 +178,6 @@ fn append(
     Ok(())
 }
 
-/// A module in parts.
 #[derive(Default)]
 struct Module {
     /// Names of bindings, and the file name of the module that has them.
@@ -254,7 +251,6 @@ fn harmless(script: &str) -> String {
     script.replace("</script", "<\\/script").replace("<!--", "<\\!--")
 }
 
-/// A text for HTML.
 fn escaped(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
 }

@@ -22,7 +22,6 @@ use record::{
 
 /// Topics that the page does not read: bytes for programs, and what it computes from other topics.
 const LEFT_OUT: [&str; 6] = [REPLAY, "/trail", "/t3i/link_tx", "/robot_description", LADDER, INSTRUMENTS];
-/// Attachments that the page reads.
 const KEPT: [&str; 2] = [Attachment::JOB, "faults.toml"];
 /// Size at which a chunk is closed, bytes before compression.
 const CHUNK: usize = 1 << 20;
@@ -36,7 +35,6 @@ const TICK_NS: u64 = 40_000_000;
 /// First and last bytes of an MCAP file.
 const MAGIC: &[u8] = b"\x89MCAP0\r\n";
 
-/// Codes of the records.
 mod code {
     pub const HEADER: u8 = 0x01;
     pub const FOOTER: u8 = 0x02;
@@ -107,7 +105,6 @@ struct Packer {
     messages: BTreeMap<u16, Vec<(u64, Vec<u8>)>>,
 }
 
-/// A channel with its schema.
 struct Described {
     topic: String,
     encoding: String,

@@ -1,7 +1,5 @@
 //! Measures the check of `rcs-run check`: all paths of the shipped jobs, and all segments of the stored trajectories.
 
-#![expect(missing_docs, reason = "criterion_group! makes a public function without a doc comment")]
-
 use std::{hint::black_box, path::Path};
 
 use criterion::{Criterion, criterion_group, criterion_main};

@@ -11,7 +11,6 @@ use crate::{
     walk::Walk,
 };
 
-/// A point of a route.
 pub(crate) struct Point {
     pub part: &'static str,
     pub name: String,
@@ -104,7 +103,6 @@ impl Walk<'_> {
         }
     }
 
-    /// The records of a location.
     pub(crate) fn location_use(&self, phase: &mut Phase, location: &Location) {
         let (origins, place) = (self.store.origins(), location.place);
         let point = self.data.locpt(place.locpt);

@@ -7,7 +7,6 @@ use crate::{
     survey::Passing,
 };
 
-/// A problem of a path.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Finding {
     /// `path.joint`, `path.contact`, `path.link`, `path.grip`, `path.place`, `path.gripper` or `path.margin`.
@@ -18,7 +17,6 @@ pub struct Finding {
     pub line: u32,
     /// Description of the problem: what, where, and by how much.
     pub message: String,
-    /// Suggested remedy.
     pub help: Option<String>,
     /// The records that give the two ends of the segment: one of them is probably wrong. Empty if the finding is about
     /// the order of the lines.
@@ -31,10 +29,8 @@ pub struct Finding {
     pub depth: f64,
 }
 
-/// A segment of a flight.
 #[derive(Clone, Debug, Serialize)]
 pub struct Segment {
-    /// Name of the previous point.
     pub from: String,
     /// Name of the point at its end.
     pub to: String,
@@ -64,7 +60,6 @@ impl Segment {
 /// A phase with the results of its flight.
 #[derive(Clone, Debug, Serialize)]
 pub struct Walked {
-    /// The phase.
     pub plan: Phase,
     /// Segments of the phase, up to the end of the flight.
     pub segments: Vec<Segment>,

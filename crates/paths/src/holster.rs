@@ -26,7 +26,6 @@ const GRIPPERS: [&str; 3] = ["GRIPPER-1", "GRIPPER-2", "GRIPPER-3"];
 /// A record that the task data need for the change of a gripper, and do not have.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Lacking {
-    /// The gripper, as an object.
     pub gripper: Name16,
     what: What,
 }
@@ -41,7 +40,6 @@ enum What {
     Movetable(i32, Name10),
     /// There is no approach with the grip.
     Approach(i32, Name10),
-    /// There is no relative move.
     Move(&'static str, Name10),
 }
 

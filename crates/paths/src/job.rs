@@ -62,9 +62,7 @@ const TRIED: [[f64; 3]; 12] = [
 pub struct JobLine {
     /// Line number in the file, from 1.
     pub line: u32,
-    /// Text of the line.
     pub text: String,
-    /// Phases of the command.
     pub phases: Vec<Walked>,
     /// The part that the robot holds after the line.
     pub holds: Option<String>,
@@ -83,11 +81,8 @@ impl JobLine {
 /// A job with the results of its check.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct WalkedJob {
-    /// Name of the job.
     pub job: String,
-    /// Lines with commands.
     pub lines: Vec<JobLine>,
-    /// Its findings.
     pub findings: Vec<Finding>,
     /// Parts of the job that were not checked, with the reasons.
     pub not_checked: Vec<String>,
@@ -342,9 +337,7 @@ fn act(state: &mut State<'_>, action: &Workstation) -> bool {
 /// A part delivered at a random position in its sector.
 #[derive(Clone, Debug)]
 pub struct Random {
-    /// Name of the part.
     pub object: Name16,
-    /// Location of the sector.
     pub location: Location,
 }
 

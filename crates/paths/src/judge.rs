@@ -211,19 +211,14 @@ fn vias<'a>(data: &TaskData<'a>) -> impl Iterator<Item = (Name10, Frame)> + use<
     poses.into_iter()
 }
 
-/// The ends of a segment.
 struct Ends {
-    /// Name of the start.
     from: String,
-    /// Name of the end.
     to: String,
-    /// Entry of the end.
     entry: Option<String>,
     /// The records that give the end and the start.
     data: [Option<Datum>; 2],
 }
 
-/// The ends of each segment.
 fn names(phase: &Phase) -> Vec<Ends> {
     let starts = [(&phase.start, None)].into_iter();
     let starts = starts.chain(phase.legs.iter().map(|leg| (&leg.point, leg.datum.as_ref())));

@@ -102,12 +102,10 @@ fn fly(asked: &Asked, room: &Room, layout: &Layout, devices: &[Body]) -> (Outcom
     (Outcome { robot, flown, seen, trouble }, survey.into_swept())
 }
 
-/// A flight in the cache.
 #[derive(Debug)]
 struct Flight {
     asked: Asked,
     swept: Swept,
-    /// Bodies near the flight.
     near: Vec<Body>,
     outcome: Arc<Outcome>,
 }

@@ -11,40 +11,31 @@ use taskdata::{
 /// An entry of the task data that a path uses.
 #[derive(Clone, Debug, Serialize)]
 pub struct Entry {
-    /// Kind of the entry.
     pub what: &'static str,
-    /// File, block and line.
     pub at: String,
 }
 
 /// A record of the task data that has a name.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Datum {
-    /// Its name.
     pub name: String,
-    /// Where it is entered.
     #[serde(skip)]
     pub at: At,
 }
 
-/// One point of a path.
 #[derive(Clone, Debug, Serialize)]
 pub struct Leg {
     /// Part of the route: depart, trajectory, approach or goal.
     pub part: &'static str,
-    /// Name of the point.
     pub point: String,
     /// Tool point, inches, world.
     pub position_in: [f64; 3],
     /// Direction of the gripper axis, world.
     pub axis: [f64; 3],
-    /// `acc-fac`.
     pub acc_fac: i32,
-    /// `vel-max`.
     pub vel_max: i32,
     /// `smooth-acc`.
     pub smooth: i32,
-    /// `brk-dst`.
     pub brk_dst: i32,
     /// Ticks from the previous point to this one.
     pub ticks: u32,
@@ -73,7 +64,6 @@ impl Leg {
 /// One command of E-move, or of a neighbour.
 #[derive(Clone, Debug, Serialize)]
 pub struct Phase {
-    /// The command as text.
     pub what: String,
     /// Opening commanded during the motion, inches.
     pub opening_in: Option<f64>,
@@ -121,7 +111,6 @@ impl Phase {
     }
 }
 
-/// A command as text.
 pub(crate) fn described(command: &EmoveCommand, location: &Location) -> String {
     let sector = location.sector.map_or(String::new(), |sector| format!(" sector {sector}"));
     let verb = command.command.text();

@@ -24,18 +24,13 @@ use crate::{
 /// Greatest distance of a part from its expected position, in; beyond it the part counts as missing.
 const THERE: f64 = 8.0;
 
-/// The state during a job.
 #[derive(Clone, Debug)]
 pub struct State<'a> {
-    /// The cell.
     pub room: &'a Room,
-    /// Cache of checked flights.
     pub known: &'a Known,
     /// Position of the robot in the task data, and the planning of its paths.
     pub walk: Walk<'a>,
-    /// The simulated robot.
     pub robot: Robot,
-    /// Positions of all other bodies.
     pub layout: Layout,
     /// The held object, and its grip.
     pub held: Option<(Name16, i32)>,
@@ -138,7 +133,6 @@ impl<'a> State<'a> {
         }
     }
 
-    /// Puts a tool into the drum.
     pub fn put_into_drum(&mut self, tool: &Name16) {
         let drum = &self.room.cell().drum;
         if let Some(pose) = drum.pose.frame() {

@@ -21,34 +21,25 @@ const TOOL_TRANSFER: &str = "TOOL-TRNS";
 pub enum Step {
     /// The robot moves to a location.
     Go {
-        /// The command.
         verb: EmoveVerb,
         /// The object that determines grip, approach and depart; `None` for a location without an object.
         object: Option<Name16>,
-        /// Grip of the object.
         grip: i32,
-        /// Destination.
         location: Location,
     },
     /// A relative move, given by name, at a location.
     Relative {
-        /// Name of the move.
         name: &'static str,
-        /// Location.
         location: Location,
     },
     /// The fingers grasp or release an object.
     Fingers {
-        /// GRASP-OBJ or RELEASE.
         verb: EmoveVerb,
-        /// The object.
         object: Option<Name16>,
-        /// Grip of the object.
         grip: i32,
     },
     /// The camera looks for the object.
     Locate,
-    /// The Active Pedestal acts.
     Pedestal(PedestalVerb),
     /// The quick change meets the gripper with this end effector id in its holster.
     Engage(u8),
@@ -71,14 +62,11 @@ pub enum PedestalVerb {
     PreGrip,
     /// Close the hand on the object.
     Grip,
-    /// Turn the object.
     Flip,
-    /// Open the hand.
     Release,
 }
 
 impl PedestalVerb {
-    /// As text for messages.
     #[must_use]
     pub const fn text(self) -> &'static str {
         match self {

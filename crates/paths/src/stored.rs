@@ -24,7 +24,6 @@ use crate::{
     known::{Asked, Known, Points},
 };
 
-/// A finding of a segment.
 #[derive(Clone, Debug)]
 pub struct StoredFinding {
     /// File, block and line of the segment's end.
@@ -38,7 +37,6 @@ pub struct StoredFinding {
 pub struct Stored {
     /// Number of checked segments, each forward and back.
     pub segments: usize,
-    /// Findings of the segments.
     pub findings: Vec<StoredFinding>,
 }
 

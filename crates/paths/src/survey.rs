@@ -12,7 +12,6 @@ use plant::{
 };
 use serde::Serialize;
 
-/// Greatest reported distance, in.
 pub const MARGIN: f64 = 2.0;
 /// Distance within which pairs are checked, in. A greater distance allows skipping more ticks, but makes each check
 /// slower.
@@ -33,7 +32,6 @@ const LEVERS: Joints = [105.0, 105.0, 65.0, 30.0, 27.0, 12.0];
 pub struct Passing {
     /// Body of the robot, or the part that it carries.
     pub mover: String,
-    /// The obstacle.
     pub obstacle: String,
     /// Distance, inches; negative if they touch.
     pub clearance_in: f64,

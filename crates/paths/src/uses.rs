@@ -15,7 +15,6 @@ use crate::{
 pub struct Present {
     /// Where it is; the default if that is not known.
     pub place: RobotPlace,
-    /// The attached gripper.
     pub gripper: Option<u8>,
     /// The held object with its grip, if it is known.
     pub held: Option<(Name16, i32)>,

@@ -45,7 +45,6 @@ const LOCATE: &str = "LOCATE-OBJ: taken to be found in the middle of its place";
 const DEPARTURE: u32 = u32::MAX - 1;
 const GOAL: u32 = u32::MAX;
 
-/// State of a walk.
 #[derive(Clone, Debug)]
 pub struct Walk<'a> {
     pub(crate) store: &'a Store,
@@ -62,7 +61,6 @@ impl<'a> Walk<'a> {
         Self::at(store, robot_at(GoneTo::Location, start, &start.frame))
     }
 
-    /// Begins where the robot is.
     #[must_use]
     pub fn at(store: &'a Store, place: RobotPlace) -> Self {
         Self { store, data: store.view(), place, found: None }
@@ -85,7 +83,6 @@ impl<'a> Walk<'a> {
         self.store
     }
 
-    /// The task data.
     #[must_use]
     pub const fn data(&self) -> &TaskData<'a> {
         &self.data

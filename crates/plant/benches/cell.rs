@@ -4,8 +4,6 @@
 //! `cargo bench -p plant --bench cell`. The scenes are those of the determinism tests; each sample begins with the same
 //! saved cell, so that all samples measure the same ticks.
 
-#![expect(missing_docs, reason = "criterion_group! makes a public function without a doc comment")]
-
 #[path = "../tests/rig/mod.rs"]
 mod rig;
 
@@ -18,7 +16,6 @@ use rig::{
     tape::{Beat, Tape},
 };
 
-/// Ticks of a sample.
 const TICKS: usize = 25;
 
 /// A part of a taped scene, and the cell at its beginning.

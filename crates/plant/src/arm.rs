@@ -150,7 +150,6 @@ impl Arm {
         self.sinking = 0.0;
     }
 
-    /// The actuators have pressure.
     #[must_use]
     pub const fn has_pressure(&self) -> bool {
         self.pressure
@@ -314,7 +313,6 @@ fn square(lever: &Vector6<f64>) -> Matrix6<f64> {
     lever * lever.transpose()
 }
 
-/// The weights of the links.
 fn weights(chain: &Chain, hydraulics: &Hydraulics) -> [Load; 3] {
     let weight = |link, centre, pounds| Load::weight(link, chain.along(link, centre), pounds);
     [

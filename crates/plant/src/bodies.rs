@@ -22,7 +22,6 @@ use crate::{
     solid::Solid,
 };
 
-/// Size of the camera, in.
 pub const CAMERA: [f64; 3] = [2.0, 2.0, 1.5];
 
 /// Positions of the links in the chain of the arm: see [`Body::chain`].

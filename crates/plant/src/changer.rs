@@ -18,7 +18,6 @@ use crate::{
     sensor::Switch,
 };
 
-/// Place of a gripper.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Serialize)]
 pub(crate) enum GripperPlace {
     /// The ring of the quick change holds it.
@@ -39,7 +38,6 @@ pub(crate) struct Changer {
     holsters: [Holster; 3],
     /// Places of the parts gripper, the v-gripper and the tool gripper.
     places: [GripperPlace; 3],
-    /// The gripper whose pins touch.
     mated: Option<Hand>,
     /// The holster whose lips are over the ears of the gripper in the ring.
     under_lips: Option<usize>,
@@ -91,7 +89,6 @@ impl Changer {
         (self.ring.locked() || self.ring.unlocked()) && self.mated() == self.carried()
     }
 
-    /// The locking ring.
     pub(crate) fn ring_state(&self) -> RingState {
         match (self.ring.locked(), self.ring.unlocked()) {
             (true, _) => RingState::Locked,

@@ -28,15 +28,10 @@ const SAME_PLACE: Real = 1e-3;
 /// A body that can collide, metres.
 #[derive(Clone, Debug)]
 pub struct Body {
-    /// Its name.
     pub name: Cow<'static, str>,
-    /// Its kind.
     pub kind: Kind,
-    /// Its pose.
     pub pose: Pose,
-    /// Its shape.
     pub shape: SharedShape,
-    /// Its bounding box.
     pub aabb: Aabb,
     /// Its position in the chain of the arm, from 1 at the base; 0 for other bodies. Neighbours in the chain do not
     /// collide.
@@ -84,13 +79,9 @@ impl Body {
 /// Two bodies that touch or are near each other.
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 pub struct Contact {
-    /// The moving body.
     pub mover: String,
-    /// Kind of the moving body.
     pub mover_kind: Kind,
-    /// The obstacle.
     pub obstacle: String,
-    /// Kind of the obstacle.
     pub obstacle_kind: Kind,
     /// Penetration depth, in; a negative value is a distance.
     pub depth: f64,

@@ -8,28 +8,21 @@ use nalgebra::{Matrix3, Rotation3};
 use rapier3d_f64::math::{Pose, Real, Rotation, Vector as Metres};
 use rapier3d_f64::parry::glamx::DMat3;
 
-/// Metres in an inch.
 pub const METRES_PER_INCH: f64 = 0.0254;
-/// Newtons in a pound (force).
 pub const NEWTONS_PER_POUND: f64 = 4.448_221_615_260_5;
-/// Kilograms in a pound (mass).
 pub const KILOGRAMS_PER_POUND: f64 = 0.453_592_37;
-/// Standard gravity, m/s².
 pub const GRAVITY: f64 = 9.806_65;
 
-/// Metres from inches.
 #[must_use]
 pub const fn metres(inches: f64) -> Real {
     inches * METRES_PER_INCH
 }
 
-/// Inches from metres.
 #[must_use]
 pub const fn inches(metres: Real) -> f64 {
     metres / METRES_PER_INCH
 }
 
-/// Newtons from pounds.
 #[must_use]
 pub const fn newtons(pounds: f64) -> Real {
     pounds * NEWTONS_PER_POUND

@@ -53,10 +53,8 @@ pub fn source(text: &str) -> Source {
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum DescriptionError {
-    /// The file cannot be read.
     #[error("the cell description {path} cannot be read: {source}")]
     Unreadable {
-        /// The file.
         path: String,
         /// The error of the operating system.
         source: std::io::Error,
@@ -66,7 +64,6 @@ pub enum DescriptionError {
     Mistakes(Diagnostics),
 }
 
-/// The whole cell.
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct CellDescription {
@@ -77,35 +74,23 @@ pub struct CellDescription {
     pub placing_tolerance: f64,
     /// Steps and stiffness of the simulation.
     pub physics: Physics,
-    /// The arm's servos and outline.
     pub robot: Robot,
-    /// The quick change.
     pub quick_change: QuickChange,
-    /// The robot's grippers.
     pub gripper: Grippers,
-    /// The holsters.
     pub holsters: Holsters,
-    /// The tool drum.
     pub drum: Drum,
-    /// The Active Pedestal.
     pub pedestal: Pedestal,
     /// Common values of each kind of sensor.
     pub sensors: SensorModels,
-    /// The camera on the wrist.
     pub camera: Camera,
-    /// The programmable vise.
     pub vise: Vise,
-    /// The trays.
     pub tray: Vec<Tray>,
-    /// Common values of all trays.
     pub tray_shape: TrayShape,
-    /// Fixed boxes.
     #[serde(default)]
     pub fixture: Vec<Fixture>,
     /// Places where parts stay because of their shape.
     #[serde(default)]
     pub nest: Vec<Nest>,
-    /// Permitted contacts.
     #[serde(default)]
     pub contact: Permits,
     /// Parts that can be in the cell.
@@ -126,11 +111,9 @@ pub struct Physics {
     /// fingers.
     #[serde(default = "yes")]
     pub long_steps: bool,
-    /// Solver iterations in a step.
     pub solver_iterations: usize,
     /// Natural frequency of contacts, Hz.
     pub contact_frequency: f64,
-    /// Damping ratio of contacts.
     pub contact_damping: f64,
 }
 
@@ -146,18 +129,14 @@ pub struct Robot {
     pub start: [f64; 6],
     /// Stiffness of arm, wrist and fingers together at the fingertips, lb/in.
     pub stiffness: f64,
-    /// Radius of the upper arm, in.
     pub upper_arm_radius: f64,
-    /// Radius of the forearm, in.
     pub forearm_radius: f64,
-    /// Radius of the wrist, in.
     pub wrist_radius: f64,
     /// Behaviour without pressure.
     #[serde(default)]
     pub hydraulics: Hydraulics,
 }
 
-/// The robot's grippers.
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct Grippers {
@@ -185,9 +164,7 @@ pub struct Gripper {
     pub fingers: [f64; 3],
     /// Moving mass of a finger, lb.
     pub finger_weight: f64,
-    /// Least and greatest opening, in.
     pub opening: [f64; 2],
-    /// Opening at the start, in.
     pub initial_opening: f64,
     /// Coefficient of friction of the pads.
     pub friction: f64,
@@ -199,7 +176,6 @@ pub struct Gripper {
     pub greatest_force: f64,
     /// Time until the force is zero when both sides are vented, s.
     pub vent_time_s: f64,
-    /// Its sensors.
     pub sensors: GripperSensors,
 }
 
@@ -221,11 +197,9 @@ pub struct GripperSensors {
     pub noise: f64,
 }
 
-/// The Active Pedestal.
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct Pedestal {
-    /// Name of the location.
     pub location: String,
     /// Position of the fingertips of the hand, which points up, on the axis of the table; world, in.
     pub position: [f64; 3],
@@ -235,9 +209,7 @@ pub struct Pedestal {
     pub stand: String,
     /// Stiffness of stand, hand and fingers together at the fingertips, lb/in.
     pub stiffness: f64,
-    /// The hand.
     pub hand: Gripper,
-    /// The rotary table.
     pub table: RotaryTable,
 }
 
@@ -247,7 +219,6 @@ pub struct Pedestal {
 pub struct RotaryTable {
     /// Motor angles of the - and the + limit switches.
     pub limits: [f64; 2],
-    /// Motor angle at the start.
     pub start: f64,
     /// Motor angle and table angle at which the fingers move across the radial line.
     pub square: f64,
@@ -265,7 +236,6 @@ pub struct RotaryTable {
     pub noise: f64,
 }
 
-/// The camera on the wrist.
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct Camera {
@@ -307,7 +277,6 @@ pub struct Camera {
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct Vise {
-    /// Name of the location.
     pub location: String,
     /// The origin: front plane of the jaws, inner face of the fixed jaw, top of the jaws; world, in.
     pub position: [f64; 3],
@@ -333,7 +302,6 @@ pub struct Vise {
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct ViseProgram {
-    /// Its name.
     pub name: String,
     /// Back of the step, from the front plane of the jaws, in.
     pub back: f64,
@@ -351,7 +319,6 @@ pub struct ViseProgram {
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct Nest {
-    /// Name of the location.
     pub location: String,
     /// Sector of the location; 0 if it has none.
     #[serde(default)]
@@ -368,7 +335,6 @@ pub struct Nest {
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct Tolerance {
-    /// Of its centre, in.
     pub inches: f64,
     /// Of its axes, degrees.
     pub degrees: f64,
@@ -378,9 +344,7 @@ pub struct Tolerance {
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct Tray {
-    /// Name of the location.
     pub unit: String,
-    /// Centre, x and y, in.
     pub centre: [f64; 2],
     /// Top of the floor, z, in.
     pub floor: f64,
@@ -388,31 +352,25 @@ pub struct Tray {
     pub sectors: Vec<[f64; 2]>,
 }
 
-/// Common values of all trays.
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct TrayShape {
     /// Inner side of the square, in.
     pub inside: f64,
-    /// Thickness of the walls, in.
     pub wall: f64,
     /// Height of the rim above the floor, in.
     pub rim: f64,
-    /// Thickness of the floor, in.
     pub floor_thickness: f64,
     /// Greatest offset in x and y of a part that is put down at random, in.
     pub random_offset: f64,
 }
 
-/// A fixed box.
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct Fixture {
     /// Its name and that of its URDF link.
     pub name: String,
-    /// Centre, x, y, z, in.
     pub centre: [f64; 3],
-    /// Size, x, y, z, in.
     pub size: [f64; 3],
     /// Rotation about +Z, degrees.
     #[serde(default)]
@@ -422,11 +380,9 @@ pub struct Fixture {
     pub tilt: f64,
 }
 
-/// The body of a part.
 #[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Shape {
-    /// A box.
     #[default]
     Box,
     /// A cylinder along X: size Y and Z are its diameter.
@@ -435,13 +391,11 @@ pub enum Shape {
     CylinderZ,
 }
 
-/// A kind of part.
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct PartType {
     /// Object name of the task data.
     pub name: String,
-    /// Box or cylinder.
     #[serde(default)]
     pub shape: Shape,
     /// Size in the part frame (X down as presented, Z along the part), in.
@@ -540,7 +494,6 @@ impl CellDescription {
         Self::from_toml(&text).map_err(DescriptionError::Mistakes)
     }
 
-    /// The part with a name.
     #[must_use]
     pub fn part(&self, name: &str) -> Option<&PartType> {
         self.part.iter().find(|part| part.name == name)
@@ -552,7 +505,6 @@ impl CellDescription {
         self.part.iter().find(|part| part.vision_id == vision_id && vision_id != 0)
     }
 
-    /// The tray at a unit.
     #[must_use]
     pub fn tray(&self, unit: &str) -> Option<&Tray> {
         self.tray.iter().find(|tray| tray.unit == unit)

@@ -33,9 +33,7 @@ const BESIDE: f64 = 2.0;
 /// Position of a tool in the drum or in front of it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Entering {
-    /// Distance to its place, in.
     pub left: f64,
-    /// Distance from the axis, in.
     pub aside: f64,
     /// Angle of its axis to the drum's, radians.
     pub angle: f64,
@@ -52,7 +50,6 @@ impl Entering {
 /// The tool in the drum or in front of it.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Serialize)]
 pub struct Pocketed {
-    /// Index of the part.
     pub part: usize,
     /// Position of the anchor of the spring along X, m.
     anchor: Real,
@@ -62,7 +59,6 @@ pub struct Pocketed {
     pub fast: bool,
 }
 
-/// The drum.
 #[derive(Clone, Debug, Deserialize, Serialize)]
 pub struct Drum {
     #[serde(with = "crate::image::frame")]
@@ -80,7 +76,6 @@ impl Drum {
         Self { frame, description: description.clone(), closed: false, tool: None }
     }
 
-    /// Name of the location.
     #[must_use]
     pub fn location(&self) -> &str {
         &self.description.location
@@ -92,7 +87,6 @@ impl Drum {
         self.closed
     }
 
-    /// Open or close the fingers.
     pub fn set_closed(&mut self, closed: bool) {
         self.closed = closed;
         if let Some(tool) = self.tool.as_mut().filter(|_| !closed) {

@@ -13,16 +13,12 @@ use crate::{
     scene::groups,
 };
 
-/// A finger attached by springs.
 #[derive(Clone, Copy, Debug, Deserialize, Serialize)]
 pub struct Finger {
     /// +1 left (tool +Y), -1 right.
     pub side: Real,
-    /// Its body.
     pub body: RigidBodyHandle,
-    /// Its collider.
     pub collider: ColliderHandle,
-    /// Its springs.
     pub joint: ImpulseJointHandle,
     /// Stiffness of its springs, N/m and N·m/rad.
     pub stiffness: Stiffness,
@@ -38,15 +34,12 @@ pub fn finger_rest(description: &Description, side: Real, opening: f64) -> Pose 
     ))
 }
 
-/// The mount of the fingers.
 pub struct Mount<'a> {
-    /// The hand's body.
     pub hand: RigidBodyHandle,
     /// Pose of the tool frame, m.
     pub tool: &'a Pose,
     /// Stiffness of both fingers together at the tips, lb/in.
     pub stiffness: f64,
-    /// Collision group of the gripper.
     pub group: Group,
 }
 

@@ -25,7 +25,6 @@ impl Wrench {
         Self { force, moment: moment + point.cross(&force) }
     }
 
-    /// The sum of two wrenches.
     #[must_use]
     pub fn and(&self, other: &Self) -> Self {
         Self { force: self.force + other.force, moment: self.moment + other.moment }

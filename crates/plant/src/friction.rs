@@ -17,11 +17,9 @@ pub struct Motion {
     pub along: Real,
     /// Across that line, in the direction in which a positive turn moves the touched area.
     pub across: Real,
-    /// Angular velocity about the normal.
     pub turn: Real,
 }
 
-/// A body under friction.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rubbed {
     /// Mass, kg.

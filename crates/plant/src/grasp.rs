@@ -24,9 +24,7 @@ const REACH: Real = 0.2;
 pub enum Grasp {
     /// They hold nothing, as before.
     Empty,
-    /// They take it.
     Take,
-    /// They keep it.
     Keep,
     /// They release it, or have lost it.
     Release,

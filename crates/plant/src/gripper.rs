@@ -180,7 +180,6 @@ impl Description {
 #[derive(Clone, Debug, Deserialize, Serialize)]
 pub struct Gripper {
     description: Description,
-    /// Opening and force.
     pub air: Air,
     /// The held part, by its index in the list of parts.
     pub hold: Option<(usize, Hold)>,
@@ -416,7 +415,6 @@ impl Gripper {
         self.description.friction
     }
 
-    /// Force of each finger, N.
     #[must_use]
     pub fn force(&self) -> Real {
         newtons(self.air.force())

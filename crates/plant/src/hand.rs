@@ -24,11 +24,9 @@ pub(crate) enum Hand {
 /// The grippers of the robot, in the order of their end effector ids.
 pub(crate) const ROBOT_HANDS: [Hand; 3] = [Hand::Parts, Hand::V, Hand::Tool];
 
-/// All hands.
 pub(crate) const HANDS: [Hand; 4] = [Hand::Parts, Hand::V, Hand::Tool, Hand::Pedestal];
 
 impl Hand {
-    /// All but this one.
     pub(crate) fn others(self) -> impl Iterator<Item = Self> {
         HANDS.into_iter().filter(move |hand| *hand != self)
     }
@@ -53,7 +51,6 @@ impl Hand {
         }
     }
 
-    /// Its URDF link name.
     pub(crate) const fn link(self) -> &'static str {
         match self {
             Self::Parts => "parts_gripper",
@@ -63,7 +60,6 @@ impl Hand {
         }
     }
 
-    /// Its name in messages.
     pub(crate) const fn name(self) -> &'static str {
         match self {
             Self::Parts => "the fingers",
@@ -73,7 +69,6 @@ impl Hand {
         }
     }
 
-    /// Its description.
     pub(crate) const fn description(self, cell: &CellDescription) -> &Gripper {
         match self {
             Self::Parts => &cell.gripper.parts,
@@ -83,7 +78,6 @@ impl Hand {
         }
     }
 
-    /// Its air supply.
     pub(crate) fn supply(self, cell: &CellDescription, outputs: &DeviceOutputs) -> Supply {
         let speed = cell.gripper.jaw_speed;
         match self {

@@ -30,18 +30,14 @@ const AXES: [JointAxis; 6] =
 /// Stiffness of a hold below its limits.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Serialize)]
 pub struct Stiffness {
-    /// Linear stiffness, N/m.
     pub linear: Real,
-    /// Angular stiffness, N·m/rad.
     pub angular: Real,
 }
 
 /// Force and friction of the pads.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Serialize)]
 pub struct Clamp {
-    /// Force of each pad, N.
     pub force: Real,
-    /// Coefficient of friction.
     pub friction: Real,
 }
 
@@ -57,9 +53,7 @@ pub struct Load {
 /// Greatest forces of the pads at the touched area, and its position.
 #[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Serialize)]
 struct Limits {
-    /// Along the pads, N.
     friction: Real,
-    /// Across the pads, N.
     normal: Real,
     /// About X, Y, Z, N·m.
     moments: [Real; 3],
@@ -67,7 +61,6 @@ struct Limits {
     point: Vector,
 }
 
-/// A part between two pads.
 #[derive(Clone, Debug, Deserialize, Serialize)]
 pub struct Hold {
     joint: ImpulseJointHandle,
@@ -94,9 +87,7 @@ pub struct Hold {
 /// friction stops it.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq, Serialize)]
 enum Grip {
-    /// The springs hold the part.
     Sticks,
-    /// Friction acts against the motion.
     Slides,
 }
 
@@ -326,7 +317,6 @@ impl Hold {
         }
     }
 
-    /// Release the part.
     pub fn release(self, world: &mut PhysicsWorld) {
         world.remove_impulse_joint(self.joint);
     }

@@ -16,7 +16,6 @@ use crate::{
     scene::Block,
 };
 
-/// Free fall, in/s².
 const GRAVITY: f64 = 386.1;
 /// Distance of the ears under the B plate, in.
 const UNDER_PLATE: f64 = 1.0;
@@ -36,7 +35,6 @@ const NEAR: f64 = 6.0;
 /// Travel of a gripper under the lips before they stop it, in.
 const LIP_PLAY: f64 = 0.15;
 
-/// A holster.
 #[derive(Clone, Debug, Deserialize, Serialize)]
 pub struct Holster {
     name: String,
@@ -48,11 +46,8 @@ pub struct Holster {
 /// Position of a gripper relative to its rest on a holster.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Offset {
-    /// Height above the rest, in.
     pub up: f64,
-    /// Distance to the left, in.
     pub aside: f64,
-    /// Distance towards the seat, in.
     pub forward: f64,
     /// Angle to the rest, radians.
     pub angle: f64,
@@ -61,11 +56,9 @@ pub struct Offset {
 /// A gripper on its holster, or dropping onto it.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Serialize)]
 pub struct Perch {
-    /// Height above the rest, in.
     pub up: f64,
     /// Speed of falling, in/s.
     pub speed: f64,
-    /// Distance towards the seat, in.
     pub forward: f64,
 }
 

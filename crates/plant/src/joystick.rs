@@ -24,7 +24,6 @@ enum Held {
     Step(u8),
 }
 
-/// The joystick box.
 #[derive(Clone, Debug, Deserialize, PartialEq, Eq, Serialize)]
 pub struct Joystick {
     velocity: u16,
@@ -42,7 +41,6 @@ impl Default for Joystick {
 }
 
 impl Joystick {
-    /// Begin an action.
     pub fn act(&mut self, action: BoxAction) {
         match action {
             BoxAction::Frame(frame) => {

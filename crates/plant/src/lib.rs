@@ -40,7 +40,6 @@
 //! [`scene`] and [`look`] describe the cell for viewers, and [`fault`] injects faults into the data between the cell and the controller.
 
 #![forbid(unsafe_code)]
-#![warn(missing_docs)]
 
 pub mod arm;
 pub mod bodies;

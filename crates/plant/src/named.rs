@@ -5,9 +5,7 @@ use serde::{Deserialize, Deserializer, Serializer, de};
 
 /// A point that is saved by its name.
 pub trait Named: Sized + Copy {
-    /// Its name.
     fn name(self) -> &'static str;
-    /// The point with a name.
     fn named(name: &str) -> Option<Self>;
 }
 

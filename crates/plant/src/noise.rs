@@ -4,26 +4,19 @@ use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use serde::{Deserialize, Serialize};
 
-/// The user of a stream.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stream {
-    /// Sensors of the parts gripper.
     Gripper = 1,
-    /// The camera.
     Camera = 2,
-    /// Random places of parts.
     Placement = 3,
     /// The force sensor of the tool gripper.
     Force = 5,
-    /// Sensors of the Active Pedestal.
     Pedestal = 4,
-    /// The joint resolvers.
     Resolvers = 6,
     /// Errors of an operator who aligns the robot's axes to their arrows.
     Alignment = 20,
 }
 
-/// A stream of uniform noise.
 #[derive(Clone, Debug, Deserialize, Serialize)]
 pub struct Noise(ChaCha8Rng);
 

@@ -19,16 +19,12 @@ const FRICTION: Real = 0.30;
 /// Angular damping of a part that can roll, 1/s: floor and trays are slightly soft and uneven.
 const ROLLING: Real = 2.0;
 
-/// A part in the cell.
 #[derive(Clone, Debug, Deserialize, Serialize)]
 pub struct Part {
-    /// Its present kind.
     pub kind: PartType,
     /// Its number in this cell, from 1; it stays the same when the part is machined.
     pub id: u32,
-    /// Its body.
     pub body: RigidBodyHandle,
-    /// Its collider.
     pub collider: ColliderHandle,
     /// True if it lay on the floor at the last check.
     pub fallen: bool,
@@ -56,7 +52,6 @@ impl Part {
         self.kind = kind.clone();
     }
 
-    /// Its shape.
     #[must_use]
     pub fn solid(&self) -> Solid {
         Solid::of(&self.kind)
@@ -80,7 +75,6 @@ impl Part {
         to_frame(&self.pose(world))
     }
 
-    /// Its mass and inertia.
     #[must_use]
     pub fn load(&self) -> Load {
         let mass = mass(&self.kind);
@@ -118,15 +112,12 @@ pub struct PartState {
     /// Its number in this cell, from 1.
     #[serde(skip)]
     pub id: u32,
-    /// Its name at present.
     pub name: String,
     /// A location: a unit, that of the vise, the drum or the pedestal, `gripper`, `floor` or `elsewhere`.
     pub location: String,
     /// The nearest sector of the unit; 0 elsewhere.
     pub sector: u16,
-    /// The gripper holds it.
     pub held: bool,
-    /// The vise holds it.
     pub clamped: bool,
     /// Its middle in world coordinates, in.
     #[serde(rename = "position_in")]

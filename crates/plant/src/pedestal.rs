@@ -37,13 +37,10 @@ const ON_STEP: f64 = 1e-6;
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 pub struct Table {
     description: RotaryTable,
-    /// Motor angle, steps.
     position: f64,
     /// Position at which it stops, steps.
     goal: f64,
-    /// Speed, steps/s.
     speed: f64,
-    /// Counter minus motor angle, steps.
     offset: f64,
     echo: u32,
     panel: TablePanel,
@@ -91,7 +88,6 @@ impl Table {
         self.speed * self.speed.abs() / (2.0 * self.ramp())
     }
 
-    /// Acceleration, steps/s².
     fn ramp(&self) -> f64 {
         self.description.acceleration * STEPS_PER_DEGREE
     }
@@ -128,7 +124,6 @@ impl Table {
         self.position <= self.description.limits[0] * STEPS_PER_DEGREE
     }
 
-    /// True while the motor turns.
     #[must_use]
     pub fn moving(&self) -> bool {
         self.position != self.goal
@@ -181,18 +176,15 @@ impl RotaryTable {
     }
 }
 
-/// Hand and table.
 #[derive(Clone, Debug, Deserialize, Serialize)]
 pub struct Pedestal {
     /// The hand; its tool frame has X up, Y across the fingers.
     pub hand: Gripper,
-    /// The table.
     pub table: Table,
     description: Description,
 }
 
 impl Pedestal {
-    /// Build the pedestal.
     pub fn new(world: &mut PhysicsWorld, description: &Description) -> Self {
         let table = Table::new(&description.table);
         let tool = to_pose(&hand_frame(description, table.angle()));
@@ -224,7 +216,6 @@ impl Pedestal {
         self.hand.lead(world, &to_pose(&self.frame()));
     }
 
-    /// Read all sensors.
     pub fn sensors(&self, noise: &mut Noise) -> PedestalSensors {
         let grip = self.hand.sensors(noise, 0);
         self.table.sensors(grip, noise)

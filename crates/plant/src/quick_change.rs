@@ -21,7 +21,6 @@ const PRESSED: f64 = 0.30;
 /// Greatest angle between the plates at which the pins meet their pads, radians (3 degrees).
 const PINS_ANGLE: f64 = 0.052_36;
 
-/// The locking ring.
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 pub struct Ring {
     /// Position: 0 unlocked, 1 locked.

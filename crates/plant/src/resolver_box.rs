@@ -19,10 +19,8 @@ use crate::{
 /// Reasons for which the electronics does not react.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum ResolverRefusal {
-    /// The switch is at AUTO.
     #[error("the resolver electronics is at AUTO: `resolvers manual` comes first")]
     Auto,
-    /// No such joint.
     #[error("the resolver electronics has joints 0 to 5, and no joint {0}")]
     NoJoint(u8),
 }
@@ -31,7 +29,6 @@ pub enum ResolverRefusal {
 #[derive(Clone, Debug, Default, Deserialize, Serialize)]
 pub struct ResolverBox {
     manual: bool,
-    /// Counts added to each joint.
     zero: [u32; 6],
     /// The last readings, with `zero`.
     shown: [u32; 6],

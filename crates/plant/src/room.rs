@@ -29,10 +29,8 @@ const IN_NEST: f64 = 1.0;
 const STEP: f64 = 0.02;
 const HALVES: u32 = 8;
 
-/// A part and its position.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Placed {
-    /// Its kind.
     pub kind: PartType,
     /// Its frame, in: in the tool frame if the robot holds it, else in the world.
     pub frame: Frame,
@@ -45,19 +43,14 @@ pub struct Layout {
     pub gripper: Option<u8>,
     /// End effector id of a gripper in its holster that the robot is engaged with, if any: it is not an obstacle then.
     pub engaged: Option<u8>,
-    /// Opening of the robot's fingers.
     pub opening: f64,
-    /// The carried part.
     pub held: Option<Placed>,
-    /// The other parts.
     pub parts: Vec<Placed>,
     /// Index of the selected program of the vise, from 0.
     pub program: usize,
     /// Distance of the inner faces of the vise's jaws.
     pub jaws: f64,
-    /// Angle of the pedestal's table.
     pub table: f64,
-    /// Opening of the pedestal's hand.
     pub hand: f64,
 }
 
@@ -70,7 +63,6 @@ pub enum Clamped {
     Held,
 }
 
-/// The cell.
 #[derive(Debug)]
 pub struct Room {
     cell: CellDescription,
@@ -89,7 +81,6 @@ impl Room {
         }
     }
 
-    /// Its description.
     #[must_use]
     pub const fn cell(&self) -> &CellDescription {
         &self.cell

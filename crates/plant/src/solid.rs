@@ -36,7 +36,6 @@ impl Solid {
         Self { half, axis: None }
     }
 
-    /// A cylinder along Z.
     #[must_use]
     pub const fn cylinder_z(radius: Real, half_length: Real) -> Self {
         Self { half: Vector::new(radius, radius, half_length), axis: Some(2) }
@@ -66,7 +65,6 @@ impl Solid {
         (SharedShape::cylinder(half_length, radius), Pose::from_rotation(turn))
     }
 
-    /// The collider.
     pub fn collider(&self) -> ColliderBuilder {
         let (shape, turn) = self.shape();
         ColliderBuilder::new(shape).position(turn)
@@ -103,13 +101,10 @@ pub fn along(kind: &PartType) -> Option<(Frame, f64, f64)> {
 /// The family of a part: pictures give each family a colour.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Family {
-    /// A tool in its holder.
     Tool,
-    /// A cylinder.
     Round,
     /// A box thicker than an inch.
     Block,
-    /// A thin box.
     Bar,
 }
 

@@ -27,9 +27,7 @@ const LEAST_AREA: Real = 6.45e-6;
 /// The rectangle that each of two pads covers, in the axes of the grip, metres.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pads {
-    /// Extent along X.
     pub x: [Real; 2],
-    /// Extent along Z.
     pub z: [Real; 2],
     /// Position along X of the common axis of V-grooves along Z; `None` for flat pads.
     pub groove: Option<Real>,
@@ -42,9 +40,7 @@ pub struct Squeeze {
     pub width: Real,
     /// Position of the part's centre along Y.
     pub centre: Real,
-    /// Centre of the touched area.
     pub point: Vector,
-    /// Touched area, m².
     pub area: Real,
     /// Extent of the touched area along X and Z.
     pub span: [Real; 2],

@@ -20,10 +20,8 @@ use crate::{
     squeeze::Pads,
 };
 
-/// Openings that the workstation commands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Jaws {
-    /// Open.
     Open,
     /// Partially closed: wide enough to let a blank in.
     Partial,
@@ -53,27 +51,23 @@ impl ViseProgram {
     }
 }
 
-/// The vise.
 #[derive(Clone, Debug, Deserialize, Serialize)]
 pub struct Vise {
     description: Description,
     #[serde(with = "crate::image::frame")]
     frame: Frame,
-    /// Index of the selected program.
     program: usize,
     /// Distance of the inner faces of the jaws, in.
     gap: f64,
     target: f64,
     jaw: RigidBodyHandle,
     stopped: bool,
-    /// The clamped part.
     pub clamped: Option<Clamped>,
 }
 
 /// A part between the jaws: only a crash is stronger than the vise, so the part moves with the jaws.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Serialize)]
 pub struct Clamped {
-    /// Index of the part.
     pub part: usize,
     /// The step in which it is clamped.
     pub step: usize,
@@ -111,7 +105,6 @@ impl Vise {
         &self.frame
     }
 
-    /// The movable jaw.
     #[must_use]
     pub fn jaw(&self) -> RigidBodyHandle {
         self.jaw
@@ -121,7 +114,6 @@ impl Vise {
         &self.description.program[step]
     }
 
-    /// Steps of all programs.
     #[must_use]
     pub fn steps(&self) -> core::ops::Range<usize> {
         0..self.description.program.len()
@@ -151,13 +143,11 @@ impl Vise {
         inches(width) - 2.0 * self.step(step).depth
     }
 
-    /// Name of its location.
     #[must_use]
     pub fn location(&self) -> &str {
         &self.description.location
     }
 
-    /// True while the jaw moves.
     #[must_use]
     pub fn moving(&self) -> bool {
         !self.stopped && (self.gap - self.target).abs() > 1e-9

@@ -11,7 +11,6 @@ use geometry::{
 use plant::{CellDescription, CellEvent, WorkstationAction};
 use rcs_core::tick::TICK_S;
 
-/// Standard gravity, in/s².
 const GRAVITY: f64 = 9.806_65 / 0.0254;
 /// Coefficient of friction of parts on fixed bodies, as in `Part` and `scene`.
 const FRICTION: f64 = 0.30;

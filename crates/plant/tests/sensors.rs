@@ -8,7 +8,6 @@ use interfaces::device::{
 };
 use plant::description::Mounted;
 
-/// A rig with the tool gripper on.
 fn with_tool_gripper(noise: f64) -> Rig {
     let mut cell = description();
     cell.quick_change.mounted = Mounted::Tool;

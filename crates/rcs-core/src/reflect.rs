@@ -74,7 +74,6 @@ impl Leaf<'_> {
     }
 }
 
-/// Gets the leaves.
 type Visit<'a> = dyn FnMut(Leaf<'_>) + 'a;
 
 /// Visit all leaves of a record in the order of the image.

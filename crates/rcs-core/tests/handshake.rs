@@ -103,7 +103,6 @@ enum Receiving {
     },
     /// Held by a switch: its last outputs are published again.
     Held,
-    /// Gone.
     Silent,
 }
 

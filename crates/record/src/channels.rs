@@ -32,7 +32,6 @@ pub const PROTOBUF: &str = "protobuf";
 
 /// An MCAP file in which every message has the time of its tick.
 pub struct Output<W: Write + Seek> {
-    /// The file.
     pub mcap: mcap::Writer<W>,
     /// Time of tick 0.
     pub epoch: Epoch,
@@ -113,7 +112,6 @@ struct Buffer {
     schema: StructSchema,
 }
 
-/// The buffers of one image.
 pub struct Buffers(Vec<Buffer>);
 
 /// Position of a buffer in its image, and its topic.
@@ -231,7 +229,6 @@ pub struct HeaderPlace {
     pub field: &'static str,
     /// First byte of the header.
     pub offset: usize,
-    /// The process, with its tables.
     pub process: &'static ProcessInfo,
 }
 

@@ -13,15 +13,11 @@ use crate::{
 /// The first difference of a replay from the run.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Difference {
-    /// The tick.
     pub tick: Tick,
     /// The process and the buffer: `prim.status`; `state.prim` for the state of a process.
     pub buffer: String,
-    /// The field of the buffer.
     pub field: String,
-    /// The recorded value.
     pub was: String,
-    /// The computed value.
     pub is: String,
     /// The row by which the process decided in the replay.
     pub row: String,

@@ -7,14 +7,12 @@ use crate::{
     proto::scene::{self, Colour, Entity, Primitive},
 };
 
-/// Topic of the marks.
 pub const CONTACTS: &str = "/contacts";
 
 /// An inch, metres.
 pub(crate) const INCH: f64 = 0.0254;
 /// The mark of two things that may touch: its diameter, m, and its colour.
 const PERMITTED: (f64, Colour) = (0.03, [0.15, 0.75, 0.30, 0.9]);
-/// The mark of a collision.
 const COLLISION: (f64, Colour) = (0.06, [0.90, 0.10, 0.10, 0.85]);
 /// Height of the letters at a collision, m.
 const LETTERS: f64 = 0.05;

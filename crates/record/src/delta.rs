@@ -30,13 +30,11 @@ pub struct Codec {
 }
 
 impl Codec {
-    /// The codec of a record.
     #[must_use]
     pub fn new(record: &'static StructSchema) -> Self {
         Self { pieces: layout::pieces(record), size: record.size() }
     }
 
-    /// Bytes of an image.
     #[must_use]
     pub const fn size(&self) -> usize {
         self.size

@@ -14,24 +14,12 @@ use os_io::files;
 pub enum RecordError {
     /// The file or its directory cannot be made.
     #[error("the log {path} cannot be created: {source}")]
-    Create {
-        /// The file.
-        path: PathBuf,
-        /// What the system said.
-        source: std::io::Error,
-    },
-    /// Another run writes the file.
+    Create { path: PathBuf, source: std::io::Error },
     #[error("the log {path} is being written by another run: name another file with --log")]
-    InUse {
-        /// The file.
-        path: PathBuf,
-    },
+    InUse { path: PathBuf },
     /// The file was removed or replaced while the run went on.
     #[error("the log {path} was removed during the run")]
-    Removed {
-        /// The file.
-        path: PathBuf,
-    },
+    Removed { path: PathBuf },
     /// The head of the log cannot be written: the disk is full, or a limit of file sizes is below the head.
     #[error("the log could not be begun: {}", deepest(.0))]
     Begin(#[source] mcap::McapError),
@@ -41,11 +29,9 @@ pub enum RecordError {
     /// The cell has more links or joints than a frame of it can carry.
     #[error("a cell of at most {allowed} {what} was expected, this one has {found}")]
     CellTooLarge {
-        /// Links or joints.
         what: &'static str,
         /// How many a [`crate::CellFrame`] carries.
         allowed: usize,
-        /// How many the cell has.
         found: usize,
     },
     /// The writer thread cannot be started, or ended without a result.
@@ -65,62 +51,36 @@ fn deepest(error: &dyn std::error::Error) -> String {
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum ReadError {
-    /// The file cannot be read.
     #[error("{path}: {source}")]
-    Unreadable {
-        /// The file.
-        path: PathBuf,
-        /// What the system said.
-        source: std::io::Error,
-    },
+    Unreadable { path: PathBuf, source: std::io::Error },
     /// The file is not an MCAP file.
     #[error("{path} is not an MCAP file: {source}")]
-    NotMcap {
-        /// The file.
-        path: PathBuf,
-        /// What is wrong with it.
-        source: mcap::McapError,
-    },
+    NotMcap { path: PathBuf, source: mcap::McapError },
     /// An MCAP file, but not of this program.
     #[error(
         "{path} is an MCAP file without the metadata {:?}: it was not written by this program",
         crate::names::RUN
     )]
-    NotALog {
-        /// The file.
-        path: PathBuf,
-    },
-    /// The file holds several runs.
+    NotALog { path: PathBuf },
     #[error("{path} holds the logs of several runs: open the log of one run")]
-    Merged {
-        /// The file.
-        path: PathBuf,
-    },
+    Merged { path: PathBuf },
     /// The metadata of the run cannot be read.
     #[error("{path} is damaged at its head: without the metadata of the run nothing in it can be read")]
-    HeadDamaged {
-        /// The file.
-        path: PathBuf,
-    },
+    HeadDamaged { path: PathBuf },
     /// A log of a program with another layout of buffers.
     #[error(
         "the log has layout {found}, this program {expected}: use the program that wrote it{}",
         by(.version)
     )]
     OtherLayout {
-        /// Layout of this program.
         expected: String,
-        /// Layout of the log.
         found: String,
         /// Version of the program that wrote it, if known.
         version: String,
     },
     /// A message on `/replay` that does not fit the layout.
     #[error("the record of tick {tick} does not fit the layout: the log is damaged")]
-    Damaged {
-        /// Number in the message.
-        tick: u64,
-    },
+    Damaged { tick: u64 },
 }
 
 impl ReadError {
@@ -150,10 +110,8 @@ fn by(version: &str) -> String {
     if version.is_empty() { String::new() } else { format!(" (version {version})") }
 }
 
-/// Errors of replaying a log.
 #[derive(Debug, thiserror::Error)]
 pub enum ReplayError {
-    /// The log cannot be read.
     #[error(transparent)]
     Read(#[from] ReadError),
     /// The log holds no tick.
@@ -161,20 +119,10 @@ pub enum ReplayError {
     Empty,
     /// The recorded inputs of a tick are not a valid record.
     #[error("the inputs of tick {tick} cannot be read: {source}")]
-    Inputs {
-        /// The tick.
-        tick: u64,
-        /// What is wrong with them.
-        source: rcs_core::plain::DecodeError,
-    },
+    Inputs { tick: u64, source: rcs_core::plain::DecodeError },
     /// A tick uses task data that are not in the log.
     #[error("tick {tick} uses generation {generation} of the task data, which is not in the log")]
-    Generation {
-        /// The tick.
-        tick: u64,
-        /// The generation.
-        generation: u32,
-    },
+    Generation { tick: u64, generation: u32 },
     /// The attached task data does not load.
     #[error("the attached task data does not load:\n{0}")]
     TaskData(String),

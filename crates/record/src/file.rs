@@ -20,7 +20,6 @@ use crate::error::RecordError;
 pub struct LogFile {
     path: PathBuf,
     file: File,
-    /// Device and inode.
     identity: (u64, u64),
     /// The file is new, and the log has not begun.
     unused: bool,
@@ -77,7 +76,6 @@ impl LogFile {
         }
     }
 
-    /// Its path.
     #[must_use]
     pub fn path(&self) -> &Path {
         &self.path

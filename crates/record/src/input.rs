@@ -14,9 +14,7 @@ use crate::{
     views::View,
 };
 
-/// Greatest number of moving links.
 pub const MAX_LINKS: usize = 64;
-/// Greatest number of joints.
 pub const MAX_JOINTS: usize = 16;
 
 /// Time of tick 0 of a log.
@@ -30,7 +28,6 @@ pub enum Epoch {
 }
 
 impl Epoch {
-    /// Now.
     #[must_use]
     pub fn now() -> Self {
         let since_1970 = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
@@ -66,16 +63,13 @@ impl Attachment {
     pub const RELOAD: &'static str = "reload/";
     /// Directory of jobs with which operators replaced the rest of the job: `played/<number>/` and the file's name.
     pub const PLAYED: &'static str = "played/";
-    /// Name of the job.
     pub const JOB: &'static str = "job";
-    /// Name of the cell description.
     pub const CELL: &'static str = "cell.toml";
     /// Name of the description of the cell for viewers.
     pub const URDF: &'static str = "cell.urdf";
     /// Name of the description of the byte images.
     pub const LAYOUT: &'static str = "layout.txt";
 
-    /// A text file.
     #[must_use]
     pub fn text(name: &str, text: &str) -> Self {
         Self { name: name.into(), media_type: "text/plain".into(), data: text.as_bytes().into() }
@@ -126,7 +120,6 @@ impl Attachment {
     }
 }
 
-/// The shape of a link.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Model {
     /// Its name, unique among the models.
@@ -140,7 +133,6 @@ pub struct Model {
 /// A name drawn beside a body.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Name {
-    /// The text.
     pub text: String,
     /// The link that it moves with.
     pub frame: String,
@@ -148,14 +140,11 @@ pub struct Name {
     pub position: [f64; 3],
 }
 
-/// The cell for viewers.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct CellModel {
-    /// Geometry of all links.
     pub urdf: String,
     /// The shapes of links and fixed bodies.
     pub models: Vec<Model>,
-    /// Names of bodies.
     pub names: Vec<Name>,
     /// Links that move, in the order of [`CellFrame::transforms`].
     pub links: Vec<Link>,
@@ -182,7 +171,6 @@ impl CellModel {
 /// The positions of everything in the cell in one tick.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CellFrame {
-    /// The tick.
     pub tick: Tick,
     /// Poses of the links in their parents, in the order of [`CellModel::links`].
     pub transforms: [Transform; MAX_LINKS],
@@ -225,7 +213,6 @@ impl CellFrame {
 pub struct Touch {
     /// The link or part, by its name in the cell.
     pub mover: String,
-    /// What it touches.
     pub obstacle: String,
     /// Point of deepest penetration, world, inches.
     pub point: [f64; 3],
@@ -295,7 +282,6 @@ pub(crate) struct Note {
 pub struct Lost {
     /// Ticks. The run cannot be replayed across them.
     pub ticks: u64,
-    /// Frames of the cell.
     pub frames: u64,
     /// Lines for `/log`.
     pub notes: u64,

@@ -15,7 +15,6 @@ use crate::{
     proto::typed::{self, messages},
 };
 
-/// The topic.
 pub const INSTRUMENTS: &str = "/instruments";
 
 /// A pound, newtons.
@@ -43,7 +42,6 @@ messages! {
     }
 }
 
-/// The channel.
 pub(crate) struct InstrumentsChannel {
     id: u16,
     last: Option<Instruments>,

@@ -15,7 +15,6 @@ use crate::{
     proto::typed::{self, messages},
 };
 
-/// The topic.
 pub const LADDER: &str = "/ladder";
 
 messages! {
@@ -69,7 +68,6 @@ impl Key {
     }
 }
 
-/// The channel.
 pub(crate) struct LadderChannel {
     id: u16,
     last: Vec<Key>,
@@ -99,7 +97,6 @@ impl LadderChannel {
     }
 }
 
-/// The message.
 fn state(hws: &HwsCommand, memory: &CommonMemory) -> LadderState {
     let processes = ProcessId::ALL.iter().zip(Ladder::processes());
     LadderState { processes: processes.map(|(id, process)| level(*id, process, hws, memory)).collect() }

@@ -22,7 +22,6 @@ pub struct Leaf {
     pub offset: usize,
     /// Bytes in the image. Only the first one of an option or a union that has other leaves.
     pub size: usize,
-    /// What it holds.
     pub schema: &'static Schema,
     /// Bytes with their value in each image that holds the leaf: flags of options, codes of variants.
     pub given: Vec<(usize, u8)>,
@@ -91,7 +90,6 @@ pub fn leaves(record: &'static StructSchema) -> Vec<Leaf> {
     leaves_of(record.fields)
 }
 
-/// All leaves of consecutive fields.
 #[must_use]
 pub fn leaves_of(fields: &'static [FieldSchema]) -> Vec<Leaf> {
     let mut found = Vec::new();
@@ -108,7 +106,6 @@ pub fn leaves_of(fields: &'static [FieldSchema]) -> Vec<Leaf> {
 pub struct Piece {
     /// First byte in the image.
     pub offset: usize,
-    /// Bytes in the image.
     pub size: usize,
     /// It is a number of at most eight bytes, which changes by a difference.
     pub number: bool,

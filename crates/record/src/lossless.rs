@@ -23,7 +23,6 @@ use crate::{
 
 /// Field numbers of the message on [`REPLAY`].
 pub mod replay_field {
-    /// The tick.
     pub const TICK: u32 = 1;
     /// Ticks that are missing before this one.
     pub const GAP: u32 = 2;
@@ -37,7 +36,6 @@ pub mod replay_field {
     pub const STATE: u32 = 6;
     /// Fingerprint of the simulated cell before the tick.
     pub const WORLD: u32 = 7;
-    /// Time of the controller, nanoseconds.
     pub const CONTROLLER_NS: u32 = 8;
     /// Slots of the 40 ms grid that were skipped so far.
     pub const SKIPPED: u32 = 9;
@@ -73,7 +71,6 @@ impl Images {
     }
 }
 
-/// The channel.
 pub(crate) struct Lossless {
     channel: u16,
     /// Messages of the second that is not over.

@@ -8,7 +8,6 @@ pub const END: &str = "rcs-end";
 pub const LAYOUT: &str = "layout";
 /// Topic of the byte images.
 pub const REPLAY: &str = "/replay";
-/// Topic of the log lines.
 pub const LOG_TOPIC: &str = "/log";
 /// Begin of the line on `/log` that names the log before this one.
 pub(crate) const EARLIER: &str = "the ticks before this one are in ";

@@ -17,20 +17,16 @@ use crate::{
 /// The topic. A run without operators has no such channel.
 pub const OPERATOR: &str = "/operator";
 
-/// Field numbers of the message.
 const SOURCE: u32 = 1;
 const LINE: u32 = 2;
 const ANSWER: u32 = 3;
 const REFUSED: u32 = 4;
 
-/// A request of an operator.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct OperatorLine {
     /// The first tick that reads the request.
     pub tick: Tick,
-    /// Name of the operator.
     pub source: String,
-    /// Line of the request.
     pub line: String,
     /// Text of the answer; may be empty.
     pub answer: String,
@@ -50,7 +46,6 @@ impl OperatorLine {
         data
     }
 
-    /// Read a message.
     pub(crate) fn decode(tick: Tick, data: &[u8]) -> Self {
         let mut read =
             Self { tick, source: String::new(), line: String::new(), answer: String::new(), refused: None };

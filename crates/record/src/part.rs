@@ -34,10 +34,8 @@ pub enum Before {
     /// The first log of the run.
     #[error("the first log of the run is {}", .0.display())]
     First(PathBuf),
-    /// A log is missing.
     #[error("the log before it, {}, is not there", .0.display())]
     Missing(PathBuf),
-    /// The log was damaged.
     #[error("its begin is damaged")]
     Damaged,
 }

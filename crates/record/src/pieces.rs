@@ -59,14 +59,11 @@ pub enum Damage {
     TooLarge(u64),
 }
 
-/// A piece of the file.
 pub enum Piece<'a> {
-    /// A record outside the chunks.
     Record(Record<'a>),
     /// A chunk, including its record header, and the channels and schemas in it. That of a whole file is not
     /// decompressed here: its channels and schemas stand after its data, too.
     Chunk(Range<usize>, Vec<Record<'static>>),
-    /// Messages outside chunks.
     Loose(Range<usize>),
     /// The chunk before has messages of a channel.
     Index(u16),
@@ -283,16 +280,13 @@ fn described(records: &[u8]) -> Option<Vec<Record<'static>>> {
     Some(described)
 }
 
-/// A message in a chunk.
 #[derive(Clone, Copy)]
 pub struct Message<'a> {
-    /// Number of its channel.
     pub channel: u16,
     /// Its number in the channel: the tick.
     pub sequence: u32,
     /// Time of the log, nanoseconds since 1970.
     pub log_time: u64,
-    /// What it says.
     pub data: &'a [u8],
 }
 
@@ -379,9 +373,7 @@ fn texts(body: &[u8], from: usize) -> Option<usize> {
     (at == end).then_some(end)
 }
 
-/// What stands in a chunk.
 struct Packed<'a> {
-    /// Size of the records.
     size: usize,
     /// Checksum of the records; 0 for none.
     checksum: u32,
@@ -389,7 +381,6 @@ struct Packed<'a> {
     records: &'a [u8],
 }
 
-/// The compression of a chunk.
 enum Compression {
     None,
     Zstd,

@@ -41,12 +41,10 @@ use crate::{
 /// Size of the magic of an MCAP file, bytes.
 const HEAD: u64 = 8;
 
-/// A log that was read.
 pub struct Log {
     path: PathBuf,
     bytes: Vec<u8>,
     segments: Vec<Segment>,
-    /// Channel numbers by topic.
     channels: BTreeMap<String, u16>,
     /// Channels and schemas of the file, by number.
     described: Described,
@@ -64,7 +62,6 @@ pub struct Log {
 enum Segment {
     /// A chunk with the channels of its messages; none if they are not known for sure.
     Chunk(Range<usize>, Vec<u16>),
-    /// Messages outside chunks.
     Loose(Range<usize>),
     Damaged(Range<usize>, Damage),
 }
@@ -72,7 +69,6 @@ enum Segment {
 /// A recorded tick.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct LoggedTick {
-    /// The tick.
     pub tick: Tick,
     /// Number of missing ticks before it.
     pub gap: u64,
@@ -88,16 +84,11 @@ pub struct LoggedTick {
     pub timing: Option<Timing>,
 }
 
-/// A line on `/log`.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct LogLine {
-    /// The tick.
     pub tick: Tick,
-    /// Its severity.
     pub level: Level,
-    /// Its source.
     pub source: String,
-    /// The sentence.
     pub text: String,
     /// Code of the event, such as `cell.dropped`, or source file of the decision table; empty for neither.
     pub code: String,
@@ -235,7 +226,6 @@ impl Log {
         Err(ReadError::OtherLayout { expected, found, version })
     }
 
-    /// The attachment with a name.
     #[must_use]
     pub fn attachment(&self, name: &str) -> Option<&Attachment> {
         self.attachments.iter().find(|attachment| attachment.name == name)
@@ -300,7 +290,6 @@ impl Log {
         self.messages(REPLAY).last().map(|(tick, _)| tick)
     }
 
-    /// Path of the file.
     #[must_use]
     pub fn path(&self) -> &Path {
         &self.path

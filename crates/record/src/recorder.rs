@@ -90,14 +90,11 @@ pub struct Recorder {
     thread: JoinHandle<Result<(Written, usize), RecordError>>,
 }
 
-/// Result of a log.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Summary {
-    /// Path of the file.
     pub path: PathBuf,
     /// Number of ticks in the file.
     pub ticks: u64,
-    /// Lost entries.
     pub lost: Lost,
     /// Size of the file, bytes.
     pub bytes: u64,
@@ -258,7 +255,6 @@ impl Recorder {
         }
     }
 
-    /// Lost entries so far.
     #[must_use]
     pub const fn lost(&self) -> Lost {
         self.lost

@@ -19,11 +19,9 @@ use crate::{channels::HeaderPlace, proto::foxglove::Level};
 /// A line on `/log`.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Remark {
-    /// Its severity.
     pub level: Level,
     /// Its source: a process, the cell, the recorder.
     pub source: String,
-    /// The sentence.
     pub text: String,
     /// Source file of the decision table, or the code of an event such as `cell.dropped`; empty for neither.
     pub file: &'static str,

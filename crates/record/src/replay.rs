@@ -60,10 +60,8 @@ impl Options {
     }
 }
 
-/// Result of a replay.
 #[derive(Clone, Debug)]
 pub struct ReplayReport {
-    /// Ticks that were computed again.
     pub ticks: u64,
     /// Ticks that could not be computed: those in gaps, and those at which the replay started again.
     pub skipped: u64,
@@ -77,7 +75,6 @@ pub struct ReplayReport {
     pub complete: bool,
     /// The damaged parts of the log, as text.
     pub damage: Option<String>,
-    /// Time of the whole replay.
     pub elapsed: Duration,
 }
 

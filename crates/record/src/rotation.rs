@@ -11,7 +11,6 @@ use std::{
 
 use crate::file::is_earlier;
 
-/// Limits of a log.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct LogLimit {
     /// Size, bytes, after which the run begins a new log. A log is larger by the end that it needs, and by a second.

@@ -23,7 +23,6 @@ use crate::{
     },
 };
 
-/// The row channels.
 pub struct Rows(Vec<Channel>);
 
 struct Channel {
@@ -33,7 +32,6 @@ struct Channel {
     last: Option<(Header, Vec<u8>)>,
 }
 
-/// Message on the row channels.
 const ROW: &str = "Row";
 
 /// The state variables that a table asks for, as text: `work Busy, clock Running`.
@@ -47,7 +45,6 @@ pub fn values_text(table: &'static Table, values: Values) -> String {
 }
 
 impl Rows {
-    /// Opens one channel per process.
     pub fn open<W: Write + Seek>(output: &mut Output<W>) -> McapResult<Self> {
         let fields = vec![
             field("process", 1, Type::String),

@@ -43,7 +43,6 @@ const TOOL_POINT: &str = "tool_point";
 /// The frame of fixed bodies.
 const WORLD: &str = "world";
 
-/// The link that the camera is on.
 const CAMERA_LINK: &str = "quick_change";
 /// Height of the letters of a name, metres.
 const LETTERS: f64 = 0.10;
@@ -53,7 +52,6 @@ const INK: Colour = [0.09, 0.12, 0.14, 1.0];
 /// Encoding of the definitions of ROS 2 messages, and of the messages.
 const ROS2: (&str, &str) = ("ros2msg", "cdr");
 
-/// The channels of a cell.
 pub struct Scene {
     model: CellModel,
     moving: u16,

@@ -3,7 +3,6 @@
 /// Gets the channels and messages of a log while it is written, in the writer's thread and in the order of their times.
 /// It ends with the log. The writer waits for it: a slow tap delays the log, but not the tick.
 pub trait Tap: Send {
-    /// A new channel.
     fn channel(&mut self, id: u16, channel: &Channel<'_>);
 
     /// A message of a channel, with its time in nanoseconds since 1970.
@@ -18,14 +17,11 @@ pub trait Tap: Send {
 /// Description of a channel of a log.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Channel<'a> {
-    /// The topic.
     pub topic: &'a str,
     /// Encoding of the messages: `protobuf`, `cdr`.
     pub encoding: &'a str,
-    /// Name of the schema.
     pub schema_name: &'a str,
     /// Encoding of the schema: `protobuf`, `ros2msg`.
     pub schema_encoding: &'a str,
-    /// The schema.
     pub schema: &'a [u8],
 }

@@ -16,7 +16,6 @@ use crate::{
     },
 };
 
-/// Topic of the line.
 pub const TRAIL: &str = "/trail";
 
 /// The link whose origin is the tool point.
@@ -29,11 +28,9 @@ const MESSAGE: u64 = 25;
 const POINTS: usize = 50;
 /// Least distance of a new point from the last one, m.
 const NEAR: f64 = 0.002;
-/// Thickness of the line, m.
 const THICKNESS: f64 = 0.006;
 const COLOUR: Colour = [0.95, 0.20, 0.45, 0.9];
 
-/// The line so far.
 pub struct Trail {
     channel: u16,
     /// The tool point's link and its chain of parents, in the order of [`CellModel::links`].
@@ -43,7 +40,6 @@ pub struct Trail {
 }
 
 impl Trail {
-    /// Open the channel.
     pub fn open<W: Write + Seek>(output: &mut Output<W>, model: &CellModel) -> McapResult<Self> {
         let channel = output.protobuf(TRAIL, scene::SCENE_UPDATE, &scene::descriptor())?;
         let mut chain = Vec::new();

@@ -22,9 +22,7 @@ pub const JOB_STATE: &str = "/job/state";
 pub const COMMANDER: &str = "/operator/state";
 /// Topic of the console of the robot controller.
 pub const CONTROLLER: &str = "/cell/controller";
-/// Topic of the parts.
 pub const PARTS: &str = "/cell/parts";
-/// Topic of the places.
 pub const PLACES: &str = "/cell/places";
 
 messages! {
@@ -169,20 +167,13 @@ messages! {
     }
 }
 
-/// A state of the run.
 #[derive(Clone, Debug, PartialEq)]
 pub enum View {
-    /// The lines of the job.
     JobLines(JobLines),
-    /// The progress of the job.
     JobState(JobState),
-    /// Who commands.
     Commander(Commander),
-    /// The robot controller.
     Controller(Controller),
-    /// The parts.
     Parts(Parts),
-    /// The places.
     Places(Places),
 }
 
@@ -193,7 +184,6 @@ pub const KINDS: usize = 6;
 const FIXED: [usize; 2] = [0, 5];
 
 impl View {
-    /// Its position among the kinds.
     #[must_use]
     pub const fn kind(&self) -> usize {
         match self {
@@ -225,7 +215,6 @@ struct Channel {
     id: u16,
     /// The last message; empty before the first.
     last: Vec<u8>,
-    /// The tick in which it was written.
     written: Tick,
 }
 

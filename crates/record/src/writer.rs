@@ -66,13 +66,10 @@ const COMPRESSION: u32 = 3;
 /// Everything that the ladder read and wrote in a tick.
 #[derive(Clone, Copy, Debug)]
 pub struct TickRecord {
-    /// The tick.
     pub tick: Tick,
     /// Ticks before this one that did not fit into the ring.
     pub gap: u32,
-    /// External inputs of the processes.
     pub external: ExternalInputs,
-    /// Their outputs.
     pub memory: CommonMemory,
     /// Times of the tick; `None` in a run whose log must be the same bytes each time.
     pub timing: Option<Timing>,
@@ -360,12 +357,9 @@ impl<W: Write + Seek> LogWriter<W> {
     }
 }
 
-/// Result of a finished log.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Written {
-    /// Ticks in it.
     pub ticks: u64,
-    /// Bytes of the file.
     pub bytes: u64,
 }
 

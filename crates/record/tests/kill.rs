@@ -27,7 +27,6 @@ use taskdata::files::TaskData;
 
 /// Argument that makes the program a victim.
 const VICTIM: &str = "--victim";
-/// How many runs are killed.
 const RUNS: u64 = 10;
 /// Length of a tick here.
 const PERIOD: Duration = Duration::from_millis(20);

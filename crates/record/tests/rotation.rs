@@ -30,7 +30,6 @@ fn inputs(tick: Tick) -> ExternalInputs {
     external
 }
 
-/// Counts what viewers get.
 #[derive(Default)]
 struct Counts(std::sync::Arc<std::sync::Mutex<(usize, usize)>>);
 

@@ -47,7 +47,6 @@ fn has_field(set: &FileDescriptorSet, message: &str, path: &str) -> bool {
     })
 }
 
-/// The frames that a log has.
 fn frames(log: &[u8]) -> Vec<String> {
     let messages = mcap::MessageStream::new(log).unwrap().map(Result::unwrap);
     let moving = messages.filter(|message| message.channel.topic == "/tf");

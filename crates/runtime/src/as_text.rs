@@ -16,7 +16,6 @@ pub fn deserialize<'de, T: FromStr<Err: Display>, D: Deserializer<'de>>(
     String::deserialize(deserializer)?.parse().map_err(D::Error::custom)
 }
 
-/// An optional string.
 pub mod option {
     use super::*;
 
@@ -37,7 +36,6 @@ pub mod option {
     }
 }
 
-/// A list of strings.
 pub mod list {
     use super::*;
 

@@ -30,7 +30,6 @@ use crate::{
 /// Time limit until the boards that this process starts are ready: they load the task data first.
 const STARTING: Duration = Duration::from_secs(60);
 
-/// Executes the control processes.
 pub enum Controller {
     /// All of them in this process.
     One(Box<Present>),
@@ -145,7 +144,6 @@ impl Controller {
         came.is_ok()
     }
 
-    /// The states of all processes.
     #[must_use]
     pub fn state(&self) -> LadderState {
         match self {
@@ -177,7 +175,6 @@ impl Controller {
     }
 }
 
-/// The error of the start.
 fn refused(error: SplitError, config: &RunConfig, job: &Job) -> StartError {
     let interrupted = config.stop.load(Ordering::Relaxed);
     if interrupted { StartError::Interrupted(job.name.clone()) } else { error.into() }

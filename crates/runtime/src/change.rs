@@ -11,17 +11,14 @@ use taskdata::load::{
 
 use crate::{Run, event::Event, loads::insert};
 
-/// Errors of a change.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum ChangeError {
-    /// The blocks have errors.
     #[error("with this change the task data have errors:\n{0}")]
     Data(String),
     /// A line `** load` is waiting for the end of a command.
     #[error("a reload of the job waits for the end of a command: change the task data in another tick")]
     Reload,
-    /// Another process commands.
     #[error("another process commands this run: there is no job whose lines can be changed")]
     NoJob,
     /// The job is at its last line.
@@ -30,7 +27,6 @@ pub enum ChangeError {
     /// The line to the robot has faults already.
     #[error("the line to the robot has faults already: leave those of the line out of the file")]
     Line,
-    /// The fault would displace something.
     #[error(
         "fault {0} displaces the pedestal, which is possible before the first tick only: run the job with this file instead"
     )]

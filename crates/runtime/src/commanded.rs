@@ -32,7 +32,6 @@ pub struct Commanded {
     pub(crate) outside: OutsideWorkstation,
     /// Sends the commands of the operator; `None` while the workstation controller commands.
     alone: Option<JobPlayer>,
-    /// Commands of the earlier sources.
     before: Vec<BegunStep>,
 }
 
@@ -54,13 +53,11 @@ impl Commanded {
         self.alone.as_mut().map(|emulator| &mut emulator.hwsc)
     }
 
-    /// The same, to read it.
     #[must_use]
     pub fn job(&self) -> Option<&Hwsc> {
         self.alone.as_ref().map(|emulator| &emulator.hwsc)
     }
 
-    /// Commands of the present source.
     #[must_use]
     pub fn begun_steps(&self) -> &[BegunStep] {
         match &self.alone {

@@ -42,7 +42,6 @@ pub struct RunConfig {
     pub overrun: Policy,
     /// CPU core for the real clock; `None` for the highest number that the process may use.
     pub cpu: Option<usize>,
-    /// The robot.
     #[serde(with = "as_text")]
     pub robot: RobotConfig,
     /// Couplers between the controller and the devices of the cell; `None` for none.
@@ -62,7 +61,6 @@ pub struct RunConfig {
     pub wait: u32,
     /// Seed of the cell's sensor noise and of the positions of delivered parts.
     pub seed: u64,
-    /// Destination of the log.
     #[serde(with = "as_text")]
     pub log: LogTarget,
     /// Size after which the run begins a new log, and number of those that are kept; `None` for one log.
@@ -74,7 +72,6 @@ pub struct RunConfig {
     /// Address at which neighbours in other processes connect.
     #[serde(with = "as_text::option")]
     pub network: Option<Address>,
-    /// Neighbours that are other processes.
     #[serde(with = "as_text::list")]
     pub outside: Vec<Role>,
     /// Begin under stand-alone command, with the job, although the workstation controller is another process (IV.4.1).
@@ -99,7 +96,6 @@ pub struct RunConfig {
     /// Origins of web pages that may connect as viewers, besides Foxglove's.
     #[serde(with = "as_text::list")]
     pub live_origins: Vec<Origin>,
-    /// Additional metadata for the log.
     pub remarks: BTreeMap<String, String>,
     /// Share the buffers with other programs.
     pub shared_memory: bool,
@@ -166,7 +162,6 @@ impl Default for RunConfig {
     }
 }
 
-/// The couplers of a run.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct FieldConfig {
     /// Name of a mapping in the data directory, or a path.
@@ -199,7 +194,6 @@ impl FromStr for FieldConfig {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, clap::ValueEnum)]
 #[serde(rename_all = "kebab-case")]
 pub enum OperatorAccess {
-    /// Nobody
     None,
     /// Programs of the user who runs it, on this machine
     Owner,
@@ -228,14 +222,12 @@ impl ClockKind {
     }
 }
 
-/// The robot of a run.
 #[derive(Clone, Debug, PartialEq)]
 pub enum RobotKind {
     /// The simulated T3.
     Sim,
     /// A robot controller at a serial port.
     Serial(SerialSettings),
-    /// A robot with EGM.
     Egm(Box<EgmOptions>),
     /// A robot of the caller of the library ([`Run::with_robot`](crate::Run::with_robot)).
     Own,
@@ -256,7 +248,6 @@ impl RobotKind {
 /// The robot, and the time limit for its answer.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RobotConfig {
-    /// Kind of robot.
     pub kind: RobotKind,
     /// Seconds for which a controller may be silent while its DTR is on; `None` for the default.
     pub silence: Option<u16>,
@@ -329,7 +320,6 @@ fn lag(ms: &str) -> Result<u16, String> {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, clap::ValueEnum)]
 #[serde(rename_all = "kebab-case")]
 pub enum Boards {
-    /// All in one thread
     One,
     /// One operating system process per board: 0 (this one), 2, 4, 6, 8
     Split,
@@ -349,14 +339,11 @@ impl Boards {
     }
 }
 
-/// Destination of the log.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum LogTarget {
     /// `runs/JOB.mcap`, or the next free name.
     Default,
-    /// No log.
     None,
-    /// A file.
     File(PathBuf),
 }
 

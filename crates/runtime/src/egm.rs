@@ -26,7 +26,6 @@ use crate::{
 /// Names of the frames in the log: the position of the robot, and its last target.
 pub const FRAMES: [&str; 2] = ["egm_feedback", "egm_target"];
 
-/// A robot with EGM.
 pub struct EgmPort {
     options: EgmOptions,
     /// Expected lag, ms.
@@ -40,7 +39,6 @@ pub struct EgmPort {
     figures: Box<Figures>,
 }
 
-/// Measurements.
 #[derive(Default)]
 struct Figures {
     cycles: Histogram,
@@ -148,7 +146,6 @@ impl EgmPort {
         self.outputs = self.bridge.step(&mut self.line, tx, true, hold);
     }
 
-    /// Advance simulated time.
     pub fn advance(&mut self, by: Duration) {
         self.line.advance(u64::try_from(by.as_nanos()).unwrap_or(u64::MAX));
     }
@@ -192,7 +189,6 @@ impl EgmPort {
         [sample.feedback, sample.target].map(|pose| self.bridge.placement().plate_pose(&pose))
     }
 
-    /// Counters of the line.
     #[must_use]
     pub fn counters(&self) -> Counters {
         self.line.sample().counters

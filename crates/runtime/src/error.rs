@@ -23,19 +23,13 @@ pub enum StartError {
     NoData(PathBuf),
     /// Task data or the job has errors.
     #[error("{what} cannot be used: {}", amount(.report.errors().count(), "error"))]
-    Data {
-        /// Name of the data.
-        what: String,
-        /// All findings.
-        report: Box<Diagnostics>,
-    },
+    Data { what: String, report: Box<Diagnostics> },
     /// Commands of the job use records of the task data that have errors.
     #[error(
         "the job {job} cannot be run: {} with errors in the data; rcs-run check shows all errors, --unchecked runs it",
         amount(.wrong.len(), "command")
     )]
     WrongData {
-        /// Name of the job.
         job: String,
         /// A line for each command, with its first error.
         wrong: Vec<String>,
@@ -43,21 +37,13 @@ pub enum StartError {
     /// The job or the fault file does not exist.
     #[error(transparent)]
     NoFile(#[from] UnknownFile),
-    /// A file cannot be read.
     #[error("{} cannot be read: {source}", path.display())]
-    Read {
-        /// Path of the file.
-        path: PathBuf,
-        /// Error of the system.
-        source: io::Error,
-    },
-    /// The cell cannot be built.
+    Read { path: PathBuf, source: io::Error },
     #[error("the cell cannot be built: {0}")]
     Cell(#[from] CellError),
     /// A robot at a port needs a clock in real time.
     #[error("a robot at a port needs real time: add --clock real")]
     NotInRealTime,
-    /// An invalid clock speed.
     #[error("a speed from 1 to {most} times real time was expected, found {0}", most = crate::config::MOST_SPEED)]
     Speed(u8),
     /// The configuration names a robot of the caller, and the caller has provided none.
@@ -66,18 +52,11 @@ pub enum StartError {
     /// Faults of the line need the simulated robot.
     #[error("the file has faults of the line to the simulated robot; leave them out for any other robot")]
     FaultsAtPort,
-    /// A coupler cannot be simulated.
     #[error("the field I/O cannot begin: {0}")]
     Field(#[from] closed_loop::field::FieldError),
     /// The fault file cuts a connection that the run does not have.
     #[error("the fault file cuts the connection of {device:?}: expected {expected}")]
-    NoSuchDevice {
-        /// The device.
-        device: String,
-        /// What was expected.
-        expected: String,
-    },
-    /// The port cannot be opened.
+    NoSuchDevice { device: String, expected: String },
     #[error("the robot cannot be reached: {0}")]
     Port(#[from] OpenError),
     /// The port of EGM cannot be opened.
@@ -91,12 +70,7 @@ pub enum StartError {
     Inputs(#[source] Box<record::ReadError>),
     /// The log whose inputs are to be replayed lacks those of the first ticks.
     #[error("the operator's inputs cannot be replayed: {}: {part}; name the log of a whole run", path.display())]
-    LaterInputs {
-        /// The log.
-        path: PathBuf,
-        /// Its place in the run.
-        part: record::Part,
-    },
+    LaterInputs { path: PathBuf, part: record::Part },
     /// The database of the Data System cannot be opened.
     #[error("the Data System cannot keep its items: {0}")]
     DataBase(#[from] StoreError),
@@ -127,13 +101,7 @@ pub enum StartError {
     StandBy,
     /// The socket for operators cannot be opened, and the job would wait for one forever.
     #[error("--stand-by waits for an operator, and none can connect: {}: {source}", path.display())]
-    NoOperator {
-        /// Path of the socket.
-        path: PathBuf,
-        /// Error of the system.
-        source: io::Error,
-    },
-    /// Neighbours cannot connect.
+    NoOperator { path: PathBuf, source: io::Error },
     #[error("neighbours cannot connect: {0}")]
     Network(#[from] ListenError),
     /// The mailboxes of a neighbour cannot be made.
@@ -142,7 +110,6 @@ pub enum StartError {
     /// The workstation controller has not connected.
     #[error("the workstation controller has not connected within {0} s; --wait N sets a longer time")]
     NoWorkstation(u32),
-    /// The log cannot be written.
     #[error("the log cannot be written: {0}; --log names another file, --log none runs without")]
     Log(#[from] RecordError),
     /// The log that the run repeats could be removed by it.
@@ -150,23 +117,12 @@ pub enum StartError {
         "{} is an earlier log of {}, which --log-keep may remove: name another file with --log",
         .inputs.display(), .log.display()
     )]
-    InputsOfLog {
-        /// The log with the inputs.
-        inputs: PathBuf,
-        /// The log of the run.
-        log: PathBuf,
-    },
+    InputsOfLog { inputs: PathBuf, log: PathBuf },
     /// The live view needs a log.
     #[error("the live view shows what is written to the log: leave --log none out, or name a log file")]
     LiveWithoutLog,
-    /// Viewers cannot connect.
     #[error("viewers cannot connect at 127.0.0.1:{port}: {source}; --live PORT names another port")]
-    Live {
-        /// The port.
-        port: u16,
-        /// Error of the system.
-        source: io::Error,
-    },
+    Live { port: u16, source: io::Error },
     /// A thread of the run cannot be started.
     #[error("a thread of the run cannot be started: {0}")]
     Thread(#[source] io::Error),

@@ -24,7 +24,6 @@ use closed_loop::{
     truth::Confirmation,
 };
 
-/// An event of a run.
 #[derive(Debug)]
 #[non_exhaustive]
 pub enum Event {
@@ -71,15 +70,9 @@ pub enum Event {
     /// The job has begun to wait for an operator.
     Waits(WaitReason),
     /// Task data have been loaded during the run.
-    Loaded {
-        /// Number of the generation.
-        generation: u32,
-        /// Name of the blocks.
-        name: String,
-    },
+    Loaded { generation: u32, name: String },
     /// The run was changed from outside.
     Changed(String),
-    /// Real-time settings were requested.
     RealTime {
         /// The settings that the system granted, and the system.
         verdict: String,

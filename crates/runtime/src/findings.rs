@@ -9,9 +9,7 @@ use os_io::text::amount;
 pub struct Findings {
     /// Task data, including forms that do not fit the cell.
     data: Count,
-    /// Job.
     job: Count,
-    /// Cell description.
     cell: Count,
 }
 

@@ -29,7 +29,6 @@ use crate::{error::StartError, event::Event};
 /// Judges the commands of a tick.
 #[derive(Clone, Copy)]
 pub struct CommandJudge<'a> {
-    /// The task data.
     pub generations: &'a Generations,
     /// Number of the first reload that the job has requested in this tick.
     pub load: Option<u32>,

@@ -36,7 +36,6 @@ pub struct Live {
 
 /// What a viewer cannot learn from the messages of a run.
 pub struct Beginning {
-    /// Files of the run.
     pub attachments: Vec<Attachment>,
     /// Time of tick 0.
     pub epoch: Epoch,
@@ -47,9 +46,7 @@ pub struct Beginning {
 /// The words that an operator's line can have.
 #[derive(serde::Serialize)]
 pub struct Words {
-    /// First words.
     pub first: Vec<&'static str>,
-    /// Names of objects and locations.
     pub names: Vec<String>,
 }
 

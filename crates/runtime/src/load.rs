@@ -39,13 +39,11 @@ const LOOK: Duration = Duration::from_millis(5);
 
 /// Source of a load, which gets the answer.
 pub enum Asker {
-    /// An operator.
     Operator(Input),
     /// The workstation controller, with this line for the cell.
     Workstation(String),
 }
 
-/// An answered load.
 pub type Answer = (Asker, Result<String, LoadError>);
 
 /// Loads and jobs requested during a run.
@@ -61,7 +59,6 @@ pub struct Loads {
 }
 
 impl Loads {
-    /// No load yet.
     #[must_use]
     pub fn with(loader: Option<Loader>) -> Self {
         Self { loader, ..Self::default() }
@@ -92,8 +89,10 @@ struct Loading {
 enum Stage {
     /// The thread of the run reads and checks.
     Checking,
-    /// The boards check.
-    Announced { loaded: Loaded, since: Tick },
+    Announced {
+        loaded: Loaded,
+        since: Tick,
+    },
 }
 
 impl Run {

@@ -81,19 +81,14 @@ pub struct Loaded {
     pub data: u64,
 }
 
-/// Request to load a block.
 pub struct Order {
-    /// Number of the block.
     pub number: BlockNumber,
     /// Text of the block, if it does not come from the directory.
     pub source: Option<Source>,
     /// The directory of the run's task data.
     pub directory: PathBuf,
-    /// The task data in use.
     pub base: Store,
-    /// The reloads of the run.
     pub reloads: Vec<Reload>,
-    /// Number of reloads in effect.
     pub done: usize,
     /// File from which the boards of other processes read it.
     pub file: Option<PathBuf>,
@@ -175,7 +170,6 @@ impl Loader {
         Ok(Self { orders, done })
     }
 
-    /// Start to read and check.
     pub fn begin(&self, order: Order) {
         // If the thread has ended, the next `look` returns an error.
         let _ = self.orders.send(order);
@@ -191,7 +185,6 @@ impl Loader {
     }
 }
 
-/// All reloads of a board.
 type Reloads = Arc<Vec<Reload>>;
 /// A load that a board has checked: its number, and the reloads with it, or `None` if there are errors.
 type Candidate = (u32, Option<(Reloads, u64)>);

@@ -44,7 +44,6 @@ pub const LOADS: &str = "loads/";
 pub const DATA: &str = "data";
 /// Key: number of times that a command is sent again after an error.
 pub const RETRY: &str = "retry";
-/// Key: neighbours in other processes.
 pub const OUTSIDE: &str = "outside";
 /// Key: file of the Data System's items.
 pub const DATA_BASE: &str = "data_base_in";

@@ -39,7 +39,6 @@ use crate::{
     observer::Observer,
 };
 
-/// The source of Task's commands.
 pub enum WorkstationSource {
     /// The emulator of the workstation controller, with a job.
     Emulator(Box<JobPlayer>),
@@ -57,7 +56,6 @@ impl WorkstationSource {
     }
 }
 
-/// The neighbours of a run.
 pub struct Neighbours {
     pub(crate) workstation: WorkstationSource,
     /// `None` if the run keeps the books itself.

@@ -20,7 +20,6 @@ pub struct Network {
     pub handles: Vec<EndpointHandle>,
     /// Operators, if they may connect, and the events of their connections.
     operators: Option<(Operators, Receiver<NetEvent>)>,
-    /// Accepts connections.
     _listener: Listener,
 }
 

@@ -9,7 +9,6 @@ use crate::event::Event;
 /// A finished tick.
 #[non_exhaustive]
 pub struct TickReport<'a> {
-    /// The tick.
     pub tick: Tick,
     /// Number of the job's line that was begun last, 0 before the first.
     pub line: usize,
@@ -17,7 +16,6 @@ pub struct TickReport<'a> {
     pub lines: usize,
     /// Steps that have begun, in order: the first PAUSE, lines of the job and their repetitions, commands of operators.
     pub steps: &'a [BegunStep],
-    /// The command to Task.
     pub hws: &'a HwsCommand,
     /// Common memory after the tick.
     pub memory: &'a CommonMemory,

@@ -35,7 +35,6 @@ pub struct OutsideWorkstation {
     endpoint: Endpoint,
     /// Mailgram number of the last line for the cell.
     line_read: u16,
-    /// Number of that line.
     line: u16,
     /// The reason why that line was refused.
     refused: Option<String>,
@@ -47,7 +46,6 @@ pub struct OutsideWorkstation {
     began: Tick,
     /// True if it has been connected in a tick.
     came: bool,
-    /// True while it is connected.
     here: bool,
     /// True if it has worked the joystick box or the rotary table's panel since it connected.
     by_hand: bool,
@@ -56,7 +54,6 @@ pub struct OutsideWorkstation {
 }
 
 impl OutsideWorkstation {
-    /// Its mailboxes.
     #[must_use]
     pub const fn new(endpoint: Endpoint) -> Self {
         Self {
@@ -81,7 +78,6 @@ impl OutsideWorkstation {
         &self.begun_steps
     }
 
-    /// True while it is connected.
     #[must_use]
     pub const fn is_here(&self) -> bool {
         self.here

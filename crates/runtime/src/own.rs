@@ -86,7 +86,6 @@ impl OwnPort {
         u16::try_from(self.robot.lag().as_millis()).unwrap_or(u16::MAX).min(MOST_LAG_MS)
     }
 
-    /// Position of the robot.
     pub fn position(&self) -> Option<Plate> {
         self.robot.position()
     }

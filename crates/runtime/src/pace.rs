@@ -90,7 +90,6 @@ impl Pace {
         self.overruns.ends(memory)
     }
 
-    /// The reaction to skipped slots.
     #[must_use]
     pub const fn policy(&self) -> Policy {
         self.policy
@@ -102,7 +101,6 @@ impl Pace {
         matches!(self.clock, Clock::Real(_))
     }
 
-    /// Number of skipped slots.
     #[must_use]
     pub const fn skipped(&self) -> u64 {
         self.clock.skipped()

@@ -38,17 +38,14 @@ pub enum RepeatError {
         "{0} took part in the run, and its actions are not in the log: only a run that is simulated whole can be repeated"
     )]
     Elsewhere(String),
-    /// The run wrote several logs.
     #[error("a fork needs the log of a whole run, without --log-limit: {0}")]
     Part(Part),
-    /// The log of a fork.
     #[error(
         "the log is that of a fork, after tick {tick} with {changes}: fork the log that it came from, with all changes"
     )]
     Fork {
         /// The last tick in which the fork is equal to its log.
         tick: String,
-        /// The changes of the fork.
         changes: String,
     },
     /// A file name of the log leads out of the directory.
@@ -58,12 +55,7 @@ pub enum RepeatError {
     Name(String),
     /// A file of the log cannot be written.
     #[error("{} cannot be written: {source}", path.display())]
-    Write {
-        /// Path of the file.
-        path: PathBuf,
-        /// Error of the system.
-        source: io::Error,
-    },
+    Write { path: PathBuf, source: io::Error },
 }
 
 /// Write the files of a log into an empty directory, and return the configuration to run them: without a log and

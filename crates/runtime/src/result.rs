@@ -26,10 +26,8 @@ pub use self::{
 };
 use crate::operator::Requests;
 
-/// A command for Task.
 #[derive(Clone, Debug, Serialize)]
 pub struct CommandResult {
-    /// As written in the job.
     pub text: String,
     /// `finished`, `error` or `executing`.
     pub status: &'static str,
@@ -45,9 +43,7 @@ pub struct CommandResult {
 pub struct RetryResult {
     /// Tick in which the failure was seen.
     pub tick: u64,
-    /// As written in the job.
     pub text: String,
-    /// Reason of the failure.
     pub reason: &'static str,
     /// Number of the retry for this line, from 1.
     pub number: u32,
@@ -64,7 +60,6 @@ pub fn bare(line: &str) -> String {
     line.trim_start_matches("==").trim_start().to_owned()
 }
 
-/// Failure of a run.
 #[derive(Clone, Debug, Serialize)]
 pub struct FailureResult {
     /// What went wrong first, and what followed.
@@ -93,7 +88,6 @@ pub const SIMULATED: &str =
 #[derive(Clone, Debug, Serialize)]
 #[non_exhaustive]
 pub struct RunResult {
-    /// Name of the job.
     pub job: String,
     /// How the run ended: `finished`, `stopped` or `failed`.
     pub ending: &'static str,
@@ -113,9 +107,7 @@ pub struct RunResult {
     pub ticks: u64,
     /// Number of ticks in which the robot was brought to rest at the end.
     pub ramp_ticks: u32,
-    /// Simulated time, s.
     pub simulated_s: f64,
-    /// Wall-clock time, s.
     pub wall_s: f64,
     /// Ratio of simulated time to wall-clock time.
     pub realtime_factor: f64,
@@ -126,7 +118,6 @@ pub struct RunResult {
     pub overruns_by: BTreeMap<String, u64>,
     /// Heap allocations of the controller after the start.
     pub allocations_after_start: Option<u64>,
-    /// Times of the controller.
     pub tick_us: TickTimes,
     /// Times of all parts of a tick: control processes by name, and the parts of the executive.
     pub part_us: BTreeMap<String, TickTimes>,
@@ -139,7 +130,6 @@ pub struct RunResult {
     /// The boards, if there is more than one; `tick_us` is then the time from the pulse to the last stamp.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub boards: Option<Vec<BoardResult>>,
-    /// Counts of the link.
     pub link: LinkResult,
     /// Injected faults of the line from `--faults`.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -147,7 +137,6 @@ pub struct RunResult {
     /// Faults of the cell that occurred, in the order of the file; empty without `--faults`.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub cell_faults: Vec<CellFaultResult>,
-    /// Counts of the serial port.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub port: Option<PortResult>,
     /// Counts and times of the line to a robot with EGM.
@@ -163,7 +152,6 @@ pub struct RunResult {
     /// Note about the statements that refer to the simulated cell, if the robot is not simulated.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub simulated: Option<&'static str>,
-    /// Positions of the parts.
     pub parts: Vec<PartState>,
     /// Items of the MBD in the Data System.
     pub data_base: Vec<ItemResult>,
@@ -175,7 +163,6 @@ pub struct RunResult {
     /// The nearest miss, if a distance was less than 2 in.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub clearance: Option<NearMiss>,
-    /// Other events.
     pub events: Events,
     /// Path of the log; `None` without a log, or if the log ended before the run did.
     pub log: Option<PathBuf>,

@@ -35,7 +35,6 @@ pub enum Robot {
     Simulated,
     /// A robot controller at a serial port.
     Serial(Port),
-    /// A robot with EGM.
     Egm(Box<EgmPort>),
     /// A robot that the caller of the library provides.
     Own(OwnPort),

@@ -60,30 +60,23 @@ pub struct Run {
     pub(crate) config: RunConfig,
     observer: Box<dyn Observer>,
     pub(crate) job: Job,
-    /// Control processes and cell.
     pub(crate) closed: ClosedLoop<Controller>,
     /// Mirrors the status; it must be dropped before the publisher of `runner`.
     mirror: Option<Mirror>,
     pub(crate) runner: Runner<Controller>,
     pub(crate) neighbours: Neighbours,
-    /// Source of operators' requests.
     pub(crate) asked: Inputs,
     operator: Operator,
-    /// Loads that operators have requested.
     pub(crate) loads: Loads,
-    /// Name of the run.
     pub(crate) name: RunName,
     pub(crate) robot: Robot,
     pub(crate) log: Option<Log>,
     log_path: Option<PathBuf>,
-    /// Origin of the task data.
     data: DataResult,
-    /// The live view.
     live: Option<Live>,
     pace: Pace,
     /// Time when the first tick was due.
     started: Option<Instant>,
-    /// Ending of the run.
     ending: Option<Ending>,
     /// The last warning on the screen of the robot controller.
     pub(crate) warning: Option<Failure>,
@@ -98,7 +91,6 @@ pub struct Run {
     waits: Option<WaitReason>,
     /// Events of the cell since the last tick, for the log of the next one.
     fresh: Vec<Event>,
-    /// All events, for the result.
     events: Events,
     /// Detects when the robot is at rest.
     rest: RestWatch,
@@ -140,7 +132,6 @@ impl Run {
         self.ending.is_none()
     }
 
-    /// The last tick.
     #[must_use]
     pub const fn last_tick(&self) -> Tick {
         self.closed.tick()

@@ -49,24 +49,17 @@ use crate::{
     switched::Switched,
 };
 
-/// Extension of job files.
 pub const EXTENSION: &str = JOBS.extension;
 
 pub use plant::description::CELL;
 
-/// The parts of a run.
 pub struct Setup {
-    /// Task data.
     pub store: Store,
     /// Origin of the task data and of the cell description.
     pub data: DataResult,
-    /// The job.
     pub job: Job,
-    /// Text of the cell description.
     pub description_text: String,
-    /// The cell description.
     pub description: CellDescription,
-    /// The cell.
     pub cell: Cell,
     /// The couplers between the controller and the cell.
     pub field: Option<SimulatedField>,
@@ -80,7 +73,6 @@ pub struct Setup {
     pub neighbours: Neighbours,
     /// File of the log, if there is one.
     pub log: Option<LogFile>,
-    /// The live view.
     pub live: Option<Live>,
 }
 
@@ -169,7 +161,6 @@ impl Setup {
 
 /// The data of the control processes on every board.
 pub struct TaskFiles {
-    /// Task data.
     pub store: Store,
     /// The job, with the task data that it loads during the run.
     pub job: Job,
@@ -177,7 +168,6 @@ pub struct TaskFiles {
     pub job_path: PathBuf,
     /// The findings in the task data.
     in_data: Diagnostics,
-    /// The warnings of the job.
     in_job: Diagnostics,
     /// The line about a job with errors that was left out.
     left_out: Option<String>,
@@ -216,9 +206,7 @@ impl TaskFiles {
 
 /// The cell description of a data directory.
 pub struct CellFile {
-    /// Text of the description.
     pub text: String,
-    /// The description.
     pub description: CellDescription,
     /// The findings of task data, job and description that do not prevent the run.
     pub findings: Findings,

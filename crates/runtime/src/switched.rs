@@ -36,7 +36,6 @@ const PAUSE: &str = "PAUSE";
 
 /// Outputs of a tick, and data around them.
 pub struct Around<'a> {
-    /// The tick.
     pub tick: Tick,
     /// Common memory after the tick and the task data, and the verdict on commands.
     pub judge: CommandJudge<'a>,
@@ -86,7 +85,6 @@ impl Switched {
         (!self.is_handed_over()).then_some(&self.job.hwsc)
     }
 
-    /// The workstation controller.
     pub const fn outside(&mut self) -> &mut OutsideWorkstation {
         &mut self.outside
     }

@@ -18,20 +18,16 @@ use crate::Run;
 /// Ticks between a warning of a robot and the failure that it explains: the time in which Prim restarts the link.
 const EXPLAINS_TICKS: u64 = RESTART_TICKS;
 
-/// How a run ended.
 pub enum Ending {
-    /// The job has finished.
     Finished,
     /// The run has ended as configured: at `--ticks`, or, without a job of its own, by a request to stop.
     Stopped,
     /// The user has stopped the run before its job had finished.
     StoppedByUser,
-    /// Something went wrong.
     Failed(Account),
 }
 
 impl Ending {
-    /// As text, for the log.
     #[must_use]
     pub fn text(&self) -> Cow<'static, str> {
         match self {
@@ -158,7 +154,6 @@ impl Run {
         Ending::Failed(Account { first: found, followed: Vec::new() }.with(more))
     }
 
-    /// What the workstation controller observes.
     fn of_job(&self, failure: &JobFailure, external: &ExternalInputs) -> Failure {
         let tick = match failure {
             JobFailure::Unfinished { tick, .. } => *tick,

@@ -28,17 +28,13 @@ pub struct Around<'a> {
     pub tick: Tick,
     /// Common memory after that tick.
     pub memory: &'a CommonMemory,
-    /// The source of commands.
     pub neighbours: &'a Neighbours,
-    /// The operators.
     pub operator: &'a Operator,
-    /// Name of the job.
     pub job: &'a str,
     /// Number of jobs that operators have played.
     pub played: u32,
     /// Why the job waits, if it does.
     pub waits: Option<&'a WaitReason>,
-    /// The cell.
     pub cell: &'a Cell,
     /// The robot controller is that of the cell: it is not a robot elsewhere.
     pub has_controller: bool,

@@ -95,7 +95,6 @@ struct Lag {
 #[derive(Clone, Copy, PartialEq)]
 enum Fault {
     None,
-    /// It stays where it is.
     Frozen(u32),
     /// It stays for 1 s, and catches up.
     Waits(u32),

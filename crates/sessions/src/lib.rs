@@ -9,7 +9,6 @@
 //! A run never waits for an operator or a viewer, and for a neighbour only in fast clock.
 
 #![forbid(unsafe_code)]
-#![warn(missing_docs)]
 
 pub mod data_system;
 pub mod live;

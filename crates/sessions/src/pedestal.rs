@@ -36,7 +36,6 @@ const ECHO_TICKS: u64 = 50;
 pub enum Remark {
     /// The pedestal has connected or disconnected, or a connection was refused.
     Network(NetEvent),
-    /// The pedestal refuses a command.
     Refuses(String),
     /// The pedestal's status cannot be decoded: it counts as not answering.
     Garbled(Place, PedestalError),
@@ -86,7 +85,6 @@ pub struct Agent {
     garbled: Option<Place>,
     /// Tick since which the last command has no echo.
     waiting: Option<Tick>,
-    /// The missing echo was reported.
     silent: bool,
     remarks: Vec<Remark>,
 }

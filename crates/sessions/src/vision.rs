@@ -27,25 +27,21 @@ use neighbours::{
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Remark {
-    /// Vision has connected or disconnected.
     Network(NetEvent),
     /// The mailbox that vision has written cannot be decoded.
     Refused(VisionError),
     /// It has answered another request than the present one.
     Stranger {
-        /// Number of the answered request.
         echo: u16,
         /// Number of the present request; 0 if there is none.
         expected: u16,
     },
     /// It has written an answer while `vision-ready-input` is not ready.
     Unread {
-        /// Number of the answered request.
         echo: u16,
     },
     /// A request cannot be written yet.
     Waits {
-        /// Number of the request.
         number: u16,
         /// True if vision is connected but not ready.
         connected: bool,
@@ -122,7 +118,6 @@ pub struct Port {
     found: VisionResponse,
     /// The error of reading the mailbox that was reported last.
     refused: Option<VisionError>,
-    /// The waiting request was reported.
     waits: bool,
     remarks: Vec<Remark>,
 }

@@ -72,7 +72,6 @@ fn connect(address: SocketAddr) -> WebSocket<TcpStream> {
     socket
 }
 
-/// The next message except pings.
 fn next(socket: &mut WebSocket<TcpStream>) -> Result<Message, Error> {
     loop {
         let message = socket.read()?;
@@ -125,7 +124,6 @@ fn programs_and_listed_pages_may_connect_and_others_get_403() {
     }
 }
 
-/// The answer to a request.
 fn answer(address: SocketAddr, request: &str) -> String {
     let mut stream = TcpStream::connect(address).unwrap();
     stream.set_read_timeout(Some(Duration::from_secs(10))).unwrap();

@@ -4,7 +4,6 @@
 //! user at the other end.
 
 #![forbid(unsafe_code)]
-#![warn(missing_docs)]
 
 use std::{
     fs, io,
@@ -180,7 +179,6 @@ impl Line {
 #[derive(Debug)]
 struct SocketFile {
     path: PathBuf,
-    /// Device and inode.
     identity: (u64, u64),
 }
 
@@ -237,7 +235,6 @@ impl Acceptor {
         Ok(Self { socket, file, over, thread })
     }
 
-    /// Path of the socket.
     #[must_use]
     pub fn path(&self) -> &Path {
         &self.file.path

@@ -5,8 +5,6 @@
 //! as large as the caches of a core), and with the caches emptied. They allocate nothing: that part of the crate is
 //! built without `alloc`.
 
-#![expect(missing_docs, reason = "criterion_group! makes a public function without a doc comment")]
-
 use std::{fmt::Write, hint::black_box, time::Duration};
 
 use criterion::{Criterion, criterion_group, criterion_main};

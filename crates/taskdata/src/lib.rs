@@ -11,7 +11,6 @@
 
 #![cfg_attr(not(any(test, feature = "load")), no_std)]
 #![forbid(unsafe_code)]
-#![warn(missing_docs)]
 #![cfg_attr(
     not(test),
     deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)

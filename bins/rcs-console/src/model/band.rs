@@ -28,10 +28,8 @@ const SPEED_TICKS: u64 = 5;
 /// A hand that is slower is at rest, in/s.
 const AT_REST: f64 = 0.05;
 
-/// State of the robot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Condition {
-    /// It carries out commands.
     Running,
     /// It waits at rest: for a command, or for a person.
     Paused,
@@ -39,18 +37,15 @@ pub enum Condition {
     Stopped,
     /// An emergency stop has taken its pressure.
     EStop,
-    /// Something has gone wrong.
     Fault,
     /// The run has finished its job.
     Finished,
     /// The run has ended without a failure that is known here.
     Ended,
-    /// No valid data arrive.
     NoData,
 }
 
 impl Condition {
-    /// The word on the screen.
     #[must_use]
     pub const fn word(self) -> &'static str {
         match self {
@@ -81,7 +76,6 @@ impl Condition {
     }
 }
 
-/// A state with its reason.
 #[derive(Clone, Debug, PartialEq, Eq)]
 struct Finding {
     condition: Condition,
@@ -95,10 +89,8 @@ impl Finding {
     }
 }
 
-/// The content of the band.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Band {
-    /// State of the robot.
     pub condition: Condition,
     /// The reason, or the command in progress.
     pub why: String,

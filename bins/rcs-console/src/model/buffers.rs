@@ -14,12 +14,10 @@ use crate::rcs_console::picture::Picture;
 static MEMORY: LazyLock<Vec<Leaf>> = LazyLock::new(|| layout::leaves(CommonMemory::STRUCT));
 static OUTSIDE: LazyLock<Vec<Leaf>> = LazyLock::new(|| layout::leaves(ExternalInputs::STRUCT));
 
-/// A field of a buffer.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Field {
     /// Path from the buffer to the field: the manual's names in Rust's spelling.
     pub name: String,
-    /// Value as text.
     pub value: String,
     /// Type: `u32`, `option text 10`, or the name of an enum.
     pub kind: String,

@@ -20,7 +20,6 @@ const BAR: f64 = 10.0;
 /// Length of the longest bar, characters.
 const LONGEST: f64 = 12.0;
 
-/// The sections, from the top.
 #[must_use]
 pub fn sections(picture: &Picture, cell: &Cell) -> Vec<Section> {
     let devices = &picture.external.devices;

@@ -36,7 +36,6 @@ pub struct Drawing {
     blocks: Vec<(String, [f64; 3], [f64; 3])>,
 }
 
-/// Direction of view.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Side {
     /// From above: X to the right, Y up.
@@ -305,7 +304,6 @@ impl Drawing {
         vec![section(format!("from above, and from the side along Y; {title}"), lines, &legends), nearest]
     }
 
-    /// End plate and tool point.
     fn hand(joints: &Joints) -> [[f64; 3]; 2] {
         [T3.forward_plate(joints).position.into(), T3.forward(joints).position.into()]
     }

@@ -11,61 +11,40 @@ use crate::rcs_console::{
 
 /// Ticks per second.
 const SECOND: u64 = 25;
-/// Lines per page.
 const PAGE: usize = 8;
 
 /// A key, independent of the terminal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Key {
-    /// A character.
     Char(char),
-    /// Enter.
     Enter,
-    /// Escape.
     Esc,
-    /// Tab.
     Tab,
-    /// Shift and Tab.
     BackTab,
-    /// Arrow up.
     Up,
-    /// Arrow down.
     Down,
-    /// Arrow left.
     Left,
-    /// Arrow right.
     Right,
-    /// Page up.
     PageUp,
-    /// Page down.
     PageDown,
-    /// Home.
     Home,
-    /// End.
     End,
-    /// Backspace.
     Backspace,
-    /// F1.
     F1,
-    /// F2.
     F2,
-    /// Control-C.
     Interrupt,
 }
 
 /// The action of the terminal after a key.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Effect {
-    /// Draw the screen and continue.
     Draw,
-    /// End the console.
     Quit,
     /// Open the log of this run at the first cause of its failure.
     OpenLog,
 }
 
 impl Model {
-    /// Carry out a key.
     pub fn key(&mut self, key: Key, source: &dyn Source) -> Effect {
         self.answer = None;
         if self.screen == Screen::Terminal && self.prompt.is_none() && self.edit(key) {

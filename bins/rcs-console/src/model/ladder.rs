@@ -11,10 +11,8 @@ use crate::rcs_console::{
     story::{self, Story},
 };
 
-/// Subject of a line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Item {
-    /// A control process.
     Process(ProcessId),
     /// The workstation controller: its command, and its status from Task.
     Workstation,
@@ -29,7 +27,6 @@ pub enum Item {
 /// Connection of a line to the lines above.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Branch {
-    /// A level of the hierarchy.
     Level,
     /// A process or neighbour beside the level, with others after it.
     Beside,
@@ -77,7 +74,6 @@ pub struct Mark {
 }
 
 impl Mark {
-    /// The emphasis of its line.
     #[must_use]
     pub const fn tone(&self) -> Tone {
         match self {
@@ -89,26 +85,19 @@ impl Mark {
     }
 }
 
-/// A line of the ladder.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Line {
-    /// Subject of the line.
     pub item: Item,
-    /// Connection to the lines above.
     pub branch: Branch,
-    /// The marks.
     pub mark: Mark,
-    /// Name.
     pub name: &'static str,
     /// Command, in the manual's spelling; empty for none.
     pub command: String,
     /// Number of the command, if any.
     pub number: Option<u32>,
-    /// Status.
     pub status: String,
     /// Number of the command to which the status belongs.
     pub echo: Option<u32>,
-    /// Table and row.
     pub row: String,
     /// Text of the row, in the manual's spelling.
     pub text: String,

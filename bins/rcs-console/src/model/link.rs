@@ -11,9 +11,7 @@ use record::{Level, reader::LogLine};
 use super::{Section, Text, Tone, frames};
 use crate::rcs_console::{picture::Picture, source::Cell, story::Story};
 
-/// Number of messages shown.
 const MESSAGES: usize = 6;
-/// Number of re-starts shown.
 const RESTARTS: usize = 3;
 /// Sources of the messages about link, robot controller and clock.
 const SOURCES: [&str; 4] = ["T3 Interface", "cell", "fault", "executive"];

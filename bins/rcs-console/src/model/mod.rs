@@ -50,13 +50,11 @@ pub enum Screen {
     Process,
     /// The link to the robot, and the times of the ticks
     Link,
-    /// Joints, sensors and parts
     Cell,
     /// Requests to the run, and its answers (IV.2)
     Terminal,
     /// Joystick box, robot controller, emergency stops (III.3.3, IV.3.3)
     Panels,
-    /// Checklists of chapter IV
     Procedures,
 }
 
@@ -83,12 +81,9 @@ impl Screen {
 /// A pane of the process screen. The one with the keyboard focus has the most lines.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Pane {
-    /// The decision table.
     #[default]
     Table,
-    /// The rows that fired.
     Rows,
-    /// The buffers.
     Buffers,
 }
 
@@ -109,10 +104,8 @@ pub enum Place {
 /// Emphasis of a line. Words or marks in the text express the same.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Tone {
-    /// Normal.
     #[default]
     Plain,
-    /// Trouble.
     Trouble,
     /// The row that fired, or a changed value.
     Marked,
@@ -120,12 +113,9 @@ pub enum Tone {
     Faint,
 }
 
-/// A line of text.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Text {
-    /// Emphasis.
     pub tone: Tone,
-    /// The text.
     pub text: String,
 }
 
@@ -154,12 +144,9 @@ impl Text {
     }
 }
 
-/// Lines with a title.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Section {
-    /// The title.
     pub title: String,
-    /// The lines.
     pub lines: Vec<Text>,
     /// Index of the line that must be visible if the section does not fit.
     pub at: usize,
@@ -173,12 +160,10 @@ impl Section {
     }
 }
 
-/// Text input of the console.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Prompt {
     /// Filter for the lines of the process screen.
     Filter(String),
-    /// Tick to go to.
     Tick(String),
     /// A request to the run, or words of a board's terminal.
     Request(String),
@@ -188,13 +173,10 @@ pub enum Prompt {
     Reason(String),
 }
 
-/// State of the console.
 pub struct Model {
-    /// The present screen.
     pub screen: Screen,
     /// True if the help page covers the screen.
     pub help: bool,
-    /// The process under the cursor.
     pub process: ProcessId,
     /// The pane with the keyboard focus.
     pub pane: Pane,
@@ -210,7 +192,6 @@ pub struct Model {
     pub acknowledged: u64,
     /// Answer to the last key, if it had no other effect.
     pub answer: Option<String>,
-    /// Progress of the procedures.
     pub procedures: Progress,
     /// True if the robot and its E-stops are at a port.
     pub robot_elsewhere: bool,
@@ -218,9 +199,7 @@ pub struct Model {
     pub ends_run: bool,
     /// The operator's requests; `None` on a console without `--operate`.
     pub operating: Option<Operating>,
-    /// The terminal of a board.
     pub terminal: BoardTerminal,
-    /// Watched fields and buffers.
     pub watch: Vec<String>,
     /// True if the process screen shows the watched fields instead of the buffers.
     pub shows_watch: bool,
@@ -228,7 +207,6 @@ pub struct Model {
     pub drawing: Option<Drawing>,
     /// True if the process screen shows the table's source text.
     pub shows_source: bool,
-    /// The present picture.
     pub picture: Option<Picture>,
     /// The previous picture on the screen.
     pub last: Option<Picture>,

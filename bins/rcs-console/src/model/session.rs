@@ -7,7 +7,6 @@ use crate::rcs_console::picture::Picture;
 
 /// Number of requests and answers kept.
 const KEPT: usize = 200;
-/// Lengths of a jog, in.
 pub const JOGS: [f64; 4] = [0.10, 0.50, 2.00, 0.02];
 
 /// The command that connects the Data System (V.4.1).
@@ -21,12 +20,9 @@ const STAGES: [(&str, &str); 4] = [
     ("settling", "Connecting..."),
 ];
 
-/// A request and its answer.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Exchange {
-    /// Number of the request.
     pub number: u32,
-    /// Text of the request.
     pub line: String,
     /// The answer, once it has come.
     pub answer: Option<Result<String, String>>,
@@ -57,18 +53,15 @@ impl Exchange {
     }
 }
 
-/// The session of an operator.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Operating {
     /// The status line of the run: the source of commands, whether the job waits, the velocity knob.
     pub status: String,
     /// Requests, oldest first.
     pub exchanges: Vec<Exchange>,
-    /// Number of all requests sent.
     count: u64,
     /// Directory of the run's task data, once the run has answered.
     pub directory: Option<String>,
-    /// Requests to be sent.
     pub outbox: Vec<String>,
     /// The reason why the connection was lost.
     pub lost: Option<String>,
@@ -96,7 +89,6 @@ impl Operating {
         self.exchanges.push(Exchange { number, line, answer: None, stages: Vec::new() });
     }
 
-    /// Number of all requests sent.
     #[must_use]
     pub const fn count(&self) -> u64 {
         self.count

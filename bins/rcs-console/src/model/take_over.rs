@@ -7,10 +7,8 @@ use crate::rcs_console::picture::Picture;
 
 /// Part of a refusal which says that the command can be taken over.
 const OFFER: &str = "`stand-alone` takes over";
-/// Ticks between two attempts.
 const AGAIN: u64 = 25;
 
-/// State of a take-over.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TakeOver {
     /// The console asks the operator whether and how to take over.
@@ -34,7 +32,6 @@ impl TakeOver {
     }
 }
 
-/// The screen of the question.
 #[must_use]
 pub fn sections(state: TakeOver, picture: &Picture) -> Vec<Section> {
     let command = &picture.external.hws;

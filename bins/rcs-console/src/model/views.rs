@@ -9,17 +9,13 @@ use crate::rcs_console::picture::Picture;
 /// A show word (IV.2.6): its board, its subject, and its buffers.
 #[derive(Debug)]
 pub struct ShowWord {
-    /// The word.
     pub word: &'static str,
     /// The board on whose terminal the word is known.
     pub board: u8,
-    /// Subject.
     pub about: &'static str,
-    /// The buffers.
     pub buffers: &'static [&'static str],
 }
 
-/// All show words.
 pub static SHOW_WORDS: [ShowWord; 5] = [
     ShowWord {
         word: "TAI",
@@ -242,7 +238,6 @@ pub fn lines(of: &[&str], picture: &Picture, last: Option<&Picture>) -> Vec<Text
         .collect()
 }
 
-/// The watched fields.
 #[must_use]
 pub fn watched(watch: &[String], picture: &Picture, last: Option<&Picture>) -> Section {
     let of: Vec<&str> = watch.iter().map(String::as_str).collect();

@@ -17,14 +17,12 @@ use crate::rcs_console::{
 
 /// Number of pictures kept: ten seconds, if none is missed.
 const KEPT: usize = 250;
-/// Number of story entries kept.
 const STORY: usize = 4096;
 /// Number of attempts to read a consistent picture. In a fast run the next tick may begin during one.
 const ATTEMPTS: usize = 10;
 /// Time without a new tick after which a run is silent.
 const SILENCE: Duration = Duration::from_secs(1);
 
-/// A run in progress.
 pub struct Live {
     run: Attached,
     pictures: VecDeque<Picture>,

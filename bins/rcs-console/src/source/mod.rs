@@ -18,7 +18,6 @@ pub trait Source {
     /// Name and state of the source.
     fn about(&self) -> About<'_>;
 
-    /// Read new data.
     fn refresh(&mut self);
 
     /// First and last available tick; `None` before the first.
@@ -30,7 +29,6 @@ pub trait Source {
     /// The changes from tick to tick.
     fn story(&self) -> &Story;
 
-    /// The cell in a tick.
     fn cell(&self, tick: u64) -> Cell;
 
     /// The description of the cell, if the source contains it.
@@ -60,9 +58,7 @@ pub struct About<'a> {
 /// A log, or the state of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum State {
-    /// A log.
     Log,
-    /// The run is in progress.
     Runs,
     /// The run has ended in an orderly way.
     Over,
@@ -79,13 +75,11 @@ pub enum Cell {
     NotPublished,
     /// The published state of a simulated cell.
     Shown(Box<CellView>),
-    /// The data of a log.
     Recorded {
         /// Name and position in inches of each part that has moved or been delivered.
         parts: Vec<(String, [f64; 3])>,
         /// Closest clearance and contacts of the whole run; `None` before its end, or if the log has none.
         clearance: Option<String>,
-        /// Collisions of the whole run.
         contacts: Option<String>,
     },
 }

@@ -20,7 +20,6 @@ const PART: &str = "part_";
 /// Positions of a link, each with its first tick, in.
 type Places = Vec<(u64, [f64; 3])>;
 
-/// A log in memory.
 pub struct Recorded {
     path: PathBuf,
     name: String,
@@ -92,7 +91,6 @@ impl Recorded {
         })
     }
 
-    /// Path of the file.
     #[must_use]
     pub fn path(&self) -> &Path {
         &self.path

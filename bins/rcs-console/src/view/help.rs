@@ -18,7 +18,6 @@ const KEYS: [(&str, &str); 10] = [
     ("on 4, 7", "v=drawing; Enter=do y=confirm s=leave out u=take back r=again"),
     ("^L ^Z", "draw again; suspend until `fg`"),
 ];
-/// Keys of an operator.
 const OPERATOR: [(&str, &str); 5] = [
     ("Space", "velocity knob to 0: the robot ramps to rest; again: back"),
     ("h", "hold Prim; again: release it (not on 5)"),
@@ -26,13 +25,11 @@ const OPERATOR: [(&str, &str); 5] = [
     (":", "a request; on 5 also with a letter, and ^C stops the board"),
     ("on 6", "box, panels and all requests: their keys are listed there"),
 ];
-/// The signs and their meaning.
 const SIGNS: [&str; 2] = [
     " >> running  || paused  [] stopped  XX E-stop  !! fault  LOG [ ]: recorded",
     " !! failure  * gripper on the robot  - not stepped  > changed  ~ nearly fired",
 ];
 
-/// The lines of the page.
 pub fn lines(model: &Model, look: Look) -> Vec<Line<'static>> {
     let quit = match (model.ends_run, model.operates()) {
         (true, _) => "ENDS THE RUN: the robot ramps to rest first",

@@ -30,7 +30,6 @@ const HIERARCHY: usize = 43;
 /// Least and most columns for its row.
 const ROW: (usize, usize) = (15, 30);
 
-/// Widths of the columns.
 struct Widths {
     command: usize,
     text: usize,

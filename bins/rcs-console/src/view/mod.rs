@@ -35,15 +35,12 @@ pub use waiting::Waiting;
 
 /// Smallest size of a terminal: columns and lines.
 pub const LEAST: (u16, u16) = (80, 24);
-/// Lines of the state band.
 const BAND: usize = 3;
 /// Lines above and below the body.
 const FRAME: usize = BAND + 3;
 
-/// Capabilities of a terminal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Look {
-    /// With colours.
     pub colour: bool,
     /// ASCII characters only.
     pub ascii: bool,
@@ -87,17 +84,12 @@ impl Look {
 /// Number of lines by which the body can be scrolled from its default position.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Reach {
-    /// Lines above.
     pub up: usize,
-    /// Lines below.
     pub down: usize,
 }
 
-/// The content of the screen.
 pub enum Scene<'a> {
-    /// A run or a log.
     Source(&'a Model, &'a dyn Source),
-    /// No run yet.
     Waiting(&'a Waiting),
 }
 
@@ -109,7 +101,6 @@ pub fn draw(frame: &mut Frame<'_>, scene: &Scene<'_>, look: Look) -> Reach {
     reach
 }
 
-/// The lines of a screen.
 #[must_use]
 pub fn compose(scene: &Scene<'_>, look: Look, width: usize, height: usize) -> (Vec<Line<'static>>, Reach) {
     let (columns, rows) = (usize::from(LEAST.0), usize::from(LEAST.1));

@@ -69,7 +69,6 @@ pub fn process(
     (lines, reach)
 }
 
-/// Sections in one column.
 pub fn column(
     sections: &[Section],
     model: &Model,

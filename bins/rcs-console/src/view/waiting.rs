@@ -9,7 +9,6 @@ use super::{
 };
 use crate::rcs_console::model::Tone;
 
-/// The runs to choose from.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Waiting {
     /// Runs of this user in progress.
@@ -31,7 +30,6 @@ impl Waiting {
         self.runs = runs;
     }
 
-    /// The run under the cursor.
     #[must_use]
     pub fn chosen(&self) -> Option<&RunName> {
         self.runs.get(self.cursor)

@@ -29,7 +29,6 @@ struct Rows {
     b: String,
 }
 
-/// The commanded tool points differ.
 #[derive(Debug, Serialize)]
 struct Motion {
     /// Number of ticks in which they differ.
@@ -63,7 +62,6 @@ pub struct Changes {
 type Others = Option<(u64, [u64; 2], [Option<Decided>; 2])>;
 
 impl Changes {
-    /// Compares two runs.
     #[must_use]
     pub fn between(a: &Trace, b: &Trace, align: Align) -> Self {
         let of_b: HashMap<Key, &Mark> = b.keys(align).zip(&b.marks).collect();

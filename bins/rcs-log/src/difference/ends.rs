@@ -7,7 +7,6 @@ use record::Log;
 use runtime::RunOutcome;
 use serde::Serialize;
 
-/// The end of a run.
 #[derive(Clone, Debug, Default)]
 pub struct End {
     /// Outcome as text; empty if the log is incomplete.
@@ -34,7 +33,6 @@ impl End {
         Self { outcome, ticks, facts }
     }
 
-    /// Duration of the run, s.
     #[must_use]
     pub fn seconds(&self) -> f64 {
         self.ticks as f64 * TICK_S
@@ -64,7 +62,6 @@ struct Ended {
 pub struct Ends(Vec<Ended>);
 
 impl Ends {
-    /// Compares two ends.
     #[must_use]
     pub fn between(a: &End, b: &End) -> Self {
         let longer = b.seconds() - a.seconds();

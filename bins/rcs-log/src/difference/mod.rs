@@ -20,7 +20,6 @@ pub use self::{
 /// Which ticks belong together.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
 pub enum Align {
-    /// Ticks of the same number
     Tick,
     /// Ticks at the same distance from the beginning of the same command
     Command,
@@ -29,14 +28,11 @@ pub enum Align {
 /// The differences between two whole runs.
 #[derive(Debug, Serialize)]
 pub struct Difference {
-    /// Differences at the end.
     pub ends: Ends,
-    /// Differences during the run.
     pub changes: Changes,
 }
 
 impl Difference {
-    /// Compares two runs.
     #[must_use]
     pub fn between(a: &Trace, b: &Trace, align: Align) -> Self {
         Self { ends: Ends::between(&a.end, &b.end), changes: Changes::between(a, b, align) }

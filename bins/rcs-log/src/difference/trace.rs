@@ -18,7 +18,6 @@ pub type Key = (u32, u64);
 /// The data of a tick that are compared.
 #[derive(Clone, Debug)]
 pub struct Mark {
-    /// The tick.
     pub tick: u64,
     /// Number of the command that Task has taken.
     command: u32,
@@ -26,7 +25,6 @@ pub struct Mark {
     pub rows: [Option<Decided>; PROCESS_COUNT],
     /// Commanded tool point, inches, world.
     pub tool: [f64; 3],
-    /// Bytes sent on the link.
     pub sent: LinkBytes,
 }
 
@@ -35,9 +33,7 @@ pub struct Mark {
 pub struct Trace {
     /// Its ticks.
     pub marks: Vec<Mark>,
-    /// Commands of the run.
     pub chronicle: Chronicle,
-    /// The end of the run.
     pub end: End,
 }
 

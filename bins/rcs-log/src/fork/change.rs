@@ -17,7 +17,6 @@ use taskdata::load::{Diagnostics, Job, Source, Step, Store, Workstation, job::Jo
 
 use super::datum::{Datum, DatumError, Words};
 
-/// A change of a run.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Change {
     /// Replace a word of the task data.
@@ -34,7 +33,6 @@ pub enum Change {
     Cell {
         /// Key in the file, such as `vise.friction`.
         key: String,
-        /// Value as TOML.
         value: String,
     },
 }
@@ -83,7 +81,6 @@ impl fmt::Display for Change {
     }
 }
 
-/// Why a change is refused.
 #[derive(Debug, thiserror::Error)]
 pub enum RefusedChange {
     /// The task data contain no such word.
@@ -100,23 +97,13 @@ pub enum RefusedChange {
     NotOne(&'static str),
     /// The file of faults cannot be read.
     #[error("{}: {source}", path.display())]
-    Read {
-        /// Path of the file.
-        path: PathBuf,
-        /// Error of the operating system.
-        source: io::Error,
-    },
+    Read { path: PathBuf, source: io::Error },
     /// The file of faults has errors.
     #[error("{}", .0.in_line())]
     Faults(Diagnostics),
     /// The cell description has no such value.
     #[error("cell.toml has no value {key}: {known}")]
-    Key {
-        /// The key of the change.
-        key: String,
-        /// Keys that exist.
-        known: String,
-    },
+    Key { key: String, known: String },
     /// The value is not valid TOML.
     #[error("{0} is not a TOML value")]
     Value(String),
@@ -129,9 +116,7 @@ pub enum RefusedChange {
 #[derive(Debug, thiserror::Error)]
 #[error("the change is refused ({what}): {why}")]
 pub struct Refusal {
-    /// The change, as text.
     what: String,
-    /// The reason.
     why: RefusedChange,
 }
 
@@ -143,9 +128,7 @@ pub enum Operation {
     Line(JobLine),
     /// Execute a command instead of the next one.
     Command(JobLine),
-    /// Use another seed.
     Seed(u64),
-    /// Enable these faults.
     Faults(Box<FaultFile>),
 }
 

@@ -23,66 +23,35 @@ pub struct Datum {
     edit: Edit,
 }
 
-/// How a word changes.
 #[derive(Clone, Debug, PartialEq, Eq)]
 enum Edit {
-    /// Replace it by this word.
     Set(String),
-    /// Add this to its number.
     Add(i64),
 }
 
-/// Errors of changing a datum.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum DatumError {
     /// The task data have no such file.
     #[error("the log has no file {file}: it has {known}")]
-    File {
-        /// The file of the change.
-        file: String,
-        /// Files that exist.
-        known: String,
-    },
+    File { file: String, known: String },
     /// The file has no such block.
     #[error("{file} has no block {block}")]
-    Block {
-        /// The file.
-        file: String,
-        /// The block of the change.
-        block: u32,
-    },
+    Block { file: String, block: u32 },
     /// The block has no such line.
     #[error("{block} of {file} has no line {line}: its last is {last}")]
     Line {
-        /// The file.
         file: String,
-        /// The block.
         block: BlockNumber,
-        /// The line of the change.
         line: usize,
         /// Number of the last line.
         last: usize,
     },
     /// The line has no such word.
     #[error("line {line} has no word {word}: it is `{text}`")]
-    Word {
-        /// The line.
-        line: usize,
-        /// The word of the change.
-        word: usize,
-        /// Text of the line.
-        text: String,
-    },
+    Word { line: usize, word: usize, text: String },
     /// The word is not a number.
     #[error("word {word} of line {line} is {found}: += and -= need a whole number")]
-    NoNumber {
-        /// The line.
-        line: usize,
-        /// Number of the word.
-        word: usize,
-        /// The word found.
-        found: String,
-    },
+    NoNumber { line: usize, word: usize, found: String },
 }
 
 impl FromStr for Datum {
@@ -118,7 +87,6 @@ impl FromStr for Datum {
     }
 }
 
-/// A changed block.
 struct Changed {
     file: String,
     number: BlockNumber,

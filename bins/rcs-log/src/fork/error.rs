@@ -7,7 +7,6 @@ use runtime::{ChangeError, RepeatError, StartError};
 
 use super::change::Refusal;
 
-/// Errors of forking a log.
 #[derive(Debug, thiserror::Error)]
 pub enum ForkError {
     /// The log does not hold the whole run.
@@ -16,21 +15,16 @@ pub enum ForkError {
     /// The task data of the log are invalid.
     #[error(transparent)]
     Data(#[from] ReplayError),
-    /// The log cannot be read.
     #[error(transparent)]
     Read(#[from] ReadError),
-    /// The run cannot begin.
     #[error("{0}")]
     Start(#[from] StartError),
-    /// A change is refused.
     #[error(transparent)]
     Refused(#[from] Box<Refusal>),
-    /// The run refuses a change.
     #[error("the change is refused after tick {tick}: {source}")]
     Change {
         /// The last tick before the change.
         tick: u64,
-        /// The reason.
         source: ChangeError,
     },
     /// A change of the cell after tick 0: the cell is built before the first tick.
@@ -49,12 +43,7 @@ pub enum ForkError {
     NoFailure,
     /// The output would replace the log of the fork, or a file that is no log.
     #[error("the fork cannot be written to {path}: {source}")]
-    Output {
-        /// The output.
-        path: PathBuf,
-        /// The reason.
-        source: io::Error,
-    },
+    Output { path: PathBuf, source: io::Error },
     /// The program has changed, or the log lacks data that the run depended on.
     #[error(
         "this program differs from the log from tick {tick} on ({field} was {was}, is {is}): fork a log of this program"
@@ -64,9 +53,7 @@ pub enum ForkError {
         tick: u64,
         /// Name of a field of a buffer, or of the cell.
         field: String,
-        /// Recorded value.
         was: String,
-        /// Computed value.
         is: String,
     },
     /// The repeated run ends before the log does.

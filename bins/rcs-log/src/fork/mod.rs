@@ -35,7 +35,6 @@ use crate::{
 #[derive(Clone, Debug, clap::Args)]
 #[group(id = "when", required = true, multiple = false, args = ["tick", "at_failure"])]
 pub struct Arguments {
-    /// The log
     pub file: PathBuf,
     /// The last tick that is as in the log; 0 makes the changes before the first tick
     #[arg(long, value_name = "N")]
@@ -72,7 +71,6 @@ struct Forked {
     /// Outcomes of the log and of the fork.
     outcome: [String; 2],
     seconds: [f64; 2],
-    /// Path of the fork's log.
     log: Option<PathBuf>,
     #[serde(flatten)]
     difference: Difference,

@@ -13,7 +13,6 @@ use crate::{difference::Trace, story::Moment};
 
 /// A run that is compared with a log.
 pub struct Repetition {
-    /// The run.
     pub run: Run,
     /// The data that are compared after the run.
     pub trace: Trace,

@@ -14,23 +14,17 @@ use serde::Serialize;
 
 use super::history::{self, History, condition, info, row_of, row_words};
 
-/// A step of the trace.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Link {
-    /// The tick.
     pub tick: u64,
-    /// Name of the process.
     pub process: String,
-    /// What it did, and why.
     pub text: String,
 }
 
 /// The end of the trace: process and tick of the first cause.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Root {
-    /// The process.
     pub process: ProcessId,
-    /// The tick.
     pub tick: u64,
 }
 

@@ -36,7 +36,6 @@ pub struct Evidence {
     pub devices: Vec<String>,
 }
 
-/// The values of one input.
 struct Trace {
     leaf: Leaf,
     /// Ticks of the changes, each with the new value.

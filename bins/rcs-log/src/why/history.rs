@@ -15,16 +15,13 @@ use crate::story::Moment;
 pub struct Commanded {
     /// Tick of writing; the receiver reads it one tick later, Task in the same tick.
     pub tick: u64,
-    /// Number of the command.
     pub number: u32,
-    /// The command as text.
     pub text: String,
 }
 
 /// A row, valid from the tick in which it first fired.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Fired {
-    /// The tick.
     pub tick: u64,
     /// Table and row; `None` if no row of a table fired.
     pub decided: Option<Decided>,
@@ -37,7 +34,6 @@ pub struct Fired {
 /// A report, valid from the tick of its writing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Reported {
-    /// The tick.
     pub tick: u64,
     /// The report as text: `executing`, `done`, `not-detected` ...
     pub report: &'static str,
@@ -108,7 +104,6 @@ pub fn info(process: ProcessId) -> &'static ProcessInfo {
     &Ladder::processes()[process.position()]
 }
 
-/// The table and row that fired.
 pub fn row_of(process: ProcessId, fired: &Fired) -> Option<table::Fired> {
     let (table, row) = info(process).row(fired.decided?)?;
     Some(table::Fired { table, row, values: fired.values })

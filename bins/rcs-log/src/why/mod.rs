@@ -55,7 +55,6 @@ const FAULT: &str = "fault";
 /// Arguments of `why`.
 #[derive(Clone, Debug, clap::Args)]
 pub struct Arguments {
-    /// The log
     pub file: PathBuf,
     /// The tick to explain [default: the one in which the last failure began]
     #[arg(long, value_name = "N")]
@@ -77,16 +76,13 @@ pub struct Explanation {
     ended: Option<String>,
     /// Log lines before the tick, oldest first; for a failure, the events of cell and link during the command.
     before: Vec<LineBefore>,
-    /// All processes, from Task down.
     levels: Vec<Rung>,
 }
 
-/// A failure with its causes.
 #[derive(Debug, Serialize)]
 pub struct Story {
     /// Tick in which the failure began.
     pub tick: u64,
-    /// The failure in one sentence.
     pub text: String,
     /// The commands that led to the failed process, from the workstation controller down.
     pub commands: Vec<Link>,
@@ -102,7 +98,6 @@ pub struct Story {
 
 /// A failure, and the tick from which events in the cell can be related to it.
 pub struct Told {
-    /// The failure.
     pub story: Story,
     /// Tick of the first command that led to the failure.
     pub begun: u64,

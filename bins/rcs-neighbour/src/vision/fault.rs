@@ -8,15 +8,12 @@ use neighbours::vision::{Areas, Ready};
 /// A fault of one picture. `off` and `camera-blind` are also words of fault files (data/README.md).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
-    /// The request gets no answer.
     Off,
-    /// The camera sees nothing.
     CameraBlind,
     /// The camera sees an object, and recognition fails.
     NotRecognised,
     /// Vision recognises another object than the requested one.
     AnotherObject,
-    /// The answer echoes another request.
     AnotherEcho,
     /// The answer comes while `vision-ready-input` is "not ready".
     InputNotReady,
@@ -24,7 +21,6 @@ pub enum Kind {
     OutputNotReady,
     /// The answer has an undefined status value.
     Garbled,
-    /// The answer is too short.
     Truncated,
     /// The centroid is far outside the picture.
     Outside,
@@ -89,11 +85,9 @@ impl Kind {
 pub struct Fault {
     /// Numbers of the affected pictures, counted from 1 over all runs.
     pub pictures: RangeInclusive<u32>,
-    /// The kind of the fault.
     pub kind: Kind,
 }
 
-/// Errors of parsing a fault.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum FaultError {
     /// The numbers of the pictures are missing or wrong.
@@ -101,10 +95,7 @@ pub enum FaultError {
     Pictures(String),
     /// The kind of the fault is unknown.
     #[error("{} was expected, found {found}", Kind::ALL.map(|(word, _)| word).join(" or "))]
-    Kind {
-        /// The word found.
-        found: String,
-    },
+    Kind { found: String },
 }
 
 impl FromStr for Fault {

@@ -75,7 +75,6 @@ struct Vision {
     analysis: Option<(u64, Analysis)>,
     /// Number of pictures in all runs.
     pictures: u32,
-    /// Fault of the present picture.
     fault: Option<Kind>,
     /// Status reported last on standard output; each answer is reported once.
     said: VisionStatus,

@@ -22,15 +22,11 @@ use crate::rcs_run::error::Error;
 
 /// The data that all branches of a campaign share.
 pub struct Facility {
-    /// Task data.
     pub store: Arc<Store>,
-    /// The job.
     pub job: Job,
     /// The task data after each `** load` of the job.
     pub reloads: Arc<Vec<Reload>>,
-    /// The cell description.
     pub description: CellDescription,
-    /// Seed of the cell's noise.
     pub seed: u64,
 }
 
@@ -47,7 +43,6 @@ impl Facility {
 #[derive(Clone)]
 pub struct Branch<'f> {
     facility: &'f Facility,
-    /// Control processes and cell.
     pub closed: ClosedLoop,
     command_box: CommandBox,
     /// Events in the cell in the last tick.

@@ -31,7 +31,6 @@ impl Coverage {
         }
     }
 
-    /// A coverage of states alone.
     #[cfg(test)]
     pub fn of_states(states: impl IntoIterator<Item = u64>) -> Self {
         Self { states: states.into_iter().collect(), ..Self::default() }

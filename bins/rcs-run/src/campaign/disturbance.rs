@@ -16,7 +16,6 @@ const FASTEST: f64 = 0.5;
 /// Least share of the box's velocity: slower the robot would not stop where it is wanted.
 const SLOWEST: f64 = 0.02;
 
-/// A disturbance.
 #[derive(Clone, Debug, PartialEq)]
 pub enum What {
     /// The joystick leads the robot by this vector, world, 0.01 in.
@@ -47,7 +46,6 @@ impl Follow {
     pub const ALL: [(Self, &'static str); 3] =
         [(Self::Same, ""), (Self::Next, ":next"), (Self::Again, ":again")];
 
-    /// The end of its name.
     pub fn text(self) -> &'static str {
         Self::ALL.iter().find(|(one, _)| *one == self).map_or("", |(_, text)| text)
     }
@@ -56,9 +54,7 @@ impl Follow {
 /// A disturbance, and the command that follows it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Disturbance {
-    /// The disturbance.
     pub what: What,
-    /// What follows.
     pub then: Follow,
 }
 
@@ -117,7 +113,6 @@ impl Disturbance {
     }
 }
 
-/// A vector of hundredths, in.
 fn inches([x, y, z]: [i32; 3]) -> Vector {
     Vector::new(f64::from(x), f64::from(y), f64::from(z)) / 100.0
 }
@@ -200,7 +195,6 @@ pub enum Undo {
     Put(String, Frame),
     /// Move a part back to a frame.
     Back(u32, Frame),
-    /// Take a part away.
     Remove(u32),
 }
 

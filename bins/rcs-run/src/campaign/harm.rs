@@ -130,9 +130,7 @@ impl PartAt {
 /// An event that must not happen, such as a contact or a part that slips.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Harm {
-    /// Tick of the event.
     pub tick: Tick,
-    /// The event as a sentence.
     pub what: String,
     /// The sentence without numbers, by which harms are counted.
     pub kind: String,
@@ -143,7 +141,6 @@ pub struct Harm {
     contact: Option<usize>,
 }
 
-/// Watches a branch for harm.
 pub struct HarmMonitor {
     seen: usize,
     harms: Vec<Harm>,
@@ -155,7 +152,6 @@ pub struct HarmMonitor {
 }
 
 impl HarmMonitor {
-    /// Watch from now on.
     #[must_use]
     pub fn from_now(branch: &Branch<'_>) -> Self {
         Self {

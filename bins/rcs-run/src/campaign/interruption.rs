@@ -29,12 +29,10 @@ const RESTART: u64 = 25;
 /// Ticks between the emergency stop and its release: the time to walk there.
 const STOPPED: u64 = 100;
 
-/// A kind of interruption.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Kind {
     /// None: the branch continues as its parent.
     None,
-    /// PAUSE.
     Pause,
     /// PAUSE, and a second PAUSE during the recovery.
     PauseTwice,
@@ -56,7 +54,6 @@ pub enum Kind {
     Away,
     /// A switch on the joystick box holds a process, and releases it again.
     Held(ProcessId),
-    /// A process is restarted.
     Restart(ProcessId),
     /// A process writes nothing from now on.
     Lost(ProcessId),
@@ -191,7 +188,6 @@ impl Kind {
         matches!(self, Self::Cut | Self::Lost(_))
     }
 
-    /// The disturbance, if it is one.
     #[must_use]
     pub const fn disturbance(&self) -> Option<&Disturbance> {
         match self {
@@ -200,7 +196,6 @@ impl Kind {
         }
     }
 
-    /// The steps of the interruption.
     #[must_use]
     pub fn script(&self) -> Script {
         let steps = match self {

@@ -41,7 +41,6 @@ pub struct Invariants {
 }
 
 impl Invariants {
-    /// Watch from now on.
     #[must_use]
     pub fn from_now(branch: &Branch<'_>) -> Self {
         let mut point = None;

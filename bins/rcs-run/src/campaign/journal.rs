@@ -21,7 +21,6 @@ use super::{
 };
 use crate::rcs_run::error::Error;
 
-/// A line.
 #[derive(Deserialize, Serialize)]
 struct Line<'a> {
     campaign: String,

@@ -44,9 +44,7 @@ pub struct End {
 /// A state in which a branch was compared with others.
 #[derive(Clone, Copy, Debug)]
 pub struct Passed {
-    /// Its tick.
     pub tick: Tick,
-    /// Its digest.
     pub state: Digest,
     /// Number of confirmations that were judged up to it, from the fork of the branch on.
     pub judged: u64,
@@ -55,13 +53,11 @@ pub struct Passed {
 /// How a branch ends that is in a known state.
 #[derive(Clone, Debug)]
 pub struct Rest {
-    /// The end.
     pub end: Arc<End>,
     /// Number of confirmations that are judged from the state to the end.
     pub judged: u64,
 }
 
-/// The known states.
 #[derive(Debug, Default)]
 pub struct Known(Mutex<HashMap<State, Rest>>);
 

@@ -13,9 +13,7 @@ const FIRST: &str = "interruption";
 /// Results of a job, one per interruption.
 #[derive(Debug, PartialEq)]
 pub struct Column {
-    /// The job.
     pub job: String,
-    /// Pairs of interruption and result.
     pub cells: Vec<(String, String)>,
 }
 

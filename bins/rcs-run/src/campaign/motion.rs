@@ -20,7 +20,6 @@ const OPENING: f64 = 1e-4;
 struct Posture {
     /// Joints of the robot, rad; `None` if it has sagged without pressure, where it creeps for minutes.
     joints: Option<Joints>,
-    /// Rotation of the rotary table.
     table: Rotation,
     /// Openings of the robot's gripper and of the pedestal's hand, in.
     openings: [f64; 4],

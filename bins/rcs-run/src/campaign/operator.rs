@@ -28,12 +28,10 @@ const TIME_LIMIT: u64 = neighbours::workstation::player::TIME_LIMIT;
 /// Ticks within which Task must echo a command.
 const ECHO_LIMIT: u64 = 25;
 
-/// State of the operator.
 #[derive(Clone, Debug, PartialEq)]
 enum Doing {
     /// A command that is not one of the job, and what follows its end.
     Own(Then),
-    /// PAUSE.
     Pause,
     /// The current line is a command, which Task has accepted.
     Command,
@@ -41,7 +39,6 @@ enum Doing {
     Failed,
     /// The current line is an action of the workstation.
     Action,
-    /// The job is over.
     Over,
     /// The command failed, and no try is left.
     Stranded,
@@ -50,11 +47,9 @@ enum Doing {
 /// What follows a command of the operator.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Then {
-    /// The recovery procedure.
     Recovery,
     /// The interrupted command, without recovery.
     SameCommand,
-    /// Nothing more.
     Nothing,
 }
 
@@ -90,7 +85,6 @@ struct Later {
     text: String,
 }
 
-/// The simulated operator.
 pub struct Operator<'f> {
     lines: &'f [JobLine],
     /// Position in the job: 0 is the first PAUSE, `n` is `lines[n - 1]`.
@@ -145,7 +139,6 @@ impl<'f> Operator<'f> {
         operator
     }
 
-    /// Set the recovery procedure.
     #[must_use]
     pub const fn with_recovery(mut self, recovery: Recovery) -> Self {
         self.recovery = recovery;
@@ -170,7 +163,6 @@ impl<'f> Operator<'f> {
         self.doing = Doing::Failed;
     }
 
-    /// Position in the job.
     #[must_use]
     pub const fn current(&self) -> usize {
         self.current
@@ -194,7 +186,6 @@ impl<'f> Operator<'f> {
         (0..self.current).rev().find_map(|line| self.command_at(line))
     }
 
-    /// Begin the recovery procedure.
     pub fn recover(&mut self, tick: Tick) {
         match self.recovery {
             Recovery::Pause => self.pause(tick),

@@ -29,7 +29,6 @@ pub enum Ticks {
     Both(u64),
 }
 
-/// The undisturbed run.
 pub struct Parent {
     /// First tick of each line; line 0 is the first PAUSE.
     begun: Vec<Tick>,
@@ -38,9 +37,7 @@ pub struct Parent {
     changes: Vec<u64>,
     /// The first tick of each state of the control processes.
     states: Vec<u64>,
-    /// Ticks of the run.
     pub ticks: u64,
-    /// Fingerprint of the run.
     pub digest: String,
 }
 

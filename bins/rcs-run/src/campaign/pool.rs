@@ -17,12 +17,10 @@ use super::{
 };
 use crate::rcs_run::error::Error;
 
-/// A branch to run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Plan {
     /// Tick after which the job is forked.
     pub at: u64,
-    /// The interruptions of the branch.
     pub series: Series,
     /// How the branch is recovered and judged.
     pub procedure: Procedure,

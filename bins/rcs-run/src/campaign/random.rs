@@ -21,7 +21,6 @@ use super::{
 /// Upper limits of the ticks between two interruptions, one of which is drawn: at once, within a step, within a
 /// command.
 const BETWEEN: [u64; 3] = [3, 60, 600];
-/// Branches of a round.
 const ROUND: usize = 64;
 /// Weight of a new row: that of so many new states.
 const ROW: usize = 20;
@@ -32,18 +31,14 @@ const NEAR: u64 = 12;
 /// Number of times that a branch is drawn again if it was drawn before.
 const AGAIN: usize = 8;
 
-/// Parameters of a draw.
 #[derive(Clone, Copy, Debug)]
 pub struct Settings {
-    /// Number of branches.
     pub branches: usize,
     /// Largest number of interruptions of a branch.
     pub longest: usize,
-    /// Seed of the draw.
     pub seed: u64,
 }
 
-/// A draw of branches.
 pub struct Draw {
     settings: Settings,
     procedure: Procedure,
@@ -158,7 +153,6 @@ impl Draw {
         Some((at, drawn))
     }
 
-    /// Ticks between two interruptions.
     fn between(&mut self) -> Option<u64> {
         let most = BETWEEN.choose(&mut self.random).copied()?;
         Some(self.random.random_range(0..=most))

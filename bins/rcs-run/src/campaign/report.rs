@@ -16,7 +16,6 @@ use super::{
 };
 use crate::rcs_run::error::Error;
 
-/// Branches listed per reason.
 const LISTED: usize = 3;
 
 /// Results of a kind of interruption.
@@ -30,7 +29,6 @@ struct Row {
     stranded: usize,
     apart: usize,
     hurt: usize,
-    /// Branches with a false confirmation.
     #[serde(rename = "false")]
     lies: usize,
     /// Largest number of ticks from the interruption to rest, if the branches are judged at rest.
@@ -159,7 +157,6 @@ impl<'a> CampaignReport<'a> {
         Column { job: self.job.to_owned(), cells: cells.collect() }
     }
 
-    /// The report as text.
     #[must_use]
     pub fn text(&self) -> String {
         let mut text = format!(

@@ -131,7 +131,6 @@ impl<'a> Runner<'a> {
         }
     }
 
-    /// What all branches have met.
     pub fn finish(self) -> Coverage {
         if let Some(bar) = &self.bar {
             bar.finish_and_clear();

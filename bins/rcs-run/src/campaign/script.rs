@@ -75,9 +75,7 @@ pub enum ScriptStep {
     Restart(ProcessId),
     Lose(ProcessId),
     Cut,
-    /// The controller loses its power.
     PowerOff,
-    /// The controller starts again.
     PowerOn,
     Answer(FaultKind),
     Faults(Arc<FaultFile>),
@@ -95,12 +93,10 @@ pub enum ScriptStep {
     Lead(Lead),
     /// A change of the parts in the cell.
     Change(What),
-    /// The change undone.
     Undo(Undo),
 }
 
 impl ScriptStep {
-    /// A key of the panel.
     pub const fn key(key: Key) -> Self {
         Self::Workstation(WorkstationAction::T3(key))
     }
@@ -130,7 +126,6 @@ pub fn lead(way: [i32; 3]) -> Vec<ScriptStep> {
 }
 
 impl Script {
-    /// A script of these steps.
     #[must_use]
     pub const fn new(steps: Vec<ScriptStep>) -> Self {
         Self { steps, at: 0, until: None, height: 0.0, lead: None, undo: Vec::new() }

@@ -7,12 +7,10 @@ use plant::CellDescription;
 use super::interruption::Kind;
 use crate::rcs_run::error::Error;
 
-/// One interruption of a series.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Interruption {
     /// Ticks since the end of the interruption before; 0 for the first.
     pub after: u64,
-    /// Kind of the interruption.
     pub kind: Kind,
 }
 

@@ -34,7 +34,6 @@ impl Story {
         Self { text: String::new(), at, around, last: Vec::new() }
     }
 
-    /// The story as text.
     #[must_use]
     pub fn told(mut self, result: &BranchResult) -> String {
         let BranchResult { at, interruption, verdict, detail, line, until, .. } = result;

@@ -37,7 +37,6 @@ pub(super) fn facility(job: &str) -> Facility {
     Facility::new(store, job, description, 1)
 }
 
-/// Campaign data with another job.
 fn with_job(text: &str) -> Facility {
     let shipped = facility("linkbar");
     let source = Source { name: "try.job".into(), text: text.into() };
@@ -68,7 +67,6 @@ impl Commander for Tape<'_> {
     }
 }
 
-/// Sends recorded commands.
 struct Playback(Option<HwsCommand>);
 
 impl Commander for Playback {

@@ -46,15 +46,12 @@ pub enum Until {
 /// How a branch is recovered and judged.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Procedure {
-    /// First action of the operator.
     pub recovery: Recovery,
     /// Number of times that the interrupted command is sent again.
     pub tries: u32,
-    /// When a branch is judged.
     pub until: Until,
 }
 
-/// Observes a branch.
 pub trait Observer {
     /// Called after each tick.
     fn tick(&mut self, branch: &Branch<'_>);
@@ -62,7 +59,6 @@ pub trait Observer {
     fn say(&mut self, tick: Tick, text: &str);
 }
 
-/// An observer that ignores everything.
 pub struct NoObserver;
 
 impl Observer for NoObserver {
@@ -336,7 +332,6 @@ impl Trial<'_, '_> {
         self.series.interruptions().get(self.interruption + 1).map(|next| next.after)
     }
 
-    /// Begin an interruption.
     fn begin(&mut self, observer: &mut impl Observer) -> Script {
         let (at, kind) = (self.branch.at(), self.kind().clone());
         if self.interruption > 0 {

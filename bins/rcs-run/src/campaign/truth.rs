@@ -84,7 +84,6 @@ impl Choice {
     }
 }
 
-/// Draws disturbances.
 struct Draw {
     random: ChaCha8Rng,
     choice: Choice,

@@ -3,11 +3,9 @@
 use closed_loop::truth::Confirmation;
 use serde::{Deserialize, Serialize};
 
-/// The verdict on a branch.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Verdict {
-    /// The job continued.
     Done,
     /// The job did not continue, for the given reason.
     Stranded,
@@ -20,7 +18,6 @@ pub enum Verdict {
     False,
 }
 
-/// The result of a branch.
 #[derive(Clone, Debug, Deserialize, Serialize)]
 pub struct BranchResult {
     /// Tick after which the branch was interrupted.
@@ -30,7 +27,6 @@ pub struct BranchResult {
     /// The smallest series of interruptions with the same verdict and reason, if there were several.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub smallest: Option<String>,
-    /// What became of it.
     pub verdict: Verdict,
     /// Reason of a verdict other than done, without numbers, by which branches are counted.
     pub reason: String,

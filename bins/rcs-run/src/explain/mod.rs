@@ -26,7 +26,6 @@ use crate::rcs_run::{
     error::{Error, UNUSABLE},
 };
 
-/// The motion of a command.
 #[derive(Clone, Debug, Serialize)]
 struct Explanation {
     command: String,
@@ -71,7 +70,6 @@ fn command_of(text: &str, store: &Store) -> Result<HwsCommand, Box<Diagnostics>>
     }
 }
 
-/// The robot at a location.
 fn present(from: &str, store: &Store) -> Present {
     let location = store.view().resolve_location::<16, 16>(&Name16::clipped(from), None, None);
     let place = location.map(|location| *Walk::new(store, &location).place()).unwrap_or_default();

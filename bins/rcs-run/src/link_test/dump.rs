@@ -9,9 +9,7 @@ use depc::wire::{Control, FRAME_BYTES, Response, START};
 /// Direction of bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Way {
-    /// To the robot.
     Sent,
-    /// From the robot.
     Received,
 }
 

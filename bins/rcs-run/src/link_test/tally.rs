@@ -21,7 +21,6 @@ const LOST_GOOD: f64 = 0.005;
 /// Largest share for `usable`: 10 of 250 frames are lost in one run of 5000.
 const LOST_USABLE: f64 = 0.01;
 
-/// The verdict on a link.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Verdict {
@@ -61,11 +60,8 @@ impl Verdict {
 /// Time from a data command to the byte of its ACK, ms.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Latency {
-    /// Shortest time.
     pub min: f64,
-    /// Median time.
     pub median: f64,
-    /// Longest time.
     pub max: f64,
 }
 
@@ -84,7 +80,6 @@ impl Latency {
 /// The result. The names of the fields are those of the JSON object.
 #[derive(Clone, Debug, Serialize)]
 pub struct Tally {
-    /// Path of the port.
     pub port: String,
     /// True if the port has modem lines: host and robot see each other's DTR.
     pub modem_lines: bool,
@@ -92,9 +87,7 @@ pub struct Tally {
     pub connected: bool,
     /// Number of starts of the link, that is of accepted reports.
     pub starts: u32,
-    /// Data commands sent.
     pub sent: u32,
-    /// Data commands acknowledged.
     pub acknowledged: u32,
     /// Data commands acknowledged within a tick.
     pub in_time: usize,
@@ -102,9 +95,7 @@ pub struct Tally {
     pub refused: u32,
     /// Data commands without an answer.
     pub lost: u32,
-    /// Re-start commands sent.
     pub restarts: u32,
-    /// Reports with a wrong checksum.
     pub checksum_errors: u32,
     /// Number of times that the port disappeared.
     pub port_lost: u32,
@@ -112,9 +103,7 @@ pub struct Tally {
     pub share_in_time: f64,
     /// Share of the data commands without an answer; each costs a restart of the link.
     pub share_lost: f64,
-    /// Latency of ACKs.
     pub ack_ms: Option<Latency>,
-    /// The verdict.
     pub verdict: Verdict,
 }
 

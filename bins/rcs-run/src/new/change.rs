@@ -30,7 +30,6 @@ struct Texts {
 }
 
 impl Change {
-    /// No change yet.
     pub fn of(data: &Path) -> Self {
         Self { data: data.to_owned(), files: BTreeMap::new() }
     }
@@ -123,7 +122,6 @@ impl Change {
         Ok(())
     }
 
-    /// The diff of all files.
     pub fn diff(&self) -> String {
         let one = |(file, texts): (&String, &Texts)| {
             let path = self.data.join(file).display().to_string();

@@ -3,7 +3,6 @@
 use diagnostics::{BlockNumber, Problems};
 use taskdata::load::{Store, entries::Entry, lex, parse::parse, source::blocks};
 
-/// The entries of all blocks.
 pub struct Entered {
     all: Vec<(BlockNumber, Entry)>,
     blocks: Vec<Loads>,
@@ -33,7 +32,6 @@ impl Entered {
         entered
     }
 
-    /// All entries.
     pub fn all(&self) -> impl Iterator<Item = &Entry> {
         self.all.iter().map(|(_, entry)| entry)
     }
@@ -43,7 +41,6 @@ impl Entered {
         self.all.iter().find(|(_, entry)| kind(entry)).map(|(block, _)| *block)
     }
 
-    /// The file of a block.
     pub fn file(&self, block: BlockNumber) -> Option<&str> {
         self.blocks.iter().find(|loads| loads.block == block).map(|loads| loads.file.as_str())
     }

@@ -16,7 +16,6 @@ use taskdata::load::{
 use super::entered::Entered;
 use crate::rcs_run::error::Error;
 
-/// A family of parts.
 pub struct Family {
     /// From the blank to the finished part, in the order of the job.
     pub parts: Vec<PartType>,
@@ -24,7 +23,6 @@ pub struct Family {
     pub stem: String,
     /// For a tool: the other tools of the job.
     pub others: Vec<String>,
-    /// The text of the job.
     pub job: Source,
     /// The program of the vise in the job, if the vise holds one of the parts.
     pub program: Option<ViseProgram>,
@@ -89,7 +87,6 @@ impl Family {
         })
     }
 
-    /// The movetable with a name.
     pub fn movetable(&self, name: &str) -> Option<&MovetableEntry> {
         self.entered.all().find_map(|entry| match entry {
             Entry::Movetable(table) if table.name.name.as_str() == name => Some(table),

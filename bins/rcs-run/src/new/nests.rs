@@ -36,7 +36,6 @@ const ABOVE: f64 = 3.0;
 /// Greatest difference between the resting heights of the part's lower side and of the like part's, in.
 const SAME: f64 = 0.10;
 
-/// New parts and their nests.
 pub struct Nested<'a> {
     family: &'a Family,
     store: &'a Store,

@@ -10,7 +10,6 @@ use crate::rcs_run::error::Error;
 
 /// Computes the numbers of a family whose parts have other sizes.
 pub trait Numbers {
-    /// The new parts.
     fn parts(&self) -> &[PartType];
 
     /// The places of the new grips that replace a grip, and the lines of their movetables.

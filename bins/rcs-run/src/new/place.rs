@@ -117,7 +117,6 @@ impl New<'_> {
         }
     }
 
-    /// Name of the place's pose.
     pub fn pose_name(&self) -> Named<10> {
         clipped(&format!("{}-P", self.name.name))
     }
@@ -133,7 +132,6 @@ impl New<'_> {
         })
     }
 
-    /// Location point of the place.
     pub fn point(&self, movetable: &Named<10>) -> Entry {
         Entry::Locpt(PointAt { name: self.name, pose: self.pose_name(), movetable: *movetable })
     }

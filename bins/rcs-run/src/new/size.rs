@@ -14,9 +14,15 @@ const GREATEST: f64 = 20.0;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Size {
     /// Box: length, width and height in the orientation in which it lies.
-    Box { length: f64, width: f64, height: f64 },
-    /// A cylinder.
-    Round { length: f64, diameter: f64 },
+    Box {
+        length: f64,
+        width: f64,
+        height: f64,
+    },
+    Round {
+        length: f64,
+        diameter: f64,
+    },
 }
 
 impl FromStr for Size {
@@ -60,7 +66,6 @@ impl Size {
         }
     }
 
-    /// The size of a part.
     pub fn of(part: &PartType) -> Self {
         let [x, y, z] = part.size;
         match part.shape {

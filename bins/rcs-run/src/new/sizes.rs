@@ -40,7 +40,6 @@ const SAFE: f64 = 3.0;
 /// Millimetres in an inch.
 const MM: f64 = 25.4;
 
-/// Kind of a grip's place.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Place {
     Tray,
@@ -52,7 +51,6 @@ enum Place {
 pub struct Sizes<'a> {
     cell: &'a CellDescription,
     family: &'a Family,
-    /// The new parts.
     pub parts: Vec<PartType>,
     /// The step of the like part, and that of the new part.
     before: ViseProgram,

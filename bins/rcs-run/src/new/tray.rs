@@ -25,7 +25,6 @@ pub struct Made {
     pub change: Change,
     /// The changes, and a job of the like tray in which the new tray replaces it.
     pub trial: Change,
-    /// Name of that job.
     pub job: String,
 }
 

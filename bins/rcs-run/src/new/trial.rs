@@ -17,7 +17,6 @@ const AT_A_TIME: usize = 2;
 /// A copy of the data directory with the change.
 pub struct Trial {
     place: TempDir,
-    /// Warnings about the new data.
     pub warnings: Vec<String>,
 }
 
@@ -40,7 +39,6 @@ impl Trial {
         Ok(Self { place, warnings })
     }
 
-    /// The directory of the copy.
     pub fn data(&self) -> &Path {
         self.place.path()
     }
@@ -64,7 +62,6 @@ impl Trial {
         Ok(wanted.len())
     }
 
-    /// One run of a job.
     fn finishes(&self, job: &str, seed: u64) -> Result<(), Error> {
         let config = RunConfig {
             seed,

@@ -9,17 +9,13 @@ use taskdata::load::{
 /// A text after the insertion of a form.
 #[derive(Debug, PartialEq, Eq)]
 pub struct Changed {
-    /// The whole text.
     pub text: String,
     /// First changed line, from 1.
     pub line: usize,
-    /// Removed lines.
     pub removed: Vec<String>,
-    /// Added lines.
     pub added: Vec<String>,
 }
 
-/// Kind of a form.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
     /// A pose (VII.1).

@@ -7,7 +7,6 @@ use std::{
     process::{Command, Stdio},
 };
 
-/// The directory of the workspace.
 pub fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
 }

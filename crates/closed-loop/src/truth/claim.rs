@@ -20,23 +20,18 @@ use super::{
 pub enum Claim {
     /// The tool frame of the robot is at a frame.
     At {
-        /// The frame.
         goal: Frame,
-        /// Its name.
         name: String,
     },
     /// The tool frame of the robot is at a part that the camera has found, moved by a movetable.
     AtPart {
-        /// Name of the part.
         object: String,
-        /// Where the command has it.
         near: Frame,
         /// From the part to the goal.
         movetable: Movement,
     },
     /// The robot has passed a frame, or is at most this far from it, in.
     Near {
-        /// The frame.
         goal: Frame,
         /// The distance at which the next motion may begin, in.
         inches: f64,
@@ -45,7 +40,6 @@ pub enum Claim {
     Open(f64),
     /// The robot holds a part in the place of a grip.
     Holds {
-        /// Name of the part.
         object: Name16,
         /// Frame of the part in the tool frame, if task data and cell give it.
         place: Vec<Frame>,
@@ -54,27 +48,22 @@ pub enum Claim {
     },
     /// The robot alone holds it: the pedestal has released it.
     HoldsAlone,
-    /// The robot holds nothing.
     HoldsNothing,
     /// A part is where the robot has released it, with the tool at this frame.
     Placed {
-        /// Name of the part.
         object: Name16,
         /// Tool frame in which the command releases it.
         goal: Frame,
     },
     /// A part lies at a location of the cell.
     LiesAt {
-        /// Name of the part.
         object: Name16,
         /// Location and sector, 0 for none.
         place: (String, u16),
     },
     /// A part lies where the report of E-move has it.
     Located {
-        /// Name of the part.
         object: Name16,
-        /// Where the command has it.
         near: Frame,
     },
     /// A gripper is on the robot, and the ring is locked.

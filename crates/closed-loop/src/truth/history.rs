@@ -12,7 +12,6 @@ use super::{Level, NotSensed, Scene};
 /// A part that the robot has released.
 #[derive(Clone, Copy, Debug)]
 pub struct Released {
-    /// Its number.
     pub id: u32,
     /// Tick in which the fingers opened.
     pub tick: Tick,
@@ -146,7 +145,6 @@ impl History {
     }
 }
 
-/// Distance of two points, in.
 pub fn apart(one: &Vector, other: &Vector) -> f64 {
     (one - other).norm()
 }

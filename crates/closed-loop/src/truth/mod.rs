@@ -66,7 +66,6 @@ impl Level {
         }
     }
 
-    /// All levels, from the top.
     pub const ALL: [Self; 4] = [Self::Task, Self::Subtask, Self::Emove, Self::Prim];
 }
 
@@ -104,7 +103,6 @@ pub enum NotSensed {
 }
 
 impl NotSensed {
-    /// As a short text.
     #[must_use]
     pub const fn text(self) -> &'static str {
         match self {
@@ -117,15 +115,12 @@ impl NotSensed {
     }
 }
 
-/// The verdict on a confirmation.
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Verdict {
-    /// All claims are true.
     True,
     /// A claim is untrue, and no sensor could show it.
     NotSensed(NotSensed),
-    /// A claim is untrue.
     False,
 }
 
@@ -134,11 +129,8 @@ pub enum Verdict {
 pub struct Confirmation {
     /// Tick in which the status became *finished*.
     pub tick: u64,
-    /// The process that reported it.
     pub level: Level,
-    /// The command.
     pub command: String,
-    /// The verdict.
     pub verdict: Verdict,
     /// What is true instead, as a sentence; empty if the confirmation is true.
     #[serde(default, skip_serializing_if = "String::is_empty")]
@@ -201,9 +193,7 @@ struct Watched {
 /// Counts of a judge. The names of the fields are those of the JSON object.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct TruthResult {
-    /// Confirmations that were judged.
     pub judged: u64,
-    /// Confirmations that are false.
     #[serde(rename = "false")]
     pub lies: Vec<Confirmation>,
     /// Confirmations that are untrue and that no sensor could contradict.
@@ -277,7 +267,6 @@ impl TruthCheck {
         untrue
     }
 
-    /// All that was judged.
     #[must_use]
     pub const fn result(&self) -> &TruthResult {
         &self.result

@@ -26,7 +26,6 @@ type Place = (String, u16);
 /// The place where a command must leave a part.
 #[derive(Clone, Debug, PartialEq)]
 enum Goal {
-    /// In the robot's gripper.
     Gripper,
     /// At a place; `None` if the robot's place at the release is not known.
     At(Option<Place>),
@@ -36,7 +35,6 @@ enum Goal {
 #[derive(Clone, Debug)]
 struct Moved {
     goal: Goal,
-    /// The command as text.
     command: String,
     /// Last position in the hand, world coordinates, in.
     let_go: [f64; 3],
@@ -78,7 +76,6 @@ pub struct PlacementCheck {
 }
 
 impl PlacementCheck {
-    /// A check for a cell.
     #[must_use]
     pub fn new(cell: &CellDescription) -> Self {
         Self {

@@ -2,7 +2,6 @@
 
 use super::NotSensed;
 
-/// A claim that is untrue.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Untruth {
     /// The actual state, as a sentence without a full stop.

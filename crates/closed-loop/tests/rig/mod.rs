@@ -33,7 +33,6 @@ pub fn ideal() -> Ideal {
     IDEAL.get_or_init(new).clone()
 }
 
-/// The processes and the cell.
 pub struct Rig {
     pub ladder: Ladder,
     pub before: CommonMemory,

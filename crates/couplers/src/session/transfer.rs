@@ -9,7 +9,6 @@ use crate::{
     plan::{Area, InWords, MOST_OUT, OutWords, Span},
 };
 
-/// The request that reads a span.
 const fn reading(span: Span) -> Request<'static> {
     let range = Range { first: span.first, count: span.count };
     match span.area {
@@ -112,7 +111,6 @@ impl Session {
         Ok(read)
     }
 
-    /// Reads the outputs back.
     pub(super) fn read_outputs(&mut self, link: &mut impl Link) -> Result<OutWords, Fault> {
         let mut outputs = OutWords::ZERO;
         let mut answer = buffer();
@@ -129,7 +127,6 @@ impl Session {
         Ok(outputs)
     }
 
-    /// Reads consecutive holding registers.
     pub(super) fn read_registers<const N: usize>(
         &mut self,
         link: &mut impl Link,
@@ -153,7 +150,6 @@ impl Session {
         Ok(word[0])
     }
 
-    /// Writes a register.
     pub(super) fn write_register(
         &mut self,
         link: &mut impl Link,

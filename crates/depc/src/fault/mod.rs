@@ -176,7 +176,6 @@ impl Rule {
         !self.has_window() || self.from <= tick && tick < self.until
     }
 
-    /// The rate, or its default.
     const fn chance(&self) -> u32 {
         if self.rate == 0 { ALWAYS } else { self.rate }
     }

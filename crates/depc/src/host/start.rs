@@ -8,7 +8,6 @@ use crate::{
 };
 
 impl Host {
-    /// Continue from a reported position.
     pub(super) fn start(&mut self, plate: Plate) -> HostEvent {
         self.position = plate;
         self.state = HostState::Ready;

@@ -4,7 +4,6 @@ use std::collections::{HashMap, VecDeque};
 
 use crate::model::{Event, Panel, QUIET, Setting, State, Wrong};
 
-/// No state.
 const NONE: u32 = u32::MAX;
 
 /// The next state without further faults, and whether that tick is good.

@@ -48,7 +48,6 @@ pub enum Kind {
     Cancel,
 }
 
-/// All kinds.
 pub const KINDS: [Kind; 14] = [
     Kind::CommandLost,
     Kind::CommandDamaged,
@@ -66,14 +65,12 @@ pub const KINDS: [Kind; 14] = [
     Kind::Cancel,
 ];
 
-/// Scope of a search.
 #[derive(Clone, Debug)]
 pub struct Setting {
     /// True if commands have a function.
     pub functions: bool,
     /// Greatest number of faults in a run.
     pub faults: u8,
-    /// The kinds of faults.
     pub kinds: Vec<Kind>,
     /// True to damage each bit and each byte of a frame, not only one of each part.
     pub all_bits: bool,

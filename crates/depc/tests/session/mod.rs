@@ -54,7 +54,6 @@ impl Robot for Watched {
 /// looks like a command or answer without a checksum.
 #[derive(Clone, Copy, Default, Debug, PartialEq)]
 pub struct Truth {
-    /// Reports accepted by the host.
     pub started: u64,
     /// Accepted reports that were never true or no longer true.
     pub false_reports: u64,
@@ -68,9 +67,7 @@ pub struct Truth {
     pub repeated: u64,
     /// The controller took noise for a cancel.
     pub false_cancels: u64,
-    /// Warnings of the velocity limits.
     pub velocity_warnings: u64,
-    /// All warnings of the controller.
     pub warnings: u64,
 }
 

@@ -68,7 +68,6 @@ impl Notes<'_> {
     }
 }
 
-/// A place in the text.
 #[derive(Clone, Copy)]
 pub(super) enum Node<'a> {
     /// The whole text.
@@ -79,7 +78,6 @@ pub(super) enum Node<'a> {
     StandIn,
 }
 
-/// Reads one entry.
 pub(super) struct Reader<'n, 'a> {
     pub(super) notes: &'n Notes<'n>,
     pub(super) node: Node<'a>,
@@ -366,7 +364,6 @@ impl<'de> de::Deserializer<'de> for Reader<'_, 'de> {
     }
 }
 
-/// The entries of a table.
 struct Entries<'n, 'a> {
     reader: Reader<'n, 'a>,
     entries: std::vec::IntoIter<(&'a str, Node<'a>)>,

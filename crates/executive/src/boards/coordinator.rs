@@ -47,18 +47,13 @@ const CLOSING_LIMIT: Duration = Duration::from_secs(2);
 /// A board joined or left before the first tick.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BoardEvent {
-    /// A board has joined.
     Came {
-        /// The board.
         board: Board,
-        /// Its process id.
         pid: u32,
     },
     /// A board that had joined has left.
     Left {
-        /// The board.
         board: Board,
-        /// Its process id.
         pid: u32,
     },
 }
@@ -124,9 +119,7 @@ impl Seat {
 /// Figures of a board for the result of the run.
 #[derive(Clone, Copy)]
 pub struct BoardFigures<'a> {
-    /// The board.
     pub board: Board,
-    /// Its process id.
     pub pid: u32,
     /// Heap allocations in its ticks.
     pub allocations: u64,
@@ -170,7 +163,6 @@ impl Coordinator {
         })
     }
 
-    /// The run.
     #[must_use]
     pub const fn name(&self) -> &RunName {
         &self.name
@@ -308,7 +300,6 @@ impl Coordinator {
         &self.states
     }
 
-    /// Figures of the boards.
     pub fn figures(&self) -> impl Iterator<Item = BoardFigures<'_>> {
         self.seats.iter().map(|seat| BoardFigures {
             board: seat.board,

@@ -25,38 +25,23 @@ pub enum SplitError {
     /// A board's process could not be started.
     #[error("{board} cannot be started: {source}")]
     Start {
-        /// The board.
         board: Board,
         /// The error of the operating system.
         source: std::io::Error,
     },
     /// A board's process ended before the first tick.
     #[error("{board} ended before the first tick ({status}); its reason stands above")]
-    Ended {
-        /// The board.
-        board: Board,
-        /// Its exit status.
-        status: ExitStatus,
-    },
+    Ended { board: Board, status: ExitStatus },
     /// A board has another program, other data or another job.
     #[error("{board} (process {pid}) cannot take part: {difference}")]
-    Different {
-        /// The board.
-        board: Board,
-        /// Its process id.
-        pid: u32,
-        /// The difference.
-        difference: &'static str,
-    },
+    Different { board: Board, pid: u32, difference: &'static str },
     /// Boards did not join.
     #[error("{} did not come within {} s", list(.missing), .patience.as_secs())]
     Missing {
-        /// The missing boards.
         missing: Vec<Board>,
         /// Time for which board 0 waited for them.
         patience: Duration,
     },
-    /// The wait was interrupted.
     #[error("interrupted while waiting for {}", list(.0))]
     Interrupted(Vec<Board>),
 }
@@ -69,7 +54,6 @@ fn list(boards: &[Board]) -> String {
 /// Ways in which a board is lost.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum How {
-    /// Its process ended.
     Ended(ExitStatus),
     /// It has reported that it leaves.
     Left,
@@ -84,9 +68,7 @@ pub enum How {
 /// A board that was lost. Small and without heap, because it is made within a tick.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub struct Lost {
-    /// The board.
     pub board: Board,
-    /// Its process id.
     pub pid: u32,
     /// The tick that it did not finish.
     pub tick: Tick,

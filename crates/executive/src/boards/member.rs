@@ -49,25 +49,15 @@ const AGAIN: Duration = Duration::from_millis(5);
 /// Errors of a board that joins a run or takes part in it.
 #[derive(Debug, thiserror::Error)]
 pub enum MemberError {
-    /// Error of shared memory.
     #[error(transparent)]
     SharedMemory(#[from] SharedMemoryError),
     /// The board has another program or other data than the run.
     #[error("{board} cannot take part in {run}: {difference}")]
-    Different {
-        /// This board.
-        board: Board,
-        /// The run.
-        run: RunName,
-        /// The difference.
-        difference: &'static str,
-    },
+    Different { board: Board, run: RunName, difference: &'static str },
     /// Another process already runs as this board.
     #[error("{board} of {run} runs already: {source}")]
     Taken {
-        /// This board.
         board: Board,
-        /// The run.
         run: RunName,
         /// The error of iceoryx2.
         source: SharedMemoryError,
@@ -75,12 +65,10 @@ pub enum MemberError {
     /// The last outputs of the board to its devices are not known.
     #[error("{board} cannot be taken over: what it wrote in tick {last} is lost")]
     NothingToLatch {
-        /// This board.
         board: Board,
         /// The last tick that all boards have finished.
         last: Tick,
     },
-    /// The run is over.
     #[error("{0} is over")]
     RunIsOver(RunName),
     /// Shared memory holds an invalid record.
@@ -111,7 +99,6 @@ pub trait BoardData {
 /// Ways in which a board's part in a run ends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MemberEnd {
-    /// The run is over.
     Over,
     /// The board was asked to leave.
     Asked,

@@ -52,13 +52,10 @@ pub use pulse::{Checked, Epochs, Fingerprint};
 /// A board with control processes; board 0 has none.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Board {
-    /// E-move and Prim.
     Two,
     /// T3 Interface.
     Four,
-    /// Task and Subtask.
     Six,
-    /// Quick Change, grippers, pedestal.
     Eight,
 }
 
@@ -75,7 +72,6 @@ pub fn coming_up(name: &RunName) -> Option<Vec<(Board, bool)>> {
 pub const BOARDS: usize = Board::ALL.len();
 
 impl Board {
-    /// All boards, by number.
     pub const ALL: &'static [Self] = &[Self::Two, Self::Four, Self::Six, Self::Eight];
 
     /// Number of the board (IV.2.2).
@@ -100,7 +96,6 @@ impl Board {
         }
     }
 
-    /// The processes that it runs.
     pub fn processes(self) -> impl Iterator<Item = ProcessId> {
         ProcessId::ALL.iter().copied().filter(move |process| process.board() == self.number())
     }
@@ -116,7 +111,6 @@ impl Board {
         }
     }
 
-    /// All other boards.
     pub(super) fn others(self) -> impl Iterator<Item = Self> {
         Self::ALL.iter().copied().filter(move |board| *board != self)
     }

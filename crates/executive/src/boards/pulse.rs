@@ -35,7 +35,6 @@ const BOARD_0: Epoch = 1;
 pub struct Fingerprint {
     /// Fingerprint of the program: its version control revision, and the layout of all buffers.
     pub program: u64,
-    /// Fingerprint of the task data.
     pub data: u64,
     /// Fingerprint of the job, including the blocks that it loads during the run.
     pub job: u64,
@@ -112,7 +111,6 @@ pub struct SystemPulse {
 /// Result of a board's check of a load.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub struct Checked {
-    /// The load.
     pub load: u32,
     /// [`Fingerprint::data`] of the task data with this load; 0 if it has errors or could not be read.
     pub data: u64,
@@ -123,7 +121,6 @@ pub struct Checked {
 pub struct BoardReport {
     /// Fingerprint of its program, data and job.
     pub fingerprint: Fingerprint,
-    /// Its process id.
     pub pid: u32,
     /// True if it reads all its neighbours and waits for pulses; false after it has left.
     pub ready: bool,
@@ -221,7 +218,6 @@ impl PulseGiver {
     }
 }
 
-/// The boards' side.
 pub(super) struct PulseTaker {
     pulse: SlotReader<{ slot::size::<SystemPulse>() }, SystemPulse>,
     card: SlotReader<{ slot::size::<RunCard>() }, RunCard>,
@@ -254,7 +250,6 @@ impl PulseTaker {
     }
 }
 
-/// A board's own report.
 pub(super) struct ReportWriter(SlotWriter<{ slot::size::<BoardReport>() }, BoardReport>);
 
 impl ReportWriter {

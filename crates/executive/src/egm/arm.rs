@@ -56,7 +56,6 @@ pub enum Hindrance {
     Limit {
         /// Index of the axis, from 0.
         axis: usize,
-        /// Degrees beyond the limit.
         by: f64,
     },
     /// An axis would have to turn faster than it can: the wrist is near its singularity.
@@ -143,7 +142,6 @@ impl Arm {
         })
     }
 
-    /// Name of the robot.
     #[must_use]
     pub fn name(&self) -> &str {
         &self.name

@@ -28,9 +28,7 @@ use crate::egm::{Line, Order, Placement};
 /// Outputs of a step to the host.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct BridgeOutputs {
-    /// Bytes to the host.
     pub tx: LinkBytes,
-    /// The controller's DTR.
     pub dtr: bool,
     /// A data command was acknowledged or refused, or a report was sent.
     pub busy: bool,
@@ -149,13 +147,11 @@ impl Bridge {
         Self { supervision: Some(Supervision { track: Track::default(), lag_ms }), ..self }
     }
 
-    /// The controller's side of DEPC.
     #[must_use]
     pub const fn controller(&self) -> &Controller {
         &self.controller
     }
 
-    /// The frames of the robot.
     #[must_use]
     pub const fn placement(&self) -> &Placement {
         &self.robot.placement

@@ -70,7 +70,6 @@ impl Default for Tuning {
 pub enum Stopped {
     /// The program has not reached the EGM instruction, or was stopped.
     Program,
-    /// An emergency stop.
     Emergency,
     /// No message for `\CommTimeout`: ERR_UDPUC_COMM.
     Communication,
@@ -79,7 +78,6 @@ pub enum Stopped {
 }
 
 impl Stopped {
-    /// As text for messages.
     #[must_use]
     pub const fn text(self) -> &'static str {
         match self {
@@ -91,13 +89,11 @@ impl Stopped {
     }
 }
 
-/// The emulated robot.
 #[derive(Clone, Debug)]
 pub struct EgmRobot {
     tuning: Tuning,
     placement: Placement,
     joints: Joints,
-    /// Joint speeds, rad/s.
     speed: Joints,
     /// Target of the joints, rad, and its speed, rad/s.
     reference: Option<(Joints, Joints)>,
@@ -144,7 +140,6 @@ impl EgmRobot {
         }
     }
 
-    /// Joint angles, rad.
     #[must_use]
     pub const fn joints(&self) -> &Joints {
         &self.joints
@@ -169,7 +164,6 @@ impl EgmRobot {
         self.stopped = Some(Stopped::Emergency);
     }
 
-    /// Stops the program.
     pub fn stop(&mut self) {
         self.stopped = self.stopped.or(Some(Stopped::Program));
     }

@@ -7,18 +7,15 @@ use egm::{Error, Host, Pose, Sample};
 /// An order of the bridge to the host. Times are ns of the line's clock.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Order {
-    /// Begin a path from rest.
     Begin {
         /// Time of the order, ns of the line's clock.
         at: u64,
-        /// Start pose of the path.
         from: Pose,
     },
     /// The next point of the path.
     Point {
         /// Time of the command, ns of the line's clock.
         at: u64,
-        /// Target pose.
         to: Pose,
     },
     /// Come to rest on the path.
@@ -51,7 +48,6 @@ impl Order {
 /// State of the host after a message, with the times of that message.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Report {
-    /// State of the host.
     pub sample: Sample,
     /// Time since the previous message, ns; `None` if there is none.
     pub cycle: Option<u64>,
@@ -59,7 +55,6 @@ pub struct Report {
     pub answered: u64,
 }
 
-/// Why a datagram was refused.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Cause {
     /// It is not a valid message of a robot.
@@ -70,12 +65,9 @@ pub enum Cause {
     OtherRobot(SocketAddr),
 }
 
-/// A refused datagram.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Refused {
-    /// The sender.
     pub from: SocketAddr,
-    /// Why it was refused.
     pub cause: Cause,
 }
 
@@ -91,7 +83,6 @@ pub struct Refusals {
 }
 
 impl Refusals {
-    /// Number of refused datagrams.
     #[must_use]
     pub const fn count(&self) -> u64 {
         self.invalid.saturating_add(self.elsewhere)

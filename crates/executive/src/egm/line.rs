@@ -50,7 +50,6 @@ impl Line {
         }
     }
 
-    /// The newest sample.
     #[must_use]
     pub fn sample(&self) -> Sample {
         match self {

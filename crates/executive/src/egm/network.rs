@@ -18,7 +18,6 @@ pub struct Quality {
     pub jitter_ms: f64,
     /// Start of a time in which every datagram is lost, s.
     pub silent_at_s: f64,
-    /// Length of that time, s.
     pub silent_for_s: f64,
 }
 
@@ -27,7 +26,6 @@ const OVERTAKEN_MS: f64 = 10.0;
 /// Greatest number of datagrams in transit; the network loses any beyond it.
 const MOST_UNDER_WAY: usize = 256;
 
-/// One direction of the network.
 #[derive(Debug)]
 pub struct Network {
     quality: Quality,

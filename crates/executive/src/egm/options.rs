@@ -25,7 +25,6 @@ const LOOP_MS: u16 = 200;
 /// Permitted slack, ms.
 const SLACK_MS: RangeInclusive<u64> = 0..=200;
 
-/// How a robot is connected.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Peer {
     /// Over UDP: a robot or an emulator sends to this address.
@@ -34,10 +33,8 @@ pub enum Peer {
     Simulated,
 }
 
-/// Options of an EGM robot.
 #[derive(Clone, Debug, PartialEq)]
 pub struct EgmOptions {
-    /// How the robot is connected.
     pub peer: Peer,
     /// `robot=NAME|FILE`: the frames of the robot, from a file or by a name in `data/robots`.
     pub robot: Option<String>,
@@ -213,7 +210,6 @@ impl EgmOptions {
         if self.speed_ref { LAG_MS } else { LAG_MS + LOOP_MS }
     }
 
-    /// Settings of the host.
     #[must_use]
     pub fn settings(&self, placement: &Placement) -> Settings {
         let mut settings = Settings::new(placement.limits());

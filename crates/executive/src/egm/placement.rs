@@ -29,21 +29,13 @@ const SPEED: f64 = (14.0 + 0.5) * MM_PER_IN;
 /// See [`SPEED`]: each of three angles may turn by 1.0 rad/s.
 const TURN: f64 = 1.75;
 
-/// Errors of a robot's file.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum PlacementError {
-    /// There is no such robot.
     #[error(transparent)]
     Unknown(#[from] UnknownFile),
-    /// The file cannot be read.
     #[error("the robot's frames {} cannot be read: {source}", path.display())]
-    Read {
-        /// Path of the file.
-        path: PathBuf,
-        /// Error of the operating system.
-        source: std::io::Error,
-    },
+    Read { path: PathBuf, source: std::io::Error },
     /// The contents are not as expected.
     #[error("the robot's file cannot be used: {}", .0.in_line())]
     Text(Box<Diagnostics>),
@@ -78,7 +70,6 @@ struct Text {
 /// Contents of a robot's file. By default it is at the place of the T3.
 #[derive(Clone, Debug, Default)]
 pub struct RobotFile {
-    /// The frames of the robot.
     pub placement: Placement,
     /// Expected lag behind the positions sent, ms, if the file states it.
     pub lag_ms: Option<u16>,

@@ -17,7 +17,6 @@ pub(crate) const KIND: FileKind = FileKind {
     magnitudes: [0.0, 1e6],
 };
 
-/// A pose in the file.
 #[derive(Clone, Copy, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct PoseEntry {

@@ -28,7 +28,6 @@ const WAIT: Duration = Duration::from_millis(4);
 /// Longest datagram of EGM, bytes.
 const MOST_RECEIVED: usize = 2048;
 
-/// Errors of opening the line.
 #[derive(Debug, thiserror::Error)]
 #[error("EGM cannot listen at UDP {address}: {source}")]
 pub struct UdpError {
@@ -158,7 +157,6 @@ fn nanoseconds(origin: Instant) -> u64 {
     u64::try_from(origin.elapsed().as_nanos()).unwrap_or(u64::MAX)
 }
 
-/// State of the thread.
 struct Worker {
     socket: UdpSocket,
     origin: Instant,

@@ -33,17 +33,10 @@ const MOST_ENDING: Duration = Duration::from_millis(300);
 /// Why a device cannot be opened.
 #[derive(Debug, thiserror::Error)]
 pub enum DeviceError {
-    /// The plan cannot be followed.
     #[error(transparent)]
     Plan(#[from] PlanError),
-    /// The system gives no thread.
     #[error("no thread for the device at {address}: {source}")]
-    Thread {
-        /// Address of the device.
-        address: SocketAddr,
-        /// Error of the system.
-        source: io::Error,
-    },
+    Thread { address: SocketAddr, source: io::Error },
 }
 
 /// A device with a thread of its own.
@@ -143,7 +136,6 @@ impl Drop for Device {
     }
 }
 
-/// The thread of a device.
 struct Worker {
     link: TcpLink,
     session: Session,

@@ -19,7 +19,6 @@ use rcs_core::{
 
 /// Attempts of a reader. A write takes less than a microsecond; only a writer that lost its processor makes them fail.
 const ATTEMPTS: usize = 4;
-/// Bytes of an atomic word.
 const WORD: usize = 8;
 
 struct Shared {
@@ -27,7 +26,6 @@ struct Shared {
     words: Box<[AtomicU64]>,
 }
 
-/// The writer's end.
 pub struct Writer<T> {
     shared: Arc<Shared>,
     image: Box<[u8]>,
@@ -54,7 +52,6 @@ pub fn latest<T: Plain>(first: T) -> (Writer<T>, Reader<T>) {
 }
 
 impl<T: Plain> Writer<T> {
-    /// Writes a value.
     pub fn write(&mut self, value: &T) {
         value.encode(&mut ImageWriter::new(&mut self.image));
         let sequence = self.shared.sequence.load(Ordering::Relaxed);
@@ -68,7 +65,6 @@ impl<T: Plain> Writer<T> {
 }
 
 impl<T: Plain> Reader<T> {
-    /// The newest value.
     pub fn read(&mut self) -> &T {
         for _ in 0..ATTEMPTS {
             let before = self.shared.sequence.load(Ordering::Acquire);

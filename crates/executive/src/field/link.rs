@@ -21,7 +21,6 @@ use crate::clock::{Monotonic, Time};
 /// Least time for a connection, also with a shorter time limit of answers.
 const LEAST_CONNECT: Duration = Duration::from_millis(100);
 
-/// A connection to a coupler.
 #[derive(Debug)]
 pub struct TcpLink {
     address: SocketAddr,
@@ -49,7 +48,6 @@ impl TcpLink {
         }
     }
 
-    /// Sends a frame.
     fn send(&mut self, frame: &[u8], until: Duration) -> Result<(), Fault> {
         let stream = self.stream.as_mut().ok_or(Fault::Disconnected)?;
         let mut rest = frame;

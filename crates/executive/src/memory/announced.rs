@@ -67,7 +67,6 @@ impl Announced {
         last
     }
 
-    /// The name of the run.
     #[must_use]
     pub const fn name(&self) -> &RunName {
         &self.name

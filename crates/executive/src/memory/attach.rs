@@ -11,7 +11,6 @@ use super::{
 /// Number of attempts of a reader while the writer writes, which takes some microseconds of a tick.
 const ATTEMPTS: usize = 1000;
 
-/// Errors of reading.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum ReadError {
     /// The bytes are not legal records.
@@ -51,7 +50,6 @@ impl Attached {
         Ok(Self { name: name.clone(), ports: Some(ports) })
     }
 
-    /// The run.
     #[must_use]
     pub const fn name(&self) -> &RunName {
         &self.name

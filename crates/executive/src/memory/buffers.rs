@@ -90,7 +90,6 @@ macro_rules! services {
         /// A reader's ends of all services.
         pub struct Readers {
             $( $field: SlotReader<{ slot::size::<$outputs>() }, $outputs>, )+
-            /// External inputs.
             pub(super) outside: SlotReader<{ slot::size::<ExternalInputs>() }, ExternalInputs>,
             /// The executive's counts.
             pub(super) executive: SlotReader<{ slot::size::<Pulse>() }, Pulse>,

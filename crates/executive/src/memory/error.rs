@@ -9,7 +9,6 @@ use super::{
     objects::other_users,
 };
 
-/// Errors of shared memory.
 #[derive(Debug, thiserror::Error)]
 pub enum SharedMemoryError {
     /// A name that is not valid for a run.
@@ -20,7 +19,6 @@ pub enum SharedMemoryError {
     NoSuchRun {
         /// The requested name; `None` if any run was accepted.
         run: Option<String>,
-        /// The runs that are alive.
         alive: Vec<RunName>,
     },
     /// A run that has not published its buffers yet.
@@ -29,7 +27,6 @@ pub enum SharedMemoryError {
          first tick on"
     )]
     Starting {
-        /// Its name.
         run: RunName,
         /// Its announced state, as a phrase.
         phase: String,
@@ -39,7 +36,6 @@ pub enum SharedMemoryError {
         "the name {run} is in use by a run of this user, which {phase}: choose another name with --run, or end that run"
     )]
     NameInUse {
-        /// The name.
         run: RunName,
         /// What that run says about its state.
         phase: String,
@@ -49,9 +45,7 @@ pub enum SharedMemoryError {
         "run {run:?} has layout {theirs}, this program has {ours}: they were built from different sources"
     )]
     OtherLayout {
-        /// Name of the run.
         run: String,
-        /// Its layout version.
         theirs: String,
         /// The layout version of this program.
         ours: String,
@@ -59,7 +53,6 @@ pub enum SharedMemoryError {
     /// The node could not be created.
     #[error("iceoryx2 could not be started in {place:?}: {what}")]
     Node {
-        /// Its directory.
         place: PathBuf,
         /// The error of iceoryx2.
         what: String,
@@ -67,7 +60,6 @@ pub enum SharedMemoryError {
     /// A service could not be created or opened.
     #[error("the buffers of {service} could not be set up in shared memory: {what}")]
     Service {
-        /// Name of the service.
         service: &'static str,
         /// The error of iceoryx2.
         what: String,
@@ -77,7 +69,6 @@ pub enum SharedMemoryError {
         "{path:?} must belong to this user only ({what}): remove it, or set RCS_RUNS to another directory"
     )]
     NotOurs {
-        /// Path of the object.
         path: PathBuf,
         /// Its wrong type, owner or mode.
         what: String,
@@ -92,12 +83,7 @@ pub enum SharedMemoryError {
     },
     /// An operation of another program took too long.
     #[error("{what} took longer than {}: another program may be stopped in the middle of it", seconds(*.limit))]
-    Late {
-        /// The operation.
-        what: String,
-        /// The time limit.
-        limit: Duration,
-    },
+    Late { what: String, limit: Duration },
     /// iceoryx2 has panicked because its objects are damaged.
     #[error(
         "the objects of iceoryx2 in /dev/shm are damaged, another program has written into them; the next run \

@@ -20,14 +20,12 @@ pub const HISTORY_TICKS: u32 = 250;
 /// The headers of all processes after a tick.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Headers {
-    /// The tick.
     pub tick: Tick,
     /// The headers of all processes, in the order of [`ProcessId`].
     pub headers: [Header; PROCESS_COUNT],
 }
 
 impl Headers {
-    /// The header of a process.
     #[must_use]
     pub fn of_process(&self, process: ProcessId) -> &Header {
         &self.headers[process.position()]
@@ -42,7 +40,6 @@ fn place(tick: Tick) -> usize {
 
 const SIZE: usize = slot::size::<AllHeaders>();
 
-/// The writer's end.
 pub(super) struct HistoryWriter(Vec<SlotWriter<SIZE, AllHeaders>>);
 
 impl HistoryWriter {
@@ -66,11 +63,9 @@ impl HistoryWriter {
     }
 }
 
-/// A reader's end.
 pub(super) struct HistoryReader(Vec<SlotReader<SIZE, AllHeaders>>);
 
 impl HistoryReader {
-    /// Open the service.
     pub(super) fn open(node: &Node<ipc::Service>, epoch: Epoch) -> Result<Self, SharedMemoryError> {
         let service = ServiceReader::open(node, HISTORY, epoch)?;
         (0..HISTORY_TICKS).map(|key| service.slot(key)).collect::<Result<_, _>>().map(Self)

@@ -44,9 +44,7 @@ use super::{
 };
 use crate::status::Status;
 
-/// The service of the mirror.
 pub const SERVICE: &str = "rcs-ii/status";
-/// Time between two messages.
 const PERIOD: Duration = Duration::from_millis(100);
 /// Interval at which the thread checks whether it should end.
 const LOOK: Duration = Duration::from_millis(10);

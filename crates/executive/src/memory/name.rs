@@ -40,7 +40,6 @@ impl RunName {
         Self(job.chars().take(room).collect::<String>() + end)
     }
 
-    /// The name as text.
     #[must_use]
     pub fn as_str(&self) -> &str {
         &self.0

@@ -61,7 +61,6 @@ pub fn layout() -> String {
     format!("{:08x}", layout_version())
 }
 
-/// Directory of a run.
 pub(super) fn place(name: &RunName, layout: &str) -> PathBuf {
     root().join(format!("{name}@{layout}"))
 }

@@ -33,7 +33,6 @@ pub(super) const MAX_READERS: usize = 16;
 /// A run found in shared memory.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Found {
-    /// Its name.
     pub name: RunName,
     /// Layout version of the program that runs it.
     pub layout: String,
@@ -44,11 +43,9 @@ pub struct Found {
 /// Results of [`clean`].
 #[derive(Debug, Default)]
 pub struct Cleaned {
-    /// Runs that were removed.
     pub removed: Vec<RunName>,
     /// Runs that are alive and were not touched.
     pub alive: Vec<RunName>,
-    /// Errors of removals.
     pub failed: Vec<SharedMemoryError>,
 }
 

@@ -27,7 +27,6 @@ impl<const N: usize> Text<N> {
         Self(bytes)
     }
 
-    /// The text.
     #[must_use]
     pub fn as_str(&self) -> &str {
         let end = self.0.iter().position(|byte| *byte == 0).unwrap_or(N);

@@ -41,7 +41,6 @@ pub use self::settings::{Parity, SerialSettings};
 /// Time between two attempts to open a port that has disappeared.
 pub const RETRY: Duration = Duration::from_secs(1);
 
-/// Errors of opening a port.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum OpenError {
     /// The path does not exist.
@@ -50,13 +49,11 @@ pub enum OpenError {
     /// The user has no permission to open it.
     #[error("{}: permission denied; ports usually belong to a group such as dialout", .0.display())]
     Denied(PathBuf),
-    /// Another program uses it.
     #[error("{} is used by another program", .0.display())]
     Busy(PathBuf),
     /// It is not a serial port, or does not support the settings.
     #[error("{} cannot be used as a serial port: {reason}", path.display())]
     Unusable {
-        /// Path of the port.
         path: PathBuf,
         /// The error of the operating system.
         reason: String,
@@ -66,9 +63,7 @@ pub enum OpenError {
 /// Counts of the line since it was opened.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct SerialCounts {
-    /// Bytes received.
     pub received: u64,
-    /// Bytes written to the port.
     pub sent: u64,
     /// Bytes that the port did not take, or that were sent while there was no port.
     pub unsent: u64,
@@ -92,7 +87,6 @@ pub struct SerialLine {
     opened: Receiver<Port>,
 }
 
-/// Error: the port has disappeared.
 struct Gone;
 
 impl SerialLine {
@@ -196,7 +190,6 @@ impl SerialLine {
         self.port.as_mut().is_some_and(Port::is_ready)
     }
 
-    /// Device file of the port.
     #[must_use]
     pub fn path(&self) -> &Path {
         &self.path
@@ -214,7 +207,6 @@ impl SerialLine {
         self.port.as_ref().is_some_and(|port| port.modem)
     }
 
-    /// Counts of the line.
     #[must_use]
     pub const fn counts(&self) -> SerialCounts {
         self.counts
@@ -248,7 +240,6 @@ fn keep_open(settings: &SerialSettings, dead: &Receiver<Port>, hand_over: &SyncS
     }
 }
 
-/// An open port.
 #[derive(Debug)]
 struct Port {
     /// Descriptor for bytes; does not block.

@@ -4,21 +4,17 @@ use std::{fmt, path::PathBuf, str::FromStr, time::Duration};
 
 use serialport::{DataBits, FlowControl, SerialPortBuilder, StopBits};
 
-/// Parity of the line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Parity {
     /// No parity bit.
     None,
-    /// Even.
     Even,
-    /// Odd.
     Odd,
 }
 
 /// A port and its set-up: eight data bits, no flow control, and these settings.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct SerialSettings {
-    /// Device file of the port.
     pub path: PathBuf,
     /// Bit rate, bits per second; A.1 has 9600.
     pub baud: u32,

@@ -3,7 +3,6 @@
 use interfaces::{CommonMemory, Header};
 use levels::ladder::PROCESS_COUNT;
 
-/// The headers of all processes.
 pub const fn headers(memory: &mut CommonMemory) -> [&mut Header; PROCESS_COUNT] {
     [
         &mut memory.task.header,

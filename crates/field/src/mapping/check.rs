@@ -13,7 +13,6 @@ use diagnostics::{
 use self::{devices::Devices, spans::Taken};
 use super::{FORM, KIND, Mapping, form::Sheet};
 
-/// A mistake at an entry.
 fn unlike(path: &str, expected: impl std::fmt::Display, found: impl std::fmt::Display) -> Problem {
     Problem::unlike(KIND.value, path, expected, found)
 }

@@ -6,7 +6,6 @@ use serde::Deserialize;
 
 use crate::scale::Format;
 
-/// The whole file.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Sheet {
@@ -24,7 +23,6 @@ pub(super) struct Sheet {
     pub holds: BTreeMap<String, String>,
 }
 
-/// A device.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct DeviceForm {
@@ -49,7 +47,6 @@ const fn timeout_ms() -> u16 {
     15
 }
 
-/// An input.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct InForm {
@@ -74,7 +71,6 @@ const fn stale_ms() -> u16 {
     100
 }
 
-/// The line of one gripper.
 #[derive(Clone, Copy, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct LineForm {
@@ -82,7 +78,6 @@ pub(super) struct LineForm {
     pub counts: [f64; 2],
 }
 
-/// An output.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct OutForm {

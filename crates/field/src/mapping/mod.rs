@@ -52,27 +52,20 @@ pub(crate) const KIND: FileKind = FileKind {
 /// The form of the file that this version reads.
 const FORM: u32 = 1;
 
-/// A mapping that was checked.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mapping {
-    /// Name of the cell.
     pub name: String,
     /// The devices, in the order of their names.
     pub devices: Vec<Device>,
-    /// The points that are read.
     pub inputs: Vec<InPoint>,
-    /// The points that are written.
     pub outputs: Vec<OutPoint>,
     /// How each group of devices is present, in the order of [`Group::ALL`].
     presence: [Presence; Group::ALL.len()],
 }
 
-/// A device.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Device {
-    /// Its name.
     pub name: String,
-    /// Where it is.
     pub address: SocketAddr,
     /// Time between two exchanges, ms.
     pub exchange_ms: u16,
@@ -85,13 +78,11 @@ pub struct Device {
 /// How a group of devices is present.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Presence {
-    /// Its points are mapped.
     Mapped,
     /// All its inputs have a fixed value.
     Fixed,
     /// It is not there: jobs that need it are refused.
     Absent,
-    /// The simulated cell has it.
     Simulated,
 }
 
@@ -111,11 +102,9 @@ impl Presence {
 /// Where the value of a point is in the image of a device.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Slot {
-    /// Index of the device.
     pub device: usize,
     /// Index of the word in its image; of the first one of two.
     pub word: usize,
-    /// Bit of the word.
     pub bit: Option<u8>,
     pub format: Format,
     /// Of two words the low one is first.
@@ -126,24 +115,18 @@ pub(crate) struct Slot {
 /// What has the value of a point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Target<T> {
-    /// A word of the controller.
     Word(T),
-    /// A device of the workstation.
     Station,
 }
 
-/// A point that is read.
 #[derive(Clone, Debug, PartialEq)]
 pub struct InPoint {
-    /// Its name.
     pub name: String,
-    /// What gets the value.
     pub target: Target<Input>,
     /// Age after which it is stale, ms.
     pub stale_ms: u16,
     pub(crate) group: Group,
     pub(crate) from: Origin,
-    /// Its values.
     pub(crate) range: RangeInclusive<i64>,
     pub(crate) line: Option<Line>,
     /// The lines of the grippers 1 to 3, where they differ.
@@ -154,7 +137,6 @@ pub struct InPoint {
 /// Where the value of an input comes from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Origin {
-    /// A device.
     Slot(Slot),
     /// It never changes.
     Fixed(i64),
@@ -179,12 +161,9 @@ impl InPoint {
     }
 }
 
-/// A point that is written.
 #[derive(Clone, Debug, PartialEq)]
 pub struct OutPoint {
-    /// Its name.
     pub name: String,
-    /// What has the value.
     pub target: Target<Output>,
     /// What is written at the start, at the end, and when the controller is lost.
     pub safe: i64,
@@ -195,7 +174,6 @@ pub struct OutPoint {
 }
 
 impl OutPoint {
-    /// The device that has it.
     #[must_use]
     pub const fn device(&self) -> usize {
         self.slot.device
@@ -216,7 +194,6 @@ impl Mapping {
         Ok(built.unwrap_or_else(Self::nothing))
     }
 
-    /// Nothing is mapped.
     fn nothing() -> Self {
         Self {
             name: String::new(),
@@ -227,7 +204,6 @@ impl Mapping {
         }
     }
 
-    /// How a group is present.
     #[must_use]
     pub fn presence(&self, group: Group) -> Presence {
         let all = Group::ALL.iter().zip(self.presence);
@@ -242,7 +218,6 @@ impl Mapping {
         Group::ALL.into_iter().filter(move |group| self.presence(*group) == presence)
     }
 
-    /// The device with a name.
     #[must_use]
     pub fn device(&self, name: &str) -> Option<usize> {
         self.devices.iter().position(|device| device.name == name)

@@ -2,10 +2,8 @@
 
 use couplers::Area;
 
-/// The tables.
 const AREAS: [Area; 4] = [Area::Coil, Area::Discrete, Area::Input, Area::Holding];
 
-/// A place in a device.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Place<'t> {
     pub device: &'t str,

@@ -44,7 +44,6 @@ pub enum Kind {
 type Row = (&'static str, Group, Kind, RangeInclusive<i64>, fn(&mut DeviceInputs) -> Word<'_>);
 
 const BIT: RangeInclusive<i64> = 0..=1;
-/// Counts of a converter.
 #[expect(clippy::as_conversions, reason = "widens, in a constant")]
 const FULL: RangeInclusive<i64> = 0..=ADC_FULL_SCALE as i64;
 #[expect(clippy::as_conversions, clippy::arithmetic_side_effects, reason = "widens, in a constant")]

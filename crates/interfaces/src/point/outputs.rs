@@ -14,13 +14,11 @@ use crate::device::{DeviceOutputs, joystick_frame, valve};
 #[derive(Clone, Copy, Debug)]
 pub struct Output(&'static Row);
 
-/// Name, group, values and word.
 type Row = (&'static str, Group, RangeInclusive<i64>, fn(&mut DeviceOutputs) -> Word<'_>);
 
 const BIT: RangeInclusive<i64> = 0..=1;
 /// An order number.
 const NUMBER: RangeInclusive<i64> = 0..=0xFFFF_FFFF;
-/// Orders to the rotary table.
 const ORDER: RangeInclusive<i64> = 0..=3;
 /// Numbers of 32 bits.
 const COUNT: RangeInclusive<i64> = -0x8000_0000..=0x7FFF_FFFF;

@@ -36,7 +36,6 @@ static READ: [Row; 14] = [
     ("safety.ok", "", Group::Supply, 1),
 ];
 
-/// Words that the workstation writes.
 static WRITTEN: [Row; 9] = [
     ("vise.", ".open", Group::Vise, 1),
     ("vise.", ".partial", Group::Vise, 1),

@@ -152,7 +152,6 @@ impl State {
         }
     }
 
-    /// Report done.
     fn finish(&mut self) {
         self.execution.reason = Reason::None;
         self.execution.finish();

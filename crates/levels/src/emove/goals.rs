@@ -22,7 +22,6 @@ use crate::{
     held::Held,
 };
 
-/// E-PAUSE.
 pub static REST: Goal = Goal {
     holds: "Prim commands no motion, or has lost the link",
     sensors: &[Sensor::Below],
@@ -38,7 +37,6 @@ pub static PLACE: Goal = Goal {
     age: 2,
     unconfirmed: &[Unconfirmed::Position],
 };
-/// LOCATE-OBJ.
 pub static LOCATED: Goal = Goal {
     holds: "the camera has seen the object, and the robot is over it",
     sensors: &[Sensor::Camera, Sensor::Resolvers],
@@ -46,7 +44,6 @@ pub static LOCATED: Goal = Goal {
     age: 2,
     unconfirmed: &[Unconfirmed::Position],
 };
-/// MOV-OBJ-TO.
 pub static BROUGHT: Goal = Goal {
     holds: "the robot is at the goal pose and holds the object",
     sensors: &[Sensor::Resolvers, Sensor::Fingers, Sensor::StrainGages],
@@ -54,7 +51,6 @@ pub static BROUGHT: Goal = Goal {
     age: 2,
     unconfirmed: &[Unconfirmed::Position, Unconfirmed::GraspForce, Unconfirmed::PartInFingers],
 };
-/// GRASP-OBJ.
 pub static HELD: Goal = Goal {
     holds: "the fingers stand at the size of the object, and feel it",
     sensors: &[Sensor::Fingers, Sensor::StrainGages],
@@ -62,7 +58,6 @@ pub static HELD: Goal = Goal {
     age: 1,
     unconfirmed: &[Unconfirmed::GraspForce, Unconfirmed::PartInFingers],
 };
-/// RELEASE.
 pub static RELEASED: Goal = Goal {
     holds: "nothing is between the fingers",
     sensors: &[Sensor::Fingers, Sensor::StrainGages],
@@ -70,7 +65,6 @@ pub static RELEASED: Goal = Goal {
     age: 1,
     unconfirmed: &[],
 };
-/// QC-ATTACH.
 pub static ATTACHED: Goal = Goal {
     holds: "the gripper is mated, the ring is locked, and the holster is not full",
     sensors: &[Sensor::IdPins, Sensor::RingSensors, Sensor::HolsterSensors],
@@ -78,7 +72,6 @@ pub static ATTACHED: Goal = Goal {
     age: 1,
     unconfirmed: &[],
 };
-/// QC-DETACH.
 pub static DETACHED: Goal = Goal {
     holds: "no gripper is mated",
     sensors: &[Sensor::IdPins],
@@ -86,7 +79,6 @@ pub static DETACHED: Goal = Goal {
     age: 1,
     unconfirmed: &[],
 };
-/// WITHDRAW.
 pub static WITHDRAWN: Goal = Goal {
     holds: "the robot is where Prim has sent it",
     sensors: &[Sensor::Resolvers],
@@ -94,7 +86,6 @@ pub static WITHDRAWN: Goal = Goal {
     age: 2,
     unconfirmed: &[Unconfirmed::Position],
 };
-/// INSERT-TOOL.
 pub static INSERTED: Goal = Goal {
     holds: "the robot is where Prim has sent it, with the tool held, and the drum has it",
     sensors: &[Sensor::Resolvers, Sensor::Fingers],
@@ -102,7 +93,6 @@ pub static INSERTED: Goal = Goal {
     age: 2,
     unconfirmed: &[Unconfirmed::ToolInDrum, Unconfirmed::PartInFingers],
 };
-/// RELEASE-TOOL.
 pub static TOOL_RELEASED: Goal = Goal {
     holds: "nothing is between the fingers, the robot is where Prim has sent it, and the drum has the tool",
     sensors: &[Sensor::Fingers, Sensor::Resolvers],
@@ -110,7 +100,6 @@ pub static TOOL_RELEASED: Goal = Goal {
     age: 2,
     unconfirmed: &[Unconfirmed::ToolInDrum, Unconfirmed::PartInFingers],
 };
-/// REMOVE-TOOL.
 pub static REMOVED: Goal = Goal {
     holds: "the robot is where Prim has sent it, with the tool held",
     sensors: &[Sensor::Resolvers, Sensor::Fingers],

@@ -31,13 +31,10 @@ const STOP_BAND: i32 = 5;
 pub enum EmoveGripper {
     /// None: the robot is bare.
     None,
-    /// Parts gripper.
     #[text = "parts gripper"]
     Parts,
-    /// v-gripper.
     #[text = "v-gripper"]
     V,
-    /// Tool gripper.
     #[text = "tool gripper"]
     Tool,
 }
@@ -156,7 +153,6 @@ impl EmoveGripper {
         self == Self::Parts && !memory.grip.status.initialized
     }
 
-    /// Do the fingers stand still?
     fn is_still(self, memory: &CommonMemory) -> bool {
         let velocity = self.jaws(memory).map_or(memory.grip.status.velocity, |jaws| jaws.status.velocity);
         velocity.saturating_abs() < STILL

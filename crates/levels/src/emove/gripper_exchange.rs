@@ -162,7 +162,6 @@ pub(super) fn seat_pose(command: &EmoveCommand, memory: &CommonMemory, data: &Ta
 /// The quick change, and the gripper on it.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct GripperExchange {
-    /// Commands to Quick Change.
     commander: Commander,
     /// The gripper on the robot in the tick before.
     attached: EmoveGripper,

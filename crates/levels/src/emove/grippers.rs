@@ -32,25 +32,20 @@ use super::gripper::EmoveGripper;
 /// A command to the attached gripper, whichever of the three it is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum FingerVerb {
-    /// Nothing yet.
     #[text = ""]
     None,
     /// Leave the fingers as they are.
     Pause,
     /// Bring the fingers to an opening, nothing between them.
     Stand,
-    /// Open and let go.
     Release,
-    /// Close on an object.
     Grasp,
-    /// Calibrate the sensors.
     Calibrate,
 }
 
 /// An [`FingerVerb`] with what goes with it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct FingerOrder {
-    /// What to do.
     pub order: FingerVerb,
     /// Opening, or size of the object, 0.01 in.
     pub opening: i32,
@@ -69,11 +64,8 @@ impl FingerOrder {
 /// E-move's side of the interfaces to the three gripper processes, and the order that was given last.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct Grippers {
-    /// Commands to Grip.
     parts: Commander,
-    /// Commands to V-Grip.
     v: Commander,
-    /// Commands to Tool-Grip.
     tool: Commander,
     /// The gripper that has the last order.
     to: EmoveGripper,

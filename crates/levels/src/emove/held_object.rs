@@ -31,7 +31,6 @@ const LEAST_RELEASE: i32 = 50;
 /// The object in the fingers.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct HeldObject {
-    /// What the gripper holds.
     held: Option<Grasped>,
     /// The object that it was last commanded to grasp. None while something is held: it has been half let go, and the
     /// release was cut off.
@@ -71,7 +70,6 @@ impl HeldObject {
         self.releasing = is_cut_off || order == FingerVerb::Release;
     }
 
-    /// A new command comes.
     pub const fn begin(&mut self) {
         self.carrying = self.held.is_some();
     }

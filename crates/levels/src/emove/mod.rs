@@ -83,7 +83,6 @@ pub type EmoveInputs<'a> = Inputs<'a, TaskData<'a>>;
 pub struct State {
     /// The command of Subtask and how far it has come.
     pub execution: Execution,
-    /// Step of its table.
     pub step: Step,
     /// The process that has its last order.
     pub ordered: EmoveRecipient,
@@ -91,23 +90,15 @@ pub struct State {
     pub uses_prim: bool,
     /// The points that were sent when it gave its last order.
     pub ordered_at: Progress,
-    /// The object in the fingers.
     pub held: HeldObject,
-    /// The gripper processes.
     pub grippers: Grippers,
-    /// The change of a gripper.
     pub exchange: GripperExchange,
-    /// The tool drum.
     pub drum: ToolDrum,
-    /// Where the robot is.
     pub localization: Localization,
-    /// The motion of the command.
     pub motion: EmoveMotion,
-    /// Pictures.
     pub vision: EmoveVision,
 }
 
-/// The E-move process.
 #[derive(Clone, Debug, Default)]
 pub struct Emove {
     state: State,

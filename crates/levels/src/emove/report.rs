@@ -18,7 +18,6 @@ use super::{
 use crate::execution::Outcome;
 
 impl State {
-    /// The estimates of all parts.
     #[must_use]
     pub fn estimates(&self) -> Estimates {
         let mut estimates = Estimates::default();
@@ -35,7 +34,6 @@ impl State {
         self.vision.write_to(estimates);
     }
 
-    /// Adopt the estimates.
     pub fn adopt(&mut self, estimates: &Estimates) {
         self.held.adopt(estimates);
         self.exchange.adopt(estimates);

@@ -18,7 +18,6 @@ pub fn near(a: &Frame, b: &Frame, inches: f64, radians: f64) -> bool {
     distance.inches <= inches && distance.radians <= radians
 }
 
-/// What a command goes to.
 #[must_use]
 pub const fn gone_to(command: &EmoveCommand) -> GoneTo {
     let Some(object) = command.object else { return GoneTo::Location };

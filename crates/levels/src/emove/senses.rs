@@ -43,7 +43,6 @@ impl<'a> Senses<'a> {
         Self { state, command, inputs, subordinates, along: along(command, inputs) }
     }
 
-    /// The command.
     #[must_use]
     pub const fn verb(&self) -> EmoveVerb {
         self.command.command
@@ -99,7 +98,6 @@ impl Senses<'_> {
         if self.state.is_letting_go() { ReleaseWork::UnderWay } else { ReleaseWork::None }
     }
 
-    /// Status of the attached gripper.
     #[must_use]
     pub const fn gripper(&self) -> Lower {
         self.subordinates.gripper
@@ -115,7 +113,6 @@ impl Senses<'_> {
         }
     }
 
-    /// Is the object held?
     #[must_use]
     pub fn held(&self) -> Held {
         Held::of(self.holding(), self.command.object)
@@ -170,7 +167,6 @@ impl Senses<'_> {
         self.state.exchange.lock(self.inputs.tick, self.memory())
     }
 
-    /// The holster.
     #[must_use]
     pub fn holster(&self) -> EmoveHolster {
         holster(self.command.end_effector_id, self.memory())
@@ -206,7 +202,6 @@ impl Senses<'_> {
         self.state.drum.bias(self.memory())
     }
 
-    /// What vision has answered.
     #[must_use]
     pub fn sight(&self) -> Sight {
         sight(self.state.localization.last_place(), self.inputs)
@@ -230,7 +225,6 @@ impl Senses<'_> {
         self.state.vision.tries()
     }
 
-    /// The link.
     #[must_use]
     pub const fn link(&self) -> EmoveLink {
         if self.memory().prim.status.link_running { EmoveLink::Up } else { EmoveLink::Down }
@@ -242,7 +236,6 @@ impl Senses<'_> {
         self.subordinates.prim
     }
 
-    /// Do the fingers move?
     #[must_use]
     pub fn motion(&self) -> FingerMotion {
         let moving = self.state.grippers.are_moving(self.inputs.tick, self.memory());

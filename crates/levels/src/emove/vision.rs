@@ -95,7 +95,6 @@ fn is_another(request: &VisionRequest, answer: &VisionResponse) -> bool {
     request.picture == Picture::Precise && answer.recognised != Some(request.object_id)
 }
 
-/// A request for a picture.
 fn request(number: u32, picture: Picture, variation: u8, view: &VisionPara) -> VisionRequest {
     VisionRequest {
         number,
@@ -109,9 +108,7 @@ fn request(number: u32, picture: Picture, variation: u8, view: &VisionPara) -> V
 
 /// From where the camera is moved next, and how.
 struct CameraAim {
-    /// Where the tool is.
     tool: Frame,
-    /// View movetable of the object.
     view: MovtabId,
     /// Parameters of the motion: those with which the view is approached last.
     parameters: TrajParaId,
@@ -162,9 +159,7 @@ pub(super) fn sight(place: Option<&RobotPlace>, inputs: &EmoveInputs<'_>) -> Sig
 
 /// The next view of an object.
 pub(super) struct View {
-    /// Where the tool goes.
     pub goal: Pose,
-    /// Parameters of the motion.
     pub parameters: TrajParaId,
     /// Where the part is, if the last picture says so.
     pub part: Option<Pose>,
@@ -177,7 +172,6 @@ pub struct EmoveVision {
     commander: Commander,
     /// Pictures without a result in this step.
     tries: u8,
-    /// What vision has located.
     located: Option<Located>,
 }
 
@@ -194,7 +188,6 @@ impl EmoveVision {
         self.commander.start(answer.echo);
     }
 
-    /// A new command comes.
     pub const fn begin(&mut self) {
         self.tries = 0;
     }
@@ -218,7 +211,6 @@ impl EmoveVision {
         }
     }
 
-    /// Has vision answered?
     pub(super) fn answer(&self, inputs: &EmoveInputs<'_>) -> VisionAnswer {
         let answer = &inputs.external.devices.vision;
         let over = matches!(
@@ -281,7 +273,6 @@ impl EmoveVision {
         if inside() == Some(false) { EmoveReach::Outside } else { EmoveReach::Inside }
     }
 
-    /// Ask vision for a picture.
     pub(super) fn take_picture(
         &mut self,
         action: Action,

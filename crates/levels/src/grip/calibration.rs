@@ -22,7 +22,6 @@ fn through(counts: f64, value: f64, span: f64, further: f64) -> Scale {
     Scale { zero: counts - value / gain, gain }
 }
 
-/// Inches or pounds.
 pub(super) fn value(scale: &Scale, counts: f64) -> f64 {
     (counts - scale.zero) * scale.gain
 }
@@ -30,18 +29,14 @@ pub(super) fn value(scale: &Scale, counts: f64) -> f64 {
 /// Steady readings, counts.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct Readings {
-    /// Potentiometer.
     pub potentiometer: f64,
-    /// Left strain gage.
     pub left: f64,
-    /// Right strain gage.
     pub right: f64,
 }
 
 /// Sums over the ticks since the readings have been steady.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct Steady {
-    /// Ticks in the sums.
     pub ticks: u32,
     /// Sum of the potentiometer's counts.
     pub potentiometer: u32,

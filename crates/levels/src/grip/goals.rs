@@ -2,7 +2,6 @@
 
 use crate::goal::{Goal, Sensor};
 
-/// PAUSE.
 pub static REST: Goal = Goal {
     holds: "the fingers stand, or have had their time; without the gripper the valves are off",
     sensors: &[Sensor::Fingers],
@@ -11,7 +10,6 @@ pub static REST: Goal = Goal {
     unconfirmed: &[],
 };
 
-/// POSITION, OPEN-GRIP.
 pub static OPENING: Goal = Goal {
     holds: "the settled opening is the commanded one",
     sensors: &[Sensor::Fingers],
@@ -20,7 +18,6 @@ pub static OPENING: Goal = Goal {
     unconfirmed: &[],
 };
 
-/// CLOSE-GRIP.
 pub static FORCE: Goal = Goal {
     holds: "both fingers feel the commanded force, or the fingers have passed the grasp size and feel nothing",
     sensors: &[Sensor::StrainGages, Sensor::Fingers],
@@ -29,7 +26,6 @@ pub static FORCE: Goal = Goal {
     unconfirmed: &[],
 };
 
-/// UP-INIT.
 pub static CALIBRATED: Goal = Goal {
     holds: "the readings at both ends of travel and without force are plausible",
     sensors: &[Sensor::Fingers, Sensor::StrainGages],

@@ -101,7 +101,6 @@ fn calibrating(phase: GripPhase, situation: &Situation) -> Result<GripDuty, Choi
     }
 }
 
-/// The Grip process.
 pub type Grip = Servo<PartsGripper>;
 
 impl<S> crate::goal::Goals for Servo<S> {

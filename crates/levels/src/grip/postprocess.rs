@@ -15,9 +15,7 @@ use super::{
 };
 use crate::execution::Outcome;
 
-/// All close flows.
 const CLOSE_FULLY: u8 = valve::SUPPLY | valve::CLOSE_COARSE | valve::CLOSE_MEDIUM | valve::CLOSE_FINE;
-/// All open flows.
 const OPEN_FULLY: u8 = valve::SUPPLY | valve::OPEN_COARSE | valve::OPEN_MEDIUM | valve::OPEN_FINE;
 /// The difference of fingertip heights at any opening: the fingers of this gripper move in parallel. ASSUMED.
 const FINGER_HEIGHT: i32 = 0;
@@ -93,7 +91,6 @@ impl State {
         self.set_empty();
     }
 
-    /// The outputs of this tick.
     pub(super) fn report(&self, action: Action, seen: &StateVariables, tick: Tick) -> GripOutputs {
         let execution = &self.execution;
         let report = match execution.outcome {

@@ -261,7 +261,6 @@ impl State {
         }
     }
 
-    /// What the fingers feel.
     fn grasp(&self, step: Step, measured: &Measured) -> Grasp {
         let Measured { opening, left, right, .. } = *measured;
         let dead_band = match step {

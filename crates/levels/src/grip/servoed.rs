@@ -12,7 +12,6 @@ use super::tables::Attachment;
 ///
 /// The hand of the Active Pedestal is nearly identical to the parts gripper (III.9.2): one servo serves both.
 pub trait Servoed {
-    /// The name of the process.
     const NAME: &'static str;
     /// `endeff-id#` of the gripper; 0 for one that is not on the quick change.
     const END_EFFECTOR_ID: u8;
@@ -22,7 +21,6 @@ pub trait Servoed {
     fn reason(reason: Reason) -> Reason {
         reason
     }
-    /// The command buffer.
     fn command(memory: &CommonMemory) -> &GripCommand;
     /// The sensor words, and whether their gripper is attached.
     fn sensors(devices: &DeviceInputs) -> (Attachment, GripSensors);

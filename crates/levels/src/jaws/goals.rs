@@ -4,7 +4,6 @@ use interfaces::Unconfirmed;
 
 use crate::goal::{Goal, Sensor};
 
-/// VG-PAUSE, TG-PAUSE.
 pub static REST: Goal = Goal {
     holds: "the fingers stand",
     sensors: &[Sensor::Fingers],
@@ -13,7 +12,6 @@ pub static REST: Goal = Goal {
     unconfirmed: &[],
 };
 
-/// VG-GRASP, TG-GRASP.
 pub static CLOSED: Goal = Goal {
     holds: "the fingers stand at the commanded size, or closed",
     sensors: &[Sensor::Fingers],

@@ -17,10 +17,8 @@ pub struct Parameters {
 pub trait JawsKind {
     /// The manual's name of its process.
     const NAME: &'static str;
-    /// Its parameters.
     const PARAMETERS: Parameters;
 
-    /// Its command buffer.
     fn command(memory: &CommonMemory) -> &JawsCommand;
 }
 

@@ -69,9 +69,7 @@ pub struct Jaws<K> {
     kind: PhantomData<K>,
 }
 
-/// The V-Grip process.
 pub type VGrip = Jaws<CylindricalPartGripper>;
-/// The Tool-Grip process.
 pub type ToolGrip = Jaws<ToolGripper>;
 
 impl<K> crate::goal::Goals for Jaws<K> {

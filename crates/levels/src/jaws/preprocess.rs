@@ -123,7 +123,6 @@ impl State {
         }
     }
 
-    /// Consult PRESENCE.
     fn felt(&self, motion: JawsMotion, stop: Stop, opening: f64, parameters: &Parameters) -> Felt {
         let settled = motion == JawsMotion::Stopped && self.attached_ticks >= SETTLED_TICKS;
         let is_within = (parameters.closed..=parameters.opened).contains(&opening);

@@ -63,7 +63,6 @@ impl<P: Buffers<Outputs = JawsOutputs>> World<P> for Fingers {
     }
 }
 
-/// A command with a size, in.
 fn order(command: JawsVerb, size: f64) -> JawsCommand {
     JawsCommand { command, size: hundredths(size), ..JawsCommand::default() }
 }

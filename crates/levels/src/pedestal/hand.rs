@@ -47,5 +47,4 @@ impl Servoed for PedestalHand {
     }
 }
 
-/// The hand process.
 pub type Hand = Servo<PedestalHand>;

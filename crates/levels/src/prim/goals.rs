@@ -14,7 +14,6 @@ use crate::{
     goal::{AT_POINT, Goal, Sensor},
 };
 
-/// PAUSE.
 pub static REST: Goal = Goal {
     holds: "the robot has come to rest, or the link is down",
     sensors: &[Sensor::Resolvers],
@@ -22,7 +21,6 @@ pub static REST: Goal = Goal {
     age: 0,
     unconfirmed: &[],
 };
-/// ROBOT-INIT.
 pub static POSITIONED: Goal = Goal {
     holds: "the link runs, and the robot controller has reported where the robot is",
     sensors: &[Sensor::Link],
@@ -30,7 +28,6 @@ pub static POSITIONED: Goal = Goal {
     age: 1,
     unconfirmed: &[],
 };
-/// GO-THRU.
 pub static PASSING: Goal = Goal {
     holds: "the robot is within the break distance of the point, and so near as it follows its command",
     sensors: &[Sensor::Resolvers],
@@ -46,7 +43,6 @@ pub static POINT: Goal = Goal {
     age: 1,
     unconfirmed: &[Unconfirmed::Position],
 };
-/// GO-UNTIL.
 pub static CONTACT: Goal = Goal {
     holds: "the condition has come, and the robot rests",
     sensors: &[Sensor::Guard, Sensor::Resolvers],
@@ -54,7 +50,6 @@ pub static CONTACT: Goal = Goal {
     age: 1,
     unconfirmed: &[],
 };
-/// CAL-SENSOR.
 pub static CALIBRATED: Goal = Goal {
     holds: "the robot rests, and the readings for the bias are complete",
     sensors: &[Sensor::Force, Sensor::Resolvers],

@@ -60,7 +60,6 @@ use self::{
 };
 use crate::execution::Course;
 
-/// The Prim process.
 #[derive(Clone, Debug, Default)]
 pub struct Prim {
     state: State,

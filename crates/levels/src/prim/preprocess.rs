@@ -209,7 +209,6 @@ impl State {
         self.calibration.progress(force)
     }
 
-    /// The record button.
     fn button(&mut self, joystick: &JoystickBox) -> Button {
         let before = mem::replace(&mut self.record_button, joystick.record);
         if joystick.record && !before { Button::Pressed } else { Button::Idle }
@@ -230,7 +229,6 @@ impl Standstill {
 }
 
 impl CommandKind {
-    /// What a command is.
     pub(super) const fn of(verb: PrimVerb) -> Self {
         match verb {
             PrimVerb::Pause => Self::Lasting,

@@ -36,21 +36,18 @@ pub struct ForceCalibration {
     pub bias: Option<[f64; FORCE_AXES]>,
     /// Sum of the readings taken so far.
     pub sum: [f64; FORCE_AXES],
-    /// How many.
     pub samples: u32,
 }
 
 /// What the sensor of a guarded move says.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GuardReading {
-    /// Has the condition come?
     pub guard: Guard,
     /// lb or in lb, or 1 while a switch is on.
     pub value: f64,
 }
 
 impl Default for GuardReading {
-    /// Nothing is watched.
     fn default() -> Self {
         Self::switch(false)
     }
@@ -101,7 +98,6 @@ impl ForceCalibration {
         }
     }
 
-    /// Take a reading.
     pub fn sample(&mut self, force: &ForceSensor) {
         if let Some(axes) = tool_axes(force) {
             self.sum.iter_mut().zip(axes).for_each(|(sum, axis)| *sum += axis);

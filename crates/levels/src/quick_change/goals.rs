@@ -2,7 +2,6 @@
 
 use crate::goal::{Goal, Sensor};
 
-/// QC-PAUSE.
 pub static REST: Goal = Goal {
     holds: "the ring has no air",
     sensors: &[Sensor::Command],
@@ -11,7 +10,6 @@ pub static REST: Goal = Goal {
     unconfirmed: &[],
 };
 
-/// QC-LOCK.
 pub static LOCKED: Goal = Goal {
     holds: "the ring is locked, and the id pins read a legal id",
     sensors: &[Sensor::RingSensors, Sensor::IdPins],
@@ -20,7 +18,6 @@ pub static LOCKED: Goal = Goal {
     unconfirmed: &[],
 };
 
-/// QC-UNLOCK.
 pub static UNLOCKED: Goal = Goal {
     holds: "the ring is unlocked",
     sensors: &[Sensor::RingSensors],

@@ -56,7 +56,6 @@ use self::{
 };
 use crate::execution::Course;
 
-/// The Quick Change process.
 #[derive(Clone, Debug, Default)]
 pub struct QuickChange {
     state: State,

@@ -29,13 +29,10 @@ pub const GRIPPERS: [&str; 3] = ["GRIPPER-1", "GRIPPER-2", "GRIPPER-3"];
 pub struct SubtaskAim {
     /// The object, if there is one.
     pub object: Option<Name16>,
-    /// Its grip.
     pub grip: i32,
     /// Its record of END-EFF-PARA, if it has that grip.
     pub parameters: EndEffId,
-    /// Gripper that is needed.
     pub end_effector_id: Option<u8>,
-    /// The location.
     pub site: Site,
     /// Record number of its pose, once it is given.
     pub pose: Option<u32>,
@@ -211,7 +208,6 @@ fn holster(id: u8, grip: i32, data: &TaskData<'_>, pose: &mut Pose) -> Result<Su
     SubtaskAim::at(Site::point(locpt.name, point), Some(id)).with_object(Some(object), grip, data)
 }
 
-/// A location point by name.
 fn point(name: &str, data: &TaskData<'_>) -> Result<Location, Missing> {
     data.resolve_location(&Name10::clipped(name), None, None::<&Name16>).map_err(Missing::from)
 }

@@ -21,7 +21,6 @@ use crate::{
 /// Tolerance of a grasp, as E-move states it.
 const GRASP: &str = "as GRASP-OBJ of E-move";
 
-/// S-PAUSE.
 pub static REST: Goal = Goal {
     holds: "E-move and the pedestal pause, or do not answer",
     sensors: &[Sensor::Below],
@@ -29,7 +28,6 @@ pub static REST: Goal = Goal {
     age: 2,
     unconfirmed: &[],
 };
-/// GET-ENDEFF.
 pub static ATTACHED: Goal = Goal {
     holds: "the id pins name the gripper, and the robot is clear of the holsters",
     sensors: &[Sensor::IdPins, Sensor::RingSensors, Sensor::Resolvers],
@@ -37,7 +35,6 @@ pub static ATTACHED: Goal = Goal {
     age: 3,
     unconfirmed: &[],
 };
-/// GET-OBJECT.
 pub static HELD: Goal = Goal {
     holds: "the object is held",
     sensors: &[Sensor::Fingers, Sensor::StrainGages],
@@ -45,7 +42,6 @@ pub static HELD: Goal = Goal {
     age: 2,
     unconfirmed: &[Unconfirmed::GraspForce, Unconfirmed::PartInFingers],
 };
-/// FIX-GRIP.
 pub static REGRIPPED: Goal = Goal {
     holds: "the object is held in the destination grip, and the pedestal's hand holds nothing",
     sensors: &[Sensor::Fingers, Sensor::StrainGages, Sensor::Hand],
@@ -53,7 +49,6 @@ pub static REGRIPPED: Goal = Goal {
     age: 2,
     unconfirmed: &[Unconfirmed::GraspForce, Unconfirmed::PartInFingers],
 };
-/// PLACE-OBJ.
 pub static PLACED: Goal = Goal {
     holds: "the fingers have released the object at the location, and hold nothing",
     sensors: &[Sensor::Fingers, Sensor::StrainGages, Sensor::Resolvers],
@@ -77,7 +72,6 @@ pub static PLACE: Goal = Goal {
     age: 3,
     unconfirmed: &[Unconfirmed::Position],
 };
-/// RELEASE.
 pub static RELEASED: Goal = Goal {
     holds: "nothing is held",
     sensors: &[Sensor::Fingers, Sensor::StrainGages],
@@ -85,7 +79,6 @@ pub static RELEASED: Goal = Goal {
     age: 2,
     unconfirmed: &[],
 };
-/// INSERT-TOOL.
 pub static INSERTED: Goal = Goal {
     holds: "the tool is held, and the fingers are in the drum with it",
     sensors: &[Sensor::Fingers, Sensor::Resolvers],
@@ -93,7 +86,6 @@ pub static INSERTED: Goal = Goal {
     age: 3,
     unconfirmed: &[Unconfirmed::ToolInDrum, Unconfirmed::PartInFingers],
 };
-/// RELEASE-TOOL.
 pub static TOOL_RELEASED: Goal = Goal {
     holds: "nothing is held, the fingers are out of the drum, and the drum has the tool",
     sensors: &[Sensor::Fingers, Sensor::Resolvers],
@@ -101,7 +93,6 @@ pub static TOOL_RELEASED: Goal = Goal {
     age: 3,
     unconfirmed: &[Unconfirmed::ToolInDrum, Unconfirmed::PartInFingers],
 };
-/// ACQUIRE-TOOL.
 pub static ACQUIRED: Goal = Goal {
     holds: "the tool is held, and the fingers are in the drum with it",
     sensors: &[Sensor::Fingers, Sensor::Resolvers],
@@ -109,7 +100,6 @@ pub static ACQUIRED: Goal = Goal {
     age: 3,
     unconfirmed: &[Unconfirmed::GraspForce, Unconfirmed::PartInFingers],
 };
-/// REMOVE-TOOL.
 pub static REMOVED: Goal = Goal {
     holds: "the tool is held, and the fingers are out of the drum",
     sensors: &[Sensor::Fingers, Sensor::Resolvers],
@@ -177,7 +167,6 @@ pub(crate) fn force(end_effector_id: Option<u8>) -> Proof {
     }
 }
 
-/// Nothing is held.
 pub(crate) const fn is_free(held: Holding) -> Proof {
     match held {
         Holding::Nothing => Proof::HOLDS,

@@ -50,7 +50,6 @@ use self::{
     },
 };
 
-/// The Subtask process.
 #[derive(Clone, Debug, Default)]
 pub struct Subtask {
     state: State,

@@ -178,7 +178,6 @@ impl State {
         aims.third.pose = aims.first.pose;
     }
 
-    /// Write the status to Task.
     pub(super) fn report(&self, inputs: &Inputs<'_, TaskData<'_>>, outputs: &mut SubtaskOutputs) {
         let execution = &self.execution;
         let below = &inputs.memory.emove.status;

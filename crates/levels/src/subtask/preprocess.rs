@@ -102,7 +102,6 @@ impl State {
         }
     }
 
-    /// Set the state variables.
     fn situation(&self, command: &SubtaskCommand, inputs: &Inputs<'_, TaskData<'_>>) -> Situation {
         let (emove, pedestal) = (&inputs.memory.emove.status, &inputs.memory.pedestal.status);
         let held = Held::of(emove.held, command.object);
@@ -143,7 +142,6 @@ impl State {
         }
     }
 
-    /// Status of E-move.
     fn emove(&self, inputs: &Inputs<'_, TaskData<'_>>) -> Lower {
         self.emove.status_of(inputs.tick, &inputs.memory.emove)
     }
@@ -162,7 +160,6 @@ impl State {
     }
 }
 
-/// What a new command replaces.
 fn replaced(
     command: &SubtaskCommand,
     emove: Lower,
@@ -183,7 +180,6 @@ fn replaced(
     }
 }
 
-/// With which grip?
 fn grip_held(emove: &EmoveStatus, command: &SubtaskCommand) -> GripHeld {
     match emove.held {
         Holding::Object(held) if Some(held.object) != command.object => GripHeld::Neither,
@@ -193,7 +189,6 @@ fn grip_held(emove: &EmoveStatus, command: &SubtaskCommand) -> GripHeld {
     }
 }
 
-/// The pose of the location of a command.
 pub(super) fn location_pose(command: &SubtaskCommand, inputs: &Inputs<'_, TaskData<'_>>) -> Option<Pose> {
     pose_of(command.pose?, inputs.memory, inputs.data).map(|frame| Pose::from_frame(&frame))
 }

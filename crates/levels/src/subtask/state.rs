@@ -16,13 +16,10 @@ use crate::execution::Execution;
 pub struct State {
     /// The command of Task and how far it has come.
     pub execution: Execution,
-    /// Step of its table.
     pub step: Step,
     /// The process that has its last order.
     pub ordered: SubtaskRecipient,
-    /// Commands to E-move.
     pub emove: Commander,
-    /// Commands to the Active Pedestal.
     pub pedestal: Commander,
     /// The part in the pedestal's hand.
     pub regrip: Option<Regrip>,

@@ -2,7 +2,6 @@
 
 use crate::goal::{Goal, Sensor};
 
-/// PAUSE.
 pub static REST: Goal = Goal {
     holds: "the last position is repeated, and the controller has acknowledged it; without a link nothing is sent",
     sensors: &[Sensor::Link],
@@ -11,7 +10,6 @@ pub static REST: Goal = Goal {
     unconfirmed: &[],
 };
 
-/// RESTART.
 pub static RESTARTED: Goal = Goal {
     holds: "the controller has reported a position",
     sensors: &[Sensor::Link],
@@ -20,7 +18,6 @@ pub static RESTARTED: Goal = Goal {
     unconfirmed: &[],
 };
 
-/// POINT.
 pub static SENT: Goal = Goal {
     holds: "the controller has acknowledged the last point of the queue",
     sensors: &[Sensor::Link],

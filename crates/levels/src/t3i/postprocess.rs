@@ -121,7 +121,6 @@ impl State {
         tx
     }
 
-    /// The output buffers.
     pub(super) fn outputs<Data: ?Sized>(
         &self,
         action: Action,
@@ -165,7 +164,6 @@ impl State {
 }
 
 impl Action {
-    /// What is reported to Prim.
     const fn report(self) -> T3iReport {
         match self {
             Self::Nothing(report)

@@ -25,15 +25,12 @@ pub const GRACE_TICKS: u8 = 25;
 pub struct State {
     /// The command number and its adoption.
     pub receiver: Receiver,
-    /// The current command.
     pub command: T3iVerb,
-    /// Step of its table.
     pub step: Step,
     /// Step of RECEIVE: was a command refused?
     pub receive: ReceiveStep,
     /// The host's end of the link.
     pub host: Host,
-    /// The velocity limits.
     pub limits: Limits,
     /// The position last sent, or reported.
     pub position: Position,
@@ -45,7 +42,6 @@ pub struct State {
     pub before: Before,
     /// Step of FOLLOW: is the robot on its path?
     pub following: Following,
-    /// The path that was sent.
     pub track: Track,
     /// Ticks since the last report of the robot controller, up to [`GRACE_TICKS`].
     pub reported: u8,
@@ -55,9 +51,7 @@ pub struct State {
     pub left: Option<PathLeft>,
     /// Points that wait; the first `queued` are valid, the oldest first.
     pub queue: [WireFrame; QUEUE_POINTS],
-    /// How many.
     pub queued: u8,
-    /// The rows for the header.
     pub rows: Rows,
 }
 
@@ -67,12 +61,10 @@ impl State {
         Self { limits, host: Host::new(answer_ticks), ..Self::default() }
     }
 
-    /// The configuration of NBS.
     pub(super) fn nbs() -> Self {
         Self::new(Limits::NBS, ANSWER_TICKS)
     }
 
-    /// The oldest point.
     pub(super) fn first(&self) -> Option<&WireFrame> {
         self.queue.first().filter(|_| self.queued > 0)
     }
@@ -90,7 +82,6 @@ impl State {
         }
     }
 
-    /// Take the oldest point away.
     pub(super) fn remove_first(&mut self) {
         if self.queued > 0 {
             self.queue.rotate_left(1);
@@ -99,7 +90,6 @@ impl State {
         }
     }
 
-    /// Take all points away.
     pub(super) fn empty(&mut self) {
         self.queued = 0;
         self.clear_from(0);

@@ -47,7 +47,6 @@ pub struct DataSystem {
     pub commander: Commander,
     /// The command that was written last.
     pub request: DataBaseCommand,
-    /// How often it was written.
     pub tries: u8,
     /// Connection, pending updates and carried object: an output, adopted again after a restart.
     pub updates: DataBaseUpdates,
@@ -116,7 +115,6 @@ impl DataSystem {
         }
     }
 
-    /// The number of pending updates.
     const fn pending(&self) -> Pending {
         match self.updates.pending {
             [None, _] => Pending::None,
@@ -125,7 +123,6 @@ impl DataSystem {
         }
     }
 
-    /// Consult UPDATE.
     #[must_use]
     pub fn update(&self, plan: &Plan) -> Update {
         let unsent = Unsent {
@@ -166,7 +163,6 @@ impl DataSystem {
         self.send(DataBaseCommand { command, ..DataBaseCommand::default() }, tick, outputs);
     }
 
-    /// The Data System takes commands.
     pub const fn connect(&mut self) {
         (self.updates.connected, self.updates.connecting) = (true, false);
     }
@@ -269,7 +265,6 @@ impl DataSystem {
         self.change(Event::New, Some(DataBaseCommand { number: 0, command, item, serial, position, sector }));
     }
 
-    /// Send the oldest pending update.
     pub fn send_pending(&mut self, tick: Tick, outputs: &mut TaskOutputs) {
         let [first, _] = self.updates.pending;
         if let Some(update) = first {

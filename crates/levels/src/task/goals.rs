@@ -20,7 +20,6 @@ use crate::{
 /// Tolerance of a grasp, as E-move states it.
 const GRASP: &str = "as GRASP-OBJ of E-move";
 
-/// PAUSE.
 pub static REST: Goal = Goal {
     holds: "Subtask pauses, or does not answer",
     sensors: &[Sensor::Below],
@@ -28,7 +27,6 @@ pub static REST: Goal = Goal {
     age: 3,
     unconfirmed: &[],
 };
-/// TRANSFER.
 pub static TRANSFERRED: Goal = Goal {
     holds: "the fingers have released the object at the destination and hold nothing; the robot is at the end-at \
             location",
@@ -37,7 +35,6 @@ pub static TRANSFERRED: Goal = Goal {
     age: 4,
     unconfirmed: &[Unconfirmed::Position, Unconfirmed::PartInFingers],
 };
-/// MOVE.
 pub static MOVED: Goal = Goal {
     holds: "the robot is at the destination, and holds the object if one is named",
     sensors: &[Sensor::Resolvers, Sensor::Fingers, Sensor::StrainGages],
@@ -45,7 +42,6 @@ pub static MOVED: Goal = Goal {
     age: 4,
     unconfirmed: &[Unconfirmed::Position, Unconfirmed::GraspForce, Unconfirmed::PartInFingers],
 };
-/// POSITION.
 pub static POSITIONED: Goal = Goal {
     holds: "nothing is held, and the robot is at the position",
     sensors: &[Sensor::Fingers, Sensor::StrainGages, Sensor::Resolvers],
@@ -53,7 +49,6 @@ pub static POSITIONED: Goal = Goal {
     age: 4,
     unconfirmed: &[Unconfirmed::Position],
 };
-/// ACQUIRE.
 pub static HELD: Goal = Goal {
     holds: "the object is held",
     sensors: &[Sensor::Fingers, Sensor::StrainGages],
@@ -61,7 +56,6 @@ pub static HELD: Goal = Goal {
     age: 3,
     unconfirmed: &[Unconfirmed::GraspForce, Unconfirmed::PartInFingers],
 };
-/// REFIXTURE.
 pub static REFIXTURED: Goal = Goal {
     holds: "the robot is at the destination and holds the object in the destination grip",
     sensors: &[Sensor::Resolvers, Sensor::Fingers, Sensor::StrainGages],
@@ -69,7 +63,6 @@ pub static REFIXTURED: Goal = Goal {
     age: 4,
     unconfirmed: &[Unconfirmed::Position, Unconfirmed::GraspForce, Unconfirmed::PartInFingers],
 };
-/// INSERT-TOOL.
 pub static INSERTED: Goal = Goal {
     holds: "the tool gripper holds the tool, and is in the drum with it",
     sensors: &[Sensor::IdPins, Sensor::Fingers, Sensor::Resolvers],
@@ -77,7 +70,6 @@ pub static INSERTED: Goal = Goal {
     age: 4,
     unconfirmed: &[Unconfirmed::ToolInDrum, Unconfirmed::PartInFingers],
 };
-/// RELEASE-TOOL.
 pub static TOOL_RELEASED: Goal = Goal {
     holds: "the tool gripper is empty and out of the drum, the drum has the tool, and the robot is at the end-at \
             location",
@@ -86,7 +78,6 @@ pub static TOOL_RELEASED: Goal = Goal {
     age: 4,
     unconfirmed: &[Unconfirmed::ToolInDrum, Unconfirmed::PartInFingers],
 };
-/// ACQUIRE-TOOL.
 pub static ACQUIRED: Goal = Goal {
     holds: "the tool gripper holds the tool, and is in the drum with it",
     sensors: &[Sensor::IdPins, Sensor::Fingers, Sensor::Resolvers],
@@ -94,7 +85,6 @@ pub static ACQUIRED: Goal = Goal {
     age: 4,
     unconfirmed: &[Unconfirmed::GraspForce, Unconfirmed::PartInFingers],
 };
-/// REMOVE-TOOL.
 pub static REMOVED: Goal = Goal {
     holds: "the tool gripper holds the tool out of the drum, and the robot is at the end-at location",
     sensors: &[Sensor::IdPins, Sensor::Fingers, Sensor::Resolvers],
@@ -102,7 +92,6 @@ pub static REMOVED: Goal = Goal {
     age: 4,
     unconfirmed: &[Unconfirmed::GraspForce, Unconfirmed::PartInFingers],
 };
-/// STARTUP.
 pub static CONNECTED: Goal = Goal {
     holds: "the Data System has done the last command",
     sensors: &[Sensor::DataSystem],
@@ -110,7 +99,6 @@ pub static CONNECTED: Goal = Goal {
     age: 1,
     unconfirmed: &[],
 };
-/// SHUTDOWN.
 pub static DISCONNECTED: Goal = Goal {
     holds: "Task sends the Data System nothing more, whatever it answers",
     sensors: &[Sensor::Below],

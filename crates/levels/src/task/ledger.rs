@@ -30,7 +30,6 @@ pub enum Placed {
 /// Is the part in the pedestal's hand?
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum TaskPart {
-    /// No.
     Elsewhere,
     /// Yes, alone or together with the robot.
     InPedestal,

@@ -53,7 +53,6 @@ use self::{
 };
 use crate::{execution::Course, halt::BoxState};
 
-/// The Task process.
 #[derive(Clone, Debug, Default)]
 pub struct Task {
     state: State,

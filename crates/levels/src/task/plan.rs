@@ -22,7 +22,6 @@ pub enum TaskVerb {
     /// None yet, or a word that is no command.
     #[text = ""]
     None,
-    /// Do nothing.
     Pause,
     /// Move an object from one location to another.
     Transfer,
@@ -42,9 +41,7 @@ pub enum TaskVerb {
     AcquireTool,
     /// Pull a tool out of the drum.
     RemoveTool,
-    /// Connect the Data System.
     Startup,
-    /// Disconnect it.
     Shutdown,
 }
 
@@ -54,18 +51,14 @@ pub const TOOL_GRIPPER: u8 = 3;
 /// Is an object to be handled (V.4.1)?
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Handling {
-    /// The command names no object.
     NoObject,
-    /// It does.
     Object,
 }
 
 /// Was the command sent before and not finished (docs/design/recovery.md "Ledger")?
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Resumed {
-    /// No.
     Not,
-    /// It was.
     Begun,
     /// It was, and its tool command was with Subtask.
     AtTool,
@@ -87,16 +80,13 @@ pub enum Grips {
 pub enum TaskGripper {
     /// It can be one of a gripper, or no object is named.
     Valid,
-    /// It cannot.
     Invalid,
 }
 
 /// A location, looked up.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct Location {
-    /// Its name and records.
     pub site: Site,
-    /// Its T-POSE.
     pub pose: ChangingPose,
 }
 
@@ -105,7 +95,6 @@ pub struct Location {
 pub struct PlanSite {
     /// The location, if the command names it.
     pub location: Option<Location>,
-    /// Grip of the object there.
     pub grip: i32,
     /// Record of END-EFF-PARA, if the object has that grip.
     pub parameters: EndEffId,
@@ -114,15 +103,12 @@ pub struct PlanSite {
 /// A command, looked up.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct Plan {
-    /// What to do.
     pub verb: TaskVerb,
     /// The object, if the command names one.
     pub object: Option<Name16>,
-    /// Its serial number.
     pub serial: Name16,
     /// `obj-endeff-id#` for Subtask (V.3.2): gripper for the object; none if any will do.
     pub end_effector_id: Option<u8>,
-    /// Where the object is.
     pub source: PlanSite,
     /// Where it, or the robot, is to go.
     pub destination: PlanSite,
@@ -177,7 +163,6 @@ impl TaskVerb {
 }
 
 impl Plan {
-    /// Look a command up.
     #[must_use]
     pub fn look_up(command: &HwsCommand, data: &TaskData<'_>) -> Found {
         let verb = TaskVerb::of(&command.command).unwrap_or(TaskVerb::None);
@@ -297,7 +282,6 @@ impl Plan {
         self.site(site)
     }
 
-    /// The object as a tool.
     #[must_use]
     pub const fn tool(&self) -> ToolData {
         if !matches!(self.end_effector_id, Some(TOOL_GRIPPER)) {
@@ -316,7 +300,6 @@ impl Plan {
         if self.source.location.is_some() { &self.source } else { &self.destination }
     }
 
-    /// The object of POSITION, with its grip at the position.
     #[must_use]
     pub fn object_at_position(&self) -> Option<ObjectGrip> {
         self.object.map(|object| ObjectGrip { object, grip: self.position_site().grip })

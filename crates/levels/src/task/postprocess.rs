@@ -126,7 +126,6 @@ impl State {
         }
     }
 
-    /// The command is finished.
     fn finish(&mut self, inputs: &Inputs<'_, TaskData<'_>>, outputs: &mut TaskOutputs) {
         let plan = self.plan;
         let held = Held::of(inputs.memory.subtask.status.held, plan.object);

@@ -153,7 +153,6 @@ impl State {
         }
     }
 
-    /// Status of Subtask.
     fn subtask(&self, inputs: &Inputs<'_, TaskData<'_>>) -> Lower {
         self.subtask.status_of(inputs.tick, &inputs.memory.subtask)
     }
@@ -188,13 +187,11 @@ impl State {
     }
 }
 
-/// What a new command names.
 const fn request(found: &Found) -> Request {
     let Found { plan, missing, gripper, .. } = found;
     Request { asked: Asked::Now, verb: plan.verb, missing: *missing, gripper: *gripper }
 }
 
-/// What a new command needs.
 fn preconditions(found: &Found, checked: Checked) -> Preconditions {
     let plan = &found.plan;
     Preconditions {

@@ -15,11 +15,9 @@ use crate::execution::Execution;
 pub struct State {
     /// The command of the HWSC and how far it has come.
     pub execution: Execution,
-    /// Step of its table.
     pub step: Step,
     /// The neighbour that has its last order.
     pub ordered: TaskRecipient,
-    /// What has the robot.
     pub control: Control,
     /// The command with its names looked up.
     pub plan: Plan,
@@ -27,8 +25,6 @@ pub struct State {
     pub last_pose: u32,
     /// What a person has confirmed about what the gripper holds.
     pub confirmed: Option<Confirmed>,
-    /// Commands to Subtask.
     pub subtask: Commander,
-    /// Commands to the Data System.
     pub data_system: DataSystem,
 }

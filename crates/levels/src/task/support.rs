@@ -17,7 +17,6 @@ use crate::places::named;
 /// What keeps an object from falling when the gripper opens.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum TaskSupport {
-    /// Nothing that is known.
     None,
     /// The sector of a tray or the nest at which the robot stands with the object.
     Place,

@@ -17,7 +17,6 @@ const COMPRESSIBILITY: f64 = 100.0;
 /// What the first finger feels while it pushes the object towards the second, lb.
 const PUSH: f64 = 4.0;
 
-/// What stands between the fingers.
 #[derive(Clone, Copy, Debug)]
 pub struct Object {
     /// Opening at which both fingers touch, in.
@@ -26,14 +25,11 @@ pub struct Object {
     pub off_centre: f64,
 }
 
-/// Fingers, air and sensors.
 #[derive(Clone, Debug)]
 pub struct Gripper {
-    /// True opening, in.
     pub opening: f64,
     /// True force of each finger, lb.
     pub force: f64,
-    /// What is between the fingers.
     pub object: Option<Object>,
     /// Greatest noise, counts.
     pub noise: u16,
@@ -101,7 +97,6 @@ impl Gripper {
         }
     }
 
-    /// Read the sensors.
     pub fn sensors(&mut self) -> GripSensors {
         let [left, right] = match self.object {
             Some(Object { size, off_centre }) if self.opening > size && self.opening <= size + off_centre => {

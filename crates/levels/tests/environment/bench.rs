@@ -61,9 +61,7 @@ for_each_process!(buffers);
 
 /// A process that a test commands.
 pub trait Tested<Data>: Buffers + Process<Data, Outputs = <Self as Buffers>::Outputs> + Default {
-    /// A command.
     type Order: Copy;
-    /// How a command ends.
     type End: Copy + Debug + PartialEq;
     /// Ticks in which every command ends.
     const LONGEST: u64;

@@ -7,9 +7,7 @@ use rcs_core::tick::TICK_S;
 /// Fingers that air moves at one speed, and a potentiometer.
 #[derive(Clone, Debug)]
 pub struct Fingers {
-    /// True opening, in.
     pub opening: f64,
-    /// Ends of the way, in.
     pub ends: (f64, f64),
     /// in/s.
     pub speed: f64,

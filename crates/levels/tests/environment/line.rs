@@ -44,12 +44,10 @@ pub struct Line {
     pub robot: Exact,
     /// The line carries bytes.
     pub connected: bool,
-    /// Hold on the panel.
     pub hold: bool,
     /// The controller's program runs; else its DTR is off.
     pub on: bool,
     pub answer: Answer,
-    /// Answers that come late.
     late: VecDeque<LinkBytes>,
 }
 

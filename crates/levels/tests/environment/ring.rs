@@ -11,7 +11,6 @@ pub struct Ring {
     pub speed: f64,
     /// Where it jams, if it does.
     pub jam: Option<f64>,
-    /// What the id pins read.
     pub id: u8,
     /// What the sensors say instead of the truth.
     pub claim: Option<QuickChangeSensors>,

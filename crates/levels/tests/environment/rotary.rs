@@ -3,7 +3,6 @@
 use interfaces::device::{MotorCommand, MotorOrder, PedestalSensors, TABLE_STEPS_PER_TENTH};
 use levels::pedestal::table::{LIMIT_MINUS, preprocess::AT_LIMIT};
 
-/// Motor, controller, switches and potentiometer.
 #[derive(Clone, Debug)]
 pub struct Rotary {
     /// Steps; 0 where the calibrated counter is 0.
@@ -20,9 +19,7 @@ pub struct Rotary {
     pub waiting: (MotorCommand, u8),
     /// Steps lost in each tick of a turn.
     pub slip: i32,
-    /// The table is blocked.
     pub blocked: bool,
-    /// The controller takes no orders.
     pub off: bool,
     /// The motor does not stop, whatever it is told.
     pub runs_on: bool,
@@ -95,7 +92,6 @@ impl Rotary {
         self.position <= (LIMIT_MINUS - 50) * TABLE_STEPS_PER_TENTH
     }
 
-    /// Degrees on the calibrated counter.
     pub fn angle(&self) -> f64 {
         f64::from(self.position) / f64::from(10 * TABLE_STEPS_PER_TENTH)
     }

@@ -30,7 +30,6 @@ pub struct ModelT3i {
     pub broken: LinkFault,
     /// Faults that come by themselves as soon as the link runs again.
     pub more_faults: u32,
-    /// The controller's DTR is off.
     pub dtr_off: bool,
     /// The robot is not where it was sent.
     pub elsewhere: bool,

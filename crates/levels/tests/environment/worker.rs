@@ -5,7 +5,6 @@ use rcs_core::handshake::{Arrival, Receiver};
 /// What a double does in a tick.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Turn {
-    /// It takes a new command.
     Takes,
     /// The command ends in this tick.
     Ends,
@@ -40,7 +39,6 @@ impl Worker {
         self.left > 0
     }
 
-    /// It gives its command up.
     pub const fn stop(&mut self) {
         self.left = 0;
     }

@@ -26,7 +26,6 @@ fn store() -> &'static Store {
     })
 }
 
-/// The data of the cell.
 pub fn data() -> TaskData<'static> {
     store().view()
 }
@@ -63,7 +62,6 @@ pub fn pose_of_point(name: &str) -> u32 {
     found.expect("the data have the point").pose.number()
 }
 
-/// A location by name.
 pub fn place(name: &str) -> Location {
     let name = Name16::new(name).expect("a name");
     data().resolve_location(&name, None, None::<&Name16>).expect("the data have the location")

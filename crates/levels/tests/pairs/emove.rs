@@ -54,7 +54,6 @@ pub trait Fingered: Stepped {
     fn may_be_long(&self, fingers: Self::Fingers, next: (Self::Fingers, bool)) -> bool;
     fn sensors(&self, fingers: Self::Fingers) -> GripSensors;
     fn are_around(fingers: Self::Fingers) -> bool;
-    /// They hold the part.
     fn hold(fingers: Self::Fingers) -> bool;
     /// They touch the part, or hold it.
     fn touch(fingers: Self::Fingers) -> bool;
@@ -63,7 +62,6 @@ pub trait Fingered: Stepped {
     fn write(&self, memory: &mut CommonMemory, stamp: Tick);
     fn execution(&mut self) -> &mut Execution;
     fn reports_executing(&self) -> bool;
-    /// Nothing moves the fingers.
     fn rests(&self) -> bool;
     /// What the fingers are around is pressed.
     fn presses(&self) -> bool;

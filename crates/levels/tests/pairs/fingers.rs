@@ -7,7 +7,6 @@ use interfaces::{
     grip::{Calibration, Scale},
 };
 
-/// Where the fingers are.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Fingers {
     /// At the opening of the last order to open.
@@ -65,7 +64,6 @@ impl Fingers {
         }
     }
 
-    /// What the sensors read.
     pub const fn sensors(self, sizes: &Sizes) -> GripSensors {
         let Sizes { open, part, force } = *sizes;
         let (opening, left, right) = match self {

@@ -60,14 +60,12 @@ impl<P: Process<Data, State: Copy + Default, Outputs: Copy> + Default> Stepped f
 pub trait Scene: Clone {
     type Upper: Stepped;
     type Lower: Stepped;
-    /// A command that can come.
     type Line: Clone;
     /// The command in the buffer of the commander.
     type Command: Copy;
     /// What is around them does in a tick.
     type Does: Copy + Debug;
 
-    /// Ticks of a long time.
     const LONG: u64;
     /// What can happen to the processes.
     const MISHAPS: &'static [Mishap] = Mishap::RESTARTS;
@@ -84,11 +82,9 @@ pub trait Scene: Clone {
     fn may(_pair: &Pair<Self>, _line: &Self::Line) -> bool {
         true
     }
-    /// Write a command.
     fn command(pair: &mut Pair<Self>, nth: usize);
     /// What else an event changes before the tick.
     fn begin(_pair: &mut Pair<Self>, _event: &Event<Self::Does>) {}
-    /// What the processes read.
     fn inputs(pair: &Pair<Self>) -> (CommonMemory, ExternalInputs);
     /// What is around them reads what was written in the tick before, and does something.
     ///
@@ -125,7 +121,6 @@ pub struct Choice<Does> {
     pub does: Does,
     /// Whatever was ordered ends in this tick.
     pub prompt: bool,
-    /// So many mishaps.
     pub mishaps: u8,
     /// It can happen in a tick like any other.
     pub short: bool,
@@ -159,7 +154,6 @@ pub struct Pair<S: Scene> {
     pub lines: Arc<[S::Line]>,
     /// Commands that may still come before the last one has ended; any number if none is given.
     pub early: Option<u8>,
-    /// Mishaps that may still happen.
     pub mishaps: u8,
     pub command: S::Command,
     pub upper: S::Upper,

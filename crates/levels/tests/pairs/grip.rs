@@ -59,7 +59,6 @@ impl Fingered for Grip {
     type Fingers = Fingers;
     const OPEN: Fingers = Fingers::Open;
 
-    /// The gripper is calibrated.
     fn first() -> Self {
         let calibration = Some(calibration());
         let mut out = GripOutputs { calibration, ..GripOutputs::default() };

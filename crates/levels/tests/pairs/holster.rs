@@ -24,7 +24,6 @@ const CLEAR: f64 = -2.9;
 /// So far aside it is not in the holster, but stands elsewhere, in.
 const BESIDE: f64 = 0.25;
 
-/// Where the ring stands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Ring {
     Locked,
@@ -42,7 +41,6 @@ impl Ring {
     }
 }
 
-/// The pose of the holster.
 pub fn holster() -> Frame {
     place(GRIPPER.2).frame
 }

@@ -25,9 +25,7 @@ type Counters = &'static [(&'static str, u8)];
 
 /// What so many bytes of a value add to an image.
 enum Piece {
-    /// Themselves.
     Keep(usize),
-    /// Nothing.
     Skip(usize),
     /// The number of a tick: its age; `None` for one that is left out.
     Age(Option<Clock>),
@@ -45,7 +43,6 @@ enum Clock {
     Other,
 }
 
-/// The pieces of a type, with counters.
 type Known = (TypeId, Counters, Rc<[Piece]>);
 
 thread_local! {
@@ -95,7 +92,6 @@ fn keep(size: usize, pieces: &mut Vec<Piece>) {
 /// A state as bytes.
 pub struct Image {
     pub bytes: Vec<u8>,
-    /// The value that is added.
     value: Vec<u8>,
     now: Tick,
     /// Ticks after which a time is over its limit.

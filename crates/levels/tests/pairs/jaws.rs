@@ -27,14 +27,12 @@ use crate::{
     image::{Image, rebase},
 };
 
-/// Where the fingers are.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Fingers {
     /// At the open end of their way.
     Open,
     /// Wider than the part by an inch.
     Wide,
-    /// At the part.
     Holding,
     /// At the closed end of their way.
     Closed,
@@ -95,7 +93,6 @@ pub struct Jaws<S: Side> {
 }
 
 impl<S: Side> Jaws<S> {
-    /// Counts of the potentiometer.
     fn reading(fingers: Fingers) -> u16 {
         let opening = match fingers {
             Fingers::Open => S::PARAMETERS.opened,

@@ -68,7 +68,6 @@ fn is_sound<W: World>(name: &str, first: W, most: usize) -> Found<W::Event> {
 
 const SOME: &[PedestalVerb] = &[PedestalVerb::PreGrip, PedestalVerb::Flip, PedestalVerb::Pause];
 
-/// The commands that are sent.
 fn commands() -> &'static [PedestalVerb] {
     if is_full() { PedestalVerb::ALL } else { SOME }
 }
@@ -100,7 +99,6 @@ fn pedestal_and_hand_with_a_mishap() {
     is_sound("Pedestal and hand, a mishap", hand::first(1, commands), 1_000_000);
 }
 
-/// Commands that handle an object.
 const HANDLING: &[&str] = &[
     "PAUSE",
     "TRANSFER LINKBAR1 +2 PFIXTURE 0 +2 UNIT_1 1 SAFE 0",

@@ -39,7 +39,6 @@ pub struct PartsGripper {
     pub report: GripReport,
     /// Opening, 0.01 in.
     pub position: i32,
-    /// Something is between the fingers.
     pub full: bool,
 }
 
@@ -102,7 +101,6 @@ impl PartsGripper {
         (self.echo, self.report) = (order.number, report);
     }
 
-    /// What E-move reads.
     pub fn write(&self, memory: &mut CommonMemory, stamp: Tick) {
         memory.grip.header.stamp = stamp;
         memory.grip.header.republished = memory.emove.dormant.grip;

@@ -38,7 +38,6 @@ pub enum HandDoes {
     Fails,
     /// What is between the fingers is gone.
     Loses,
-    /// It writes nothing.
     Silent,
 }
 
@@ -59,7 +58,6 @@ pub struct Around {
     silent: bool,
     motor: PedestalSensors,
     goal: i32,
-    /// The table seeks its + limit.
     seeks: bool,
     slipped: bool,
     /// The motor has turned without taking orders for longer than the table waits for that.

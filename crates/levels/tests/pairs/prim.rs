@@ -145,7 +145,6 @@ impl Pair {
         Self { commands, left: (motions, faults), unusual, ..pair }
     }
 
-    /// A system that is booted.
     fn at(location: &str, tool: Option<Tool>, change: Option<Change>) -> Self {
         let mut pair = Self {
             tick: Tick(10_000),
@@ -210,7 +209,6 @@ impl Pair {
         };
     }
 
-    /// What the processes read.
     fn inputs(&self) -> (CommonMemory, ExternalInputs) {
         let before = self.tick.previous();
         let (mut memory, mut external) = (CommonMemory::default(), ExternalInputs::default());
@@ -281,7 +279,6 @@ impl Pair {
         self.t3i.frame_feedback = if self.t3i.link_running { commanded } else { stands };
     }
 
-    /// Where the robot stands.
     fn stands(&self) -> Frame {
         let mut frame = self.robot;
         frame.position.x += if self.aside > 0 { ASIDE } else { 0.0 };

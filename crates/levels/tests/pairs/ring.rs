@@ -34,11 +34,8 @@ const OPENING: i32 = 300;
 /// What the sensors say instead of the truth.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Fault {
-    /// The truth.
     None,
-    /// Both sensors see the ring.
     Both,
-    /// The id pins read this.
     Pins(u8),
 }
 
@@ -46,7 +43,6 @@ pub enum Fault {
 pub struct Does {
     pub prim: PrimDoes,
     pub grip: GripDoes,
-    /// Where the ring stands then.
     pub ring: Ring,
     /// The sensors fail so from then on.
     pub fault: Option<Fault>,
@@ -103,7 +99,6 @@ pub fn first(early: u8, faults: u8) -> Pair {
 }
 
 impl Pair {
-    /// Where the robot stands.
     fn stands(&self) -> Frame {
         self.scene.robot.at.to_frame().expect("the robot stands at frames")
     }

@@ -67,7 +67,6 @@ fn middle(from: &Pose, to: &Pose) -> Pose {
 pub struct Robot {
     pub echo: u32,
     pub report: PrimReport,
-    /// Prim commands the robot.
     pub link: bool,
     pub at: Pose,
     /// The goal of a motion that Prim executes; where the condition of a GO-UNTIL comes.
@@ -157,7 +156,6 @@ impl Robot {
         }
     }
 
-    /// What E-move reads.
     pub fn write(&self, memory: &mut CommonMemory, stamp: Tick) {
         let prim = &mut memory.prim;
         prim.header.stamp = stamp;

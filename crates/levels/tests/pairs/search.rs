@@ -76,7 +76,6 @@ pub struct Found<Event> {
     pub ticks: u64,
     /// Prompt ticks until the pair rests at most, from any state whose last command is PAUSE.
     pub pause: u32,
-    /// The same, from any state.
     pub any: u32,
     pub wrong: Option<(Vec<Event>, Wrong)>,
 }

@@ -52,7 +52,6 @@ pub const GRIPPER: Line = (SubtaskVerb::GetEndeff, true, "UNIT_2", Some(1), 1);
 pub struct Does {
     pub prim: PrimDoes,
     pub grip: GripDoes,
-    /// Vision answers.
     pub vision: Option<VisionStatus>,
 }
 

@@ -43,14 +43,12 @@ pub enum EmoveDoes {
     Loses,
     /// It ends a pause, and the fingers have finished a release that came before it.
     LetsGo,
-    /// It writes nothing.
     Silent,
 }
 
 #[derive(Clone, Copy, Debug)]
 pub struct Does {
     pub emove: EmoveDoes,
-    /// The Data System answers.
     pub answer: Option<DataBaseReport>,
     /// The joystick box is turned on or off.
     pub switched: bool,
@@ -65,7 +63,6 @@ pub struct Around {
     emove: EmoveStatus,
     /// E-move has written nothing in the last tick.
     silent: bool,
-    /// The operator has the robot.
     box_on: bool,
     data_base: DataBaseStatus,
     /// The Data System takes everything at once.

@@ -4,7 +4,6 @@ use std::{collections::BTreeMap, convert::Infallible};
 
 use super::records::{Item, Records, Said};
 
-/// A client of the database.
 #[derive(Clone, Debug, Default)]
 struct Client {
     session: u8,

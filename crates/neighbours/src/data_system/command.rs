@@ -33,7 +33,6 @@ use rcs_core::name::{Name10, Name16};
 pub const RECONFIGURATION: usize = 28;
 /// Length of a DML command, bytes.
 pub const DML: usize = 240;
-/// Offset of the DML string.
 pub const STRING_AT: usize = 32;
 /// `client` of this controller.
 pub const CLIENT: &[u8; 8] = b"H_ROBOT ";
@@ -57,15 +56,10 @@ const FIXED: [(usize, &[u8]); 8] = [
     (24, b"TR"),
     (28, &[0x04, 0x82, 0x00, 0xD0]),
 ];
-/// Offset of DSClen.
 const DSC_LENGTH: usize = 2;
-/// Offset of command-id#.
 const COMMAND_ID: usize = 6;
-/// Offset of TRNSlen.
 const TRANSACTION_LENGTH: usize = 18;
-/// Offset of TYPEindc.
 const TYPE: usize = 20;
-/// Offset of trans-id#.
 const TRANSACTION_ID: usize = 26;
 
 /// A piece of the DML string.
@@ -80,17 +74,12 @@ enum Piece {
 /// A value that a command puts into the string (REPORT-ITEM, IX.2).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Value {
-    /// `ITEM-TYPE`.
     ItemType,
-    /// `ITEM-NAME`.
     ItemName,
-    /// `DEVICE`.
     Device,
     /// `STORAGE-POS`.
     StoragePosition,
-    /// `SECTOR#`.
     Sector,
-    /// `ITEM#`.
     ItemNumber,
 }
 
@@ -135,11 +124,8 @@ const END: u8 = b'\'';
 pub enum Transaction {
     /// End the connection, whatever its state.
     Abort = 0x55,
-    /// Register the client.
     Initiate = 0x56,
-    /// Begin to accept statements.
     Startup = 0x57,
-    /// A statement in DML.
     Dml = 0x58,
 }
 
@@ -166,7 +152,6 @@ impl Transaction {
 /// Why a command cannot be encoded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum EncodeError {
-    /// The buffer contains no command.
     #[error("no command")]
     Nothing,
     /// A name with an apostrophe would end its field of the string.
@@ -266,13 +251,10 @@ fn widened(name: &Name10) -> Name16 {
 /// A command as the server has read it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Received<'a> {
-    /// command-id#.
     pub command_id: u16,
     /// client, without trailing blanks.
     pub client: &'a str,
-    /// Type of the command.
     pub transaction: Transaction,
-    /// trans-id#.
     pub transaction_id: u16,
     /// The DML string, empty for a reconfiguration command.
     pub statement: &'a str,
@@ -291,7 +273,6 @@ pub enum DecodeError {
         at: usize,
         /// Bytes of the protocol at this offset.
         expected: Vec<u8>,
-        /// Bytes found.
         found: Vec<u8>,
     },
     /// A type that does not exist, or that belongs to the other length.
@@ -299,7 +280,6 @@ pub enum DecodeError {
     Transaction {
         /// Size of the command, bytes.
         size: usize,
-        /// TYPEindc.
         found: u8,
     },
     /// A text that is not printable ASCII.

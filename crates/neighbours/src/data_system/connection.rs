@@ -35,16 +35,12 @@ pub trait Keeper {
     fn items(&mut self) -> Result<Vec<Item>, String>;
 }
 
-/// Reply to a command.
 #[derive(Clone, Debug)]
 pub enum Reply {
-    /// It was executed or refused.
     Answer(Answer),
     /// It has no answer: Task counts the ticks and repeats the command.
     Silent,
-    /// It is still being executed.
     Pending,
-    /// The keeper has ended.
     Dead,
 }
 
@@ -115,7 +111,6 @@ impl<K: Keeper> DataSystem<K> {
         }
     }
 
-    /// The keeper.
     #[must_use]
     pub const fn keeper(&self) -> &K {
         &self.keeper
@@ -127,13 +122,11 @@ impl<K: Keeper> DataSystem<K> {
         self.status
     }
 
-    /// The mailbox from Task.
     #[must_use]
     pub const fn command_box(&self) -> &Mailbox {
         &self.command_box
     }
 
-    /// The mailbox to Task.
     #[must_use]
     pub const fn status_box(&self) -> &Mailbox {
         &self.status_box

@@ -11,7 +11,6 @@ pub struct Item {
     pub name: String,
     /// `ITEM_TYPE`.
     pub kind: String,
-    /// `DEVICE`.
     pub device: String,
     /// `STORAGE_POS`.
     pub position: String,
@@ -19,12 +18,10 @@ pub struct Item {
     pub sector: u8,
 }
 
-/// A statement of a client.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Said<'a> {
     /// trans-id#: 0 for a statement without a number.
     pub number: u16,
-    /// The DML string.
     pub statement: &'a str,
 }
 

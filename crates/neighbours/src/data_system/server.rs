@@ -19,15 +19,12 @@ use super::{
     status::{Refusal, ServerStatus, Status, Summary},
 };
 
-/// State of a client's connection.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
 enum Session {
     /// The client is not known.
     Closed = 0,
-    /// The client is known.
     Initiated = 1,
-    /// Its commands are accepted.
     Started = 2,
 }
 
@@ -44,7 +41,6 @@ impl Session {
 /// The answer to a command, with the reason for the log.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Answer {
-    /// Status for the client.
     pub status: Status,
     /// Why the command was refused, for the log; empty if it was executed.
     pub why: String,
@@ -63,7 +59,6 @@ impl<R: Records> Server<R> {
         Self { records }
     }
 
-    /// The records.
     #[must_use]
     pub const fn records(&self) -> &R {
         &self.records

@@ -14,15 +14,11 @@ use os_io::text::amount;
 /// Columns of the report EQUIP_ITEM_ACTION.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Column {
-    /// `ITEM_TYPE`.
     ItemType,
-    /// `ITEM_NAME`.
     ItemName,
-    /// `DEVICE`.
     Device,
     /// `STORAGE_POS`.
     StoragePosition,
-    /// `SECTOR`.
     Sector,
 }
 
@@ -65,20 +61,16 @@ impl<'a> Update<'a> {
 pub struct StatementError {
     /// Place of the error in the text, bytes from 0.
     pub at: usize,
-    /// What was expected there.
     pub expected: String,
-    /// What was found there.
     pub found: Found,
 }
 
 /// The text, or the number of values, found in place of the expected one.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Found {
-    /// The text ends.
     End,
     /// A word or a punctuation mark.
     Word(String),
-    /// A number of values.
     Count(usize),
 }
 

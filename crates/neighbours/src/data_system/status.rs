@@ -14,25 +14,19 @@ use std::fmt;
 
 /// Length of a status, bytes.
 pub const STATUS: usize = 14;
-/// Offset of the server status.
 const SERVER: usize = 10;
-/// Offset of the summary status.
 const SUMMARY: usize = 13;
 
-/// State of the server.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[repr(u8)]
 pub enum ServerStatus {
-    /// No command was given yet.
     #[default]
     Idle = 0,
-    /// It executes a command.
     Busy = 1,
     /// It has answered the last command.
     Ready = 2,
 }
 
-/// Why a command was refused.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
 pub enum Refusal {
@@ -48,26 +42,19 @@ pub enum Refusal {
     Store = 0x84,
 }
 
-/// Result of the answered command.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Summary {
-    /// No result yet.
     #[default]
     None,
-    /// It was executed.
     Done,
-    /// It was refused.
     Refused(Refusal),
 }
 
-/// A status.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Status {
     /// command-id# of the answered command.
     pub command_id: u16,
-    /// State of the server.
     pub server: ServerStatus,
-    /// Result of the command.
     pub summary: Summary,
 }
 
@@ -84,7 +71,6 @@ pub enum StatusError {
         at: usize,
         /// Byte of the protocol at this offset.
         expected: u8,
-        /// Byte found.
         found: u8,
     },
     /// A server status that does not exist.
@@ -112,7 +98,6 @@ impl fmt::Display for Refusal {
 }
 
 impl Status {
-    /// Encode the status.
     #[must_use]
     pub fn encode(&self) -> [u8; STATUS] {
         let [low, high] = self.command_id.to_le_bytes();

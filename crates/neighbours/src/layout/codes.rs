@@ -12,7 +12,6 @@ use rcs_core::{
 use super::{At, Codec, Width};
 use crate::fields::{FieldError, command_number};
 
-/// Pads a text field.
 const BLANK: u8 = b' ';
 
 /// Declare codes and their bytes.
@@ -229,7 +228,6 @@ impl fmt::Write for Clipped<'_> {
     }
 }
 
-/// The schema of an enum.
 fn variants<T: Plain>() -> &'static EnumSchema {
     match T::SCHEMA {
         Schema::Enum(variants) => variants,
@@ -283,7 +281,6 @@ impl<const W: usize> Sentence<W> {
         Self(bytes)
     }
 
-    /// The text.
     #[must_use]
     pub fn as_str(&self) -> &str {
         str::from_utf8(&self.0).unwrap_or_default().trim_end_matches(' ')

@@ -44,14 +44,7 @@ use crate::fields::FieldError;
 pub enum LayoutError {
     /// The data have the wrong size.
     #[error("{what} of {expected} bytes was expected, found {found}")]
-    Size {
-        /// Kind of data expected.
-        what: &'static str,
-        /// Bytes expected.
-        expected: usize,
-        /// Bytes found.
-        found: usize,
-    },
+    Size { what: &'static str, expected: usize, found: usize },
     /// A field has an invalid value.
     #[error(transparent)]
     Field(#[from] FieldError),
@@ -64,16 +57,12 @@ pub struct Row {
     pub variable: &'static str,
     /// Size of the field, bytes.
     pub bytes: usize,
-    /// Meaning of the field.
     pub text: &'static str,
 }
 
-/// The documentation of a layout.
 #[derive(Clone, Copy, Debug)]
 pub struct Table {
-    /// Kind of data.
     pub what: &'static str,
-    /// The fields.
     pub rows: &'static [Row],
 }
 
@@ -101,7 +90,6 @@ pub struct At {
     pub byte: usize,
 }
 
-/// Size of a code.
 pub trait Width {
     /// Size, bytes.
     const BYTES: usize;
@@ -115,7 +103,6 @@ pub trait Codec<'a, T>: Width {
         None
     }
 
-    /// Encodes the value.
     fn put(value: &T, to: &mut [u8]);
 
     /// Decodes a value.
@@ -143,7 +130,6 @@ macro_rules! layout {
         impl $name {
             /// Size of the data, bytes.
             pub const BYTES: usize = 0 $( + <$codec as $crate::layout::Width>::BYTES )+;
-            /// The layout as a table.
             pub const TABLE: $crate::layout::Table = $crate::layout::Table {
                 what: $what,
                 rows: &[ $( $crate::layout::Row {

@@ -19,14 +19,12 @@ pub struct AddressError {
     is_remote: bool,
 }
 
-/// The way to other machines.
 const TO_OTHER_MACHINES: &str =
     "; to other machines rcs-gateway carries the connection, with TLS (docs/several-machines.md)";
 /// Schemes of addresses on a network.
 const REMOTE: [&str; 4] = ["tcp", "tls", "zenoh", "quic"];
 
 impl Address {
-    /// Path of the socket.
     #[must_use]
     pub fn path(&self) -> &Path {
         &self.0

@@ -2,7 +2,6 @@
 
 use std::time::Duration;
 
-/// The clock of the controller.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u16)]
 pub enum ClockKind {

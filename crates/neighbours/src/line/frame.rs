@@ -18,11 +18,9 @@ use crate::mailbox::{HEAD, MAX_SIZE, Mailbox, Place};
 
 /// Number of bytes before the mailbox in a frame.
 pub const ADDRESS: usize = 4;
-/// The address of a pulse.
 pub const PULSE: u32 = 0;
 /// The address of a disconnect reason.
 pub const DISCONNECT: u32 = 1;
-/// The address of a welcome.
 pub const WELCOME: u32 = 2;
 /// Greatest length of a frame, bytes.
 pub const MAX_FRAME: usize = ADDRESS + MAX_SIZE;
@@ -48,7 +46,6 @@ impl<'a> Frame<'a> {
         Ok(bytes.get(..ADDRESS + length).map(|bytes| Self { bytes }))
     }
 
-    /// All bytes.
     #[must_use]
     pub const fn bytes(&self) -> &'a [u8] {
         self.bytes
@@ -60,13 +57,11 @@ impl<'a> Frame<'a> {
         u32::from_le_bytes([self.bytes[0], self.bytes[1], self.bytes[2], self.bytes[3]])
     }
 
-    /// The mailbox, head and data.
     #[must_use]
     pub fn mailbox(&self) -> &'a [u8] {
         &self.bytes[ADDRESS..]
     }
 
-    /// The data.
     #[must_use]
     pub fn data(&self) -> &'a [u8] {
         &self.bytes[ADDRESS + HEAD..]
@@ -111,23 +106,13 @@ pub fn put_pulse(out: &mut Vec<u8>, tick: u64) {
 pub enum FrameError {
     /// A length that a mailbox cannot have.
     #[error("a length of {HEAD} to {MAX_SIZE} was expected behind the address {address:05X}, found {found}")]
-    Length {
-        /// In front of it.
-        address: u32,
-        /// The length.
-        found: u16,
-    },
+    Length { address: u32, found: u16 },
     /// A pulse without the number of a tick.
     #[error("the number of a tick was expected in a pulse, 8 bytes, found {0}")]
     Pulse(usize),
     /// An address that is none of the sender's mailboxes.
     #[error("the address of {} was expected, found {found:05X}", names(.expected))]
-    Address {
-        /// The sender's mailboxes.
-        expected: &'static [Place],
-        /// The address.
-        found: u32,
-    },
+    Address { expected: &'static [Place], found: u32 },
 }
 
 fn names(places: &[Place]) -> String {

@@ -12,13 +12,9 @@ use crate::mailbox::{
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[repr(u16)]
 pub enum Role {
-    /// The workstation controller (HWSC).
     Workstation = 1,
-    /// The Data System.
     DataSystem = 2,
-    /// The Active Pedestal.
     Pedestal = 3,
-    /// The vision system.
     Vision = 4,
     /// An operator, which is not a neighbour and has no mailboxes. Its connection carries the lines of a session (crate
     /// `operator`).
@@ -26,7 +22,6 @@ pub enum Role {
 }
 
 impl Role {
-    /// All roles.
     pub const ALL: [Self; 5] =
         [Self::Workstation, Self::DataSystem, Self::Pedestal, Self::Vision, Self::Operator];
 
@@ -42,7 +37,6 @@ impl Role {
         }
     }
 
-    /// Mailboxes that it writes.
     #[must_use]
     pub const fn to_controller(self) -> &'static [Place] {
         match self {
@@ -56,7 +50,6 @@ impl Role {
         }
     }
 
-    /// Mailboxes that it reads.
     #[must_use]
     pub const fn from_controller(self) -> &'static [Place] {
         match self {
@@ -69,7 +62,6 @@ impl Role {
         }
     }
 
-    /// The role of a number.
     #[must_use]
     pub fn from_number(number: u16) -> Option<Self> {
         Self::ALL.into_iter().find(|&role| role as u16 == number)

@@ -38,13 +38,11 @@ use crate::mailbox::{Mailbox, Place};
 pub const HELLO: usize = 8;
 /// First bytes of both hellos.
 const MARK: [u8; 4] = *b"RCS2";
-/// Version of the protocol.
 pub const VERSION: u16 = 3;
 
 /// How long a neighbour waits for hello and welcome; on the 40 ms grid, for the next byte as well.
 pub const NEIGHBOUR_LIMIT: Duration = Duration::from_secs(10);
 
-/// An event of a session.
 #[derive(Debug, PartialEq, Eq)]
 pub enum Event<'a> {
     /// At the controller: a neighbour asks for admission.
@@ -57,7 +55,6 @@ pub enum Event<'a> {
     Pulse(u64),
 }
 
-/// Why a session cannot continue.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum SessionError {
     /// The other side does not speak this protocol.
@@ -66,10 +63,8 @@ pub enum SessionError {
     /// The other side has another version of the protocol.
     #[error("version {VERSION} of the protocol was expected, found {0}")]
     Version(u16),
-    /// No neighbour has this number.
     #[error("the number of a neighbour was expected, found {0}")]
     Role(u16),
-    /// No clock has this number.
     #[error("0 (real) or 1 (fast) was expected for the clock, found {0}")]
     Clock(u16),
     /// The controller has sent another frame before the welcome.
@@ -83,7 +78,6 @@ pub enum SessionError {
     Early {
         /// Number of the last pulse that was sent.
         sent: u64,
-        /// The number of the answer.
         found: u64,
     },
     /// No hello or welcome was received in time.
@@ -113,7 +107,6 @@ enum State {
     Closed,
 }
 
-/// The pulses of a controller.
 #[derive(Clone, Copy, Debug)]
 struct Pulses {
     sent: u64,
@@ -122,7 +115,6 @@ struct Pulses {
     due: Instant,
 }
 
-/// One side of a connection.
 pub struct Session {
     side: Side,
     state: State,
@@ -178,7 +170,6 @@ impl Session {
         session
     }
 
-    /// The neighbour's side.
     #[must_use]
     pub fn neighbour(role: Role, now: Instant) -> Self {
         Self::new(Side::Neighbour { role, clock: ClockKind::Real }, now)

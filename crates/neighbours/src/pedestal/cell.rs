@@ -5,7 +5,6 @@ use interfaces::device::{GripValves, MotorCommand, PedestalSensors};
 
 use crate::layout::{Flag, I32, Spelled, U16, U32};
 
-/// Orders to valves and motor.
 pub type Orders = (GripValves, MotorCommand);
 
 crate::layout! {

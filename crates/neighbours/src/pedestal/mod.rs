@@ -34,7 +34,6 @@ use crate::layout::LayoutError;
 
 /// Characters of a command or a status.
 const WORD: usize = 10;
-/// Characters of a step.
 const STEP: usize = 16;
 
 /// Errors of decoding the pedestal's mailboxes.
@@ -43,7 +42,6 @@ pub enum PedestalError {
     /// Number and status contradict each other: exactly one of them means "no command".
     #[error("executing, done, can't-do or error was expected for the command {0}, found idle")]
     Idle(u32),
-    /// Wrong size or field.
     #[error(transparent)]
     Layout(#[from] LayoutError),
 }

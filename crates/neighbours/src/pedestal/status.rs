@@ -18,7 +18,6 @@ pub const REASON: usize = 160;
 pub enum Verdict {
     /// The last mailgram was accepted.
     Taken,
-    /// It is not a command.
     #[text = "no command"]
     NoCommand,
     /// The sensor words of the simulated cell cannot be read.
@@ -26,18 +25,14 @@ pub enum Verdict {
     NoSensors,
 }
 
-/// A decoded status.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Status<'a> {
     /// The variables of VI.7.2.
     pub status: PedestalStatus,
     /// `table#`, `row#` and `step`; no stamp.
     pub header: Header,
-    /// `mailgram-echo`.
     pub mailgram_echo: u16,
-    /// `verdict`.
     pub verdict: Verdict,
-    /// `reason`.
     pub reason: &'a str,
 }
 

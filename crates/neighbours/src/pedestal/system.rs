@@ -43,7 +43,6 @@ use crate::{
 /// Command number that hand and table find in a replacement pedestal; they have not executed that command.
 const OF_THE_LAST_ONE: u32 = 1;
 
-/// The pedestal's system.
 pub struct System {
     pedestal: Pedestal,
     hand: Hand,
@@ -102,7 +101,6 @@ impl System {
         &self.outgoing
     }
 
-    /// Outputs of the three processes.
     #[must_use]
     pub const fn memory(&self) -> &CommonMemory {
         &self.memory

@@ -310,7 +310,6 @@ impl Bench {
         Status::decode(self.system.outgoing()[0].data()).unwrap()
     }
 
-    /// The orders to the valves and to the motor.
     fn orders(&self) -> (GripValves, MotorCommand) {
         OrdersLayout::decode(self.system.outgoing()[3].data()).unwrap()
     }

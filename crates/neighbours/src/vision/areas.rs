@@ -8,7 +8,6 @@ use crate::{
     layout::{At, Codec, Coded, Given, I16, Number, U16, Width},
 };
 
-/// A ready word.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u16)]
 pub enum Ready {
@@ -18,7 +17,6 @@ pub enum Ready {
     Ready = 2,
 }
 
-/// Codec of a ready word.
 #[derive(Clone, Copy, Debug)]
 struct ReadyWord;
 
@@ -60,14 +58,12 @@ impl Codec<'_, ()> for ByteCount {
     }
 }
 
-/// The areas that vision writes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Areas {
     /// `vision-ready-input`.
     pub input: Ready,
     /// `vision-ready-output`.
     pub output: Ready,
-    /// The response area.
     pub response: VisionResponse,
 }
 

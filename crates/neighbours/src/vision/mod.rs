@@ -47,7 +47,6 @@ pub enum VisionError {
     Part {
         /// Which part, from 1.
         part: usize,
-        /// Error of the part.
         source: LayoutError,
     },
     /// A field that cannot be read.

@@ -34,11 +34,8 @@ crate::layout! {
 
 /// Bytes in front of the parts.
 pub const HEAD: usize = HeadLayout::BYTES;
-/// Bytes of a part.
 pub const PART: usize = PartLayout::BYTES;
-/// Parts that the mailbox holds.
 pub const MAX_PARTS: usize = (VISION_PICTURE.size - MAILBOX_HEAD - HEAD) / PART;
-/// Points of a face.
 const POINTS: u32 = 81;
 
 /// The head before the parts.
@@ -117,23 +114,19 @@ impl Codec<'_, u128> for Points {
     }
 }
 
-/// A picture.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Picture {
     /// Number of the request for which it was taken.
     pub number: u16,
-    /// Seed of the run.
     pub seed: u64,
     /// Fingerprint of the entries of the cell description on which the answer depends.
     pub cell: u64,
-    /// Visible parts.
     pub parts: Vec<Part>,
 }
 
 /// A part in a picture: its face towards the camera, in camera axes, in.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Part {
-    /// Middle of the face.
     pub centre: [f64; 3],
     /// Directions and lengths of its edges.
     pub edges: [([f64; 3], f64); 2],

@@ -14,27 +14,21 @@ pub const TEXT: usize = 240;
 /// Kind of trouble in the cell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Trouble {
-    /// No trouble.
     #[text = ""]
     None,
     /// The last line was refused.
     Refused,
-    /// The cell has a fault.
     Fault,
     /// An emergency has stopped the robot.
     Emergency,
 }
 
-/// The status of the cell.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct CellStatus<'a> {
     /// Number of the last line that was begun or refused.
     pub echo: u16,
-    /// An action is in progress.
     pub busy: bool,
-    /// Kind of trouble.
     pub trouble: Trouble,
-    /// The trouble as a sentence.
     pub text: &'a str,
 }
 
@@ -70,7 +64,6 @@ pub fn encode_line(number: u16, line: &str) -> [u8; LineLayout::BYTES] {
 /// A received line. Its number is known even if the rest cannot be decoded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct CellLine<'a> {
-    /// Number of the line.
     pub number: u16,
     /// The line, or the error of decoding it.
     pub text: Result<&'a str, LayoutError>,
@@ -87,7 +80,6 @@ pub fn decode_line(bytes: &[u8]) -> Result<CellLine<'_>, FieldError> {
 }
 
 impl<'a> CellStatus<'a> {
-    /// Encodes the status.
     #[must_use]
     pub fn encode(&self) -> [u8; CellStatusLayout::BYTES] {
         CellStatusLayout::encode(self)

@@ -51,16 +51,13 @@ impl Codec<'_, ()> for Length {
     }
 }
 
-/// Errors of decoding a command.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum CommandError {
-    /// Wrong size or field.
     #[error(transparent)]
     Layout(#[from] LayoutError),
     /// The command number is 0, which means no command.
     #[error("a number from 1 on was expected for command-#-in, found 0")]
     NoNumber,
-    /// The command name is blank.
     #[error("the name of a command was expected for command-16, found blanks")]
     NoCommand,
 }

@@ -37,17 +37,9 @@ pub enum Refusal {
     /// The bytes cannot be decoded.
     Garbled(CommandError),
     /// The number belongs to another command.
-    Changed {
-        /// The number of both commands.
-        number: u16,
-    },
+    Changed { number: u16 },
     /// The number is out of order.
-    OutOfOrder {
-        /// The expected number.
-        expected: u16,
-        /// The number of the command.
-        found: u16,
-    },
+    OutOfOrder { expected: u16, found: u16 },
 }
 
 impl Refusal {
@@ -127,7 +119,6 @@ impl Default for Gate {
 }
 
 impl Gate {
-    /// Task's command buffer.
     #[must_use]
     pub const fn command(&self) -> &HwsCommand {
         &self.command

@@ -53,7 +53,6 @@ pub use self::{
 use super::status::{Status, TaskState};
 use crate::fields::command_number;
 
-/// Actions of the workstation.
 pub trait Workstation {
     /// Begin an action; `line` is its line in the job, without the asterisks.
     ///
@@ -110,7 +109,6 @@ pub struct Hwsc {
     /// The PAUSE before the current step, or before its retry, is in progress.
     pausing: bool,
     retried: Vec<Retry>,
-    /// State of an operator's intervention.
     intervention: Intervention,
 }
 
@@ -212,13 +210,11 @@ impl Hwsc {
         &self.begun_steps
     }
 
-    /// The lines of the job.
     #[must_use]
     pub fn lines(&self) -> &[JobLine] {
         &self.steps
     }
 
-    /// Progress of the job.
     #[must_use]
     pub const fn progress(&self) -> &Progress {
         &self.progress

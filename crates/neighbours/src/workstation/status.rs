@@ -20,7 +20,6 @@ pub const REASON: usize = 160;
 /// The field `task-state`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum TaskState {
-    /// Task runs.
     Runs,
     /// Task's switch on the joystick box holds Task (III.3.3): it does not read its commands.
     Held,
@@ -28,7 +27,6 @@ pub enum TaskState {
     Lost,
 }
 
-/// A decoded status.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Status<'a> {
     /// `"command-echo"`.
@@ -37,17 +35,13 @@ pub struct Status<'a> {
     pub report: HwsReport,
     /// `command-#-echo`.
     pub echo: u16,
-    /// `mailgram-echo`.
     pub mailgram_echo: u16,
     /// `verdict`: 0 if the mailgram was accepted.
     pub verdict: u16,
     /// `status-code`.
     pub code: Reason,
-    /// `task-state`.
     pub task: TaskState,
-    /// `unconfirmed`.
     pub unconfirmed: Unconfirmed,
-    /// `reason`.
     pub reason: &'a str,
 }
 
@@ -100,7 +94,6 @@ impl Codec<'_, ()> for Length {
 /// The contents of the field `reason`.
 #[derive(Clone, Copy, Debug)]
 pub enum Why<'a> {
-    /// The mailgram was refused.
     Mailgram(&'a Refusal),
     /// The command does not pass its check; what is wrong with it.
     Command(&'a str),

@@ -12,7 +12,6 @@ pub struct Optics {
 }
 
 impl Optics {
-    /// The camera of a description.
     #[must_use]
     pub fn new(description: &Description) -> Self {
         Self { description: description.clone() }

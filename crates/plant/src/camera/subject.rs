@@ -18,7 +18,6 @@ pub struct Subject {
 /// The face of a part towards the camera.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Face {
-    /// Its middle.
     pub centre: Vector,
     /// Directions and lengths of its two edges.
     pub edges: [(Vector, f64); 2],
@@ -68,7 +67,6 @@ impl Subject {
         self.seen.iter().rev().fold(0, |bits, seen| bits << 1 | u128::from(*seen))
     }
 
-    /// The face.
     #[must_use]
     pub const fn face(&self) -> &Face {
         &self.face
@@ -80,13 +78,11 @@ impl Subject {
         self.reflectance
     }
 
-    /// Visible fraction of the face.
     #[must_use]
     pub fn share(&self) -> f64 {
         self.seen.iter().filter(|seen| **seen).count() as f64 / self.seen.len() as f64
     }
 
-    /// The visible points.
     fn seen_points(&self) -> impl Iterator<Item = Vector> {
         self.face.points().zip(&self.seen).filter(|(_, seen)| **seen).map(|(point, _)| point)
     }

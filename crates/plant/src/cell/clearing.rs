@@ -52,7 +52,6 @@ impl Cell {
         self.clearance.watch(margin);
     }
 
-    /// Upper arm, forearm and wrist.
     pub(super) fn arm_bodies(&self) -> [Body; 3] {
         bodies::arm(&self.description, &self.joints())
     }

@@ -12,11 +12,9 @@ use crate::{
     t3::{Cut, DriveError, Lamps, RobotEvent, explained},
 };
 
-/// Errors of building a cell.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum CellError {
-    /// The description has mistakes.
     #[error(transparent)]
     Description(#[from] DescriptionError),
     /// The arm cannot take the start position of the description.
@@ -37,40 +35,21 @@ pub enum CellEvent {
     Contact(Contact),
     /// A part slides in a hand: the load exceeds the hand's force and friction.
     Slipped {
-        /// The part.
         part: String,
-        /// The hand.
         hand: String,
         /// How far it has slid since it was gripped, in.
         distance: f64,
     },
     /// A hand has lost the part that it held.
-    Dropped {
-        /// The part.
-        part: String,
-        /// The hand.
-        hand: String,
-    },
+    Dropped { part: String, hand: String },
     /// The gripper has forced a part out of the closed vise.
-    ForcedOut {
-        /// The part.
-        part: String,
-    },
+    ForcedOut { part: String },
     /// The quick change has released a gripper that was not over an empty holster.
-    GripperFell {
-        /// Its link name.
-        gripper: String,
-    },
+    GripperFell { gripper: String },
     /// The robot lifted a gripper in the seat of its holster, and the lips tore it off the quick change.
-    GripperTorn {
-        /// Its link name.
-        gripper: String,
-    },
+    GripperTorn { gripper: String },
     /// A part lies on the floor.
-    Fell {
-        /// The part.
-        part: String,
-    },
+    Fell { part: String },
     /// The T3 controller shows a warning.
     Warning(#[serde(with = "crate::image::record")] Warning),
     /// An arm without pressure has come to rest.
@@ -89,14 +68,12 @@ pub enum CellEvent {
     FaultBegins {
         /// Its number in the file, from 1.
         number: usize,
-        /// The fault as text.
         text: String,
     },
     /// A fault of the fault plan ends.
     FaultEnds {
         /// Its number in the file, from 1.
         number: usize,
-        /// The fault as text.
         text: String,
     },
 }

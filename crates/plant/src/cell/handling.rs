@@ -37,12 +37,10 @@ const WELL: Real = 0.25;
 const FINGER_STIFFNESS: Stiffness = Stiffness { linear: 2.0e5, angular: 500.0 };
 
 impl Cell {
-    /// The gripper of a hand.
     pub(super) fn hand(&self, hand: Hand) -> &Gripper {
         hand.slot().map_or(&self.pedestal.hand, |slot| &self.grippers[slot])
     }
 
-    /// The gripper of a hand, and the physics world.
     pub(super) fn hand_at_work(&mut self, hand: Hand) -> (&mut Gripper, &mut PhysicsWorld) {
         let gripper = match hand.slot() {
             Some(slot) => &mut self.grippers[slot],

@@ -23,7 +23,6 @@ pub struct LinkPose {
     pub parent: &'static str,
     /// x, y, z in metres.
     pub position: [f64; 3],
-    /// Quaternion x, y, z, w.
     pub rotation: [f64; 4],
 }
 

@@ -65,7 +65,6 @@ pub struct Cell {
     description: CellDescription,
     world: World,
     t3: T3Controller,
-    /// The host's DTR.
     host_ready: bool,
     /// The parts gripper, the v-gripper, the tool gripper.
     grippers: [Gripper; 3],
@@ -75,7 +74,6 @@ pub struct Cell {
     vise: Vise,
     optics: Optics,
     analysis: Analysis,
-    /// Another process analyses the pictures.
     vision_elsewhere: bool,
     joystick: Joystick,
     parts: Vec<Part>,
@@ -354,7 +352,6 @@ impl Cell {
         self.vise.opening()
     }
 
-    /// All parts.
     #[must_use]
     pub fn parts(&self) -> Vec<PartState> {
         (0..self.parts.len()).map(|index| self.part_state(index)).collect()
@@ -387,7 +384,6 @@ impl Cell {
         self.pedestal.table.panel()
     }
 
-    /// The T3 controller.
     #[must_use]
     pub fn t3(&self) -> &T3Controller {
         &self.t3

@@ -10,17 +10,13 @@ use crate::description::{CellDescription, Nest, PartType};
 
 /// Where a part can be put down.
 pub(crate) enum Spot<'c> {
-    /// In a nest.
     Nest(&'c Nest),
     /// On the floor of a tray, with this frame.
     Sector(Frame),
 }
 
-/// Where something can be machined.
 pub(crate) enum Machine<'c> {
-    /// In the vise.
     Vise,
-    /// In a nest.
     Nest(&'c Nest),
 }
 
@@ -69,7 +65,6 @@ impl CellDescription {
         }
     }
 
-    /// The part with a name.
     pub(crate) fn kind(&self, name: &str) -> Result<&PartType, WorkstationError> {
         self.part(name).ok_or_else(|| WorkstationError::UnknownPart {
             name: name.into(),

@@ -121,7 +121,6 @@ impl Cell {
             .or_else(|| parts().map(|other| other.kind.name.clone()))
     }
 
-    /// The report of a part.
     pub(super) fn part_state(&self, index: usize) -> PartState {
         let part = &self.parts[index];
         let frame = part.frame(&self.world);

@@ -34,7 +34,6 @@ pub struct Droop {
     pub position: [f64; 3],
     /// Contacts since then, each with its greatest depth; the deepest first.
     pub touched: Vec<Contact>,
-    /// The arm has finished sagging.
     pub at_rest: bool,
     /// The shoulder rests on the shot pin.
     pub on_shot_pin: bool,
@@ -58,7 +57,6 @@ impl Droop {
         }
     }
 
-    /// Add the present contacts.
     fn note(&mut self, touching: Vec<Contact>) {
         let same = |a: &Contact, b: &Contact| (&a.mover, &a.obstacle) == (&b.mover, &b.obstacle);
         for contact in touching {

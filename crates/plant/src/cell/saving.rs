@@ -21,7 +21,6 @@ const VERSION: u32 = 5;
 /// Bytes before the state.
 const HEADER: usize = 28;
 
-/// Error of saving a cell.
 #[derive(Debug, thiserror::Error)]
 #[error("the state of the cell cannot be written: {0}")]
 pub struct SaveError(#[from] postcard::Error);
@@ -34,10 +33,7 @@ pub enum RestoreError {
     Foreign,
     /// The bytes were written in another version of the format.
     #[error("this cell was saved in version {found} of the format, expected version {VERSION}")]
-    Version {
-        /// The version in the header.
-        found: u32,
-    },
+    Version { found: u32 },
     /// There are fewer or more bytes than the header says.
     #[error("a saved cell of {expected} bytes was expected, found {found}")]
     Length {
@@ -49,7 +45,6 @@ pub enum RestoreError {
     /// The digest does not match: some bytes have changed.
     #[error("the saved cell is damaged: its digest is {found:016x}, expected {expected:016x}")]
     Damaged {
-        /// The digest in the header.
         expected: u64,
         /// Digest of the bytes.
         found: u64,

@@ -89,7 +89,6 @@ impl Cell {
         near.collect()
     }
 
-    /// Read all sensors.
     pub(super) fn sense(&mut self, link_rx: LinkBytes, link_ready: bool) -> DeviceInputs {
         let (grip, force) = self.sense_gripper();
         let resolver_noise = self.description.sensors.resolver_noise;

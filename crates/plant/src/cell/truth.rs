@@ -17,24 +17,18 @@ const STILL: f64 = 0.05;
 /// Devices that hold a part. During a handover there are two.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Holders {
-    /// A gripper of the robot.
     pub robot: bool,
     /// The hand of the Active Pedestal.
     pub pedestal: bool,
-    /// The vise.
     pub vise: bool,
-    /// The tool drum.
     pub drum: bool,
 }
 
 /// State of the locking ring of the quick change.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RingState {
-    /// Locked.
     Locked,
-    /// Open.
     Open,
-    /// Between its ends.
     Between,
 }
 

@@ -13,9 +13,7 @@ use crate::{
 pub enum Placement {
     /// At an offset from the centre of the sector.
     At {
-        /// World X, in.
         x: f64,
-        /// World Y, in.
         y: f64,
         /// Right-hand roll about the tool's X (down), degrees; at 0 the part's Z is the tool's Z.
         angle: f64,
@@ -24,48 +22,38 @@ pub enum Placement {
     Random,
 }
 
-/// An action of the workstation.
 #[derive(Clone, Debug, PartialEq)]
 pub enum WorkstationAction {
     /// Put a part into a sector of a tray.
     Place {
         /// Name of a part of the description.
         part: String,
-        /// Name of the unit.
         unit: String,
         /// Sector, from 1.
         sector: u16,
-        /// Where in the sector.
         placement: Placement,
     },
-    /// Put a part anywhere.
     Put {
         /// Name of a part of the description.
         part: String,
-        /// Its frame, in.
         frame: Frame,
     },
     /// Remove the part with a number.
     Remove {
-        /// Its number.
         id: u32,
     },
-    /// Open the vise.
     ViseOpen,
     /// Close the vise just wide enough for a blank to go in.
     VisePartial,
-    /// Close the vise.
     ViseClose,
     /// Select another program of the vise; the jaw does not move until an opening is commanded.
     ViseProgram {
-        /// Its name.
         name: String,
     },
     /// Machine the part that is clamped in the vise or in a nest.
     Machine {
         /// The part that must be there.
         from: String,
-        /// The part that it becomes.
         to: String,
         /// Name of the location of the vise or the nest.
         location: String,
@@ -79,13 +67,11 @@ pub enum WorkstationAction {
         /// Name of a part of the description.
         part: String,
     },
-    /// Operate the joystick box.
     Joystick(BoxAction),
     /// Operate the T3 controller, or an emergency stop.
     T3(Key),
     /// Operate the panel of the rotary table's controller.
     Table(TableKey),
-    /// Operate the resolver electronics.
     Resolvers(ResolverKey),
 }
 
@@ -94,26 +80,14 @@ pub enum WorkstationAction {
 pub enum WorkstationError {
     /// The description has no part of that name.
     #[error("no part named {name}; the cell description has {}", list(.known))]
-    UnknownPart {
-        /// The name.
-        name: String,
-        /// All names.
-        known: Vec<String>,
-    },
+    UnknownPart { name: String, known: Vec<String> },
     /// The description has no unit of that name.
     #[error("no unit named {name}; the cell description has {}", list(.known))]
-    UnknownUnit {
-        /// The name.
-        name: String,
-        /// All names.
-        known: Vec<String>,
-    },
+    UnknownUnit { name: String, known: Vec<String> },
     /// The unit has no such sector.
     #[error("{unit} has sectors 1 to {sectors} in the cell description, not {sector}")]
     UnknownSector {
-        /// The unit.
         unit: String,
-        /// The sector asked for.
         sector: u16,
         /// Number of sectors of the unit.
         sectors: usize,
@@ -121,114 +95,56 @@ pub enum WorkstationError {
     /// The part needs a nest, and there is none.
     #[error("no place for {part} in sector {sector} of {unit}; the cell description has {}", places(.known))]
     NoNest {
-        /// The part.
         part: String,
-        /// The unit.
         unit: String,
-        /// The sector asked for.
         sector: u16,
         /// Locations and sectors of its nests; sector 0 stands for a nest without a sector.
         known: Vec<(String, u16)>,
     },
     /// The vise is at another location.
     #[error("there is no vise at {location}; the cell description has one at {known}")]
-    NoVise {
-        /// The location asked for.
-        location: String,
-        /// The location of the vise.
-        known: String,
-    },
+    NoVise { location: String, known: String },
     /// The vise has no such program.
     #[error("the vise has no program {name}; the cell description has {}", list(.known))]
-    UnknownProgram {
-        /// The name.
-        name: String,
-        /// All names.
-        known: Vec<String>,
-    },
+    UnknownProgram { name: String, known: Vec<String> },
     /// The part is not a tool for the drum.
     #[error("{name} is no tool; the cell description has {}", list(.known))]
-    NoTool {
-        /// The name.
-        name: String,
-        /// All tools.
-        known: Vec<String>,
-    },
-    /// Nothing can be machined there.
+    NoTool { name: String, known: Vec<String> },
     #[error("nothing can be machined at {location}; the cell description has machines at {}", list(.known))]
     NoMachine {
-        /// The location asked for.
         location: String,
         /// All locations where something can be machined.
         known: Vec<String>,
     },
     /// There is no gripper with this end effector id.
     #[error("no gripper has the end effector id {id}; the grippers have 1 to 3")]
-    NoSuchGripper {
-        /// The id asked for.
-        id: u8,
-    },
+    NoSuchGripper { id: u8 },
     /// There is no holster with this number.
     #[error("no holster has the number {number}; the holsters have 0 to 2")]
-    NoSuchHolster {
-        /// The number asked for.
-        number: usize,
-    },
-    /// The place is occupied.
+    NoSuchHolster { number: usize },
     #[error("{part} cannot be put there: {by} is in the way")]
-    Occupied {
-        /// The part.
-        part: String,
-        /// The body in that place.
-        by: String,
-    },
+    Occupied { part: String, by: String },
     /// There is no part of that number.
     #[error("there is no part number {id} in the cell")]
-    NoSuchPart {
-        /// The number.
-        id: u32,
-    },
+    NoSuchPart { id: u32 },
     /// A held part cannot be removed.
     #[error("{part} is held and cannot be taken away")]
-    Held {
-        /// The part.
-        part: String,
-    },
+    Held { part: String },
     /// A part that the robot still holds cannot be machined in a nest.
     #[error("{part} is to be machined, but the robot still has it")]
-    InHand {
-        /// The part.
-        part: String,
-    },
-    /// The vise is moving.
+    InHand { part: String },
     #[error("the vise is still moving")]
     Busy,
-    /// Nothing is clamped.
     #[error("{expected} is to be machined, but nothing is clamped in the vise")]
-    NotClamped {
-        /// The expected part.
-        expected: String,
-    },
+    NotClamped { expected: String },
     /// The nest is empty.
     #[error("{expected} is to be machined, but nothing is at {location}")]
-    NothingThere {
-        /// The expected part.
-        expected: String,
-        /// The location of the nest.
-        location: String,
-    },
-    /// Another part is there.
+    NothingThere { expected: String, location: String },
     #[error("{expected} is to be machined, but {found} is there")]
-    WrongPart {
-        /// The expected part.
-        expected: String,
-        /// The part that is there.
-        found: String,
-    },
+    WrongPart { expected: String, found: String },
     /// The fingers of the drum cannot close on the tool that is there.
     #[error("the drum cannot grip {tool}: it is {distance:.3} in and {degrees:.2} degrees from its place")]
     NotInPlace {
-        /// The tool.
         tool: String,
         /// Distance of its centre from its place, in.
         distance: f64,
@@ -242,23 +158,18 @@ pub enum WorkstationError {
     #[error(
         "{part} is to be machined on its other side, but the one in front was machined before: turn it round first"
     )]
-    SameSide {
-        /// The part.
-        part: String,
-    },
+    SameSide { part: String },
     /// The part is too far from its seat.
     #[error(
         "{part} is {distance:.3} in and {degrees:.2} degrees from its seat; {} and {} degrees are allowed",
         Length(.allowed.inches), .allowed.degrees
     )]
     NotSeated {
-        /// The part.
         part: String,
         /// Distance of its centre from the seat, in.
         distance: f64,
         /// Angle of the part to the seat, degrees.
         degrees: f64,
-        /// The tolerance.
         allowed: Tolerance,
     },
     /// The T3 controller refuses the key in its present state.
@@ -272,12 +183,7 @@ pub enum WorkstationError {
     ResolversRefused(#[from] ResolverRefusal),
     /// The next part is larger than the blank.
     #[error("{to} does not fit into {from}")]
-    TooLarge {
-        /// The blank.
-        from: String,
-        /// The next part.
-        to: String,
-    },
+    TooLarge { from: String, to: String },
 }
 
 impl Cell {

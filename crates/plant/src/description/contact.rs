@@ -43,7 +43,6 @@ pub enum Kind {
 }
 
 impl Kind {
-    /// All kinds.
     pub const ALL: [Self; 13] = [
         Self::Arm,
         Self::Gripper,
@@ -134,11 +133,9 @@ impl fmt::Display for Pattern {
     }
 }
 
-/// A permitted contact.
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct Permit {
-    /// The moving bodies.
     pub mover: Vec<Pattern>,
     /// The obstacles that they may touch.
     pub obstacle: Vec<Pattern>,
@@ -147,7 +144,6 @@ pub struct Permit {
     pub during: Vec<String>,
     /// Greatest depth, in; without it any depth.
     pub depth: Option<f64>,
-    /// The reason.
     pub why: String,
 }
 

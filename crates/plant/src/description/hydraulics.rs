@@ -11,7 +11,6 @@ pub struct Actuators {
     pub lag_s: f64,
     /// Greatest speed of each joint under pressure, degrees/s.
     pub speeds: [f64; 6],
-    /// Hydraulics and weights.
     pub hydraulics: Hydraulics,
 }
 

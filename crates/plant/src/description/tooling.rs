@@ -9,7 +9,6 @@ use serde::{Deserialize, Serialize};
 pub struct Points {
     /// A point on the axis of the end effector.
     pub wrist: [i32; 3],
-    /// The tool point.
     pub tool: [i32; 3],
     /// A point to the left of the tool point.
     pub finger: [i32; 3],
@@ -24,27 +23,20 @@ impl Points {
     }
 }
 
-/// The gripper on the robot.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Mounted {
-    /// No gripper.
     None,
-    /// The parts gripper.
     Parts,
-    /// The v-gripper.
     V,
-    /// The tool gripper.
     Tool,
 }
 
-/// The quick change.
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct QuickChange {
     /// Length of both plates together, from the end plate, in.
     pub length: f64,
-    /// Radius of the plates, in.
     pub radius: f64,
     /// The gripper on the robot at the start; the others are in their holsters.
     pub mounted: Mounted,
@@ -91,7 +83,6 @@ pub struct Holsters {
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct Drum {
-    /// Name of the location.
     pub location: String,
     /// Its tool frame.
     pub pose: Points,

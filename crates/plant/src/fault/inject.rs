@@ -21,14 +21,12 @@ const STREAMS: u64 = 1000;
 /// Mixes the seed of the plan with that of the run: 2^64 divided by the golden ratio.
 const MIX: u64 = 0x9E37_79B9_7F4A_7C15;
 
-/// Applies a plan.
 #[derive(Clone, Debug, Default, Deserialize, Serialize)]
 pub struct Injector {
     tick: u64,
     faults: Vec<Running>,
 }
 
-/// A fault and its state.
 #[derive(Clone, Debug, Deserialize, Serialize)]
 struct Running {
     fault: Fault,
@@ -47,12 +45,10 @@ struct Running {
     last: u64,
 }
 
-/// A fault that has happened.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Struck {
     /// Its number in the file, from 1.
     pub number: usize,
-    /// The fault as text.
     pub text: String,
     /// Number of times that it has begun.
     pub times: u64,
@@ -62,10 +58,8 @@ pub struct Struck {
     pub last: u64,
 }
 
-/// Errors of a delivery.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Delivery {
-    /// Nothing is delivered.
     pub missing: bool,
     /// The part that is delivered instead.
     pub instead: Option<String>,

@@ -23,23 +23,18 @@ use interfaces::point::{Input, Output};
 
 use crate::description::CellDescription;
 
-/// Faults and their seed.
 #[derive(Clone, Debug, Default, Deserialize, PartialEq, Serialize)]
 pub struct FaultPlan {
     /// Seed of the random numbers, combined with the seed of the run.
     pub seed: u64,
-    /// The faults.
     pub faults: Vec<Fault>,
 }
 
-/// A fault and its time.
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 pub struct Fault {
     /// Its number in the file, from 1.
     pub number: usize,
-    /// Its effect.
     pub what: What,
-    /// Its time.
     pub when: When,
 }
 
@@ -67,14 +62,12 @@ impl When {
     }
 }
 
-/// The effect of a fault.
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 pub enum What {
     /// A sensor shows a wrong value.
     Sensor(#[serde(with = "crate::named")] Input, Disorder),
     /// A valve is stuck open (true) or closed.
     Valve(#[serde(with = "crate::named")] Output, bool),
-    /// The air supply is lost.
     AirLost,
     /// The hydraulics of the robot have failed, and can be switched on again only after the end of the fault (III.6).
     HydraulicsLost,
@@ -82,7 +75,6 @@ pub enum What {
     RingStuck,
     /// The jaw of the vise does not move.
     JawStuck,
-    /// The camera sees nothing.
     CameraBlind,
     /// A device of the field I/O has no connection.
     FieldCut(String),
@@ -116,21 +108,16 @@ pub enum Disorder {
     Drift(f64),
 }
 
-/// The error of a delivery.
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 pub enum Mishap {
-    /// Nothing is delivered.
     Missing,
     /// The part lies beside its place: offset along world X and Y, in.
     Misplaced {
-        /// Along X, in.
         x: f64,
-        /// Along Y, in.
         y: f64,
     },
     /// The part is turned: right-hand roll about the tool's X (down), degrees.
     Turned(f64),
-    /// Another part is delivered.
     WrongPart(String),
 }
 

@@ -70,7 +70,6 @@ const KIND: FileKind = FileKind {
 pub struct FaultFile {
     /// Faults of the line to the robot controller, if any.
     pub line: Option<Plan>,
-    /// Faults of the cell.
     pub cell: FaultPlan,
 }
 
@@ -91,7 +90,6 @@ pub fn parse_line(source: &Source) -> Result<Plan, Diagnostics> {
     Ok(read.line.unwrap_or_else(|| Plan::new(read.cell.seed)))
 }
 
-/// The whole file.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Sheet {
@@ -106,7 +104,6 @@ const fn first_seed() -> u64 {
     1
 }
 
-/// All keys of a fault.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Form {

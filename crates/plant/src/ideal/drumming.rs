@@ -25,7 +25,6 @@ pub(super) struct Press {
     away: Inches,
     /// Depth when it was met, in.
     depth: f64,
-    /// Tool point then, in.
     tool: Inches,
 }
 
@@ -35,7 +34,6 @@ impl Press {
         Self { pair: contact.pair(), away, depth: contact.depth, tool: tool.position }
     }
 
-    /// Depth with the tool frame at `tool`, in.
     fn depth(&self, tool: &Frame) -> f64 {
         (self.depth + (self.tool - tool.position).dot(&self.away)).max(0.0)
     }

@@ -19,16 +19,12 @@ use crate::{
 /// Greatest height from which a part that is released comes to lie on what is under it, in; the cell's jobs have 0.15.
 const DROP: f64 = 0.5;
 
-/// A pair of fingers.
 #[derive(Clone, Debug)]
 pub(super) struct Fingers {
-    /// Opening and force.
     pub(super) air: Air,
-    /// The part in them.
     pub(super) hold: Option<Hold>,
 }
 
-/// A part in fingers.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Hold {
     /// Its index in the list of parts.
@@ -42,7 +38,6 @@ impl Fingers {
         Self { air: Air::new(gripper), hold: None }
     }
 
-    /// Those of a hand.
     pub(super) const fn of([parts, v, tool, pedestal]: &[Self; 4], hand: Hand) -> &Self {
         match hand {
             Hand::Parts => parts,

@@ -56,7 +56,6 @@ impl Ideal {
         self.analysis.expose(request, &seen, self.room.cell().seen_as(request.object_id));
     }
 
-    /// Read all sensors.
     pub(super) fn sense(&mut self, link_rx: LinkBytes, link_ready: bool) -> DeviceInputs {
         let (grip, force) = self.sense_gripper();
         let hand = self.read(Hand::Pedestal, 0);

@@ -21,7 +21,6 @@ const FOUND: u8 = GREYS + 1;
 const DOUBT: u8 = GREYS + 2;
 const NOTHING: u8 = GREYS + 3;
 
-/// The picture during drawing.
 struct Canvas {
     pixels: Vec<u8>,
     /// Half the width of the field of view, divided by the distance.

@@ -18,7 +18,6 @@ use geometry::kinematics::T3;
 /// Small chamfer, in: gripped parts lie against the adjacent faces.
 const EDGE: f64 = 0.03;
 
-/// The body of a hand.
 #[must_use]
 pub(crate) fn body(cell: &CellDescription, hand: Hand) -> Mesh {
     match hand {
@@ -27,7 +26,6 @@ pub(crate) fn body(cell: &CellDescription, hand: Hand) -> Mesh {
     }
 }
 
-/// A finger of a hand.
 #[must_use]
 pub(crate) fn finger(cell: &CellDescription, hand: Hand, side: f64) -> Mesh {
     finger_mesh(hand.description(cell), side, mark(hand))

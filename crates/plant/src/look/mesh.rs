@@ -14,7 +14,6 @@ use crate::scene::Material;
 const CREASE: f64 = 0.454;
 /// Points of a circle large enough to show its corners.
 pub const ROUND: usize = 24;
-/// Points of a small circle.
 pub const SMALL: usize = 10;
 
 /// A corner of a triangle, with its normal.
@@ -29,7 +28,6 @@ pub struct Corner {
 /// A closed surface of one material.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Piece {
-    /// Material of the surface.
     pub material: Material,
     /// Triangles, counter-clockwise as seen from outside, inches.
     pub triangles: Vec<[Vector; 3]>,
@@ -85,20 +83,17 @@ fn unit(v: &Vector) -> Vector {
     if length > 0.0 { v / length } else { Vector::x() }
 }
 
-/// Solids that move together.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Mesh {
     pieces: Vec<Piece>,
 }
 
 impl Mesh {
-    /// The pieces.
     #[must_use]
     pub fn pieces(&self) -> &[Piece] {
         &self.pieces
     }
 
-    /// Number of triangles.
     #[must_use]
     pub fn triangles(&self) -> usize {
         self.pieces.iter().map(|piece| piece.triangles.len()).sum()

@@ -31,7 +31,6 @@ pub struct Model {
 }
 
 impl Model {
-    /// The model of a link.
     #[must_use]
     pub fn new(link: &str, mesh: Mesh) -> Self {
         Self { name: link.into(), frame: link.into(), mesh }
@@ -53,7 +52,6 @@ impl Model {
 /// A text label beside an object.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Label {
-    /// The text.
     pub text: String,
     /// Name of the link that it moves with.
     pub frame: &'static str,
@@ -88,7 +86,6 @@ impl Scene<'_> {
         })
     }
 
-    /// Labels of the important objects.
     #[must_use]
     pub fn labels(&self) -> Vec<Label> {
         let cell = self.cell;

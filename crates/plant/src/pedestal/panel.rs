@@ -20,13 +20,11 @@ const FAR: f64 = 1e6;
 /// Reasons for which the panel refuses a key.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum TableRefusal {
-    /// The power is off.
     #[error("the rotary table controller has no power: table power on comes first")]
     NoPower,
     /// The mode switch is not at MANUAL.
     #[error("the mode switch of the rotary table controller stands at PROG: table mode manual comes first")]
     NotManual,
-    /// The motor turns.
     #[error("the rotary table turns: ask again when it stands")]
     Turns,
 }
@@ -34,7 +32,6 @@ pub enum TableRefusal {
 /// Switches of the panel, and the state of the controller that they have caused.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq, Serialize)]
 pub struct TablePanel {
-    /// The controller has power.
     pub power: bool,
     /// The mode switch is at MANUAL.
     pub manual: bool,
@@ -52,7 +49,6 @@ impl TablePanel {
 }
 
 impl Table {
-    /// State of its panel.
     #[must_use]
     pub const fn panel(&self) -> TablePanel {
         self.panel

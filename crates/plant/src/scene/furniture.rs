@@ -14,7 +14,6 @@ use crate::{
     holster::holsters,
 };
 
-/// Collision group of fixed bodies.
 pub const WORLD: Group = Group::GROUP_1;
 /// Collision group of the jaws of the vise.
 pub const JAW: Group = Group::GROUP_4;
@@ -22,7 +21,6 @@ pub const JAW: Group = Group::GROUP_4;
 pub const FINGER: Group = Group::GROUP_2;
 /// Collision group of the pedestal's hand.
 pub const HAND: Group = Group::GROUP_5;
-/// Collision group of parts.
 pub const PART: Group = Group::GROUP_3;
 /// Collision group of the palms of hands: a held part still collides with the palm.
 pub const PALM: Group = Group::GROUP_6;
@@ -118,7 +116,6 @@ impl Block {
     }
 }
 
-/// All fixed blocks.
 #[must_use]
 pub fn furniture(cell: &CellDescription) -> Vec<Block> {
     let mut blocks: Vec<Block> = cell.fixture.iter().map(fixture).collect();
@@ -146,7 +143,6 @@ fn fixture(fixture: &Fixture) -> Block {
     }
 }
 
-/// Floor and four walls.
 fn tray_blocks(tray: &Tray, shape: &TrayShape) -> Vec<Block> {
     let [x, y] = tray.centre;
     let inner = shape.inside / 2.0;

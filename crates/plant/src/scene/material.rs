@@ -2,48 +2,32 @@
 
 use crate::{description::PartType, solid::Family};
 
-/// A material of the cell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Material {
-    /// Castings of the robot.
     Orange,
-    /// Covers and panels.
     Cream,
-    /// Motors, plates, gripper bodies.
     Charcoal,
-    /// Hoses, glass, feet.
     Rubber,
-    /// Piston rods, jaws, fingers.
     Steel,
-    /// Ground faces, bolts.
     Bright,
-    /// The machine tool.
     White,
     /// Doors and skirts of the machine tool.
     Petrol,
-    /// Trays.
     Blue,
     /// Rims of the trays and lines on them.
     PaleBlue,
-    /// Benches and stands.
     Slate,
-    /// Tops of the benches.
     Maple,
-    /// Holsters and warning marks.
     Yellow,
-    /// The floor.
     Concrete,
-    /// Pads of the fingers.
     Pad,
     /// Linkbars, and marks of the parts gripper.
     Green,
     /// Tools, and marks of the tool gripper.
     Red,
-    /// Clevises.
     Violet,
     /// Shafts, and marks of the v-gripper.
     Brass,
-    /// Cutting edges.
     Gold,
     /// Lamps and the ring of the camera.
     Light,
@@ -96,7 +80,6 @@ impl Material {
         }
     }
 
-    /// Name of the material.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -131,7 +114,6 @@ impl Material {
         [16, 8, 0].map(|shift| f64::from(colour >> shift & 0xFF) / 255.0)
     }
 
-    /// The material as glTF's JSON.
     #[must_use]
     pub fn gltf(self) -> String {
         let Look { metal, rough, light, .. } = self.look();

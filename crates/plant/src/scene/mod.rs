@@ -34,7 +34,6 @@ use crate::{
 /// The frame of fixed bodies.
 pub const ROOT: &str = "world";
 
-/// A cell with parts.
 #[derive(Clone, Debug)]
 pub struct Scene<'c> {
     pub(crate) cell: &'c CellDescription,
@@ -48,14 +47,11 @@ pub struct Link<'c> {
     pub name: String,
     /// The link in whose frame its joint starts; [`ROOT`] for the world.
     pub parent: &'static str,
-    /// Its joint.
     pub joint: Joint,
-    /// Its shapes.
     pub visuals: Vec<Visual>,
     pub(crate) body: Body<'c>,
 }
 
-/// The bodies of a scene.
 #[derive(Clone, Debug)]
 pub(crate) enum Body<'c> {
     Moving(Moving),
@@ -70,20 +66,14 @@ pub struct Joint {
     pub name: String,
     /// The link in its parent with the joint at 0, in.
     pub start: Frame,
-    /// Its motion.
     pub kind: JointKind,
 }
 
-/// How a link can move.
 #[derive(Clone, Copy, Debug)]
 pub enum JointKind {
-    /// Not at all.
     Fixed,
-    /// Freely.
     Floating,
-    /// About an axis.
     Revolute(Motion),
-    /// Along an axis.
     Prismatic(Motion),
 }
 
@@ -100,7 +90,6 @@ impl JointKind {
 pub struct Motion {
     /// Its axis in the frame of the link.
     pub axis: [f64; 3],
-    /// Least and greatest value.
     pub range: (f64, f64),
     /// Greatest speed, rad/s or m/s.
     pub speed: f64,
@@ -108,14 +97,11 @@ pub struct Motion {
     pub effort: f64,
 }
 
-/// A shape of a link.
 #[derive(Clone, Copy, Debug)]
 pub struct Visual {
     /// Its place in the link, in.
     pub frame: Frame,
-    /// Its shape.
     pub shape: Shape,
-    /// Its colour.
     pub colour: Material,
 }
 

@@ -12,9 +12,7 @@ pub(crate) enum Moving {
     Arm(usize),
     /// The A plate of the quick change, with the camera.
     QuickChange,
-    /// The body of a hand.
     Hand(Hand),
-    /// A finger of a hand.
     Finger(Hand, Finger),
     /// The body of the vise with its fixed jaw.
     Vise,
@@ -51,7 +49,6 @@ impl Moving {
         arm.chain([Self::QuickChange]).chain(HANDS.into_iter().flat_map(hand)).chain([Self::Vise, Self::Jaw])
     }
 
-    /// Name of its link.
     pub(crate) const fn name(self) -> &'static str {
         match self {
             Self::Arm(joint) => ARM[joint],

@@ -10,7 +10,6 @@ use super::{JointKind, Link, Motion, ROOT, Scene, Shape, Visual};
 use crate::convert::{metres, to_metres};
 
 impl Scene<'_> {
-    /// The scene as URDF.
     #[must_use]
     pub fn urdf(&self) -> String {
         let name = escaped(&self.cell.name);

@@ -10,7 +10,6 @@ use serde::{Deserialize, Serialize};
 
 use crate::description::SensorModels;
 
-/// Words that are being delayed.
 #[derive(Clone, Debug, Default, Deserialize, PartialEq, Serialize)]
 pub struct DelayLine(VecDeque<i64>);
 
@@ -24,7 +23,6 @@ impl DelayLine {
         self.0.front().copied().unwrap_or(word)
     }
 
-    /// Drop the delayed words.
     pub fn clear(&mut self) {
         self.0.clear();
     }
@@ -34,7 +32,6 @@ impl DelayLine {
 #[derive(Clone, Debug, Default, Deserialize, Serialize)]
 pub struct DeadTimes(Vec<Late>);
 
-/// A sensor with dead time.
 #[derive(Clone, Debug, Deserialize, Serialize)]
 struct Late {
     #[serde(with = "crate::named")]

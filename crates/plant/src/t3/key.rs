@@ -8,15 +8,11 @@ use serde::{Deserialize, Serialize};
 /// Causes of the loss of pressure.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq, Serialize)]
 pub enum Cut {
-    /// An emergency stop was pressed.
     EStop(#[serde(with = "crate::image::word")] EStop),
     /// The pump, or a line, has failed.
     PressureLost,
-    /// MANUAL ON/OFF was pressed.
     ManualOff,
-    /// The HYDRAULICS keyswitch was turned.
     KeySwitch,
-    /// Control power was turned off.
     ControlPower,
     /// The Prim Interface Box has lost its power.
     PrimBox,

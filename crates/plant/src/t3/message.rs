@@ -17,16 +17,13 @@ pub const HOME: WireFrame =
 /// Greatest deviation of a value from HOME (IV.3.3 step 11).
 pub const HOME_TOLERANCE: i32 = 4;
 
-/// One message.
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 pub enum Message {
-    /// Screen: which axes are aligned.
     Aligned([bool; 6]),
     /// Screen: a warning or an error.
     Warning(#[serde(with = "crate::image::record")] Warning),
     /// The lamps on the console or on the robot.
     Lamps(Lamps),
-    /// An event of the robot.
     Robot(RobotEvent),
     /// The position, and its greatest deviation from HOME.
     Position(#[serde(with = "crate::image::record")] WireFrame),
@@ -41,17 +38,12 @@ pub enum Message {
 /// A change of the lamps (III.6, IV.3.3).
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq, Serialize)]
 pub enum Lamps {
-    /// Control power was turned on.
     PowerOn,
-    /// Control power was turned off.
     PowerOff,
     /// A fault has turned the hydraulics off.
     Fault,
-    /// The fault was reset.
     FaultReset,
-    /// The hydraulics were enabled.
     HydraulicsEnabled,
-    /// The hydraulics were disabled.
     HydraulicsDisabled,
 }
 
@@ -60,7 +52,6 @@ pub enum Lamps {
 pub enum RobotEvent {
     /// The actuators have lost their pressure.
     Sinks(Cut),
-    /// The actuators get pressure.
     WillJump,
     /// The arm has jumped to the command of the servos.
     Jumped {
@@ -69,7 +60,6 @@ pub enum RobotEvent {
     },
     /// The robot makes the vertical motions of its program (IV.3.3 step 12).
     VerticalMotions,
-    /// The program was interrupted.
     Interrupted,
     /// The robot moves to HOME by itself.
     GoesHome,

@@ -68,16 +68,12 @@ const fn powered() -> bool {
 /// Inputs from the line in a period.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct StepInputs {
-    /// Bytes of the host.
     pub rx: LinkBytes,
-    /// The host's DTR.
     pub cts: bool,
 }
 
-/// Outputs to the line.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct StepOutputs {
-    /// Bytes to the host.
     pub tx: LinkBytes,
     /// The controller's DTR, the host's CTS (A.2).
     pub dtr: bool,
@@ -88,11 +84,8 @@ pub struct StepOutputs {
 /// Counts since the start.
 #[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Eq, Serialize)]
 pub struct Counts {
-    /// Data commands executed.
     pub moves: u64,
-    /// NAKs sent.
     pub naks: u64,
-    /// Reports sent.
     pub reports: u64,
 }
 
@@ -105,7 +98,6 @@ pub enum DriveError {
     /// The joints cannot reach the position.
     #[error("the arm cannot take the position: {0:?}")]
     Joints(JointProblem),
-    /// The arm has no pressure.
     #[error("the arm has no hydraulic pressure")]
     NoPressure,
 }
@@ -142,7 +134,6 @@ impl Robot for SetPoint {
     }
 }
 
-/// The controller and its arm.
 #[derive(Clone, Debug, Deserialize, Serialize)]
 pub struct T3Controller {
     stage: Stage,
@@ -150,16 +141,13 @@ pub struct T3Controller {
     limits: Limits,
     arm: Arm,
     pump_delay: f64,
-    /// Random errors of the alignment.
     noise: Noise,
     aligned: [bool; 6],
     /// Axes that are moving to their arrow.
     aligning: [bool; 6],
-    /// Time in this stage, s.
     since: f64,
     /// Position of the hand when the pressure came, in, for the message.
     before_jump: Option<[f64; 3]>,
-    /// Number of vertical motions done.
     motions: u8,
     #[serde(with = "crate::image::record")]
     depc: Controller,
@@ -169,7 +157,6 @@ pub struct T3Controller {
     keys: ControllerInputs,
     /// The RS232 board is in its slot.
     board: bool,
-    /// Its transmitter works.
     transmitter: bool,
     /// The emergency stops that are pressed.
     estops: [bool; 5],
@@ -242,7 +229,6 @@ impl T3Controller {
         }
     }
 
-    /// Stage of the start-up.
     #[must_use]
     pub fn stage(&self) -> Stage {
         self.stage
@@ -260,7 +246,6 @@ impl T3Controller {
         &self.depc
     }
 
-    /// The arm.
     #[must_use]
     pub fn arm(&self) -> &Arm {
         &self.arm

@@ -5,16 +5,13 @@ use interfaces::station::EStop;
 /// Refusal of a key that was pressed at the wrong time, with what must be done first (IV.3.3).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum Refusal {
-    /// Control power is off.
     #[error("the controller has no power: control power on comes first")]
     NoPower,
-    /// Control power is on already.
     #[error("control power is on already")]
     PowerIsOn,
     /// A board cannot be changed under power.
     #[error("boards are changed without power: control power off comes first")]
     Powered,
-    /// FAULT RESET is lit.
     #[error("the FAULT RESET button is lit: fault reset comes first")]
     Fault,
     /// An emergency stop is still pressed.
@@ -32,13 +29,10 @@ pub enum Refusal {
     /// The keyswitch is already in that position.
     #[error("the HYDRAULICS keyswitch is there already")]
     KeyIsThere,
-    /// The robot's hydraulics are off.
     #[error("the robot's hydraulics are off: manual on comes first")]
     NoPressure,
-    /// The robot's hydraulics are on.
     #[error("the robot's hydraulics are on already")]
     PressureIsOn,
-    /// The robot is moving.
     #[error("the robot moves: wait until it stands")]
     Moving,
     /// An axis is not aligned.
@@ -50,7 +44,6 @@ pub enum Refusal {
     /// The pendant moves axes in manual mode only.
     #[error("the pendant moves axes in manual mode: before AUTO, or after INTERRUPT and CANCEL twice")]
     JogInAuto,
-    /// There is no such axis.
     #[error("an axis from 1 to 6 was expected, found {0}")]
     NoAxis(u8),
     /// The axis would turn beyond its limit.
@@ -62,10 +55,8 @@ pub enum Refusal {
     /// The robot is not in auto mode.
     #[error("the robot is not in auto mode at HOME: auto comes first")]
     NotAuto,
-    /// A program runs.
     #[error("the program runs: interrupt it first")]
     Running,
-    /// No program runs.
     #[error("no program runs")]
     NotRunning,
     /// A warning must be answered first.

@@ -22,9 +22,7 @@ use serde::{Deserialize, Serialize};
 /// ```
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq, Serialize)]
 pub enum Stage {
-    /// Control power is off.
     Dark,
-    /// FAULT RESET is lit.
     Faulted,
     /// No fault, the keyswitch is not at ENABLE.
     Ready,
@@ -36,9 +34,7 @@ pub enum Stage {
     Manual,
     /// Moving to HOME after AUTO, or after the end of the program.
     Homing,
-    /// Auto mode, at HOME.
     Auto,
-    /// The program's two vertical motions.
     Rehearsing,
     /// The program is in the DEPC function, see [`super::T3Controller::depc`].
     Depc,
@@ -47,7 +43,6 @@ pub enum Stage {
 }
 
 impl Stage {
-    /// As text for messages.
     #[must_use]
     pub const fn text(self) -> &'static str {
         match self {

@@ -14,7 +14,6 @@ pub struct Beat {
 }
 
 impl Beat {
-    /// Apply them to another cell.
     pub fn play(&self, cell: &mut Cell) {
         if let Some(plate) = &self.plate {
             cell.drive(plate).unwrap();

@@ -25,7 +25,6 @@ fn columns(record: &'static StructSchema) -> Vec<Column> {
     layout::pieces(record).into_iter().map(column).collect()
 }
 
-/// Collects images.
 pub struct Columns {
     columns: Vec<(Column, Vec<u8>)>,
     tick: u64,
@@ -59,13 +58,11 @@ impl Columns {
         }
     }
 
-    /// The columns.
     pub fn finish(self) -> Vec<Vec<u8>> {
         self.columns.into_iter().map(|(_, out)| out).collect()
     }
 }
 
-/// Reads images from columns.
 pub struct Reader<'a> {
     columns: Vec<(Column, Option<u64>, &'a [u8])>,
     image: Vec<u8>,

@@ -52,22 +52,18 @@ const LARGEST: usize = 1 << 30;
 const FILE: u64 = 1 << 28;
 /// Ticks from one digest to the next: a second.
 pub const SECOND: u64 = 25;
-/// Extension of golden files.
 pub const EXTENSION: &str = "golden";
 
-/// Content of the file.
 #[derive(Clone, PartialEq, prost::Message)]
 struct Content {
     /// Version of the images of inputs and output buffers.
     #[prost(string, tag = "1")]
     layout: String,
-    /// Metadata of the run.
     #[prost(btree_map = "string, string", tag = "2")]
     run: BTreeMap<String, String>,
     /// Task data and reloads, under their names in the log.
     #[prost(message, repeated, tag = "3")]
     files: Vec<File>,
-    /// Ticks of the run.
     #[prost(uint64, tag = "4")]
     ticks: u64,
     /// The inputs, a column a field.
@@ -95,40 +91,21 @@ pub struct Golden(Content);
 pub enum GoldenError {
     /// The file cannot be read or written.
     #[error("{}: {source}", path.display())]
-    File {
-        /// The file.
-        path: PathBuf,
-        /// What the system said.
-        source: std::io::Error,
-    },
+    File { path: PathBuf, source: std::io::Error },
     /// The bytes are not a golden run.
     #[error("{} is no golden run of this format: {what}", path.display())]
-    NotAGolden {
-        /// The file.
-        path: PathBuf,
-        /// What is wrong with it.
-        what: String,
-    },
+    NotAGolden { path: PathBuf, what: String },
     /// The golden was made with another layout of buffers.
     #[error(
         "the golden was made with layout {found}, this program has layout {expected}: make it again from a run"
     )]
-    OtherLayout {
-        /// Layout of this program.
-        expected: String,
-        /// Layout of the golden.
-        found: String,
-    },
+    OtherLayout { expected: String, found: String },
     /// The log does not hold the whole run.
     #[error("the log cannot become a golden: {0}")]
     NotWhole(&'static str),
     /// The inputs of a tick do not fit the layout.
     #[error("the inputs of tick {tick} are damaged")]
-    Damaged {
-        /// The tick.
-        tick: u64,
-    },
-    /// The log cannot be read.
+    Damaged { tick: u64 },
     #[error(transparent)]
     Log(#[from] ReadError),
     /// The task data do not load, or some are missing.
@@ -139,7 +116,6 @@ pub enum GoldenError {
 /// Result of the replay of a golden.
 #[derive(Clone, Debug)]
 pub struct Played {
-    /// Ticks that were computed.
     pub ticks: u64,
     /// First and last tick of the first second in which the output buffers differed; `None` if they never did.
     pub difference: Option<(u64, u64)>,
@@ -147,7 +123,6 @@ pub struct Played {
     pub digest: Digest,
     /// Summary of the run as text.
     pub summary: String,
-    /// Time of the replay.
     pub elapsed: Duration,
 }
 
@@ -250,7 +225,6 @@ fn kept(run: &BTreeMap<String, String>) -> BTreeMap<String, String> {
 }
 
 impl Golden {
-    /// Ticks of the run.
     #[must_use]
     pub const fn ticks(&self) -> u64 {
         self.0.ticks

@@ -107,7 +107,6 @@ pub fn typed_field(name: &str, number: i32, kind: Type, of: &str) -> FieldDescri
     FieldDescriptorProto { type_name: Some(format!(".{of}")), ..field(name, number, kind) }
 }
 
-/// The field as a repeated one.
 #[must_use]
 pub fn repeated(field: FieldDescriptorProto) -> FieldDescriptorProto {
     FieldDescriptorProto { label: Some(Label::Repeated.into()), ..field }

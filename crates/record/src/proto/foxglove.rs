@@ -20,14 +20,11 @@ pub const LOG: &str = "foxglove.Log";
 /// Severity of a log line; the codes are those of `foxglove.Log`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Level {
-    /// Details for debugging.
     Debug = 1,
-    /// A normal event.
     #[default]
     Info = 2,
     /// An unusual event without harm so far.
     Warning = 3,
-    /// A command failed.
     Error = 4,
 }
 
@@ -49,12 +46,10 @@ impl Level {
 pub struct Transform {
     /// Origin of the frame, metres.
     pub position: [f64; 3],
-    /// Orientation, x, y, z, w.
     pub rotation: [f64; 4],
 }
 
 impl Transform {
-    /// The identity.
     pub const IDENTITY: Self = Self { position: [0.0; 3], rotation: [0.0, 0.0, 0.0, 1.0] };
 }
 
@@ -184,7 +179,6 @@ pub fn put_log(time: u64, level: Level, text: &str, source: &str, file: &str, li
 /// A link of the cell: a frame and its parent frame.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Link {
-    /// Name, as in the URDF.
     pub name: String,
     /// Name of the parent in the URDF; `world` for bodies that are fixed or move freely.
     pub parent: String,

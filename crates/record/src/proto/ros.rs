@@ -26,7 +26,6 @@ int32 sec
 uint32 nanosec
 ";
 
-/// Definition of [`STRING`].
 pub const STRING_DEFINITION: &str = "string data\n";
 
 /// Appends values to a CDR message.

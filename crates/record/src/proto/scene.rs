@@ -10,7 +10,6 @@ use super::{
     wire,
 };
 
-/// Full name of the message.
 pub const SCENE_UPDATE: &str = "foxglove.SceneUpdate";
 
 /// Media type of a [`Primitive::Model`].
@@ -31,18 +30,15 @@ pub enum Primitive<'a> {
     Text(&'a str, [f64; 3], f64, Colour),
     /// A line through points: points, thickness, colour.
     Line(&'a [[f64; 3]], f64, Colour),
-    /// A ball: centre, diameter, colour.
     Ball([f64; 3], f64, Colour),
 }
 
-/// An object to draw.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Entity<'a> {
     /// Its name: a later entity with the same name replaces it.
     pub id: &'a str,
     /// The frame to which it is attached.
     pub frame: &'a str,
-    /// Its shape.
     pub primitive: Primitive<'a>,
     /// Keys and values that a viewer shows for the selected entity.
     pub facts: &'a [(&'a str, String)],

@@ -10,16 +10,13 @@ use super::{
     wire,
 };
 
-/// A type of a field.
 pub trait Value {
     /// Descriptor of a field of this type. Messages that it needs are added to `messages`.
     fn describe(name: &str, number: i32, messages: &mut Vec<DescriptorProto>) -> FieldDescriptorProto;
 
-    /// Append the field.
     fn put(&self, number: u32, out: &mut Vec<u8>);
 }
 
-/// A message.
 pub trait Message {
     /// Its name without the package.
     const NAME: &'static str;
@@ -27,11 +24,9 @@ pub trait Message {
     /// Its fields, in the order of their numbers from 1.
     fn fields(messages: &mut Vec<DescriptorProto>) -> Vec<FieldDescriptorProto>;
 
-    /// Append its fields.
     fn put_fields(&self, out: &mut Vec<u8>);
 }
 
-/// Full name of a message.
 #[must_use]
 pub fn name<M: Message>() -> String {
     format!("{}.{}", descriptor::PACKAGE, M::NAME)

@@ -3,7 +3,6 @@
 //! Zero values are written, too: readers that treat an absent field as missing would otherwise interrupt a curve at
 //! zero.
 
-/// Wire type of varints.
 const VARINT: u64 = 0;
 /// Wire type of eight bytes.
 const FIXED64: u64 = 1;
@@ -71,19 +70,16 @@ pub fn signed(field: u32, value: i64, out: &mut Vec<u8>) {
     unsigned(field, zigzag(value), out);
 }
 
-/// A `double` field.
 pub fn double(field: u32, value: f64, out: &mut Vec<u8>) {
     tag(field, FIXED64, out);
     out.extend_from_slice(&value.to_le_bytes());
 }
 
-/// A `fixed64` field.
 pub fn fixed64(field: u32, value: u64, out: &mut Vec<u8>) {
     tag(field, FIXED64, out);
     out.extend_from_slice(&value.to_le_bytes());
 }
 
-/// A `fixed32` field.
 pub fn fixed32(field: u32, value: u32, out: &mut Vec<u8>) {
     tag(field, FIXED32, out);
     out.extend_from_slice(&value.to_le_bytes());
@@ -115,7 +111,6 @@ pub struct Fields<'a>(pub &'a [u8]);
 /// The value of a field on the wire.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Value<'a> {
-    /// A varint.
     Number(u64),
     /// Bytes, text, a message or a packed array.
     Bytes(&'a [u8]),

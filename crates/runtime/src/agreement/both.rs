@@ -24,7 +24,6 @@ impl<'a> Both<'a> {
         Self { cell, store, data: store.view(), source, in_data, in_cell }
     }
 
-    /// The findings.
     pub fn report(self) -> Diagnostics {
         let in_data = Diagnostics::new(self.in_data, self.store.places(), 0, Vec::new());
         in_data.with(Diagnostics::of_file(self.in_cell, self.source))
@@ -46,7 +45,6 @@ impl<'a> Both<'a> {
         self.in_data.error_help("cell.form", place, message, help);
     }
 
-    /// A warning of a form.
     pub fn warn(&mut self, code: &'static str, origin: Option<&At>, message: String, help: &str) {
         self.in_data.warning(code, origin.copied().unwrap_or_default(), message, Some(help.to_owned()));
     }

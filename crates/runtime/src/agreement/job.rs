@@ -69,7 +69,6 @@ pub struct Refused {
 /// The vise and the trays between two lines, as far as they are known.
 pub struct State<'c> {
     cell: &'c CellDescription,
-    /// The newest task data.
     pub data: TaskData<'c>,
     /// `None` if it is unknown.
     jaws: Option<Jaws<'c>>,
@@ -79,7 +78,6 @@ pub struct State<'c> {
     random: Vec<(Name10, Option<i32>)>,
 }
 
-/// The state of the vise.
 #[derive(Clone, Copy)]
 struct Jaws<'c> {
     program: &'c ViseProgram,
@@ -118,7 +116,6 @@ impl<'c> State<'c> {
         None
     }
 
-    /// Apply a command.
     pub fn command(&mut self, command: &HwsCommand) -> Option<Refused> {
         let (verb, object) = (command.command.as_str(), command.object?);
         let part = self.cell.part(object.as_str())?;

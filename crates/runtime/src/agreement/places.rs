@@ -81,7 +81,6 @@ fn trays(both: &mut Both<'_>) {
     }
 }
 
-/// Check the seats of nests.
 fn nests(both: &mut Both<'_>) {
     let cell = both.cell;
     for (number, nest) in cell.nest.iter().enumerate() {

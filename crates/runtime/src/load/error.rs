@@ -8,12 +8,9 @@ use taskdata::load::{BlockNumber, Diagnostics};
 /// Time limit for the boards' check of a load.
 pub const PATIENCE: Duration = Duration::from_secs(10);
 
-/// Errors of a load.
 #[derive(Debug)]
 pub enum LoadError {
-    /// A command is in progress.
     Busy,
-    /// Another block is being loaded.
     Loading,
     /// The operator has left or disconnected before the boards had checked the block.
     Withdrawn,
@@ -76,7 +73,6 @@ impl fmt::Display for LoadError {
 }
 
 impl LoadError {
-    /// The error in one line.
     #[must_use]
     pub fn in_line(&self) -> String {
         match self {

@@ -14,7 +14,6 @@ use levels::{subtask::manual, task::support};
 use rcs_core::{name::Name16, tick::Tick};
 use taskdata::files::TaskData;
 
-/// The orders, for messages.
 const ORDERS: &str = "pedestal pre-grip OBJECT, grip OBJECT, flip DEGREES, release [by hand] or pause";
 /// Largest angle that FLIP takes, degrees.
 const LARGEST_FLIP: f64 = 360.0;

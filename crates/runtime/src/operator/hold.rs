@@ -7,7 +7,6 @@ use std::fmt;
 pub struct Ended {
     /// Stick, buttons, single steps or frame.
     pub joystick: bool,
-    /// Passes of a stopped process.
     pub passes: bool,
     /// A motion of the rotary table by the keys of its panel.
     pub turns_table: bool,

@@ -52,7 +52,6 @@ use crate::{judge, neighbours::Neighbours};
 /// Largest number of requests carried out in a tick; others wait for the next one.
 pub const A_TICK: usize = 16;
 
-/// The operators of a run.
 pub struct Operator {
     /// The operators' joystick box; the lines of the job have another one.
     hand: Joystick,
@@ -66,7 +65,6 @@ pub struct Operator {
     awaiting: Option<(Input, Tick)>,
     /// True if the velocity knob is at zero until `go`.
     is_stopped: bool,
-    /// Names of the connected operators.
     sessions: Vec<String>,
     /// Name of the operator in command.
     commander: Option<String>,
@@ -77,19 +75,15 @@ pub struct Operator {
     counts: Requests,
 }
 
-/// Number of requests.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Requests {
-    /// All requests, except questions.
     pub requests: u64,
-    /// Requests that were refused.
     pub refused: u64,
 }
 
 /// A request that the run itself must carry out.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Later {
-    /// Load a block.
     Load(BlockNumber),
     /// Play a job instead of the rest of the present one.
     Play(String),
@@ -109,13 +103,9 @@ pub struct Around<'a> {
     pub store: &'a Store,
     /// Errors in the records that a command uses do not count.
     pub unchecked: bool,
-    /// Directory of the task data.
     pub data: &'a Path,
-    /// Task's end of the mailboxes.
     pub gate: &'a mut Gate,
-    /// The source of Task's commands.
     pub neighbours: &'a mut Neighbours,
-    /// The cell.
     pub workstation: &'a mut SimulatedWorkstation,
     /// True while a block is being checked: what moves the robot must wait.
     pub loading: bool,
@@ -182,7 +172,6 @@ impl Operator {
         self.awaiting.take().map(|(input, since)| (input.judged(), since))
     }
 
-    /// Count an answered request.
     pub fn count(&mut self, input: &Input, verdict: &Result<String, String>) {
         if input.event().line().is_some() && !input.is_question() {
             self.counts.requests += 1;

@@ -16,7 +16,6 @@ use taskdata::load::{
 use super::terminals::Entry;
 use crate::loads;
 
-/// A request.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Request {
     /// Ask for the status; changes nothing.
@@ -25,21 +24,16 @@ pub enum Request {
     Data,
     /// Ask for the state of the Active Pedestal; changes nothing.
     Pedestal,
-    /// The state of the couplers.
     Field,
-    /// Release a tripped coupler.
     Release(String),
     /// Set the velocity knob to zero.
     Stop,
-    /// Set the velocity knob back.
     Go,
     /// Give up the command, so that another operator may take it.
     Leave,
-    /// A note for the log.
     Note,
     /// Make the job wait at the end of its line.
     Wait,
-    /// Continue the job.
     GoOn,
     /// Continue the job after the interrupted line.
     Skip,
@@ -66,7 +60,6 @@ pub enum Request {
 
 /// Requests that change nothing and are not logged.
 pub const QUESTIONS: [&str; 4] = [STATUS, DATA, PEDESTAL, FIELD];
-/// Request for the status.
 const STATUS: &str = "status";
 /// Request for the directory of the task data.
 const DATA: &str = "data";

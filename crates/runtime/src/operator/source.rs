@@ -15,11 +15,8 @@ use crate::{
     observer::Observer,
 };
 
-/// Source of the inputs.
 pub enum Inputs {
-    /// No source.
     None,
-    /// Operators who connect.
     Sessions(Listener),
     /// A log, read tick by tick, with the texts that were loaded during the run.
     Recorded(VecDeque<OperatorLine>, Texts),
@@ -33,7 +30,6 @@ pub enum Inputs {
 pub struct Texts {
     /// Blocks, by the generation of the task data that each has made.
     blocks: Vec<(u32, Source)>,
-    /// Jobs, by number.
     jobs: Vec<(u32, Source)>,
     /// Loads of the workstation controller. It also requests them in a repetition; only their verdicts are taken from
     /// the log.
@@ -47,16 +43,13 @@ pub const WORKSTATION: &str = "workstation controller";
 
 /// An input from a session or a log.
 pub enum Input {
-    /// From a session.
     Given(Given),
-    /// From a log.
     Recorded(OperatorLine, Event),
     /// From the program that runs the tick.
     Program(String, Event),
 }
 
 impl Input {
-    /// Name of the operator.
     pub fn source(&self) -> &str {
         match self {
             Self::Given(given) => given.source.as_str(),
@@ -78,7 +71,6 @@ impl Input {
         }
     }
 
-    /// The event.
     pub const fn event(&self) -> &Event {
         match self {
             Self::Given(given) => &given.event,

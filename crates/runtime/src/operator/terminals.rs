@@ -17,7 +17,6 @@ use super::{by_hand, written};
 /// Largest number of passes of a process in one request.
 pub const PASSES: u8 = 100;
 
-/// An entry at a terminal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Entry {
     /// `^C`: stop the processes of the board; on board 0, the pulse.
@@ -95,7 +94,6 @@ fn named(word: &str) -> Result<ProcessId, String> {
     })
 }
 
-/// The terminals of all boards.
 #[derive(Debug, Default)]
 pub struct Terminals {
     shown: OperatorInputs,

@@ -15,7 +15,6 @@ use crate::event::Event;
 pub struct CellFaultResult {
     /// Number in its file, from 1.
     pub number: usize,
-    /// Description of the fault.
     pub text: String,
     /// Number of times that it began.
     pub times: u64,
@@ -42,14 +41,10 @@ impl fmt::Display for CellFaultResult {
     }
 }
 
-/// Two objects that have collided.
 #[derive(Clone, Debug, Serialize)]
 pub struct ContactResult {
-    /// The object that moved.
     pub mover: String,
-    /// The obstacle.
     pub obstacle: String,
-    /// Greatest depth, in.
     pub depth_in: f64,
 }
 
@@ -91,7 +86,6 @@ impl From<&Emergency> for EmergencyResult {
 /// Position of an item according to the Data System.
 #[derive(Clone, Debug, Serialize)]
 pub struct ItemResult {
-    /// Its name.
     pub item: String,
     /// Its serial number; empty if the commands gave none.
     pub serial: String,
@@ -121,11 +115,9 @@ impl fmt::Display for ItemResult {
 /// An event and its tick.
 #[derive(Clone, Debug, Serialize)]
 pub struct EventResult {
-    /// The tick.
     pub tick: u64,
     /// Stable short name of its kind, such as `cell.dropped`.
     pub code: &'static str,
-    /// Description of the event.
     pub text: String,
 }
 
@@ -141,7 +133,6 @@ const REMEMBERED: usize = 1000;
 /// Events of a run in the cell and with the neighbours.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct Events {
-    /// Number of all events.
     pub count: usize,
     /// The first thousand of them.
     pub first: Vec<EventResult>,

@@ -6,23 +6,17 @@ use closed_loop::field::SimulatedField;
 use interfaces::point::Group;
 use serde::Serialize;
 
-/// The couplers of a run.
 #[derive(Clone, Debug, Serialize)]
 pub struct FieldResult {
-    /// The devices.
     pub devices: Vec<FieldDevice>,
     /// The groups of devices that were simulated: all of them, since the couplers are emulated.
     pub simulated: Vec<&'static str>,
 }
 
-/// A coupler of a run.
 #[derive(Clone, Debug, Serialize)]
 pub struct FieldDevice {
-    /// Its name in the mapping.
     pub name: String,
-    /// Exchanges that succeeded.
     pub exchanges: u32,
-    /// Requests and connections that failed.
     pub failures: u32,
     /// Times that its outputs were made safe until a release.
     pub trips: u32,

@@ -12,16 +12,11 @@ use serde::Serialize;
 use super::timing::TickTimes;
 use crate::{egm::EgmPort, robot::Port};
 
-/// Counts of the DEPC link.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct LinkResult {
-    /// Data frames sent, repetitions included.
     pub frames: u32,
-    /// NAKs received.
     pub naks: u32,
-    /// Frames sent again.
     pub retries: u32,
-    /// Reports with a wrong checksum.
     pub checksum_errors: u32,
     /// Points that were scaled back to the velocity limits.
     pub limited: u32,
@@ -42,7 +37,6 @@ impl From<&LinkCounters> for LinkResult {
 /// Number of faults injected into the line, both directions together.
 #[derive(Clone, Debug, Serialize)]
 pub struct FaultsResult {
-    /// Faults of all kinds.
     pub total: u64,
     /// Number of faults per kind that occurred.
     pub kinds: BTreeMap<&'static str, u64>,
@@ -67,14 +61,10 @@ impl fmt::Display for FaultsResult {
     }
 }
 
-/// Counts of a serial port.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct PortResult {
-    /// Bytes received.
     pub received: u64,
-    /// Bytes sent.
     pub sent: u64,
-    /// Bytes that the port refused.
     pub unsent: u64,
     /// Number of times that the port disappeared.
     pub losses: u32,
@@ -92,7 +82,6 @@ impl From<&Port> for PortResult {
 /// Counts and times of the line to a robot with EGM.
 #[derive(Clone, Debug, Serialize)]
 pub struct EgmResult {
-    /// New messages received.
     pub received: u64,
     /// Messages received too late or twice.
     pub old: u64,
@@ -102,13 +91,11 @@ pub struct EgmResult {
     pub elsewhere: u64,
     /// Address and reason of the last refused datagram.
     pub last_refused: Option<String>,
-    /// Targets sent.
     pub sent: u64,
     /// Points that were added to a path.
     pub points: u64,
     /// Motions that were stopped because no point, or no message, came in time.
     pub interrupted: u64,
-    /// Targets that were limited.
     pub beyond: u64,
     /// Root mean square of the distance from the robot to its target, mm.
     pub error_rms_mm: f64,

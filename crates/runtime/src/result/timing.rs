@@ -6,11 +6,9 @@ use serde::Serialize;
 /// Times of the controller, without the cell, in microseconds.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct TickTimes {
-    /// Median.
     pub p50: f64,
     /// 99th percentile.
     pub p99: f64,
-    /// Maximum.
     pub max: f64,
 }
 
@@ -23,9 +21,7 @@ impl From<histogram::Summary> for TickTimes {
 /// Result of a board with control processes.
 #[derive(Clone, Debug, Serialize)]
 pub struct BoardResult {
-    /// Its number.
     pub board: u8,
-    /// Names of its processes.
     pub processes: String,
     /// Process identifier of the operating system.
     pub pid: u32,

@@ -16,18 +16,14 @@ use crate::{
     verdict::Ending,
 };
 
-/// The outcome of a run.
 #[non_exhaustive]
 pub struct RunOutcome {
-    /// Ending of the run.
     pub ending: Ending,
-    /// The result for JSON.
     pub result: RunResult,
     /// All steps of the job, including actions of the workstation.
     pub steps: Vec<BegunStep>,
     /// File and size of the log, or the reason why it ended, as text.
     pub log: String,
-    /// The slowest processes, as text.
     pub slowest: String,
     /// What a person must do before a failed job can continue.
     pub remedy: Option<&'static str>,

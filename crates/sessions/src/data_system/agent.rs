@@ -49,7 +49,6 @@ pub enum Remark {
     Silent {
         /// command-id# of the unanswered command.
         command_id: u16,
-        /// Time waited.
         patience: Duration,
     },
 }
@@ -85,11 +84,9 @@ impl fmt::Display for Remark {
     }
 }
 
-/// The controller's side.
 pub struct Agent {
     endpoint: Endpoint,
     outbox: Outbox,
-    /// Time limit for an answer.
     patience: Duration,
     exchanges: u64,
     /// command-id# of the command that was sent last; 0 before the first.

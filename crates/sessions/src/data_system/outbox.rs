@@ -32,45 +32,28 @@ const TABLES: &str = "
     );
 ";
 
-/// Why updates cannot be kept.
 #[derive(Debug, thiserror::Error)]
 pub enum OutboxError {
-    /// SQLite reports an error.
     #[error("updates cannot be kept in {}: {source}", .file.display())]
-    Sqlite {
-        /// The file.
-        file: PathBuf,
-        /// Error of SQLite.
-        source: rusqlite::Error,
-    },
-    /// Another run uses the file.
+    Sqlite { file: PathBuf, source: rusqlite::Error },
     #[error(
         "updates cannot be kept in {}: another run uses this file; end it, or name another file with --outbox",
         .file.display()
     )]
-    InUse {
-        /// The file.
-        file: PathBuf,
-    },
+    InUse { file: PathBuf },
     /// The file belongs to another program.
     #[error("{}: updates for the Data System were expected, this file belongs to another program", .file.display())]
-    Foreign {
-        /// The file.
-        file: PathBuf,
-    },
+    Foreign { file: PathBuf },
 }
 
-/// The updates on the disk.
 #[derive(Debug)]
 pub struct Outbox {
     connection: Connection,
     file: PathBuf,
 }
 
-/// An update with its number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Kept {
-    /// trans-id#.
     pub number: u16,
     /// Bytes of the command, as passed to [`Outbox::keep`].
     pub command: [u8; DML],

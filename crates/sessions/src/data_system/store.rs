@@ -23,7 +23,6 @@ use super::alone::Alone;
 
 /// Application ID in the file of the data base: "RCS2".
 const APPLICATION_ID: i32 = 0x5243_5332;
-/// Version of the tables.
 const VERSION: i32 = 2;
 
 /// Tables new in version 2: the controllers that connect, the last number of each, and the last command under a number.
@@ -87,7 +86,6 @@ const TABLES: &str = "
 pub struct Visit {
     /// Time of the report, UTC, in the format of ISO 8601.
     pub at: String,
-    /// The client that reported it.
     pub client: String,
     /// `STORAGE_POS`.
     pub position: String,
@@ -98,48 +96,28 @@ pub struct Visit {
 /// Why the data base cannot be used.
 #[derive(Debug, thiserror::Error)]
 pub enum StoreError {
-    /// SQLite reports an error.
     #[error("{}: {source}", .file.display())]
-    Sqlite {
-        /// The file.
-        file: PathBuf,
-        /// Error of SQLite.
-        source: rusqlite::Error,
-    },
+    Sqlite { file: PathBuf, source: rusqlite::Error },
     /// The file belongs to another program.
     #[error("{}: a data base of items was expected, this one belongs to another program", .file.display())]
-    Foreign {
-        /// The file.
-        file: PathBuf,
-    },
+    Foreign { file: PathBuf },
     /// Another program writes into the file.
     #[error(
         "{}: another run or Data System uses this database: end it, or name another database",
         .file.display()
     )]
-    InUse {
-        /// The file.
-        file: PathBuf,
-    },
+    InUse { file: PathBuf },
     /// The file that shows who uses the database cannot be locked.
     #[error("{}: the file beside it that shows who uses it cannot be locked: {source}", .file.display())]
-    Lock {
-        /// The file of the database.
-        file: PathBuf,
-        /// Error of the system.
-        source: io::Error,
-    },
-    /// The tables have another version.
+    Lock { file: PathBuf, source: io::Error },
     #[error("{}: tables of version {VERSION} were expected, found version {found}", .file.display())]
     Version {
-        /// The file.
         file: PathBuf,
         /// Version of the tables in the file.
         found: i32,
     },
 }
 
-/// The data base.
 #[derive(Debug)]
 pub struct Store {
     connection: Connection,

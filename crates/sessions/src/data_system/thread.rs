@@ -34,16 +34,13 @@ pub enum Pace {
     Poll,
 }
 
-/// A request to the thread.
 enum Request {
-    /// The command of this number.
     Execute(u16, Vec<u8>),
     Items,
     /// Check for a server in another process.
     Look,
 }
 
-/// A response of the thread.
 enum Response {
     /// The answer to the command of this number.
     Executed(u16, Answer),
@@ -56,9 +53,7 @@ enum Response {
 
 /// The server that the thread asks.
 enum Place {
-    /// In this process.
     Here(Box<Server<Store>>),
-    /// In another process.
     Elsewhere(Box<Agent>),
 }
 
@@ -97,7 +92,6 @@ impl Place {
     }
 }
 
-/// The thread of a server.
 #[derive(Debug)]
 pub struct Threaded {
     pace: Pace,
@@ -110,12 +104,10 @@ pub struct Threaded {
 }
 
 impl Threaded {
-    /// A server in this process.
     pub fn here(store: Store, pace: Pace) -> Self {
         Self::with(Place::Here(Box::new(Server::new(store))), pace)
     }
 
-    /// A server in another process.
     pub fn elsewhere(agent: Agent, pace: Pace) -> Self {
         let stop_handle = Some(agent.stop_handle());
         let mut threaded = Self::with(Place::Elsewhere(Box::new(agent)), pace);

@@ -47,10 +47,8 @@ const READS: usize = 16;
 /// Greatest number of items written before messages of the client are read.
 const WRITES: usize = 512;
 
-/// Why a session ends.
 #[derive(Debug)]
 enum End {
-    /// The client has disconnected.
     Gone,
     /// The client has read nothing for this time.
     Silent(Duration),
@@ -87,7 +85,6 @@ pub struct Client {
     access: Option<Access>,
     /// The operator session with the run; `None` before the first request.
     operator: Option<Operator>,
-    /// Name of the operator session.
     name: Name,
     /// Time after which a client that reads nothing is disconnected, and the present time without reading.
     patience: Duration,

@@ -23,17 +23,14 @@ impl Knob {
         self.0.store(velocity, Ordering::Relaxed);
     }
 
-    /// Position of the knob.
     #[must_use]
     pub fn get(&self) -> u16 {
         self.0.load(Ordering::Relaxed)
     }
 }
 
-/// Access for requests of viewers.
 #[derive(Clone, Debug)]
 pub struct Access {
-    /// The socket for operators.
     pub socket: PathBuf,
     /// The token that a request must contain.
     pub token: Token,
@@ -75,7 +72,6 @@ impl std::fmt::Debug for Token {
 /// A request that a viewer can make.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Service {
-    /// Name of the service.
     pub name: &'static str,
     /// The line for the run; `None` if the viewer gives it.
     pub line: Option<&'static str>,

@@ -47,10 +47,8 @@ struct Inner {
     is_over: bool,
 }
 
-/// A channel.
 #[derive(Debug)]
 struct Known {
-    /// Text of its advertisement.
     advertised: String,
     newest: Newest,
     past: Past,
@@ -175,7 +173,6 @@ impl Feed {
         later.for_each(|(time, data)| push(*time, Arc::clone(data)));
     }
 
-    /// Number of clients.
     #[must_use]
     pub fn viewers(&self) -> usize {
         lock(&self.0).queues.len()
@@ -193,7 +190,6 @@ impl Feed {
         lock(&self.0).is_over
     }
 
-    /// Ends the feed.
     pub fn finish(&self) {
         let mut inner = lock(&self.0);
         inner.is_over = true;
@@ -201,7 +197,6 @@ impl Feed {
     }
 }
 
-/// The tap of a feed.
 struct Tapped(Feed);
 
 impl Tap for Tapped {
@@ -263,7 +258,6 @@ pub enum Item {
     Text(Arc<str>),
     /// The present time, ns.
     Time(u64),
-    /// A message of a channel.
     Message {
         /// The client's number of the subscription.
         subscription: u32,
@@ -287,7 +281,6 @@ impl Item {
     }
 }
 
-/// The queue of a client.
 #[derive(Debug, Default)]
 pub struct Queue(Mutex<Waiting>);
 
@@ -320,7 +313,6 @@ impl Waiting {
 }
 
 impl Queue {
-    /// Takes the next item.
     #[must_use]
     pub fn pop(&self) -> Option<Item> {
         let mut waiting = lock(&self.0);

@@ -7,18 +7,15 @@ use std::collections::BTreeMap;
 
 use record::proto::wire::{self, Fields, Value};
 
-/// Schema of the assembled messages.
 pub const SCHEMA: &str = "foxglove.FrameTransforms";
 /// Greatest length of a transform, bytes; a longer field is not a transform.
 const LONGEST: usize = 4096;
-/// Greatest number of links.
 const LINKS: usize = 4096;
 
 /// Encoded transforms, in the order of the first message of each link.
 #[derive(Clone, Debug, Default)]
 pub struct Frames {
     transforms: Vec<Vec<u8>>,
-    /// Index of each link's transform.
     places: BTreeMap<Vec<u8>, usize>,
 }
 

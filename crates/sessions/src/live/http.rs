@@ -105,7 +105,6 @@ pub fn send_page(stream: &mut impl Write, page: &str) {
     send(stream, StatusCode::OK, "text/html; charset=utf-8", "", page);
 }
 
-/// Answers with a refusal.
 pub fn send_refusal(stream: &mut impl Write, (status, why): &Refusal) {
     let allow = if *status == StatusCode::METHOD_NOT_ALLOWED { "Allow: GET\r\n" } else { "" };
     send(stream, *status, "text/plain; charset=utf-8", allow, why);

@@ -14,7 +14,6 @@ pub const PATIENCE: Duration = Duration::from_secs(5);
 /// Receives a sentence for each client that the server disconnects, with the name of the client and the reason.
 pub type Notices = Sender<String>;
 
-/// Options of the server.
 #[derive(Clone, Debug)]
 pub struct Options {
     /// Origins of web pages that may connect, besides Foxglove's.

@@ -31,12 +31,9 @@ mod from_client {
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(tag = "op", rename_all = "camelCase")]
 pub enum Request {
-    /// Subscribe to channels.
     Subscribe {
-        /// The channels.
         subscriptions: Vec<Subscription>,
     },
-    /// End subscriptions.
     #[serde(rename_all = "camelCase")]
     Unsubscribe {
         /// The client's numbers of the subscriptions.
@@ -47,23 +44,18 @@ pub enum Request {
     GetParameters {
         /// Names of the parameters; an empty list means all.
         parameter_names: Vec<String>,
-        /// Repeated in the answer.
         id: Option<String>,
     },
-    /// Change parameters.
     SetParameters {
         /// The parameters with their new values.
         parameters: Vec<Parameter>,
-        /// Repeated in the answer.
         id: Option<String>,
     },
-    /// Send parameters when they change.
     #[serde(rename_all = "camelCase")]
     SubscribeParameterUpdates {
         /// Names of the parameters; an empty list means all.
         parameter_names: Vec<String>,
     },
-    /// Stop sending changed parameters.
     #[serde(rename_all = "camelCase")]
     UnsubscribeParameterUpdates {
         /// Names of the parameters; an empty list means all.
@@ -71,26 +63,20 @@ pub enum Request {
     },
 }
 
-/// A parameter with its value.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Parameter {
-    /// Name of the parameter.
     pub name: String,
     /// Value; null if the parameter has none.
     #[serde(default)]
     pub value: Value,
 }
 
-/// A call of a service.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ServiceCall {
-    /// Number of the service.
     pub service: u32,
     /// The client's number of the call.
     pub call: u32,
-    /// Encoding of the payload.
     pub encoding: String,
-    /// The encoded request.
     pub payload: Vec<u8>,
 }
 
@@ -135,7 +121,6 @@ pub fn service_failure(service: u32, call: u32, why: &str) -> String {
     json!({ "op": "serviceCallFailure", "serviceId": service, "callId": call, "message": why }).to_string()
 }
 
-/// The message that advertises services.
 #[must_use]
 pub fn advertise_services(services: &[Value]) -> String {
     json!({ "op": "advertiseServices", "services": services }).to_string()
@@ -157,14 +142,11 @@ pub fn parameter_values(parameters: &[Parameter], id: Option<&str>) -> String {
 pub struct Subscription {
     /// The client's number of the subscription.
     pub id: u32,
-    /// Number of the channel.
     pub channel_id: u64,
 }
 
-/// Severity of a status.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum StatusLevel {
-    /// A problem that changes nothing.
     Warning,
     /// A request was not executed.
     Error,
@@ -191,11 +173,8 @@ pub fn random_word() -> Result<String, NoRandom> {
 pub struct ServerInfo {
     /// Name of the server, shown by the viewer.
     pub name: String,
-    /// Capabilities of the server.
     pub capabilities: Vec<&'static str>,
-    /// Supported encodings of service calls.
     pub supported_encodings: Vec<&'static str>,
-    /// Further facts, by name.
     pub metadata: BTreeMap<String, String>,
     /// Identifier of the session, different for each run.
     pub session_id: String,
@@ -240,7 +219,6 @@ pub fn channel(id: u16, channel: &Channel<'_>) -> String {
     .to_string()
 }
 
-/// The message that advertises channels.
 #[must_use]
 pub fn advertise<'a>(channels: impl Iterator<Item = &'a str>) -> String {
     let channels: Vec<&str> = channels.collect();

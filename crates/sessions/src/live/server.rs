@@ -28,13 +28,10 @@ use crate::live::{
     protocol::SUBPROTOCOLS,
 };
 
-/// Default port of the viewers.
 pub const PORT: u16 = 8765;
-/// Greatest number of connected clients.
 pub const CLIENTS: usize = 16;
 /// Greatest length of a client's message, bytes.
 pub const MESSAGE: usize = 64 * 1024;
-/// Time limit of a handshake.
 const HANDSHAKE: Duration = Duration::from_secs(3);
 /// Time at the end in which clients can still read.
 const LAST: Duration = Duration::from_secs(2);
@@ -117,7 +114,6 @@ impl Drop for Server {
     }
 }
 
-/// The thread that accepts clients.
 struct Accept {
     listener: TcpListener,
     options: Arc<Options>,

@@ -29,7 +29,6 @@ pub const ACCESS_WORDS: [&str; 3] = ["none", "token", "granted"];
 pub const NAME: &str = "/viewer/name";
 /// The parameter for the seconds of the past with which a subscription begins, 0 to [`PAST_S`].
 pub const PAST: &str = "/viewer/past";
-/// Knob position for full speed.
 const FULL: u16 = 1000;
 /// Number of characters of a client's message that the answer quotes.
 const QUOTED: usize = 60;
@@ -42,22 +41,17 @@ const NO_TOKEN: &str = "the token that the run has printed was expected";
 /// An action that follows from a client's message.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Action {
-    /// Send a text message.
     Text(String),
-    /// Send a binary message.
     Bytes(Vec<u8>),
     /// Send the messages of a channel, beginning with the newest one, or with the past.
     Subscribe {
-        /// The channel.
         channel: u16,
         /// The client's number of the subscription.
         subscription: u32,
-        /// Seconds of the past.
         past_s: u64,
     },
     /// Stop sending the messages of a channel.
     Unsubscribe {
-        /// The channel.
         channel: u16,
     },
     /// Send a request to the run, and pass its answer to [`Session::answered`].
@@ -74,23 +68,18 @@ pub enum Action {
 /// A client's request that waits for an answer of the run.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Reply {
-    /// A call of a service.
     Call {
-        /// Number of the service.
         service: u32,
         /// The client's number of the call.
         call: u32,
     },
-    /// A change of the knob.
     Knob {
-        /// The new position.
         velocity: u16,
         /// The client's identifier of the request.
         id: Option<String>,
     },
 }
 
-/// What a session may do.
 #[derive(Clone, Debug, Default)]
 pub struct Rights {
     /// The velocity knob; `None` if a log is played.
@@ -168,7 +157,6 @@ impl Session {
         }
     }
 
-    /// Handles a binary message.
     pub fn binary(&mut self, bytes: &[u8]) -> Vec<Action> {
         match (ServiceCall::read(bytes), bytes.first()) {
             (Some(call), _) => self.call(&call),
@@ -342,7 +330,6 @@ fn is_wanted(names: &[String], name: &str) -> bool {
     names.is_empty() || names.iter().any(|wanted| wanted == name)
 }
 
-/// Parses a knob position.
 fn knob(value: &Value) -> Option<u16> {
     u16::try_from(whole(value, FULL.into())?).ok()
 }

@@ -14,7 +14,6 @@ pub struct Silence {
 }
 
 impl Silence {
-    /// Begins to measure.
     pub const fn new(now: Instant) -> Self {
         Self { looked: now, silent: Duration::ZERO }
     }

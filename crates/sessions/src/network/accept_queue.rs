@@ -19,7 +19,6 @@ pub(super) const SLOTS: usize = 8;
 /// Minimum time in a slot: enough for a hello, and the penalty for a wrong one.
 pub(super) const SAFE: Duration = Duration::from_secs(1);
 
-/// The queue.
 #[derive(Default)]
 pub(super) struct AcceptQueue {
     inner: Mutex<Inner>,
@@ -31,7 +30,6 @@ struct Inner {
     slots: [Option<Waiting>; SLOTS],
 }
 
-/// A connection in a slot.
 struct Waiting {
     ticket: u64,
     since: Instant,
@@ -67,7 +65,6 @@ impl AcceptQueue {
         Ok(Some(ticket))
     }
 
-    /// The slot of a ticket.
     pub const fn slot(&self, ticket: u64) -> Slot<'_> {
         Slot { queue: self, ticket }
     }

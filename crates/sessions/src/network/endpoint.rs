@@ -41,10 +41,8 @@ pub struct Endpoint {
     interrupted: Arc<AtomicBool>,
 }
 
-/// Result of an exchange.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Presence {
-    /// The neighbour is connected.
     pub connected: bool,
     /// It has connected since the last exchange: its mailboxes were initialized.
     pub new: bool,
@@ -82,7 +80,6 @@ impl Endpoint {
         self.interrupted.load(Ordering::Relaxed)
     }
 
-    /// The network's side.
     #[must_use]
     pub fn handle(&self) -> EndpointHandle {
         EndpointHandle { shared: Arc::clone(&self.shared), events: self.events.0.clone() }
@@ -94,13 +91,11 @@ impl Endpoint {
         StopHandle { shared: Arc::clone(&self.shared) }
     }
 
-    /// The clock of the run.
     #[must_use]
     pub fn clock(&self) -> ClockKind {
         self.shared.clock
     }
 
-    /// The neighbour of this endpoint.
     #[must_use]
     pub fn role(&self) -> Role {
         self.shared.role
@@ -215,7 +210,6 @@ pub struct StopHandle {
 }
 
 impl StopHandle {
-    /// Stop the endpoint.
     pub fn stop(&self) {
         self.shared.end();
     }

@@ -4,7 +4,6 @@ use std::{fmt, time::Duration};
 
 use super::Role;
 
-/// Why a session has ended.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Disconnect {
     /// The neighbour has closed the connection.
@@ -35,11 +34,9 @@ impl fmt::Display for Disconnect {
     }
 }
 
-/// An event of the network.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum NetEvent {
-    /// A neighbour has connected.
     Connected(Role),
     /// A neighbour has disconnected, with the reason.
     Disconnected(Role, Disconnect),

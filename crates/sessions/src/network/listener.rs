@@ -8,17 +8,10 @@ use sockets::Acceptor;
 
 use super::{Address, ClockKind, Endpoint, Operators, server::Server};
 
-/// Why no neighbour can connect.
 #[derive(Debug, thiserror::Error)]
 pub enum ListenError {
-    /// The address cannot be used.
     #[error("{address}: {source}")]
-    Address {
-        /// The address.
-        address: Address,
-        /// Error of the system.
-        source: io::Error,
-    },
+    Address { address: Address, source: io::Error },
     /// Another run listens at the address.
     #[error("{0}: another run waits for its neighbours there")]
     InUse(Address),

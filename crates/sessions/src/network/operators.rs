@@ -40,7 +40,6 @@ impl Operators {
         self.enter.get().map(|_| ()).ok_or("the run has not begun: connect again when it has")
     }
 
-    /// Begins a session.
     pub(super) fn enter(&self, stream: UnixStream, unread: Vec<u8>) -> io::Result<()> {
         self.enter.get().map_or(Ok(()), |enter| enter(stream, unread))
     }

@@ -25,20 +25,10 @@ const CLOSING_LIMIT: Duration = Duration::from_secs(1);
 pub enum PeerError {
     /// No controller listens at the address, or the connection broke.
     #[error("{address}: {source}")]
-    Line {
-        /// Address of the controller.
-        address: Address,
-        /// Error of the system.
-        source: io::Error,
-    },
+    Line { address: Address, source: io::Error },
     /// The other side is not a controller, or breaks the protocol.
     #[error("{address}: {source}")]
-    Session {
-        /// Address of the controller.
-        address: Address,
-        /// Error of the session.
-        source: SessionError,
-    },
+    Session { address: Address, source: SessionError },
     /// Nothing was received for this time.
     #[error("nothing has come from the controller for {} s", .0.as_secs())]
     Silent(Duration),
@@ -66,7 +56,6 @@ impl PeerError {
     }
 }
 
-/// A message from the controller.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Received {
     /// A mailgram has been received and stored in its mailbox.
@@ -75,7 +64,6 @@ pub enum Received {
     Pulse(u64),
 }
 
-/// A socket and its session.
 struct Connection {
     address: Address,
     line: Line,
@@ -84,7 +72,6 @@ struct Connection {
     is_open: bool,
 }
 
-/// A connection to the controller.
 pub struct Peer {
     connection: Connection,
     role: Role,
@@ -126,7 +113,6 @@ impl Peer {
         Ok(Self { connection, role, clock, incoming })
     }
 
-    /// The clock of the controller.
     #[must_use]
     pub const fn clock(&self) -> ClockKind {
         self.clock

@@ -30,7 +30,6 @@ pub(super) struct Server {
     crowded: Mutex<Option<Instant>>,
 }
 
-/// A connection.
 struct Connection {
     line: Line,
     session: Session,
@@ -111,10 +110,8 @@ impl Server {
     }
 }
 
-/// An admitted client.
 enum Admitted<'a> {
     Neighbour(Link),
-    /// An operator.
     Operator(&'a Operators),
 }
 
@@ -174,7 +171,6 @@ impl Connection {
         }
     }
 
-    /// Send changes, wait, and receive.
     fn turn(&mut self, link: &mut Link) -> Result<(), Disconnect> {
         let lost = |error: io::Error| Disconnect::Lost(error.to_string());
         let now = Instant::now();

@@ -21,17 +21,14 @@ use neighbours::mailbox::{Mailbox, MailboxError, Place};
 /// Disconnect reason when the run has ended.
 pub const OVER: &str = "the run is over";
 
-/// State that both sides share.
 pub(super) struct Shared {
     pub role: Role,
     pub clock: ClockKind,
     /// Written by the tick.
     pub outgoing: Vec<Mutex<Mailbox>>,
-    /// Written by the neighbour.
     pub incoming: Vec<Mutex<Mailbox>>,
     /// Number of the session; 0 while there is none.
     pub session: AtomicU32,
-    /// Number of sessions so far.
     pub sessions: AtomicU32,
     /// The latest tick whose mailboxes were written.
     pub pulse: AtomicU64,
@@ -50,7 +47,6 @@ pub(super) fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Initialized mailboxes.
 pub(super) fn initialized(places: &[Place]) -> Vec<Mailbox> {
     places.iter().map(|&place| Mailbox::initialized(place)).collect()
 }
@@ -110,22 +106,18 @@ impl fmt::Debug for EndpointHandle {
 /// Why a neighbour gets no session.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum AttachError {
-    /// It has a session already.
     #[error("{0} is connected already")]
     Occupied(Role),
-    /// The run is over.
     #[error("{OVER}")]
     Over,
 }
 
 impl EndpointHandle {
-    /// The neighbour of the endpoint.
     #[must_use]
     pub fn role(&self) -> Role {
         self.shared.role
     }
 
-    /// The clock of the controller.
     #[must_use]
     pub fn clock(&self) -> ClockKind {
         self.shared.clock
@@ -143,7 +135,6 @@ impl EndpointHandle {
         self.shared.sessions.load(Ordering::Acquire) != 0
     }
 
-    /// Tell the controller what happened.
     pub(super) fn tell(&self, event: NetEvent) {
         // This fails only after the run has ended, when nothing reads events.
         let _ = self.events.send(event);
@@ -179,7 +170,6 @@ impl EndpointHandle {
         Ok(Link { handle: self.clone(), sent, pulse })
     }
 
-    /// End the session.
     pub(crate) fn detach(&self, why: Disconnect) {
         // Before the change, so that a tick that sees no session also finds the reason.
         self.tell(NetEvent::Disconnected(self.shared.role, why));
@@ -211,7 +201,6 @@ impl EndpointHandle {
 
 /// What the session sends to the neighbour.
 pub(super) enum Outgoing<'a> {
-    /// A mailbox that has changed.
     Mailbox(&'a Mailbox),
     /// The pulse of a tick.
     Pulse(u64),

@@ -27,7 +27,6 @@ pub enum ClientError {
         "no operator can connect to the run: {0}; it must run on the 40 ms grid, with --operator owner, as the same user"
     )]
     Unreachable(#[source] io::Error),
-    /// The connection has broken.
     #[error("the connection to the run is lost: {0}")]
     Lost(#[from] io::Error),
     /// The run has ended the session.
@@ -54,7 +53,6 @@ pub enum ClientError {
     },
 }
 
-/// A session with a run.
 #[derive(Debug)]
 pub struct Client {
     stream: UnixStream,
@@ -102,7 +100,6 @@ impl Client {
         Ok(client)
     }
 
-    /// Name of the run.
     #[must_use]
     pub fn run(&self) -> &str {
         &self.run

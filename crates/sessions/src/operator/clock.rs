@@ -38,7 +38,6 @@ impl RunClock {
         Self { start: since_boot() }
     }
 
-    /// The present time.
     #[must_use]
     pub fn now(&self) -> RunTime {
         RunTime::default().after(since_boot().saturating_sub(self.start))

@@ -25,7 +25,6 @@ use crate::operator::{
     protocol::{self, Answer, Event, Greeting, Lines, Name, ProtocolError, Request, SILENCE},
 };
 
-/// Greatest number of open sessions.
 const SESSIONS: usize = 8;
 /// Number of events that can wait for the next tick. A session that sends more is blocked.
 const QUEUE: usize = 64;
@@ -35,9 +34,7 @@ const HELLO: Duration = Duration::from_secs(2);
 /// An event of a session, as delivered to the run.
 #[derive(Debug)]
 pub struct Given {
-    /// Name of the session.
     pub source: Name,
-    /// The event.
     pub event: Event,
     /// The request, if the event is one.
     request: Option<Received>,
@@ -132,7 +129,6 @@ impl Listener {
         self.events.try_recv().ok().map(Given::judged)
     }
 
-    /// Path of the socket.
     #[must_use]
     pub fn path(&self) -> &Path {
         self.acceptor.path()
@@ -182,7 +178,6 @@ impl Entrance {
     }
 }
 
-/// The sessions of a run.
 struct Sessions {
     run: String,
     clock: RunClock,
@@ -191,7 +186,6 @@ struct Sessions {
     sender: SyncSender<Given>,
     stop: AtomicBool,
     streams: Streams,
-    /// Number of open sessions.
     open: AtomicUsize,
     /// Number of sessions begun through an entrance.
     entered: AtomicU32,
@@ -254,11 +248,9 @@ struct Session {
     stream: Arc<UnixStream>,
     lines: Lines,
     sessions: Arc<Sessions>,
-    /// Prefix of the session's name.
     origin: String,
 }
 
-/// Why a session ends.
 enum End {
     /// The client or the run has ended the session.
     Closed,

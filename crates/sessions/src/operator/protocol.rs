@@ -35,12 +35,10 @@ pub const LONGEST: Duration = Duration::from_secs(10);
 /// Greatest length of a name, bytes.
 const NAME: usize = 24;
 
-/// The name of a session.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Name(String);
 
 impl Name {
-    /// The name as text.
     #[must_use]
     pub fn as_str(&self) -> &str {
         &self.0
@@ -99,7 +97,6 @@ impl FromStr for Name {
 pub enum Late {
     /// Its time limit is over: the sender has given up.
     GivenUp,
-    /// Its session has ended.
     Ended,
     /// It names no time limit, or none that the run can use; so nobody knows whether its sender still waits.
     Unlimited,
@@ -136,10 +133,8 @@ impl fmt::Display for Late {
     }
 }
 
-/// An event of a session.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Event {
-    /// The session has begun.
     Connected,
     /// The session has sent a line.
     Line(String),
@@ -147,7 +142,6 @@ pub enum Event {
     Late(Late, String),
     /// Nothing has arrived for [`SILENCE`].
     Silent,
-    /// The session has ended.
     Disconnected,
 }
 
@@ -191,10 +185,8 @@ impl From<&str> for Event {
     }
 }
 
-/// The answer to a request.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Answer {
-    /// Number of the request.
     pub number: u32,
     /// The run's clock when it has answered.
     pub time: RunTime,
@@ -222,7 +214,6 @@ impl fmt::Display for Answer {
 /// End of an answer that was too long for a line; the log has all of it.
 const CUT: &str = "...";
 
-/// Violations of the protocol.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum ProtocolError {
     /// The first line is not `hello NAME`.
@@ -257,11 +248,9 @@ pub fn hello(line: &str) -> Result<Name, ProtocolError> {
 /// A request as it was received.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Request<'a> {
-    /// Its number.
     pub number: u32,
     /// The time of the run's clock after which its sender no longer waits.
     pub limit: Option<RunTime>,
-    /// Its text.
     pub text: &'a str,
 }
 
@@ -307,11 +296,9 @@ pub fn request(line: &str) -> Result<Option<Request<'_>>, ProtocolError> {
 /// The first line of the run in a session.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Greeting {
-    /// Name of the run.
     pub run: String,
     /// Name of the session; no other one has it.
     pub name: Name,
-    /// The run's clock.
     pub time: RunTime,
 }
 

@@ -22,70 +22,44 @@ use super::{
 /// make a new generation (docs/design/ownership.md "Reload").
 #[derive(Clone, Copy, Debug, Default)]
 pub struct TaskData<'a> {
-    /// POSE.
     pub poses: &'a [PoseRecord],
-    /// MOVTAB.
     pub movetables: &'a [MovtabRecord],
-    /// LOCPT.
     pub locpts: &'a [Locpt],
-    /// ARRAY-TABLE.
     pub arrays: &'a [Array],
-    /// OWNER-ASCII-NAMES.
     pub owners: &'a [Owner],
     /// Members of the owners, grouped by owner, in the order of the forms.
     pub members: &'a [Member],
-    /// TRAJ.
     pub trajectories: &'a [Traj],
-    /// TRAJ-PARA.
     pub traj_paras: &'a [TrajPara],
-    /// Runs of PATH-PTS.
     pub paths: &'a [Path],
-    /// PATH-PTS.
     pub path_points: &'a [PathPoint],
-    /// OBJ-ASCII-NAMES.
     pub objects: &'a [Object],
-    /// END-EFF-PARA.
     pub end_effs: &'a [EndEffPara],
-    /// OBJ-GRIPS.
     pub obj_grips: &'a [ObjGrips],
     /// The file of the object location form.
     pub obj_locs: &'a [ObjLoc],
-    /// PED-PARA.
     pub ped_paras: &'a [PedPara],
-    /// GRIP-LOC.
     pub grip_locs: &'a [GripLoc],
-    /// VISION-PARA.
     pub visions: &'a [VisionPara],
     /// The file of the approach/depart form.
     pub appr_depts: &'a [ApprDept],
-    /// SENSOR-PARA (extension).
     pub sensors: &'a [SensorPara],
-    /// REL-MOVES (extension).
     pub relative_moves: &'a [RelativeMove],
-    /// The indexes.
     pub indexes: Indexes<'a>,
 }
 
 /// The indexes of all files, each with its key, and its answer if it has one.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Indexes<'a> {
-    /// POSE by name.
     pub poses: Index<'a>,
-    /// MOVTAB by name.
     pub movetables: Index<'a>,
-    /// LOCPT by name.
     pub locpts: Index<'a>,
-    /// ARRAY-TABLE by name.
     pub arrays: Index<'a>,
-    /// OWNER-ASCII-NAMES by name.
     pub owners: Index<'a>,
-    /// Owners by member.
     pub members: Index<'a>,
-    /// TRAJ by name.
     pub trajectory_names: Index<'a>,
     /// TRAJ by start and end; the answer is the path.
     pub trajectories: Index<'a>,
-    /// OBJ-ASCII-NAMES by name.
     pub objects: Index<'a>,
     /// END-EFF-PARA by name of the object and grip.
     pub end_effs: Index<'a>,
@@ -101,7 +75,6 @@ pub struct Indexes<'a> {
     pub visions: PlaceIndex<'a>,
     /// Approaches and departs by direction, name of the object, grip and location; the answer is the path.
     pub appr_depts: PlaceIndex<'a>,
-    /// SENSOR-PARA by name.
     pub sensors: Index<'a>,
     /// REL-MOVES by name and location.
     pub relative_moves: PlaceIndex<'a>,
@@ -114,7 +87,6 @@ impl<'a> TaskData<'a> {
         id.of(self.poses)
     }
 
-    /// The pose with a name.
     #[must_use]
     pub fn pose_named<const N: usize>(&self, name: &Name<N>) -> Option<PoseId> {
         self.indexes.poses.find(name_key(name)).map(PoseId::new)
@@ -159,7 +131,6 @@ impl<'a> TaskData<'a> {
         id.of(self.arrays)
     }
 
-    /// The array with a name.
     #[must_use]
     pub fn array_named<const N: usize>(&self, name: &Name<N>) -> Option<ArrayId> {
         self.indexes.arrays.find(name_key(name)).map(ArrayId::new)
@@ -171,7 +142,6 @@ impl<'a> TaskData<'a> {
         id.of(self.owners)
     }
 
-    /// The owner with a name.
     #[must_use]
     pub fn owner_named<const N: usize>(&self, name: &Name<N>) -> Option<OwnerId> {
         self.indexes.owners.find(name_key(name)).map(OwnerId::new)
@@ -183,7 +153,6 @@ impl<'a> TaskData<'a> {
         self.owner(id).and_then(|owner| run(self.members, owner.first, owner.count)).unwrap_or_default()
     }
 
-    /// The trajectory with a name.
     #[must_use]
     pub fn trajectory_named<const N: usize>(&self, name: &Name<N>) -> Option<TrajId> {
         self.indexes.trajectory_names.find(name_key(name)).map(TrajId::new)
@@ -220,7 +189,6 @@ impl<'a> TaskData<'a> {
         Some((id, id.of(self.end_effs)?))
     }
 
-    /// Grasp parameters by record number.
     #[must_use]
     pub fn end_eff(&self, id: EndEffId) -> Option<&'a EndEffPara> {
         id.of(self.end_effs)

@@ -35,7 +35,6 @@ pub struct Key {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[repr(align(32))]
 pub struct Slot {
-    /// The key.
     pub(crate) key: Key,
     /// Number of the first record with the key; 0 for a slot without a key.
     pub(crate) number: u32,
@@ -49,16 +48,13 @@ const _: () = assert!(size_of::<Slot>() == 32);
 /// Keys in slots, and the record numbers of keys that several records share. The loader builds it.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Index<'a> {
-    /// The pilot of each bucket.
     pub(crate) pilots: &'a [u8],
     /// The slots, some of them empty.
     pub(crate) slots: &'a [Slot],
     /// For each key that several records share: their count, then their numbers, in the order in which they were
     /// entered.
     pub(crate) numbers: &'a [u32],
-    /// Seed of the hash.
     pub(crate) seed: u64,
-    /// Number of keys.
     pub(crate) keys: usize,
 }
 
@@ -86,7 +82,6 @@ pub(crate) fn hash_of(key: Key, seed: u64) -> u64 {
     fold(product(mixed ^ seed, key.rest ^ 0x2127_599B_F432_5C37))
 }
 
-/// The bucket of a hash.
 pub(crate) fn bucket_of(hash: u64, buckets: usize) -> usize {
     scaled(hash, buckets)
 }
@@ -133,7 +128,6 @@ impl<'a> Index<'a> {
         }
     }
 
-    /// Number of keys.
     #[must_use]
     pub const fn len(&self) -> usize {
         self.keys
@@ -156,7 +150,6 @@ pub(crate) const CROWDED: u32 = u32::MAX;
 pub struct EntryAt {
     /// The location, packed; 0 if there is no entry.
     pub(crate) at: u32,
-    /// Record number.
     pub(crate) number: u32,
     /// The field of the record that look-ups need.
     pub(crate) answer: u32,
@@ -177,7 +170,6 @@ pub struct Group {
 const _: () = assert!(size_of::<Group>() == 64);
 
 impl Group {
-    /// The entry at a location.
     fn entry(&self, at: Reference) -> Option<&EntryAt> {
         let at = packed(at)?;
         self.entries.iter().find(|entry| entry.at == at)
@@ -199,11 +191,9 @@ pub(crate) fn packed(at: Reference) -> Option<u32> {
 /// Entries that are valid at locations, by a key without the location. The loader builds it.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct PlaceIndex<'a> {
-    /// The pilot of each bucket.
     pub(crate) pilots: &'a [u8],
     /// The slots, some of them empty.
     pub(crate) groups: &'a [Group],
-    /// Seed of the hash.
     pub(crate) seed: u64,
     /// The entries of keys that have too many for a group, by key and location.
     pub(crate) crowded: Index<'a>,
@@ -257,7 +247,6 @@ impl Key {
         Self { rest: self.rest & !PLACE_BITS, ..self }
     }
 
-    /// The key at another location.
     fn at(self, at: Reference) -> Self {
         Self { rest: (self.rest & !PLACE_BITS) | reference_bits(at), ..self }
     }
@@ -297,7 +286,6 @@ fn grip_bits(grip: i32) -> Option<u64> {
     Some(u64::from(i8::try_from(grip).ok()?.cast_unsigned()))
 }
 
-/// The key of a name.
 #[must_use]
 pub fn name_key<const N: usize>(name: &Name<N>) -> Key {
     Key { main: name_bits(name), rest: 0 }

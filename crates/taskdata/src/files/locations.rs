@@ -47,41 +47,18 @@ impl Location {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LookupError {
     /// No location point, owner or array has the name.
-    UnknownLocation {
-        /// The name.
-        name: Name16,
-    },
+    UnknownLocation { name: Name16 },
     /// No object form has the name.
-    UnknownObject {
-        /// The name.
-        name: Name16,
-    },
+    UnknownObject { name: Name16 },
     /// A sector of an owner with several arrays needs an object, which says how the tray is divided.
-    ObjectNeeded {
-        /// The owner.
-        location: Name16,
-        /// The sector.
-        sector: i32,
-    },
+    ObjectNeeded { location: Name16, sector: i32 },
     /// No object location form assigns the object to a member of the owner (VII.7.3).
-    NotAssigned {
-        /// The object.
-        object: Name16,
-        /// The owner.
-        location: Name16,
-    },
+    NotAssigned { object: Name16, location: Name16 },
     /// The location point is not divided into sectors.
-    NoSectors {
-        /// The location.
-        location: Name16,
-        /// The sector that was requested.
-        sector: i32,
-    },
+    NoSectors { location: Name16, sector: i32 },
     /// The array has no such sector.
     SectorRange {
-        /// The location.
         location: Name16,
-        /// The array.
         array: Name10,
         /// The sector that was requested; `None` if none was.
         sector: Option<i32>,
@@ -89,19 +66,9 @@ pub enum LookupError {
         last: i32,
     },
     /// The owner, such as UNIT, only groups locations.
-    OwnerOnly {
-        /// The owner.
-        location: Name16,
-    },
+    OwnerOnly { location: Name16 },
     /// No grip location form names the grip of the object there, or anywhere with `$$$` (VII.7.5).
-    NoGrip {
-        /// The object.
-        object: Name16,
-        /// The grip.
-        grip: i32,
-        /// The location.
-        location: Name10,
-    },
+    NoGrip { object: Name16, grip: i32, location: Name10 },
 }
 
 impl fmt::Display for LookupError {

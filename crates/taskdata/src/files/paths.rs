@@ -72,7 +72,6 @@ impl<'a> TaskData<'a> {
         Some((id, id.of(self.visions)?))
     }
 
-    /// View parameters by record number.
     #[must_use]
     pub fn vision_para(&self, id: VisionId) -> Option<&'a VisionPara> {
         id.of(self.visions)

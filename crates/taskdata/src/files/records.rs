@@ -14,7 +14,6 @@ use super::reference::{RefType, Reference};
 /// POSE: a pose form entry (VII.1).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PoseRecord {
-    /// Name of the pose.
     pub name: Name10,
     /// The nine integers as entered, 0.01 in.
     pub pose: Pose,
@@ -27,18 +26,14 @@ pub struct PoseRecord {
 /// MOVTAB: a movetable (VII.2).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MovtabRecord {
-    /// Name of the movetable.
     pub name: Name10,
-    /// Lines of the movetable.
     pub movetable: Movetable,
 }
 
 /// LOCPT: a location point (VII.3).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Locpt {
-    /// Name of the location point.
     pub name: Name10,
-    /// Its pose.
     pub pose: PoseId,
     /// Movetable applied to the pose, null for `...`.
     pub movetable: MovtabId,
@@ -49,7 +44,6 @@ pub struct Locpt {
 /// ARRAY-TABLE: the array dimension and array location forms of one array together (VII.4).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Array {
-    /// Name of the array.
     pub name: Name10,
     /// Number of dimensions, 1 or 2.
     pub dimensions: i32,
@@ -57,7 +51,6 @@ pub struct Array {
     pub columns: i32,
     /// Elements in the second dimension: the rows, top to bottom; 1 if there is one dimension.
     pub rows: i32,
-    /// Offset from column to column.
     pub column_step: MovtabId,
     /// Offset from row to row, null if there is one dimension.
     pub row_step: MovtabId,
@@ -80,33 +73,27 @@ impl Array {
 /// OWNER-ASCII-NAMES: an owner (VII.5). Its members are consecutive in the file of members.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Owner {
-    /// Name of the owner.
     pub name: Name10,
     /// Position from 0 of its first member.
     pub first: u32,
-    /// Number of members.
     pub count: u32,
 }
 
 /// A member of an owner: location point, array or pose (VII.5).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Member {
-    /// The owner.
     pub owner: OwnerId,
-    /// The member.
     pub member: Reference,
 }
 
 /// TRAJ: the path between two locations (VII.6).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Traj {
-    /// Name of the trajectory.
     pub name: Name10,
     /// Location point, array or owner where it starts.
     pub start: Reference,
     /// Location point, array or owner where it ends.
     pub end: Reference,
-    /// Its points.
     pub path: PathId,
 }
 
@@ -127,9 +114,7 @@ pub struct TrajPara {
 /// The target of a point of a path (VII.6, VII.7.7).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Target {
-    /// A pose.
     Pose(PoseId),
-    /// A location point.
     LocationPoint(LocptId),
     /// A movetable, applied to the reference: the goal of an approach, the start of a depart, the previous point of a
     /// trajectory.
@@ -143,7 +128,6 @@ pub enum Target {
 pub struct PathPoint {
     /// Parameters of the segment that leads to the point.
     pub para: TrajParaId,
-    /// The point.
     pub target: Target,
 }
 
@@ -159,16 +143,13 @@ pub struct Path {
 /// OBJ-ASCII-NAMES: an object (VII.7.1).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Object {
-    /// Name of the object.
     pub name: Name16,
 }
 
 /// END-EFF-PARA: openings and force of a grip of an object (VII.7.1).
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct EndEffPara {
-    /// The object.
     pub object: ObjectId,
-    /// Reference grip number.
     pub grip: i32,
     /// Opening while the object is approached, 0.01 in.
     pub appr_size: i32,
@@ -183,7 +164,6 @@ pub struct EndEffPara {
 /// OBJ-GRIPS: which gripper handles an object (VII.7.2).
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct ObjGrips {
-    /// The object.
     pub object: ObjectId,
     /// `endeff-id#`: 1 parts, 2 v-blocks, 3 tool gripper.
     pub endeff_id: i32,
@@ -194,7 +174,6 @@ pub struct ObjGrips {
 /// The object location form (VII.7.3): the array or location point at an owner to which an object is assigned.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct ObjLoc {
-    /// The object.
     pub object: ObjectId,
     /// Array or location point to which it is assigned.
     pub assigned: Reference,
@@ -222,9 +201,7 @@ pub struct PedPara {
 /// GRIP-LOC: the movetable of a grip at a location (VII.7.5).
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct GripLoc {
-    /// The object.
     pub object: ObjectId,
-    /// Grip number.
     pub grip: i32,
     /// Location point, array, owner or `$$$`.
     pub at: Reference,
@@ -235,9 +212,7 @@ pub struct GripLoc {
 /// VISION-PARA: how an object is found with the camera at a location (VII.7.6).
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct VisionPara {
-    /// The object.
     pub object: ObjectId,
-    /// Reference grip number.
     pub grip: i32,
     /// Number of the object in the vision system.
     pub id: i32,
@@ -267,7 +242,6 @@ pub enum Direction {
 /// An approach or depart trajectory (VII.7.7).
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct ApprDept {
-    /// Approach or depart.
     pub direction: Direction,
     /// Object, view of an object, or a plain location point, array, owner or `$$$`.
     pub subject: Reference,
@@ -275,7 +249,6 @@ pub struct ApprDept {
     pub grip: i32,
     /// Where it applies: location point, array, owner or `$$$`; the same as the subject for a plain location.
     pub at: Reference,
-    /// Its points.
     pub path: PathId,
 }
 
@@ -283,13 +256,9 @@ pub struct ApprDept {
 /// are of this project.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum SensorSource {
-    /// Force along the tool's X.
     Fx,
-    /// Force along the tool's Y.
     Fy,
-    /// Force along the tool's Z.
     Fz,
-    /// Moment about the tool's Y.
     My,
     /// Large holster sensors: the ears are near.
     Near,
@@ -311,9 +280,7 @@ impl SensorSource {
 /// thresholds in code.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct SensorPara {
-    /// Name of the sensor.
     pub name: Name10,
-    /// The signal that is watched.
     pub source: SensorSource,
     /// Holster: 1 right, 2 left, 3 centre. Beam: 1 to 8, 0 for any. Forces: 0.
     pub which: i32,
@@ -332,7 +299,6 @@ pub struct RelativeMove {
     pub at: Reference,
     /// The movetable of the motion, applied to the start pose of the command.
     pub movetable: MovtabId,
-    /// Its parameters.
     pub para: TrajParaId,
     /// Sensor of a guarded move, a name of SENSOR-PARA; empty for none.
     pub sensor: Name10,
@@ -342,5 +308,4 @@ pub struct RelativeMove {
 pub type Numbered<'a, Id, T> = Option<(Id, &'a T)>;
 /// END-EFF-PARA with its number.
 pub type FoundEndEff<'a> = Numbered<'a, EndEffId, EndEffPara>;
-/// PED-PARA with its number.
 pub type FoundPedPara<'a> = Numbered<'a, PedParaId, PedPara>;

@@ -7,7 +7,6 @@ use rcs_core::Plain;
 /// passes them as integers (`locpt-type`, `pose-type`) without giving values; these codes are ASSUMED.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum RefType {
-    /// Nothing.
     #[text = ""]
     None,
     /// `lpt`: a location point.
@@ -16,10 +15,8 @@ pub enum RefType {
     /// `arr`: an array.
     #[text = "arr"]
     Array,
-    /// `own`: an owner.
     #[text = "own"]
     Owner,
-    /// `pos`: a pose.
     #[text = "pos"]
     Pose,
     /// `mtb`: a movetable.
@@ -46,42 +43,35 @@ pub struct Reference {
 }
 
 impl Reference {
-    /// No reference.
     pub const NONE: Self = Self { kind: RefType::None, number: 0 };
     /// The wild card `$$$`.
     pub const ANY: Self = Self { kind: RefType::Any, number: 0 };
 
-    /// A location point.
     #[must_use]
     pub const fn location_point(id: LocptId) -> Self {
         Self { kind: RefType::LocationPoint, number: id.number() }
     }
 
-    /// An array.
     #[must_use]
     pub const fn array(id: ArrayId) -> Self {
         Self { kind: RefType::Array, number: id.number() }
     }
 
-    /// An owner.
     #[must_use]
     pub const fn owner(id: OwnerId) -> Self {
         Self { kind: RefType::Owner, number: id.number() }
     }
 
-    /// A pose.
     #[must_use]
     pub const fn pose(id: PoseId) -> Self {
         Self { kind: RefType::Pose, number: id.number() }
     }
 
-    /// An object.
     #[must_use]
     pub const fn object(id: ObjectId) -> Self {
         Self { kind: RefType::Object, number: id.number() }
     }
 
-    /// The view of an object.
     #[must_use]
     pub const fn view(id: ObjectId) -> Self {
         Self { kind: RefType::View, number: id.number() }

@@ -17,7 +17,6 @@ use super::{
 /// Offset of the area with Task's blocks (IV.2.7).
 pub const OFFSET: u32 = 16_000;
 
-/// A block.
 #[derive(Clone, Debug)]
 struct Lines {
     header: At,
@@ -25,32 +24,25 @@ struct Lines {
     lines: Vec<(At, String)>,
 }
 
-/// All blocks of commands.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Commands(BTreeMap<u32, Lines>);
 
 /// Why LINE-LOAD finds no command.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum LineLoadError {
-    /// There is no such block.
     NoBlock {
-        /// Number of the block.
         number: u32,
-        /// Numbers of the existing blocks.
         known: Vec<u32>,
     },
     /// The block does not have these lines.
     Lines(usize, usize),
     /// The lines contain no command, or more than one.
     Count {
-        /// Number of the block.
         number: u32,
         /// First and last line.
         lines: (usize, usize),
-        /// Number of commands in them.
         found: usize,
     },
-    /// The line is not a command.
     Command(OwnLineError),
 }
 
@@ -92,7 +84,6 @@ impl Commands {
         }
     }
 
-    /// The numbers of the blocks.
     pub(super) fn numbers(&self) -> impl Iterator<Item = BlockNumber> {
         self.0.keys().map(|number| BlockNumber { offset: OFFSET, number: *number })
     }

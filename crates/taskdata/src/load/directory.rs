@@ -21,7 +21,6 @@ use super::{
     source::{BLOCK_COLUMNS, BLOCK_LINES, Block, BlockFault, LAST_BLOCK, blocks},
 };
 
-/// Blocks with which loading begins.
 const ROOTS: [BlockNumber; 3] = [
     BlockNumber { offset: 21_000, number: 905 },
     BlockNumber { offset: 21_000, number: 906 },
@@ -31,14 +30,12 @@ const ROOTS: [BlockNumber; 3] = [
 /// Number of blocks that one processor reads at a time.
 const BLOCKS_AT_A_TIME: usize = 256;
 
-/// Content of the loaded blocks.
 #[derive(Debug, Default)]
 pub(super) struct Read {
     /// Entries in the order in which they were loaded.
     pub(super) entries: Collected,
     /// Names in entries that could not be read.
     pub broken: HashSet<String>,
-    /// Blocks that were loaded.
     pub blocks: BTreeSet<BlockNumber>,
     /// Blocks that were not loaded, and numbers without a block.
     pub orphans: Orphans,

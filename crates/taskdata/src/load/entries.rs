@@ -6,19 +6,15 @@ use rcs_core::name::Name;
 
 use crate::files::{Direction, RefType, SensorSource, TrajPara};
 
-/// A name and its place.
 #[derive(Clone, Copy, Debug)]
 pub struct Named<const N: usize> {
-    /// The name.
     pub name: Name<N>,
-    /// Place of the name.
     pub at: At,
 }
 
 /// A type and a name, from the "type" and "name" columns of a form.
 #[derive(Clone, Copy, Debug)]
 pub struct Typed {
-    /// The type.
     pub kind: RefType,
     /// The name; the word `$$$` itself for [`RefType::Any`].
     pub name: Named<16>,
@@ -27,11 +23,9 @@ pub struct Typed {
 /// A `-ppt` line.
 #[derive(Clone, Copy, Debug)]
 pub struct PointEntry {
-    /// Parameters.
     pub para: TrajPara,
     /// The point; `None` for `stop`.
     pub target: Option<Typed>,
-    /// Place of the whole line.
     pub at: At,
 }
 
@@ -40,11 +34,8 @@ pub struct PointEntry {
 pub struct PoseEntry {
     /// Wrist, tool and finger point: X, Y, Z, 0.01 in.
     pub points: [[i32; 3]; 3],
-    /// Place of the nine numbers.
     pub at: At,
-    /// Movetable.
     pub movetable: Named<10>,
-    /// Name.
     pub name: Named<10>,
 }
 
@@ -53,25 +44,20 @@ pub struct PoseEntry {
 pub struct MovetableEntry {
     /// Its lines, at most eight.
     pub lines: Vec<MovetableLine>,
-    /// Name.
     pub name: Named<10>,
 }
 
 /// `-pt-` (VII.3) and `-ar-` (VII.4): a name at a pose and a movetable.
 #[derive(Clone, Debug)]
 pub struct PointAt {
-    /// Name.
     pub name: Named<10>,
-    /// Pose.
     pub pose: Named<10>,
-    /// Movetable.
     pub movetable: Named<10>,
 }
 
 /// `-arr-` (VII.4).
 #[derive(Clone, Debug)]
 pub struct ArrayEntry {
-    /// Name.
     pub name: Named<10>,
     /// Number of dimensions, 1 or 2.
     pub dimensions: i32,
@@ -90,31 +76,23 @@ pub struct ArrayEntry {
 /// `-own-` (VII.5).
 #[derive(Clone, Debug)]
 pub struct OwnerEntry {
-    /// Name.
     pub name: Named<10>,
-    /// Members.
     pub members: Vec<Typed>,
 }
 
 /// `-traj` (VII.6).
 #[derive(Clone, Debug)]
 pub struct TrajEntry {
-    /// Name.
     pub name: Named<10>,
-    /// Start.
     pub start: Typed,
-    /// End.
     pub end: Typed,
-    /// Points.
     pub points: Vec<PointEntry>,
 }
 
 /// `-obj-` (VII.7.1).
 #[derive(Clone, Debug)]
 pub struct ObjectEntry {
-    /// Name.
     pub name: Named<16>,
-    /// Grip number.
     pub grip: i32,
     /// Place of name and grip number, to underline.
     pub at: At,
@@ -125,7 +103,6 @@ pub struct ObjectEntry {
 /// A record entered in Show mode, `:S … <= … :R >FILE` (VII.7.2, VII.7.4).
 #[derive(Clone, Debug)]
 pub struct ShowEntry<const N: usize> {
-    /// The object.
     pub object: Named<16>,
     /// The other variables, in the order of the record.
     pub values: [i32; N],
@@ -134,37 +111,26 @@ pub struct ShowEntry<const N: usize> {
 /// `-o-loc-` (VII.7.3).
 #[derive(Clone, Debug)]
 pub struct ObjLocEntry {
-    /// Object.
     pub object: Named<16>,
-    /// Assigned array or location point.
     pub assigned: Typed,
 }
 
 /// `-grip-` (VII.7.5).
 #[derive(Clone, Debug)]
 pub struct GripEntry {
-    /// Object.
     pub object: Named<16>,
-    /// Grip number.
     pub grip: i32,
-    /// Location.
     pub place: Typed,
-    /// Movetable.
     pub movetable: Named<10>,
 }
 
 /// `-vu-` (VII.7.6).
 #[derive(Clone, Debug)]
 pub struct ViewEntry {
-    /// Object.
     pub object: Named<16>,
-    /// Grip number.
     pub grip: i32,
-    /// Number in the vision system.
     pub id: i32,
-    /// Location.
     pub place: Typed,
-    /// Offset of the view.
     pub movetable: Named<10>,
     /// Type of the frame to which the movetable is applied.
     pub offset_from: RefType,
@@ -177,7 +143,6 @@ pub struct ViewEntry {
 /// `-appr` or `-dept` (VII.7.7).
 #[derive(Clone, Debug)]
 pub struct ApprDeptEntry {
-    /// Approach or depart.
     pub direction: Direction,
     /// Object, view of an object, or location.
     pub subject: Typed,
@@ -185,7 +150,6 @@ pub struct ApprDeptEntry {
     pub grip: i32,
     /// Location of the object; `None` if the subject is itself a location.
     pub place: Option<Typed>,
-    /// Points.
     pub points: Vec<PointEntry>,
     /// Place from the compiling word to the location.
     pub at: At,
@@ -194,9 +158,7 @@ pub struct ApprDeptEntry {
 /// `-sen-` (extension): a sensor of a guarded move.
 #[derive(Clone, Debug)]
 pub struct SensorEntry {
-    /// Name.
     pub name: Named<10>,
-    /// The signal that is watched.
     pub source: SensorSource,
     /// Number of the holster or beam.
     pub which: i32,
@@ -209,15 +171,10 @@ pub struct SensorEntry {
 pub struct RelativeEntry {
     /// Name that a command looks for.
     pub name: Named<10>,
-    /// Location at which it applies.
     pub place: Typed,
-    /// Parameters.
     pub para: TrajPara,
-    /// Movetable that gives the goal.
     pub movetable: Named<10>,
-    /// Sensor of a guarded move.
     pub sensor: Option<Named<10>>,
-    /// Place of the whole entry.
     pub at: At,
 }
 
@@ -226,16 +183,12 @@ pub struct RelativeEntry {
 pub struct FileEntry {
     /// The file, one of [`super::store::FILE_NAMES`].
     pub file: &'static str,
-    /// Greatest number of records.
     pub records: usize,
-    /// Place of the declaration.
     pub at: At,
 }
 
-/// An entry of any form.
 #[derive(Clone, Debug)]
 pub enum Entry {
-    /// A file declaration (VII).
     File(FileEntry),
     /// VII.1.
     Pose(PoseEntry),
@@ -265,17 +218,13 @@ pub enum Entry {
     View(ViewEntry),
     /// VII.7.7.
     ApprDept(ApprDeptEntry),
-    /// Extension: sensors of guarded moves.
     Sensor(SensorEntry),
-    /// Extension: relative moves.
     Relative(RelativeEntry),
 }
 
 /// A `n load` or `offset n OLOAD` of a directory block (VIII.9, IV.2.8).
 #[derive(Clone, Copy, Debug)]
 pub struct LoadLine {
-    /// The block.
     pub block: BlockNumber,
-    /// Place of the line.
     pub at: At,
 }

@@ -14,7 +14,6 @@ use super::{Store, source::blocks, verdict::is_bare};
 /// An error of the task data.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Fault {
-    /// File, block and line.
     pub place: String,
     /// One sentence: what was found and what was expected.
     pub message: String,
@@ -30,7 +29,6 @@ enum Scope {
     Objects(Vec<String>),
     /// Those that use one of these names.
     Names(Vec<String>),
-    /// All.
     Any,
 }
 
@@ -98,7 +96,6 @@ impl Store {
         self.faults().filter(concerns).collect()
     }
 
-    /// All errors of the data.
     pub fn faults(&self) -> impl Iterator<Item = &Fault> {
         self.faults.iter().chain(&self.found)
     }
@@ -109,7 +106,6 @@ impl Store {
     }
 }
 
-/// The line with a place.
 fn line_at(at: At, sources: &[Source]) -> Option<&str> {
     let source = sources.get(usize::try_from(at.source).ok()?)?;
     let start = usize::try_from(at.start).ok()?;

@@ -23,7 +23,6 @@ use super::{
 const COORDINATE: RangeInclusive<i32> = -20_000..=20_000;
 /// Range of a rotation, 0.01 degree.
 const ANGLE: RangeInclusive<i32> = -18_000..=18_000;
-/// Range of a grip number.
 pub(super) const GRIP: RangeInclusive<i32> = -99..=99;
 /// Range of the opening of a gripper, 0.01 in: the parts gripper opens to 5.00 in.
 pub(super) const OPENING: RangeInclusive<i32> = 0..=500;

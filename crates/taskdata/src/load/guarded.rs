@@ -37,7 +37,6 @@ pub enum Beginning {
 pub struct KnownMove {
     /// Its name in the task data.
     pub name: &'static str,
-    /// Its start.
     pub from: Beginning,
     /// True if a sensor guards it (GO-UNTIL, GO-WHILE).
     pub guarded: bool,

@@ -24,7 +24,6 @@ pub(super) struct Pair {
     pub answer: u32,
 }
 
-/// The slots of a table.
 trait Cells: Default {
     /// A table of `slots` empty slots.
     fn empty(slots: usize) -> Self;
@@ -46,7 +45,6 @@ struct Table<C> {
     cells: C,
 }
 
-/// A key in its bucket.
 #[derive(Clone, Copy, Debug, Default)]
 struct Spread {
     hash: u64,
@@ -130,7 +128,6 @@ impl Cells for Numbered {
     }
 }
 
-/// An index that owns its tables.
 #[derive(Clone, Debug, Default)]
 pub(super) struct OwnedIndex(Table<Numbered>);
 
@@ -140,7 +137,6 @@ impl OwnedIndex {
         Self(Table::new(pairs))
     }
 
-    /// The index for look-ups.
     pub fn view(&self) -> Index<'_> {
         let Table { pilots, seed, cells } = &self.0;
         Index { pilots, slots: &cells.slots, numbers: &cells.numbers, seed: *seed, keys: cells.keys }
@@ -218,7 +214,6 @@ impl OwnedPlaceIndex {
         Self { table, crowded }
     }
 
-    /// The index for look-ups.
     pub fn view(&self) -> PlaceIndex<'_> {
         let Table { pilots, seed, cells } = &self.table;
         PlaceIndex { pilots, groups: &cells.groups, seed: *seed, crowded: self.crowded.view() }

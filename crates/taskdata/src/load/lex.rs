@@ -8,12 +8,10 @@ use diagnostics::{At, Problems};
 
 use super::source::{Block, SourceLine};
 
-/// A word and its place.
 #[derive(Clone, Copy, Debug)]
 pub struct Word<'a> {
     /// The text, without blanks.
     pub text: &'a str,
-    /// Place of the word.
     pub at: At,
     /// True if it is the first word of its line.
     pub first: bool,

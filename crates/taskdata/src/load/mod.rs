@@ -167,7 +167,6 @@ impl Store {
     }
 }
 
-/// Result of loading texts.
 struct Linked {
     store: Store,
     problems: Problems,

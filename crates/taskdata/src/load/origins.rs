@@ -5,29 +5,21 @@ use diagnostics::At;
 /// The places of all records, in the order of the record numbers.
 #[derive(Clone, Debug, Default)]
 pub struct Origins {
-    /// POSE: the nine numbers.
     pub poses: Vec<At>,
-    /// MOVTAB: the name.
     pub movetables: Vec<At>,
-    /// LOCPT: the name.
     pub locpts: Vec<At>,
     /// ARRAY-TABLE: the name in the dimension form.
     pub arrays: Vec<At>,
-    /// OWNER-ASCII-NAMES: the name.
     pub owners: Vec<At>,
-    /// Members of owners: the name.
     pub members: Vec<At>,
-    /// TRAJ: both ends.
     pub trajectories: Vec<At>,
     /// OBJ-ASCII-NAMES: the first entry of the object.
     pub objects: Vec<At>,
     /// END-EFF-PARA: object and grip number.
     pub end_effs: Vec<At>,
-    /// OBJ-GRIPS: the object.
     pub obj_grips: Vec<At>,
     /// The object location form: the object.
     pub obj_locs: Vec<At>,
-    /// PED-PARA: the object.
     pub ped_paras: Vec<At>,
     /// GRIP-LOC: from the object to the movetable.
     pub grip_locs: Vec<At>,
@@ -35,11 +27,8 @@ pub struct Origins {
     pub visions: Vec<At>,
     /// The approach/depart form: from the compiling word to the location.
     pub appr_depts: Vec<At>,
-    /// PATH-PTS: the line.
     pub path_points: Vec<At>,
-    /// SENSOR-PARA: the name.
     pub sensors: Vec<At>,
-    /// REL-MOVES: the entry.
     pub relative_moves: Vec<At>,
 }
 

@@ -14,7 +14,6 @@ use super::{
     show,
 };
 
-/// Contents of a block.
 #[derive(Debug, Default)]
 pub struct Parsed {
     /// Entries in their order.

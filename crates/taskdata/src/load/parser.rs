@@ -110,7 +110,6 @@ impl<'a> Parser<'a, '_> {
         self.words.get(self.next.saturating_add(ahead)).copied()
     }
 
-    /// Take the next word.
     pub fn take(&mut self) -> Option<Word<'a>> {
         let word = self.peek()?;
         self.next += 1;

@@ -24,20 +24,15 @@ const HEADER: &str = "BLOCK#";
 /// A line of a block, without its line number.
 #[derive(Clone, Copy, Debug)]
 pub struct SourceLine<'a> {
-    /// The text.
     pub text: &'a str,
-    /// Place of the line.
     pub at: At,
 }
 
-/// A block.
 #[derive(Clone, Debug)]
 pub struct Block<'a> {
     /// Number and offset of the block.
     pub number: BlockNumber,
-    /// Place of the header.
     pub header: At,
-    /// Its lines.
     pub lines: Vec<SourceLine<'a>>,
 }
 

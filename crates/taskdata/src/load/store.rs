@@ -127,12 +127,9 @@ pub struct Store {
     pub(super) sources: Vec<Source>,
     /// The entries of the records, for the next generation.
     pub(super) entries: Collected,
-    /// Blocks that were loaded.
     pub(super) blocks: BTreeSet<BlockNumber>,
     pub(super) origins: Origins,
-    /// Blocks of commands for Task.
     pub(super) commands: Commands,
-    /// Errors of the load.
     pub(super) faults: Vec<Fault>,
     /// Errors that other checks have found.
     pub(super) found: Vec<Fault>,

@@ -41,11 +41,9 @@ pub const STAGES: [&str; 11] = [
     "DEPC",
 ];
 
-/// The data for evaluating conditions.
 pub struct Sight<'a> {
     /// The picture of the tick.
     pub picture: &'a Picture,
-    /// The cell.
     pub cell: &'a Cell,
     /// The session with the run; `None` on a console without `--operate`.
     pub operating: Option<&'a Operating>,
@@ -56,7 +54,6 @@ pub struct Sight<'a> {
 /// The state when a step began, or when its requests were sent.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Begun {
-    /// The tick.
     pub tick: Tick,
     /// Tool point from the resolvers, 0.01 in.
     pub tool: Option<[i32; 3]>,
@@ -71,15 +68,11 @@ pub enum Condition {
     Reached(&'static str),
     /// The robot controller is at this stage.
     At(&'static str),
-    /// The actuators have no pressure.
     NoPressure,
-    /// All emergency stops are out.
     EStopsOut,
     /// All six axes are marked with an asterisk.
     Aligned,
-    /// The DEPC link runs.
     LinkRuns,
-    /// The resolvers are valid.
     Resolvers,
     /// The resolvers show HOME to within [`TOLERANCE`].
     AtHome,
@@ -89,13 +82,9 @@ pub enum Condition {
     Stands,
     /// The robot has moved since the step began.
     Moved,
-    /// The processes have this command.
     Have(&'static [ProcessId], &'static str),
-    /// The process reports this status.
     Says(ProcessId, &'static str),
-    /// The processes are executed.
     Run(&'static [ProcessId]),
-    /// The processes are suspended.
     Held(&'static [ProcessId]),
     /// The velocity knob is not at zero (true), or at zero (false).
     KnobUp(bool),
@@ -216,7 +205,6 @@ impl Sight<'_> {
         now.iter().zip(was).map(|(now, was)| (now - was).abs()).max()
     }
 
-    /// The joystick box.
     pub(super) const fn joystick(&self) -> &JoystickBox {
         &self.picture.external.devices.joystick
     }

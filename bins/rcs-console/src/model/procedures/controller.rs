@@ -3,7 +3,6 @@
 
 use super::{Ask::Line, Ask::ReleaseEStops, Condition, Show, Step, event, state};
 
-/// `FAULT RESET`.
 pub const FAULT_RESET: Step = Step {
     ask: &[ReleaseEStops, Line("panel fault-reset")],
     how: "It resets only when all emergency stops are out, and the Prim Interface Box has power.",
@@ -15,7 +14,6 @@ pub const FAULT_RESET: Step = Step {
     )
 };
 
-/// `HYDRAULICS`.
 pub const HYDRAULICS: Step = Step {
     ask: &[Line("panel hydraulics enable")],
     how: "The red lights on the robot and HYD ENABLED come on.",
@@ -23,7 +21,6 @@ pub const HYDRAULICS: Step = Step {
     ..state("", "HYDRAULICS stands at ENABLE", &[Condition::Reached("hydraulics enabled")])
 };
 
-/// `MANUAL`.
 pub const MANUAL: Step = Step {
     ask: &[Line("panel manual on")],
     how: "One hand covers the E-stop of the control panel.",
@@ -32,7 +29,6 @@ pub const MANUAL: Step = Step {
     ..state("", "MANUAL is on: the hand has jumped and stands", &[Condition::Reached("manual")])
 };
 
-/// Alignment of the six axes.
 pub const ALIGN: Step = Step {
     ask: &[Line("panel align")],
     how: "Base, shoulder and elbow to their arrows; the gripper straight down or out; its line \
@@ -42,7 +38,6 @@ pub const ALIGN: Step = Step {
     ..state("", "all six axes are aligned", &[Condition::Aligned])
 };
 
-/// `AUTO`.
 pub const AUTO: Step = Step {
     ask: &[Line("panel auto")],
     warning: "the arm jumps again and moves directly to HOME, whatever is in its way",
@@ -50,7 +45,6 @@ pub const AUTO: Step = Step {
     ..state("", "AUTO: the robot has moved to HOME", &[Condition::Reached("auto, at HOME")])
 };
 
-/// `CYCLE START`.
 pub const CYCLE_START: Step = Step {
     ask: &[Line("panel cycle-start")],
     how: "If a WD warning comes: the procedure for it stands in the list.",
@@ -59,7 +53,6 @@ pub const CYCLE_START: Step = Step {
     ..state("", "CYCLE START: the program has come to DEPC", &[Condition::Reached("DEPC")])
 };
 
-/// `INTERRUPT`.
 pub const INTERRUPT: Step = Step {
     ask: &[Line("panel interrupt")],
     show: Show::Screen,

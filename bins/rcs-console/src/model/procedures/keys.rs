@@ -6,7 +6,6 @@ use crate::rcs_console::{
     source::Source,
 };
 
-/// Steps per page.
 const PAGE: usize = 8;
 
 impl Model {
@@ -62,7 +61,6 @@ impl Model {
         self.note(note);
     }
 
-    /// Skip the step.
     pub(in crate::rcs_console::model) fn leave_out(&mut self, reason: String) {
         let tick = self.picture.as_ref().map_or_else(Default::default, |picture| picture.tick);
         let Some(track) = self.procedures.open() else { return };

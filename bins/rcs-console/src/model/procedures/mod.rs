@@ -27,16 +27,13 @@ pub use self::{
 pub struct Procedure {
     /// Section of the manual.
     pub section: &'static str,
-    /// Purpose.
     pub title: &'static str,
     /// The steps, in order.
     pub steps: &'static [Step],
 }
 
-/// A step.
 #[derive(Clone, Copy, Debug)]
 pub struct Step {
-    /// Number in the section.
     pub id: &'static str,
     /// What must be done, or must be the case.
     pub text: &'static str,
@@ -62,16 +59,13 @@ pub enum Watch {
     State(&'static [Condition]),
     /// All conditions have held once since the step began.
     Event(&'static [Condition]),
-    /// The operator confirms it.
     Said,
     /// The operator confirms it at a real robot; a simulated cell has no such device.
     Real,
 }
 
-/// A request to the run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Ask {
-    /// This request.
     Line(&'static str),
     /// `release` for each emergency stop that is pressed.
     ReleaseEStops,

@@ -4,7 +4,6 @@ use interfaces::{ProcessId, data_base::Connection};
 
 use super::{Ask::Line, Condition, Procedure, Show, Step, event, real, said, state};
 
-/// The processes of the pedestal.
 const PEDESTAL_RUNS: &[Condition] =
     &[Condition::Run(&[ProcessId::Pedestal, ProcessId::Hand, ProcessId::RotaryTable])];
 

@@ -9,7 +9,6 @@ use super::{
 };
 use crate::rcs_console::source::Cell;
 
-/// Mark of a step.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub enum Mark {
     /// Not done, as far as known.
@@ -28,7 +27,6 @@ pub enum Mark {
 }
 
 impl Mark {
-    /// The word on the screen.
     #[must_use]
     pub const fn word(&self) -> &'static str {
         match self {
@@ -48,14 +46,10 @@ impl Mark {
     }
 }
 
-/// Progress of a procedure.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Track {
-    /// The procedure.
     pub procedure: &'static Procedure,
-    /// One mark per step.
     pub marks: Vec<Mark>,
-    /// The step under the cursor.
     pub cursor: usize,
     /// The state when the first open step began, or when its requests were sent.
     pub begun: Begun,
@@ -89,7 +83,6 @@ impl Track {
         self.marks.iter().position(|mark| !mark.is_set())
     }
 
-    /// The step under the cursor.
     #[must_use]
     pub fn step(&self) -> Option<&'static Step> {
         self.procedure.steps.get(self.cursor)
@@ -204,7 +197,6 @@ impl Step {
     }
 }
 
-/// The lines of a request.
 fn lines(ask: Ask, cell: &Cell) -> Vec<String> {
     match ask {
         Ask::Line(line) => vec![line.to_owned()],
@@ -216,10 +208,8 @@ fn lines(ask: Ask, cell: &Cell) -> Vec<String> {
     }
 }
 
-/// Progress of all procedures.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Progress {
-    /// One track per procedure.
     pub tracks: Vec<Track>,
     /// The procedure under the cursor of the list.
     pub cursor: usize,
@@ -234,7 +224,6 @@ impl Default for Progress {
 }
 
 impl Progress {
-    /// The procedure that is open.
     pub fn open(&mut self) -> Option<&mut Track> {
         let is_open = self.is_open;
         self.tracks.get_mut(self.cursor).filter(|_| is_open)
@@ -247,7 +236,6 @@ impl Progress {
         }
     }
 
-    /// Restart the open procedure.
     pub fn restart(&mut self) {
         if let Some(track) = self.open() {
             *track = Track::new(track.procedure);

@@ -11,7 +11,6 @@ use crate::rcs_console::model::{Text, Tone, cell};
 /// The state of the cell that is shown with a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Show {
-    /// Nothing.
     Nothing,
     /// The screen of the robot controller.
     Screen,
@@ -23,9 +22,7 @@ pub enum Show {
     Frames,
     /// Position of the hand, and the distance it has moved since the step began.
     Hand,
-    /// The holsters.
     Holsters,
-    /// The joystick box.
     Box,
     /// Table and hand of the pedestal.
     Pedestal,
@@ -34,7 +31,6 @@ pub enum Show {
 }
 
 impl Show {
-    /// The lines of the screen.
     #[must_use]
     pub fn lines(self, sight: &Sight<'_>) -> Vec<Text> {
         match self {

@@ -114,7 +114,6 @@ pub const WARNING: Procedure = Procedure {
 /// Note on the three address switches and the button of a joint (IV.3.3 step 11).
 const SWITCHES: &str = "The switches are read from the left: 4, 2, 1.";
 
-/// Effect of a button.
 const AT_HOME: &str = "It sets the reading of the joint to that of HOME, where the robot must be.";
 
 /// IV.3.3 step 11, a to q.

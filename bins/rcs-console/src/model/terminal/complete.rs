@@ -13,17 +13,12 @@ use taskdata::load::{BlockNumber, Source, Store, source::blocks, verdict::TASK_C
 /// The names, blocks and jobs of a run's task data.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Names {
-    /// Objects, including tools.
     pub objects: Vec<String>,
     /// Locations that a command can name.
     pub locations: Vec<String>,
-    /// All other names: poses, movetables.
     pub others: Vec<String>,
-    /// The grips of each object.
     pub grips: Vec<(String, i32)>,
-    /// Blocks.
     pub blocks: Vec<BlockNumber>,
-    /// Jobs of the data directory.
     pub jobs: Vec<String>,
 }
 
@@ -174,7 +169,6 @@ fn values(names: &Names) -> Vec<String> {
     std::iter::once("NONE".to_owned()).chain(names.objects.iter().cloned()).collect()
 }
 
-/// The grips of an object.
 fn grips(object: &str, names: &Names) -> Vec<String> {
     let grips = names.grips.iter().filter(|(name, _)| name == object);
     let grips: BTreeSet<String> = grips.map(|(_, grip)| format!("{grip:+}")).collect();

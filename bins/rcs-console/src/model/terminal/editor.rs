@@ -26,7 +26,6 @@ use crate::rcs_console::model::{Key, Section, Text, Tone};
 /// Lines about a form that fit above the 16 lines of a block in the smallest terminal; the diff shows all of them.
 const ABOUT: usize = 2;
 
-/// A message of the checker.
 #[derive(Clone, Debug, PartialEq, Eq)]
 struct Message {
     /// Line of the block; `None` if the message is about another place.
@@ -36,7 +35,6 @@ struct Message {
     text: String,
 }
 
-/// The view of the editor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Stage {
     /// The lines, with the messages of the last check.
@@ -48,21 +46,16 @@ enum Stage {
 /// The action after a key.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Wish {
-    /// Nothing.
     None,
     /// Close the editor without writing.
     Close,
-    /// Write and load the block.
     Write,
-    /// Show a message.
     Say(&'static str),
 }
 
-/// A block in the editor.
 #[derive(Clone, Debug)]
 pub struct Editor {
     number: BlockNumber,
-    /// Its file.
     path: PathBuf,
     /// Text of the file when the editor was opened.
     before: String,
@@ -71,13 +64,11 @@ pub struct Editor {
     at: usize,
     /// The lines when the editor was opened.
     old: Vec<String>,
-    /// The present lines.
     lines: Vec<String>,
     row: usize,
     column: usize,
     stage: Stage,
     messages: Vec<Message>,
-    /// Information about the inserted form.
     about: Vec<String>,
 }
 
@@ -162,7 +153,6 @@ impl Editor {
         Ok(self)
     }
 
-    /// Number of the block.
     #[must_use]
     pub const fn number(&self) -> BlockNumber {
         self.number
@@ -174,7 +164,6 @@ impl Editor {
         self.stage == Stage::Diff
     }
 
-    /// Carry out a key.
     pub fn key(&mut self, key: Key) -> Wish {
         match (self.stage, key) {
             (Stage::Diff, Key::Enter) => return Wish::Write,

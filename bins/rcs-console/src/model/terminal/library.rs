@@ -37,7 +37,6 @@ pub struct Library {
 }
 
 impl Library {
-    /// The blocks of a directory.
     #[must_use]
     pub fn of(directory: PathBuf) -> Self {
         Self { directory, ..Self::default() }
@@ -79,7 +78,6 @@ impl Library {
         self.store.as_ref()
     }
 
-    /// All texts with blocks.
     pub fn sources(&mut self) -> &[Source] {
         let directory = &self.directory;
         self.read.get_or_insert_with(|| read_blocks_under(directory).0)

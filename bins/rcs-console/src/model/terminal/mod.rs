@@ -38,19 +38,14 @@ const KEYS: &str = " !:?[]{}";
 /// The mode of a terminal (IV.2.6).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Mode {
-    /// Words are executed.
     #[default]
     Run,
-    /// Variables are shown.
     Show,
 }
 
-/// The settings of a terminal.
 #[derive(Clone, Debug)]
 pub struct Board {
-    /// Its board.
     pub number: u8,
-    /// Its mode.
     pub mode: Mode,
     /// Offset of the area for LIST and LOAD.
     pub offset: u32,
@@ -77,14 +72,12 @@ impl Default for Board {
 }
 
 impl Board {
-    /// Select another board.
     pub fn turn_to(&mut self, number: u8) {
         if self.number != number {
             *self = Self { number, offset: self.offset, ..Self::default() };
         }
     }
 
-    /// The processes on the board.
     pub fn processes(&self) -> impl Iterator<Item = ProcessId> + use<> {
         let number = self.number;
         ProcessId::ALL.iter().copied().filter(move |process| process.board() == number)
@@ -120,12 +113,9 @@ struct Typed {
     after: u64,
 }
 
-/// A terminal of the console.
 #[derive(Default)]
 pub struct BoardTerminal {
-    /// The settings.
     pub board: Board,
-    /// The blocks.
     pub library: Library,
     /// The block in the editor, if any.
     pub editor: Option<Editor>,
@@ -259,7 +249,6 @@ impl Model {
         }
     }
 
-    /// The prompt of the terminal.
     #[must_use]
     pub fn terminal_prompt(&self) -> String {
         let board = &self.terminal.board;

@@ -1,6 +1,5 @@
 //! Words of the manual that have no effect here: their effect in the manual, and their replacement (IV.2, IV.5).
 
-/// The words and their answers.
 static OLD: [(&[&str], &str); 12] = [
     (&[":C", "}R"], "there is no compiler at the terminal: routines are compiled with the program"),
     (

@@ -8,7 +8,6 @@ use crate::rcs_console::{
     picture::Picture,
 };
 
-/// The sections of the screen.
 #[must_use]
 pub fn sections(
     terminal: &BoardTerminal,

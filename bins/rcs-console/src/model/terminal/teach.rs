@@ -16,10 +16,8 @@ use crate::rcs_console::picture::Picture;
 /// Name of the cell description in a data directory.
 const CELL: &str = "cell.toml";
 
-/// The form to teach.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Lesson {
-    /// Number of its block.
     pub number: BlockNumber,
     /// The name of the pose or movetable.
     pub name: String,

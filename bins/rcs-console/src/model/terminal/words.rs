@@ -50,30 +50,21 @@ static LEVELS: [(&str, ProcessId, &str); 9] = [
     ("TG-LEVEL", ProcessId::ToolGrip, "TOOL-GRIP"),
 ];
 
-/// The results of a line.
 #[derive(Debug, Default)]
 pub struct Outcome {
-    /// Requests to the run.
     pub asks: Vec<String>,
-    /// Text for the screen.
     pub said: Vec<Text>,
-    /// The block to edit.
     pub edits: Option<BlockNumber>,
-    /// The form to teach.
     pub teaches: Option<Lesson>,
-    /// The block that was listed.
     pub listed: Option<BlockNumber>,
 }
 
 /// Executes the words of a terminal.
 pub struct Interpreter<'a> {
-    /// The terminal.
     pub board: &'a mut Board,
-    /// The blocks.
     pub library: &'a mut Library,
     /// The present picture of the run.
     pub picture: Option<&'a Picture>,
-    /// The previous picture.
     pub last: Option<&'a Picture>,
     stack: Vec<u32>,
     pub(super) outcome: Outcome,

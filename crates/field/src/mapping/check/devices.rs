@@ -19,7 +19,6 @@ use super::{
     unlike,
 };
 
-/// The kinds of devices.
 const KINDS: [Kind; 2] = [Kind::Bk9000, Kind::Plain];
 /// What outputs can do when the watchdog fires.
 const FALLBACKS: [Fallback; 2] = [Fallback::Zero, Fallback::Hold];
@@ -30,7 +29,6 @@ const EXCHANGE_MS: std::ops::RangeInclusive<u16> = 10..=1000;
 /// Age after which the inputs of a device are stale, ms, unless a point says less.
 const STALE_MS: u16 = 100;
 
-/// The devices of a file.
 pub(super) struct Devices {
     pub list: Vec<Device>,
     /// The names of all devices, also of those with mistakes.
@@ -38,7 +36,6 @@ pub(super) struct Devices {
 }
 
 impl Devices {
-    /// Reads the devices.
     pub(super) fn of(sheet: &Sheet, stand_ins: &StandIns, problems: &mut Problems) -> Self {
         let mut list: Vec<Device> = Vec::new();
         for (name, form) in &sheet.device {

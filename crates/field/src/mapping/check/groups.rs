@@ -15,7 +15,6 @@ use super::{
 
 /// What keeps a part while its output is off.
 const HOLDS: [&str; 5] = ["trapped-air", "check-valve", "bistable", "spring", "nothing"];
-/// What can hold a part.
 const HOLDERS: [Group; 6] = [Group::Grip, Group::V, Group::Tool, Group::Pedestal, Group::Vise, Group::Drum];
 /// Words for groups without points.
 const WITHOUT: [Presence; 2] = [Presence::Absent, Presence::Simulated];

@@ -24,7 +24,6 @@ const STALE_MS: RangeInclusive<u16> = 40..=10_000;
 /// The input that the three grippers share (III.3.7).
 const SHARED: &str = "grip.potentiometer";
 
-/// An input of the file.
 pub(super) fn input(
     path: &str,
     name: &str,
@@ -103,7 +102,6 @@ pub(super) fn input(
     Ok(InPoint { name: name.to_owned(), target, stale_ms, group, from, range, line, by_gripper, then })
 }
 
-/// An output of the file.
 pub(super) fn output(
     path: &str,
     name: &str,

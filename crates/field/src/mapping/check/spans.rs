@@ -9,7 +9,6 @@ use super::super::Slot;
 /// The tables in the order of the spans.
 const AREAS: [Area; 4] = [Area::Coil, Area::Discrete, Area::Input, Area::Holding];
 
-/// The number of a table.
 fn number(area: Area) -> u8 {
     (0..).zip(AREAS).find(|(_, one)| *one == area).map_or(0, |(number, _)| number)
 }

@@ -56,13 +56,11 @@ const NEST_RADIANS: f64 = 10.0 * core::f64::consts::PI / 180.0;
 
 /// From where a motion begins, and how the robot comes there first.
 pub(in crate::emove) struct Origination {
-    /// The place.
     pub place: Option<RobotPlace>,
     /// Or the path, of which a motion was interrupted.
     pub way: Option<Way>,
     /// The present frame, seen from the place.
     pub offset: EmoveOffset,
-    /// How the robot comes there.
     pub rejoin: Option<Rejoin>,
     /// It comes to the end of the depart leg.
     pub is_out: bool,
@@ -281,7 +279,6 @@ impl Localization {
         }
     }
 
-    /// The state variables of RETURN.
     fn lost(&self, resting: bool, nest: bool, holding: Holding, inputs: &EmoveInputs<'_>) -> Lost {
         let left = self.place;
         let clampable = left.is_some_and(|left| clamps(&left, inputs.data)) && holding.is_held();

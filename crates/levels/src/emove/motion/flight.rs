@@ -33,7 +33,6 @@ use crate::emove::{
 /// The motion of a command.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct Flight {
-    /// The way to its goal.
     pub route: Option<Route>,
     /// The part of an interrupted way that is flown back before.
     pub back: Option<Back>,
@@ -57,7 +56,6 @@ pub struct Progress {
 /// The part of an interrupted way that is flown back.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct Back {
-    /// The way.
     pub route: Route,
     /// The point before which the robot is, in the direction of the goal: it goes to the one before that.
     pub next: u16,
@@ -73,7 +71,6 @@ pub struct Rejoin {
     pub track: u8,
     /// The points after them.
     pub points: [Option<Pose>; 2],
-    /// Parameters of the motions.
     pub parameters: TrajParaId,
 }
 
@@ -99,17 +96,14 @@ impl Back {
 }
 
 impl Rejoin {
-    /// Straight to a pose.
     pub(in crate::emove) const fn to(pose: Pose, parameters: TrajParaId) -> Self {
         Self { track: 0, points: [None, Some(pose)], parameters }
     }
 
-    /// How many points lie ahead.
     fn ahead(&self) -> u8 {
         self.points.iter().flatten().fold(self.track, |ahead, _| ahead.saturating_add(1))
     }
 
-    /// Take the next point.
     fn next(&mut self, record: &Track) -> Option<Pose> {
         if record.course != Course::Tracked {
             // The robot has come back into the neighbourhood of its place or path, which is gone to straight.
@@ -274,7 +268,6 @@ impl Flight {
         (leg, Some(way(route, route.heading(), rest, data)))
     }
 
-    /// The points that were sent.
     #[must_use]
     pub fn progress(&self) -> Progress {
         Progress {

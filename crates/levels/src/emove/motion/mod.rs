@@ -44,7 +44,6 @@ pub(super) enum Slot {
 /// The motion of the current command.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct EmoveMotion {
-    /// Commands to Prim.
     commander: Commander,
     /// The motion, if the command is a motion command.
     flight: Flight,
@@ -141,7 +140,6 @@ impl EmoveMotion {
         self.flight = Flight::default();
     }
 
-    /// The goal of the motion.
     #[must_use]
     pub const fn goal(&self) -> Option<&RobotPlace> {
         match &self.flight.route {

@@ -36,7 +36,6 @@ pub enum Relative {
     QcaLift,
     /// QC-ATTACH: completely out of the holster.
     QcaUp,
-    /// WITHDRAW.
     Withdraw,
     /// INSERT-TOOL: to the last point at which nothing can be touched.
     InsFar,
@@ -84,7 +83,6 @@ pub enum Reference {
 }
 
 impl Relative {
-    /// From where the move leads.
     #[must_use]
     pub const fn reference(self) -> Reference {
         match self {

@@ -56,9 +56,7 @@ pub enum Ahead {
     Rejoin,
     /// Nothing: the robot is at the goal, or has been sent there.
     Nothing,
-    /// A point to go through.
     Through,
-    /// The goal, to stop at.
     Stop,
     /// A point whose record is missing.
     Missing,
@@ -67,26 +65,20 @@ pub enum Ahead {
 /// A planned way and how far it has been commanded.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct Route {
-    /// The place left.
     pub from: RobotPlace,
-    /// The goal.
     pub to: RobotPlace,
     /// Depart points, relative to the pose departed from; from where an object was brought to, or where none are
     /// written, the approach points, which are passed in reverse.
     pub depart: PathId,
-    /// Intermediate trajectory.
     pub between: PathId,
     /// Approach points, relative to the goal, and the stop.
     pub approach: PathId,
-    /// Parameters of the final motion.
     pub stop: TrajParaId,
-    /// Points commanded so far.
     pub commanded: u16,
     /// The goal has been commanded, or need not be.
     pub complete: bool,
     /// Opening of the fingers at the goal, 0.01 in; `None` if it does not matter.
     pub opening: Option<i32>,
-    /// The opening has been commanded.
     pub opening_sent: bool,
     /// Record number of the pose departed from, once it is published.
     pub departure: u32,
@@ -97,9 +89,7 @@ pub struct Route {
 /// A point of a route that Prim is to be sent to.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EmoveLeg {
-    /// Where it is.
     pub at: LegGoal,
-    /// Parameters.
     pub parameters: TrajParaId,
 }
 
@@ -124,7 +114,6 @@ pub struct EmoveGoal {
     pub frame: Frame,
     /// Opening of the fingers, 0.01 in; `None` if it does not matter.
     pub opening: Option<i32>,
-    /// The goal.
     pub gone_to: GoneTo,
 }
 
@@ -274,7 +263,6 @@ impl Route {
         if self.complete { None } else { self.points(data).nth(usize::from(self.commanded)) }
     }
 
-    /// The number of depart points.
     #[must_use]
     pub fn depart_points(&self, data: &TaskData<'_>) -> u16 {
         let points = data.path(self.depart).iter().filter(|point| point.target != Target::Stop);
@@ -314,7 +302,6 @@ impl Route {
         }
     }
 
-    /// What lies ahead.
     #[must_use]
     pub fn ahead(&self, data: &TaskData<'_>) -> Ahead {
         match self.next_point(data) {

@@ -68,13 +68,11 @@ pub fn moved(frame: Frame, movetables: &[&str]) -> Frame {
     })
 }
 
-/// E-move in the cell.
 pub type Bench = bench::Bench<Emove, Cell, TaskData<'static>>;
 
 /// A command of Subtask: object, its grip, location and gripper.
 pub type EmoveLine = (EmoveVerb, &'static str, i32, &'static str, u8);
 
-/// How a command ends.
 pub type End = (StatusReport, Reason);
 
 impl<'d> Tested<TaskData<'d>> for Emove {
@@ -155,13 +153,11 @@ impl Bench {
         self.begin((verb, object, grip, location, gripper));
     }
 
-    /// The same with a line.
     pub fn begin(&mut self, line: EmoveLine) {
         self.wait(2);
         self.send(line);
     }
 
-    /// The same to its end.
     pub fn run(
         &mut self,
         verb: EmoveVerb,

@@ -59,7 +59,6 @@ pub enum Mishap {
     Jaws(JawsReport),
     /// Quick Change reports this for ever.
     Ring(QuickChangeReport),
-    /// The operator takes the robot.
     Joystick,
     /// What is between the fingers slips out.
     Slip,
@@ -85,30 +84,23 @@ pub struct Cell {
     vision: EmoveVision,
     /// The real processes, instead of the doubles of Quick Change and the grippers.
     pub real: Option<Real>,
-    /// Neighbours that write nothing.
     pub dead: Vec<&'static str>,
 }
 
 /// What is where, and what goes wrong.
 #[derive(Clone)]
 pub struct Scene {
-    /// Where the robot is.
     pub frame: Frame,
     /// The gripper that is mated, and what hangs in the holsters right, left, centre.
     pub mated: u8,
-    /// Grippers in the holsters.
     pub resident: [u8; 3],
-    /// Sensors of the holsters.
     pub holsters: [u8; 3],
-    /// The ring is locked.
     pub locked: bool,
     /// Size of what is where the fingers are, 0.01 in.
     pub object: Option<i32>,
-    /// The operator has the robot.
     pub joystick: bool,
     /// The gripper button that is pressed.
     pub button: JoystickGrip,
-    /// What goes wrong.
     pub mishaps: Vec<(&'static str, Mishap)>,
     /// All commands of E-move in their order.
     pub log: Vec<String>,
@@ -287,7 +279,6 @@ impl Receiving {
 /// Prim: is where it is sent after a while, or goes there by steps.
 #[derive(Clone, Default)]
 pub struct Prim {
-    /// It goes by steps.
     pub by_steps: bool,
     /// The arm hangs so far from where it was sent.
     pub sag: Vector,
@@ -415,7 +406,6 @@ impl Prim {
     }
 }
 
-/// Quick Change: locks and unlocks.
 #[derive(Clone, Default)]
 pub struct Ring {
     receiving: Receiving,

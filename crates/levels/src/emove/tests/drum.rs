@@ -40,7 +40,6 @@ pub const SCENARIOS: &[fn()] = &[
     robot_moved_away_from_the_drum_forgets_the_tool_command,
 ];
 
-/// The orders of INSERT-TOOL.
 const INSERTION: &[&str] =
     &["CAL-SENSOR", "DELTA-MOVE INS-FAR", "GO-WHILE INS-NEAR INS-ANY", "GO-WHILE INS-IN INS-FX"];
 

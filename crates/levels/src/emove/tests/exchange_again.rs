@@ -94,7 +94,6 @@ const SEAT: &[&str] = &["QCA-SLOW"];
 const LOW: &[&str] = &["QCA-BACK"];
 /// Between low and seat, and as much above as the large sensors see the ears.
 const HIGH: &[&str] = &["HOL-HIGH"];
-/// As much above the seat.
 const OVER: &[&str] = &["HOL-OVER"];
 const LIFTING: &[&str] = &["WITHDRAW"];
 const LIFTED: &[&str] = &["QCA-LIFT"];

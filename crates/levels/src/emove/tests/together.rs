@@ -25,7 +25,6 @@ use crate::{
     quick_change::QuickChange,
 };
 
-/// The processes and their devices.
 #[derive(Clone)]
 pub struct Real {
     quick_change: QuickChange,
@@ -85,7 +84,6 @@ impl Real {
         step(&mut self.tool_grip, dormant.tool_grip, &inputs, &mut after.tool_grip, |o| &mut o.header);
     }
 
-    /// A person opens the ring.
     pub const fn open_ring(&mut self) {
         self.ring.place = 0.0;
     }

@@ -75,7 +75,6 @@ impl Bench {
         bench
     }
 
-    /// Attach or detach the gripper.
     pub fn attach(&mut self, locked: bool) {
         self.external.devices.quick_change = mated(locked, 1);
     }

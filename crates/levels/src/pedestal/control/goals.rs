@@ -16,7 +16,6 @@ const OPEN_WITHIN: i32 = 10;
 /// The table is at an angle if it stands within this of it, 0.1 degree: several steps of its motor (ASSUMED).
 const AT_ANGLE: u32 = 10;
 
-/// PAUSE.
 pub static REST: Goal = Goal {
     holds: "the hand has done its last command, and the table stops",
     sensors: &[Sensor::Below],
@@ -24,7 +23,6 @@ pub static REST: Goal = Goal {
     age: 1,
     unconfirmed: &[],
 };
-/// PRE-GRIP.
 pub static READY: Goal = Goal {
     holds: "the hand is open to the size, and the table is at its angle",
     sensors: &[Sensor::Hand, Sensor::Table],
@@ -32,7 +30,6 @@ pub static READY: Goal = Goal {
     age: 1,
     unconfirmed: &[],
 };
-/// GRIP.
 pub static HELD: Goal = Goal {
     holds: "the hand holds the object",
     sensors: &[Sensor::Hand],
@@ -40,7 +37,6 @@ pub static HELD: Goal = Goal {
     age: 1,
     unconfirmed: &[],
 };
-/// FLIP.
 pub static TURNED: Goal = Goal {
     holds: "the table is at its angle, and the hand has not lost the object",
     sensors: &[Sensor::Table, Sensor::Hand],
@@ -48,7 +44,6 @@ pub static TURNED: Goal = Goal {
     age: 1,
     unconfirmed: &[],
 };
-/// RELEASE.
 pub static RELEASED: Goal = Goal {
     holds: "the hand is open to the size",
     sensors: &[Sensor::Hand],

@@ -46,7 +46,6 @@ use self::{
     tables::{Action, StateVariables},
 };
 
-/// The pedestal process.
 #[derive(Clone, Debug, Default)]
 pub struct Pedestal {
     state: State,

@@ -77,7 +77,6 @@ impl State {
         outputs.table = TableCommand { number: self.table.send(tick), command, angle };
     }
 
-    /// Write the status to Subtask.
     pub(super) fn report<Data: ?Sized>(&self, inputs: &Inputs<'_, Data>, outputs: &mut PedestalOutputs) {
         let execution = &self.execution;
         let Report { outcome, reason, .. } = execution.report(None);

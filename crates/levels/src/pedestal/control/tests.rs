@@ -55,7 +55,6 @@ impl Tested<()> for Pedestal {
 /// Hand and table say what a test has written.
 #[derive(Clone, Default)]
 struct ByHand {
-    /// They write nothing.
     silent: bool,
 }
 

@@ -2,7 +2,6 @@
 
 use crate::goal::{Goal, Sensor};
 
-/// PAUSE.
 pub static REST: Goal = Goal {
     holds: "the motor stands, or does not answer",
     sensors: &[Sensor::Table],
@@ -11,7 +10,6 @@ pub static REST: Goal = Goal {
     unconfirmed: &[],
 };
 
-/// CALIBRATE.
 pub static CALIBRATED: Goal = Goal {
     holds: "the table stands at the + limit with the counter at zero, and then at -20.00 degrees",
     sensors: &[Sensor::Table],
@@ -20,7 +18,6 @@ pub static CALIBRATED: Goal = Goal {
     unconfirmed: &[],
 };
 
-/// TURN.
 pub static TURNED: Goal = Goal {
     holds: "the table stands at the angle",
     sensors: &[Sensor::Table],

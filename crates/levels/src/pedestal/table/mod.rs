@@ -67,7 +67,6 @@ use self::tables::{
 };
 use crate::execution::Course;
 
-/// The table process.
 #[derive(Clone, Debug, Default)]
 pub struct Table {
     state: State,

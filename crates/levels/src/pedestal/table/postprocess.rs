@@ -66,7 +66,6 @@ impl State {
         }
     }
 
-    /// The outputs of this tick.
     pub(super) fn report(&self, seen: &StateVariables, tick: Tick) -> TableOutputs {
         let execution = &self.execution;
         let calibrated = self.phase == TablePhase::Valid;

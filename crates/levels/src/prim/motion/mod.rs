@@ -54,7 +54,6 @@ pub struct PrimMotion {
     pub goal: FrameData,
     /// The segment before, braking into its through point.
     pub residual: Option<Segment>,
-    /// The segment under way.
     pub current: Option<Segment>,
     /// What comes after it.
     pub next: Option<SegmentOrder>,
@@ -63,7 +62,6 @@ pub struct PrimMotion {
 }
 
 impl PrimMotion {
-    /// At rest at a frame.
     #[must_use]
     pub fn at_rest(frame: &Frame) -> Self {
         let at = FrameData::from(frame);

@@ -99,7 +99,6 @@ impl Allowed {
     }
 }
 
-/// Checks samples.
 struct Watch {
     frames: VecDeque<Frame>,
     allowed: VecDeque<Allowed>,

@@ -27,7 +27,6 @@ use crate::{
 pub(super) const SCENARIOS: &[fn()] =
     &[a_robot_that_lags_too_far_is_stopped_and_pause_takes_its_position_over];
 
-/// The test is E-move.
 type Bench = bench::Bench<Prim, Whole, TaskData<'static>>;
 
 /// T3I, the line and the robot.

@@ -56,7 +56,6 @@ fn pose_record(name: &str, frame: Frame) -> PoseRecord {
     }
 }
 
-/// Sensors by name.
 static SENSORS: LazyLock<Store> = LazyLock::new(|| {
     let text = "BLOCK# 1 OFFSET 21000
         -sen- NEAR-R near 1 0

@@ -30,7 +30,6 @@ const WORK: u32 = 3;
 /// How a double ends a command that a test has singled out.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Mishap {
-    /// With an error.
     Error(Reason),
     /// It does not end.
     Hang,
@@ -182,14 +181,12 @@ impl PedestalDouble {
     }
 }
 
-/// Subtask, and the doubles.
 pub type Bench<'d> = bench::Bench<Subtask, Below, TaskData<'d>>;
 
 #[derive(Clone)]
 pub struct Below {
     pub emove: EmoveDouble,
     pub pedestal: PedestalDouble,
-    /// Task writes no buffers.
     pub task_is_lost: bool,
 }
 
@@ -270,7 +267,6 @@ impl<'d> Bench<'d> {
         self.send(command);
     }
 
-    /// Command and finish.
     pub fn run(
         &mut self,
         verb: SubtaskVerb,

@@ -131,7 +131,6 @@ BLOCK# 6 OFFSET 20000
  -grip- CYLINDER 1 lpt V-VFIXTURE ...
 ";
 
-/// The data, loaded once.
 pub fn data() -> TaskData<'static> {
     static STORE: OnceLock<Store> = OnceLock::new();
     STORE.get_or_init(|| from(TEXT)).view()

@@ -29,7 +29,6 @@ const WORK: u32 = 3;
 /// How the Subtask of a test ends a command that the test has singled out.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Mishap {
-    /// With an error.
     Error(Reason),
     /// It is not even echoed.
     Silence,
@@ -43,7 +42,6 @@ pub struct SubtaskDouble {
     pub outputs: SubtaskOutputs,
     pub received: Vec<SubtaskCommand>,
     pub mishap: Option<(SubtaskVerb, Mishap)>,
-    /// The joystick box is on.
     pub joystick: bool,
     /// While a motion is under way, and after one that was interrupted, the robot is at no place.
     pub loses_place: bool,
@@ -192,7 +190,6 @@ pub enum Answer {
     Absent,
     /// It executes a command for so many ticks.
     After(u64),
-    /// It refuses.
     Refuse,
 }
 
@@ -227,7 +224,6 @@ impl DataSystem {
     }
 }
 
-/// Task, and the doubles.
 pub type Bench<'d> = bench::Bench<Task, Below, TaskData<'d>>;
 
 #[derive(Clone, Default)]
@@ -324,7 +320,6 @@ impl<'d> Bench<'d> {
         };
     }
 
-    /// Command and finish.
     pub fn run(&mut self, line: &str) -> (HwsReport, Reason) {
         self.world.subtask.received.clear();
         self.world.data_system.received.clear();

@@ -399,7 +399,6 @@ fn order(bench: &mut Bench<'_>, line: &str, serial: &str) {
     bench.external.hws.serial = Name16::new(serial).unwrap();
 }
 
-/// The same to its end.
 fn perform(bench: &mut Bench<'_>, line: &str, serial: &str) {
     order(bench, line, serial);
     assert_eq!(bench.finish(), FINISHED, "{line}");

@@ -44,7 +44,6 @@ pub struct Change {
     echo: u32,
     report: QuickChangeReport,
     ring: Ring,
-    /// Where air turns it.
     turns: Option<Ring>,
     /// Where the gripper rests on the holster, to the seat, in; none if the ring has it.
     rests: Option<f64>,

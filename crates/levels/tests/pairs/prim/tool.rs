@@ -29,29 +29,22 @@ use crate::{
 
 /// The tool, its grip, and its size, 0.01 in.
 pub const TOOL: (&str, i32, i32) = ("DRILL-2", 1, 175);
-/// The gripper.
 pub const GRIPPER: u8 = 3;
-/// The drum.
 pub const DRUM: &str = "TOOL-TRNS";
 /// The fingers are around a tool within this, in.
 const AROUND: f64 = 0.5;
 
-/// Without load.
 const NEUTRAL: ForceSensor = ForceSensor { x: ZERO, y: ZERO, z: ZERO, moment: ZERO, valid: true };
 const ZERO: u16 = FORCE_ZERO as u16;
 
-/// What happens at the gripper.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Happens {
-    /// Nothing new.
     Nothing,
     /// Fingers that move arrive; if they close where the tool is, they have it between them.
     Arrive,
-    /// They stop where they are.
     Stick,
     /// The condition of the guarded move comes.
     Contact,
-    /// The force goes away.
     Free,
     /// The sensor has no power, for this tick.
     Dead,
@@ -105,7 +98,6 @@ impl Tool {
         matches!(self.report, JawsReport::Executing)
     }
 
-    /// The sensor feels something.
     pub fn is_loaded(&self) -> bool {
         (self.force.z, self.force.moment) != (ZERO, ZERO)
     }

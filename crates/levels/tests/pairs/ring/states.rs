@@ -20,7 +20,6 @@ impl Pair {
             && self.lower.state.execution.receiver.echo == self.lower.out.status.echo
     }
 
-    /// Only time can change anything.
     pub(super) fn is_steady(&self) -> bool {
         self.is_settled() && self.lower.state.reading_ticks >= STEADY
     }

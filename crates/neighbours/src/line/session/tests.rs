@@ -214,7 +214,6 @@ fn a_neighbour_takes_a_controller_for_dead_on_the_grid_only() {
     }
 }
 
-/// Something that a controller sends.
 #[derive(Clone, Debug)]
 enum Action {
     Mailbox(Place, Vec<u8>),

@@ -22,10 +22,8 @@ use taskdata::load::job::{JobLine, Step};
 use super::{BegunStep, Hwsc, JobFailure, Outcome, Progress};
 use crate::workstation::status::Status;
 
-/// State of an operator's intervention.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Intervention {
-    /// An operator is connected.
     attended: bool,
     state: State,
     /// Why the job waits, until it is reported.
@@ -35,11 +33,9 @@ pub(super) struct Intervention {
 /// Why a job waits for an operator.
 #[derive(Clone, Debug, PartialEq)]
 pub enum WaitReason {
-    /// The operator commands the robot.
     Commanded,
     /// The operator has asked the job to wait.
     Asked,
-    /// A line has failed.
     Failed(JobFailure),
 }
 
@@ -59,12 +55,10 @@ impl fmt::Display for WaitReason {
 /// Whether the job runs or waits for the operator.
 #[derive(Clone, Debug, Default)]
 enum State {
-    /// The job runs.
     #[default]
     Plays,
     /// The job runs, and will wait when the current line has ended.
     Asked,
-    /// The job waits.
     Waits {
         /// Failure of the line, if it has failed.
         failure: Option<JobFailure>,
@@ -78,7 +72,6 @@ enum State {
 /// Why an operator's request is refused.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum OperatorError {
-    /// The job is running.
     #[error(
         "the job plays already; `job wait` stops it at the end of its line, any command stops it at once"
     )]
@@ -89,7 +82,6 @@ pub enum OperatorError {
     /// The job has no line left to skip.
     #[error("the job has no line left to skip; `job go` ends it")]
     NoLine,
-    /// The job has ended.
     #[error("the job has ended")]
     Ended,
 }

@@ -5,14 +5,10 @@ use std::fmt;
 use interfaces::{Reason, Unconfirmed, hws::HwsReport};
 use rcs_core::tick::{TICK_MS, Tick};
 
-/// How a step ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Outcome {
-    /// The step is in progress.
     Executing,
-    /// The step has finished.
     Finished,
-    /// The step has failed.
     Failed,
     /// The command failed, as its line expects.
     FailedAsExpected,
@@ -21,7 +17,6 @@ pub enum Outcome {
 }
 
 impl Outcome {
-    /// The word for reports.
     #[must_use]
     pub const fn text(self) -> &'static str {
         match self {
@@ -34,7 +29,6 @@ impl Outcome {
     }
 }
 
-/// A step that was begun.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BegunStep {
     /// The line as written in the job; `PAUSE` for the first step.
@@ -43,7 +37,6 @@ pub struct BegunStep {
     pub is_command: bool,
     /// The tick after which the step was begun.
     pub began: Tick,
-    /// Outcome of the step.
     pub outcome: Outcome,
     /// Part of the command's goal that no sensor confirms, if it has finished.
     pub unconfirmed: Unconfirmed,
@@ -62,7 +55,6 @@ impl BegunStep {
 /// Why a job ended before its last step.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum JobFailure {
-    /// Task reports an error.
     #[error("{}", .0.text())]
     Command(Reason),
     /// Task does not answer.
@@ -79,14 +71,7 @@ pub enum JobFailure {
     Unexpected,
     /// A command has failed, and no repetition of it has finished.
     #[error("{why}; the command has not finished since (`expect error` marks a line that has to fail)")]
-    Unfinished {
-        /// Line of the command.
-        line: String,
-        /// Tick of the failure.
-        tick: Tick,
-        /// Reason of the failure.
-        why: &'static str,
-    },
+    Unfinished { line: String, tick: Tick, why: &'static str },
     /// A step has exceeded its time limit, ticks.
     #[error("not finished within {} s", .0 * TICK_MS / 1000)]
     TimeLimit(u64),
@@ -101,14 +86,10 @@ pub enum JobFailure {
     Commander(String),
 }
 
-/// Progress of a job.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Progress {
-    /// The job is in progress.
     Running,
-    /// All steps are finished.
     Over,
-    /// It ended in failure.
     Failed(JobFailure),
 }
 
@@ -117,9 +98,7 @@ pub enum Progress {
 pub struct Retry {
     /// The tick in which the failure was seen.
     pub tick: Tick,
-    /// The line of the job.
     pub line: String,
-    /// Reason of the failure.
     pub reason: Reason,
     /// Number of this retry of the line, from 1.
     pub number: u32,

@@ -6,7 +6,6 @@ use taskdata::load::job::{JobLine, Step, Workstation as Action};
 
 use super::{BegunStep, Hwsc, JobFailure, Outcome, PAUSE, Progress, Workstation, pause};
 
-/// A delayed action.
 #[derive(Clone, Debug)]
 pub struct Later {
     /// Delay from the command to the action, ticks.
@@ -66,7 +65,6 @@ impl Hwsc {
         }
     }
 
-    /// Send a command.
     pub(super) fn send(&mut self, tick: Tick, text: String, command: HwsCommand) {
         self.began = Some(tick);
         self.begun(tick, text, true);

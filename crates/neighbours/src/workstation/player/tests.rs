@@ -25,9 +25,7 @@ struct Task {
     reason: Option<Reason>,
     silent: bool,
     joystick: bool,
-    /// Number of mailgrams to lose.
     losing: u32,
-    /// Numbers of all mailgrams.
     sent: Vec<u32>,
     command: HwsCommand,
 }

@@ -9,7 +9,6 @@ use diagnostics::{
 
 use crate::description::Points;
 
-/// Collects problems.
 pub(super) struct Check<'s> {
     pub(super) problems: Vec<Problem>,
     /// Entries that must be more than 0: radii, lengths, weights.

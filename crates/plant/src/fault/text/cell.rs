@@ -56,7 +56,6 @@ const MOST_TICKS: u32 = 100_000;
 const MOST_LATE: f64 = 1000.0;
 /// The greatest noise, offset or drift, counts.
 const MOST_COUNTS: f64 = 100_000.0;
-/// The greatest displacement, in.
 const MOST_ASIDE: f64 = 100.0;
 
 impl Kind {
@@ -66,12 +65,10 @@ impl Kind {
     }
 }
 
-/// The names of all kinds.
 pub(super) fn kinds() -> impl Iterator<Item = &'static str> {
     KINDS.iter().map(|kind| kind.name)
 }
 
-/// The kind with a name.
 pub(super) fn kind(name: &str) -> Option<&'static Kind> {
     KINDS.iter().find(|kind| kind.name == name)
 }
@@ -82,7 +79,6 @@ pub(super) fn fault(entry: &Entry<'_>, kind: &Kind, cell: &CellDescription) -> R
     Ok(Fault { number: entry.number, what, when: when(entry)? })
 }
 
-/// Its effect.
 fn what(entry: &Entry<'_>, kind: &str, cell: &CellDescription) -> Result<What, Box<Problem>> {
     let form = entry.form;
     let by = |expected: &str, range: core::ops::RangeInclusive<f64>| {
@@ -191,7 +187,6 @@ fn counts(entry: &Entry<'_>, value: &Value) -> Result<i64, Box<Problem>> {
     }
 }
 
-/// Its time.
 fn when(entry: &Entry<'_>) -> Result<When, Box<Problem>> {
     let form = entry.form;
     let after = form.after.map(|after| entry.within("after", after, "seconds", 0.0..=1e5)).transpose()?;

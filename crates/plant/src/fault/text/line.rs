@@ -6,15 +6,12 @@ use diagnostics::Problem;
 
 use super::Entry;
 
-/// Keys of all kinds.
 pub(super) const KEYS: [&str; 7] = ["direction", "rate", "at", "from", "until", "ticks", "byte"];
 
-/// The names of all kinds.
 pub(super) fn kinds() -> impl Iterator<Item = &'static str> {
     FaultKind::ALL.iter().map(|kind| kind.text())
 }
 
-/// The kind with a name.
 pub(super) fn kind(name: &str) -> Option<FaultKind> {
     FaultKind::ALL.iter().copied().find(|kind| kind.text() == name)
 }
@@ -63,7 +60,6 @@ pub(super) fn rule(entry: &Entry<'_>, kind: FaultKind) -> Result<Rule, Box<Probl
     Ok(form.byte.map_or(rule, |byte| rule.byte(byte)))
 }
 
-/// A probability in millionths.
 fn millionths(rate: f64) -> u32 {
     libm::round(rate * f64::from(ALWAYS)) as u32
 }

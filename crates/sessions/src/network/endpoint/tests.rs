@@ -16,7 +16,6 @@ use neighbours::mailbox::{HWSC_COMMAND, HWSC_STATUS};
 pub(crate) enum Sent {
     Mailbox(Box<Mailbox>),
     Pulse(u64),
-    /// The session is over.
     Over,
 }
 
@@ -40,7 +39,6 @@ impl TestSession {
         Self { link: handle.attach().unwrap(), unread: Default::default() }
     }
 
-    /// The neighbour writes a mailbox.
     pub fn deliver(&self, mailbox: &Mailbox) {
         self.link.handle.deliver(mailbox.place(), mailbox.used()).unwrap();
     }
@@ -50,7 +48,6 @@ impl TestSession {
         self.link.handle.answer(tick);
     }
 
-    /// The session ends.
     pub fn end(self, why: Disconnect) {
         self.link.handle.detach(why);
     }
@@ -80,7 +77,6 @@ impl TestSession {
         }
     }
 
-    /// The next pulse.
     pub fn pulse(&mut self) -> u64 {
         loop {
             match self.next() {

@@ -39,7 +39,6 @@ fn growth(source: SensorSource) -> f64 {
     if source == SensorSource::My { force * LEVER } else { force }
 }
 
-/// Report problems of relative moves.
 pub(super) fn check(data: &TaskData<'_>, origins: &Origins, findings: &mut Findings) {
     for (i, record) in data.relative_moves.iter().enumerate() {
         let at = origin(&origins.relative_moves, i);

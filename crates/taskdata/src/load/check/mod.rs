@@ -117,14 +117,12 @@ fn shown(location: &Location) -> String {
     }
 }
 
-/// The location of a reference to a location point.
 fn at_point(data: &TaskData<'_>, at: Reference) -> Option<Location> {
     let id = LocptId::new(at.number);
     let point = data.locpt(id).filter(|_| at.kind == RefType::LocationPoint)?;
     Some(Location { name: point.name, place: Place::point(id), sector: None, frame: point.frame })
 }
 
-/// The owners of a member.
 fn owners_of<'a>(data: &TaskData<'a>, member: Reference) -> impl Iterator<Item = OwnerId> + use<'a> {
     data.indexes.members.all(reference_key(member)).iter().map(|&number| OwnerId::new(number))
 }

@@ -5,7 +5,6 @@ use crate::files::TaskData;
 
 use super::{Findings, Origins, origin};
 
-/// Report problems.
 pub(super) fn check(data: &TaskData<'_>, origins: &Origins, findings: &mut Findings) {
     for (i, record) in data.end_effs.iter().enumerate() {
         let what = format!("grip {:+} of {}", record.grip, data.object_name(record.object));

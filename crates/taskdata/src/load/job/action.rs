@@ -16,12 +16,9 @@ pub struct Offset {
     pub angle: i32,
 }
 
-/// Actions of the tool drum.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Drum {
-    /// Its fingers close.
     Grip,
-    /// Its fingers open.
     Release,
     /// A tool is put into it.
     Tool(Name16),
@@ -34,34 +31,25 @@ pub enum Workstation {
     Tray {
         /// The sector, resolved for the part.
         location: Location,
-        /// The part.
         object: Name16,
         /// Position in the sector; `None`: random, from the seed of the run.
         offset: Option<Offset>,
     },
-    /// A vise moves its jaws.
     Vise {
-        /// Opening of the jaws.
         opening: ViseOpening,
-        /// The vise.
         location: Location,
         /// Program of the vise from now on; `None` keeps the last one.
         program: Option<Name16>,
     },
     /// A part is machined in a vise or a nest.
     Machine {
-        /// The blank.
         blank: Name16,
-        /// The machined part.
         part: Name16,
-        /// The vise or the nest.
         location: Location,
     },
     /// An action of the tool drum.
     Drum(Drum),
-    /// An action at the joystick box.
     Joystick(BoxAction),
-    /// An emergency stop is pressed.
     Press(EStop),
     /// An emergency stop is pulled out again.
     Release(EStop),
@@ -76,7 +64,6 @@ pub enum Workstation {
         /// Number of the reload in the job, from 1.
         number: u32,
     },
-    /// Wait.
     Wait {
         /// Duration, ticks.
         ticks: u32,

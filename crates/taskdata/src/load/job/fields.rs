@@ -12,7 +12,6 @@ pub(super) struct Fields<'a, 'w> {
 }
 
 impl<'a, 'w> Fields<'a, 'w> {
-    /// All words of a line.
     pub(super) const fn new(words: &'w [Word<'a>]) -> Self {
         Self { words, next: 0 }
     }
@@ -41,7 +40,6 @@ impl<'a, 'w> Fields<'a, 'w> {
     }
 }
 
-/// A number and its place.
 #[derive(Clone, Copy)]
 pub(super) struct Number {
     pub(super) value: i32,

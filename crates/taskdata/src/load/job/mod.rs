@@ -58,26 +58,21 @@ use super::{
     source::{SourceLine, read},
 };
 
-/// A step of a job.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Step {
     /// A command to Task, with number 0.
     Command(HwsCommand),
-    /// An action of the workstation.
     Workstation(Workstation),
     /// An action while the robot executes the next command.
     After {
         /// Delay from the tick in which that command is sent, ticks.
         ticks: u32,
-        /// The action.
         action: Workstation,
     },
 }
 
-/// A step with its line.
 #[derive(Clone, Debug, PartialEq)]
 pub struct JobLine {
-    /// The step.
     pub step: Step,
     /// The line as written, without its comment.
     pub text: String,
@@ -88,7 +83,6 @@ pub struct JobLine {
     pub expects_error: bool,
 }
 
-/// A job.
 #[derive(Clone, Debug)]
 pub struct Job {
     /// Name of the job: the file's name without its extension.

@@ -19,7 +19,6 @@ use super::{
     read::Reader,
 };
 
-/// Why a line is refused.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum OwnLineError {
     /// The line is empty.

@@ -274,7 +274,6 @@ impl Reader<'_, '_> {
         self.place(field, Number { value: 0, at: field.at }, None)
     }
 
-    /// A location with its sector.
     pub(super) fn place(&mut self, field: Field, sector: Number, object: Option<Name16>) -> Option<Location> {
         if !field.given() {
             if sector.value != 0 {

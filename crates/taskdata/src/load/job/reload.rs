@@ -14,7 +14,6 @@ use super::{
 /// A reload: the blocks, and the task data that include them.
 #[derive(Clone, Debug)]
 pub struct Reload {
-    /// The blocks.
     pub source: Source,
     /// The task data after the reload.
     pub store: Store,

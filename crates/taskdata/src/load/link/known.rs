@@ -72,7 +72,6 @@ impl Known<'_> {
         by.of(&self.files.movetables).map_or(*frame, |m| m.movetable.apply(frame))
     }
 
-    /// A location point.
     pub(super) fn locpt(&self, entry: &PointAt) -> Option<Locpt> {
         let pose = PoseId::new(named(&self.indexes.poses, &entry.pose)?);
         let movetable = self.movetable(&entry.movetable)?;
@@ -85,12 +84,10 @@ impl Known<'_> {
         Locpt { name: entry.name.name, pose, movetable, frame: self.moved(&base, movetable) }
     }
 
-    /// A location of an object.
     pub(super) fn obj_loc(&self, entry: &ObjLocEntry) -> Option<ObjLoc> {
         Some(ObjLoc { object: self.object(&entry.object)?, assigned: self.reference(&entry.assigned)? })
     }
 
-    /// A grip at a location.
     pub(super) fn grip(&self, entry: &GripEntry) -> Option<GripLoc> {
         let (object, at) = (self.object(&entry.object)?, self.reference(&entry.place)?);
         let movetable = self.movetable(&entry.movetable)?;

@@ -47,7 +47,6 @@ pub(super) struct Linker<'a> {
     origins: Origins,
     /// Parameters that already have a record.
     paras: FxHashMap<[i32; 4], TrajParaId>,
-    /// Number of unknown names.
     unknown: usize,
     /// For each unknown name and its expected kind: the place of its first use, and the number of uses.
     asked: BTreeMap<(String, String), (At, usize)>,
@@ -109,7 +108,6 @@ impl Keyed {
         keyed
     }
 
-    /// Keys of names.
     fn names<'n, const N: usize>(
         what: &'static str,
         names: impl ExactSizeIterator<Item = &'n Named<N>>,

@@ -75,7 +75,6 @@ impl Linker<'_> {
         Some(ObjLoc { object: object?, assigned: assigned? })
     }
 
-    /// Link the grips at locations.
     fn grips(&mut self, all: &Collected) -> Keyed {
         let mut keyed = Keyed::with_capacity("this grip of this object at this location", all.grips.len());
         let known = self.known();

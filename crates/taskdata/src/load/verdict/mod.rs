@@ -48,23 +48,14 @@ const BARE: &[&str] = &["PAUSE", "STARTUP", "SHUTDOWN"];
 /// The field of a command (V.4.2) that a finding is about.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Field {
-    /// The command itself.
     Command,
-    /// The object.
     Object,
-    /// The grip at the source.
     SourceGrip,
-    /// The source location.
     Source,
-    /// The sector of the source.
     SourceSector,
-    /// The grip at the destination.
     DestinationGrip,
-    /// The destination.
     Destination,
-    /// The sector of the destination.
     DestinationSector,
-    /// The end-at location.
     EndAt,
     /// The sector of the end-at location.
     EndAtSector,
@@ -73,7 +64,6 @@ pub enum Field {
 /// Something that is wrong with a command.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Finding {
-    /// The wrong field.
     pub field: Field,
     /// Stable short name of the kind of problem.
     pub code: &'static str,
@@ -111,7 +101,6 @@ impl Before {
     }
 }
 
-/// The verdict on a command.
 #[derive(Clone, Debug)]
 pub struct Verdict {
     /// What is wrong, in the order of the fields; empty if the command passes.

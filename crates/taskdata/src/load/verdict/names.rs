@@ -16,7 +16,6 @@ pub(in crate::load) struct Unfound {
     pub code: &'static str,
     pub message: String,
     pub help: Option<String>,
-    /// The nearest known name.
     pub near: Option<String>,
     /// True if the sector is wrong, not the name.
     pub is_sector: bool,
@@ -151,7 +150,6 @@ struct Names<'c, 'd> {
 }
 
 impl Names<'_, '_> {
-    /// A location with its sector.
     fn location(&mut self, named: &NamedLocation) -> Option<Location> {
         let [field, of_sector, _] = named.fields;
         let Some(name) = &named.name else {

@@ -20,7 +20,6 @@ pub(super) struct Visit {
     pub field: Field,
 }
 
-/// The locations of a command.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Visits {
     pub source: Option<Visit>,
