@@ -26,9 +26,11 @@ pub struct Inputs<'a, Data: ?Sized> {
 pub trait Process<Data: ?Sized> {
     /// The whole state of the process: plain data, logged, restorable.
     type State: Plain;
+    /// Output buffers.
     type Outputs: Plain;
     /// The state variables of a tick, and other results of preprocess.
     type StateVariables;
+    /// Actions of the tables.
     type Action;
 
     /// The manual's name.
@@ -55,6 +57,7 @@ pub trait Process<Data: ?Sized> {
     /// written in the tick before.
     fn write(&mut self, _: &Write, _: &Inputs<'_, Data>, _: &mut Self::Outputs) {}
 
+    /// State of the process.
     fn state(&self) -> &Self::State;
 
     /// The same, to go on from another state.
@@ -68,6 +71,7 @@ pub trait Process<Data: ?Sized> {
         self.postprocess(action, &seen, inputs, outputs);
     }
 
+    /// Continue from a saved state.
     fn restore(&mut self, state: Self::State) {
         *self.state_mut() = state;
     }

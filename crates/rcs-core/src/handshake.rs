@@ -48,6 +48,7 @@ pub enum Lower {
 
 /// The output buffers of a process, as its commander reads them.
 pub trait Answer {
+    /// Stamp and row.
     fn header(&self) -> &Header;
 
     /// Number of the command that the status is about.

@@ -339,10 +339,12 @@ impl<'a> Reader<'a> {
 pub trait Plain: Copy + PartialEq {
     /// What its byte image holds.
     const SCHEMA: Schema;
+    /// Bytes of the image.
     const SIZE: usize = Self::SCHEMA.size();
     /// The value before anything was written.
     const ZERO: Self;
 
+    /// Append the image.
     fn encode(&self, w: &mut Writer<'_>);
 
     /// Take it back.

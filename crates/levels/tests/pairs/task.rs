@@ -108,15 +108,15 @@ impl Pair {
         self.scene.emove.held = Holding::Object(ObjectGrip { object, grip: place.grip });
         self.scene.emove.at = Some(Standing { site: place.site, grip: Some(place.grip) });
         let carried = Some(Carried { item: object, followed: true, ..Carried::default() });
-        self.upper.out.estimates.carried = carried;
+        self.upper.out.updates.carried = carried;
         self.connected(IN_HAND)
     }
 
     /// The Data System is connected, and has the object of the commands at a position; the fingers can finish a release
     /// in a pause.
     pub fn connected(mut self, position: &str) -> Self {
-        self.upper.out.estimates.connected = true;
-        self.upper.state.data_system.updates = self.upper.out.estimates;
+        self.upper.out.updates.connected = true;
+        self.upper.state.data_system.updates = self.upper.out.updates;
         (self.scene.lets_go, self.scene.recorded) = (true, Some(Name10::clipped(position)));
         self
     }
@@ -444,7 +444,7 @@ impl Pair {
     /// Has the Data System an object elsewhere than where it was let go, if that is known?
     fn is_untold(&self, before: &Self) -> bool {
         let placed = before.scene.emove.placed.map(|placed| placed.site.location).filter(|at| !at.is_empty());
-        self.upper.out.estimates.connected
+        self.upper.out.updates.connected
             && placed.zip(before.scene.recorded).is_some_and(|(at, recorded)| at != recorded)
     }
 

@@ -111,7 +111,7 @@ pub struct Scene {
 }
 
 impl Deref for Cell {
-    type EmoveTarget = Scene;
+    type Target = Scene;
 
     fn deref(&self) -> &Scene {
         &self.scene

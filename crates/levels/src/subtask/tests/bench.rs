@@ -11,7 +11,7 @@ use interfaces::{
     subtask::{SubtaskCommand, SubtaskVerb},
 };
 use rcs_core::{name::Name16, tick::Tick};
-use taskdata::files::TaskData;
+use taskdata::files::{EndEffId, TaskData};
 
 use super::data::data;
 use crate::{
