@@ -202,7 +202,7 @@ impl State {
         self.missed = if missing { self.missed.saturating_add(1) } else { 0 };
     }
 
-    /// The words of the sensors are old: what is held is unknown, and readings settle anew.
+    /// The words of the sensors are old: what is held is unknown, and readings settle again.
     fn await_readings(&mut self) {
         (self.felt, self.touch, self.touch_ticks) = (Felt::NotKnown, Touch::Unclear, 0);
         (self.still_ticks, self.settled, self.missed) = (0, 0, 0);

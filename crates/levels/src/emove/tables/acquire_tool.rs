@@ -22,7 +22,7 @@ decision_table! {
             7:  at: Elsewhere, drum: Inside                  => Close                -> Grasping;
             8:  held: Something                              => Fail(AlreadyHolding);
             9:  at: Before | There                           => OpenToApproach       -> Opening;
-            10: drum: Before | Clear                        => OpenToApproach       -> Opening;
+            10: drum: Before | Clear                         => OpenToApproach       -> Opening;
             11: drum: Sliding, spread: Open                  => GoUntil(AcqSlideOn)  -> Sliding;
             12: drum: Off | Entering | Sliding               => Fail(NotPrepared);
         }

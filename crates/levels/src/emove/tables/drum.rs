@@ -73,6 +73,6 @@ decision_table! {
         2: at: Inside, tool: Grasped, outcome: Idle | Done | Error | Joystick  => Stand;
         3: at: Inside, tool: Grasped, outcome: Executing                       => Keep;
         4: at: Inside, tool: Loose                                             => Keep;
-        5: at: Before | Entering | Sliding | Clear                            => Keep;
+        5: at: Before | Entering | Sliding | Clear                             => Keep;
     }
 }

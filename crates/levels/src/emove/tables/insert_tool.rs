@@ -27,7 +27,7 @@ decision_table! {
             10: drum: Before,            bias: AtSafe            => DeltaMove(InsFar)  -> Approaching;
             11: drum: Entering | Inside, bias: Missing           => Fail(ForceUncalibrated);
             12: drum: Entering | Inside, bias: AtDrum | AtSafe   => GoWhile(InsIn)     -> Inserting;
-            13: drum: Off | Sliding | Clear                     => Fail(NotPrepared);
+            13: drum: Off | Sliding | Clear                      => Fail(NotPrepared);
         }
         /// The force sensor is being calibrated.
         Calibrating {

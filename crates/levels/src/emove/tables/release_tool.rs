@@ -21,7 +21,7 @@ decision_table! {
             7:  held: Right | Other | Something | NotKnown  => Fail(NotPrepared);
             8:  spread: Narrow | Unknown                    => Fail(NotPrepared);
             9:  drum: Sliding                               => GoUntil(RelSlideOn)   -> Sliding;
-            10: drum: Clear | Before                       => DeltaMove(RelBackOn)  -> Withdrawing;
+            10: drum: Clear | Before                        => DeltaMove(RelBackOn)  -> Withdrawing;
         }
         /// The gripper is opening.
         Opening {

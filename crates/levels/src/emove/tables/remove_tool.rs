@@ -23,7 +23,7 @@ decision_table! {
             8:  drum: Inside | Entering | Sliding, bias: Missing  => CalSensor(Drum)    -> Calibrating;
             9:  drum: Inside | Entering | Sliding, bias: AtDrum | AtSafe => GoWhile(RemOutOn) -> Removing;
             10: drum: Before                                      => Stand;
-            11: drum: Off | Clear                                => Fail(NotPrepared);
+            11: drum: Off | Clear                                 => Fail(NotPrepared);
         }
         /// The force sensor is being calibrated.
         Calibrating {

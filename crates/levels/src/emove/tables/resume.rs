@@ -127,7 +127,7 @@ decision_table! {
     /// there (LOCATE-OBJ, GRASP-OBJ, RELEASE). Planning consults it when such a command comes; no header names its rows.
     pub STANCE: fn stance(self::EmoveStanding) -> self::Stance {
         1: offset: There    => Stay;
-        2: offset: Moved   => Correct;
+        2: offset: Moved    => Correct;
         3: offset: Clamped  => RefuseOff;
         4: offset: Unseen   => RefuseStart;
     }

@@ -7,31 +7,31 @@ decision_table! {
     /// receives an update about an object that is taken from the MBD (an extension: SPECNOTES.md).
     pub ACQUIRE: fn acquire(enum AcquireStep, super::Situation) -> super::Action {
         any {
-            1: work: Busy           => Wait;
+            1: work: Busy              => Wait;
         }
         /// Nothing done yet.
         Start {
-            2: update: Pending         => SendPending   -> Settling;
+            2: update: Pending         => SendPending  -> Settling;
         }
         /// An earlier update is sent again.
         Settling {
             3: update: Pending         => SendPending;
         }
         Start | Settling {
-            4: otherwise            => GetEndeff  -> Gripper;
+            4: otherwise               => GetEndeff    -> Gripper;
         }
         /// The gripper is being fetched.
         Gripper {
-            5: otherwise            => GetObject  -> Object;
+            5: otherwise               => GetObject    -> Object;
         }
         /// The object is being fetched.
         Object {
-            6: update: Due          => Update     -> Updating;
+            6: update: Due             => Update       -> Updating;
             7: update: None | Pending  => Finish;
         }
         /// The update says that the robot has the object.
         Updating {
-            8: otherwise            => Finish;
+            8: otherwise               => Finish;
         }
     }
 }

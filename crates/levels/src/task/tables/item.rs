@@ -188,12 +188,12 @@ decision_table! {
     /// object that the data base has in the robot (an extension: SPECNOTES.md). If the command has certainly lost its
     /// object, it takes it again and sends the update again.
     pub UPDATE_DUE: fn update_due(self::Move) -> self::Notice {
-        1: origin: Elsewhere                                 => Omit;
+        1: origin: Elsewhere                                     => Omit;
         2: ledger: Reported, held: Right | Something | NotKnown  => Omit;
         3: ledger: Reported, placed: AtDestination | Left        => Omit;
-        4: area: Mbd                                         => Send;
-        5: verb: Transfer, carrying: Followed                => Send;
-        6: otherwise                                         => Omit;
+        4: area: Mbd                                             => Send;
+        5: verb: Transfer, carrying: Followed                    => Send;
+        6: otherwise                                             => Omit;
     }
 }
 

@@ -12,18 +12,18 @@ decision_table! {
         /// Nothing done yet.
         Start {
             2:  handling: NoObject                  => GotoDest       -> Moving;
-            3:  handling: Object, update: Pending      => SendPending       -> Settling;
+            3:  handling: Object, update: Pending   => SendPending    -> Settling;
         }
         /// An earlier update is sent again.
         Settling {
-            4:  update: Pending                        => SendPending;
+            4:  update: Pending                     => SendPending;
         }
         Start | Settling {
             5:  part: InPedestal, grips: Different  => FixGrip        -> Regripping;
-            6:  otherwise                           => GetEndeff      -> TaskGripper;
+            6:  otherwise                           => GetEndeff      -> Gripper;
         }
         /// The gripper is being fetched.
-        TaskGripper {
+        Gripper {
             7:  otherwise                           => GetObject      -> Object;
         }
         /// The object is being fetched.
@@ -38,7 +38,7 @@ decision_table! {
         /// The object, or the robot alone, is on its way.
         Moving {
             11: update: Due                         => Update         -> Updating;
-            12: update: None | Pending                 => Finish;
+            12: update: None | Pending              => Finish;
         }
         /// The update says where the object is.
         Updating {

@@ -16,11 +16,11 @@ decision_table! {
         }
         /// Nothing done yet.
         Start {
-            2:  held: Nothing                               => Position             -> Moving;
+            2:  held: Nothing                               => Position                -> Moving;
             3:  way: NoStart                                => Fail(UnknownStart);
             4:  way: NoTrajectory                           => Fail(NoTrajectory);
-            5:  support: Place | Secured                    => Release              -> Releasing;
-            6:  support: Jaws, way: Here, handling: Object  => Release              -> Releasing;
+            5:  support: Place | Secured                    => Release                 -> Releasing;
+            6:  support: Jaws, way: Here, handling: Object  => Release                 -> Releasing;
             7:  support: Jaws                               => Fail(NotClamped);
             8:  support: None, held: Right | Other          => Fail(HeldElsewhere);
             9:  support: None, held: Something              => Fail(UnknownHeld);
@@ -28,22 +28,22 @@ decision_table! {
         }
         /// The held object is being released.
         Releasing {
-            11: update: Pending                                => SendPendingAndPosition  -> Leaving;
-            12: otherwise                                   => Position             -> Moving;
+            11: update: Pending                             => SendPendingAndPosition  -> Leaving;
+            12: otherwise                                   => Position                -> Moving;
         }
         /// The robot is on its way.
         Moving {
-            13: update: Pending                                => SendPending             -> Updating;
+            13: update: Pending                             => SendPending             -> Updating;
             14: otherwise                                   => Finish;
         }
         /// The robot is on its way, and the data base is being told where the object is.
         Leaving {
-            15: update: Pending                                => AwaitUpdate          -> Updating;
+            15: update: Pending                             => AwaitUpdate             -> Updating;
             16: otherwise                                   => Finish;
         }
         /// The update is sent.
         Updating {
-            17: update: Pending                                => SendPending;
+            17: update: Pending                             => SendPending;
             18: otherwise                                   => Finish;
         }
     }

@@ -13,11 +13,11 @@ decision_table! {
         }
         /// Nothing done yet.
         Start {
-            2:  update: Pending                => SendPending       -> Settling;
+            2:  update: Pending             => SendPending    -> Settling;
         }
         /// An earlier update is sent again.
         Settling {
-            3:  update: Pending                => SendPending;
+            3:  update: Pending             => SendPending;
         }
         Start | Settling {
             4:  part: InPedestal            => FixGrip        -> Regripping;

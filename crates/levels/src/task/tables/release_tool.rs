@@ -38,11 +38,11 @@ decision_table! {
             16: update: None | Due                                             => Finish;
         }
         Releasing | Leaving {
-            17: update: Pending                                                   => SendPending     -> Updating;
+            17: update: Pending                                                => SendPending  -> Updating;
         }
         /// The update says where the tool is.
         Updating {
-            18: update: Pending                                                   => SendPending;
+            18: update: Pending                                                => SendPending;
             19: update: None | Due                                             => Finish;
         }
     }

@@ -23,12 +23,12 @@ decision_table! {
         }
         /// Startup was sent.
         Connecting {
-            5: update: Pending        => ConnectAndSend  -> Settling;
+            5: update: Pending     => ConnectAndSend  -> Settling;
             6: update: None | Due  => Connect;
         }
         /// Earlier updates are sent again.
         Settling {
-            7: update: Pending        => SendPending;
+            7: update: Pending     => SendPending;
             8: update: None | Due  => Finish;
         }
     }
