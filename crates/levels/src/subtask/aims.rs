@@ -1,7 +1,7 @@
 //! Objects and locations of commands to E-move.
 //!
-//! Task names one location with each command. Subtask itself looks up holsters, the pedestal and the tool drum when the
-//! command arrives, before anything moves, and publishes their poses in its own changing records.
+//! Task names one location with each command. Subtask looks up holsters, pedestal and tool drum when the command
+//! arrives, before anything moves, and publishes their poses in its own changing records.
 
 use geometry::pose::Pose;
 use interfaces::{
@@ -17,43 +17,42 @@ use taskdata::files::{EndEffId, Location, LocptId, RefType, TaskData, VisionId};
 
 use crate::places::{Missing, named};
 
-/// Grip of a holster's object with which the gripper that is on the robot is put in (VII.7 by convention).
+/// Grip of a holster's object with which the robot puts its gripper in (VII.7 by convention).
 const PUT_IN: i32 = 1;
 /// Grip of a holster's object with which the bare robot takes the gripper out.
 const TAKE_OUT: i32 = 2;
-/// The holsters' objects: what the gripper with id 1, 2, 3 is called as a thing that can be put somewhere.
+/// The objects of the holsters: the names of grippers 1, 2 and 3 as objects that can be placed.
 pub const GRIPPERS: [&str; 3] = ["GRIPPER-1", "GRIPPER-2", "GRIPPER-3"];
 
-/// What a command to E-move is aimed at: an object, a location, or an object at a location.
+/// The target of a command to E-move: an object, a location, or an object at a location.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct SubtaskAim {
-    /// The object, if there is one.
     pub object: Option<Name16>,
     pub grip: i32,
-    /// Its record of END-EFF-PARA, if it has that grip.
+    /// The record of END-EFF-PARA, if the object has that grip.
     pub parameters: EndEffId,
     pub end_effector_id: Option<u8>,
     pub site: Site,
-    /// Record number of its pose, once it is given.
+    /// Record number of the pose, once it is assigned.
     pub pose: Option<u32>,
 }
 
-/// The aims that a command of Task does not name, and the two poses that they share.
+/// The targets that a command of Task does not name, and the two poses that they share.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct Aims {
-    /// GET-ENDEFF: the holster of the attached gripper. FIX-GRIP: the object brought to the pedestal.
-    /// Tool commands: the drum.
+    /// GET-ENDEFF: the holster of the attached gripper. FIX-GRIP: the object, moved to the pedestal. Tool commands:
+    /// the drum.
     pub first: SubtaskAim,
-    /// GET-ENDEFF: the holster of the wanted gripper. FIX-GRIP: the robot out of the pedestal's way.
+    /// GET-ENDEFF: the holster of the wanted gripper. FIX-GRIP: the robot at PED-SAFE.
     pub second: SubtaskAim,
-    /// FIX-GRIP: the object taken from the pedestal, at the pose of the first.
+    /// FIX-GRIP: the object, taken from the pedestal, at the pose of `first`.
     pub third: SubtaskAim,
-    /// Poses of the first and the second aim.
+    /// Poses of `first` and `second`.
     pub poses: [Pose; 2],
 }
 
 impl SubtaskAim {
-    /// What the command of Task names.
+    /// The target that the command of Task names.
     #[must_use]
     pub const fn of_command(command: &SubtaskCommand) -> Self {
         // The object is taken with the source grip and placed with the destination grip.
@@ -72,7 +71,7 @@ impl SubtaskAim {
         }
     }
 
-    /// A location as such; its pose record is not given yet.
+    /// A location without an object; its pose record is not assigned yet.
     const fn at(site: Site, end_effector_id: Option<u8>) -> Self {
         Self { object: None, grip: 0, parameters: EndEffId::NULL, end_effector_id, site, pose: None }
     }
@@ -83,7 +82,7 @@ impl SubtaskAim {
         Ok(Self { object, grip, parameters: id, ..self })
     }
 
-    /// The same in the grip in which the object is held.
+    /// The same target in the grip in which the object is held.
     #[must_use]
     pub fn as_held(self, held: &Holding, data: &TaskData<'_>) -> Self {
         match held {
@@ -92,7 +91,7 @@ impl SubtaskAim {
         }
     }
 
-    /// A command to E-move with this aim, its number still 0.
+    /// A command to E-move with this target; its number is still 0.
     #[must_use]
     pub fn command(&self, verb: EmoveVerb, data: &TaskData<'_>) -> EmoveCommand {
         let (object, place) = (self.object.as_ref(), self.site.place());
@@ -114,11 +113,11 @@ impl SubtaskAim {
 }
 
 impl Aims {
-    /// Look up what a command needs beside its own location; `attached` is the id of the gripper on the
-    /// robot, `exchange` that of an exchange that is half done.
+    /// Look up the targets of a command that Task does not name. `attached` is the id of the gripper on the robot,
+    /// `exchange` that of an interrupted exchange.
     ///
     /// # Errors
-    /// What the task data lack for the command.
+    /// The data that the command needs and the task data lack.
     pub fn new(
         command: &SubtaskCommand,
         attached: Option<u8>,
@@ -144,7 +143,7 @@ impl Aims {
         }
     }
 
-    /// GET-ENDEFF: where the attached gripper is left, and where the wanted one is.
+    /// GET-ENDEFF: the holsters of the attached and the wanted gripper.
     fn holsters(
         wanted: Option<u8>,
         attached: Option<u8>,
@@ -152,7 +151,7 @@ impl Aims {
         data: &TaskData<'_>,
     ) -> Result<Self, Missing> {
         let mut aims = Self::default();
-        // An exchange that is half done is finished in the holster in which it is.
+        // An interrupted exchange is finished in its own holster.
         let own = exchange.or(attached);
         let wanted = wanted.or(own);
         if exchange.is_none() && attached.is_some() && attached == wanted {
@@ -166,7 +165,7 @@ impl Aims {
         Ok(aims)
     }
 
-    /// FIX-GRIP: the object at the pedestal in both grips, and the place where the robot waits.
+    /// FIX-GRIP: the object at the pedestal in both grips, and PED-SAFE, where the robot waits.
     fn pedestal(command: &SubtaskCommand, data: &TaskData<'_>) -> Result<Self, Missing> {
         let (pedestal, safe) = (point(named::PEDESTAL, data)?, point(named::PED_SAFE, data)?);
         let at = SubtaskAim::at(pedestal.site(), command.end_effector_id);
@@ -178,7 +177,7 @@ impl Aims {
         })
     }
 
-    /// Tool commands: the transfer location, with the object as Task gave it.
+    /// Tool commands: the transfer location, with the object from Task.
     fn drum(command: &SubtaskCommand, data: &TaskData<'_>) -> Result<Self, Missing> {
         let location = point(named::TOOL_TRNS, data)?;
         let at = SubtaskAim::at(location.site(), command.end_effector_id);
@@ -193,7 +192,7 @@ impl Aims {
     }
 }
 
-/// The holster of the gripper with an id: the location point that is assigned to its object (VII.7.3).
+/// The holster of the gripper with this id: the location point assigned to its object (VII.7.3).
 fn holster(id: u8, grip: i32, data: &TaskData<'_>, pose: &mut Pose) -> Result<SubtaskAim, Missing> {
     let name = usize::from(id).checked_sub(1).and_then(|position| GRIPPERS.get(position));
     let object = Name16::clipped(name.ok_or(Missing::Holster)?);

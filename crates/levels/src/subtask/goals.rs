@@ -1,4 +1,4 @@
-//! The goals of Subtask's commands, and how the statuses of E-move and of the pedestal compare with them.
+//! The goals of Subtask's commands, compared with the statuses of E-move and of the pedestal.
 
 use interfaces::{
     Unconfirmed,
@@ -73,7 +73,7 @@ pub static PLACE: Goal = Goal {
     unconfirmed: &[Unconfirmed::Position],
 };
 pub static RELEASED: Goal = Goal {
-    holds: "nothing is held",
+    holds: "the gripper is empty",
     sensors: &[Sensor::Fingers, Sensor::StrainGages],
     tolerance: "as RELEASE of E-move",
     age: 2,
@@ -87,7 +87,7 @@ pub static INSERTED: Goal = Goal {
     unconfirmed: &[Unconfirmed::ToolInDrum, Unconfirmed::PartInFingers],
 };
 pub static TOOL_RELEASED: Goal = Goal {
-    holds: "nothing is held, the fingers are out of the drum, and the drum has the tool",
+    holds: "the gripper is empty, the fingers are out of the drum, and the drum has the tool",
     sensors: &[Sensor::Fingers, Sensor::Resolvers],
     tolerance: AT_PLACE,
     age: 3,
@@ -158,7 +158,7 @@ pub(super) fn proof(
     }
 }
 
-/// The grasp force of what is held: only the parts gripper senses it.
+/// Proof of the grasp force. Only the parts gripper senses it.
 pub(crate) fn force(end_effector_id: Option<u8>) -> Proof {
     if EmoveGripper::of(end_effector_id).has_stops() {
         Proof::unsensed(Unconfirmed::GraspForce)

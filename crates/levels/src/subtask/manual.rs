@@ -1,6 +1,6 @@
-//! Orders of a person to the Active Pedestal (docs/design/recovery.md "Part in the pedestal"): the state variables of BY-HAND. They
-//! depend on common memory and task data alone, so that the program that takes the order decides as Subtask does in the
-//! next tick.
+//! Manual orders to the Active Pedestal (docs/design/recovery.md "Part in the pedestal"): the state variables of
+//! BY-HAND. They depend only on common memory and task data, so the program that takes the order decides as Subtask
+//! does in the next tick.
 
 use interfaces::{
     CommonMemory, StatusReport,
@@ -25,13 +25,14 @@ use super::{
 };
 use crate::{emove::robot_place::present_frame, places::named};
 
-/// Distance of the tool from PEDESTAL at which fingers that hold nothing are clear of the part, in (ASSUMED: longer than
-/// fingers and part together reach into each other).
+/// Distance of the tool from PEDESTAL at which empty fingers are clear of the part, in (ASSUMED: more than the
+/// overlap of fingers and part).
 const CLEAR_INCHES: f64 = 4.0;
-/// Opening of RELEASE for an object that is not known: that of the widest one in the task data, or this, 0.01 in.
+/// Opening of RELEASE for an unknown object if the task data have no widest one, 0.01 in.
 const WIDE: i32 = 450;
 
-/// The state variables of BY-HAND for an order. `tick` is the tick in which it is sent, `memory` common memory before.
+/// The state variables of BY-HAND for an order. `tick` is the tick in which it is sent; `memory` is common memory
+/// before.
 #[must_use]
 pub fn manual(order: &HandOrder, tick: Tick, memory: &CommonMemory, data: &TaskData<'_>) -> ManualOrder {
     let (below, above) = (&memory.pedestal, &memory.task.subtask);
@@ -67,7 +68,7 @@ pub fn manual(order: &HandOrder, tick: Tick, memory: &CommonMemory, data: &TaskD
 /// Decide on an order as Subtask does in `tick`.
 ///
 /// # Errors
-/// The reason why it is not sent.
+/// The reason for the refusal.
 pub fn judge(
     order: &HandOrder,
     tick: Tick,
@@ -104,12 +105,12 @@ pub(super) fn command(order: &HandOrder, regrip: Option<&Name16>, data: &TaskDat
     }
 }
 
-/// How the pedestal takes an object.
+/// The pedestal data of an object.
 fn para<'d>(object: Option<&Name16>, data: &TaskData<'d>) -> Option<&'d PedPara> {
     object.and_then(|object| data.ped_para(object)).map(|(_, para)| para)
 }
 
-/// Is the robot at the pedestal, and with the part?
+/// The robot's place relative to the pedestal and the part.
 pub(super) fn robot_there(memory: &CommonMemory, data: &TaskData<'_>) -> RobotThere {
     let emove = &memory.emove.status;
     if is_clear(emove, memory, data) {
@@ -126,8 +127,8 @@ pub(super) fn robot_there(memory: &CommonMemory, data: &TaskData<'_>) -> RobotTh
     }
 }
 
-/// A robot at another place is clear. At no place it is clear if it does not move and its tool is far enough from
-/// PEDESTAL.
+/// A robot at another place is clear. A robot at no known place is clear if it is idle and its tool is far enough
+/// from PEDESTAL.
 fn is_clear(emove: &EmoveStatus, memory: &CommonMemory, data: &TaskData<'_>) -> bool {
     let pedestal = data.locpt_named(&Name10::clipped(named::PEDESTAL));
     match emove.at {

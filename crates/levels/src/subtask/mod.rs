@@ -1,14 +1,14 @@
 //! Subtask (V.3): divides a command of Task into commands to E-move, and coordinates the robot with the Active
 //! Pedestal.
 //!
-//! Task names one location with each command. Subtask itself looks up holsters, the pedestal and the tool drum when the
-//! command arrives, before anything moves.
+//! Task names one location with each command. Subtask looks up holsters, pedestal and tool drum when the command
+//! arrives, before anything moves.
 //!
 //! ```text
 //!                 ACCEPT                 ORDERED: E-move, pedestal
 //!   a command --------------> Start ---> Moving ---> Grasping ---> ... ---> done
 //!       |                                  |            |
-//!       | what it needs is missing         | E-move or the pedestal failed, or the operator took the robot
+//!       | data are missing                 | E-move or the pedestal failed, or the operator took the robot
 //!       v                                  v            v
 //!     error <-----------------------------------------------
 //! ```

@@ -1,4 +1,4 @@
-//! The part in the pedestal's hand: the sensors of the hand, and Subtask's belief which part it is.
+//! The part in the pedestal's hand: the sensors of the hand, and the estimate of the part's name.
 
 use interfaces::{
     grip::Felt,
@@ -13,20 +13,20 @@ use super::{
 };
 use crate::held::Held;
 
-/// The hand is open if it stands within this of its opening to receive the object, 0.01 in (ASSUMED).
+/// The hand is open if it is within this distance of its opening to receive the object, 0.01 in (ASSUMED).
 const OPEN_WITHIN: i32 = 10;
-/// The table is at an angle if it stands within this of it, 0.1 degree: several steps of its motor (ASSUMED).
+/// Tolerance of the table angle, 0.1 degree: several steps of its motor (ASSUMED).
 const AT_ANGLE: u32 = 10;
 
 impl State {
-    /// Once a tick: compare the sensors of the hand with Subtask's belief. While the hand moves the belief is kept.
+    /// Each tick: clear the estimate if the hand is empty. While the hand moves, the estimate is kept.
     pub(super) fn sense_hand(&mut self, status: &PedestalStatus, pedestal: SubtaskPedestal) {
         if pedestal != SubtaskPedestal::Moving && pedestal_hand(status) == PedestalLoad::Free {
             self.regrip = None;
         }
     }
 
-    /// The pedestal is commanded to close its hand on the object of the command.
+    /// Record the object on which the pedestal is commanded to close its hand.
     pub(super) const fn give(&mut self, command: &SubtaskCommand) {
         self.regrip = match command.object {
             Some(object) => Some(Regrip { object }),
@@ -34,7 +34,7 @@ impl State {
         };
     }
 
-    /// Who has the object of the command.
+    /// The holder of the commanded object.
     pub(super) fn part(&self, held: Held, status: &PedestalStatus, command: &SubtaskCommand) -> SubtaskPart {
         let right = self.regrip.is_some_and(|regrip| Some(regrip.object) == command.object);
         match (held, pedestal_hand(status)) {
@@ -52,7 +52,7 @@ impl State {
     }
 }
 
-/// Whether a part is in the hand. Contact before GRIP, or after an opening, does not count.
+/// The load of the hand. Contact before GRIP, or after an opening, does not count.
 pub(super) const fn pedestal_hand(status: &PedestalStatus) -> PedestalLoad {
     match status.felt {
         Felt::Something if status.gripped => PedestalLoad::HoldsPart,
@@ -61,7 +61,7 @@ pub(super) const fn pedestal_hand(status: &PedestalStatus) -> PedestalLoad {
     }
 }
 
-/// Where the table stands for an object.
+/// The angle of the table, for an object.
 pub(super) fn turn(status: &PedestalStatus, para: &PedPara) -> Turn {
     let is_at = |angle: i32, position: i32| position.abs_diff(angle) <= AT_ANGLE;
     match status.table_position {
@@ -72,12 +72,12 @@ pub(super) fn turn(status: &PedestalStatus, para: &PedPara) -> Turn {
     }
 }
 
-/// The absolute angle to which the table turns an object, 0.1 degree: FLIP itself is relative (VI.7.1).
+/// The absolute angle to which the table turns an object, 0.1 degree. FLIP itself is relative (VI.7.1).
 pub(super) const fn turned(para: &PedPara) -> i32 {
     para.table_pos.saturating_add(para.flip_angle)
 }
 
-/// Is the hand open for an object?
+/// The opening of the hand, for an object.
 pub(super) const fn hand(status: &PedestalStatus, para: &PedPara) -> HandOpening {
     if status.grip_size.saturating_add(OPEN_WITHIN) >= para.appr {
         HandOpening::Open

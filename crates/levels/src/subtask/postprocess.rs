@@ -21,7 +21,6 @@ use super::{
 use crate::execution::Outcome;
 
 impl State {
-    /// Set the outputs that a row asks for.
     pub(super) fn act(
         &mut self,
         action: Action,
@@ -100,7 +99,7 @@ impl State {
                 self.execution.pass_up(seen.subordinates.emove, inputs.memory.emove.status.reason);
             }
             Action::PassUpPedestal(reason) => {
-                // What hand or table report is more than that there was an error.
+                // The reason of hand or table is more specific than a general error.
                 let below = &inputs.memory.pedestal.status;
                 let failed = matches!(below.report, PedestalReport::CannotDo | PedestalReport::Error);
                 let known = failed && below.reason != Reason::None && reason != Reason::PedestalSilent;
@@ -109,7 +108,7 @@ impl State {
         }
     }
 
-    /// A command to the Active Pedestal: opening in 0.01 in, force in lb, angle in 0.1 degree.
+    /// Send a command to the Active Pedestal: opening in 0.01 in, force in lb, angle in 0.1 degree.
     fn command_pedestal(
         &mut self,
         verb: PedestalVerb,
@@ -130,7 +129,7 @@ impl State {
         };
     }
 
-    /// Send the order of a person to the pedestal. It is no order of the current command, which goes on.
+    /// Send a manual order to the pedestal. The current command is not affected.
     pub(super) fn command_manually(
         &mut self,
         inputs: &Inputs<'_, TaskData<'_>>,
@@ -146,7 +145,7 @@ impl State {
         outputs.pedestal = PedestalCommand { cycle: inputs.tick, number, ..command };
     }
 
-    /// Stop the pedestal if it was commanded to move; otherwise send nothing. True if Subtask has to wait for it.
+    /// Stop the pedestal if it was commanded to move. True if Subtask has to wait for it.
     fn pause_pedestal(
         &mut self,
         seen: &StateVariables,
@@ -163,7 +162,6 @@ impl State {
         }
     }
 
-    /// Give the poses of a new command new record numbers.
     pub(super) fn publish_poses(&mut self, outputs: &mut SubtaskOutputs) {
         let aims = &mut self.aims;
         for ((slot, pose), aim) in

@@ -31,7 +31,6 @@ use crate::{
 };
 
 impl State {
-    /// Read the inputs of a tick.
     pub(super) fn sense(&mut self, inputs: &Inputs<'_, TaskData<'_>>) -> StateVariables {
         let command = &inputs.memory.task.subtask;
         self.adopt(inputs);
@@ -65,8 +64,7 @@ impl State {
         }
     }
 
-    /// Before the first command after a start: go on from the own output buffers, as they were written before
-    /// it.
+    /// Before the first command after a start, continue from the output buffers that Subtask wrote before it.
     fn adopt(&mut self, inputs: &Inputs<'_, TaskData<'_>>) {
         let (tick, memory, written) = (inputs.tick, inputs.memory, &inputs.memory.subtask);
         self.emove.start_from(tick, written.emove.number, memory.emove.status.echo);
@@ -77,8 +75,8 @@ impl State {
         }
     }
 
-    /// Look up what a new command needs beside the location that Task names: the locations that Subtask names
-    /// itself, and for FIX-GRIP how the pedestal takes the object. What is complete is kept.
+    /// Look up the locations of a new command that Task does not name, and the pedestal data for FIX-GRIP. Only
+    /// complete results are stored.
     fn look_up(&mut self, command: &SubtaskCommand, inputs: &Inputs<'_, TaskData<'_>>) -> Request {
         self.ordered = SubtaskRecipient::Nothing;
         let emove = &inputs.memory.emove.status;
@@ -105,7 +103,7 @@ impl State {
     fn situation(&self, command: &SubtaskCommand, inputs: &Inputs<'_, TaskData<'_>>) -> Situation {
         let (emove, pedestal) = (&inputs.memory.emove.status, &inputs.memory.pedestal.status);
         let held = Held::of(emove.held, command.object);
-        // A restarted process knows no pose that differs.
+        // A restarted process has no last pose to compare.
         let is_at = |last: Option<Pose>| last.is_none() || last == location_pose(command, inputs);
         Situation {
             work: Work::Busy,
@@ -193,7 +191,7 @@ pub(super) fn location_pose(command: &SubtaskCommand, inputs: &Inputs<'_, TaskDa
     pose_of(command.pose?, inputs.memory, inputs.data).map(|frame| Pose::from_frame(&frame))
 }
 
-/// Must vision find the object of a command? `is_at` is true if the last pictures were taken at its location.
+/// The need to find the object by vision. `is_at` is true if the last pictures were taken at its location.
 fn vision(emove: &EmoveStatus, is_at: bool, command: &SubtaskCommand, data: &TaskData<'_>) -> SubtaskVision {
     let located = emove.located.is_some_and(|located| {
         is_at && Some(located.object) == command.object && located.site == command.site
@@ -208,7 +206,7 @@ fn vision(emove: &EmoveStatus, is_at: bool, command: &SubtaskCommand, data: &Tas
     }
 }
 
-/// Does the robot stand at the object of a command?
+/// The robot's place relative to the object of a command.
 fn station(emove: &EmoveStatus, command: &SubtaskCommand) -> Where {
     match emove.at {
         Some(at) if at.grip == Some(command.source_grip) && at.site == command.site => Where::There,
@@ -216,7 +214,7 @@ fn station(emove: &EmoveStatus, command: &SubtaskCommand) -> Where {
     }
 }
 
-/// Whether the object of a command was released at its destination.
+/// The place where the object of a command was released.
 fn placed(emove: &EmoveStatus, command: &SubtaskCommand) -> Where {
     let what = (command.object, command.destination_grip);
     match emove.placed {
@@ -225,7 +223,7 @@ fn placed(emove: &EmoveStatus, command: &SubtaskCommand) -> Where {
     }
 }
 
-/// Where the robot is, for FIX-GRIP.
+/// The robot's place, for FIX-GRIP.
 fn robot(emove: &EmoveStatus, aims: &Aims) -> SubtaskRobot {
     let Some(at) = emove.at else { return SubtaskRobot::Away };
     let is_at = |aim: &SubtaskAim| aim.site.name().is_some() && at.site == aim.site;
@@ -240,7 +238,7 @@ fn robot(emove: &EmoveStatus, aims: &Aims) -> SubtaskRobot {
     }
 }
 
-/// May the robot leave while the pedestal holds a part?
+/// Whether the robot may leave while the pedestal holds a part.
 fn leaving(inputs: &Inputs<'_, TaskData<'_>>) -> Leaving {
     let is_empty = inputs.memory.emove.status.held == Holding::Nothing;
     match robot_there(inputs.memory, inputs.data) {

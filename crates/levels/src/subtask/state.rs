@@ -14,23 +14,23 @@ use crate::execution::Execution;
 /// State of Subtask.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct State {
-    /// The command of Task and how far it has come.
+    /// The command of Task and its progress.
     pub execution: Execution,
     pub step: Step,
-    /// The process that has its last order.
+    /// The recipient of the last order.
     pub ordered: SubtaskRecipient,
     pub emove: Commander,
     pub pedestal: Commander,
     /// The part in the pedestal's hand.
     pub regrip: Option<Regrip>,
-    /// Location pose for which LOCATE-OBJ was sent last. All sectors of an array have the same records: only the pose
-    /// tells them apart. `None` after a restart.
+    /// Location pose of the last LOCATE-OBJ. All sectors of an array have the same records; only the pose
+    /// distinguishes them. `None` after a restart.
     pub located_at: Option<Pose>,
-    /// Location pose for which the robot was sent to an object, or with one, last; `None` after a restart.
+    /// Location pose of the last motion to an object, or with one; `None` after a restart.
     pub gone_to: Option<Pose>,
-    /// What the current command names beside the location and the object that Task gave.
+    /// The targets of the current command that Task does not name.
     pub aims: Aims,
-    /// How the pedestal takes the object of the current FIX-GRIP.
+    /// The pedestal data of the object of the current FIX-GRIP.
     pub ped_para: PedPara,
     /// Last record number given to a pose of [`Aims`].
     pub last_pose: u32,

@@ -1,12 +1,12 @@
-//! Task and the Data System (IV.4.2, IX.2): commands, repetitions, and updates that are kept until they are accepted.
+//! Task and the Data System (IV.4.2, IX.2): commands, retries and pending updates.
 //!
 //! While no Data System is connected, Task sends no updates and does not wait. Once connected, Task sends an update
-//! after each completed move from or to the MBD, and after the release of an object that the data base has as held by
-//! the robot. An update that is not accepted is pending, also when another command replaces the one that sent it, and
-//! when the object was released after its command had ended. Pending updates are sent before the next object is moved,
-//! at the end of a POSITION or RELEASE-TOOL, or at the end of the next STARTUP, so that the data base is never more
-//! than one command behind. With DB-DONE (Figure IV.1) each command is sent once and counts as done: the data base may
-//! lack it.
+//! after each completed move from or to the MBD. It also sends one after the release of an object that the database
+//! has as held by the robot. An update that is not accepted is pending, also when another command replaces its
+//! command and when the object was released after its command ended. Task sends pending updates before it moves the
+//! next object, at the end of a POSITION or RELEASE-TOOL, and at the end of the next STARTUP. The database is
+//! therefore at most one command behind. With DB-DONE (Figure IV.1) each command is sent once and assumed done, so
+//! the database may lack it.
 
 use interfaces::{
     DataBaseCommand, DataBaseStatus, ExternalInputs, TaskOutputs,
@@ -33,17 +33,16 @@ use super::{
 };
 use crate::held::Held;
 
-/// Ticks in which the Data System is expected to finish a command: 10 s, on a factory network.
+/// Time limit for a command to the Data System, in ticks: 10 s, for a factory network.
 pub const ANSWER_LIMIT: u64 = 250;
-/// How often a command is written before the Data System counts as silent.
+/// Number of times that a command is written before the Data System is reported silent.
 pub const MAX_TRIES: u8 = 3;
-/// `STORAGE-POS` of what the robot holds, which is also the name of the client (IX.2).
+/// `STORAGE-POS` of an object that the robot holds, which is also the name of the client (IX.2).
 pub const IN_HAND: &str = "H_ROBOT";
 
-/// What Task knows of the Data System.
+/// The state of the Data System as Task estimates it.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct DataSystem {
-    /// Numbers of the commands to it.
     pub commander: Commander,
     /// The command that was written last.
     pub request: DataBaseCommand,
@@ -60,7 +59,7 @@ impl DataSystem {
         self.commander = Commander { number, sent: tick, started: number != 0 };
     }
 
-    /// What the Data System says. With DB-DONE (Figure IV.1) the last command is done, whatever it says.
+    /// The status of the Data System. With DB-DONE (Figure IV.1) the last command is always done.
     pub fn read(&mut self, external: &ExternalInputs) -> DataBaseStatus {
         self.commander.start(external.data_base.echo);
         if external.operator.db_done {
@@ -91,7 +90,7 @@ impl DataSystem {
         };
     }
 
-    /// What the Data System makes of the last command.
+    /// The result of the last command to the Data System.
     #[must_use]
     pub fn status(&self, status: &DataBaseStatus, tick: Tick) -> DataBase {
         let answered = self.commander.started && status.echo == self.commander.number;
@@ -104,7 +103,7 @@ impl DataSystem {
         }
     }
 
-    /// Does the Data System receive updates? `executing` is the current command.
+    /// The connection of the Data System. `executing` is the current command.
     #[must_use]
     pub const fn connection(&self, executing: Option<TaskVerb>) -> Connection {
         match (self.updates.connected, self.updates.connecting, executing) {
@@ -133,7 +132,7 @@ impl DataSystem {
         update((), &unsent).action
     }
 
-    /// What the robot carried last, compared with an object.
+    /// The object that the robot carried last, compared with `object`.
     #[must_use]
     pub fn carrying(&self, object: Name16) -> Carrying {
         match self.updates.carried {
@@ -253,7 +252,7 @@ impl DataSystem {
         self.send_pending(tick, outputs);
     }
 
-    /// REPORT-ITEM: append an update about what the robot has carried and released.
+    /// REPORT-ITEM: append an update about the object that the robot has carried and released.
     pub fn append_released(&mut self, placed: &PlacedObject) {
         if let Some(Carried { item, serial, .. }) = self.updates.carried.take() {
             self.append(item, serial, placed.site.location, placed.site.sector);

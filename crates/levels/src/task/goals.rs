@@ -43,7 +43,7 @@ pub static MOVED: Goal = Goal {
     unconfirmed: &[Unconfirmed::Position, Unconfirmed::GraspForce, Unconfirmed::PartInFingers],
 };
 pub static POSITIONED: Goal = Goal {
-    holds: "nothing is held, and the robot is at the position",
+    holds: "the gripper is empty, and the robot is at the position",
     sensors: &[Sensor::Fingers, Sensor::StrainGages, Sensor::Resolvers],
     tolerance: AT_PLACE,
     age: 4,
@@ -100,7 +100,7 @@ pub static CONNECTED: Goal = Goal {
     unconfirmed: &[],
 };
 pub static DISCONNECTED: Goal = Goal {
-    holds: "Task sends the Data System nothing more, whatever it answers",
+    holds: "Task sends nothing more to the Data System",
     sensors: &[Sensor::Below],
     tolerance: "",
     age: 0,

@@ -1,10 +1,10 @@
-//! The ledger: the last command about an object or a tool that was accepted and has not been finished
-//! (docs/design/recovery.md "Ledger").
+//! The ledger: the last accepted command about an object or a tool, until it finishes (docs/design/recovery.md
+//! "Ledger").
 //!
-//! It is an output of Task and is read from there, so that a restarted Task has it too. It distinguishes a repeated
-//! command from a new one: a TRANSFER that was interrupted after its RELEASE continues with the update and the motion
-//! to its end-at location, while the same TRANSFER after a finished one begins from the start. The progress of the
-//! command is not in the ledger; it follows from the statuses from below.
+//! The ledger is an output of Task, so it survives a restart. It distinguishes a repeated command from a new one. A
+//! TRANSFER that was interrupted after its RELEASE continues with the update and the motion to its end-at location;
+//! the same TRANSFER after a finished one starts at the beginning. The progress of the command is not in the ledger;
+//! it follows from the statuses from below.
 
 use interfaces::{
     data_base::Carried,
@@ -16,22 +16,22 @@ use rcs_core::{Plain, name::Name16};
 
 use super::plan::{Plan, Resumed, TaskVerb};
 
-/// Has the command placed its object already?
+/// The object of a repeated command: placed or not, and the robot still there or not.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Placed {
-    /// No, or it was not sent before.
+    /// Not placed, or the command is new.
     Not,
-    /// It is what the gripper has let go last, at the destination, where the robot stands.
+    /// The gripper released the object last at the destination, and the robot is still there.
     AtDestination,
-    /// The same, and the robot has been sent away from there.
+    /// The same, but the robot has been moved away from there.
     Left,
 }
 
-/// Is the part in the pedestal's hand?
+/// The place of the part during a regrip.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum TaskPart {
     Elsewhere,
-    /// Yes, alone or together with the robot.
+    /// In the pedestal's hand. The robot may hold it too.
     InPedestal,
 }
 
@@ -41,7 +41,7 @@ pub const fn content(command: &HwsCommand) -> HwsCommand {
     HwsCommand { number: 0, ..*command }
 }
 
-/// Was a command sent before and not finished?
+/// The progress of an interrupted command that is repeated.
 #[must_use]
 pub fn resumed(command: &HwsCommand, ledger: Option<&Ledger>) -> Resumed {
     match ledger.filter(|ledger| ledger.command == content(command)).map(|ledger| ledger.last) {
@@ -57,8 +57,8 @@ pub fn resumed(command: &HwsCommand, ledger: Option<&Ledger>) -> Resumed {
     }
 }
 
-/// Has the command of a plan placed its object already? It cannot have before its order to place it, even if the same
-/// object was placed there by an earlier command.
+/// The object of a repeated command, if it is placed already. An object that an earlier command placed there does not
+/// count.
 #[must_use]
 pub fn placed(plan: &Plan, below: &SubtaskStatus, ledger: Option<&Ledger>) -> Placed {
     let placing = matches!(
@@ -79,8 +79,8 @@ pub fn placed(plan: &Plan, below: &SubtaskStatus, ledger: Option<&Ledger>) -> Pl
     }
 }
 
-/// Is the object of a new command held already, and was it taken at another place than the source? The ledger
-/// says where, if it is about the object, else what the robot carries (docs/design/recovery.md "Data base").
+/// True if the object of a new command is held and comes from another place than the source. The ledger has the place
+/// if it is about the object; otherwise the carried object has it (docs/design/recovery.md "Data base").
 #[must_use]
 pub fn is_from_elsewhere(
     command: &HwsCommand,
@@ -101,7 +101,7 @@ pub fn is_from_elsewhere(
     }
 }
 
-/// Does the command in the ledger take an object?
+/// True if the command in the ledger takes this object.
 #[must_use]
 pub fn is_taken(ledger: Option<&Ledger>, object: &Name16) -> bool {
     ledger.is_some_and(|Ledger { command, .. }| {
@@ -109,8 +109,8 @@ pub fn is_taken(ledger: Option<&Ledger>, object: &Name16) -> bool {
     })
 }
 
-/// The ledger when a command has been accepted. A command that is about no object says nothing of one that
-/// is. One that has to take its object again has reported nothing yet.
+/// The ledger after a command is accepted. A command without an object leaves it unchanged. A command that has to
+/// take its object again has reported nothing yet.
 #[must_use]
 pub fn opened(ledger: Option<Ledger>, command: &HwsCommand, plan: &Plan) -> Option<Ledger> {
     if !plan.is_about_something() || plan.resumed != Resumed::Not {

@@ -1,14 +1,14 @@
 //! Task (V.4): divides a command of the workstation controller into commands to Subtask.
 //!
-//! Task looks every name of a new command up before anything moves: a command that names an unknown object, location,
-//! sector or grip is refused whole. The results are passed down as record numbers and as the poses T-POSE-1 to T-POSE-3
-//! (VII.1).
+//! Task looks up every name of a new command before anything moves. It refuses a command that names an unknown
+//! object, location, sector or grip. The results are passed down as record numbers and as the poses T-POSE-1 to
+//! T-POSE-3 (VII.1).
 //!
 //! ```text
 //!           ACCEPT, PRECONDITION         ORDERED: Subtask, Data System
 //!   a command --------------> Start ---> Gripper ---> Object ---> ... ---> finished
 //!       |                                  |            |
-//!       | what it needs is missing, or     | Subtask or the Data System failed, or JOYSTICK: the operator
+//!       | data are missing, or             | Subtask or the Data System failed, or JOYSTICK: the operator
 //!       | the operator has the robot       | took the robot
 //!       v                                  v
 //!     error <-----------------------------------------
@@ -122,11 +122,7 @@ impl<'d> Process<TaskData<'d>> for Task {
 }
 
 impl State {
-    /// Consult JOYSTICK, the table of every tick, whatever EXECUTE has said. HALT, PRECONDITION and ORDERED ask for what it has
-    /// decided.
-    ///
-    /// # Errors
-    /// None: it withholds no command.
+    /// Consult JOYSTICK in each tick, after any result of EXECUTE. HALT, PRECONDITION and ORDERED test its decision.
     fn joystick(&mut self, course: Course, seen: &mut StateVariables) -> Result<Course, Action> {
         let operator = TaskOperator { subtask: seen.subordinates.subtask, outcome: self.execution.outcome };
         seen.subordinates.takeover = match joystick(self.control, &operator) {

@@ -1,5 +1,4 @@
-//! A command of the workstation controller with its names looked up (V.4.2): TRANSLATE-HWS-CMD of Figure
-//! IV.1.
+//! A command of the workstation controller with its names looked up (V.4.2): TRANSLATE-HWS-CMD of Figure IV.1.
 
 use geometry::pose::Pose;
 use interfaces::{ChangingPose, HwsCommand, emove::ObjectGrip, location::Site};
@@ -19,7 +18,7 @@ use crate::places::{Missing, is_in_mbd, named};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 #[text(upper)]
 pub enum TaskVerb {
-    /// None yet, or a word that is no command.
+    /// No command yet, or an unknown word.
     #[text = ""]
     None,
     Pause,
@@ -27,7 +26,7 @@ pub enum TaskVerb {
     Transfer,
     /// Move an object to a location and hold it there, or move the robot.
     Move,
-    /// Release what is held and move to a position.
+    /// Release the held object and move to a position.
     Position,
     /// Move to an object and grasp it.
     Acquire,
@@ -35,7 +34,7 @@ pub enum TaskVerb {
     Refixture,
     /// Insert a tool into the tool drum.
     InsertTool,
-    /// Let go of a tool in the drum.
+    /// Release a tool in the drum.
     ReleaseTool,
     /// Move to a tool in the drum and grasp it.
     AcquireTool,
@@ -48,28 +47,28 @@ pub enum TaskVerb {
 /// `endeff-id#` of the tool gripper (VII.7.2).
 pub const TOOL_GRIPPER: u8 = 3;
 
-/// Is an object to be handled (V.4.1)?
+/// The command names an object (V.4.1).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Handling {
     NoObject,
     Object,
 }
 
-/// Was the command sent before and not finished (docs/design/recovery.md "Ledger")?
+/// The progress of a command that was sent before and not finished (docs/design/recovery.md "Ledger").
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Resumed {
     Not,
     Begun,
-    /// It was, and its tool command was with Subtask.
+    /// It was interrupted while Subtask had its tool command.
     AtTool,
-    /// It was, and all but the way to the end-at location was done.
+    /// It was interrupted on the way to the end-at location.
     Leaving,
 }
 
 /// Source and destination grip numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Grips {
-    /// The object stays as it is gripped.
+    /// The object stays in its grip.
     Same,
     /// It must be regripped on the way.
     Different,
@@ -78,22 +77,21 @@ pub enum Grips {
 /// `endeff-id#` of the gripper for the object (VII.7.2).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum TaskGripper {
-    /// It can be one of a gripper, or no object is named.
+    /// A gripper may have this number, or no object is named.
     Valid,
     Invalid,
 }
 
-/// A location, looked up.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct Location {
     pub site: Site,
     pub pose: ChangingPose,
 }
 
-/// One of the three locations of a command, with the grip there.
+/// A location of a command, with the grip there.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct PlanSite {
-    /// The location, if the command names it.
+    /// Named by the command.
     pub location: Option<Location>,
     pub grip: i32,
     /// Record of END-EFF-PARA, if the object has that grip.
@@ -107,51 +105,51 @@ pub struct Plan {
     /// The object, if the command names one.
     pub object: Option<Name16>,
     pub serial: Name16,
-    /// `obj-endeff-id#` for Subtask (V.3.2): gripper for the object; none if any will do.
+    /// `obj-endeff-id#` for Subtask (V.3.2): gripper for the object; none if any gripper will do.
     pub end_effector_id: Option<u8>,
     pub source: PlanSite,
-    /// Where it, or the robot, is to go.
+    /// The destination of the object, or of the robot alone.
     pub destination: PlanSite,
-    /// Where the robot is to be at the end.
+    /// The place of the robot at the end of the command.
     pub end_at: PlanSite,
-    /// The data base is still to be told that the object is moved from or to the MBD.
+    /// The update about the move from or to the MBD has still to be sent.
     pub update_due: bool,
     /// An ACQUIRE of an object that is held already, and was not taken from the source.
     pub from_elsewhere: bool,
-    /// Was the command sent before and not finished?
+    /// The progress before the command was repeated.
     pub resumed: Resumed,
 }
 
-/// What the look-up of a command has found.
+/// The result of the look-up of a command.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Found {
-    /// The command, with all that was found.
+    /// The command, with everything that was found.
     pub plan: Plan,
-    /// What was not found of the object, or else of the first location that lacks something.
+    /// The missing data of the object, or else of the first location that lacks data.
     pub missing: Missing,
     /// `endeff-id#` of the gripper for the object.
     pub gripper: TaskGripper,
-    /// Must the object be regripped on the pedestal?
+    /// The regrip on the pedestal.
     pub regrip: TaskRegrip,
     /// The way from the tool drum to the end-at location.
     pub way_out: WayOut,
 }
 
 impl TaskVerb {
-    /// The command that a word means. Ten characters are compared, as all processes below do
-    /// (SPECNOTES.md, contradiction 22).
+    /// The command for a word. Ten characters are compared, as in all processes below (SPECNOTES.md, contradiction
+    /// 22).
     #[must_use]
     pub fn of(word: &Name16) -> Option<Self> {
         let word = Name10::clipped(word.as_str());
         Self::ALL.iter().copied().find(|verb| *verb != Self::None && Name10::clipped(verb.text()) == word)
     }
 
-    /// True if the fields of the command mean nothing.
+    /// True if the fields of the command are ignored.
     const fn is_bare(self) -> bool {
         matches!(self, Self::None | Self::Pause | Self::Startup | Self::Shutdown)
     }
 
-    /// True for the commands that take an object from where it is.
+    /// True for the commands that take an object from its place.
     pub(super) const fn takes(self) -> bool {
         matches!(self, Self::Transfer | Self::Move | Self::Acquire | Self::Refixture)
     }
@@ -208,7 +206,7 @@ impl Plan {
         Found { plan, missing, gripper, regrip, way_out: plan.way_out(data) }
     }
 
-    /// The way to the end-at location of a command that ends at the tool drum.
+    /// The trajectory from the tool drum to the end-at location, for a command that ends at the drum.
     fn way_out(&self, data: &TaskData<'_>) -> WayOut {
         let leaves = matches!(self.verb, TaskVerb::ReleaseTool | TaskVerb::RemoveTool);
         let Some(end_at) = self.end_at.location.filter(|_| leaves) else { return WayOut::Leads };
@@ -223,7 +221,6 @@ impl Plan {
         }
     }
 
-    /// Is an object to be handled?
     #[must_use]
     pub const fn handling(&self) -> Handling {
         if self.object.is_some() { Handling::Object } else { Handling::NoObject }
@@ -235,13 +232,12 @@ impl Plan {
         self.object.is_some() || self.verb.is_for_tools()
     }
 
-    /// The place where the object was taken.
     #[must_use]
     pub const fn origin(&self) -> TaskOrigin {
         if self.from_elsewhere { TaskOrigin::Elsewhere } else { TaskOrigin::Source }
     }
 
-    /// What the command takes, of what it names.
+    /// The object or tool that the command takes.
     #[must_use]
     pub const fn takes(&self) -> Takes {
         match self.verb {
@@ -251,13 +247,12 @@ impl Plan {
         }
     }
 
-    /// Are the source and destination grips the same?
     #[must_use]
     pub const fn grips(&self) -> Grips {
         if self.source.grip == self.destination.grip { Grips::Same } else { Grips::Different }
     }
 
-    /// A location of the command, with the grip of the object there.
+    /// The data for a location of the command.
     #[must_use]
     pub const fn site(&self, site: &PlanSite) -> SiteData {
         if site.location.is_none() {
@@ -269,12 +264,11 @@ impl Plan {
         }
     }
 
-    /// The object has the grip of a site, or no object is named.
+    /// True if the object has the grip of a site, or no object is named.
     const fn has_grip(&self, site: &PlanSite) -> bool {
         self.object.is_none() || !site.parameters.is_null()
     }
 
-    /// The location to which the command goes.
     #[must_use]
     pub const fn goal(&self) -> SiteData {
         let site =
@@ -305,16 +299,14 @@ impl Plan {
         self.object.map(|object| ObjectGrip { object, grip: self.position_site().grip })
     }
 
-    /// The site with the grip of a tool command's tool: the source if the tool has its grip, else the
-    /// destination.
+    /// The site with the grip of the tool: the source if the tool has its grip, else the destination.
     #[must_use]
     pub const fn tool_site(&self) -> &PlanSite {
         if self.source.parameters.is_null() { &self.destination } else { &self.source }
     }
 }
 
-/// The number of the gripper for an object. The tool commands need the tool gripper also if no object is
-/// named.
+/// The number of the gripper for an object. The tool commands need the tool gripper even if no object is named.
 fn gripper(verb: TaskVerb, object: Option<&Name16>, data: &TaskData<'_>) -> (Option<u8>, TaskGripper) {
     let id = match object {
         None if verb.is_for_tools() => TOOL_GRIPPER.into(),
@@ -327,13 +319,12 @@ fn gripper(verb: TaskVerb, object: Option<&Name16>, data: &TaskData<'_>) -> (Opt
 }
 
 impl PlanSite {
-    /// Its location, if the command names one.
     #[must_use]
     pub fn site(&self) -> Option<Site> {
         self.location.map(|location| location.site)
     }
 
-    /// Where the location is, as a destination.
+    /// The kind of destination that the location is.
     #[must_use]
     pub fn destination(&self) -> Destination {
         match self.location.as_ref().map(|location| location.site.location.as_str()) {
@@ -345,7 +336,6 @@ impl PlanSite {
 }
 
 impl Location {
-    /// Look a location up, if one is named.
     fn look_up(
         name: Option<Name16>,
         sector: Option<i32>,
@@ -360,7 +350,6 @@ impl Location {
         }))
     }
 
-    /// True if the location is one of the MBD's.
     fn is_in_mbd(&self, data: &TaskData<'_>) -> bool {
         is_in_mbd(self.site.record, data)
     }

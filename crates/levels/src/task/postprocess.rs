@@ -23,8 +23,8 @@ use crate::{
 };
 
 impl State {
-    /// Take over a command that was accepted, and give its poses new record numbers: T-POSE-1 source,
-    /// T-POSE-2 destination, T-POSE-3 end-at.
+    /// Take over an accepted command and give its poses new record numbers: T-POSE-1 source, T-POSE-2 destination,
+    /// T-POSE-3 end-at.
     pub(super) fn begin(
         &mut self,
         plan: &Plan,
@@ -47,7 +47,7 @@ impl State {
         }
     }
 
-    /// Do what is to be done about the joystick box.
+    /// Respond to the joystick box.
     pub(super) fn take_over(
         &mut self,
         takeover: Takeover,
@@ -62,7 +62,6 @@ impl State {
         self.send(SubtaskVerb::Pause, &PlanSite::default(), inputs, outputs);
     }
 
-    /// Set the outputs that a row asks for.
     pub(super) fn act(
         &mut self,
         action: Action,
@@ -86,7 +85,7 @@ impl State {
             Action::Position => self.send(SubtaskVerb::Position, plan.position_site(), inputs, outputs),
             Action::Return => {
                 self.send(SubtaskVerb::Position, &plan.destination, inputs, outputs);
-                // >POSITION asks for the grip of the source first (SPECNOTES.md, contradiction 24).
+                // >POSITION uses the grip of the source first (SPECNOTES.md, contradiction 24).
                 outputs.subtask.source_grip = plan.destination.grip;
             }
             Action::Release => self.send(SubtaskVerb::Release, &plan.source, inputs, outputs),
@@ -137,18 +136,17 @@ impl State {
         self.execution.finish();
     }
 
-    /// Is the current command the one in the ledger?
+    /// True if the current command is in the ledger.
     const fn is_in_ledger(&self, outputs: &TaskOutputs) -> bool {
         self.plan.is_about_something() && outputs.ledger.is_some()
     }
 
-    /// The Data System, which has the last order from now on.
+    /// The Data System, which becomes the recipient of the last order.
     const fn order(&mut self) -> &mut DataSystem {
         self.ordered = TaskRecipient::DataSystem;
         &mut self.data_system
     }
 
-    /// REPORT-ITEM: send where the object now is.
     fn report_item(&mut self, inputs: &Inputs<'_, TaskData<'_>>, outputs: &mut TaskOutputs) {
         let held = Held::of(inputs.memory.subtask.status.held, self.plan.object);
         self.plan.update_due = false;
@@ -159,7 +157,7 @@ impl State {
         self.order().report_item(&plan, held, inputs.tick, outputs);
     }
 
-    /// A command to Subtask for the object of the plan at one of its locations.
+    /// Send a command to Subtask for the object of the plan at one of its locations.
     fn send(
         &mut self,
         verb: SubtaskVerb,
@@ -186,8 +184,8 @@ impl State {
         };
     }
 
-    /// A tool command to Subtask, which names the location itself. A tool that the command does not name is
-    /// the one that is held.
+    /// Send a tool command to Subtask, which names the location itself. If the command names no tool, it means the
+    /// held one.
     fn send_tool(&mut self, verb: SubtaskVerb, inputs: &Inputs<'_, TaskData<'_>>, outputs: &mut TaskOutputs) {
         let PlanSite { grip, parameters, .. } = *self.plan.tool_site();
         self.send(verb, &PlanSite { location: None, grip, parameters }, inputs, outputs);
@@ -197,7 +195,6 @@ impl State {
         }
     }
 
-    /// Write the status to the HWSC.
     pub(super) fn report(&self, inputs: &Inputs<'_, TaskData<'_>>, outputs: &mut TaskOutputs) {
         let execution = &self.execution;
         let pauses = self.plan.verb == TaskVerb::Pause;

@@ -32,7 +32,6 @@ use crate::{
 };
 
 impl State {
-    /// Read the inputs of a tick.
     pub(super) fn sense(&mut self, inputs: &Inputs<'_, TaskData<'_>>) -> StateVariables {
         let command = &inputs.external.hws;
         self.adopt(inputs);
@@ -81,8 +80,7 @@ impl State {
         }
     }
 
-    /// Before the first command after a start: go on from the own output buffers, as they were written before
-    /// it.
+    /// Before the first command after a start, continue from the output buffers that Task wrote before it.
     fn adopt(&mut self, inputs: &Inputs<'_, TaskData<'_>>) {
         let (memory, written) = (inputs.memory, &inputs.memory.task);
         self.subtask.start_from(inputs.tick, written.subtask.number, memory.subtask.status.echo);
@@ -93,7 +91,7 @@ impl State {
         }
     }
 
-    /// Note what a person has confirmed, and drop it when the robot leaves its place or holds nothing.
+    /// Store the confirmation of a person. Drop it when the robot leaves its place or holds nothing.
     fn note_support(&mut self, inputs: &Inputs<'_, TaskData<'_>>) {
         let below = &inputs.memory.subtask.status;
         let told = inputs.external.operator.confirmed.map(|by| Confirmed { by, at: below.at });
@@ -157,7 +155,6 @@ impl State {
         self.subtask.status_of(inputs.tick, &inputs.memory.subtask)
     }
 
-    /// Set the state variables for a command.
     fn situation(&self, plan: &Plan, inputs: &Inputs<'_, TaskData<'_>>) -> Situation {
         let below = &inputs.memory.subtask.status;
         Situation {
@@ -209,8 +206,8 @@ fn preconditions(found: &Found, checked: Checked) -> Preconditions {
     }
 }
 
-/// Where the robot is to be at the end. A sector is not known by its location's name alone. A robot that was moved
-/// away from its place, however little, has to go there.
+/// The end-at location, compared with the robot's place. The name of a location does not identify a sector. A robot
+/// that was moved away from its place, however little, has to go there.
 fn ends(end_at: &PlanSite, below: &SubtaskStatus) -> Ends {
     let is_there = matches!(below.offset, Offset::None | Offset::NotSensed);
     let at = below.at.filter(|_| is_there).map(|at| at.site.location);
@@ -221,7 +218,7 @@ fn ends(end_at: &PlanSite, below: &SubtaskStatus) -> Ends {
     }
 }
 
-/// Where the robot is, for the tool commands.
+/// The robot's place, for the tool commands.
 fn station(at: Option<Name10>) -> Station {
     match at.as_ref().map(Name10::as_str) {
         None => Station::Unplaced,
@@ -231,7 +228,7 @@ fn station(at: Option<Name10>) -> Station {
     }
 }
 
-/// The way from where the robot is to the position of a POSITION, as far as the names of the locations tell.
+/// The route from the robot's place to the position of a POSITION. Task compares only the names of the locations.
 fn way(at: Option<Standing>, plan: &Plan, data: &TaskData<'_>) -> TaskRoute {
     let Some(at) = at else { return TaskRoute::NoStart };
     let Some(to) = plan.position_site().site() else { return TaskRoute::Here };

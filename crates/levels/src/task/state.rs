@@ -13,17 +13,17 @@ use crate::execution::Execution;
 /// State of Task.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct State {
-    /// The command of the HWSC and how far it has come.
+    /// The command of the HWSC and its progress.
     pub execution: Execution,
     pub step: Step,
-    /// The neighbour that has its last order.
+    /// The recipient of the last order.
     pub ordered: TaskRecipient,
     pub control: Control,
     /// The command with its names looked up.
     pub plan: Plan,
     /// Last record number given to a T-POSE.
     pub last_pose: u32,
-    /// What a person has confirmed about what the gripper holds.
+    /// The support of the held object that a person has confirmed.
     pub confirmed: Option<Confirmed>,
     pub subtask: Commander,
     pub data_system: DataSystem,

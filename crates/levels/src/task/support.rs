@@ -1,5 +1,5 @@
-//! What keeps an object from falling when POSITION opens the gripper (V.4.1 POSITION): where the robot stands, the task
-//! data, the report of the vise, and what a person has confirmed (docs/design/recovery.md "Unknown").
+//! The support of an object when POSITION opens the gripper (V.4.1 POSITION): the robot's place, the task data, the
+//! report of the vise, and a person's confirmation (docs/design/recovery.md "Unknown").
 
 use interfaces::{
     ExternalInputs,
@@ -14,20 +14,20 @@ use taskdata::files::{LocptId, Place, Reference, TaskData};
 use super::plan::Plan;
 use crate::places::named;
 
-/// What keeps an object from falling when the gripper opens.
+/// The support of the held object when the gripper opens.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum TaskSupport {
     None,
-    /// The sector of a tray or the nest at which the robot stands with the object.
+    /// The sector of a tray, or the nest, where the robot is with the object.
     Place,
-    /// A fixture with jaws at which the robot stands with the object. The jaws are not known to clamp it.
+    /// A fixture with jaws where the robot is with the object. Whether the jaws clamp it is not known.
     Jaws,
-    /// The jaws of such a fixture clamp it, or a person holds it.
+    /// The jaws of such a fixture clamp the object, or a person holds it.
     Secured,
 }
 
 impl TaskSupport {
-    /// The support of what the gripper holds, for the command of a plan.
+    /// The support of the held object, for the command of a plan.
     #[must_use]
     pub fn sense(
         below: &SubtaskStatus,
@@ -50,11 +50,11 @@ impl TaskSupport {
         }
     }
 
-    /// The support that the place itself gives, whatever its jaws do. The object that a command names is
-    /// considered if the gripper holds something unknown.
+    /// The support at the place itself, with its jaws ignored. If the gripper holds something unknown, the object
+    /// that the command names is assumed.
     #[must_use]
     pub fn of_place(below: &SubtaskStatus, named: Option<ObjectGrip>, data: &TaskData<'_>) -> Self {
-        // Only a robot that stands at an object, or has brought one, has a grip.
+        // Only a robot that is at an object, or has brought one, has a grip.
         let Some((at, grip)) = below.at.and_then(|at| Some((at, at.grip?))) else { return Self::None };
         let object = match below.held {
             Holding::Object(held) if held.grip != grip => return Self::None,
@@ -75,14 +75,15 @@ impl TaskSupport {
     }
 }
 
-/// An object has grip data of its own at the location point of a place: those for `$$$` say nothing of a fixture.
+/// True if the object has its own grip data at the location point of the place. Grip data for `$$$` do not describe a
+/// fixture.
 fn has_place(object: &ObjectGrip, at: &Standing, data: &TaskData<'_>) -> bool {
     let [here, anywhere] = [at.site.record, LocptId::NULL]
         .map(|point| data.grip_loc(&object.object, object.grip, &Place::point(point)));
     here.is_some() && here != anywhere
 }
 
-/// The place is one of the fixtures in which a part stays by its weight (VII.5: owner VFIXTURE).
+/// True if a part stays in this fixture by its weight (VII.5: owner VFIXTURE).
 fn is_nest(at: &Standing, data: &TaskData<'_>) -> bool {
     let owner = data.owner_named(&Name10::clipped(named::NESTS));
     let point = Reference::location_point(at.site.record);

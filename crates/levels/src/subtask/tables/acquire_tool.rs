@@ -3,9 +3,9 @@
 use rcs_core::decision_table;
 
 decision_table! {
-    /// ACQUIRE-TOOL (V.3.1): move to a tool in the tool drum and grasp it. Of one that is held E-move says
-    /// whether it is held in the drum. Something unknown that is held in the drum is what an interrupted
-    /// grasp has closed on: the grasp is made again.
+    /// ACQUIRE-TOOL (V.3.1): move to a tool in the tool drum and grasp it. For a held tool, E-move determines whether
+    /// it is in the drum. Something unknown that is held in the drum is the result of an interrupted grasp, which is
+    /// repeated.
     pub ACQUIRE_TOOL: fn acquire_tool(enum AcquireToolStep, super::Situation) -> super::Action {
         any {
             1: work: Busy                     => Wait;
@@ -16,7 +16,7 @@ decision_table! {
             3: held: Nothing | Right          => AcquireTool  -> Acquiring;
             4: held: Something, drum: Inside  => AcquireTool  -> Acquiring;
         }
-        /// E-move is going to the tool and grasping it.
+        /// E-move moves to the tool and grasps it.
         Acquiring {
             5: held: Right                    => Finish;
             6: held: Nothing | Other          => Fail(GraspMissed);

@@ -1,55 +1,55 @@
-//! Orders of a person to the Active Pedestal.
+//! Manual orders to the Active Pedestal.
 
 use interfaces::pedestal::PedestalVerb;
 use rcs_core::{Actions, Plain, Variables, decision_table};
 
 use super::{PedestalData, PedestalLoad, SubtaskPedestal};
 
-/// Is Subtask using the pedestal?
+/// Use of the pedestal by Subtask.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Regripping {
-    /// It is not.
+    /// Subtask does not use the pedestal.
     No,
     /// A FIX-GRIP is executing, or a command has arrived that may be one.
     Yes,
 }
 
-/// The robot at the pedestal.
+/// The robot relative to the pedestal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum RobotThere {
-    /// It is clear of the pedestal.
+    /// The robot is clear of the pedestal.
     Clear,
-    /// It is at the pedestal, or not known to be clear, and does not hold the part.
+    /// The robot is at the pedestal, or not known to be clear, and does not hold the part.
     Near,
-    /// It is at the pedestal and holds the part.
+    /// The robot is at the pedestal and holds the part.
     Grips,
 }
 
-/// Does a person hold the part?
+/// The person's statement about the part.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum HeldByHand {
-    /// Nobody has said so.
+    /// The person has not confirmed that they hold the part.
     No,
-    /// The person has said so.
+    /// The person has confirmed that they hold the part.
     Yes,
 }
 
-/// An order of a person, for [`BY_HAND`].
+/// A manual order, for [`BY_HAND`].
 #[derive(Clone, Copy, Debug, Variables)]
 pub struct ManualOrder {
     /// The command.
     pub order: PedestalVerb,
-    /// Is Subtask using the pedestal?
+    /// Use of the pedestal by Subtask.
     pub regripping: Regripping,
-    /// What the pedestal makes of the last command.
+    /// The result of the last command to the pedestal.
     pub pedestal: SubtaskPedestal,
     /// The PED-PARA record of the object that the order names.
     pub data: PedestalData,
     /// The part in the pedestal's hand.
     pub part: PedestalLoad,
-    /// The robot at the pedestal.
+    /// The robot relative to the pedestal.
     pub robot: RobotThere,
-    /// Does the person hold the part?
+    /// The person's statement about the part.
     pub by_hand: HeldByHand,
 }
 
@@ -73,19 +73,19 @@ pub enum Refused {
     RobotNear,
 }
 
-/// What becomes of an order.
+/// The response to a manual order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Actions)]
 pub enum Manually {
-    /// It is sent to the pedestal.
+    /// The order is sent to the pedestal.
     Send,
-    /// It is refused.
+    /// The order is refused.
     Refuse(Refused),
 }
 
 decision_table! {
-    /// BY-HAND: a person commands the Active Pedestal (an extension: IV.5 gives terminal 4 no such word). The
-    /// order is sent only while Subtask does not use the pedestal. The hand opens on a part only if the robot
-    /// or the person holds it, and the table turns only if the robot is clear.
+    /// BY-HAND: a person commands the Active Pedestal (an extension: IV.5 gives terminal 4 no such word). The order
+    /// is sent only while Subtask does not use the pedestal. The hand opens on a part only if the robot or the person
+    /// holds it. The table turns only if the robot is clear.
     pub BY_HAND: fn by_hand(ManualOrder) -> Manually or () {
         1:  order: None                                      => consult;
         2:  regripping: Yes                                  => Refuse(Regripping);

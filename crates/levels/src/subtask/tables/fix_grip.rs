@@ -1,8 +1,8 @@
-//! FIX-GRIP (V.3.1): to the pedestal, and back from it in the new grip.
+//! FIX-GRIP (V.3.1): bring the part to the pedestal and take it back in the new grip.
 
 use rcs_core::{Plain, decision_table};
 
-/// Steps of FIX-GRIP: what was ordered last.
+/// Steps of FIX-GRIP, named after the last order.
 ///
 /// ```text
 ///   FIX-GRIP (robot has the part):     Start -> Preparing -> Bringing -> Gripping
@@ -12,21 +12,21 @@ use rcs_core::{Plain, decision_table};
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum FixGripStep {
-    /// Nothing ordered yet.
+    /// No order yet.
     Start,
     /// The pedestal opens its hand and turns its table to receive the object.
     Preparing,
-    /// The pedestal closes its hand on the object.
+    /// The pedestal closes its hand around the object.
     Gripping,
     /// The robot's fingers close on the object.
     Grasping,
-    /// The object is on its way to the pedestal.
+    /// The robot moves the object to the pedestal.
     Bringing,
     /// The robot releases the object.
     Releasing,
-    /// The robot is on its way out of the pedestal's way.
+    /// The robot moves away from the pedestal.
     Clearing,
-    /// The robot is on its way back to the object.
+    /// The robot moves back to the object.
     Approaching,
     /// The pedestal releases the object.
     LettingGo,
@@ -35,9 +35,9 @@ pub enum FixGripStep {
 }
 
 decision_table! {
-    /// AT-PEDESTAL: second part of FIX-GRIP (V.3.1), with the part in the pedestal's hand: the robot
-    /// releases it and moves to PED-SAFE, the table turns, the robot grasps it again, the hand opens. What
-    /// is next depends on who has the part, on the angle of the table and on where the robot is.
+    /// AT-PEDESTAL: second part of FIX-GRIP (V.3.1), with the part in the pedestal's hand. The robot releases the
+    /// part and moves to PED-SAFE, the table turns, the robot grasps it again, and the hand opens. The next action
+    /// depends on the holder of the part, the table angle and the robot's place.
     pub AT_PEDESTAL: fn at_pedestal(self::FixGripStep, super::Situation) -> super::Action or () {
         any {
             1:  work: Busy                                          => Wait;
@@ -51,7 +51,7 @@ decision_table! {
             5:  part: Both, robot: Third, table: Turned             => PedRelease      -> LettingGo;
             6:  part: Hand | Touched, robot: Third, table: Turned   => GraspObjAtPed   -> Grasping;
             7:  part: Both | Touched                                => Fail(PartInPedestal);
-            // The pedestal alone has it.
+            // Only the pedestal has the part.
             8:  robot: First | Third                                => MovToPedSafe    -> Clearing;
         }
         Flipping {
@@ -68,12 +68,12 @@ decision_table! {
 }
 
 decision_table! {
-    /// FIX-GRIP (V.3.1): regrip the object with the Active Pedestal; done at once if it is held as it is to
-    /// be. What is next depends on who has the part, on the angle of the table and on where the robot is;
-    /// the step only says what was ordered last. While anything is wrong with the pedestal the robot stays
-    /// where it is and keeps its grip. The hand is opened only when it is empty and the robot is clear of
-    /// it, or when the robot has the part in the new grip. This table brings the part to the pedestal;
-    /// AT-PEDESTAL, which is consulted before, does the rest once the pedestal's hand has it.
+    /// FIX-GRIP (V.3.1): regrip the object with the Active Pedestal. The command finishes at once if the object is
+    /// already held in the new grip. The next action depends on the holder of the part, the table angle and the
+    /// robot's place; the step only records the last order. During a pedestal fault the robot stays in place and
+    /// keeps its grip. The hand opens only when it is empty and the robot is clear of it, or when the robot has the
+    /// part in the new grip. This table brings the part to the pedestal. AT-PEDESTAL, which is consulted first, does
+    /// the rest once the hand has the part.
     pub FIX_GRIP: fn fix_grip(self::FixGripStep, super::Situation) -> super::Action {
         any {
             1:  part: Other                                             => Fail(PedestalHoldsOther);

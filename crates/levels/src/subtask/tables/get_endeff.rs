@@ -3,9 +3,9 @@
 use rcs_core::decision_table;
 
 decision_table! {
-    /// GET-ENDEFF (V.3.1): connect the proper gripper; done at once if it is on, locked and clear of its
-    /// holster. An exchange that was interrupted is finished first. A gripper that may hold something is not
-    /// left.
+    /// GET-ENDEFF (V.3.1): attach the proper gripper. The command finishes at once if it is attached, locked and
+    /// clear of its holster. An interrupted exchange is finished first. A gripper that may hold something stays on
+    /// the robot.
     pub GET_ENDEFF: fn get_endeff(enum GetEndeffStep, super::Situation) -> super::Action {
         any {
             1:  work: Busy                                           => Wait;
@@ -21,7 +21,7 @@ decision_table! {
             8:  exchange: None, gripper: Wrong, held: Nothing        => MovToHol(Own)     -> Stowing;
             9:  exchange: None, gripper: None                        => MovToHol(Wanted)  -> Fetching;
         }
-        /// The robot is on its way to the holster of the gripper that it has.
+        /// The robot moves to the holster of its gripper.
         Stowing {
             10: otherwise                                            => QcDetach          -> Detaching;
         }
@@ -31,7 +31,7 @@ decision_table! {
             12: gripper: None, exchange: Wanted | Other              => Fail(NotDetached);
             13: gripper: Right | Wrong                               => Fail(NotDetached);
         }
-        /// The bare robot is on its way to the holster of the wanted gripper.
+        /// The bare robot moves to the holster of the wanted gripper.
         Fetching {
             14: otherwise                                            => QcAttach          -> Attaching;
         }

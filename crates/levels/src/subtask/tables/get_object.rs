@@ -3,12 +3,11 @@
 use rcs_core::decision_table;
 
 decision_table! {
-    /// GET-OBJECT (V.3.1): find the object if vision is needed, move to it and grasp it. If it counts as held
-    /// with a grip that the command names, GRASP-OBJ alone is sent: E-move asks the fingers, and ends it at
-    /// once unless a release has not ended well. What vision has found already is not looked for again.
-    /// Something unknown that is held where the object is gone to is what an interrupted grasp has closed on:
-    /// the grasp is made again. An object that may have slid in the fingers, in a place where pictures are taken,
-    /// is released there and looked for again.
+    /// GET-OBJECT (V.3.1): find the object if vision is needed, move to it and grasp it. If it is held in a grip that
+    /// the command names, only GRASP-OBJ is sent: E-move checks the fingers and finishes at once unless a release was
+    /// interrupted. An object that vision has found is not located again. Something unknown that is held at the
+    /// object's location is the result of an interrupted grasp, which is repeated. An object that may have slid in
+    /// the fingers is released and located again if it is where pictures are taken.
     pub GET_OBJECT: fn get_object(enum GetObjectStep, super::Situation) -> super::Action {
         Start | Releasing | Viewing | Locating | Grasping {
             1:  work: Busy                                             => Wait;
@@ -25,20 +24,20 @@ decision_table! {
             9:  held: Something, station: There                        => GraspObj    -> Grasping;
             10: held: Something, station: Elsewhere                    => Fail(UnknownHeld);
         }
-        /// The gripper is opening, to let the object be looked for again.
+        /// The gripper opens, so that the object can be located again.
         Releasing {
             11: otherwise                                              => MovToVu     -> Viewing;
         }
-        /// The robot is on its way to where the picture is taken.
+        /// The robot moves to the viewing location.
         Viewing {
             12: otherwise                                              => LocateObj   -> Locating;
         }
-        /// Vision is looking for the object.
+        /// Vision locates the object.
         Locating {
             13: otherwise                                              => MovToObj    -> Moving;
         }
-        /// The robot is on its way to the object. A link to the robot that fails drops the pictures: E-move would
-        /// go to where the task data have the object.
+        /// The robot moves to the object. If the link to the robot fails, the pictures are lost, and E-move would use
+        /// the location of the task data.
         Moving {
             14: vision: Needed                                         => MovToVu     -> Viewing;
             15: work: Busy                                             => Wait;

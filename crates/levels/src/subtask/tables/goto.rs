@@ -12,7 +12,7 @@ decision_table! {
         Start {
             2: otherwise   => MovToLoc  -> Moving;
         }
-        /// The robot is on its way.
+        /// The robot moves to the location.
         Moving {
             3: otherwise   => Finish;
         }

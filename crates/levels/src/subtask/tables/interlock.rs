@@ -3,9 +3,9 @@
 use rcs_core::decision_table;
 
 decision_table! {
-    /// INTERLOCK: while the part is in the pedestal's hand, alone or together with the robot, only what
-    /// finishes or undoes the regrip is done: a robot that leaves with it would tear it out. A robot that holds
-    /// nothing and is clear of the pedestal may leave.
+    /// INTERLOCK: while the part is in the pedestal's hand, only commands that finish or undo the regrip are
+    /// accepted. A robot that leaves with the part would tear it out. A robot that holds nothing and is clear of the
+    /// pedestal may leave.
     pub INTERLOCK: fn interlock(super::Interlock) -> super::Action or () {
         1: asked: Before                                              => consult;
         2: pedestal: Free                                             => consult;

@@ -1,5 +1,4 @@
-//! Decision tables of Subtask: what a new command needs, what has become of its last order, and a file a
-//! command.
+//! Decision tables of Subtask: needs of a new command, result of its last order, and one file per command.
 
 pub mod accept;
 pub mod acquire_tool;
@@ -41,25 +40,25 @@ use crate::{
     places::Missing,
 };
 
-/// What a new command needs, for [`accept::ACCEPT`].
+/// The needs of a new command, for [`accept::ACCEPT`].
 #[derive(Clone, Copy, Debug, Default, Variables)]
 pub struct Request {
-    /// Is the command new?
+    /// A new command is looked up in this tick.
     pub asked: Asked,
     /// The command.
     pub verb: SubtaskVerb,
-    /// Is an object named?
+    /// The command names an object.
     pub named: Named,
-    /// How the pedestal takes the object.
+    /// The pedestal data of the object.
     pub pedestal: PedestalData,
-    /// What the task data lack.
+    /// The data that the task data lack.
     pub missing: Missing,
 }
 
 /// A part in the pedestal's hand, for [`interlock::INTERLOCK`].
 #[derive(Clone, Copy, Debug, Variables)]
 pub struct Interlock {
-    /// Is the command new?
+    /// A new command is looked up in this tick.
     pub asked: Asked,
     /// The part.
     pub pedestal: PedestalLoad,
@@ -67,14 +66,14 @@ pub struct Interlock {
     pub verb: SubtaskVerb,
     /// End effector state.
     pub gripper: SubtaskGripper,
-    /// The robot, as the pedestal sees it.
+    /// Whether the robot may leave.
     pub robot: Leaving,
 }
 
-/// How the last order of the command stands, for [`ordered::ORDERED`].
+/// The status of the last order, for [`ordered::ORDERED`].
 #[derive(Clone, Copy, Debug, Variables)]
 pub struct Subordinates {
-    /// The process that has it.
+    /// The recipient of the order.
     pub ordered: SubtaskRecipient,
     /// Status of E-move.
     pub emove: Lower,
@@ -85,56 +84,56 @@ pub struct Subordinates {
 /// The state variables of a tick, for the tables of the commands.
 #[derive(Clone, Copy, Debug, Variables)]
 pub struct Situation {
-    /// The last order.
+    /// The status of the last order.
     pub work: Work,
-    /// Is the object held?
+    /// The held object, compared with the commanded one.
     pub held: Held,
-    /// With which grip?
+    /// The grip of the held object.
     pub grip: GripHeld,
-    /// Where is it along the fingers?
+    /// The position of the object along the fingers.
     pub seat: Seat,
-    /// Is vision needed?
+    /// The need for vision.
     pub vision: SubtaskVision,
     /// End effector state.
     pub gripper: SubtaskGripper,
-    /// An exchange that is half done.
+    /// An interrupted exchange.
     pub exchange: SubtaskExchange,
-    /// Where the robot stands: at the object of the command, in its source grip?
+    /// The robot at the object of the command, in the source grip.
     pub station: Where,
-    /// Where the object of the command was let go last: at its destination?
+    /// The last release of the object at the destination of the command.
     pub placed: Where,
-    /// The tool drum.
+    /// The robot relative to the tool drum.
     pub drum: SubtaskDrum,
-    /// What the position is named by.
+    /// The kind of name of the position.
     pub named: Named,
-    /// Who has the part that is regripped.
+    /// The holder of the part during a regrip.
     pub part: SubtaskPart,
     /// The rotary table.
     pub table: Turn,
     /// The hand of the pedestal.
     pub hand: HandOpening,
-    /// Where the robot is.
+    /// The robot's place.
     pub robot: SubtaskRobot,
 }
 
-/// What preprocess has found in a tick.
+/// The result of preprocess in a tick.
 #[derive(Clone, Copy, Debug)]
 pub struct StateVariables {
-    /// What the command buffer holds.
+    /// State of the command buffer.
     pub arrival: Arrival,
-    /// Is the command to be accepted or refused?
+    /// A new command is accepted or refused in this tick.
     pub asked: Asked,
-    /// What a new command replaces.
+    /// The work that a new command replaces.
     pub replaced: Replaced,
-    /// The command in it.
+    /// The command in the buffer.
     pub verb: SubtaskVerb,
-    /// What a new command needs.
+    /// The needs of a new command.
     pub request: Request,
-    /// What hinders it.
+    /// The obstacles to a new command.
     pub interlock: Interlock,
-    /// The order of a person to the pedestal.
+    /// A manual order to the pedestal.
     pub manual: ManualOrder,
-    /// How the last order of the command stands.
+    /// The status of the last order.
     pub subordinates: Subordinates,
     /// The goal of the command, compared with the statuses from below.
     pub proof: Proof,
@@ -142,12 +141,12 @@ pub struct StateVariables {
     pub situation: Situation,
 }
 
-/// What a row can ask for.
+/// The action of a row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Actions)]
 pub enum Action {
     /// Nothing new.
     Wait,
-    /// E-PAUSE to E-move, and PAUSE to a pedestal that was commanded.
+    /// E-PAUSE to E-move, and PAUSE to a moving pedestal.
     Pause,
     /// MOV-TO-VU to E-move.
     MovToVu,
@@ -157,7 +156,7 @@ pub enum Action {
     MovToObj,
     /// GRASP-OBJ to E-move.
     GraspObj,
-    /// GRASP-OBJ to E-move, in the grip in which the object counts as held.
+    /// GRASP-OBJ to E-move, in the grip of the held object.
     GraspAgain,
     /// MOV-OBJ-TO to E-move.
     MovObjTo,
@@ -173,13 +172,13 @@ pub enum Action {
     QcAttach,
     /// PRE-GRIP to the pedestal.
     PedPreGrip,
-    /// MOV-OBJ-TO to E-move: the object, in the source grip, to the pedestal.
+    /// MOV-OBJ-TO to E-move: move the object, in the source grip, to the pedestal.
     MovObjToPed,
     /// GRIP to the pedestal.
     PedGrip,
     /// RELEASE to E-move, with the object in the pedestal's hand.
     ReleaseAtPed,
-    /// MOV-TO-LOC to E-move: out of the pedestal's way.
+    /// MOV-TO-LOC to E-move: move to PED-SAFE.
     MovToPedSafe,
     /// FLIP to the pedestal.
     PedFlip(Flip),
@@ -201,9 +200,9 @@ pub enum Action {
     Finish,
     /// Report an error.
     Fail(Reason),
-    /// Report what E-move reports.
+    /// Report the failure that E-move reports.
     PassUp,
-    /// Report an error with the pedestal's reason, or with this one if it gives none.
+    /// Report the pedestal's reason, or this one if it gives none.
     PassUpPedestal(Reason),
 }
 

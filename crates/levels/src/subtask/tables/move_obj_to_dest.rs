@@ -14,7 +14,7 @@ decision_table! {
             3: held: Right, grip: Source | Neither  => Fail(RegripNeeded);
             4: held: Nothing | Other                => Fail(NothingHeld);
         }
-        /// The object is on its way.
+        /// The robot moves the object.
         Moving {
             5: held: Right                          => Finish;
             6: held: Nothing | Other                => Fail(ObjectLost);

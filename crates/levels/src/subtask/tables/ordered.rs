@@ -3,8 +3,8 @@
 use rcs_core::decision_table;
 
 decision_table! {
-    /// ORDERED: E-move or the pedestal is busy with the last order, or it is done. A failure ends the
-    /// command. A pause of both waits for a pedestal that moves; one that is silent cannot be waited for.
+    /// ORDERED: the result of the last order to E-move or the pedestal. A failure ends the command. A pause of both
+    /// waits for a moving pedestal, but not for a silent one.
     pub ORDERED: fn ordered(super::Subordinates) -> super::Action or crate::execution::Work {
         1:  ordered: Nothing                                   => consult(Over);
         2:  ordered: Emove,    emove: Pending | Executing      => consult(Busy);

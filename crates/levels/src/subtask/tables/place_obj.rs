@@ -3,8 +3,8 @@
 use rcs_core::decision_table;
 
 decision_table! {
-    /// PLACE-OBJ (V.3.1): move an object to a location and release it; done at once if that is the last that
-    /// was released. E-move reports an object that is lost on the way.
+    /// PLACE-OBJ (V.3.1): move an object to a location and release it. The command finishes at once if this object
+    /// was the last release there. E-move reports an object that is lost during the motion.
     pub PLACE_OBJ: fn place_obj(enum PlaceObjStep, super::Situation) -> super::Action {
         any {
             1:  work: Busy                             => Wait;
@@ -19,7 +19,7 @@ decision_table! {
             7:  held: Something                        => Fail(UnknownHeld);
             8:  held: NotKnown                         => Fail(HeldNotKnown);
         }
-        /// The object is on its way.
+        /// The robot moves the object.
         Moving {
             9:  held: Right                            => Release   -> Releasing;
             10: held: Nothing | Other                  => Fail(ObjectLost);

@@ -3,7 +3,7 @@
 use rcs_core::decision_table;
 
 decision_table! {
-    /// RELEASE (V.3.1): open the gripper and release what it holds.
+    /// RELEASE (V.3.1): open the gripper and release the held object.
     pub RELEASE: fn release(enum ReleaseStep, super::Situation) -> super::Action {
         any {
             1: work: Busy  => Wait;

@@ -3,8 +3,8 @@
 use rcs_core::decision_table;
 
 decision_table! {
-    /// RELEASE-TOOL (V.3.1): let go of a tool that is in the tool drum. Open fingers
-    /// that are still around the tool, or on their way out, move out: E-move knows where they are.
+    /// RELEASE-TOOL (V.3.1): release a tool in the tool drum. Open fingers that are still around the tool, or moving
+    /// out, leave the drum: E-move has their place.
     pub RELEASE_TOOL: fn release_tool(enum ReleaseToolStep, super::Situation) -> super::Action {
         any {
             1:  work: Busy                                 => Wait;
@@ -20,7 +20,7 @@ decision_table! {
             8:  held: Something                            => Fail(UnknownHeld);
             9:  held: NotKnown                             => Fail(HeldNotKnown);
         }
-        /// E-move is letting go and leaving the drum.
+        /// E-move releases the tool and leaves the drum.
         Releasing {
             10: otherwise                                  => Finish;
         }

@@ -3,7 +3,7 @@
 use rcs_core::decision_table;
 
 decision_table! {
-    /// REMOVE-TOOL (V.3.1): pull a tool that has been acquired out of the tool drum.
+    /// REMOVE-TOOL (V.3.1): pull an acquired tool out of the tool drum.
     pub REMOVE_TOOL: fn remove_tool(enum RemoveToolStep, super::Situation) -> super::Action {
         any {
             1: work: Busy             => Wait;
@@ -13,7 +13,7 @@ decision_table! {
             2: held: Right            => RemoveTool  -> Removing;
             3: held: Nothing | Other  => Fail(NothingHeld);
         }
-        /// E-move is pulling the tool out.
+        /// E-move pulls the tool out.
         Removing {
             4: held: Right            => Finish;
             5: held: Nothing | Other  => Fail(ObjectLost);

@@ -3,7 +3,7 @@
 use rcs_core::decision_table;
 
 decision_table! {
-    /// S-PAUSE (V.3.1): do nothing; the pause goes down the ladder.
+    /// S-PAUSE (V.3.1): stop E-move with E-PAUSE, and a moving pedestal with PAUSE.
     pub S_PAUSE: fn s_pause(enum SPauseStep, super::Situation) -> super::Action {
         any {
             1: work: Busy  => Wait;

@@ -2,7 +2,7 @@
 
 use rcs_core::Plain;
 
-/// With which grip the object of the command is held.
+/// The grip of the commanded object.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum GripHeld {
     /// The grip for the source location.
@@ -13,19 +13,19 @@ pub enum GripHeld {
     Neither,
 }
 
-/// Must the object be found by vision (VII.7.6, en)?
+/// The need to find the object by vision (VII.7.6, en).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum SubtaskVision {
-    /// Its location is known well enough.
+    /// The location of the object is known well enough.
     #[text = "not needed"]
     NotNeeded,
-    /// It must be found.
+    /// The object must be found.
     Needed,
-    /// It has been found, and nothing has moved it since.
+    /// The object was found, and nothing has moved it since.
     Done,
 }
 
-/// Is there something where the command wants it?
+/// A place, compared with the location of the command.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Where {
     /// At the location of the command, in its grip.
@@ -34,14 +34,14 @@ pub enum Where {
     Elsewhere,
 }
 
-/// An exchange of grippers that is half done: the robot stands in a holster.
+/// An interrupted exchange of grippers: the robot is in a holster.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum SubtaskExchange {
     /// None: the robot is clear of the holsters.
     None,
     /// In the holster of the wanted gripper.
     Wanted,
-    /// In that of another one.
+    /// In the holster of another gripper.
     Other,
 }
 
@@ -52,11 +52,11 @@ pub enum SubtaskGripper {
     None,
     /// The gripper for the object is attached.
     Right,
-    /// Another one is attached.
+    /// Another gripper is attached.
     Wrong,
 }
 
-/// What a position is named by.
+/// The kind of name of a position.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Named {
     /// The location alone.
@@ -65,14 +65,14 @@ pub enum Named {
     Object,
 }
 
-/// Pedestal status (V.3.1): what the Active Pedestal makes of the last command.
+/// Pedestal status (V.3.1): the result of the last command to the Active Pedestal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum SubtaskPedestal {
     /// Hand or table are moving, or the command is not echoed yet.
     Moving,
     /// The command is done.
     Done,
-    /// It cannot be executed.
+    /// The command cannot be executed.
     #[text = "can't-do"]
     Cannot,
     /// An error prevents it from finishing.
@@ -87,36 +87,36 @@ pub enum SubtaskPedestal {
 pub enum SubtaskDrum {
     /// The fingers are around a tool in the drum.
     Inside,
-    /// The robot stands at a place outside.
+    /// The robot is at a place outside.
     Outside,
-    /// It stands at no place: it may be on its way into the drum or out of it.
+    /// The robot is at no known place; it may be moving into the drum or out of it.
     Unplaced,
 }
 
-/// Who has the part that is regripped.
+/// The holder of the part during a regrip.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum SubtaskPart {
     /// The robot.
     Robot,
-    /// Robot and pedestal.
+    /// Both robot and pedestal.
     Both,
-    /// The pedestal, and something is between the robot's fingers, which may be the part, or they do not tell.
+    /// The pedestal. The robot's fingers may hold the part too: they hold something unknown, or give no result.
     Touched,
     /// The pedestal.
     Hand,
-    /// Neither of them.
+    /// Neither robot nor pedestal.
     Neither,
     /// The pedestal has another object.
     Other,
-    /// The pedestal has nothing, and the robot something unknown.
+    /// The pedestal has nothing, and the robot has something unknown.
     Unknown,
-    /// The robot's gripper does not tell, and the pedestal does not have the object.
+    /// The robot's gripper gives no result, and the pedestal does not have the object.
     NotKnown,
-    /// The pedestal's hand does not tell.
+    /// The pedestal's hand gives no result.
     Unsure,
 }
 
-/// Where the rotary table stands.
+/// The angle of the rotary table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Turn {
     /// At the angle in which it receives the object.
@@ -132,13 +132,13 @@ pub enum Turn {
 /// The hand of the pedestal, by its opening.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum HandOpening {
-    /// As wide as the object needs it to come in.
+    /// Wide enough for the object to enter.
     Open,
-    /// Narrower.
+    /// Too narrow.
     Narrow,
 }
 
-/// Where the robot is, for FIX-GRIP.
+/// The robot's place, for FIX-GRIP.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum SubtaskRobot {
     /// At the pedestal, for the source grip.
@@ -147,66 +147,66 @@ pub enum SubtaskRobot {
     Third,
     /// At PED-SAFE.
     Safe,
-    /// Elsewhere, or on a way.
+    /// Elsewhere, or moving.
     Away,
 }
 
-/// May the robot leave while the pedestal holds a part?
+/// Whether the robot may leave while the pedestal holds a part.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Leaving {
-    /// It holds something, or is not clear of the pedestal.
+    /// It must stay: it holds something, or is not clear of the pedestal.
     Bound,
-    /// It holds nothing and is clear.
+    /// It may leave: it holds nothing and is clear.
     Empty,
 }
 
-/// How far the table turns.
+/// The angle by which the table turns.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Flip {
     /// By the whole flip angle of the object.
     Whole,
-    /// By what is left of it.
+    /// By the remaining angle.
     Rest,
 }
 
 /// The part in the pedestal's hand.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum PedestalLoad {
-    /// There is none.
+    /// The hand has no part.
     Free,
-    /// It is there, alone or together with the robot.
+    /// The hand has a part. The robot may hold it too.
     HoldsPart,
-    /// The hand has gripped and does not tell.
+    /// The hand has gripped, and its sensors give no result.
     Unsure,
 }
 
-/// Which holster is moved to.
+/// The holster to which the robot moves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum SubtaskHolster {
-    /// That of the attached gripper.
+    /// The holster of the attached gripper.
     Own,
-    /// That of the wanted gripper.
+    /// The holster of the wanted gripper.
     Wanted,
 }
 
 /// The PED-PARA record of the object (VII.7.4).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum PedestalData {
-    /// There is none, or it is not needed.
+    /// Missing, or not needed.
     Missing,
-    /// It is there.
+    /// Found.
     Found,
 }
 
-/// The process that has the last order of the current command.
+/// The recipient of the last order of the current command.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum SubtaskRecipient {
-    /// Nothing was ordered yet.
+    /// No order was sent yet.
     Nothing,
     /// E-move.
     Emove,
     /// The Active Pedestal.
     Pedestal,
-    /// Both: they are pausing.
+    /// Both, while they pause.
     Both,
 }

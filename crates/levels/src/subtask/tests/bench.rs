@@ -1,5 +1,5 @@
-//! Subtask with doubles of the processes below it: an E-move and an Active Pedestal that do at once what they
-//! are told, or fail as a test wants.
+//! Subtask with test doubles of E-move and the Active Pedestal. They complete each order after a few ticks, or fail
+//! as a test selects.
 
 use geometry::pose::Pose;
 use interfaces::{
@@ -24,35 +24,34 @@ use crate::{
     subtask::Subtask,
 };
 
-/// Ticks that a double takes for a command.
+/// Duration of a command at a double, in ticks.
 const WORK: u32 = 3;
 
-/// How a double ends a command that a test has singled out.
+/// The failure of a command that the test selects.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Mishap {
     Error(Reason),
-    /// It does not end.
+    /// No end.
     Hang,
-    /// It is not even echoed.
+    /// No answer, not even an echo.
     Silence,
     /// The joystick box becomes active (E-move); can't-do (pedestal).
     Special(Reason),
-    /// It is reported done and has had no effect.
+    /// Reported done, without effect.
     NoEffect,
-    /// It is done, and the object is no longer held.
+    /// Done, and the object is no longer held.
     Loss,
-    /// QC-ATTACH: another gripper comes on.
+    /// QC-ATTACH attaches another gripper.
     OtherGripper(u8),
 }
 
-/// The E-move that a test sees.
 #[derive(Clone, Default)]
 pub struct EmoveDouble {
     worker: Worker,
     pub outputs: EmoveOutputs,
     pub received: Vec<EmoveCommand>,
     pub mishap: Option<(EmoveVerb, Mishap)>,
-    /// It reports done and does nothing.
+    /// Each command is reported done, without effect.
     pub ignores: bool,
 }
 
@@ -97,7 +96,7 @@ impl EmoveDouble {
         }
     }
 
-    /// The gripper holds an object; an empty name for none.
+    /// The gripper holds an object, or nothing if the name is empty.
     pub fn hold(&mut self, object: &str, grip: i32) {
         let status = &mut self.outputs.status;
         match Name16::clipped(object) {
@@ -107,18 +106,17 @@ impl EmoveDouble {
     }
 }
 
-/// The Active Pedestal that a test sees.
 #[derive(Clone, Default)]
 pub struct PedestalDouble {
     worker: Worker,
     pub outputs: PedestalOutputs,
     pub received: Vec<PedestalCommand>,
     pub mishap: Option<(PedestalVerb, Mishap)>,
-    /// Size of what is in the hand's reach, 0.01 in.
+    /// Size of the part within reach of the hand, 0.01 in.
     pub part: i32,
     /// The hand loses the object while the table turns.
     pub slips: bool,
-    /// It reports done and does nothing.
+    /// Each command is reported done, without effect.
     pub ignores: bool,
 }
 
@@ -152,7 +150,7 @@ impl PedestalDouble {
         status.echo = self.worker.echo();
     }
 
-    /// The effect of an order that is done, with a part of a size in the hand's reach, which slips or not.
+    /// The effect of a completed order. `part` is the size of the part within reach of the hand.
     const fn effect(status: &mut PedestalStatus, command: &PedestalCommand, part: i32, slips: bool) {
         match command.command {
             PedestalVerb::PreGrip => {
@@ -223,7 +221,7 @@ impl Default for Bench<'static> {
 }
 
 impl<'d> Bench<'d> {
-    /// A bench with the parts gripper attached, after one tick in which nothing was commanded.
+    /// A bench with the parts gripper attached, after one idle tick.
     pub fn of(data: TaskData<'d>) -> Self {
         let pedestal = PedestalDouble { part: 255, ..PedestalDouble::default() };
         let mut bench =
@@ -235,7 +233,7 @@ impl<'d> Bench<'d> {
         bench
     }
 
-    /// Write a new command for an object at a location with the grip for source and destination.
+    /// Write a new command for an object at a location, with the grips for source and destination.
     pub fn command(&mut self, verb: SubtaskVerb, object: &str, grips: (i32, i32), location: &str) {
         let object = Name16::new(object).unwrap();
         let mut poses = self.memory.task.poses;
@@ -280,17 +278,17 @@ impl<'d> Bench<'d> {
         self.finish()
     }
 
-    /// The words that E-move was sent since the last command began.
+    /// The orders to E-move since the last command began.
     pub fn sent(&self) -> Vec<&'static str> {
         self.world.emove.received.iter().map(|command| command.command.text()).collect()
     }
 
-    /// The words that the pedestal was sent.
+    /// The orders to the pedestal.
     pub fn sent_to_pedestal(&self) -> Vec<&'static str> {
         self.world.pedestal.received.iter().map(|command| command.command.text()).collect()
     }
 
-    /// FIX-GRIP of the part from grip 1 to grip -1 has been sent to a robot that holds it.
+    /// A robot that holds the part has received FIX-GRIP from grip 1 to grip -1.
     pub fn fixing() -> Self
     where
         Self: Default,
@@ -300,7 +298,7 @@ impl<'d> Bench<'d> {
         bench
     }
 
-    /// An object is held that Subtask has seen grasped with a grip.
+    /// An object is held in a grip that Subtask has observed.
     pub fn grasped(object: &str, grip: i32) -> Self
     where
         Self: Default,
@@ -315,5 +313,5 @@ impl<'d> Bench<'d> {
     }
 }
 
-/// How a command ends that succeeds.
+/// Status of a successful command.
 pub const DONE: (StatusReport, Reason) = (StatusReport::Done, Reason::None);

@@ -9,7 +9,7 @@ use rcs_core::name::Name16;
 
 use super::bench::{Bench, DONE};
 
-/// E-move reports done for the last order of a command, and its status is changed then. How the command ends.
+/// The end of a command whose status is changed after E-move reports done for its last order.
 fn end(
     mut bench: Bench<'static>,
     (verb, object, grips, location): (SubtaskVerb, &str, (i32, i32), &str),
@@ -38,7 +38,7 @@ fn holds(bench: &mut Bench<'static>, object: &str, grip: i32) {
 }
 
 #[test]
-fn goto_is_not_done_elsewhere_or_beside_the_place() {
+fn goto_is_not_done_away_from_its_location() {
     let goto = (SubtaskVerb::GotoDest, "", (0, 0), "HOME");
     let error = (StatusReport::Error, Reason::NotAtGoal);
     let away = |bench: &mut Bench<'static>| bench.world.emove.outputs.status.at = None;
@@ -86,7 +86,7 @@ fn release_is_not_done_while_the_object_is_held() {
 }
 
 #[test]
-fn brought_object_is_not_at_the_place_that_the_robot_has_left() {
+fn object_away_from_its_destination_is_not_brought() {
     let bring = (SubtaskVerb::MoveObjToDest, "PART", (1, 1), "SAFE");
     let change = |bench: &mut Bench<'static>| bench.world.emove.outputs.status.offset = Offset::Off;
     let ended = end(Bench::grasped("PART", 1), bring, EmoveVerb::MovObjTo, change);
@@ -95,7 +95,7 @@ fn brought_object_is_not_at_the_place_that_the_robot_has_left() {
 }
 
 #[test]
-fn tool_that_is_not_in_the_drum_is_not_inserted() {
+fn tool_outside_the_drum_is_not_inserted() {
     let insert = (SubtaskVerb::InsertTool, "TOOL-1", (1, 1), "");
     let change = |bench: &mut Bench<'static>| bench.world.emove.outputs.status.drum = false;
     let ended = end(Bench::grasped("TOOL-1", 1), insert, EmoveVerb::InsertTool, change);
@@ -124,9 +124,9 @@ fn part_that_may_have_slid_is_done_and_unconfirmed() {
     assert_eq!(bench.memory.subtask.status.unconfirmed, Unconfirmed::None);
 }
 
-/// An arm without pressure has torn the gripper off the locked ring: its id pins name none.
+/// An arm without pressure has torn the gripper off the locked ring, and the id pins no longer identify it.
 #[test]
-fn gripper_that_the_id_pins_do_not_name_is_not_attached() {
+fn gripper_with_differing_id_pins_is_not_attached() {
     let mut bench = Bench::default();
     bench.world.emove.outputs.status.end_effector_id = Some(1);
     assert_eq!(bench.run(SubtaskVerb::GetEndeff, "PART", (1, 1), "PFIXTURE"), DONE);

@@ -136,7 +136,7 @@ pub fn data() -> TaskData<'static> {
     STORE.get_or_init(|| from(TEXT)).view()
 }
 
-/// The data without the lines that hold one of `words`, for tests of what is missing.
+/// The data without the lines that contain one of `words`, for tests of missing data.
 pub fn without(words: &[&str]) -> Store {
     let lines = TEXT.lines().filter(|line| !words.iter().any(|word| line.contains(word)));
     from(&lines.collect::<Vec<_>>().join("\n"))

@@ -28,13 +28,13 @@ fn error(reason: Reason) -> (StatusReport, Reason) {
     (StatusReport::Error, reason)
 }
 
-/// Where a named location point is, as the levels publish it.
+/// The pose with a record number, as the levels publish it.
 fn pose_of(bench: &Bench<'_>, number: u32) -> Option<geometry::pose::Pose> {
     bench.memory.changing_pose(number).copied()
 }
 
 #[test]
-fn link_failure_during_a_standing_pause_is_no_error() {
+fn link_failure_after_a_pause_changes_only_the_reason() {
     let mut bench = Bench::default();
     assert_eq!(bench.run(SubtaskVerb::Pause, "", (0, 0), ""), DONE);
     bench.world.emove.outputs.status.reason = Reason::LinkOff;
@@ -46,7 +46,7 @@ fn link_failure_during_a_standing_pause_is_no_error() {
 }
 
 #[test]
-fn the_right_gripper_is_not_fetched() {
+fn right_gripper_is_not_fetched() {
     let mut bench = Bench::default();
     assert_eq!(bench.run(SubtaskVerb::GetEndeff, "PART", (1, 1), "PFIXTURE"), DONE);
     assert!(bench.sent().is_empty());
@@ -56,7 +56,7 @@ fn the_right_gripper_is_not_fetched() {
 }
 
 #[test]
-fn a_wrong_gripper_is_left_in_its_holster_and_the_right_one_fetched() {
+fn wrong_gripper_is_exchanged_for_the_right_one() {
     let mut bench = Bench::default();
     assert_eq!(bench.run(SubtaskVerb::GetEndeff, "CYLINDER", (1, 1), "PFIXTURE"), DONE);
     assert_eq!(bench.sent(), ["MOV-TO-HOL", "QC-DETACH", "MOV-TO-HOL", "QC-ATTACH"]);
@@ -87,7 +87,7 @@ fn a_wrong_gripper_is_left_in_its_holster_and_the_right_one_fetched() {
 }
 
 #[test]
-fn a_bare_robot_goes_to_the_wanted_holster_at_once() {
+fn bare_robot_goes_to_the_wanted_holster() {
     let mut bench = Bench::default();
     bench.world.emove.outputs.status.end_effector_id = None;
     bench.step();
@@ -104,7 +104,7 @@ fn a_bare_robot_goes_to_the_wanted_holster_at_once() {
 }
 
 #[test]
-fn a_gripper_that_holds_something_is_not_left() {
+fn gripper_with_an_object_is_not_detached() {
     for held in ["BAR", "CYLINDER"] {
         let mut bench = Bench::default();
         bench.world.emove.hold(held, 1);
@@ -116,7 +116,7 @@ fn a_gripper_that_holds_something_is_not_left() {
 }
 
 #[test]
-fn what_goes_wrong_with_an_exchange_is_named() {
+fn exchange_failure_is_reported_with_its_reason() {
     for (verb, mishap, reason) in [
         (EmoveVerb::QcDetach, Mishap::NoEffect, Reason::NotDetached),
         (EmoveVerb::QcAttach, Mishap::NoEffect, Reason::NotAttached),
@@ -131,12 +131,12 @@ fn what_goes_wrong_with_an_exchange_is_named() {
         assert_eq!(end, error(reason), "{verb} {mishap:?}");
         let sent = bench.world.emove.received.len();
         (0..50).for_each(|_| assert_eq!(bench.step().status.report, StatusReport::Error));
-        assert_eq!(bench.world.emove.received.len(), sent, "nothing is sent after an error");
+        assert_eq!(bench.world.emove.received.len(), sent, "no order after an error");
     }
 }
 
 #[test]
-fn a_gripper_without_a_holster_is_refused_before_anything_moves() {
+fn gripper_without_holster_is_refused_before_any_motion() {
     for word in ["-o-loc- GRIPPER-1", "-o-loc- GRIPPER-2"] {
         let store = without(&[word]);
         let mut bench = Bench::of(store.view());
@@ -154,7 +154,7 @@ fn a_gripper_without_a_holster_is_refused_before_anything_moves() {
 }
 
 #[test]
-fn an_object_is_regripped_on_the_pedestal() {
+fn object_is_regripped_on_the_pedestal() {
     let mut bench = Bench::grasped("PART", 1);
     assert_eq!(bench.run(SubtaskVerb::FixGrip, "PART", (1, -1), ""), DONE);
     assert_eq!(bench.sent(), ["MOV-OBJ-TO", "RELEASE", "MOV-TO-LOC", "MOV-TO-OBJ", "GRASP-OBJ"]);
@@ -188,13 +188,13 @@ fn an_object_is_regripped_on_the_pedestal() {
         ]
     );
     assert!(bench.world.emove.outputs.status.held.is_held());
-    // The goal already holds.
+    // The goal is already reached.
     assert_eq!(bench.run(SubtaskVerb::FixGrip, "PART", (1, -1), ""), DONE);
     assert!(bench.sent().is_empty() && bench.sent_to_pedestal().is_empty());
 }
 
 #[test]
-fn the_cycle_count_of_a_pedestal_command_is_its_tick() {
+fn pedestal_command_carries_its_tick() {
     let mut bench = Bench::fixing();
     bench.step();
     let command = bench.memory.subtask.pedestal;
@@ -202,7 +202,7 @@ fn the_cycle_count_of_a_pedestal_command_is_its_tick() {
 }
 
 #[test]
-fn pedestal_and_robot_do_not_move_into_each_other() {
+fn pedestal_and_robot_never_move_together() {
     let mut bench = Bench::fixing();
     for _ in 0..200 {
         let status = bench.step().status;
@@ -218,7 +218,7 @@ fn pedestal_and_robot_do_not_move_into_each_other() {
     panic!("not done");
 }
 
-/// The commands that E-move has received when the pedestal fails at each of its four.
+/// The number of commands that E-move has received when the pedestal fails at each of its four.
 const BEFORE: [(PedestalVerb, usize); 4] = [
     (PedestalVerb::PreGrip, 0),
     (PedestalVerb::Grip, 1),
@@ -227,7 +227,7 @@ const BEFORE: [(PedestalVerb, usize); 4] = [
 ];
 
 #[test]
-fn a_pedestal_that_fails_stops_the_robot_with_its_grip_kept() {
+fn pedestal_failure_stops_the_robot() {
     for (verb, sent) in BEFORE {
         for (mishap, reason) in [
             (Mishap::Special(Reason::None), Reason::PedestalCannot),
@@ -241,18 +241,14 @@ fn a_pedestal_that_fails_stops_the_robot_with_its_grip_kept() {
             let end = bench.run(SubtaskVerb::FixGrip, "PART", (1, -1), "");
             assert_eq!(end, error(reason), "{verb} {mishap:?}");
             (0..50).for_each(|_| assert_eq!(bench.step().status.report, StatusReport::Error));
-            assert_eq!(
-                bench.world.emove.received.len(),
-                sent,
-                "{verb}: nothing is sent to the robot after it"
-            );
+            assert_eq!(bench.world.emove.received.len(), sent, "{verb}: no order to the robot after it");
             assert_eq!(bench.world.emove.outputs.status.held.is_held(), verb != PedestalVerb::Flip);
         }
     }
 }
 
 #[test]
-fn an_object_that_the_pedestal_does_not_have_is_not_let_go() {
+fn robot_keeps_an_object_that_the_pedestal_missed() {
     let mut bench = Bench::grasped("PART", 1);
     bench.world.pedestal.part = 0;
     assert_eq!(bench.run(SubtaskVerb::FixGrip, "PART", (1, -1), ""), error(Reason::GraspMissed));
@@ -264,21 +260,21 @@ fn an_object_that_the_pedestal_does_not_have_is_not_let_go() {
 }
 
 #[test]
-fn a_pedestal_that_holds_something_else_is_named_and_nothing_moves() {
+fn other_object_in_the_pedestal_prevents_the_regrip() {
     let mut bench = Bench::grasped("PART", 1);
     (bench.world.pedestal.outputs.status.felt, bench.world.pedestal.outputs.status.gripped) =
         (Felt::Something, true);
     bench.step();
     assert_eq!(bench.run(SubtaskVerb::FixGrip, "PART", (1, -1), ""), error(Reason::PedestalHoldsOther));
     assert!(bench.sent().is_empty());
-    // What the robot holds is asked for first.
+    // The content of the robot's gripper is tested first.
     bench.world.emove.outputs.status.held = Holding::NotKnown;
     bench.step();
     assert_eq!(bench.run(SubtaskVerb::FixGrip, "PART", (1, -1), ""), error(Reason::HeldNotKnown));
 }
 
 #[test]
-fn an_object_that_the_robot_loses_is_noticed() {
+fn object_lost_during_a_regrip_is_reported() {
     for (verb, mishap, reason) in [
         (EmoveVerb::MovObjTo, Mishap::Loss, Reason::ObjectLost),
         (EmoveVerb::GraspObj, Mishap::NoEffect, Reason::GraspMissed),
@@ -288,7 +284,7 @@ fn an_object_that_the_robot_loses_is_noticed() {
         bench.world.emove.mishap = Some((verb, mishap));
         assert_eq!(bench.run(SubtaskVerb::FixGrip, "PART", (1, -1), ""), error(reason));
     }
-    // While the pedestal prepares, and while it lets go.
+    // While the pedestal prepares, and while it releases.
     for (verb, sent) in [(PedestalVerb::PreGrip, 0), (PedestalVerb::Release, 5)] {
         let mut bench = Bench::fixing();
         bench.world.emove.received.clear();
@@ -300,7 +296,7 @@ fn an_object_that_the_robot_loses_is_noticed() {
 }
 
 #[test]
-fn a_regrip_needs_the_object_its_grips_and_its_pedestal_data() {
+fn regrip_without_object_grip_or_pedestal_data_is_refused() {
     let mut bench = Bench::default();
     assert_eq!(bench.run(SubtaskVerb::FixGrip, "PART", (1, -1), ""), error(Reason::NothingHeld));
     assert_eq!(bench.run(SubtaskVerb::FixGrip, "", (1, -1), ""), error(Reason::NoObjectNamed));
@@ -309,7 +305,7 @@ fn a_regrip_needs_the_object_its_grips_and_its_pedestal_data() {
     let store = without(&["-pt-  PED-SAFE"]);
     let mut bench = Bench::of(store.view());
     assert_eq!(bench.run(SubtaskVerb::FixGrip, "PART", (1, -1), ""), error(Reason::UnknownLocation));
-    // Held with a grip that is neither that of the source nor that of the destination.
+    // Held in neither the source grip nor the destination grip.
     let mut bench = Bench::grasped("PART", 2);
     assert_eq!(bench.run(SubtaskVerb::FixGrip, "PART", (1, -1), ""), error(Reason::RegripNeeded));
     // Another object is held.
@@ -319,13 +315,13 @@ fn a_regrip_needs_the_object_its_grips_and_its_pedestal_data() {
 }
 
 #[test]
-fn an_object_is_placed_only_in_the_grip_of_the_destination() {
+fn object_is_placed_only_in_its_destination_grip() {
     for verb in [SubtaskVerb::PlaceObj, SubtaskVerb::MoveObjToDest] {
         let mut bench = Bench::grasped("PART", 1);
         assert_eq!(bench.run(verb, "PART", (1, 2), "PFIXTURE"), error(Reason::RegripNeeded));
         assert_eq!(bench.run(verb, "PART", (-1, 2), "PFIXTURE"), error(Reason::RegripNeeded));
         assert_eq!(bench.run(verb, "PART", (1, 1), "PFIXTURE"), DONE);
-        // E-move says how the object was taken, also to a Subtask that is new.
+        // E-move reports the grip of the object, also to a restarted Subtask.
         let mut bench = Bench::grasped("PART", 1);
         bench.restart();
         bench.memory.subtask = SubtaskOutputs::default();
@@ -338,7 +334,7 @@ fn an_object_is_placed_only_in_the_grip_of_the_destination() {
 }
 
 #[test]
-fn the_tool_commands_go_down_with_the_transfer_location() {
+fn tool_commands_carry_the_transfer_location() {
     for (verb, word, held) in [
         (SubtaskVerb::InsertTool, "INSERT-TOOL", true),
         (SubtaskVerb::ReleaseTool, "RELEASE-TOOL", true),
@@ -362,7 +358,7 @@ fn the_tool_commands_go_down_with_the_transfer_location() {
 }
 
 #[test]
-fn what_goes_wrong_with_a_tool_is_named() {
+fn tool_failure_is_reported_with_its_reason() {
     let (insert, release) = (EmoveVerb::InsertTool, EmoveVerb::ReleaseTool);
     let (acquire, remove) = (EmoveVerb::AcquireTool, EmoveVerb::RemoveTool);
     for (emove, mishap, reason) in [
@@ -387,7 +383,7 @@ fn what_goes_wrong_with_a_tool_is_named() {
     }
     let mut bench = Bench::grasped("TOOL-1", 1);
     assert_eq!(bench.run(SubtaskVerb::AcquireTool, "TOOL-1", (1, 1), ""), DONE);
-    assert_eq!(bench.sent(), ["ACQUIRE-TOOL"], "whether it is held in the drum, E-move senses");
+    assert_eq!(bench.sent(), ["ACQUIRE-TOOL"], "E-move senses whether the tool is in the drum");
     assert_eq!(bench.run(SubtaskVerb::AcquireTool, "PART", (1, 1), ""), error(Reason::AlreadyHolding));
     let store = without(&["-pt-  TOOL-TRNS", "TRNS-TOOLS"]);
     let mut bench = Bench::of(store.view());
@@ -395,7 +391,7 @@ fn what_goes_wrong_with_a_tool_is_named() {
 }
 
 #[test]
-fn an_object_is_found_by_vision_if_the_data_ask_for_it() {
+fn object_with_vision_data_is_located_by_vision() {
     let mut bench = Bench::default();
     assert_eq!(bench.run(SubtaskVerb::GetObject, "BAR", (1, 1), "UNIT_1"), DONE);
     assert_eq!(bench.sent(), ["MOV-TO-VU", "LOCATE-OBJ", "MOV-TO-OBJ", "GRASP-OBJ"]);
@@ -406,7 +402,7 @@ fn an_object_is_found_by_vision_if_the_data_ask_for_it() {
         assert_eq!(command.object_grips, bench.data.obj_grips_id(&bar).unwrap());
     }
     assert_eq!(bench.run(SubtaskVerb::GetObject, "BAR", (1, 1), "UNIT_1"), DONE);
-    assert_eq!(bench.sent(), ["GRASP-OBJ"], "it is held already");
+    assert_eq!(bench.sent(), ["GRASP-OBJ"], "the object is held already");
     let end = bench.run(SubtaskVerb::GetObject, "PART", (1, 1), "PFIXTURE");
     assert_eq!(end, error(Reason::AlreadyHolding));
     let mut bench = Bench::default();
@@ -421,7 +417,7 @@ fn an_object_is_found_by_vision_if_the_data_ask_for_it() {
 }
 
 #[test]
-fn each_other_command_is_its_elemental_moves() {
+fn other_commands_send_their_elemental_moves() {
     let mut bench = Bench::grasped("PART", 1);
     assert_eq!(bench.run(SubtaskVerb::PlaceObj, "PART", (1, 1), "PFIXTURE"), DONE);
     assert_eq!(bench.sent(), ["MOV-OBJ-TO", "RELEASE"]);
@@ -441,7 +437,7 @@ fn each_other_command_is_its_elemental_moves() {
 }
 
 #[test]
-fn an_object_that_is_lost_on_the_way_is_noticed() {
+fn object_lost_during_a_motion_is_reported() {
     for verb in [SubtaskVerb::PlaceObj, SubtaskVerb::MoveObjToDest] {
         let mut bench = Bench::grasped("PART", 1);
         bench.world.emove.mishap = Some((EmoveVerb::MovObjTo, Mishap::Loss));
@@ -450,7 +446,7 @@ fn an_object_that_is_lost_on_the_way_is_noticed() {
 }
 
 #[test]
-fn an_error_of_e_move_is_passed_up_by_every_command() {
+fn error_of_e_move_is_passed_up_by_every_command() {
     for (verb, emove, object) in [
         (SubtaskVerb::PlaceObj, EmoveVerb::MovObjTo, "PART"),
         (SubtaskVerb::MoveObjToDest, EmoveVerb::MovObjTo, "PART"),
@@ -466,7 +462,7 @@ fn an_error_of_e_move_is_passed_up_by_every_command() {
 }
 
 #[test]
-fn a_pause_stops_a_pedestal_that_was_told_to_move() {
+fn pause_stops_a_moving_pedestal() {
     let mut bench = Bench::grasped("PART", 1);
     bench.world.pedestal.mishap = Some((PedestalVerb::Flip, Mishap::Hang));
     bench.command(SubtaskVerb::FixGrip, "PART", (1, -1), "");
@@ -478,7 +474,7 @@ fn a_pause_stops_a_pedestal_that_was_told_to_move() {
 }
 
 #[test]
-fn the_joystick_is_reported_as_long_as_it_is_on() {
+fn active_joystick_is_reported() {
     let mut bench = Bench::default();
     bench.world.emove.mishap = Some((EmoveVerb::MovToLoc, Mishap::Special(Reason::JoystickOn)));
     let end = bench.run(SubtaskVerb::GotoDest, "", (0, 0), "SAFE");
@@ -488,7 +484,7 @@ fn the_joystick_is_reported_as_long_as_it_is_on() {
     bench.step();
     let status = bench.step().status;
     assert_eq!((status.report, status.reason), (StatusReport::Error, Reason::JoystickOn));
-    // Also while no command is executed.
+    // Also while no command is executing.
     bench.world.emove.mishap = None;
     assert_eq!(bench.run(SubtaskVerb::GotoDest, "", (0, 0), "SAFE"), DONE);
     bench.world.emove.outputs.status.report = StatusReport::JoystickOn;
@@ -500,7 +496,7 @@ fn the_joystick_is_reported_as_long_as_it_is_on() {
 }
 
 #[test]
-fn where_the_robot_is_and_what_it_holds_are_passed_up() {
+fn place_and_held_object_are_passed_up() {
     let mut bench = Bench::grasped("PART", 1);
     bench.world.emove.outputs.status.reference_pose = Some(0x8300_0007);
     assert_eq!(bench.run(SubtaskVerb::MoveObjToDest, "PART", (1, 1), "SAFE"), DONE);
@@ -516,14 +512,14 @@ fn where_the_robot_is_and_what_it_holds_are_passed_up() {
 #[test]
 fn every_row_of_every_table_fires() {
     const SCENARIOS: &[fn()] = &[
-        a_gripper_without_a_holster_is_refused_before_anything_moves,
-        a_pedestal_that_fails_stops_the_robot_with_its_grip_kept,
-        an_object_that_the_pedestal_does_not_have_is_not_let_go,
-        a_regrip_needs_the_object_its_grips_and_its_pedestal_data,
-        the_tool_commands_go_down_with_the_transfer_location,
-        what_goes_wrong_with_a_tool_is_named,
-        each_other_command_is_its_elemental_moves,
-        an_object_that_is_lost_on_the_way_is_noticed,
+        gripper_without_holster_is_refused_before_any_motion,
+        pedestal_failure_stops_the_robot,
+        robot_keeps_an_object_that_the_pedestal_missed,
+        regrip_without_object_grip_or_pedestal_data_is_refused,
+        tool_commands_carry_the_transfer_location,
+        tool_failure_is_reported_with_its_reason,
+        other_commands_send_their_elemental_moves,
+        object_lost_during_a_motion_is_reported,
     ];
     let silent = silent::<Subtask, TaskData<'_>>(&[SCENARIOS, recovery::SCENARIOS].concat());
     // The locations that Subtask names itself are location points, which need neither object nor sector.

@@ -1,5 +1,4 @@
-//! Subtask after an interruption: what was under way is stopped, and the same command goes on
-//! (docs/design/recovery.md).
+//! Subtask after an interruption: it stops its orders and continues with the same command (docs/design/recovery.md).
 
 use geometry::pose::Pose;
 use interfaces::{
@@ -19,19 +18,19 @@ use super::{
 };
 
 pub(super) const SCENARIOS: &[fn()] = &[
-    without_task_everything_stops,
-    while_the_part_is_in_the_pedestal_nothing_else_is_done,
-    a_regrip_ends_from_every_state_whether_the_world_obeys_or_ignores,
-    an_exchange_that_was_interrupted_is_finished_first,
-    what_is_held_and_not_known_is_neither_taken_nor_placed,
-    an_object_that_is_placed_is_not_placed_again,
-    object_that_may_have_slid_is_released_and_located_again_where_pictures_are_taken,
-    pictures_that_are_lost_on_the_way_are_taken_again_before_anything_is_grasped,
-    fingers_that_have_let_go_are_led_out_of_the_drum,
-    a_pause_waits_for_robot_and_pedestal,
-    a_person_takes_a_part_with_the_pedestal_turns_and_releases_it,
-    orders_of_a_person_are_refused_while_subtask_or_robot_are_at_the_pedestal,
-    a_person_opens_the_hand_on_a_part_that_the_robot_grips,
+    lost_task_stops_robot_and_pedestal,
+    part_in_the_pedestal_blocks_other_commands,
+    regrip_ends_from_every_state,
+    interrupted_exchange_is_finished_first,
+    unknown_object_is_neither_taken_nor_placed,
+    placed_object_is_not_placed_again,
+    object_that_may_have_slid_is_released_and_located_again,
+    lost_pictures_are_taken_again_before_the_grasp,
+    open_fingers_move_out_of_the_drum,
+    pause_waits_for_robot_and_pedestal,
+    manual_orders_grip_turn_and_release_a_part,
+    manual_orders_are_refused_while_subtask_or_robot_use_the_pedestal,
+    manual_release_is_accepted_while_the_robot_holds_the_part,
 ];
 
 /// FIX-GRIP of the part from grip 1 to grip -1.
@@ -39,7 +38,7 @@ fn fix(bench: &mut Bench<'_>) -> (StatusReport, Reason) {
     bench.run(SubtaskVerb::FixGrip, "PART", (1, -1), "")
 }
 
-/// Is E-move or the pedestal doing anything but pausing?
+/// True if E-move or the pedestal is executing anything but a pause.
 fn is_under_way(bench: &Bench<'_>) -> bool {
     let (subtask, emove, pedestal) =
         (&bench.memory.subtask, &bench.memory.emove.status, &bench.memory.pedestal.status);
@@ -62,16 +61,16 @@ fn new_command_stops_the_running_one_before_it_is_answered() {
             let tick = bench.tick;
             bench.command(verb, object, (1, 2), location);
             let (end, under_way) = (bench.finish(), is_under_way(&bench));
-            assert!(!under_way, "{verb} at tick {tick} ends with {end:?} while something moves");
+            assert!(!under_way, "{verb} at tick {tick} ends with {end:?} during a motion");
             assert_eq!(bench.memory.emove.status.echo, bench.memory.subtask.emove.number);
             assert_eq!(bench.memory.pedestal.status.echo, bench.memory.subtask.pedestal.number);
         }
     }
 }
 
-/// The joystick box takes the robot while a stop is waited for. The next command must not wait for that stop.
+/// The joystick box takes the robot during a stop. The next command must not wait for that stop.
 #[test]
-fn a_stop_that_the_box_has_ended_is_not_waited_for_again() {
+fn stop_ended_by_the_joystick_does_not_delay_the_next_command() {
     let mut bench = Bench::grasped("PART", 1);
     bench.command(SubtaskVerb::GotoDest, "", (0, 0), "SAFE");
     bench.wait(3);
@@ -98,9 +97,9 @@ fn restarted_subtask_stops_its_orders() {
     }
 }
 
-/// Nothing that Task has commanded goes on without it; Task, when it is back, sends the same command again.
+/// A lost Task stops everything that it has commanded. When it is back, it repeats the command.
 #[test]
-fn without_task_everything_stops() {
+fn lost_task_stops_robot_and_pedestal() {
     for mut bench in Bench::fixing().at_every_tick() {
         let tick = bench.tick;
         bench.world.task_is_lost = true;
@@ -116,7 +115,7 @@ fn without_task_everything_stops() {
 }
 
 #[test]
-fn an_interrupted_regrip_goes_on() {
+fn interrupted_regrip_resumes() {
     let restarts = |bench: &mut Bench<'static>| {
         bench.restart();
         bench.finish();
@@ -135,7 +134,7 @@ fn an_interrupted_regrip_goes_on() {
 }
 
 #[test]
-fn a_table_that_was_stopped_half_way_turns_by_what_is_left() {
+fn interrupted_table_turns_by_the_remaining_angle() {
     let mut bench = Bench::fixing();
     bench.until(|bench| bench.memory.subtask.pedestal.command == PedestalVerb::Flip);
     assert_eq!(bench.run(SubtaskVerb::Pause, "", (0, 0), ""), DONE);
@@ -147,7 +146,7 @@ fn a_table_that_was_stopped_half_way_turns_by_what_is_left() {
 }
 
 #[test]
-fn while_the_part_is_in_the_pedestal_nothing_else_is_done() {
+fn part_in_the_pedestal_blocks_other_commands() {
     let mut bench = Bench::fixing();
     bench.until(|bench| bench.memory.subtask.pedestal.command == PedestalVerb::Flip);
     assert_eq!(bench.run(SubtaskVerb::Pause, "", (0, 0), ""), DONE);
@@ -179,7 +178,7 @@ fn while_the_part_is_in_the_pedestal_nothing_else_is_done() {
     assert_eq!(bench.run(SubtaskVerb::GotoDest, "", (0, 0), "SAFE"), DONE);
 }
 
-/// What E-move holds, as the tests put it.
+/// The holding of E-move for a word of the tests.
 fn holding(held: &str) -> Holding {
     let object = |name: &str, grip| Holding::Object(ObjectGrip { object: Name16::new(name).unwrap(), grip });
     match held {
@@ -193,7 +192,7 @@ fn holding(held: &str) -> Holding {
     }
 }
 
-/// Where the robot stands: a location by name and the grip there.
+/// The robot's place: the name of a location, and the grip there.
 fn standing(bench: &Bench<'_>, at: Option<(&str, Option<i32>)>) -> Option<Standing> {
     at.map(|(name, grip)| {
         let location = Name10::new(name).unwrap();
@@ -202,8 +201,8 @@ fn standing(bench: &Bench<'_>, at: Option<(&str, Option<i32>)>) -> Option<Standi
     })
 }
 
-/// FIX-GRIP from every combination of its state variables, in a world that obeys or ignores: it ends. How
-/// often it was done.
+/// FIX-GRIP ends from every combination of its state variables, also if the world ignores it. Returns the number of
+/// successes, and of all states.
 fn regrips(ignores: (bool, bool)) -> (usize, usize) {
     let (mut done, mut worlds) = (0, 0);
     let places = [
@@ -267,7 +266,7 @@ fn regrips(ignores: (bool, bool)) -> (usize, usize) {
 }
 
 #[test]
-fn a_regrip_ends_from_every_state_whether_the_world_obeys_or_ignores() {
+fn regrip_ends_from_every_state() {
     let (obeys, worlds) = regrips((false, false));
     let (ignores, _) = regrips((true, true));
     regrips((true, false));
@@ -275,7 +274,7 @@ fn a_regrip_ends_from_every_state_whether_the_world_obeys_or_ignores() {
     assert!(obeys > ignores && obeys < worlds, "{obeys} and {ignores} of {worlds}");
 }
 
-/// GET-ENDEFF from every gripper and exchange: it ends, and only with the gripper on and clear of its
+/// GET-ENDEFF ends from every gripper and exchange. It is done only with the gripper attached and clear of its
 /// holster.
 fn exchanges(ignores: bool) {
     for held in ["", "source", "something", "not known"] {
@@ -294,10 +293,7 @@ fn exchanges(ignores: bool) {
                 if let Some(id) = exchange {
                     let word = if id == 2 { "QC-ATTACH" } else { "QC-DETACH" };
                     assert_eq!(bench.sent()[0], word, "the exchange is finished first");
-                    assert_eq!(
-                        bench.world.emove.received[0].end_effector_id, exchange,
-                        "in the holster where it is"
-                    );
+                    assert_eq!(bench.world.emove.received[0].end_effector_id, exchange, "in its own holster");
                 }
             }
         }
@@ -305,11 +301,11 @@ fn exchanges(ignores: bool) {
 }
 
 #[test]
-fn an_exchange_that_was_interrupted_is_finished_first() {
+fn interrupted_exchange_is_finished_first() {
     for ignores in [false, true] {
         exchanges(ignores);
     }
-    // Any gripper will do for an object that names none: also the one in whose holster the robot is.
+    // Without a gripper in the command, the one in whose holster the robot is will do.
     let mut bench = Bench::default();
     bench.world.emove.outputs.status.exchange = Some(1);
     bench.step();
@@ -317,7 +313,7 @@ fn an_exchange_that_was_interrupted_is_finished_first() {
     assert_eq!(bench.sent(), ["QC-ATTACH"]);
 }
 
-/// GET-OBJECT, PLACE-OBJ and MOVE-OBJ>D from everything that can be held.
+/// GET-OBJECT, PLACE-OBJ and MOVE-OBJ>D with every content of the gripper.
 fn handling(ignores: bool) {
     for verb in [SubtaskVerb::GetObject, SubtaskVerb::PlaceObj, SubtaskVerb::MoveObjToDest] {
         for held in ["", "source", "destination", "neither", "other", "something", "not known"] {
@@ -366,14 +362,14 @@ fn handling(ignores: bool) {
 }
 
 #[test]
-fn what_is_held_and_not_known_is_neither_taken_nor_placed() {
+fn unknown_object_is_neither_taken_nor_placed() {
     for ignores in [false, true] {
         handling(ignores);
     }
 }
 
 #[test]
-fn what_counts_as_held_is_grasped_again_in_its_grip() {
+fn held_object_is_grasped_again_in_its_grip() {
     for grip in [1, -1] {
         let mut bench = Bench::grasped("PART", grip);
         assert_eq!(bench.run(SubtaskVerb::GetObject, "PART", (1, -1), "PFIXTURE"), DONE);
@@ -381,7 +377,7 @@ fn what_counts_as_held_is_grasped_again_in_its_grip() {
         let sent = bench.world.emove.received[0];
         let part = bench.data.object(&Name16::new("PART").unwrap(), grip).unwrap().0;
         assert_eq!((sent.grip, sent.object_parameters), (grip, part));
-        // A release that has not ended well has left nothing between the fingers.
+        // An interrupted release has left nothing between the fingers.
         bench.world.emove.mishap = Some((EmoveVerb::GraspObj, Mishap::Error(Reason::GraspMissed)));
         let end = bench.run(SubtaskVerb::GetObject, "PART", (1, -1), "PFIXTURE");
         assert_eq!(end, error(Reason::GraspMissed));
@@ -389,7 +385,7 @@ fn what_counts_as_held_is_grasped_again_in_its_grip() {
 }
 
 #[test]
-fn an_object_that_is_placed_is_not_placed_again() {
+fn placed_object_is_not_placed_again() {
     let mut bench = Bench::grasped("PART", 1);
     assert_eq!(bench.run(SubtaskVerb::PlaceObj, "PART", (1, 1), "SAFE"), DONE);
     assert_eq!(bench.run(SubtaskVerb::PlaceObj, "PART", (1, 1), "SAFE"), DONE);
@@ -406,7 +402,7 @@ fn an_object_that_is_placed_is_not_placed_again() {
 }
 
 #[test]
-fn what_vision_has_found_is_not_looked_for_again() {
+fn located_object_is_not_located_again() {
     let mut bench = Bench::default();
     let name = Name10::new("UNIT_1").unwrap();
     let site = Site::point(name, bench.data.locpt_named(&name).unwrap());
@@ -417,7 +413,7 @@ fn what_vision_has_found_is_not_looked_for_again() {
     assert_eq!(bench.sent(), ["MOV-TO-OBJ", "GRASP-OBJ"]);
 }
 
-/// A robot at BAR, which lies where pictures are taken: a person has led the robot with BAR between the fingers.
+/// A robot at BAR, which lies where pictures are taken, after a person moved the robot with BAR between the fingers.
 fn led_with_a_part(held: Holding) -> Bench<'static> {
     let mut bench = Bench::default();
     assert_eq!(bench.run(SubtaskVerb::GetObject, "BAR", (1, 1), "UNIT_1"), DONE);
@@ -429,14 +425,14 @@ fn led_with_a_part(held: Holding) -> Bench<'static> {
 }
 
 #[test]
-fn object_that_may_have_slid_is_released_and_located_again_where_pictures_are_taken() {
+fn object_that_may_have_slid_is_released_and_located_again() {
     let object = Holding::Object(ObjectGrip { object: Name16::new("BAR").unwrap(), grip: 1 });
     for held in [object, Holding::Something] {
         let mut bench = led_with_a_part(held);
         assert_eq!(bench.run(SubtaskVerb::GetObject, "BAR", (1, 1), "UNIT_1"), DONE, "{held:?}");
         assert_eq!(bench.sent(), ["RELEASE", "MOV-TO-VU", "LOCATE-OBJ", "MOV-TO-OBJ", "GRASP-OBJ"]);
     }
-    // Elsewhere it would fall.
+    // Elsewhere the object would fall.
     let mut bench = led_with_a_part(object);
     bench.world.emove.outputs.status.at = None;
     bench.step();
@@ -445,7 +441,7 @@ fn object_that_may_have_slid_is_released_and_located_again_where_pictures_are_ta
     assert_eq!(bench.memory.subtask.status.unconfirmed, Unconfirmed::PartInFingers);
 }
 
-/// GET-OBJECT whose pictures are lost on the way to the object.
+/// GET-OBJECT whose pictures are lost during the motion to the object.
 pub fn pictures_lost() -> Bench<'static> {
     let mut bench = Bench::default();
     bench.command(SubtaskVerb::GetObject, "BAR", (1, 1), "UNIT_1");
@@ -455,7 +451,7 @@ pub fn pictures_lost() -> Bench<'static> {
 }
 
 #[test]
-fn pictures_that_are_lost_on_the_way_are_taken_again_before_anything_is_grasped() {
+fn lost_pictures_are_taken_again_before_the_grasp() {
     let mut bench = pictures_lost();
     bench.finish();
     let sent = ["MOV-TO-VU", "LOCATE-OBJ", "MOV-TO-OBJ"];
@@ -463,7 +459,7 @@ fn pictures_that_are_lost_on_the_way_are_taken_again_before_anything_is_grasped(
     assert_eq!(bench.sent(), sent);
 }
 
-/// GET-OBJECT at another sector of the array: its location has the same records, and another pose.
+/// GET-OBJECT at another sector of the array: its location has the same records, but another pose.
 fn at_another_sector(bench: &mut Bench<'_>) {
     bench.command(SubtaskVerb::GetObject, "BAR", (1, 1), "UNIT_1");
     let pose = &mut bench.memory.task.poses[0].pose;
@@ -473,7 +469,7 @@ fn at_another_sector(bench: &mut Bench<'_>) {
 }
 
 #[test]
-fn what_belongs_to_one_sector_does_not_count_for_another() {
+fn sectors_of_an_array_are_distinguished() {
     let begun = |until: EmoveVerb| {
         let mut bench = Bench::default();
         bench.command(SubtaskVerb::GetObject, "BAR", (1, 1), "UNIT_1");
@@ -496,9 +492,9 @@ fn what_belongs_to_one_sector_does_not_count_for_another() {
     assert_eq!(bench.sent(), ["GRASP-OBJ", "E-PAUSE"]);
 }
 
-/// The tool commands with fingers in the drum, outside, or at no place.
+/// The tool commands with fingers in the drum, outside, or at no known place.
 #[test]
-fn fingers_that_have_let_go_are_led_out_of_the_drum() {
+fn open_fingers_move_out_of_the_drum() {
     for verb in
         [SubtaskVerb::InsertTool, SubtaskVerb::ReleaseTool, SubtaskVerb::AcquireTool, SubtaskVerb::RemoveTool]
     {
@@ -529,7 +525,7 @@ fn fingers_that_have_let_go_are_led_out_of_the_drum() {
 
 /// An interrupted grasp has closed on something in the drum, which can only be the tool.
 #[test]
-fn an_interrupted_grasp_of_a_tool_is_made_again() {
+fn interrupted_grasp_of_a_tool_is_repeated() {
     for (drum, end, sent) in [(true, DONE, &["ACQUIRE-TOOL"][..]), (false, error(Reason::UnknownHeld), &[])] {
         let mut bench = Bench::default();
         bench.world.emove.outputs.status.held = holding("something");
@@ -541,9 +537,8 @@ fn an_interrupted_grasp_of_a_tool_is_made_again() {
     }
 }
 
-/// What a pause waits for, and what a command that comes then does.
 #[test]
-fn a_pause_waits_for_robot_and_pedestal() {
+fn pause_waits_for_robot_and_pedestal() {
     let moving = |verb, mishap| {
         let mut bench = Bench::grasped("PART", 1);
         bench.world.pedestal.mishap = mishap;
@@ -552,21 +547,21 @@ fn a_pause_waits_for_robot_and_pedestal() {
         bench.step();
         bench
     };
-    // The pedestal does not answer to the pause; E-move does not, while it does.
+    // The pedestal does not answer the pause; then it does, but E-move fails.
     let mut bench = moving(PedestalVerb::Flip, Some((PedestalVerb::Pause, Mishap::Silence)));
     let end = bench.run(SubtaskVerb::Pause, "", (0, 0), "");
     assert_eq!(end, DONE);
     let mut bench = moving(PedestalVerb::Flip, None);
     bench.world.emove.mishap = Some((EmoveVerb::Pause, Mishap::Error(Reason::LinkOff)));
     assert_eq!(bench.run(SubtaskVerb::Pause, "", (0, 0), ""), error(Reason::LinkOff));
-    // A pause that is replaced is waited for.
+    // The next command waits for a replaced pause.
     let mut bench = moving(PedestalVerb::Flip, None);
     bench.command(SubtaskVerb::Pause, "", (0, 0), "");
     bench.step();
     bench.step();
     assert_eq!(bench.run(SubtaskVerb::FixGrip, "PART", (1, -1), ""), DONE);
     assert!(!bench.sent_to_pedestal().contains(&"PAUSE"));
-    // A restarted Subtask finds a pause under way.
+    // A restarted Subtask finds a pause that is still executing.
     let mut bench = moving(PedestalVerb::Flip, None);
     bench.command(SubtaskVerb::Pause, "", (0, 0), "");
     bench.step();
@@ -577,8 +572,8 @@ fn a_pause_waits_for_robot_and_pedestal() {
     assert_eq!(bench.run(SubtaskVerb::GotoDest, "", (0, 0), "SAFE"), DONE);
 }
 
-/// The pedestal alone has the part, and the robot waits at PED-SAFE: it may leave. It may not while it is at the
-/// pedestal, or holds something, or is at no place with its tool near PEDESTAL.
+/// With the part in the pedestal and the robot at PED-SAFE, the robot may leave. It may not leave from the pedestal,
+/// with something in its fingers, or from no known place with its tool near PEDESTAL.
 fn leaves_only_empty_and_clear(bench: &mut Bench<'_>) {
     let safe = bench.world.emove.outputs.status.at;
     for verb in [SubtaskVerb::GotoEndpt, SubtaskVerb::GotoDest, SubtaskVerb::Position] {
@@ -593,9 +588,9 @@ fn leaves_only_empty_and_clear(bench: &mut Bench<'_>) {
         bench.world.emove.outputs.status.at = safe.map(|at| Standing { site, ..at });
         refused(bench, "at the pedestal");
         bench.world.emove.outputs.status.at = None;
-        refused(bench, "at no place, and it is not known where");
+        refused(bench, "at no known place, without sensor pose");
         tool_above_pedestal(bench, 3.0);
-        refused(bench, "at no place, 3 in from PEDESTAL");
+        refused(bench, "at no known place, 3 in from PEDESTAL");
         bench.world.emove.outputs.status.at = safe;
         bench.world.emove.outputs.status.held = Holding::NotKnown;
         refused(bench, "it may hold something");
@@ -609,7 +604,7 @@ fn leaves_only_empty_and_clear(bench: &mut Bench<'_>) {
     }
 }
 
-/// The resolvers show the tool so far above PEDESTAL, in.
+/// The resolvers show the tool at this height above PEDESTAL, in.
 fn tool_above_pedestal(bench: &mut Bench<'_>, inches: f64) {
     let id = bench.data.locpt_named(&Name10::clipped("PEDESTAL")).unwrap();
     let mut frame = bench.data.locpt(id).unwrap().frame;
@@ -619,7 +614,7 @@ fn tool_above_pedestal(bench: &mut Bench<'_>, inches: f64) {
     bench.memory.prim.status.sensor_pose = record.number;
 }
 
-/// What the pedestal gets of the order of a person: words, in the ticks after it.
+/// The commands that the pedestal receives for a manual order.
 fn order(bench: &mut Bench<'_>, order: HandOrder) -> Vec<&'static str> {
     bench.world.pedestal.received.clear();
     bench.external.operator.pedestal = Some(order);
@@ -637,7 +632,7 @@ fn of_part(command: PedestalVerb) -> HandOrder {
     HandOrder { object: Some(Name16::clipped("PART")), ..by_hand(command) }
 }
 
-/// A bench whose robot holds nothing at a place and whose Subtask has nothing to do.
+/// A bench whose robot is empty at a place and whose Subtask is idle.
 fn resting(at: &str) -> Bench<'static> {
     let mut bench = Bench::default();
     assert_eq!(bench.run(SubtaskVerb::GotoDest, "", (0, 0), at), DONE);
@@ -645,7 +640,7 @@ fn resting(at: &str) -> Bench<'static> {
 }
 
 #[test]
-fn a_person_takes_a_part_with_the_pedestal_turns_and_releases_it() {
+fn manual_orders_grip_turn_and_release_a_part() {
     let mut bench = resting("PED-SAFE");
     assert_eq!(order(&mut bench, of_part(PedestalVerb::PreGrip)), ["PRE-GRIP"]);
     assert_eq!(order(&mut bench, of_part(PedestalVerb::Grip)), ["GRIP"]);
@@ -659,8 +654,8 @@ fn a_person_takes_a_part_with_the_pedestal_turns_and_releases_it() {
     let held = HandOrder { by_hand: true, ..by_hand(PedestalVerb::Release) };
     assert_eq!(order(&mut bench, held), ["RELEASE"]);
     assert_eq!(bench.world.pedestal.received[0].grasp_size, 450);
-    assert_eq!(regrip(&bench), None, "the sensors of the hand feel nothing");
-    assert_eq!(order(&mut bench, by_hand(PedestalVerb::Release)), ["RELEASE"], "it holds nothing");
+    assert_eq!(regrip(&bench), None, "the hand is empty");
+    assert_eq!(order(&mut bench, by_hand(PedestalVerb::Release)), ["RELEASE"], "the hand is empty");
     assert_eq!(order(&mut bench, by_hand(PedestalVerb::Pause)), ["PAUSE"]);
     bench.world.pedestal.part = 0;
     order(&mut bench, of_part(PedestalVerb::Grip));
@@ -668,7 +663,7 @@ fn a_person_takes_a_part_with_the_pedestal_turns_and_releases_it() {
 }
 
 #[test]
-fn orders_of_a_person_are_refused_while_subtask_or_robot_are_at_the_pedestal() {
+fn manual_orders_are_refused_while_subtask_or_robot_use_the_pedestal() {
     for ticks in [1, 10, 30] {
         let mut bench = Bench::fixing();
         bench.wait(ticks);
@@ -698,9 +693,9 @@ fn orders_of_a_person_are_refused_while_subtask_or_robot_are_at_the_pedestal() {
     assert_eq!(bench.memory.subtask.pedestal.number, sent, "the pedestal does not answer");
 }
 
-/// Robot and pedestal both hold the part: then the hand may open without a person.
+/// Robot and pedestal both hold the part, so the hand may open without a person.
 #[test]
-fn a_person_opens_the_hand_on_a_part_that_the_robot_grips() {
+fn manual_release_is_accepted_while_the_robot_holds_the_part() {
     let mut bench = Bench::fixing();
     bench.until(|bench| bench.memory.subtask.emove.command == EmoveVerb::Release);
     assert_eq!(bench.run(SubtaskVerb::Pause, "", (0, 0), ""), DONE);

@@ -1,9 +1,9 @@
-//! What a new command names, looked up in the task data.
+//! Look-up of the names of a new command.
 
 use rcs_core::decision_table;
 
 decision_table! {
-    /// ACCEPT: a new command is refused if a name or a record that it needs is missing. PRECONDITION says what else it
+    /// ACCEPT: a new command is refused if a name or a record that it needs is missing. PRECONDITION tests its other
     /// needs.
     pub ACCEPT: fn accept(super::Request) -> super::Action or () {
         1:  asked: Before                            => consult;

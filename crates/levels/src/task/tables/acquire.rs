@@ -3,8 +3,8 @@
 use rcs_core::decision_table;
 
 decision_table! {
-    /// ACQUIRE (V.4.1): get the proper end effector, move to the object and grasp it. The data base
-    /// receives an update about an object that is taken from the MBD (an extension: SPECNOTES.md).
+    /// ACQUIRE (V.4.1): get the proper end effector, move to the object and grasp it. If the object comes from the
+    /// MBD, the database receives an update (an extension: SPECNOTES.md).
     pub ACQUIRE: fn acquire(enum AcquireStep, super::Situation) -> super::Action {
         any {
             1: work: Busy              => Wait;
@@ -29,7 +29,7 @@ decision_table! {
             6: update: Due             => Update       -> Updating;
             7: update: None | Pending  => Finish;
         }
-        /// The update says that the robot has the object.
+        /// The update that the robot has the object is sent.
         Updating {
             8: otherwise               => Finish;
         }

@@ -3,9 +3,9 @@
 use rcs_core::decision_table;
 
 decision_table! {
-    /// ACQUIRE-TOOL (V.4.1): get the tool gripper, go to the destination, which is TOOL-SAFE, and grasp a
-    /// tool in the tool drum; done at once if it is held there. Sent again after an interruption at the drum
-    /// it goes on from there.
+    /// ACQUIRE-TOOL (V.4.1): get the tool gripper, go to the destination, which is TOOL-SAFE, and grasp a tool in the
+    /// tool drum. The command finishes at once if the tool is held there. Repeated after an interruption at the drum,
+    /// it continues from there.
     pub ACQUIRE_TOOL: fn acquire_tool(enum AcquireToolStep, super::Situation) -> super::Action {
         any {
             1:  work: Busy                                      => Wait;
@@ -24,7 +24,7 @@ decision_table! {
         Gripper {
             9:  otherwise                                       => GotoDest     -> Approaching;
         }
-        /// The robot is on its way to the destination, near the drum.
+        /// The robot moves to the destination, near the drum.
         Approaching {
             10: otherwise                                       => AcquireTool  -> Acquiring;
         }

@@ -3,8 +3,9 @@
 use rcs_core::decision_table;
 
 decision_table! {
-    /// INSERT-TOOL (V.4.1): insert a tool, which a MOVE has brought near the tool drum, into the drum; done
-    /// at once if it is there. Whether a robot at no known place is on its way into the drum, E-move knows.
+    /// INSERT-TOOL (V.4.1): insert a tool, which a MOVE has brought near the tool drum, into the drum. The command
+    /// finishes at once if the tool is there. If the robot is at no known place, E-move determines whether it is on
+    /// the way into the drum.
     pub INSERT_TOOL: fn insert_tool(enum InsertToolStep, super::Situation) -> super::Action {
         any {
             1: work: Busy                                       => Wait;

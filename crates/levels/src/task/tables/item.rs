@@ -1,5 +1,5 @@
-//! Updates of the data base about an object (IV.4.2, IX.2; docs/design/recovery.md "Data base"): which moves are
-//! reported, and where the robot has released an object. The tables are consulted while a command is looked up or
+//! Updates of the database about an object (IV.4.2, IX.2; docs/design/recovery.md "Data base"): which moves are
+//! reported, and where the robot has released an object. The tables are consulted when a command is looked up or
 //! accepted, and in each tick in which Subtask reports a released object. No header names their rows.
 
 use interfaces::data_base::Connection;
@@ -13,7 +13,7 @@ use crate::{
 /// The place where the object of a command was taken.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum TaskOrigin {
-    /// The source of the command, or it is not taken yet.
+    /// The source of the command, or the object is not taken yet.
     Source,
     /// Another place: an ACQUIRE finds it in the gripper.
     Elsewhere,
@@ -22,47 +22,47 @@ pub enum TaskOrigin {
 /// The command in the ledger, compared with a new one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum InLedger {
-    /// It is another command.
+    /// Another command.
     Other,
-    /// It is the same, and has sent no update.
+    /// The same command, and its update is not sent.
     Unreported,
-    /// It is the same, and has sent its update.
+    /// The same command, and its update is sent.
     Reported,
 }
 
-/// Places of the MBD.
+/// The area of the source, the destination or the place of a release.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Area {
     /// The source or the destination is in the MBD, or the object was released there.
     Mbd,
-    /// None of them is.
+    /// All of them are outside the MBD.
     Outside,
 }
 
-/// What the robot carried last, compared with an object.
+/// The object that the robot carried last, compared with an object.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Carrying {
-    /// It is another object, or nothing.
+    /// Another object, or none.
     Other,
-    /// It is the object. An update follows only if it is released in the MBD.
+    /// The object. An update follows only if it is released in the MBD.
     Known,
-    /// It is the object. An update follows wherever it is released.
+    /// The object. An update follows wherever it is released.
     Followed,
 }
 
-/// Is an update sent?
+/// The update of a command or of a release.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain, Actions)]
 pub enum Notice {
     /// An update is sent.
     Send,
-    /// None is sent.
+    /// No update is sent.
     Omit,
 }
 
-/// What a new command takes.
+/// The target of a new command.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Takes {
-    /// Nothing that it names.
+    /// No object that it names.
     Nothing,
     /// An object.
     Object,
@@ -73,40 +73,41 @@ pub enum Takes {
 /// The object that Subtask reports as released last.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Released {
-    /// It is another object, or none.
+    /// Another object, or none.
     Other,
-    /// It is the object of the command.
+    /// The object of the command.
     Object,
 }
 
-/// What is noted of the object that a new command takes.
+/// The record of the object that a new command takes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Actions)]
 pub enum Taking {
-    /// What the robot carries stays noted.
+    /// The carried object does not change.
     Keep,
     /// An update follows wherever the carried object of that name is released.
     Follow,
     /// The carried object of that name is lost.
     Drop,
-    /// The same, and the object is noted; it counts as carried as soon as it is held.
+    /// The carried object of that name is lost. The new one is recorded and becomes the carried object when it is
+    /// held.
     Replace,
-    /// The object is noted; it counts as carried as soon as it is held.
+    /// The object is recorded and becomes the carried object when it is held.
     Note,
 }
 
-/// Does the command in the ledger take the released object?
+/// The command that takes the released object.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Taker {
-    /// No.
+    /// Not the one in the ledger.
     Other,
-    /// It does: it takes the object again, or sends the update.
+    /// The one in the ledger: it takes the object again, or sends the update.
     Ledger,
 }
 
 /// The current or new command, compared with the one in the ledger.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Continuation {
-    /// It leaves the ledger as it is, or is the command in it.
+    /// It leaves the ledger unchanged, or is the command in it.
     Same,
     /// It is new, and replaces the one in the ledger.
     Another,
@@ -114,12 +115,12 @@ pub enum Continuation {
     Position,
 }
 
-/// What is done about a released object.
+/// The update about a released object.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Actions)]
 pub enum Release {
-    /// Nothing.
+    /// No update.
     Keep,
-    /// An update with its place is appended to those that are not accepted yet.
+    /// An update with its place is appended to the pending ones.
     Append,
 }
 
@@ -128,41 +129,41 @@ pub enum Release {
 pub struct Move {
     /// The command.
     pub verb: TaskVerb,
-    /// Where its object was taken.
+    /// The place where its object was taken.
     pub origin: TaskOrigin,
     /// The command in the ledger.
     pub ledger: InLedger,
-    /// What the gripper holds.
+    /// The content of the gripper.
     pub held: Held,
-    /// Has the command placed its object already?
+    /// The object of a repeated command, if it is placed already.
     pub placed: Placed,
-    /// Source and destination.
+    /// The area of source and destination.
     pub area: Area,
-    /// What the robot carried last.
+    /// The object that the robot carried last.
     pub carrying: Carrying,
 }
 
 /// A new command, for [`FOLLOW`].
 #[derive(Clone, Copy, Debug, Variables)]
 pub struct TaskFollowing {
-    /// Is the Data System connected?
+    /// The connection of the Data System.
     pub connection: Connection,
-    /// Where the object was taken.
+    /// The place where the object was taken.
     pub origin: TaskOrigin,
     /// The update of the command.
     pub due: Notice,
-    /// What the robot carried last.
+    /// The object that the robot carried last.
     pub carrying: Carrying,
 }
 
 /// The object of a new command, for [`TAKE`].
 #[derive(Clone, Copy, Debug, Variables)]
 pub struct Taken {
-    /// What the command takes.
+    /// The target of the command.
     pub takes: Takes,
-    /// What the gripper holds.
+    /// The content of the gripper.
     pub held: Held,
-    /// What it has released last.
+    /// The object that the gripper released last.
     pub released: Released,
     /// An update about the release, by [`FOLLOW`].
     pub notice: Notice,
@@ -171,11 +172,11 @@ pub struct Taken {
 /// The object that Subtask reports as released, for [`RELEASED`].
 #[derive(Clone, Copy, Debug, Variables)]
 pub struct Place {
-    /// What the robot carried last.
+    /// The object that the robot carried last.
     pub carrying: Carrying,
     /// Where the object was released.
     pub area: Area,
-    /// Is the Data System connected?
+    /// The connection of the Data System.
     pub connection: Connection,
     /// The command that takes it.
     pub taker: Taker,
@@ -184,9 +185,9 @@ pub struct Place {
 }
 
 decision_table! {
-    /// UPDATE-DUE: does a new command send an update? It does for moves from and to the MBD, and as a TRANSFER of an
-    /// object that the data base has in the robot (an extension: SPECNOTES.md). If the command has certainly lost its
-    /// object, it takes it again and sends the update again.
+    /// UPDATE-DUE: the update of a new command. One is due for a move from or to the MBD, and for a TRANSFER of an
+    /// object that the database has as held by the robot (an extension: SPECNOTES.md). If the command has certainly
+    /// lost its object, it takes it again and sends the update again.
     pub UPDATE_DUE: fn update_due(self::Move) -> self::Notice {
         1: origin: Elsewhere                                     => Omit;
         2: ledger: Reported, held: Right | Something | NotKnown  => Omit;
@@ -198,8 +199,8 @@ decision_table! {
 }
 
 decision_table! {
-    /// FOLLOW: does an update follow when the object of a new command is released, also if the command is never
-    /// finished?
+    /// FOLLOW: the update that is due when the object of a new command is released, even if the command never
+    /// finishes.
     pub FOLLOW: fn follow(self::TaskFollowing) -> self::Notice {
         1: connection: Closed | Opening | Interrupted  => Omit;
         2: origin: Elsewhere                           => Omit;
@@ -210,9 +211,9 @@ decision_table! {
 }
 
 decision_table! {
-    /// TAKE: what a new command takes. What the gripper holds keeps its serial number. An object that is neither held
-    /// nor released by the robot is lost: what the command takes under its name is another one. A tool is noted when
-    /// the command has ended.
+    /// TAKE: the object that a new command takes. A held object keeps its serial number. An object that is neither
+    /// held nor released by the robot is lost; the command then takes another object with the same name. A tool is
+    /// recorded when the command has ended.
     pub TAKE: fn take(self::Taken) -> self::Taking {
         1: takes: Nothing                                                       => Keep;
         2: held: Right, notice: Send                                            => Follow;
@@ -225,8 +226,8 @@ decision_table! {
 }
 
 decision_table! {
-    /// RELEASED: the robot has released what it carried. The command in the ledger that takes the object takes it again,
-    /// or sends the update itself.
+    /// RELEASED: the robot has released the carried object. If the command in the ledger takes the object, it takes
+    /// it again or sends the update itself.
     pub RELEASED: fn released(self::Place) -> self::Release {
         1: carrying: Other                                              => Keep;
         2: carrying: Known, area: Outside                               => Keep;

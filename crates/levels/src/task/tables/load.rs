@@ -1,5 +1,5 @@
-//! The object that the robot carries, as the data base knows it (docs/design/recovery.md "Data base"): when an object
-//! counts as carried, and what is noted of it when its command ends. No header names the rows.
+//! The object that the robot carries (docs/design/recovery.md "Data base"): when it becomes the carried object, and
+//! what Task records of it when its command ends. No header names the rows.
 
 use rcs_core::{Actions, Plain, Variables, decision_table};
 
@@ -9,7 +9,7 @@ use crate::{held::Held, task::plan::TaskVerb};
 /// The orders of the command in the ledger.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum TakeOrder {
-    /// None, or only GET-ENDEFF: what the gripper holds was taken by an earlier command.
+    /// None, or only GET-ENDEFF: an earlier command took the held object.
     Before,
     /// The order to take the object, or a later one.
     Given,
@@ -24,25 +24,25 @@ pub enum Occasion {
     Finish,
 }
 
-/// What is done with the noted object in each tick.
+/// The change of the carried object in each tick.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Actions)]
 pub enum PickUp {
-    /// Nothing.
+    /// No change.
     Keep,
-    /// It counts as carried.
+    /// The recorded object becomes the carried object.
     Carry,
 }
 
-/// What is noted of the object of a command when the command ends.
+/// The change of the carried object when a command ends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Actions)]
 pub enum Carry {
-    /// What the robot carries stays noted.
+    /// No change.
     Keep,
     /// The object is no longer carried.
     Drop,
     /// It is carried, with the place and the serial number of the command.
     Note,
-    /// The same, and an update follows wherever it is released.
+    /// It is carried, with the place and the serial number of the command. An update follows wherever it is released.
     Follow,
     /// It is at the place of the command. It keeps its serial number, and an update follows wherever it is released.
     KeepSerial,
@@ -55,7 +55,7 @@ pub enum Carry {
 pub struct NotedObject {
     /// The orders of the command in the ledger.
     pub order: TakeOrder,
-    /// What the gripper holds, compared with the noted object.
+    /// The content of the gripper, compared with the recorded object.
     pub held: Held,
 }
 
@@ -66,16 +66,17 @@ pub struct EndedCommand {
     pub occasion: Occasion,
     /// The command.
     pub verb: TaskVerb,
-    /// What the gripper holds.
+    /// The content of the gripper.
     pub held: Held,
-    /// Where the object was taken.
+    /// The place where the object was taken.
     pub origin: TaskOrigin,
-    /// What the robot carried last.
+    /// The object that the robot carried last.
     pub carrying: Carrying,
 }
 
 decision_table! {
-    /// PICK-UP: the object that TAKE has noted counts as carried when it is held, but not before the order to take it.
+    /// PICK-UP: the object that TAKE has recorded becomes the carried object when it is held, but not before the
+    /// order to take it.
     pub PICK_UP: fn pick_up(self::NotedObject) -> self::PickUp {
         1: order: Given, held: Right  => Carry;
         2: otherwise                  => Keep;
@@ -83,7 +84,7 @@ decision_table! {
 }
 
 decision_table! {
-    /// CARRY: what is noted of the object of a command when its update is sent, or when a MOVE or an ACQUIRE ends with
+    /// CARRY: the record of the object of a command when its update is sent, or when a MOVE or an ACQUIRE ends with
     /// the object in the gripper. Without an update a followed object keeps its serial number. An object that an
     /// ACQUIRE found in the gripper keeps the place where it was taken.
     pub CARRY: fn carry(self::EndedCommand) -> self::Carry {
@@ -110,9 +111,9 @@ mod tests {
         }
     }
 
-    /// The update says that the object is released or held: its number and its place are those of the command.
+    /// An update sets the number and the place of the object from the command.
     #[test]
-    fn update_sets_the_carried_object_whatever_was_carried() {
+    fn update_replaces_the_carried_object() {
         for &carrying in Carrying::ALL {
             for &held in Held::ALL {
                 let load = EndedCommand {

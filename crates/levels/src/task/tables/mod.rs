@@ -1,5 +1,4 @@
-//! Decision tables of Task: the joystick box, what a new command needs, what has become of its last order, and one file
-//! per command.
+//! Decision tables of Task: joystick box, needs of a new command, result of its last order, and one file per command.
 
 pub mod accept;
 pub mod acquire;
@@ -47,137 +46,137 @@ use crate::{
     places::Missing,
 };
 
-/// What is done about the joystick box.
+/// The response to the joystick box.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain, Actions)]
 pub enum Takeover {
-    /// Nothing: the operator does not have the robot.
+    /// None: the operator does not have the robot.
     None,
-    /// The operator takes it: S-PAUSE to Subtask, and the command that is executing ends.
+    /// The operator takes the robot: S-PAUSE to Subtask, and the executing command ends.
     Interrupt,
-    /// The operator takes it: S-PAUSE to Subtask, and the finished command is reported no longer.
+    /// The operator takes the robot: S-PAUSE to Subtask, and the finished command is no longer reported.
     Clear,
-    /// The operator takes it: S-PAUSE to Subtask.
+    /// The operator takes the robot: S-PAUSE to Subtask.
     Pause,
-    /// The operator has it: no command but PAUSE is accepted.
+    /// The operator has the robot: only PAUSE is accepted.
     Refuse,
-    /// The operator gives it back: the next command is awaited.
+    /// The operator returns the robot: Task awaits the next command.
     Resume,
 }
 
-/// Does the operator take the robot or give it back? For [`joystick::JOYSTICK`].
+/// Changes of the control by the operator, for [`joystick::JOYSTICK`].
 #[derive(Clone, Copy, Debug, Variables)]
 pub struct TaskOperator {
     /// Status of Subtask.
     pub subtask: Lower,
-    /// How far the current command has come.
+    /// Progress of the current command.
     pub outcome: Outcome,
 }
 
-/// What a new command names, for [`accept::ACCEPT`].
+/// The names in a new command, for [`accept::ACCEPT`].
 #[derive(Clone, Copy, Debug, Default, Variables)]
 pub struct Request {
-    /// Is the command new?
+    /// A new command is looked up in this tick.
     pub asked: Asked,
     /// The command.
     pub verb: TaskVerb,
-    /// Which name the task data lack: the object's, or that of the first location.
+    /// The first name that the task data lack: the object's, or a location's.
     pub missing: Missing,
     /// `endeff-id#` of the gripper for the object.
     pub gripper: TaskGripper,
 }
 
-/// What a new command needs, for [`precondition::PRECONDITION`].
+/// The needs of a new command, for [`precondition::PRECONDITION`].
 #[derive(Clone, Copy, Debug, Default, Variables)]
 pub struct Preconditions {
-    /// Is the command new?
+    /// A new command is looked up in this tick.
     pub asked: Asked,
     /// The command.
     pub verb: TaskVerb,
-    /// Is an object named?
+    /// The command names an object.
     pub handling: Handling,
     /// The source location.
     pub source: SiteData,
     /// The location to which the command goes: the destination; for POSITION the source, or the destination if the
     /// source is null.
     pub goal: SiteData,
-    /// Where the destination is.
+    /// The kind of destination.
     pub destination: Destination,
     /// The object as a tool.
     pub tool: ToolData,
-    /// Must the object be regripped on the pedestal?
+    /// The regrip on the pedestal.
     pub regrip: TaskRegrip,
-    /// The way from the tool drum to the end-at location.
+    /// The trajectory from the tool drum to the end-at location.
     pub way_out: WayOut,
-    /// Verdict of the check against the task data.
+    /// Result of the check against the task data.
     pub checked: Checked,
-    /// What has the robot.
+    /// Automatic or manual control.
     pub control: Control,
 }
 
-/// How the last order of the command stands, for [`ordered::ORDERED`].
+/// The status of the last order, for [`ordered::ORDERED`].
 #[derive(Clone, Copy, Debug, Variables)]
 pub struct Subordinates {
-    /// What is done about the joystick box.
+    /// The response to the joystick box.
     pub takeover: Takeover,
-    /// The neighbour that has it.
+    /// The recipient of the order.
     pub ordered: TaskRecipient,
     /// Status of Subtask.
     pub subtask: Lower,
-    /// State of the data base.
+    /// State of the database.
     pub data_base: DataBase,
 }
 
 /// The state variables of a tick, for the tables of the commands.
 #[derive(Clone, Copy, Debug, Variables)]
 pub struct Situation {
-    /// The last order.
+    /// The status of the last order.
     pub work: Work,
-    /// Is an object to be handled?
+    /// The command names an object.
     pub handling: Handling,
-    /// Object status (V.4.1): what the gripper holds.
+    /// Object status (V.4.1): the content of the gripper.
     pub held: Held,
-    /// Are the source and destination grips the same?
+    /// Source and destination grips: the same or different.
     pub grips: Grips,
-    /// Is there an end-at location, and is the robot there?
+    /// The end-at location, and whether the robot is there.
     pub ends: Ends,
-    /// Pending update of the data base.
+    /// The pending update of the database.
     pub update: Update,
-    /// The tool gripper.
+    /// The tool gripper and its content.
     pub tool: TaskTool,
-    /// Where the robot is.
+    /// The robot's place.
     pub station: Station,
-    /// The tool drum.
+    /// The fingers relative to the tool drum.
     pub drum: TaskDrum,
-    /// The way to the position.
+    /// The route to the position.
     pub way: TaskRoute,
-    /// What keeps the object from falling when the gripper opens.
+    /// The support of the object when the gripper opens.
     pub support: TaskSupport,
-    /// Was the command sent before and not finished?
+    /// The progress before the command was repeated.
     pub resumed: Resumed,
-    /// Has it placed its object already?
+    /// The object of a repeated command, if it is placed already.
     pub placed: Placed,
-    /// Is the part in the pedestal's hand?
+    /// The place of the part during a regrip.
     pub part: TaskPart,
 }
 
-/// What preprocess has found in a tick.
+/// The result of preprocess in a tick.
 #[derive(Clone, Copy, Debug)]
 pub struct StateVariables {
-    /// What the command buffer holds.
+    /// State of the command buffer.
     pub arrival: Arrival,
-    /// Is the command to be accepted or refused?
+    /// A new command is accepted or refused in this tick.
     pub asked: Asked,
-    /// What a new command replaces; [`joystick::JOYSTICK`] decides on `joystick`.
+    /// The work that a new command replaces; [`joystick::JOYSTICK`] decides on `joystick`.
     pub replaced: Replaced,
     /// Its verb, or that of the current one.
     pub verb: TaskVerb,
     /// The new command looked up, or the current one.
     pub plan: Plan,
-    /// What a new command names.
+    /// The names in a new command.
     pub request: Request,
-    /// What it needs; [`joystick::JOYSTICK`] decides on `control`.
+    /// The needs of a new command; [`joystick::JOYSTICK`] decides on `control`.
     pub preconditions: Preconditions,
-    /// How the last order of the command stands; [`joystick::JOYSTICK`] decides on `takeover`.
+    /// The status of the last order; [`joystick::JOYSTICK`] decides on `takeover`.
     pub subordinates: Subordinates,
     /// The goal of the command, compared with the statuses from below.
     pub proof: Proof,
@@ -185,7 +184,7 @@ pub struct StateVariables {
     pub situation: Situation,
 }
 
-/// What a row can ask for.
+/// The action of a row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Actions)]
 pub enum Action {
     /// Nothing new.
@@ -226,7 +225,7 @@ pub enum Action {
     Initiate,
     /// Startup to the Data System.
     Startup,
-    /// Abort to the Data System, which is no longer connected from now on.
+    /// Abort to the Data System, which is disconnected at once.
     Disconnect,
     /// The Data System is connected: report finished.
     Connect,
@@ -236,19 +235,19 @@ pub enum Action {
     SendPending,
     /// Send the last command to the Data System again.
     SendAgain,
-    /// Send to the Data System where the object now is.
+    /// Send the place of the object to the Data System.
     Update,
-    /// Send to the Data System where the object now is, and GOTO-ENDPT to Subtask.
+    /// Send the place of the object to the Data System, and GOTO-ENDPT to Subtask.
     UpdateAndGotoEndpt,
     /// Send the oldest pending update to the Data System, and >POSITION to Subtask.
     SendPendingAndPosition,
-    /// Wait for the Data System, which has the update.
+    /// Wait until the Data System has answered the update.
     AwaitUpdate,
     /// Report finished.
     Finish,
     /// Report an error.
     Fail(Reason),
-    /// Report what Subtask reports.
+    /// Report the failure that Subtask reports.
     PassUp,
 }
 

@@ -3,8 +3,8 @@
 use rcs_core::decision_table;
 
 decision_table! {
-    /// MOVE (V.4.1): move an object to a location and hold it there, or move the robot; the end-at location
-    /// is ignored. Sent again after an interruption it goes on with the part in the pedestal's hand.
+    /// MOVE (V.4.1): move an object to a location and hold it there, or move the robot. The end-at location is
+    /// ignored. Repeated after an interruption, the command continues with the part in the pedestal's hand.
     pub MOVE: fn r#move(enum MoveStep, super::Situation) -> super::Action {
         any {
             1:  work: Busy                          => Wait;
@@ -35,12 +35,12 @@ decision_table! {
         Regripping {
             10: otherwise                           => MoveObjToDest  -> Moving;
         }
-        /// The object, or the robot alone, is on its way.
+        /// The object, or the robot alone, moves.
         Moving {
             11: update: Due                         => Update         -> Updating;
             12: update: None | Pending              => Finish;
         }
-        /// The update says where the object is.
+        /// The update with the place of the object is sent.
         Updating {
             13: otherwise                           => Finish;
         }

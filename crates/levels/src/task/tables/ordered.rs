@@ -3,8 +3,8 @@
 use rcs_core::decision_table;
 
 decision_table! {
-    /// ORDERED: Subtask or the Data System is busy with the last order, or it is done. A failure ends the
-    /// command, and so does the operator who takes the robot. The Data System is asked again if it is late.
+    /// ORDERED: the result of the last order to Subtask or the Data System. A failure ends the command, and so does
+    /// manual control. A command to a late Data System is retried.
     pub ORDERED: fn ordered(super::Subordinates) -> super::Action or crate::execution::Work {
         1:  takeover: Interrupt                                    => PassUp;
         2:  ordered: Nothing                                       => consult(Over);

@@ -3,7 +3,7 @@
 use rcs_core::decision_table;
 
 decision_table! {
-    /// PAUSE (V.4.1): do nothing; the pause goes down the ladder.
+    /// PAUSE (V.4.1): stop everything below with S-PAUSE.
     pub PAUSE: fn pause(enum PauseStep, super::Situation) -> super::Action {
         any {
             1: work: Busy  => Wait;

@@ -6,7 +6,7 @@ use rcs_core::{Actions, Plain, Variables, decision_table};
 
 use super::item::Notice;
 
-/// The number of pending updates.
+/// Number of pending updates.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Pending {
     /// None.
@@ -22,7 +22,7 @@ pub enum Pending {
 pub enum Event {
     /// Nothing happens in this tick.
     None,
-    /// The last command to the Data System contains the first update, and is done.
+    /// The last command to the Data System, which contains the first update, is done.
     Accepted,
     /// A new update.
     New,
@@ -33,13 +33,13 @@ pub enum Event {
 /// A change of the queue.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Actions)]
 pub enum QueueChange {
-    /// None.
+    /// No change.
     Keep,
     /// Remove the first update; the second one becomes the first.
     RemoveFirst,
     /// The new update becomes the first.
     StoreFirst,
-    /// The new update becomes the second, and replaces the one that is there.
+    /// The new update becomes the second, and replaces the old second one.
     StoreSecond,
     /// Remove all updates.
     Clear,
@@ -59,7 +59,7 @@ pub struct Change {
 pub struct Unsent {
     /// The pending updates.
     pub pending: Pending,
-    /// Is the Data System connected?
+    /// The connection of the Data System.
     pub connection: Connection,
     /// The update of the current command.
     pub due: Notice,
@@ -67,7 +67,7 @@ pub struct Unsent {
 
 decision_table! {
     /// QUEUE: the pending updates. A full queue keeps the oldest one, which may have been sent, and the newest one,
-    /// which says where the object is now.
+    /// which has the object's place now.
     pub QUEUE: fn queue(self::Change) -> self::QueueChange {
         1: event: None                     => Keep;
         2: event: Accepted                 => RemoveFirst;
@@ -78,8 +78,8 @@ decision_table! {
 }
 
 decision_table! {
-    /// UPDATE: the update that the next order to the Data System contains. Pending updates come first, also at the end
-    /// of a STARTUP.
+    /// UPDATE: the update in the next order to the Data System. Pending updates are sent first, also at the end of a
+    /// STARTUP.
     pub UPDATE: fn update(self::Unsent) -> super::Update {
         1: pending: One | Two, connection: Open | Opening  => Pending;
         2: connection: Open, due: Send                     => Due;
@@ -91,7 +91,7 @@ decision_table! {
 mod tests {
     use super::*;
 
-    /// A queue of any length is the model: of it, Task keeps the oldest and the newest update.
+    /// The model is a queue of any length, of which Task keeps the oldest and the newest update.
     #[test]
     fn full_queue_keeps_the_oldest_and_the_newest_update() {
         let (mut kept, mut model) = ([None; 2], Vec::new());

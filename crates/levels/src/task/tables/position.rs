@@ -3,13 +3,13 @@
 use rcs_core::decision_table;
 
 decision_table! {
-    /// POSITION (V.4.1): release what is held, then move to the position, with the parameters of a virtual
-    /// object if one is named. The position is the source location, or the destination if the source is null
-    /// (SPECNOTES.md, contradiction 24). Nothing is released if the robot could not go there afterwards, or if
-    /// the object would fall (an extension: SPECNOTES.md). A command that names an object at the fixture where
-    /// the robot stands belongs to hold-and-seat (VIII.2): there the ledge of the fixture supports the part. An
-    /// object that the data base has in the robot causes an update at its release (an extension: SPECNOTES.md), also
-    /// if the POSITION is sent again after the release.
+    /// POSITION (V.4.1): release the held object, then move to the position, with the parameters of a virtual object
+    /// if one is named. The position is the source location, or the destination if the source is null (SPECNOTES.md,
+    /// contradiction 24). The gripper stays closed if the robot could not leave or the object would fall (an
+    /// extension: SPECNOTES.md). A command that names an object at the robot's fixture belongs to hold-and-seat
+    /// (VIII.2): the ledge of the fixture supports the part. An update is sent for a released object that the
+    /// database has as held by the robot (an extension: SPECNOTES.md), also by a POSITION that is repeated after the
+    /// release.
     pub POSITION: fn position(enum PositionStep, super::Situation) -> super::Action {
         any {
             1:  work: Busy                                  => Wait;
@@ -31,12 +31,12 @@ decision_table! {
             11: update: Pending                             => SendPendingAndPosition  -> Leaving;
             12: otherwise                                   => Position                -> Moving;
         }
-        /// The robot is on its way.
+        /// The robot moves to the position.
         Moving {
             13: update: Pending                             => SendPending             -> Updating;
             14: otherwise                                   => Finish;
         }
-        /// The robot is on its way, and the data base is being told where the object is.
+        /// The robot moves to the position, and the update is sent.
         Leaving {
             15: update: Pending                             => AwaitUpdate             -> Updating;
             16: otherwise                                   => Finish;

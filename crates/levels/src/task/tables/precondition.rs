@@ -1,12 +1,12 @@
-//! What a new command needs before anything moves.
+//! Conditions that a new command must meet before anything moves.
 
 use rcs_core::decision_table;
 
 decision_table! {
-    /// PRECONDITION: a new command whose names are known is refused if it names too little, if its grips, its gripper or
-    /// its way do not fit, if it does not pass the check against the task data that precedes Task, and while the
-    /// operator has the robot. PAUSE is what an operator needs; anything else would move the robot under manual
-    /// control. An object that is put on the pedestal would fall: only FIX-GRIP closes its hand.
+    /// PRECONDITION: a new command with known names is refused if data are missing; if its grips, gripper or route do
+    /// not fit; or if it fails the check against the task data that precedes Task. Under manual control only PAUSE is
+    /// accepted: any other command would move the robot. A TRANSFER to the pedestal is refused, since only FIX-GRIP
+    /// closes the pedestal's hand.
     pub PRECONDITION: fn precondition(super::Preconditions) -> super::Action or () {
         1:  asked: Before                                                            => consult;
         2:  verb: Transfer | Refixture | Acquire | AcquireTool, handling: NoObject   => Fail(NoObjectNamed);

@@ -3,10 +3,10 @@
 use rcs_core::decision_table;
 
 decision_table! {
-    /// REFIXTURE (V.4.1): take an object, reorient it with the Active Pedestal, and hold it at the
-    /// destination. For an object that is held already, as after ACQUIRE, the gripper is not fetched. Sent
-    /// again after an interruption it goes on with the part in the pedestal's hand. Pending
-    /// updates are sent first, as by the other commands that take an object.
+    /// REFIXTURE (V.4.1): take an object, reorient it with the Active Pedestal, and hold it at the destination. If
+    /// the object is held already, as after ACQUIRE, the gripper is not fetched. Repeated after an interruption, the
+    /// command continues with the part in the pedestal's hand. As in all commands that take an object, pending
+    /// updates are sent first.
     pub REFIXTURE: fn refixture(enum RefixtureStep, super::Situation) -> super::Action {
         any {
             1:  work: Busy                  => Wait;
@@ -37,7 +37,7 @@ decision_table! {
         Regripping {
             10: otherwise                   => MoveObjToDest  -> Moving;
         }
-        /// The object is on its way to the destination.
+        /// The object moves to the destination.
         Moving {
             11: otherwise                   => Finish;
         }

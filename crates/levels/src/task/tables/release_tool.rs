@@ -3,12 +3,11 @@
 use rcs_core::decision_table;
 
 decision_table! {
-    /// RELEASE-TOOL (V.4.1): let go of a tool in the transfer location, then go to the end-at location; done
-    /// at once if the tool gripper is free and there. Sent again after an interruption it goes on: open
-    /// fingers move out of the drum, and a robot with a free gripper that stands before the drum
-    /// has only to leave. Without an end-at location the robot stays there, and one that has been sent
-    /// away since cannot be finished. A tool that the data base has in the robot causes an update (an
-    /// extension: SPECNOTES.md).
+    /// RELEASE-TOOL (V.4.1): release a tool in the transfer location, then go to the end-at location. The command
+    /// finishes at once if the tool gripper is free and there. Repeated after an interruption, it continues: open
+    /// fingers move out of the drum, and a free gripper before the drum only leaves. Without an end-at location the
+    /// robot stays at the drum; if it has been moved away since, the command cannot finish. An update is sent for a
+    /// tool that the database has as held by the robot (an extension: SPECNOTES.md).
     pub RELEASE_TOOL: fn release_tool(enum ReleaseToolStep, super::Situation) -> super::Action {
         any {
             1:  work: Busy                                                     => Wait;
@@ -28,19 +27,19 @@ decision_table! {
             12: tool: Free, resumed: AtTool | Leaving, ends: Here              => Fail(SentAway);
             13: tool: Free, resumed: Not | Begun,      ends: Here | Elsewhere  => Fail(NotPrepared);
         }
-        /// The tool is being let go.
+        /// The tool is being released.
         Releasing {
             14: ends: There | Elsewhere                                        => GotoEndpt    -> Leaving;
             15: ends: Here, update: None | Due                                 => Finish;
         }
-        /// The robot is on its way to the end-at location, or where it is to stay.
+        /// The robot moves to the end-at location, or stays.
         Leaving {
             16: update: None | Due                                             => Finish;
         }
         Releasing | Leaving {
             17: update: Pending                                                => SendPending  -> Updating;
         }
-        /// The update says where the tool is.
+        /// The update with the place of the tool is sent.
         Updating {
             18: update: Pending                                                => SendPending;
             19: update: None | Due                                             => Finish;

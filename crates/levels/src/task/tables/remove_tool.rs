@@ -3,9 +3,9 @@
 use rcs_core::decision_table;
 
 decision_table! {
-    /// REMOVE-TOOL (V.4.1): pull a tool that has been acquired out of the tool drum, then go to the end-at
-    /// location; done at once if the tool is there. Sent again after an interruption it goes on. Without an
-    /// end-at location the robot stays at the drum, and one that has been sent away since cannot be finished.
+    /// REMOVE-TOOL (V.4.1): pull an acquired tool out of the tool drum, then go to the end-at location. The command
+    /// finishes at once if the tool is there. Repeated after an interruption, it continues. Without an end-at
+    /// location the robot stays at the drum; if it has been moved away since, the command cannot finish.
     pub REMOVE_TOOL: fn remove_tool(enum RemoveToolStep, super::Situation) -> super::Action {
         any {
             1:  work: Busy                                                        => Wait;
@@ -26,7 +26,7 @@ decision_table! {
             10: ends: There | Elsewhere                                           => GotoEndpt   -> Leaving;
             11: ends: Here                                                        => Finish;
         }
-        /// The robot is on its way to the end-at location.
+        /// The robot moves to the end-at location.
         Leaving {
             12: otherwise                                                         => Finish;
         }

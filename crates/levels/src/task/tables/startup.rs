@@ -3,8 +3,8 @@
 use rcs_core::decision_table;
 
 decision_table! {
-    /// STARTUP (V.4.1): connect the Data System: Abort, Initiate, Startup, which the terminal showed (IV.4.2
-    /// step 3), and the updates that it did not take before, if there are any.
+    /// STARTUP (V.4.1): connect the Data System with Abort, Initiate and Startup, which the terminal showed (IV.4.2
+    /// step 3). Then send the pending updates.
     pub STARTUP: fn startup(enum StartupStep, super::Situation) -> super::Action {
         any {
             1: work: Busy          => Wait;

@@ -3,11 +3,10 @@
 use rcs_core::decision_table;
 
 decision_table! {
-    /// TRANSFER (V.4.1): move an object from one location to another, then go to the end-at location. The
-    /// update is sent as soon as the object is there, so that the data base is right also if the robot cannot leave.
-    /// Sent again after an interruption it goes on: with the part in the pedestal's hand, or with an object
-    /// that is placed already. If it is to stay there, and has been sent away since, it goes back to the
-    /// object.
+    /// TRANSFER (V.4.1): move an object from one location to another, then go to the end-at location. The update is
+    /// sent when the object is there, so that the database is right even if the robot cannot leave. Repeated after an
+    /// interruption, the command continues with the part in the pedestal's hand or with the placed object. Without an
+    /// end-at location, a robot that has been moved away returns to the object.
     pub TRANSFER: fn transfer(enum TransferStep, super::Situation) -> super::Action {
         any {
             1:  work: Busy                                       => Wait;
@@ -47,12 +46,12 @@ decision_table! {
             15: ends: There | Elsewhere, update: Due             => UpdateAndGotoEndpt  -> Leaving;
             16: ends: There | Elsewhere, update: None | Pending  => GotoEndpt           -> Leaving;
         }
-        /// The robot is on its way to the end-at location.
+        /// The robot moves to the end-at location.
         Leaving {
             17: update: Pending                                  => AwaitUpdate         -> Updating;
             18: update: None | Due                               => Finish;
         }
-        /// The update says where the object is.
+        /// The update with the place of the object is sent.
         Updating {
             19: otherwise                                        => Finish;
         }

@@ -2,18 +2,18 @@
 
 use rcs_core::{Actions, Plain};
 
-/// Where the robot is to be at the end.
+/// The robot's place at the end of the command.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Ends {
-    /// Where the command leaves it.
+    /// Where the command leaves the robot.
     Here,
-    /// At the end-at location, where it is now.
+    /// At the end-at location, and the robot is there.
     There,
-    /// At the end-at location, where it is not.
+    /// At the end-at location, and the robot is elsewhere.
     Elsewhere,
 }
 
-/// State of the data base (V.4.1): what the Data System makes of the last command to it.
+/// State of the database (V.4.1): the result of the last command to the Data System.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum DataBase {
     /// It is done.
@@ -22,9 +22,9 @@ pub enum DataBase {
     Executing,
     /// It was refused.
     Refused,
-    /// It is not done in time, and can be written again.
+    /// It is overdue, and can be written again.
     Overdue,
-    /// It is not done in time, however often it was written.
+    /// It is overdue after all retries.
     Silent,
 }
 
@@ -34,73 +34,73 @@ pub enum Update {
     /// None: the object is not moved from or to the MBD, its move was reported, or no Data System is connected
     /// (DB-DONE, IV.3.2).
     None,
-    /// The move of this command, from or to the MBD, when it is completed.
+    /// The move of this command, from or to the MBD, when it is complete.
     Due,
-    /// An earlier update, which is not accepted yet.
+    /// An earlier update, which is still pending.
     Pending,
 }
 
 /// The tool gripper.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum TaskTool {
-    /// It is not on, or it holds another tool than the command names.
+    /// It is not attached, or it holds another tool than the command names.
     None,
     /// It holds nothing.
     Free,
     /// It holds the tool.
     Held,
-    /// It holds something unknown, or its sensors do not tell.
+    /// It holds something unknown, or its sensors give no result.
     Unsure,
 }
 
-/// Where the robot is, for the tool commands.
+/// The robot's place, for the tool commands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Station {
-    /// At none of the following.
+    /// At any other place.
     Elsewhere,
-    /// Near the drum: at TOOL-SAFE.
+    /// Near the drum, at TOOL-SAFE.
     Safe,
     /// In the transfer location of the drum.
     Transfer,
-    /// At no known place: it may be on its way.
+    /// At no known place; it may be moving.
     Unplaced,
 }
 
-/// The fingers and the tool drum.
+/// The fingers relative to the tool drum.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum TaskDrum {
-    /// They are not around a tool in it.
+    /// The fingers are not around a tool in the drum.
     Outside,
-    /// They are.
+    /// The fingers are around a tool in the drum.
     Inside,
 }
 
-/// Can the robot go to the position of a POSITION, as far as Task can tell?
+/// The route to the position of a POSITION, by the names of the locations.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum TaskRoute {
-    /// It is there.
+    /// The robot is there.
     Here,
-    /// It is elsewhere, and the task data have a trajectory.
+    /// The robot is elsewhere, and the task data have a trajectory.
     Leads,
-    /// They have none.
+    /// The task data have no trajectory.
     NoTrajectory,
-    /// It is not known where the robot is.
+    /// The robot's place is not known.
     NoStart,
 }
 
-/// The way from the tool drum to the end-at location of RELEASE-TOOL and REMOVE-TOOL.
+/// The trajectory from the tool drum to the end-at location of RELEASE-TOOL and REMOVE-TOOL.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum WayOut {
     /// The task data have it, or the command needs none.
     Leads,
-    /// They have no trajectory from the drum to that location.
+    /// The task data have no trajectory from the drum to that location.
     NoTrajectory,
 }
 
-/// The neighbour that has the last order of the current command.
+/// The recipient of the last order of the current command.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum TaskRecipient {
-    /// Nothing was ordered yet.
+    /// No order was sent yet.
     Nothing,
     /// Subtask.
     Subtask,
@@ -108,46 +108,46 @@ pub enum TaskRecipient {
     DataSystem,
 }
 
-/// Where the destination is.
+/// The kind of destination.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Destination {
-    /// At neither of the following, or none is named.
+    /// Any other place, or none is named.
     Elsewhere,
-    /// Near the tool drum: it is TOOL-SAFE.
+    /// TOOL-SAFE, near the tool drum.
     NearDrum,
-    /// At the Active Pedestal: it is PEDESTAL.
+    /// PEDESTAL, at the Active Pedestal.
     Pedestal,
 }
 
-/// A location of the command, with the grip of the object there.
+/// The data for a location of the command.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum SiteData {
     /// The command does not name the location.
     Null,
-    /// It does, and the object has no such grip.
+    /// The object does not have the grip there.
     NoGrip,
-    /// It does, and the task data have the grip, or no object is named.
+    /// The task data have the grip, or no object is named.
     Known,
 }
 
 /// The object as a tool.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum ToolData {
-    /// It is for the tool gripper and has the source grip or the destination grip, or no object is named.
+    /// The object fits the tool gripper and has the source or destination grip, or no object is named.
     Fit,
-    /// It is for another gripper.
+    /// The object needs another gripper.
     Unfit,
-    /// It has neither of the two grips.
+    /// The object has neither of the two grips.
     NoGrip,
 }
 
-/// Must the object be regripped on the pedestal?
+/// The regrip on the pedestal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum TaskRegrip {
-    /// No: the source and destination grips are the same.
+    /// Not needed: the source and destination grips are the same.
     None,
-    /// Yes, and the object has a PED-PARA record (VII.7.4), or no object is named.
+    /// Needed, and the object has a PED-PARA record (VII.7.4), or no object is named.
     Possible,
-    /// Yes, and it has none.
+    /// Needed, but the object has no PED-PARA record.
     NoData,
 }

@@ -1,4 +1,4 @@
-//! Task with doubles of its neighbours: a Subtask that does at once what it is told, and a Data System.
+//! Task with test doubles of Subtask and of the Data System. Subtask completes each order after a few ticks.
 
 use interfaces::{
     CommonMemory, DataBaseCommand, DataBaseStatus, ExternalInputs, Header, HwsCommand, Reason, StatusReport,
@@ -23,18 +23,17 @@ use crate::{
     task::Task,
 };
 
-/// Ticks that a double takes for a command.
+/// Duration of a command at a double, in ticks.
 const WORK: u32 = 3;
 
-/// How the Subtask of a test ends a command that the test has singled out.
+/// The failure of a command that the test selects.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Mishap {
     Error(Reason),
-    /// It is not even echoed.
+    /// No answer, not even an echo.
     Silence,
 }
 
-/// The Subtask that a test sees.
 #[derive(Clone, Default)]
 pub struct SubtaskDouble {
     worker: Worker,
@@ -43,7 +42,7 @@ pub struct SubtaskDouble {
     pub received: Vec<SubtaskCommand>,
     pub mishap: Option<(SubtaskVerb, Mishap)>,
     pub joystick: bool,
-    /// While a motion is under way, and after one that was interrupted, the robot is at no place.
+    /// The robot is at no known place during a motion and after an interrupted one.
     pub loses_place: bool,
 }
 
@@ -56,7 +55,7 @@ impl SubtaskDouble {
         }
         let is_replaced = self.worker.is_working();
         let turn = self.worker.turn(command.number, WORK);
-        // Fingers that open finish that, whatever comes.
+        // A new command does not stop opening fingers.
         let last = self.last;
         let opens = matches!(last.command, SubtaskVerb::Release | SubtaskVerb::ReleaseTool);
         if turn == Turn::Takes && is_replaced && opens {
@@ -139,7 +138,7 @@ impl SubtaskDouble {
         }
     }
 
-    /// The gripper lets go of what it holds where the robot stands.
+    /// The gripper releases the held object at the robot's place.
     fn let_go(&mut self) {
         let (held, at) = (self.outputs.status.held, self.outputs.status.at.unwrap_or_default());
         self.hold("");
@@ -155,7 +154,7 @@ impl SubtaskDouble {
         }
     }
 
-    /// The gripper holds an object; an empty name for none.
+    /// The gripper holds an object, or nothing if the name is empty.
     pub fn hold(&mut self, object: &str) {
         let object = Name16::new(object).unwrap();
         let held = Holding::Object(ObjectGrip { object, grip: 1 });
@@ -165,15 +164,15 @@ impl SubtaskDouble {
         self.outputs.status.held = if object.is_empty() { Holding::Nothing } else { held };
     }
 
-    /// What is held is held in a grip.
+    /// Set the grip of the held object.
     fn grip(&mut self, grip: i32) {
         if let Holding::Object(held) = &mut self.outputs.status.held {
             held.grip = grip;
         }
     }
 
-    /// The robot stands at a location, in the drum if it is that of the drum; an empty name for none that is
-    /// known.
+    /// Put the robot at a location, or at no known place if the name is empty. At the drum's location it is in the
+    /// drum.
     pub fn stand(&mut self, location: &str) {
         let location = Name10::new(location).unwrap();
         let site = Site { location, ..Site::default() };
@@ -182,18 +181,17 @@ impl SubtaskDouble {
     }
 }
 
-/// How the Data System of a test answers.
+/// Answers of the Data System in a test.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Answer {
-    /// It is not there.
+    /// No answer.
     #[default]
     Absent,
-    /// It executes a command for so many ticks.
+    /// The command is done after some ticks.
     After(u64),
     Refuse,
 }
 
-/// The Data System that a test sees.
 #[derive(Clone, Default)]
 pub struct DataSystem {
     receiver: Receiver,
@@ -201,7 +199,7 @@ pub struct DataSystem {
     pub status: DataBaseStatus,
     pub received: Vec<DataBaseCommand>,
     pub answer: Answer,
-    /// A command to which it gives another answer.
+    /// A command with another answer.
     pub except: Option<(DataBaseVerb, Answer)>,
 }
 
@@ -272,8 +270,7 @@ impl Default for Bench<'static> {
 }
 
 impl<'d> Bench<'d> {
-    /// A bench with the parts gripper attached and a vise that reports a clamped part, after two ticks in which
-    /// nothing was commanded.
+    /// A bench with the parts gripper attached and a vise that reports a clamped part, after two idle ticks.
     pub fn of(data: TaskData<'d>) -> Self {
         let mut bench = Self::with(Below::default(), data);
         bench.world.subtask.outputs.status.end_effector_id = Some(1);
@@ -327,7 +324,7 @@ impl<'d> Bench<'d> {
         self.finish()
     }
 
-    /// What becomes of a line that is interrupted after each tick in which it executes: by another one, or a restart.
+    /// Benches in which a line is interrupted after each tick, by another line or by a restart.
     pub fn interrupted(mut self, line: &str, by: Option<&str>) -> impl Iterator<Item = Self> {
         self.command(line);
         self.at_every_tick().map(move |mut copy| {
@@ -341,17 +338,17 @@ impl<'d> Bench<'d> {
         })
     }
 
-    /// The words that Subtask was sent since the last command began.
+    /// The orders to Subtask since the last command began.
     pub fn sent(&self) -> Vec<&'static str> {
         self.world.subtask.received.iter().map(|command| command.command.text()).collect()
     }
 
-    /// The words that the Data System was sent.
+    /// The commands to the Data System.
     pub fn asked(&self) -> Vec<&'static str> {
         self.world.data_system.received.iter().map(|command| command.command.text()).collect()
     }
 
-    /// The gripper with an id is on, it holds an object, and the robot stands at a location.
+    /// Set the attached gripper, its object and the robot's place.
     pub fn set(&mut self, gripper: u8, object: &str, at: &str) {
         self.world.subtask.outputs.status.end_effector_id = (gripper != 0).then_some(gripper);
         self.world.subtask.hold(object);
@@ -365,5 +362,5 @@ impl<'d> Bench<'d> {
     }
 }
 
-/// How a command ends that succeeds.
+/// Status of a successful command.
 pub const FINISHED: (HwsReport, Reason) = (HwsReport::Finished, Reason::None);

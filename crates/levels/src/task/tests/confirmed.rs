@@ -13,12 +13,12 @@ use super::{
 };
 
 pub(super) const SCENARIOS: &[fn()] = &[
-    transfer_is_not_finished_while_something_is_held_or_nothing_was_placed,
+    transfer_is_not_finished_before_its_object_is_placed,
     position_is_not_finished_while_the_object_is_held,
-    object_that_is_gone_is_not_acquired,
+    missing_object_is_not_acquired,
 ];
 
-/// Subtask reports done for the last order of a line, and its status is changed then. How the command ends.
+/// The end of a command whose status is changed after Subtask reports done for its last order.
 fn end(
     (line, gripper, object, at): (&str, u8, &str, &str),
     last: SubtaskVerb,
@@ -42,7 +42,7 @@ fn end(
 }
 
 #[test]
-fn move_is_not_finished_elsewhere_or_beside_the_destination() {
+fn move_is_not_finished_away_from_its_destination() {
     let home = ("MOVE -- 0 -- 0 0 SAFE 0 -- 0", 1, "", "PFIXTURE");
     assert_eq!(end(home, SubtaskVerb::GotoDest, |_| {}), FINISHED);
     assert_eq!(end(home, SubtaskVerb::GotoDest, |status| status.at = None), error(Reason::NotAtGoal));
@@ -51,7 +51,7 @@ fn move_is_not_finished_elsewhere_or_beside_the_destination() {
 }
 
 #[test]
-fn transfer_is_not_finished_while_something_is_held_or_nothing_was_placed() {
+fn transfer_is_not_finished_before_its_object_is_placed() {
     let transfer = ("TRANSFER PART +1 PFIXTURE 0 +1 UNIT_1 2 SAFE 0", 1, "", "PFIXTURE");
     assert_eq!(end(transfer, SubtaskVerb::GotoEndpt, |_| {}), FINISHED);
     let held = |status: &mut SubtaskStatus| status.held = Holding::Something;
@@ -71,7 +71,7 @@ fn position_is_not_finished_while_the_object_is_held() {
 }
 
 #[test]
-fn object_that_is_gone_is_not_acquired() {
+fn missing_object_is_not_acquired() {
     let acquire = ("ACQUIRE PART +1 PFIXTURE 0 0 -- 0 -- 0", 1, "", "PFIXTURE");
     let gone = |status: &mut SubtaskStatus| status.held = Holding::Nothing;
     assert_eq!(end(acquire, SubtaskVerb::GetObject, |_| {}), FINISHED);
@@ -81,14 +81,14 @@ fn object_that_is_gone_is_not_acquired() {
 }
 
 #[test]
-fn robot_beside_its_end_at_location_goes_there() {
+fn offset_robot_is_not_at_its_end_at_location() {
     let remove = "REMOVE-TOOL TOOL-1 +1 -- 0 0 -- 0 TOOL-SAFE 0";
     let mut bench = Bench::default();
     bench.set(3, "TOOL-1", "TOOL-SAFE");
     assert_eq!(bench.run(remove), FINISHED, "the tool is there already");
     bench.world.subtask.outputs.status.offset = Offset::Slight;
     bench.step();
-    assert_eq!(bench.run(remove).0, HwsReport::Error, "a remembered place is no end");
+    assert_eq!(bench.run(remove).0, HwsReport::Error, "a place off its location is not the end");
 }
 
 #[test]

@@ -19,7 +19,7 @@ use crate::{
     },
 };
 
-/// The tables about updates of the data base: no header names their rows.
+/// Tables about updates of the database, whose rows no header names.
 const UPDATES: [&str; 8] =
     ["UPDATE-DUE", "FOLLOW", "TAKE", "RELEASED", "PICK-UP", "CARRY", "QUEUE", "UPDATE"];
 
@@ -27,14 +27,15 @@ const UPDATES: [&str; 8] =
 fn every_row_of_every_table_fires() {
     let scenarios =
         [super::SCENARIOS, confirmed::SCENARIOS, data_system::SCENARIOS, recovery::SCENARIOS].concat();
-    // The task data have no gripper numbers but 1 to 3. The look-up of a location needs no grip. No process is above.
+    // The task data have the gripper numbers 1 to 3 only. The look-up of a location needs no grip. No process is
+    // above Task.
     let mut missing = silent::<Task, TaskData<'_>>(&scenarios);
     missing.retain(|row| !UPDATES.iter().any(|table| row.starts_with(&format!("{table} "))));
     assert_eq!(missing, ["ACCEPT 4", "ACCEPT 9", "HALT 4"]);
 }
 
-/// So no order is given twice, and Task needs no EFFECT. An update that is told again ends by itself: the Data
-/// System takes it, refuses it or is silent.
+/// So no order is repeated, and Task needs no EFFECT. A repeated update ends by itself: the Data System accepts it,
+/// refuses it or is silent.
 #[test]
 fn every_order_of_task_leads_to_a_later_step() {
     let others =

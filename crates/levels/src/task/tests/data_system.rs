@@ -25,7 +25,7 @@ pub(super) const SCENARIOS: &[fn()] = &[
     refixture_sends_pending_updates_first,
 ];
 
-/// What the last update says: item, serial number, position, sector.
+/// The last update: item, serial number, position, sector.
 fn update(bench: &Bench<'_>) -> (String, String, String, i32) {
     let told = bench.world.data_system.received.iter().rfind(|c| c.command == DataBaseVerb::Update).unwrap();
     (told.item.to_string(), told.serial.to_string(), told.position.to_string(), told.sector.unwrap_or(0))
@@ -63,7 +63,7 @@ fn db_done_waits_for_no_answer() {
     bench.external.operator.db_done = true;
     assert_eq!(bench.run(TRANSFER), FINISHED);
     assert_eq!(bench.asked(), ["UPDATE"], "it is sent once");
-    assert!(bench.memory.task.updates.pending.iter().all(Option::is_none), "it counts as taken");
+    assert!(bench.memory.task.updates.pending.iter().all(Option::is_none), "no update is pending");
     bench.external.operator.db_done = false;
     assert_eq!(bench.run(FROM_TRAY), error(Reason::DataBaseSilent));
 }
@@ -102,7 +102,7 @@ fn update_precedes_the_departure_of_the_robot() {
 }
 
 #[test]
-fn slow_data_system_is_waited_for() {
+fn task_waits_for_a_slow_data_system() {
     let mut bench = Bench::connected();
     bench.world.data_system.answer = Answer::After(200);
     for line in [TRANSFER, FROM_TRAY] {
@@ -151,9 +151,9 @@ fn pending_update_precedes_the_next_object_motion() {
         bench.world.data_system.answer = trouble;
         assert_eq!(bench.run(TRANSFER), error(reason));
         let kept = update(&bench);
-        // The robot alone can be moved.
+        // The robot alone can move.
         assert_eq!(bench.run(SAFE), FINISHED);
-        // An object cannot, while the update is not taken; nothing moves.
+        // No object can, while the update is pending.
         for line in [FROM_TRAY, TRANSFER] {
             assert_eq!(bench.run(line), error(reason));
             assert_eq!((bench.sent(), update(&bench)), (vec![], kept.clone()));
@@ -177,7 +177,7 @@ fn pending_update_follows_the_next_startup() {
     assert_eq!(bench.asked(), ["ABORT", "INITIATE", "STARTUP", "UPDATE"]);
     assert_eq!(bench.run(STARTUP), FINISHED);
     assert_eq!(bench.asked(), ["ABORT", "INITIATE", "STARTUP"], "it is pending no longer");
-    // SHUTDOWN ends what was pending.
+    // SHUTDOWN drops the pending updates.
     bench.world.data_system.answer = Answer::Absent;
     assert_eq!(bench.run(FROM_TRAY), error(Reason::DataBaseSilent));
     assert_eq!(bench.run(SHUTDOWN), error(Reason::DataBaseSilent));
@@ -206,7 +206,7 @@ fn refused_connection_is_reported() {
             bench.world.data_system.answer = Answer::After(1);
             bench.world.data_system.except = Some((verb, answer));
             assert_eq!(bench.run(STARTUP), error(reason), "{verb}");
-            // It is not connected: nothing is told.
+            // No update without a connection.
             assert_eq!(bench.run(TRANSFER), FINISHED);
             assert!(bench.asked().is_empty());
         }
@@ -215,7 +215,7 @@ fn refused_connection_is_reported() {
         let mut bench = Bench::connected();
         bench.world.data_system.answer = answer;
         assert_eq!(bench.run(SHUTDOWN), error(reason));
-        assert_eq!(bench.run(TRANSFER), FINISHED, "it counts as gone all the same");
+        assert_eq!(bench.run(TRANSFER), FINISHED, "it is disconnected anyway");
     }
 }
 
@@ -228,20 +228,20 @@ fn update_carries_the_serial_number_of_the_command() {
     assert_eq!(update(&bench).1, "LB-0042");
 }
 
-/// What the Data System was told by a line: the positions of its updates.
+/// Run a line and return the positions of its updates.
 fn told(bench: &mut Bench<'_>, line: &str) -> Vec<String> {
     assert_eq!(bench.run(line), FINISHED, "{line}");
     let updates = bench.world.data_system.received.iter().filter(|told| told.command == DataBaseVerb::Update);
     updates.map(|told| told.position.to_string()).collect()
 }
 
-/// An ACQUIRE that finds its object in the hand tells what its predecessor has not told, and nothing else.
+/// An ACQUIRE that finds its object in the gripper sends only the missing update of the command before.
 #[test]
 fn acquire_of_an_object_taken_elsewhere_sends_no_update() {
     const FROM_FIXTURE: &str = "ACQUIRE PART +1 PFIXTURE 0 0 -- 0 -- 0";
     const FROM_SECTOR_2: &str = "ACQUIRE PART +1 UNIT_1 2 0 -- 0 -- 0";
     const FROM_SECTOR_1: &str = "ACQUIRE PART +1 UNIT_1 1 0 -- 0 -- 0";
-    // Taken elsewhere, by a command that has finished; by an ACQUIRE of another sector; and as often as it is sent.
+    // Taken elsewhere by a finished command, or by an ACQUIRE of another sector. A repetition changes nothing.
     for first in [FROM_FIXTURE, "MOVE PART +1 PFIXTURE 0 +1 SAFE 0 -- 0", FROM_SECTOR_1] {
         let mut bench = Bench::connected();
         told(&mut bench, first);
@@ -249,19 +249,19 @@ fn acquire_of_an_object_taken_elsewhere_sends_no_update() {
             assert!(told(&mut bench, FROM_SECTOR_2).is_empty(), "{first}");
         }
     }
-    // The same, interrupted at any tick of the second command.
+    // The second command is interrupted at any tick.
     let mut bench = Bench::connected();
     told(&mut bench, FROM_FIXTURE);
     for mut bench in bench.interrupted(FROM_SECTOR_2, Some(PAUSE)) {
         assert!(told(&mut bench, FROM_SECTOR_2).is_empty(), "tick {}", bench.tick);
     }
-    // Taken elsewhere by a command that was interrupted.
+    // Taken elsewhere by an interrupted command.
     let mut bench = Bench::connected();
     bench.command("MOVE PART +1 PFIXTURE 0 +1 SAFE 0 -- 0");
     bench.until(|bench| bench.memory.subtask.status.held.object().is_some());
     assert_eq!(bench.run(PAUSE), FINISHED);
     assert!(told(&mut bench, FROM_SECTOR_2).is_empty());
-    // Taken there, by the same command, by a MOVE, and before the Data System was connected.
+    // Taken from the source: by the same command, by a MOVE, and before the Data System was connected.
     for first in [FROM_SECTOR_2, FROM_TRAY] {
         let mut bench = Bench::connected();
         bench.command(first);
@@ -280,15 +280,15 @@ const LET_GO_WITHOUT_NAME: &str = "POSITION -- 0 -- 0 0 PFIXTURE 0 -- 0";
 const TO_FIXTURE: &str = "TRANSFER PART +1 SAFE 0 +1 PFIXTURE 0 -- 0";
 const OTHER: &str = "TRANSFER BAR +1 PFIXTURE 0 +1 UNIT_1 1 SAFE 0";
 
-/// The positions that the Data System was told since the bench was asked last.
+/// The positions of the updates since the last call.
 fn positions(bench: &mut Bench<'_>) -> Vec<String> {
     let updates =
         bench.world.data_system.received.drain(..).filter(|told| told.command == DataBaseVerb::Update);
     updates.map(|told| told.position.to_string()).collect()
 }
 
-/// What becomes of a part that the data base has as the robot's when `line`, which lets it go, is replaced by `by`
-/// after each number of ticks: the benches in which the part lies in the fixture, and where it is said to be by then.
+/// Benches in which `line`, which releases the part, is replaced by `by` after each number of ticks. Only those with
+/// the part in the fixture are returned, with the positions of their updates.
 fn let_go_while_replaced(line: &str, by: &str) -> Vec<(Bench<'static>, Vec<String>)> {
     let mut bench = Bench::connected();
     assert_eq!(told(&mut bench, FROM_TRAY), ["H_ROBOT"]);
@@ -303,8 +303,7 @@ fn let_go_while_replaced(line: &str, by: &str) -> Vec<(Bench<'static>, Vec<Strin
         .collect()
 }
 
-/// The fingers have let the part go when the POSITION comes again. It has nothing to release, and tells of the part
-/// all the same.
+/// The part is released already when the POSITION is repeated. The update is sent nevertheless.
 #[test]
 fn repeated_position_updates_the_object_it_released() {
     for line in [LET_GO, LET_GO_WITHOUT_NAME] {
@@ -321,7 +320,7 @@ fn repeated_position_updates_the_object_it_released() {
     }
 }
 
-/// The command is not sent again: the next one about another object, or a STARTUP, tells first where the part is.
+/// The command is not repeated: the next command about another object, or a STARTUP, sends the update first.
 #[test]
 fn next_command_updates_an_object_released_before() {
     for line in [LET_GO, LET_GO_WITHOUT_NAME, TO_FIXTURE] {
@@ -330,7 +329,7 @@ fn next_command_updates_an_object_released_before() {
             for (mut bench, mut positions) in let_go_while_replaced(line, PAUSE) {
                 untold += u32::from(positions.is_empty());
                 positions.extend(told(&mut bench, next));
-                // An unfinished TRANSFER can be sent again after a STARTUP: it tells then.
+                // A TRANSFER can be repeated after a STARTUP, and sends the update then.
                 if (line, next) == (TO_FIXTURE, STARTUP) {
                     positions.extend(told(&mut bench, line));
                 }
@@ -341,7 +340,7 @@ fn next_command_updates_an_object_released_before() {
     }
 }
 
-/// A tool that the drum gets from the robot is the robot's no longer, with an end-at location or without.
+/// The drum has the tool, with an end-at location or without.
 #[test]
 fn release_tool_updates_the_tool() {
     for end_at in ["TOOL-SAFE", "--"] {
@@ -355,7 +354,7 @@ fn release_tool_updates_the_tool() {
             bench
         };
         assert_eq!(told(&mut bench(), &release), ["TOOL-TRNS"], "{end_at}");
-        // Replaced at any tick after the fingers have let go, and sent again.
+        // Replaced at any tick after the release, and repeated.
         for mut bench in bench().interrupted(&release, Some(PAUSE)) {
             let mut positions = positions(&mut bench);
             positions.extend(told(&mut bench, &release));
@@ -364,7 +363,6 @@ fn release_tool_updates_the_tool() {
     }
 }
 
-/// A part that an abandoned TRANSFER has put into a tray is told with its sector.
 #[test]
 fn update_of_an_abandoned_transfer_carries_its_sector() {
     let mut untold = 0;
@@ -379,21 +377,20 @@ fn update_of_an_abandoned_transfer_carries_its_sector() {
     assert!(untold > 0);
 }
 
-/// What was told of an item: serial number, position, and sector or 0.
+/// An update of an item: serial number, position, and sector or 0.
 type Told = (String, String, i32);
 
 fn was(serial: &str, position: &str, sector: i32) -> Told {
     (serial.to_owned(), position.to_owned(), sector)
 }
 
-/// What the Data System was told of PART since the bench was asked last.
+/// The updates of PART since the last call.
 fn parts(bench: &mut Bench<'_>) -> Vec<Told> {
     let updates = bench.world.data_system.received.drain(..);
     let of_part = updates.filter(|told| told.command == DataBaseVerb::Update && told.item.as_str() == "PART");
     of_part.map(|told| was(told.serial.as_str(), told.position.as_str(), told.sector.unwrap_or(0))).collect()
 }
 
-/// A command about the part with a serial number.
 fn order(bench: &mut Bench<'_>, line: &str, serial: &str) {
     bench.command(line);
     bench.external.hws.serial = Name16::new(serial).unwrap();
@@ -404,16 +401,14 @@ fn perform(bench: &mut Bench<'_>, line: &str, serial: &str) {
     assert_eq!(bench.finish(), FINISHED, "{line}");
 }
 
-/// Step until a condition of Subtask holds.
 fn until(bench: &mut Bench<'_>, holds: impl Fn(&SubtaskStatus) -> bool) {
     while !holds(&bench.memory.subtask.status) {
         assert_eq!(bench.step().status.report, HwsReport::Executing);
     }
 }
 
-/// A command that takes a part out of the MBD is replaced and never sent again: the command that lets the part go, or
-/// the next one about an object, tells where it is. So it is if an earlier part of the same name was let go before, and
-/// that one is told of no more.
+/// A command that takes a part out of the MBD is replaced and not repeated. The command that releases the part, or
+/// the next one about an object, sends the update. An earlier part of the same name gets no further update.
 #[test]
 fn object_taken_by_an_abandoned_command_is_updated() {
     const LINES: [&str; 4] = [
@@ -465,8 +460,8 @@ fn object_taken_by_an_abandoned_command_is_updated() {
     }
 }
 
-/// The robot has lost the part that it carried, with a Data System or without. What it takes then under the same name
-/// is another one.
+/// The robot has lost the carried part, with a Data System or without. The next part of the same name is another
+/// part.
 #[test]
 fn lost_part_is_not_updated_for_the_next_one() {
     let mut bench = Bench::connected();
@@ -496,7 +491,7 @@ fn lost_part_is_not_updated_for_the_next_one() {
         assert_eq!(bench.run(OTHER), FINISHED);
         assert_eq!(parts(&mut bench), []);
     }
-    // So it is with a tool that the drum gives and gets.
+    // The same with a tool.
     let mut bench = Bench::connected();
     bench.set(3, "", "HOME");
     perform(&mut bench, "MOVE TOOL-1 +1 UNIT_1 2 +1 TOOL-SAFE 0 -- 0", "A");
@@ -510,8 +505,7 @@ fn lost_part_is_not_updated_for_the_next_one() {
     }
 }
 
-/// A part keeps its serial number while it is held, whatever commands call it that do not tell of it; the next part of
-/// the same name has its own.
+/// Other commands do not change the serial number of a held part. The next part of the same name has its own.
 #[test]
 fn parts_of_one_name_keep_their_serial_numbers() {
     for next in [
@@ -536,7 +530,7 @@ fn parts_of_one_name_keep_their_serial_numbers() {
         perform(&mut bench, LET_GO, "A");
         assert_eq!(parts(&mut bench), [was("A", "H_ROBOT", 0), was("A", "PFIXTURE", 0)], "{next}");
     }
-    // A part that no update is due of is held, and another one of its name is in the tray.
+    // The held part needs no update, and another part of its name is in the tray.
     let mut bench = Bench::connected();
     order(&mut bench, "MOVE PART +1 PFIXTURE 0 +1 SAFE 0 -- 0", "A");
     until(&mut bench, |below| below.held.object().is_some());
@@ -547,7 +541,7 @@ fn parts_of_one_name_keep_their_serial_numbers() {
     bench.set(1, "PART", "PFIXTURE");
     perform(&mut bench, LET_GO, "A");
     assert_eq!(parts(&mut bench), []);
-    // The first was let go by a command that was replaced, and the next one of its name is taken.
+    // A replaced command released the first part, and the next one takes another part of its name.
     for next in ["TRANSFER PART +1 UNIT_1 1 +1 SAFE 0 -- 0", "TRANSFER PART +1 PFIXTURE 0 +1 SAFE 0 -- 0"] {
         let mut bench = Bench::connected();
         order(&mut bench, "TRANSFER PART +1 UNIT_1 2 +1 PFIXTURE 0 HOME 0", "A");
@@ -564,8 +558,8 @@ fn parts_of_one_name_keep_their_serial_numbers() {
     }
 }
 
-/// The hand cannot be read for a time, in which a command is accepted: what it holds keeps its serial number, and an
-/// object that was taken elsewhere is not told.
+/// The sensors of the gripper fail while a command is accepted. The held object keeps its serial number, and one that
+/// was taken elsewhere gets no update.
 #[test]
 fn unreadable_gripper_keeps_serial_number_and_origin() {
     const ACQUIRE: &str = "ACQUIRE PART +1 UNIT_1 2 0 -- 0 -- 0";
@@ -598,7 +592,7 @@ fn unreadable_gripper_keeps_serial_number_and_origin() {
     }
 }
 
-/// The sector is that in which the fingers have opened, and not that of another command.
+/// The sector is the one where the fingers opened, not that of another command.
 #[test]
 fn update_carries_the_sector_of_the_release() {
     for (first, sector, next) in [
@@ -618,17 +612,16 @@ fn update_carries_the_sector_of_the_release() {
         told.extend(parts(&mut bench));
         assert_eq!(told, [was("A", "UNIT_1", sector)], "{first}, {next}");
     }
-    // A MOVE from one sector to another, abandoned where it ends.
+    // A MOVE from one sector to another is abandoned at its destination.
     let mut bench = Bench::connected();
     order(&mut bench, "MOVE PART +1 UNIT_1 2 +1 UNIT_1 1 -- 0", "A");
     until(&mut bench, |below| below.at.is_some_and(|at| at.site.sector == Some(1)));
     assert_eq!(bench.run(PAUSE), FINISHED);
     perform(&mut bench, "POSITION PART +1 UNIT_1 2 0 -- 0 -- 0", "A");
-    assert!(bench.sent().ends_with(&["RELEASE", ">POSITION"]), "the sector in which it stands supports it");
+    assert!(bench.sent().ends_with(&["RELEASE", ">POSITION"]), "the sector at the robot supports it");
     assert_eq!(parts(&mut bench), [was("A", "UNIT_1", 1)]);
 }
 
-/// A TRANSFER that comes just when another command has grasped its part tells where it puts it.
 #[test]
 fn transfer_accepted_in_the_tick_of_the_grasp_sends_its_update() {
     let mut bench = Bench::connected();
@@ -642,7 +635,6 @@ fn transfer_accepted_in_the_tick_of_the_grasp_sends_its_update() {
     }
 }
 
-/// REFIXTURE, too, tells what is pending before it takes anything: no update is lost.
 #[test]
 fn refixture_sends_pending_updates_first() {
     let mut bench = Bench::connected();
@@ -654,13 +646,12 @@ fn refixture_sends_pending_updates_first() {
     assert_eq!(bench.finish(), error(Reason::DataBase));
     const REFIXTURE: &str = "REFIXTURE PART +1 UNIT_1 2 +2 PFIXTURE 0 -- 0";
     assert_eq!(bench.run(REFIXTURE), error(Reason::DataBase));
-    assert!(bench.sent().is_empty(), "nothing moves");
+    assert!(bench.sent().is_empty(), "no motion");
     bench.world.data_system.answer = Answer::After(1);
     perform(&mut bench, REFIXTURE, "B");
     assert_eq!(parts(&mut bench).split_off(1), [was("A", "H_ROBOT", 0), was("A", "PFIXTURE", 0)]);
 }
 
-/// An operator who deletes the ledger deletes what its command would have taken.
 #[test]
 fn deleted_ledger_deletes_the_object_to_take() {
     let mut bench = Bench::connected();
@@ -677,7 +668,6 @@ fn deleted_ledger_deletes_the_object_to_take() {
     assert_eq!((bench.memory.task.ledger, bench.memory.task.updates.taking), (None, None));
 }
 
-/// The robot holds a part that is told of when it is let go, also if it is sent for another one meanwhile.
 #[test]
 fn held_part_keeps_its_update_during_a_refused_transfer() {
     let mut bench = Bench::connected();
@@ -689,15 +679,15 @@ fn held_part_keeps_its_update_during_a_refused_transfer() {
     assert_eq!(told(&mut bench, LET_GO), ["PFIXTURE"]);
 }
 
-/// V.4.1 has updates of moves from and to the MBD; a part that the data base has as the robot's is told of, too.
+/// V.4.1 requires updates of moves from and to the MBD only.
 #[test]
 fn transfer_updates_a_part_that_the_robot_held() {
     let mut bench = Bench::connected();
     assert_eq!(told(&mut bench, FROM_TRAY), ["H_ROBOT"]);
     assert_eq!(told(&mut bench, TO_FIXTURE), ["PFIXTURE"]);
     bench.world.subtask.hold("PART");
-    assert!(told(&mut bench, TO_FIXTURE).is_empty(), "the data base has it elsewhere");
-    // Replaced at any tick and sent again it tells once.
+    assert!(told(&mut bench, TO_FIXTURE).is_empty(), "the database has it elsewhere");
+    // Replaced at any tick and repeated, the command sends one update.
     for by in [PAUSE, NOWHERE, HOME] {
         for (mut bench, mut positions) in let_go_while_replaced(TO_FIXTURE, by) {
             positions.extend(told(&mut bench, TO_FIXTURE));

@@ -20,7 +20,7 @@ use crate::subtask::tests::data::without;
 
 pub(super) const SCENARIOS: &[fn()] = &[
     release_tool_of_an_empty_gripper_only_leaves,
-    tool_command_without_names_stays_and_means_the_held_tool,
+    tool_command_without_names_uses_the_held_tool,
     unprepared_tool_command_is_refused,
     tool_command_with_unknown_contents_is_refused,
     acquire_tool_in_the_drum_needs_no_motion,
@@ -93,7 +93,7 @@ fn move_moves_an_object_or_the_robot() {
     assert_eq!(bench.sent(), ["GET-ENDEFF", "GET-OBJECT", "MOVE-OBJ>D"]);
     assert_eq!(bench.run(SAFE), FINISHED);
     assert_eq!(bench.sent(), ["GOTO-DEST"]);
-    assert!(bench.world.subtask.outputs.status.held.is_held(), "what is held is kept");
+    assert!(bench.world.subtask.outputs.status.held.is_held(), "the held object is kept");
 }
 
 #[test]
@@ -180,7 +180,7 @@ fn release_tool_of_an_empty_gripper_only_leaves() {
 }
 
 #[test]
-fn tool_command_without_names_stays_and_means_the_held_tool() {
+fn tool_command_without_names_uses_the_held_tool() {
     let mut bench = Bench::default();
     bench.set(3, "TOOL-1", "TOOL-TRNS");
     for (line, word) in [
@@ -192,7 +192,7 @@ fn tool_command_without_names_stays_and_means_the_held_tool() {
         assert_eq!(bench.world.subtask.received[0].object.unwrap_or_default().as_str(), "TOOL-1");
         assert_eq!(bench.world.subtask.received[0].end_effector_id, Some(3));
     }
-    // The location that the command names as its source does not count: only TOOL-SAFE is near the drum.
+    // Only TOOL-SAFE is near the drum; the source in the command has no effect.
     bench.set(3, "TOOL-1", "HOME");
     assert_eq!(bench.run("INSERT-TOOL TOOL-1 +1 HOME 0 0 -- 0 -- 0"), error(Reason::NotPrepared));
 }
@@ -242,7 +242,7 @@ fn tool_command_with_unknown_contents_is_refused() {
         ] {
             assert_eq!(with(line), (error(reason), vec![]), "{line}, {held:?}");
         }
-        // Subtask says whether it hinders an object from being fetched.
+        // Subtask reports an object that obstructs the fetch.
         let (end, sent) = with("REFIXTURE PART +1 PFIXTURE 0 -1 PFIXTURE 0 -- 0");
         assert_eq!((end, sent[0]), (FINISHED, "GET-ENDEFF"));
     }
@@ -255,7 +255,7 @@ fn acquire_tool_in_the_drum_needs_no_motion() {
     assert_eq!((bench.run(ACQUIRE), bench.sent()), (FINISHED, vec!["ACQUIRE-TOOL"]));
 }
 
-/// Commands that lack something, and why they are refused.
+/// Incomplete commands, and the reasons for refusing them.
 const REFUSED: &[(&str, Reason)] = &[
     ("DANCE -- 0 -- 0 0 -- 0 -- 0", Reason::UnknownCommand),
     ("MOVE NOBODY +1 UNIT_1 1 +1 SAFE 0 -- 0", Reason::UnknownObject),
@@ -333,7 +333,7 @@ fn failure_of_subtask_is_passed_up_by_every_command() {
             assert_eq!(bench.run(line), error(reason), "{line}");
             let sent = bench.world.subtask.received.len();
             (0..20).for_each(|_| assert_eq!(bench.step().status.report, HwsReport::Error));
-            assert_eq!(bench.world.subtask.received.len(), sent, "nothing is sent after an error");
+            assert_eq!(bench.world.subtask.received.len(), sent, "no order after an error");
         }
     }
 }
@@ -351,7 +351,7 @@ fn operator_takes_the_robot_during_a_command() {
         assert_eq!((status.report, status.reason), (HwsReport::JoystickOn, Reason::JoystickOn));
     }
     assert_eq!(bench.sent(), ["GOTO-DEST", "S-PAUSE"], "one pause is enough");
-    // Nothing is executed while the operator has the robot.
+    // No command is executed while the operator has the robot.
     assert_eq!(bench.run(HOME), (HwsReport::JoystickOn, Reason::JoystickOn));
     assert!(bench.sent().is_empty());
     bench.world.subtask.joystick = false;

@@ -1,4 +1,4 @@
-//! A command that is interrupted, replaced or cut off by a restart, and sent again (docs/design/recovery.md).
+//! Commands that are interrupted, replaced or stopped by a restart, and repeated (docs/design/recovery.md).
 
 use interfaces::{
     Reason, StatusReport,
@@ -19,7 +19,7 @@ use super::{
 
 pub(super) const SCENARIOS: &[fn()] = &[
     new_command_stops_the_running_one_before_it_is_answered,
-    replaced_pause_is_waited_for,
+    next_command_waits_for_a_replaced_pause,
     transfer_without_end_returns_to_its_object,
     part_in_the_pedestal_is_regripped_first,
     interrupted_tool_command_resumes,
@@ -42,7 +42,7 @@ fn moving_bench() -> Bench<'static> {
     bench
 }
 
-/// Is Subtask doing anything but pausing?
+/// True if Subtask is executing anything but a pause.
 fn is_under_way(bench: &Bench<'_>) -> bool {
     let pausing = bench.memory.task.subtask.command == SubtaskVerb::Pause;
     let status = &bench.memory.subtask.status;
@@ -66,7 +66,7 @@ fn new_command_stops_the_running_one_before_it_is_answered() {
                 assert_eq!(bench.memory.task.status.report, HwsReport::Executing);
             }
             bench.until(|bench| bench.memory.task.status.report != HwsReport::Executing);
-            assert!(!is_under_way(&bench), "{line}, tick {tick}: Subtask goes on");
+            assert!(!is_under_way(&bench), "{line}, tick {tick}: Subtask is still busy");
             assert_eq!(bench.memory.subtask.status.report, StatusReport::Done);
             if under_way && line == NOWHERE {
                 assert_eq!(bench.sent()[before..].last(), Some(&"S-PAUSE"));
@@ -90,7 +90,7 @@ fn command_without_predecessor_is_accepted_in_its_first_tick() {
 }
 
 #[test]
-fn replaced_pause_is_waited_for() {
+fn next_command_waits_for_a_replaced_pause() {
     let mut bench = Bench::default();
     bench.command(TRANSFER);
     bench.wait(6);
@@ -141,7 +141,7 @@ fn manual_control_sends_nothing_to_subtask() {
     }
 }
 
-/// What comes between a command and the same command again: another one, or a restart.
+/// The event before a command is repeated: another command, or a restart.
 const INTERRUPTIONS: [Option<&str>; 4] = [Some(PAUSE), Some(NOWHERE), Some(HOME), None];
 
 #[test]
@@ -160,11 +160,11 @@ fn interrupted_transfer_resumes() {
                     _ => &["GOTO-ENDPT"],
                 };
                 assert_eq!(bench.sent(), rest, "{case}");
-                assert_eq!(told + bench.asked().len(), 1, "{case}: told once");
+                assert_eq!(told + bench.asked().len(), 1, "{case}: one update");
             } else {
                 assert!(bench.sent().contains(&"PLACE-OBJ"));
             }
-            // What is finished begins anew.
+            // A finished command starts from the beginning.
             assert_eq!(bench.memory.task.ledger, None);
             assert_eq!(bench.run(line), FINISHED);
             assert_eq!(bench.sent()[..2], ["GET-ENDEFF", "GET-OBJECT"]);
@@ -188,7 +188,7 @@ fn transfer_without_end_returns_to_its_object() {
             ("UNIT_1", Some(bench.memory.task.subtask.destination_grip))
         );
     }
-    // One that goes on to its end-at location does so from wherever the robot is.
+    // With an end-at location, the TRANSFER continues from any place of the robot.
     let mut bench = moving_bench();
     bench.command(TRANSFER);
     bench.until(|bench| bench.memory.subtask.status.placed.is_some());
@@ -198,7 +198,7 @@ fn transfer_without_end_returns_to_its_object() {
 }
 
 #[test]
-fn object_placed_by_an_earlier_command_does_not_count() {
+fn transfer_ignores_an_object_placed_by_an_earlier_command() {
     let mut bench = moving_bench();
     assert_eq!(bench.run(TRANSFER), FINISHED);
     bench.command(TRANSFER);
@@ -226,7 +226,7 @@ fn part_in_the_pedestal_is_regripped_first() {
         (REGRIP, &["FIX-GRIP", "PLACE-OBJ", "GOTO-ENDPT"][..]),
         ("MOVE PART +1 PFIXTURE 0 -1 SAFE 0 -- 0", &["FIX-GRIP", "MOVE-OBJ>D"]),
         ("REFIXTURE PART +1 PFIXTURE 0 -1 PFIXTURE 0 -- 0", &["FIX-GRIP", "MOVE-OBJ>D"]),
-        // Nothing is to be regripped: Subtask says what hinders it.
+        // No regrip is needed: Subtask reports the obstacle.
         (TRANSFER, &["GET-ENDEFF", "GET-OBJECT", "PLACE-OBJ", "GOTO-ENDPT"]),
     ] {
         let mut bench = Bench::default();
@@ -260,11 +260,11 @@ fn interrupted_tool_command_resumes() {
     }
 }
 
-/// Tool commands without an end-at location, cut off when they have done all: what the robot holds then.
+/// Tool commands without an end-at location, and the held object after they are interrupted at the end.
 const STAYING: [(&str, &str); 2] =
     [("RELEASE-TOOL TOOL-1 +1 -- 0 0 -- 0 -- 0", ""), ("REMOVE-TOOL TOOL-1 +1 -- 0 0 -- 0 -- 0", "TOOL-1")];
 
-/// What becomes of a tool command without an end-at location that has been cut off when it had done all.
+/// A bench after the interruption of such a command.
 fn staying(line: &str, holds: &str, at: &str) -> Bench<'static> {
     let mut bench = moving_bench();
     bench.set(3, "TOOL-1", "TOOL-TRNS");
@@ -291,7 +291,7 @@ fn tool_command_without_end_is_finished_only_at_the_drum() {
     }
 }
 
-/// The command was cut off before its effect was seen.
+/// The command was interrupted before its effect was detected.
 #[test]
 fn tool_command_with_its_effect_only_leaves() {
     for (line, held, at, sent) in [
@@ -317,7 +317,7 @@ fn release_requires_a_known_way_out() {
     }
 }
 
-/// A bench whose robot has brought PART to a place, with what the gripper is known to hold.
+/// A bench whose robot has brought PART to a place. `held` is the content of the gripper as it is known.
 fn brought(held: Holding, at: &str) -> Bench<'static> {
     let mut bench = Bench::default();
     bench.set(1, "PART", at);
@@ -327,7 +327,6 @@ fn brought(held: Holding, at: &str) -> Bench<'static> {
     bench
 }
 
-/// PART in the grip in which it was brought.
 fn part() -> Holding {
     Holding::Object(ObjectGrip { object: Name16::new("PART").unwrap(), grip: 1 })
 }
@@ -372,7 +371,7 @@ fn position_in_mid_air_releases_only_a_part_held_by_a_person() {
         let mut bench = confirmed(brought(held, "HOME"), Support::ByHand);
         assert_eq!(bench.run(STAY_AT_HOME), FINISHED, "{held:?}");
     }
-    // At the pedestal its own hand decides, and grip data at `$$$` say nothing of a fixture.
+    // At the pedestal only its hand supports a part, and grip data at `$$$` do not describe a fixture.
     for at in ["PEDESTAL", "SAFE"] {
         let mut bench = brought(part(), at);
         let stay = format!("POSITION -- 0 -- 0 0 {at} 0 -- 0");
@@ -389,7 +388,6 @@ fn position_in_a_nest_releases() {
     assert_eq!(bench.run("POSITION -- 0 -- 0 0 V-VFIXTURE 0 -- 0"), error(Reason::HeldElsewhere));
 }
 
-/// A person confirms what supports the object.
 fn confirmed(mut bench: Bench<'static>, by: Support) -> Bench<'static> {
     bench.external.operator.confirmed = Some(by);
     bench.step();
@@ -405,7 +403,7 @@ fn confirmation_ends_when_the_robot_leaves_or_holds_nothing() {
     assert!(counts(&bench));
     bench.restart();
     bench.step();
-    assert!(counts(&bench), "a restarted Task knows it");
+    assert!(counts(&bench), "a restarted Task keeps it");
     bench.world.subtask.outputs.status.at = None;
     bench.wait(2);
     assert!(!counts(&bench));
@@ -416,13 +414,13 @@ fn confirmation_ends_when_the_robot_leaves_or_holds_nothing() {
     assert!(!counts(&confirmed(brought(Holding::Nothing, "HOME"), Support::ByHand)));
 }
 
-/// What the updates say that the Data System has taken: item and position.
+/// The position and sector of each update that the Data System has accepted.
 fn updates(bench: &Bench<'_>) -> Vec<(String, i32)> {
     let told = bench.world.data_system.received.iter().filter(|told| told.command == DataBaseVerb::Update);
     told.map(|told| (told.position.to_string(), told.sector.unwrap_or(0))).collect()
 }
 
-/// The robot arrives before the Data System answers: the answer is waited for, and nothing is told twice.
+/// The robot arrives before the Data System answers.
 #[test]
 fn position_waits_for_its_update() {
     for seat in [LET_GO, LET_GO_BY_DESTINATION] {
@@ -447,24 +445,23 @@ fn release_updates_the_database() {
         let told = bench.world.data_system.received[0];
         assert_eq!((told.item, told.serial), (Name16::new("PART").unwrap(), Name16::new("S-17").unwrap()));
         assert_eq!(bench.run(seat), FINISHED);
-        assert!(updates(&bench).is_empty(), "nothing is held");
+        assert!(updates(&bench).is_empty(), "the gripper is empty");
     }
-    // Taken from a tray with ACQUIRE, and let go in the tray to which a MOVE has brought it.
+    // ACQUIRE takes the object from one tray, and POSITION releases it in the tray of a MOVE.
     let mut bench = Bench::connected();
     assert_eq!(bench.run("ACQUIRE PART +1 UNIT_1 2 0 -- 0 -- 0"), FINISHED);
     assert_eq!(updates(&bench), [("H_ROBOT".to_owned(), 0)]);
     assert_eq!(bench.run("MOVE PART +1 UNIT_1 2 +1 UNIT_1 1 -- 0"), FINISHED);
     assert_eq!(bench.run("POSITION PART +1 UNIT_1 1 0 -- 0 -- 0"), FINISHED);
     assert_eq!(updates(&bench), [("UNIT_1".to_owned(), 1)]);
-    // An object that the data base does not know as the robot's is none of its business.
+    // The database does not have this object as held by the robot.
     let mut bench = Bench::connected();
     assert_eq!(bench.run("MOVE PART +1 PFIXTURE 0 +1 PFIXTURE 0 -- 0"), FINISHED);
     assert_eq!(bench.run(LET_GO), FINISHED);
     assert!(updates(&bench).is_empty());
 }
 
-/// A bench with two updates that have not been taken: of an object that was taken, and of where it was let
-/// go.
+/// A bench with two pending updates: an object was taken, and released again.
 fn owing_two(trouble: Answer) -> Bench<'static> {
     let mut bench = Bench::connected();
     bench.world.data_system.answer = trouble;
@@ -478,7 +475,7 @@ fn two_pending_updates_are_sent_in_order() {
     for trouble in [Answer::Absent, Answer::Refuse] {
         for line in [TRANSFER, FROM_TRAY, "ACQUIRE PART +1 UNIT_1 2 0 -- 0 -- 0", STARTUP] {
             let mut bench = owing_two(trouble);
-            assert!(!bench.memory.subtask.status.held.is_held(), "the object is let go all the same");
+            assert!(!bench.memory.subtask.status.held.is_held(), "the object is released anyway");
             bench.world.data_system.answer = Answer::After(1);
             assert_eq!(bench.run(line), FINISHED);
             assert_eq!(
@@ -501,7 +498,7 @@ fn pending_update_survives_a_replaced_command() {
         bench.finish();
         bench.world.data_system.answer = Answer::After(1);
         assert_eq!(bench.run("ACQUIRE BAR +1 PFIXTURE 0 0 -- 0 -- 0"), FINISHED);
-        // It was written once more: the Data System has not answered the first.
+        // The first update may have been written once more, without an answer.
         assert!(updates(&bench).len() <= 1);
         assert!(bench.memory.task.updates.pending.iter().all(Option::is_none), "{by}");
     }
@@ -526,7 +523,7 @@ fn interrupted_startup_leaves_the_connection_closed() {
 
 #[test]
 fn restarted_task_keeps_its_estimates() {
-    // It is connected, and tells what it owes, in order.
+    // Pending updates are sent in order.
     let mut bench = owing_two(Answer::Refuse);
     bench.restart();
     bench.step();
@@ -534,12 +531,12 @@ fn restarted_task_keeps_its_estimates() {
     bench.world.data_system.answer = Answer::After(1);
     assert_eq!(bench.run(FROM_TRAY), FINISHED);
     assert_eq!(updates(&bench)[..2], [("H_ROBOT".to_owned(), 0), ("PFIXTURE".to_owned(), 0)]);
-    // It knows what the robot carries.
+    // The carried object is still known.
     bench.restart();
     bench.step();
     assert_eq!(bench.run(LET_GO), FINISHED);
     assert_eq!(updates(&bench), [("PFIXTURE".to_owned(), 0)]);
-    // What is taken after the restart was told before it.
+    // An update that is accepted after the restart was sent before it.
     let mut bench = Bench::connected();
     bench.world.data_system.answer = Answer::After(8);
     bench.command(TRANSFER);
@@ -547,7 +544,7 @@ fn restarted_task_keeps_its_estimates() {
     bench.restart();
     bench.wait(12);
     assert_eq!(bench.memory.task.updates.pending, [None; 2]);
-    // A STARTUP that a restart has cut off is not forgotten.
+    // A STARTUP that a restart interrupts is remembered.
     let mut bench = Bench::default();
     bench.command(STARTUP);
     bench.wait(3);
@@ -560,7 +557,7 @@ fn restarted_task_keeps_its_estimates() {
 }
 
 #[test]
-fn link_failure_during_a_standing_pause_is_no_error() {
+fn link_failure_after_a_pause_changes_only_the_reason() {
     let mut bench = Bench::default();
     assert_eq!(bench.run(PAUSE), FINISHED);
     bench.world.subtask.outputs.status.reason = Reason::LinkOff;
@@ -570,7 +567,7 @@ fn link_failure_during_a_standing_pause_is_no_error() {
     assert_eq!(bench.run(HOME), FINISHED);
 }
 
-/// The Data System begins to answer when it has been told the first of two updates again.
+/// The Data System begins to answer when the first of two updates is written again.
 #[test]
 fn unanswered_updates_are_sent_in_order() {
     let mut bench = Bench::connected();
@@ -582,7 +579,7 @@ fn unanswered_updates_are_sent_in_order() {
     bench.world.data_system.answer = Answer::After(1);
     assert_eq!(bench.finish(), FINISHED);
     assert_eq!(updates(&bench), [("H_ROBOT".to_owned(), 0), ("PFIXTURE".to_owned(), 0)]);
-    // Of a tool.
+    // The same with a tool.
     let mut bench = Bench::connected();
     bench.set(3, "TOOL-1", "HOME");
     bench.world.data_system.answer = Answer::Absent;
