@@ -28,7 +28,7 @@ use crate::{emove::robot_place::present_frame, places::named};
 /// Distance of the tool from PEDESTAL at which empty fingers are clear of the part, in (ASSUMED: more than the
 /// overlap of fingers and part).
 const CLEAR_INCHES: f64 = 4.0;
-/// Opening of RELEASE for an unknown object if the task data have no widest one, 0.01 in.
+/// Opening of RELEASE for an unknown object if the task data have no PED-PARA record, 0.01 in.
 const WIDE: i32 = 450;
 
 /// The state variables of BY-HAND for an order. `tick` is the tick in which it is sent; `memory` is common memory
@@ -104,13 +104,9 @@ pub(super) fn command(order: &HandOrder, regrip: Option<&Name16>, data: &TaskDat
         ..PedestalCommand::default()
     }
 }
-
-/// The pedestal data of an object.
 fn para<'d>(object: Option<&Name16>, data: &TaskData<'d>) -> Option<&'d PedPara> {
     object.and_then(|object| data.ped_para(object)).map(|(_, para)| para)
 }
-
-/// The robot's place relative to the pedestal and the part.
 pub(super) fn robot_there(memory: &CommonMemory, data: &TaskData<'_>) -> RobotThere {
     let emove = &memory.emove.status;
     if is_clear(emove, memory, data) {

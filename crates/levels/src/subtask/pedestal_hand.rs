@@ -33,8 +33,6 @@ impl State {
             None => None,
         };
     }
-
-    /// The holder of the commanded object.
     pub(super) fn part(&self, held: Held, status: &PedestalStatus, command: &SubtaskCommand) -> SubtaskPart {
         let right = self.regrip.is_some_and(|regrip| Some(regrip.object) == command.object);
         match (held, pedestal_hand(status)) {
@@ -60,8 +58,6 @@ pub(super) const fn pedestal_hand(status: &PedestalStatus) -> PedestalLoad {
         Felt::Nothing | Felt::Something | Felt::NotKnown => PedestalLoad::Free,
     }
 }
-
-/// The angle of the table, for an object.
 pub(super) fn turn(status: &PedestalStatus, para: &PedPara) -> Turn {
     let is_at = |angle: i32, position: i32| position.abs_diff(angle) <= AT_ANGLE;
     match status.table_position {
@@ -76,8 +72,6 @@ pub(super) fn turn(status: &PedestalStatus, para: &PedPara) -> Turn {
 pub(super) const fn turned(para: &PedPara) -> i32 {
     para.table_pos.saturating_add(para.flip_angle)
 }
-
-/// The opening of the hand, for an object.
 pub(super) const fn hand(status: &PedestalStatus, para: &PedPara) -> HandOpening {
     if status.grip_size.saturating_add(OPEN_WITHIN) >= para.appr {
         HandOpening::Open

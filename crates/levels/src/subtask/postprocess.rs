@@ -145,7 +145,7 @@ impl State {
         outputs.pedestal = PedestalCommand { cycle: inputs.tick, number, ..command };
     }
 
-    /// Stop the pedestal if it was commanded to move. True if Subtask has to wait for it.
+    /// Stop the pedestal unless its last command was PAUSE or none. True if Subtask has to wait for it.
     fn pause_pedestal(
         &mut self,
         seen: &StateVariables,

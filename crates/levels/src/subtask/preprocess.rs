@@ -205,16 +205,12 @@ fn vision(emove: &EmoveStatus, is_at: bool, command: &SubtaskCommand, data: &Tas
         SubtaskVision::Needed
     }
 }
-
-/// The robot's place relative to the object of a command.
 fn station(emove: &EmoveStatus, command: &SubtaskCommand) -> Where {
     match emove.at {
         Some(at) if at.grip == Some(command.source_grip) && at.site == command.site => Where::There,
         _ => Where::Elsewhere,
     }
 }
-
-/// The place where the object of a command was released.
 fn placed(emove: &EmoveStatus, command: &SubtaskCommand) -> Where {
     let what = (command.object, command.destination_grip);
     match emove.placed {
@@ -222,8 +218,6 @@ fn placed(emove: &EmoveStatus, command: &SubtaskCommand) -> Where {
         _ => Where::Elsewhere,
     }
 }
-
-/// The robot's place, for FIX-GRIP.
 fn robot(emove: &EmoveStatus, aims: &Aims) -> SubtaskRobot {
     let Some(at) = emove.at else { return SubtaskRobot::Away };
     let is_at = |aim: &SubtaskAim| aim.site.name().is_some() && at.site == aim.site;
@@ -237,8 +231,6 @@ fn robot(emove: &EmoveStatus, aims: &Aims) -> SubtaskRobot {
         SubtaskRobot::Away
     }
 }
-
-/// Whether the robot may leave while the pedestal holds a part.
 fn leaving(inputs: &Inputs<'_, TaskData<'_>>) -> Leaving {
     let is_empty = inputs.memory.emove.status.held == Holding::Nothing;
     match robot_there(inputs.memory, inputs.data) {

@@ -165,8 +165,6 @@ impl DataSystem {
     pub const fn connect(&mut self) {
         (self.updates.connected, self.updates.connecting) = (true, false);
     }
-
-    /// A command about an object or a tool is accepted: consult FOLLOW and TAKE.
     pub fn accept(&mut self, plan: &Plan, below: &SubtaskStatus) {
         self.updates.taking = None;
         let Some(item) = plan.object else { return };
@@ -201,8 +199,6 @@ impl DataSystem {
             self.updates.taking = Some(Carried { item, serial, location, sector, followed: true });
         }
     }
-
-    /// Each tick: consult PICK-UP.
     pub fn observe_grasp(&mut self, held: Holding, ledger: Option<&Ledger>) {
         let noted = NotedObject {
             order: match ledger.map(|ledger| ledger.last) {
@@ -217,7 +213,7 @@ impl DataSystem {
         }
     }
 
-    /// A command has ended or sends its update: consult CARRY about its object.
+    /// Consult CARRY about the object of a command that ends or sends its update.
     pub fn carry(&mut self, occasion: Occasion, plan: &Plan, held: Held) {
         let load = EndedCommand {
             occasion,
@@ -241,7 +237,7 @@ impl DataSystem {
         };
     }
 
-    /// REPORT-ITEM (IX.2): send where the object of a command now is; the update is pending until it is accepted.
+    /// REPORT-ITEM (IX.2): send the place of a command's object. The update is pending until it is accepted.
     pub fn report_item(&mut self, plan: &Plan, held: Held, tick: Tick, outputs: &mut TaskOutputs) {
         self.carry(Occasion::Update, plan, held);
         let (position, sector) = match plan.destination.site() {

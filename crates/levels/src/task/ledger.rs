@@ -57,8 +57,7 @@ pub fn resumed(command: &HwsCommand, ledger: Option<&Ledger>) -> Resumed {
     }
 }
 
-/// The object of a repeated command, if it is placed already. An object that an earlier command placed there does not
-/// count.
+/// The object of a repeated command, if it is placed already. Objects that earlier commands placed are ignored.
 #[must_use]
 pub fn placed(plan: &Plan, below: &SubtaskStatus, ledger: Option<&Ledger>) -> Placed {
     let placing = matches!(

@@ -70,7 +70,7 @@ pub enum Resumed {
 pub enum Grips {
     /// The object stays in its grip.
     Same,
-    /// It must be regripped on the way.
+    /// The object must be regripped.
     Different,
 }
 
@@ -123,15 +123,13 @@ pub struct Plan {
 /// The result of the look-up of a command.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Found {
-    /// The command, with everything that was found.
     pub plan: Plan,
     /// The missing data of the object, or else of the first location that lacks data.
     pub missing: Missing,
     /// `endeff-id#` of the gripper for the object.
     pub gripper: TaskGripper,
-    /// The regrip on the pedestal.
     pub regrip: TaskRegrip,
-    /// The way from the tool drum to the end-at location.
+    /// The trajectory from the tool drum to the end-at location.
     pub way_out: WayOut,
 }
 
@@ -148,13 +146,9 @@ impl TaskVerb {
     const fn is_bare(self) -> bool {
         matches!(self, Self::None | Self::Pause | Self::Startup | Self::Shutdown)
     }
-
-    /// True for the commands that take an object from its place.
     pub(super) const fn takes(self) -> bool {
         matches!(self, Self::Transfer | Self::Move | Self::Acquire | Self::Refixture)
     }
-
-    /// True for the four tool commands.
     const fn is_for_tools(self) -> bool {
         matches!(self, Self::InsertTool | Self::ReleaseTool | Self::AcquireTool | Self::RemoveTool)
     }
@@ -226,7 +220,7 @@ impl Plan {
         if self.object.is_some() { Handling::Object } else { Handling::NoObject }
     }
 
-    /// The command is about an object or a tool.
+    /// True if the command is about an object or a tool.
     #[must_use]
     pub const fn is_about_something(&self) -> bool {
         self.object.is_some() || self.verb.is_for_tools()

@@ -46,8 +46,6 @@ impl State {
             }
         }
     }
-
-    /// Respond to the joystick box.
     pub(super) fn take_over(
         &mut self,
         takeover: Takeover,
@@ -135,8 +133,6 @@ impl State {
         }
         self.execution.finish();
     }
-
-    /// True if the current command is in the ledger.
     const fn is_in_ledger(&self, outputs: &TaskOutputs) -> bool {
         self.plan.is_about_something() && outputs.ledger.is_some()
     }

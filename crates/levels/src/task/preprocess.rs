@@ -217,8 +217,6 @@ fn ends(end_at: &PlanSite, below: &SubtaskStatus) -> Ends {
         Some(_) => Ends::Elsewhere,
     }
 }
-
-/// The robot's place, for the tool commands.
 fn station(at: Option<Name10>) -> Station {
     match at.as_ref().map(Name10::as_str) {
         None => Station::Unplaced,

@@ -1,5 +1,3 @@
-//! Manual orders to the Active Pedestal.
-
 use interfaces::pedestal::PedestalVerb;
 use rcs_core::{Actions, Plain, Variables, decision_table};
 

@@ -1,5 +1,3 @@
-//! FIX-GRIP (V.3.1): bring the part to the pedestal and take it back in the new grip.
-
 use rcs_core::{Plain, decision_table};
 
 /// Steps of FIX-GRIP, named after the last order.

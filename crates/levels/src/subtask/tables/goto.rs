@@ -1,5 +1,3 @@
-//! GOTO-ENDPT and GOTO-DEST (V.3.1).
-
 use rcs_core::decision_table;
 
 decision_table! {

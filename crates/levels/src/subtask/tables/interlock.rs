@@ -1,5 +1,3 @@
-//! A part in the pedestal's hand.
-
 use rcs_core::decision_table;
 
 decision_table! {

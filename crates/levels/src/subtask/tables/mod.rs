@@ -119,7 +119,6 @@ pub struct Situation {
 /// The result of preprocess in a tick.
 #[derive(Clone, Copy, Debug)]
 pub struct StateVariables {
-    /// State of the command buffer.
     pub arrival: Arrival,
     /// A new command is accepted or refused in this tick.
     pub asked: Asked,
@@ -127,13 +126,9 @@ pub struct StateVariables {
     pub replaced: Replaced,
     /// The command in the buffer.
     pub verb: SubtaskVerb,
-    /// The needs of a new command.
     pub request: Request,
-    /// The obstacles to a new command.
     pub interlock: Interlock,
-    /// A manual order to the pedestal.
     pub manual: ManualOrder,
-    /// The status of the last order.
     pub subordinates: Subordinates,
     /// The goal of the command, compared with the statuses from below.
     pub proof: Proof,
@@ -146,7 +141,7 @@ pub struct StateVariables {
 pub enum Action {
     /// Nothing new.
     Wait,
-    /// E-PAUSE to E-move, and PAUSE to a moving pedestal.
+    /// E-PAUSE to E-move, and PAUSE to a pedestal that has a command.
     Pause,
     /// MOV-TO-VU to E-move.
     MovToVu,

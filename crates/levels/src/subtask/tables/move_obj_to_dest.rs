@@ -1,5 +1,3 @@
-//! MOVE-OBJ>D (V.3.1).
-
 use rcs_core::decision_table;
 
 decision_table! {

@@ -1,5 +1,3 @@
-//! REMOVE-TOOL (V.3.1).
-
 use rcs_core::decision_table;
 
 decision_table! {

@@ -1,9 +1,7 @@
-//! S-PAUSE (V.3.1).
-
 use rcs_core::decision_table;
 
 decision_table! {
-    /// S-PAUSE (V.3.1): stop E-move with E-PAUSE, and a moving pedestal with PAUSE.
+    /// S-PAUSE (V.3.1): stop E-move with E-PAUSE, and a commanded pedestal with PAUSE.
     pub S_PAUSE: fn s_pause(enum SPauseStep, super::Situation) -> super::Action {
         any {
             1: work: Busy  => Wait;

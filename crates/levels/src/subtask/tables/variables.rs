@@ -1,5 +1,3 @@
-//! The values of the state variables of Subtask.
-
 use rcs_core::Plain;
 
 /// The grip of the commanded object.

@@ -283,7 +283,6 @@ impl<'d> Bench<'d> {
         self.world.emove.received.iter().map(|command| command.command.text()).collect()
     }
 
-    /// The orders to the pedestal.
     pub fn sent_to_pedestal(&self) -> Vec<&'static str> {
         self.world.pedestal.received.iter().map(|command| command.command.text()).collect()
     }
@@ -313,5 +312,4 @@ impl<'d> Bench<'d> {
     }
 }
 
-/// Status of a successful command.
 pub const DONE: (StatusReport, Reason) = (StatusReport::Done, Reason::None);

@@ -308,7 +308,6 @@ fn regrip_without_object_grip_or_pedestal_data_is_refused() {
     // Held in neither the source grip nor the destination grip.
     let mut bench = Bench::grasped("PART", 2);
     assert_eq!(bench.run(SubtaskVerb::FixGrip, "PART", (1, -1), ""), error(Reason::RegripNeeded));
-    // Another object is held.
     bench.world.emove.hold("BAR", 1);
     bench.step();
     assert_eq!(bench.run(SubtaskVerb::FixGrip, "PART", (1, -1), ""), error(Reason::NothingHeld));

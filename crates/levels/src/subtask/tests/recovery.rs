@@ -178,7 +178,6 @@ fn part_in_the_pedestal_blocks_other_commands() {
     assert_eq!(bench.run(SubtaskVerb::GotoDest, "", (0, 0), "SAFE"), DONE);
 }
 
-/// The holding of E-move for a word of the tests.
 fn holding(held: &str) -> Holding {
     let object = |name: &str, grip| Holding::Object(ObjectGrip { object: Name16::new(name).unwrap(), grip });
     match held {
@@ -192,7 +191,6 @@ fn holding(held: &str) -> Holding {
     }
 }
 
-/// The robot's place: the name of a location, and the grip there.
 fn standing(bench: &Bench<'_>, at: Option<(&str, Option<i32>)>) -> Option<Standing> {
     at.map(|(name, grip)| {
         let location = Name10::new(name).unwrap();
@@ -305,7 +303,7 @@ fn interrupted_exchange_is_finished_first() {
     for ignores in [false, true] {
         exchanges(ignores);
     }
-    // Without a gripper in the command, the one in whose holster the robot is will do.
+    // A command that names no gripper accepts the one in whose holster the robot is.
     let mut bench = Bench::default();
     bench.world.emove.outputs.status.exchange = Some(1);
     bench.step();

@@ -1,5 +1,3 @@
-//! Look-up of the names of a new command.
-
 use rcs_core::decision_table;
 
 decision_table! {

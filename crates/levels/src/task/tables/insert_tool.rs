@@ -1,5 +1,3 @@
-//! INSERT-TOOL (V.4.1).
-
 use rcs_core::decision_table;
 
 decision_table! {

@@ -1,5 +1,3 @@
-//! The joystick box (V.4.1 PAUSE), for all commands; the table is consulted in each tick.
-
 use rcs_core::decision_table;
 
 decision_table! {

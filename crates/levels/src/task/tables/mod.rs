@@ -162,7 +162,6 @@ pub struct Situation {
 /// The result of preprocess in a tick.
 #[derive(Clone, Copy, Debug)]
 pub struct StateVariables {
-    /// State of the command buffer.
     pub arrival: Arrival,
     /// A new command is accepted or refused in this tick.
     pub asked: Asked,
@@ -172,7 +171,6 @@ pub struct StateVariables {
     pub verb: TaskVerb,
     /// The new command looked up, or the current one.
     pub plan: Plan,
-    /// The names in a new command.
     pub request: Request,
     /// The needs of a new command; [`joystick::JOYSTICK`] decides on `control`.
     pub preconditions: Preconditions,

@@ -1,5 +1,3 @@
-//! Result of the last order of a command.
-
 use rcs_core::decision_table;
 
 decision_table! {

@@ -9,7 +9,7 @@ use super::item::Notice;
 /// Number of pending updates.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Pending {
-    /// None.
+    /// No pending update.
     None,
     /// One.
     One,

@@ -1,12 +1,10 @@
-//! Conditions that a new command must meet before anything moves.
-
 use rcs_core::decision_table;
 
 decision_table! {
     /// PRECONDITION: a new command with known names is refused if data are missing; if its grips, gripper or route do
     /// not fit; or if it fails the check against the task data that precedes Task. Under manual control only PAUSE is
-    /// accepted: any other command would move the robot. A TRANSFER to the pedestal is refused, since only FIX-GRIP
-    /// closes the pedestal's hand.
+    /// accepted: any other command would move the robot. A TRANSFER to the pedestal is refused: the object
+    /// would fall, since only FIX-GRIP closes the pedestal's hand.
     pub PRECONDITION: fn precondition(super::Preconditions) -> super::Action or () {
         1:  asked: Before                                                            => consult;
         2:  verb: Transfer | Refixture | Acquire | AcquireTool, handling: NoObject   => Fail(NoObjectNamed);

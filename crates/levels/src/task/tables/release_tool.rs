@@ -1,13 +1,11 @@
-//! RELEASE-TOOL (V.4.1).
-
 use rcs_core::decision_table;
 
 decision_table! {
     /// RELEASE-TOOL (V.4.1): release a tool in the transfer location, then go to the end-at location. The command
     /// finishes at once if the tool gripper is free and there. Repeated after an interruption, it continues: open
-    /// fingers move out of the drum, and a free gripper before the drum only leaves. Without an end-at location the
-    /// robot stays at the drum; if it has been moved away since, the command cannot finish. An update is sent for a
-    /// tool that the database has as held by the robot (an extension: SPECNOTES.md).
+    /// fingers move out of the drum, and a robot with a free gripper before the drum only leaves. Without an end-at
+    /// location the robot stays at the drum; if it has been moved away since, the command cannot finish. An update is
+    /// sent for a tool that the database has as held by the robot (an extension: SPECNOTES.md).
     pub RELEASE_TOOL: fn release_tool(enum ReleaseToolStep, super::Situation) -> super::Action {
         any {
             1:  work: Busy                                                     => Wait;

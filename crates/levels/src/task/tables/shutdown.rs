@@ -1,5 +1,3 @@
-//! SHUTDOWN (V.4.1).
-
 use rcs_core::decision_table;
 
 decision_table! {

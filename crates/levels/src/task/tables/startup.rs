@@ -1,5 +1,3 @@
-//! STARTUP (V.4.1, IV.4.2).
-
 use rcs_core::decision_table;
 
 decision_table! {

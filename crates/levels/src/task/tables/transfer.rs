@@ -1,5 +1,3 @@
-//! TRANSFER (V.4.1).
-
 use rcs_core::decision_table;
 
 decision_table! {

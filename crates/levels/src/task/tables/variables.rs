@@ -1,5 +1,3 @@
-//! The values of the state variables of Task.
-
 use rcs_core::{Actions, Plain};
 
 /// The robot's place at the end of the command.

@@ -138,7 +138,6 @@ impl SubtaskDouble {
         }
     }
 
-    /// The gripper releases the held object at the robot's place.
     fn let_go(&mut self) {
         let (held, at) = (self.outputs.status.held, self.outputs.status.at.unwrap_or_default());
         self.hold("");
@@ -164,7 +163,6 @@ impl SubtaskDouble {
         self.outputs.status.held = if object.is_empty() { Holding::Nothing } else { held };
     }
 
-    /// Set the grip of the held object.
     fn grip(&mut self, grip: i32) {
         if let Holding::Object(held) = &mut self.outputs.status.held {
             held.grip = grip;
@@ -181,7 +179,6 @@ impl SubtaskDouble {
     }
 }
 
-/// Answers of the Data System in a test.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Answer {
     /// No answer.
@@ -343,7 +340,6 @@ impl<'d> Bench<'d> {
         self.world.subtask.received.iter().map(|command| command.command.text()).collect()
     }
 
-    /// The commands to the Data System.
     pub fn asked(&self) -> Vec<&'static str> {
         self.world.data_system.received.iter().map(|command| command.command.text()).collect()
     }
@@ -362,5 +358,4 @@ impl<'d> Bench<'d> {
     }
 }
 
-/// Status of a successful command.
 pub const FINISHED: (HwsReport, Reason) = (HwsReport::Finished, Reason::None);

@@ -19,7 +19,7 @@ use crate::{
     },
 };
 
-/// Tables about updates of the database, whose rows no header names.
+/// Tables about updates of the database. No header names their rows.
 const UPDATES: [&str; 8] =
     ["UPDATE-DUE", "FOLLOW", "TAKE", "RELEASED", "PICK-UP", "CARRY", "QUEUE", "UPDATE"];
 
@@ -34,8 +34,8 @@ fn every_row_of_every_table_fires() {
     assert_eq!(missing, ["ACCEPT 4", "ACCEPT 9", "HALT 4"]);
 }
 
-/// So no order is repeated, and Task needs no EFFECT. A repeated update ends by itself: the Data System accepts it,
-/// refuses it or is silent.
+/// No order is repeated, so Task needs no EFFECT. A repeated update always ends: the Data System accepts it, refuses it
+/// or is silent.
 #[test]
 fn every_order_of_task_leads_to_a_later_step() {
     let others =
