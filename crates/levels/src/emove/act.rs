@@ -25,12 +25,11 @@ use super::{
 };
 use crate::halt::Commanding as _;
 
-/// Force with which the joystick box closes the parts gripper, lb: the least of the usual ones (VIII.9.1;
-/// ASSUMED).
+/// Force of a grasp by joystick button, lb: the smallest in the usual range (VIII.9.1; ASSUMED).
 const HAND_FORCE: i32 = 30;
 
-/// The process to which an action gives an order. Fingers that open on the way to a goal are not waited for,
-/// but the motion before must have come to its end.
+/// The process that receives the order. No row waits for fingers that open during a motion, but the previous motion
+/// must have ended.
 const fn ordered(action: Action) -> Option<EmoveRecipient> {
     match action {
         Action::RobotInit
@@ -60,7 +59,6 @@ const fn ordered(action: Action) -> Option<EmoveRecipient> {
 }
 
 impl State {
-    /// Set the outputs that a row asks for.
     pub(super) fn act(
         &mut self,
         action: Action,
@@ -157,20 +155,18 @@ impl State {
         self.execution.finish();
     }
 
-    /// Stop the robot and report an error.
     fn fail(&mut self, reason: Reason, inputs: &EmoveInputs<'_>, outputs: &mut EmoveOutputs) {
         self.motion.send(PrimVerb::Pause, inputs, outputs);
         self.execution.fail(reason);
     }
 
-    /// PAUSE to Prim and Quick Change: ramp down and hold, and leave the ring as it is.
+    /// Ramp down and hold. The ring keeps its state.
     fn stop_robot(&mut self, inputs: &EmoveInputs<'_>, outputs: &mut EmoveOutputs) {
         self.localization.search_again();
         self.motion.send(PrimVerb::Pause, inputs, outputs);
         self.exchange.send(QuickChangeVerb::Pause, inputs.tick, outputs);
     }
 
-    /// The robot is at the goal of the current command: report done.
     fn arrive(&mut self, command: &EmoveCommand, outputs: &EmoveOutputs) {
         let at = match gone_to(command) {
             GoneTo::Object(object) if self.brings(command) => GoneTo::Brought(object),
@@ -180,19 +176,19 @@ impl State {
         self.finish();
     }
 
-    /// Does the robot bring the object of the command, which it holds?
+    /// True if the robot carries the object of the command to its goal.
     fn brings(&self, command: &EmoveCommand) -> bool {
         let held = self.held.held().map(|held| held.object.object);
         command.command == EmoveVerb::MovObjTo && held == command.object
     }
 
-    /// The robot has come to rest at the goal record: remember where that is.
+    /// Record the goal as the place of the robot at rest.
     fn settle(&mut self, command: &EmoveCommand, gone_to: GoneTo, outputs: &EmoveOutputs) {
         let [_, goal, ..] = outputs.poses;
         self.localization.arrive(robot_at(command, gone_to, goal.pose));
     }
 
-    /// The robot stands where relative moves have led it: it is at the location of the command. Report done.
+    /// Relative moves have ended at the location of the command: record it and report done.
     fn stand(&mut self, gone_to: GoneTo, command: &EmoveCommand, inputs: &EmoveInputs<'_>) {
         self.localization.stand(gone_to, command, inputs.memory);
         self.exchange.end();
@@ -200,7 +196,6 @@ impl State {
         self.finish();
     }
 
-    /// GO-THRU or GOTO-PT with the next point of the route.
     fn send_leg(&mut self, verb: PrimVerb, inputs: &EmoveInputs<'_>, outputs: &mut EmoveOutputs) {
         let rest = commanded_pose(inputs.memory).unwrap_or_default();
         let at = &mut self.localization;
@@ -208,7 +203,7 @@ impl State {
         at.depart(self.motion.send_leg(verb, from, inputs, outputs), rest);
     }
 
-    /// DELTA-MOVE, GO-UNTIL or GO-WHILE to Prim. If nothing says where the robot stands, the command fails.
+    /// The command fails if the position of the robot is unknown.
     fn send_relative(
         &mut self,
         verb: PrimVerb,
@@ -240,7 +235,7 @@ impl State {
         self.drum.note_move(command, inputs);
     }
 
-    /// Move the camera over the centroid, and for [`Action::Align`] turn it with the part.
+    /// Move the camera over the centroid. [`Action::Align`] also turns it with the part.
     fn move_camera(
         &mut self,
         action: Action,
@@ -256,7 +251,6 @@ impl State {
         self.motion.send_goal(view.goal, view.parameters, inputs, outputs);
     }
 
-    /// The order to the gripper that an action stands for.
     fn finger_order(&self, action: Action, command: &EmoveCommand, inputs: &EmoveInputs<'_>) -> FingerOrder {
         let sizes = sizes(command, inputs.data).copied().unwrap_or_default();
         match action {
@@ -286,7 +280,6 @@ impl State {
         }
     }
 
-    /// Give the attached gripper the order that an action stands for.
     fn order_fingers(
         &mut self,
         action: Action,

@@ -52,14 +52,14 @@ pub static BROUGHT: Goal = Goal {
     unconfirmed: &[Unconfirmed::Position, Unconfirmed::GraspForce, Unconfirmed::PartInFingers],
 };
 pub static HELD: Goal = Goal {
-    holds: "the fingers stand at the size of the object, and feel it",
+    holds: "the fingers are at the size of the object, and detect it",
     sensors: &[Sensor::Fingers, Sensor::StrainGages],
     tolerance: "parts gripper: 1 lb on each finger; jaws: 0.10 in",
     age: 1,
     unconfirmed: &[Unconfirmed::GraspForce, Unconfirmed::PartInFingers],
 };
 pub static RELEASED: Goal = Goal {
-    holds: "nothing is between the fingers",
+    holds: "the fingers are empty",
     sensors: &[Sensor::Fingers, Sensor::StrainGages],
     tolerance: "parts gripper: 1 lb on each finger; jaws: open by the depart size",
     age: 1,
@@ -94,7 +94,7 @@ pub static INSERTED: Goal = Goal {
     unconfirmed: &[Unconfirmed::ToolInDrum, Unconfirmed::PartInFingers],
 };
 pub static TOOL_RELEASED: Goal = Goal {
-    holds: "nothing is between the fingers, the robot is where Prim has sent it, and the drum has the tool",
+    holds: "the fingers are empty, the robot is where Prim has sent it, and the drum has the tool",
     sensors: &[Sensor::Fingers, Sensor::Resolvers],
     tolerance: AT_PLACE,
     age: 2,
@@ -108,7 +108,7 @@ pub static REMOVED: Goal = Goal {
     unconfirmed: &[Unconfirmed::Position, Unconfirmed::GraspForce, Unconfirmed::PartInFingers],
 };
 
-/// The fingers stand at the size of the object; those of the parts gripper feel it.
+/// The opening is the size of the object, and the parts gripper also detects a force.
 fn is_grasped(senses: &Senses<'_>, memory: &CommonMemory) -> Proof {
     let attached = EmoveGripper::attached(memory);
     if senses.fingers() != Fingers::Gripping {
@@ -123,7 +123,6 @@ fn is_grasped(senses: &Senses<'_>, memory: &CommonMemory) -> Proof {
 }
 
 impl State {
-    /// The goal of the command, compared with the sensors.
     pub(super) fn proof(
         &self,
         senses: &Senses<'_>,

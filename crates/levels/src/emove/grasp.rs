@@ -9,21 +9,19 @@ use taskdata::files::{EndEffPara, TaskData};
 
 use super::{EmoveInputs, gripper::EmoveGripper, robot_place::commanded_pose};
 
-/// Grip number of a holster object with the gripper on the robot; its approach size is the opening with which
-/// the gripper goes through the holster.
+/// Grip of a holster object with the gripper on the robot. Its approach size is the opening for the path through the
+/// holster.
 const GRIPPER_ON: i32 = 1;
 
-/// Parameters of the holster object of a command with the gripper on.
 pub(super) fn gripper_on<'d>(command: &EmoveCommand, data: &TaskData<'d>) -> Option<&'d EndEffPara> {
     data.object(&command.object?, GRIPPER_ON).map(|(_, parameters)| parameters)
 }
 
-/// Parameters of the object of a command.
 pub(super) fn sizes<'d>(command: &EmoveCommand, data: &TaskData<'d>) -> Option<&'d EndEffPara> {
     data.end_eff(command.object_parameters)
 }
 
-/// The grasp that a command asks for.
+/// The grasp that the command requests.
 pub(super) fn grasp_of(command: &EmoveCommand, inputs: &EmoveInputs<'_>) -> Grasped {
     let gripper = EmoveGripper::attached(inputs.memory);
     Grasped {
@@ -36,7 +34,7 @@ pub(super) fn grasp_of(command: &EmoveCommand, inputs: &EmoveInputs<'_>) -> Gras
     }
 }
 
-/// The grasp of a named object with a grip; `None` if no finger feels anything, or the task data lack the object.
+/// `None` if no finger detects a force, or the task data lack the object.
 pub(super) fn named_grasp(object: Name16, grip: i32, inputs: &EmoveInputs<'_>) -> Option<Grasped> {
     let (parameters, _) = inputs.data.object(&object, grip)?;
     let gripper = EmoveGripper::attached(inputs.memory);

@@ -1,4 +1,4 @@
-//! The gripper on the robot, by its sensors. Quick Change reads its id from the pins in every tick.
+//! The gripper on the robot. Quick Change reads its id from the pins in every tick.
 
 use geometry::units::hundredths;
 use interfaces::{
@@ -8,28 +8,26 @@ use rcs_core::Plain;
 
 use crate::jaws::{CylindricalPartGripper, JawsKind, Parameters, ToolGripper};
 
-/// Opening at which the parts gripper is closed, 0.01 in.
+/// Opening of the closed parts gripper, 0.01 in.
 const PARTS_CLOSED: i32 = 10;
-/// An opening of the parts gripper is right within this, 0.01 in (its servo's own band, `levels::grip`).
+/// Tolerance of a commanded opening, 0.01 in (the servo's own band, `levels::grip`).
 const PARTS_BAND: i32 = 2;
-/// Fingers slower than this stand still, 0.01 in/s: above the noise of the potentiometer, below the finest
-/// flow of air.
+/// Slower fingers are at rest, 0.01 in/s: above the noise of the potentiometer, below the slowest motion by air.
 const STILL: i32 = 10;
-/// Opening beyond that of the grasp at which the parts gripper has released the object, 0.01 in.
+/// The parts gripper has released an object when it is this much wider than the grasp, 0.01 in.
 const LET_GO: i32 = 25;
-/// A finger that feels less than this touches nothing, lb; reported forces are rounded to a pound, and no
-/// grasp is weaker than three (`levels::grip`).
+/// Smallest force that indicates contact, lb. Forces are reported in whole pounds, and no grasp is weaker than 3 lb
+/// (`levels::grip`).
 const FELT: i32 = 1;
-/// v-gripper and tool gripper hold an object if the opening differs from the grasp size by no more than this,
-/// 0.01 in (ASSUMED).
+/// V-gripper and tool gripper hold an object if the opening is within this of the grasp size, 0.01 in (ASSUMED).
 const JAWS_BAND: i32 = 10;
-/// They are at a stop within this, 0.01 in.
+/// Tolerance of their stops, 0.01 in.
 const STOP_BAND: i32 = 5;
 
 /// The gripper on the robot; the code is `endeff-id#` (III.3.6 to III.3.8).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum EmoveGripper {
-    /// None: the robot is bare.
+    /// The robot is bare.
     None,
     #[text = "parts gripper"]
     Parts,
@@ -39,19 +37,18 @@ pub enum EmoveGripper {
     Tool,
 }
 
-/// Do the sensors of the ring say that it is not locked?
+/// True if the sensors of the ring do not report it locked.
 pub(super) const fn is_open(memory: &CommonMemory) -> bool {
     matches!(memory.quick_change.status.ring, RingPosition::Unlocked | RingPosition::Between)
 }
 
 impl EmoveGripper {
-    /// The gripper with an id; an id that none has counts as none (Quick Change passes no such id on).
+    /// The gripper with an id; `None` for an unassigned id (Quick Change does not report such an id).
     #[must_use]
     pub fn of(id: Option<u8>) -> Self {
         id.and_then(Self::from_code).unwrap_or_default()
     }
 
-    /// Its `endeff-id#`.
     #[must_use]
     pub const fn id(self) -> Option<u8> {
         match self {
@@ -60,13 +57,13 @@ impl EmoveGripper {
         }
     }
 
-    /// The gripper that Quick Change reads: mated, locked or not.
+    /// The gripper that Quick Change reads, locked or not.
     #[must_use]
     pub fn attached(memory: &CommonMemory) -> Self {
         Self::of(memory.quick_change.status.end_effector_id)
     }
 
-    /// Closed and open stop of the grippers that know nothing between, 0.01 in.
+    /// Closed and open stop of the grippers without a sensor in between, 0.01 in.
     pub(super) fn stops(self) -> Option<(i32, i32)> {
         let Parameters { closed, opened, .. } = match self {
             Self::V => CylindricalPartGripper::PARAMETERS,
@@ -76,13 +73,13 @@ impl EmoveGripper {
         Some((hundredths(closed), hundredths(opened)))
     }
 
-    /// Does it open and close between stops, without a force sensor (VI.4)?
+    /// True if it opens and closes between stops, without a force sensor (VI.4).
     #[must_use]
     pub fn has_stops(self) -> bool {
         self.stops().is_some()
     }
 
-    /// What is between its fingers, by its sensors; nothing without a gripper.
+    /// What its sensors detect between the fingers; `Nothing` without a gripper.
     #[must_use]
     pub const fn felt(self, memory: &CommonMemory) -> Felt {
         let (header, felt) = match (self, self.jaws(memory)) {
@@ -93,7 +90,7 @@ impl EmoveGripper {
         if header.republished { Felt::NotKnown } else { felt }
     }
 
-    /// The least opening, 0.01 in.
+    /// The smallest opening, 0.01 in.
     #[must_use]
     pub fn closed(self) -> i32 {
         match self.stops() {
@@ -102,7 +99,7 @@ impl EmoveGripper {
         }
     }
 
-    /// The flags that let only the process of this gripper run (II.2.3).
+    /// The flags that enable only the process of this gripper (II.2.3).
     #[must_use]
     pub const fn dormancy(self) -> Dormancy {
         Dormancy {
@@ -112,7 +109,7 @@ impl EmoveGripper {
         }
     }
 
-    /// Whether its process is dormant, or was woken in this tick: it does not execute a command of this tick
+    /// True if its process is dormant, or woke in this tick: it does not execute a command of this tick
     /// (docs/design/handshake.md "Wake").
     pub(super) const fn is_asleep(self, memory: &CommonMemory) -> bool {
         let dormant = &memory.emove.dormant;
@@ -124,7 +121,6 @@ impl EmoveGripper {
         }
     }
 
-    /// Output buffers of the process of a gripper with jaws.
     pub(super) const fn jaws(self, memory: &CommonMemory) -> Option<&JawsOutputs> {
         match self {
             Self::V => Some(&memory.v_grip),
@@ -133,8 +129,7 @@ impl EmoveGripper {
         }
     }
 
-    /// The opening, 0.01 in; `None` while it is not known: not calibrated, not read since the process woke,
-    /// or no gripper.
+    /// The opening, 0.01 in. `None` if it is unknown: not calibrated, not read since the process woke, or no gripper.
     #[must_use]
     pub fn opening(self, memory: &CommonMemory) -> Option<i32> {
         match self.jaws(memory) {
@@ -147,7 +142,7 @@ impl EmoveGripper {
         }
     }
 
-    /// Must the gripper be calibrated before it can be commanded (VI.3.1 UP-INIT)?
+    /// True if it must be calibrated before it accepts commands (VI.3.1 UP-INIT).
     #[must_use]
     pub fn is_uncalibrated(self, memory: &CommonMemory) -> bool {
         self == Self::Parts && !memory.grip.status.initialized
@@ -158,20 +153,20 @@ impl EmoveGripper {
         velocity.saturating_abs() < STILL
     }
 
-    /// Does air move the fingers to one end, or press them there? Jaws that were stuck at the other one may still go.
+    /// True if air moves the fingers to one end, or presses them there. Jaws stuck at the other end may still move.
     pub(super) fn has_air(self, to_close: bool, memory: &CommonMemory) -> bool {
         self.jaws(memory).is_some_and(|jaws| if to_close { jaws.valves.close } else { jaws.valves.open })
     }
 
-    /// Is what the fingers are around pressed? The parts gripper holds without air, too.
+    /// True if the fingers press the object. The parts gripper holds without air, too.
     pub(super) fn presses(self, memory: &CommonMemory) -> bool {
         self.jaws(memory).is_none_or(|jaws| jaws.valves.close)
     }
 
-    /// Whether closed fingers with this opening hold an object of `grasp_size`, 0.01 in.
+    /// True if closed fingers with this opening hold an object of `grasp_size`, 0.01 in.
     ///
-    /// The parts gripper closes until it feels the object: any opening above the grasp size means an object (VIII.9.1).
-    /// Jaws stop at the object or at their stop: only the size distinguishes the two.
+    /// The parts gripper closes until it detects the object: any opening above the grasp size means an object
+    /// (VIII.9.1). Jaws stop at the object or at their stop: only the size distinguishes the two.
     #[must_use]
     pub fn grips(self, opening: i32, grasp_size: i32) -> bool {
         match self.stops() {
@@ -183,20 +178,20 @@ impl EmoveGripper {
         }
     }
 
-    /// Does an object that was grasped at the opening `grasped` still keep the fingers apart? (0.01 in.)
+    /// True if an object grasped at the opening `grasped` still keeps the fingers apart (0.01 in).
     #[must_use]
     pub fn still_grips(self, opening: i32, grasp_size: i32, grasped: i32) -> bool {
         self.grips(opening, grasp_size) && opening <= grasped.saturating_add(LET_GO)
     }
 
-    /// Do the fingers feel nothing between them? Only the parts gripper can say so, once it is calibrated.
+    /// True if the sensors detect no object. Only a calibrated parts gripper can report this.
     #[must_use]
     pub fn feels_nothing(self, memory: &CommonMemory) -> bool {
         let grip = &memory.grip.status;
         self == Self::Parts && grip.initialized && grip.left_force < FELT && grip.right_force < FELT
     }
 
-    /// Does bringing jaws to an opening mean to close them?
+    /// True if jaws must close to reach an opening.
     pub(super) fn closes_for(self, opening: i32) -> bool {
         match self.stops() {
             Some((closed, open)) => {
@@ -207,7 +202,7 @@ impl EmoveGripper {
         }
     }
 
-    /// Do the fingers stand where `FingerVerb::Stand` with `opening` would bring them?
+    /// True if the fingers are where `FingerVerb::Stand` with `opening` would bring them.
     #[must_use]
     pub fn stands_at(self, opening: i32, memory: &CommonMemory) -> bool {
         let Some(now) = self.opening(memory) else { return self == Self::None };
@@ -219,8 +214,8 @@ impl EmoveGripper {
         at && self.is_still(memory)
     }
 
-    /// Are the fingers at least as wide open as `FingerVerb::Release` with `opening` would bring them, without
-    /// air that closes them? True without a gripper.
+    /// True if the fingers are at least as wide open as `FingerVerb::Release` with `opening` would bring them, and no
+    /// air closes them; or without a gripper.
     #[must_use]
     pub fn is_open(self, opening: i32, memory: &CommonMemory) -> bool {
         let Some(now) = self.opening(memory) else { return self == Self::None };

@@ -1,4 +1,4 @@
-//! The change of a gripper: quick change, gripper on the robot, and position of the robot in the holster
+//! The gripper exchange: quick change, attached gripper, and position of the robot in the holster
 //! (docs/design/recovery.md "Exchange").
 //!
 //! ```text
@@ -38,18 +38,17 @@ use super::{
     tables::{EmoveHolster, ExchangePosition, Lock, Ring, Shut},
 };
 
-/// The robot is at the seat within this, in: much less than a relative move is long.
+/// Tolerance of the seat, in: much shorter than any relative move.
 const AT_POINT: f64 = 0.12;
-/// It is at the low point within this, in: QCD-DOWN may end a little above or below it.
+/// Tolerance of the low point, in: QCD-DOWN may end a little above or below it.
 const AT_LOW: f64 = 0.3;
-/// It is clear of the holster within this of the upper points, or beyond them, in.
+/// The robot is clear of the holster within this of the upper points, or beyond them, in.
 const CLEAR: f64 = 0.3;
-/// It is on a segment within [`ASIDE_INCHES`], and this much above it on the way to the seat: QCD-SEAT begins
-/// where the large sensors see the ears, up to half an inch above the low point (V.2.1). QCD-UP ends as much
-/// above its point, in.
+/// The robot is on a segment within [`ASIDE_INCHES`]. On the way to the seat it may be this much higher, in: QCD-SEAT
+/// begins where the large sensors see the ears, up to 0.5 in above the low point (V.2.1). QCD-UP ends as much above
+/// its point.
 const ABOVE: f64 = 0.6;
 
-/// The points of the exchange in a holster.
 struct HolsterPoints {
     above: Frame,
     fast: Frame,
@@ -60,7 +59,6 @@ struct HolsterPoints {
 }
 
 impl HolsterPoints {
-    /// The points in a holster with the pose `base`.
     fn of(site: &Site, base: &Frame, data: &TaskData<'_>) -> Option<Self> {
         let moved =
             |from: &Frame, relative: Relative| Some(data.moved(from, relative.record(site, data)?.movetable));
@@ -75,7 +73,7 @@ impl HolsterPoints {
         })
     }
 
-    /// Where a frame is along them.
+    /// The position of a frame in the exchange.
     fn along(&self, present: &Frame) -> ExchangePosition {
         let at = |point: &Frame| norm(&(present.position - point.position));
         let segments = [
@@ -109,11 +107,10 @@ const fn is_exchange(verb: EmoveVerb) -> bool {
     matches!(verb, EmoveVerb::QcAttach | EmoveVerb::QcDetach)
 }
 
-/// Bits of the four sensors of a holster (V.1.2).
 const HOLSTER_SENSORS: u8 = 0x0F;
 
-/// The state of a gripper's own holster, by its four sensors. ASSUMED: the parts gripper's is the right holster, the
-/// v-gripper's the left, the tool gripper's the centre.
+/// The state of a gripper's own holster. ASSUMED: the parts gripper uses the right holster, the v-gripper the left,
+/// the tool gripper the centre.
 pub(super) fn holster(gripper: Option<u8>, memory: &CommonMemory) -> EmoveHolster {
     let status = &memory.prim.status;
     let bits = match EmoveGripper::of(gripper) {
@@ -129,7 +126,6 @@ pub(super) fn holster(gripper: Option<u8>, memory: &CommonMemory) -> EmoveHolste
     }
 }
 
-/// Position of the robot in the exchange of the command.
 pub(super) fn along(command: &EmoveCommand, inputs: &EmoveInputs<'_>) -> ExchangePosition {
     if !is_exchange(command.command) {
         return ExchangePosition::Off;
@@ -142,7 +138,7 @@ pub(super) fn along(command: &EmoveCommand, inputs: &EmoveInputs<'_>) -> Exchang
     }
 }
 
-/// Are the fingers at the opening with which the gripper goes through its holster?
+/// The fingers, compared with the opening for the path through the holster.
 pub(super) fn shut(command: &EmoveCommand, inputs: &EmoveInputs<'_>) -> Shut {
     let opening = gripper_on(command, inputs.data).map(|on| on.appr_size);
     let attached = EmoveGripper::attached(inputs.memory);
@@ -153,19 +149,18 @@ pub(super) fn shut(command: &EmoveCommand, inputs: &EmoveInputs<'_>) -> Shut {
     }
 }
 
-/// Where a gripper is left in the holster of a command.
+/// Pose of a gripper at its seat in the holster of a command.
 pub(super) fn seat_pose(command: &EmoveCommand, memory: &CommonMemory, data: &TaskData<'_>) -> Option<Pose> {
     let base = base(command, memory, data)?;
     Some(Pose::from_frame(&HolsterPoints::of(&command.site, &base, data)?.slow))
 }
 
-/// The quick change, and the gripper on it.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct GripperExchange {
     commander: Commander,
-    /// The gripper on the robot in the tick before.
+    /// The attached gripper in the tick before.
     attached: EmoveGripper,
-    /// The holster in which the robot changes a gripper.
+    /// The holster of an exchange that is under way.
     holster: Option<Exchange>,
 }
 
@@ -174,7 +169,6 @@ impl GripperExchange {
         self.holster = estimates.exchange;
     }
 
-    /// Adopt the gripper that was on in the tick before.
     pub const fn adopt_gripper(&mut self, attached: EmoveGripper) {
         self.attached = attached;
     }
@@ -192,12 +186,11 @@ impl GripperExchange {
         outputs.quick_change = QuickChangeCommand { number: self.commander.send(tick), command: verb };
     }
 
-    /// What Quick Change has made of its last command.
+    /// Status of the last command to Quick Change.
     pub(super) fn status(&self, tick: Tick, memory: &CommonMemory) -> Lower {
         self.commander.status_of(tick, &memory.quick_change)
     }
 
-    /// Where the sensors see the locking ring.
     pub(super) fn lock(&self, tick: Tick, memory: &CommonMemory) -> Lock {
         match (self.status(tick, memory), memory.quick_change.status.ring) {
             (Lower::Lost, _) | (_, RingPosition::Implausible) => Lock::Faulty,
@@ -207,7 +200,7 @@ impl GripperExchange {
         }
     }
 
-    /// What Quick Change says of its ring to the last command.
+    /// The ring, by the answer of Quick Change to the last command.
     pub(super) fn ring(&self, tick: Tick, memory: &CommonMemory) -> Ring {
         match (self.status(tick, memory), memory.quick_change.status.report) {
             (Lower::Pending | Lower::Executing, _) => Ring::Busy,
@@ -218,7 +211,6 @@ impl GripperExchange {
         }
     }
 
-    /// The reason to report for a failed order to Quick Change.
     pub(super) fn fault(&self, tick: Tick, memory: &CommonMemory) -> Reason {
         match self.status(tick, memory) {
             Lower::Lost => Reason::NeighbourLost,
@@ -227,9 +219,9 @@ impl GripperExchange {
         }
     }
 
-    /// Do the id pins say that the gripper has gone, while the ring has been locked ever since it was there?
-    /// Then it is on, and its pins have a bad contact. What it holds is not known until they read as before.
-    /// A gripper that its own holster feels, while the robot is in no holster, has been torn off the ring.
+    /// True if the id pins report no gripper although the ring stayed locked since one was attached: the pins have a
+    /// bad contact, and the held object is unknown until they read again. A gripper that its own holster detects,
+    /// while the robot is in no holster, has been torn off the ring.
     pub(super) fn is_misread(&self, memory: &CommonMemory) -> bool {
         let read = EmoveGripper::attached(memory);
         let locked = memory.quick_change.status.ring == RingPosition::Locked;
@@ -237,19 +229,19 @@ impl GripperExchange {
         locked && self.attached != EmoveGripper::None && read != self.attached && !rests
     }
 
-    /// The gripper on the robot. Pins with a bad contact do not make the robot bare: Subtask would fetch the gripper
-    /// that is on.
+    /// Id of the gripper on the robot. A bad contact of the pins does not make the robot bare, because Subtask would
+    /// fetch the attached gripper again.
     pub(super) fn end_effector_id(&self, memory: &CommonMemory) -> Option<u8> {
         if self.is_misread(memory) { self.attached.id() } else { memory.quick_change.status.end_effector_id }
     }
 
-    /// Which gripper is on. True if it is another one than before.
+    /// Read the attached gripper. True if it has changed.
     pub(super) fn sense_gripper(&mut self, memory: &CommonMemory) -> bool {
         let attached = EmoveGripper::attached(memory);
         attached != mem::replace(&mut self.attached, attached)
     }
 
-    /// A relative move of the command is ordered: a robot that changes a gripper is in the holster.
+    /// A relative move of an exchange command begins: the robot is in the holster.
     pub(super) fn note_move(&mut self, command: &EmoveCommand, inputs: &EmoveInputs<'_>) {
         let gripper = command.end_effector_id.filter(|_| is_exchange(command.command));
         if let (Some(gripper), Some(base)) = (gripper, base(command, inputs.memory, inputs.data)) {
@@ -258,7 +250,7 @@ impl GripperExchange {
         }
     }
 
-    /// The robot is in a holster, between the first and the last point of an exchange.
+    /// True between the first and the last point of an exchange.
     pub(super) const fn is_half_done(&self) -> bool {
         self.holster.is_some()
     }
@@ -267,7 +259,7 @@ impl GripperExchange {
         self.holster = None;
     }
 
-    /// A robot that is away from the holster when the operator gives it back changes no gripper any more.
+    /// An exchange ends if the robot is away from the holster when the operator gives it back.
     pub(super) fn sense(&mut self, inputs: &EmoveInputs<'_>) {
         let (Some(exchange), Some(present)) = (self.holster, present_frame(inputs.memory)) else {
             return;
@@ -280,8 +272,8 @@ impl GripperExchange {
         }
     }
 
-    /// The gripper whose change is not finished: the robot is in its holster, or the gripper hangs on a ring that is
-    /// not locked, at any position of the robot.
+    /// The gripper whose exchange is not finished: the robot is in its holster, or the ring is not locked, at any
+    /// position of the robot.
     pub(super) fn changing(&self, memory: &CommonMemory) -> Option<u8> {
         let loose = memory.quick_change.status.end_effector_id.filter(|_| is_open(memory));
         self.holster.map(|exchange| exchange.gripper).or(loose)

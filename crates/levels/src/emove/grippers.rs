@@ -1,9 +1,8 @@
-//! The commands to the gripper processes (V.2: E-move coordinates the robot with "various gripper
-//! processes").
+//! The commands to the gripper processes (V.2: E-move coordinates the robot with "various gripper processes").
 //!
-//! The parts gripper servoes an opening or a force and takes five commands (VI.3.1); v-gripper and tool gripper only
-//! open or close, and take four (VI.4.1, VI.5). The tables of E-move are independent of both: they give a
-//! [`FingerVerb`] and read one [`Lower`]. Only the process of the gripper that is attached is stepped.
+//! The parts gripper controls an opening or a force and accepts five commands (VI.3.1). V-gripper and tool gripper
+//! only open or close, and accept four (VI.4.1, VI.5). The tables of E-move do not depend on the gripper: they send a
+//! [`FingerVerb`] and read one [`Lower`]. Only the process of the attached gripper is stepped.
 //!
 //! | order     | Grip                  | V-Grip, Tool-Grip                                          |
 //! |-----------|-----------------------|------------------------------------------------------------|
@@ -13,7 +12,7 @@
 //! | Grasp     | CLOSE-GRIP            | GRASP                                                      |
 //! | Calibrate | UP-INIT               | PAUSE: there is nothing to calibrate                       |
 //!
-//! Fingers that stop at the wrong end report `opened` or `closed` as well (VI.4.2): that is an error here.
+//! Fingers that stop at the wrong end also report `opened` or `closed` (VI.4.2); E-move treats that as an error.
 
 use interfaces::{
     CommonMemory, EmoveOutputs, Reason,
@@ -29,21 +28,21 @@ use rcs_core::{
 
 use super::gripper::EmoveGripper;
 
-/// A command to the attached gripper, whichever of the three it is.
+/// A command to the attached gripper, independent of its type.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum FingerVerb {
     #[text = ""]
     None,
     /// Leave the fingers as they are.
     Pause,
-    /// Bring the fingers to an opening, nothing between them.
+    /// Bring the fingers to an opening with no object between them.
     Stand,
     Release,
     Grasp,
     Calibrate,
 }
 
-/// An [`FingerVerb`] with what goes with it.
+/// A [`FingerVerb`] with its parameters.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct FingerOrder {
     pub order: FingerVerb,
@@ -54,14 +53,13 @@ pub struct FingerOrder {
 }
 
 impl FingerOrder {
-    /// A request that needs an opening and no force.
     #[must_use]
     pub const fn to(order: FingerVerb, opening: i32) -> Self {
         Self { order, opening, force: 0 }
     }
 }
 
-/// E-move's side of the interfaces to the three gripper processes, and the order that was given last.
+/// The interfaces to the three gripper processes, and the last order.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct Grippers {
     parts: Commander,
@@ -69,18 +67,17 @@ pub struct Grippers {
     tool: Commander,
     /// The gripper that has the last order.
     to: EmoveGripper,
-    /// The last order.
     order: FingerVerb,
-    /// Size commanded last to jaws, 0.01 in.
+    /// Last size commanded to jaws, 0.01 in.
     size: i32,
-    /// It was a command to jaws to close.
+    /// The last command closes jaws.
     closing: bool,
-    /// Gripper button of the joystick box in the tick before: pressing counts, not holding down.
+    /// Gripper button of the joystick box in the tick before; only a new press acts.
     button: JoystickGrip,
 }
 
 impl Grippers {
-    /// Before anything else in a tick: follow the echoes until the first command.
+    /// At the start of a tick: follow the echoes until the first command.
     pub fn start(&mut self, tick: Tick, memory: &CommonMemory) {
         let written = &memory.emove;
         self.parts.start_from(tick, written.grip.number, memory.grip.status.echo);
@@ -116,26 +113,25 @@ impl Grippers {
         (self.to, self.closing) = (attached, self.order == FingerVerb::Grasp);
     }
 
-    /// The last order.
     #[must_use]
     pub const fn order(&self) -> FingerVerb {
         self.order
     }
 
-    /// The attached gripper has the last order.
+    /// True if the attached gripper has the last order.
     #[must_use]
     pub fn are_ordered(&self, memory: &CommonMemory) -> bool {
         self.to == EmoveGripper::attached(memory)
     }
 
-    /// Another gripper is on: its process wakes, and answers nothing that it was told before it was left.
+    /// After a change of the gripper: its process wakes, and does not answer commands from before it slept.
     pub fn note_gripper(&mut self, memory: &CommonMemory) {
         if EmoveGripper::attached(memory) != EmoveGripper::None {
             self.to = EmoveGripper::None;
         }
     }
 
-    /// The gripper button of the joystick box, if it has just been pressed.
+    /// The gripper button of the joystick box, if it was pressed in this tick.
     #[must_use]
     pub fn pressed(&self, memory: &CommonMemory) -> JoystickGrip {
         match memory.prim.status.joystick_grip {
@@ -144,19 +140,19 @@ impl Grippers {
         }
     }
 
-    /// After everything else in a tick that reads inputs: remember the gripper button.
+    /// At the end of the inputs of a tick: store the gripper button.
     pub const fn note_button(&mut self, memory: &CommonMemory) {
         self.button = memory.prim.status.joystick_grip;
     }
 
-    /// Are the fingers busy with an order that moves them?
+    /// True if the fingers execute an order that moves them.
     #[must_use]
     pub fn are_moving(&self, tick: Tick, memory: &CommonMemory) -> bool {
         let busy = matches!(self.status(tick, memory), Lower::Pending | Lower::Executing);
         busy && !matches!(self.order, FingerVerb::None | FingerVerb::Pause)
     }
 
-    /// Give the attached gripper an order; without a gripper, or while it sleeps, it only counts as given.
+    /// Send an order to the attached gripper. Without a gripper, or while it sleeps, the order is only recorded.
     pub fn send(
         &mut self,
         request: FingerOrder,
@@ -190,7 +186,6 @@ impl Grippers {
         }
     }
 
-    /// The order as a command of the gripper with jaws that it goes to.
     fn jaws_command(&mut self, request: FingerOrder, tick: Tick) -> JawsCommand {
         let (closed, open) = self.to.stops().unwrap_or_default();
         let command = match request.order {
@@ -214,7 +209,7 @@ impl Grippers {
         }
     }
 
-    /// How far the last order has come. `Lost` if the gripper that has it is no longer the attached one.
+    /// Progress of the last order. `Lost` if its gripper is no longer attached.
     #[must_use]
     pub fn status(&self, tick: Tick, memory: &CommonMemory) -> Lower {
         let attached = EmoveGripper::attached(memory);
@@ -229,8 +224,7 @@ impl Grippers {
         };
         let report = jaws.status.report;
         match commander.status_of(tick, jaws) {
-            // Fingers that are to be left alone may stand anywhere: on an object of another size, or moved by
-            // hand.
+            // Paused fingers may be at any opening: on an object of another size, or moved by hand.
             Lower::Error if self.order == FingerVerb::Pause && report == JawsReport::Stuck => Lower::Done,
             Lower::Done if self.moves_fingers() && report == self.wrong_end() => Lower::Error,
             lower => lower,
@@ -241,12 +235,12 @@ impl Grippers {
         matches!(self.order, FingerVerb::Stand | FingerVerb::Release | FingerVerb::Grasp)
     }
 
-    /// The report of jaws that went nowhere.
+    /// The report of jaws that stopped at the wrong end.
     const fn wrong_end(&self) -> JawsReport {
         if self.closing { JawsReport::Opened } else { JawsReport::Closed }
     }
 
-    /// Why the last order failed: what the process says, or what can be seen from here.
+    /// The reason why the last order failed: from the process, or from its report.
     #[must_use]
     pub fn fault(&self, tick: Tick, memory: &CommonMemory) -> Reason {
         let attached = EmoveGripper::attached(memory);
@@ -264,13 +258,13 @@ impl Grippers {
         }
     }
 
-    /// True when the attached gripper has finished [`FingerVerb::Release`]: nothing is held.
+    /// True when the attached gripper has finished [`FingerVerb::Release`].
     #[must_use]
     pub fn has_let_go(&self, tick: Tick, memory: &CommonMemory) -> bool {
         self.order == FingerVerb::Release && self.status(tick, memory) == Lower::Done
     }
 
-    /// The handshake with a gripper; that with the parts gripper for none. Searches renumber its commands
+    /// The handshake with a gripper; without one, that with the parts gripper. Searches renumber its commands
     /// (docs/evidence.md).
     pub const fn commander(&mut self, of: EmoveGripper) -> &mut Commander {
         match of {

@@ -1,5 +1,4 @@
-//! The object in the fingers: what they hold, whether it is still where they have grasped it, and what they have
-//! released last.
+//! The object in the fingers, its position there, and the object released last.
 
 use geometry::pose::Pose;
 use interfaces::{
@@ -22,34 +21,32 @@ use super::{
 };
 use crate::execution::{Execution, Outcome};
 
-/// Ticks in which neither finger may feel what is held (0.2 s): longer than it takes to push a part from one
-/// finger to the other.
+/// Longest time without finger contact of a held object, ticks (0.2 s): pushing a part from one finger to the other
+/// takes less.
 const UNFELT_TICKS: u8 = 5;
-/// Something unknown is let go by this much at least, 0.01 in (ASSUMED).
+/// Least opening travel that releases an unknown object, 0.01 in (ASSUMED).
 const LEAST_RELEASE: i32 = 50;
 
-/// The object in the fingers.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct HeldObject {
     held: Option<Grasped>,
-    /// The object that it was last commanded to grasp. None while something is held: it has been half let go, and the
-    /// release was cut off.
+    /// The object of the last grasp command. None while an object is held if its release was interrupted.
     grasping: Option<Grasped>,
     /// The fingers were empty, and have not been commanded to close since.
     empty: bool,
-    /// Where along the fingers the object is that they have closed on last.
+    /// Position along the fingers of the object grasped last.
     seat: Seat,
-    /// The last place where an object may not be where the data say.
+    /// The last place at which an object may have been displaced.
     disturbed: Option<RobotPlace>,
     /// The object that the gripper has released, and where.
     placed: Option<PlacedObject>,
     /// The last order to the fingers was to release the held object.
     releasing: bool,
-    /// Ticks in which neither finger has felt what is held.
+    /// Ticks without finger contact of the held object.
     unfelt: u8,
-    /// Something was held when the current command came.
+    /// An object was held when the current command arrived.
     carrying: bool,
-    /// What was held last went away with its gripper.
+    /// The last held object was removed with its gripper.
     gripper_gone: bool,
 }
 
@@ -64,7 +61,7 @@ impl HeldObject {
         (estimates.seat, estimates.disturbed, estimates.placed) = (self.seat, self.disturbed, self.placed);
     }
 
-    /// In the first tick after a restart: a release may have been cut off.
+    /// In the first tick after a restart: a release may have been interrupted.
     pub(super) fn start(&mut self, order: FingerVerb) {
         let is_cut_off = self.held.is_some() && self.grasping.is_none();
         self.releasing = is_cut_off || order == FingerVerb::Release;
@@ -86,14 +83,14 @@ impl HeldObject {
         self.placed
     }
 
-    /// An object is held. `at` is the place of the robot.
+    /// Record the held object. `at` is the place of the robot.
     pub(super) fn hold(&mut self, grasped: Grasped, at: Option<&RobotPlace>) {
         (self.held, self.placed) = (Some(grasped), None);
         self.forget_disturbance(at);
         self.unfelt = 0;
     }
 
-    /// A person says what is held: nothing, if it has no name.
+    /// Adopt the held object from the operator; without a name the fingers are empty.
     pub(super) const fn name(&mut self, grasped: Option<Grasped>) {
         self.grasping = grasped;
         if grasped.is_some() {
@@ -103,21 +100,21 @@ impl HeldObject {
         }
     }
 
-    /// A person says that what was placed does not count.
+    /// The operator invalidates the placed object.
     pub(super) const fn forget_placed(&mut self) {
         self.placed = None;
     }
 
-    /// The fingers are commanded to close: on an object, or by hand. By hand only what is held already has a name, and
-    /// it is not let go any more.
+    /// The fingers are commanded to close, on an object or by hand. Closing by hand keeps the name of the held
+    /// object, and ends its release.
     pub(super) const fn close(&mut self, on: Option<Grasped>, seat: Seat) {
         if on.is_some() {
-            // An object that is grasped again is held once the fingers have closed on it.
+            // A regrasped object is held once the fingers have closed on it.
             (self.held, self.carrying, self.grasping) = (None, false, on);
         } else {
             self.grasping = self.held;
         }
-        // What was placed may be taken, and lost elsewhere.
+        // A placed object may be taken, and lost elsewhere.
         (self.seat, self.placed, self.empty) = (seat, None, false);
     }
 
@@ -125,18 +122,18 @@ impl HeldObject {
         self.releasing = order == FingerVerb::Release;
     }
 
-    /// A release is paused: the order no longer says that it has not ended. If E-move is restarted, this does.
+    /// Record a paused release in the state, because the order no longer shows it. A restarted E-move reads this.
     pub(super) const fn pause_release(&mut self) {
         self.grasping = None;
     }
 
-    /// Has a release been begun at the place of the robot that has not ended?
+    /// True if a release has begun at the place of the robot and has not ended.
     #[must_use]
     pub const fn is_letting_go(&self, at_place: bool) -> bool {
         self.releasing && self.held.is_some() && at_place
     }
 
-    /// What was held when the command came.
+    /// Compare the held object with the one at the start of the command.
     pub(super) const fn load(&self, is_misread: bool) -> EmoveLoad {
         match self.held {
             None if self.carrying && self.gripper_gone => EmoveLoad::GripperGone,
@@ -146,14 +143,14 @@ impl HeldObject {
         }
     }
 
-    /// Another gripper is on. A ring that is open takes a gripper only in its holster, where none is left that may hold
-    /// something.
+    /// Another gripper is attached. A ring that was open receives a gripper only in its holster, where no gripper is
+    /// left with an object.
     pub(super) const fn note_gripper(&mut self, memory: &CommonMemory) {
         (self.empty, self.grasping) = (is_open(memory), None);
     }
 
-    /// Whether the fingers are empty, and what they hold that they were commanded to grasp: something that they feel,
-    /// although nothing counts as held.
+    /// Update whether the fingers are empty, and adopt the commanded object if they detect one and none is recorded
+    /// as held.
     pub(super) fn sense_grasp(
         &mut self,
         command: &EmoveCommand,
@@ -163,7 +160,7 @@ impl HeldObject {
     ) -> Option<Grasped> {
         let (tick, memory) = (inputs.tick, inputs.memory);
         let attached = EmoveGripper::attached(memory);
-        // Before the fingers have closed they feel nothing: that says nothing of what they will hold.
+        // Open fingers sense nothing, so this reading proves nothing before they have closed.
         let closing = grippers.order() == FingerVerb::Grasp && grippers.are_moving(tick, memory);
         self.empty |= grippers.has_let_go(tick, memory);
         match attached.felt(memory) {
@@ -186,8 +183,8 @@ impl HeldObject {
         None
     }
 
-    /// May something that is felt count as grasped? Not while the fingers move or do not press it, nor before the
-    /// command that closes them has looked, nor if they were only opened since nothing was felt.
+    /// True if a detected object may be recorded as grasped: not while the fingers move or do not press it, not
+    /// before the closing command has checked, and not if they only opened since they were empty.
     fn may_adopt(
         &self,
         command: &EmoveCommand,
@@ -203,14 +200,13 @@ impl HeldObject {
         !looks && !moving && presses && !self.empty
     }
 
-    /// Where along the fingers the object is: nothing measures it. With the robot it slides as soon as it meets
-    /// anything, while a person leads the robot or the arm has no pressure: then the robot controller is off, whatever
-    /// Prim has made of its last command, or the resolvers give no position. An arm that moves away from an object
-    /// which it has just released pushes it in the same way, and so does one that a person leads past an object before
-    /// it is grasped.
+    /// Update the position of the object along the fingers, which no sensor measures. It slides if the robot hits an
+    /// obstacle while the operator moves the robot or the arm has no pressure: the robot controller is off,
+    /// independent of Prim's report, or the resolvers give no position. In the same way, an arm without control pushes
+    /// an object that it has just released, or is about to grasp.
     ///
-    /// `origin` is the place of the robot, or the one that it has left last; `ends` are all places to which it belongs;
-    /// `drum` is the drum at which it is half way; `is_sensed` is false if the resolvers give no position.
+    /// `origin` is the place of the robot, or the last one; `ends` are the ends of its path; `drum` is the drum of an
+    /// unfinished tool command; `is_sensed` is false if the resolvers give no position.
     pub(super) fn sense_seat(
         &mut self,
         (origin, ends): (Option<&RobotPlace>, [Option<&RobotPlace>; 3]),
@@ -232,13 +228,13 @@ impl HeldObject {
         self.disturbed = drum.or_else(near).copied().or(self.disturbed);
     }
 
-    /// Has an object been released at a place?
+    /// True if an object has been released at a place.
     fn is_placed_at(&self, at: Option<&RobotPlace>) -> bool {
         self.placed.zip(at).is_some_and(|(placed, at)| placed.site == at.site)
     }
 
-    /// The seat of what the fingers are to close on. An object that may have been pushed, or that has slid before it was
-    /// let go, is not known to be at its place, unless a picture shows where it is.
+    /// The seat of the object to be grasped. It is unconfirmed if the object may have been pushed, or slid before its
+    /// release, unless a picture shows its place.
     pub(super) fn next_seat(&self, command: &EmoveCommand, is_located: bool) -> Seat {
         let is_disturbed = self.disturbed.is_some_and(|at| at.site.has_location_of(&command.site));
         match (self.empty, is_located, is_disturbed) {
@@ -248,16 +244,15 @@ impl HeldObject {
         }
     }
 
-    /// The robot has grasped an object where it stands, or has let one go there that has not slid: it is not disturbed
-    /// any more.
+    /// Clear the disturbance at this place: the robot has grasped an object there, or released one that did not
+    /// slide.
     fn forget_disturbance(&mut self, here: Option<&RobotPlace>) {
         let is_here = |at: &RobotPlace| here.is_some_and(|here| at.site.has_location_of(&here.site));
         self.disturbed = self.disturbed.filter(|at| !is_here(at));
     }
 
-    /// Whether the held object is still held. Opening fingers count as holding it until they have released it: if they
-    /// stop half-way, the object is still between them, and the command that releases it can be sent again. `at` is the
-    /// place of the robot.
+    /// Update whether the object is still held. Opening fingers hold it until they have released it: if they stop
+    /// half-way, the object is still between them, and the release can be sent again. `at` is the place of the robot.
     pub(super) fn sense_loss(
         &mut self,
         at: Option<&RobotPlace>,
@@ -268,11 +263,10 @@ impl HeldObject {
         let Some(held) = self.held else { return };
         let letting_go = self.is_letting_go(at.is_some());
         let gripper = EmoveGripper::of(held.gripper);
-        // A part that was held with little force leaves the fingers where they are when it falls: only the
-        // force tells.
+        // A part held with little force hardly moves the fingers when it falls: only the force shows the loss.
         let felt = letting_go || !gripper.feels_nothing(memory);
         self.unfelt = if felt { 0 } else { self.unfelt.saturating_add(1) };
-        // A gripper that was restarted knows no opening: what was held is not lost for that.
+        // A restarted gripper has no opening yet, which does not prove a loss.
         let slipped = !letting_go
             && gripper
                 .opening(memory)
@@ -297,8 +291,8 @@ impl HeldObject {
         }
     }
 
-    /// What the gripper holds: what was grasped and is still felt, else what its sensors say. `is_misread` says that
-    /// the id pins have a bad contact.
+    /// The held object: the grasped one while it is detected, else the reading of the sensors. `is_misread` is true
+    /// if the id pins have a bad contact.
     pub(super) fn holding(&self, is_misread: bool, memory: &CommonMemory) -> Holding {
         let attached = EmoveGripper::attached(memory);
         match (self.held, attached.felt(memory)) {
@@ -307,14 +301,14 @@ impl HeldObject {
             (Some(held), _) => Holding::Object(held.object),
             (None, Felt::Nothing) => Holding::Nothing,
             (None, Felt::NotKnown) if self.empty => Holding::Nothing,
-            // Jaws that were stopped on their way to open stand between their stops, too.
+            // Jaws stopped while they opened are also between their stops.
             (None, Felt::Something) if self.empty && attached.has_stops() => Holding::Nothing,
             (None, Felt::Something) => Holding::Something,
             (None, Felt::NotKnown) => Holding::NotKnown,
         }
     }
 
-    /// What the fingers have between them. A gripper that does not know its opening has what counts as held.
+    /// The contents of the fingers. Without a known opening, the recorded object is assumed.
     pub(super) fn fingers(
         &self,
         at_place: bool,
@@ -336,7 +330,7 @@ impl HeldObject {
         }
     }
 
-    /// Does something count as held that the fingers have been told to let go of, or do not feel or press at rest?
+    /// True if a held object is being released, or fingers at rest neither detect nor press it.
     fn is_half_let_go(&self, at_place: bool, grippers: &Grippers, inputs: &EmoveInputs<'_>) -> bool {
         let Some(held) = self.held else { return false };
         let (gripper, memory) = (EmoveGripper::of(held.gripper), inputs.memory);
@@ -344,8 +338,8 @@ impl HeldObject {
         self.is_letting_go(at_place) || (!around && !grippers.are_moving(inputs.tick, memory))
     }
 
-    /// The opening to release the held object, or the object of the command, 0.01 in. Something unknown may be wider
-    /// than the object of the command: the fingers open from where they are.
+    /// Opening that releases the held object, or the object of the command, 0.01 in. An unknown object may be wider
+    /// than that of the command: the fingers open from their present opening.
     pub(super) fn depart_opening(
         &self,
         holding: Holding,
@@ -362,12 +356,12 @@ impl HeldObject {
         now.map_or(size, |now| size.max(now.saturating_add(LEAST_RELEASE).min(FULL_OPENING)))
     }
 
-    /// Forget where objects were released or disturbed.
+    /// Clear the places where objects were released or disturbed.
     pub const fn forget_places(&mut self) {
         (self.placed, self.disturbed) = (None, None);
     }
 
-    /// Forget what makes no difference, for a search that compares states (docs/evidence.md).
+    /// Clear what no table reads, for a search that compares states (docs/evidence.md).
     pub const fn forget_unread(&mut self) {
         match &mut self.grasping {
             grasping if self.held.is_none() && self.empty => *grasping = None,

@@ -1,34 +1,34 @@
 //! E-move (V.2): divides elemental moves into straight segments for Prim, and coordinates gripper, quick change and
 //! vision with them.
 //!
-//! All data of a command are looked up when it comes, before anything moves. Held object, place of the robot and
-//! located object are kept from command to command.
+//! A new command looks up its data before anything moves. Held object, place of the robot and located object persist
+//! between commands.
 //!
 //! ```text
 //!           ACCEPT, RECORDS          CARRIED, ORDERED: Prim, gripper, ring, vision
-//!   a command --------------> Start ---> Moving ---> Stopping ---> done ---> E-PAUSE stands (ATTEND)
+//!   a command --------------> Start ---> Moving ---> Stopping ---> done ---> E-PAUSE done (ATTEND)
 //!       |                                  |             |                      |            ^
-//!       | what it needs is missing         | what is carried is lost, or        v            |
+//!       | data are missing                 | the carried object is lost, or       v            |
 //!       v                                  v a neighbour failed             the operator has the robot
 //!     error <-----------------------------------------------
 //! ```
 //!
-//! A tick reads as the manual does (II.2.1): [`sense`], decide, [`act`], [`report`]. [`State`] is the command under way
-//! and these parts, none of which reads the fields of another:
+//! A tick follows the manual (II.2.1): [`sense`], decide, [`act`], [`report`]. [`State`] consists of the current
+//! command and these parts, whose fields are private to each:
 //!
 //! * [`held_object`]: the object in the fingers;
 //! * [`grippers`] and [`gripper`]: the three grippers as one;
-//! * [`gripper_exchange`]: quick change, and the position of the robot in the change of a gripper;
-//! * [`tool_drum`]: its position at the tool drum;
-//! * [`localization`]: its place, or the path that it is on;
+//! * [`gripper_exchange`]: quick change, and position of the robot in an exchange;
+//! * [`tool_drum`]: position at the tool drum;
+//! * [`localization`]: place of the robot, or its path;
 //! * [`motion`]: the route of the command, and the commands to Prim;
-//! * [`vision`]: pictures, and from a picture to a part frame.
+//! * [`vision`]: pictures, and the part frame from a picture.
 //!
 //! The other modules are:
 //!
 //! * [`senses`]: the state variables of the commands;
-//! * [`plan`]: what a new command needs;
-//! * [`goals`]: what a finished command has reached;
+//! * [`plan`]: the data of a new command;
+//! * [`goals`]: the sensor check of a finished command;
 //! * [`robot_place`] and [`grasp`]: conversions of places and objects;
 //! * [`tables`]: the decision tables, one file per command.
 
@@ -75,20 +75,19 @@ use self::{
 };
 use crate::execution::{Course, Execution};
 
-/// What E-move reads in a tick.
 pub type EmoveInputs<'a> = Inputs<'a, TaskData<'a>>;
 
-/// State of E-move: the command under way, and the parts.
+/// State of E-move: the current command, and the parts.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct State {
-    /// The command of Subtask and how far it has come.
+    /// The command of Subtask and its progress.
     pub execution: Execution,
     pub step: Step,
     /// The process that has its last order.
     pub ordered: EmoveRecipient,
-    /// It has ordered something of Prim, or waits until Prim has ended what it did before.
+    /// The command has sent an order to Prim, or waits until Prim has ended its previous order.
     pub uses_prim: bool,
-    /// The points that were sent when it gave its last order.
+    /// The points sent when the last order was given.
     pub ordered_at: Progress,
     pub held: HeldObject,
     pub grippers: Grippers,
@@ -154,7 +153,7 @@ impl<'d> Process<TaskData<'d>> for Emove {
 }
 
 impl State {
-    /// Consult ATTEND if EXECUTE leaves the command alone: the tables of the command are consulted if it passes.
+    /// Consult ATTEND if EXECUTE does not decide. If ATTEND passes, the tables of the command follow.
     ///
     /// # Errors
     /// The action of its row otherwise.

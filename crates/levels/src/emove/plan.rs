@@ -1,4 +1,4 @@
-//! The data of a command, looked up when it comes: a command that cannot be executed moves nothing.
+//! The data of a command, looked up before anything moves: a command that cannot be executed moves nothing.
 
 use interfaces::{
     CommonMemory,
@@ -40,7 +40,7 @@ const fn class(verb: EmoveVerb) -> CommandClass {
     }
 }
 
-/// The gripper on the robot, seen from the command.
+/// The gripper on the robot, compared with the one of the command.
 fn attached(command: &EmoveCommand, memory: &CommonMemory) -> Attached {
     match EmoveGripper::attached(memory) {
         EmoveGripper::None => Attached::None,
@@ -50,7 +50,7 @@ fn attached(command: &EmoveCommand, memory: &CommonMemory) -> Attached {
     }
 }
 
-/// A gripper with a holster, and the opening with which it moves through the holster, for a command that changes it.
+/// The holster of an exchange command, and its opening for the path through the holster.
 fn holster(command: &EmoveCommand, data: &TaskData<'_>) -> HolsterData {
     if class(command.command) != CommandClass::Exchange {
         HolsterData::Found
@@ -63,7 +63,7 @@ fn holster(command: &EmoveCommand, data: &TaskData<'_>) -> HolsterData {
     }
 }
 
-/// How the gripper hangs on the robot.
+/// The connection of the gripper to the robot.
 const fn coupling(memory: &CommonMemory) -> Coupling {
     let status = &memory.quick_change.status;
     match (status.end_effector_id, status.ring) {
@@ -73,7 +73,7 @@ const fn coupling(memory: &CommonMemory) -> Coupling {
     }
 }
 
-/// The location of a motion command that is no gripper change.
+/// The location of a motion command, which is not a gripper exchange.
 fn target(command: &EmoveCommand, data: &TaskData<'_>) -> EmoveTarget {
     match Relative::QcaBack.record(&command.site, data) {
         Some(_) if command.command == EmoveVerb::MovToLoc => EmoveTarget::Holster,
@@ -81,13 +81,12 @@ fn target(command: &EmoveCommand, data: &TaskData<'_>) -> EmoveTarget {
     }
 }
 
-/// A record of the task data, for a command that needs it.
 const fn record(is_needed: bool, is_found: bool) -> EmoveRecord {
     if is_needed && !is_found { EmoveRecord::Missing } else { EmoveRecord::Found }
 }
 
 impl State {
-    /// A new command: look up all that it needs. What is found is kept.
+    /// Look up the data of a new command, and store the results.
     pub(super) fn look_up(
         &mut self,
         command: &EmoveCommand,
@@ -128,7 +127,6 @@ impl State {
         (request, records)
     }
 
-    /// The way of a motion command.
     fn plan(&self, command: &EmoveCommand, inputs: &EmoveInputs<'_>) -> Result<Flight, Planning> {
         let holding = self.holding(inputs.memory);
         match command.command {

@@ -1,4 +1,4 @@
-//! The status to Subtask, and the estimates of the world: outputs that E-move has again after a restart.
+//! The status to Subtask, and the estimates: outputs that a restarted E-move adopts.
 
 use interfaces::{
     EmoveOutputs, Reason, StatusReport, Unconfirmed,
@@ -25,7 +25,6 @@ impl State {
         estimates
     }
 
-    /// Write the estimates of all parts.
     fn write_to(&self, estimates: &mut Estimates) {
         self.held.write_to(estimates);
         self.exchange.write_to(estimates);
@@ -42,9 +41,9 @@ impl State {
         self.vision.adopt(estimates);
     }
 
-    /// `status-report` and its reason. `joystick-on` lasts as long as the box is active (V.2.2), whatever was done
-    /// before, and E-PAUSE keeps it until the processes below pause again. Another command that was given up for it
-    /// ends in an error and is not resumed (docs/design/ownership.md "Joystick box").
+    /// `status-report` and its reason. `joystick-on` lasts as long as the box is active (V.2.2), independent of
+    /// earlier actions, and E-PAUSE keeps it until the processes below pause again. An interrupted command ends in an
+    /// error and is not resumed (docs/design/ownership.md "Joystick box").
     fn outcome(&self, inputs: &EmoveInputs<'_>) -> (StatusReport, Reason, Unconfirmed) {
         let prim = &inputs.memory.prim;
         let taken =
@@ -65,7 +64,6 @@ impl State {
         }
     }
 
-    /// Write the status to Subtask and the flags of the gripper processes.
     pub(super) fn report(&self, inputs: &EmoveInputs<'_>, outputs: &mut EmoveOutputs) {
         let memory = inputs.memory;
         let present = present_frame(memory);
@@ -99,8 +97,8 @@ impl State {
         };
     }
 
-    /// Take over a value that a person writes (IV.2.6). E-move was not stepped in the tick before: its state and its
-    /// outputs have the same estimates, or it has been restarted and adopts those of the outputs.
+    /// Adopt a value from the operator (IV.2.6). E-move was not stepped in the tick before: its state and its outputs
+    /// contain the same estimates, or it has been restarted and adopts those of the outputs.
     pub(super) fn write(&mut self, write: &Write, inputs: &EmoveInputs<'_>, outputs: &mut EmoveOutputs) {
         self.adopt(&outputs.estimates);
         match (write.variable, write.object) {

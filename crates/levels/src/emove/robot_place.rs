@@ -1,4 +1,4 @@
-//! Place of the robot (docs/design/motion.md "Where the robot is"): by E-move's last completed move, and by Prim's
+//! Place of the robot (docs/design/motion.md "Where the robot is"), from E-move's last completed move and Prim's
 //! status.
 
 use geometry::{frame::Frame, pose::Pose};
@@ -11,7 +11,7 @@ use taskdata::files::TaskData;
 
 use crate::places::pose_of;
 
-/// True if two frames are the same for a robot that is at rest.
+/// True if two frames are the same for a robot at rest.
 #[must_use]
 pub fn near(a: &Frame, b: &Frame, inches: f64, radians: f64) -> bool {
     let distance = a.distance(b);
@@ -40,19 +40,19 @@ pub const fn gone_to(command: &EmoveCommand) -> GoneTo {
     }
 }
 
-/// The robot at the location of a command.
+/// The place of a robot at the location of a command.
 #[must_use]
 pub const fn robot_at(command: &EmoveCommand, gone_to: GoneTo, pose: Pose) -> RobotPlace {
     RobotPlace { gone_to, site: command.site, pose }
 }
 
-/// Does the operator have the robot? Where it is counts again when it is given back.
+/// True if the operator has the robot. Its place matters again when the operator gives it back.
 #[must_use]
 pub fn is_led(memory: &CommonMemory) -> bool {
     memory.prim.status.report == PrimReport::JoystickOn
 }
 
-/// Has the link to the robot controller failed, or does Prim restart it? The arm may have moved since.
+/// True if the link to the robot controller has failed, or Prim restarts it. The arm may have moved since.
 #[must_use]
 pub const fn is_cut_off(memory: &CommonMemory) -> bool {
     let status = &memory.prim.status;
@@ -67,7 +67,7 @@ pub fn base(command: &EmoveCommand, memory: &CommonMemory, data: &TaskData<'_>) 
     pose_of(command.pose?, memory, data)
 }
 
-/// Where the robot stands, for the status.
+/// The robot's place for the status.
 #[must_use]
 pub const fn standing(at: &RobotPlace) -> Standing {
     let grip = match at.gone_to {
@@ -77,17 +77,17 @@ pub const fn standing(at: &RobotPlace) -> Standing {
     Standing { site: at.site, grip }
 }
 
-/// Where the resolvers say that the robot is.
+/// The frame of the robot, by the resolvers.
 #[must_use]
 pub fn present_frame(memory: &CommonMemory) -> Option<Frame> {
     memory.changing_pose(memory.prim.status.sensor_pose?)?.to_frame().ok()
 }
 
-/// A robot that is not under control within this distance of an object may push it, in: the fingers and the part that
-/// they hold reach so far (ASSUMED).
+/// An uncontrolled robot within this distance of an object may push it, in: the reach of the fingers and a held part
+/// (ASSUMED).
 const PUSHED_INCHES: f64 = 6.0;
 
-/// Is the robot near enough to a pose to push an object there? If the resolvers give no position, it may be.
+/// True if the robot may push an object at a pose, by distance or because the resolvers give no position.
 #[must_use]
 pub fn may_push(pose: &Pose, memory: &CommonMemory) -> bool {
     match (present_frame(memory), pose.to_frame()) {
@@ -96,23 +96,23 @@ pub fn may_push(pose: &Pose, memory: &CommonMemory) -> bool {
     }
 }
 
-/// The last commanded pose of the robot; the pose of the resolvers if Prim commands nothing.
+/// The last commanded pose; the pose of the resolvers if Prim commands nothing.
 #[must_use]
 pub fn commanded_pose(memory: &CommonMemory) -> Option<Pose> {
     let commanded = memory.prim.status.present_pose.and_then(|number| memory.changing_pose(number)).copied();
     commanded.or_else(|| present_frame(memory).map(|frame| Pose::from_frame(&frame)))
 }
 
-/// The robot is at a place within so many inches ...
+/// A robot is at a place within so many inches …
 pub const THERE_INCHES: f64 = 0.02;
-/// ... and radians (0.1 degree): what Prim confirms at the end of a motion.
+/// … and radians (0.1 degree): the tolerance that Prim confirms after a motion.
 pub const THERE_RADIANS: f64 = 0.1 * core::f64::consts::PI / 180.0;
-/// A place is confirmed within so many inches ...
+/// A place is confirmed within so many inches …
 pub const CONFIRMED_INCHES: f64 = 0.05;
-/// ... and radians (0.25 degree): the arm settles while the status is passed up.
+/// … and radians (0.25 degree): the arm settles while the status is passed up.
 pub const CONFIRMED_RADIANS: f64 = 0.25 * core::f64::consts::PI / 180.0;
 
-/// How far the robot is from a pose. `present` is its frame by the resolvers.
+/// Distance of the robot from a pose. `present` is its frame by the resolvers.
 #[must_use]
 pub fn offset(pose: &Pose, present: Option<&Frame>) -> Offset {
     let (Some(present), Ok(goal)) = (present, pose.to_frame()) else {
@@ -128,14 +128,14 @@ pub fn offset(pose: &Pose, present: Option<&Frame>) -> Offset {
     }
 }
 
-/// True if both places are the same pose at the same location, whatever the robot goes to there.
+/// True if both places are the same pose at the same location, independent of [`GoneTo`].
 #[must_use]
 pub fn is_same_pose(a: &RobotPlace, b: &RobotPlace) -> bool {
     let (Ok(a_frame), Ok(b_frame)) = (a.pose.to_frame(), b.pose.to_frame()) else { return false };
     a.site.has_location_of(&b.site) && near(&a_frame, &b_frame, THERE_INCHES, THERE_RADIANS)
 }
 
-/// Is it the same goal: same kind, place, object and grip, and the same pose?
+/// True if both have the same kind, place, object, grip and pose.
 pub(super) fn is_same_goal(a: &RobotPlace, b: &RobotPlace) -> bool {
     a.gone_to == b.gone_to && a.site.place() == b.site.place() && is_same_pose(a, b)
 }

@@ -28,7 +28,7 @@ use crate::{
     halt::{Above, Advance, Below, BoxState, Intake, Kind, Replaced},
 };
 
-/// Do the fingers stand at an opening, 0.01 in, without air that moves them from there?
+/// True if the fingers are at an opening, 0.01 in, and no air moves them from there.
 fn stands_at(opening: i32, memory: &CommonMemory) -> bool {
     let attached = EmoveGripper::attached(memory);
     let goes = attached.has_air(!attached.closes_for(opening), memory);
@@ -36,7 +36,6 @@ fn stands_at(opening: i32, memory: &CommonMemory) -> bool {
 }
 
 impl State {
-    /// Read the inputs of a tick.
     pub(super) fn sense(&mut self, inputs: &EmoveInputs<'_>, outputs: &EmoveOutputs) -> StateVariables {
         let command = &inputs.memory.subtask.emove;
         if !self.execution.receiver.started {
@@ -83,12 +82,12 @@ impl State {
         seen
     }
 
-    /// In its first tick E-move adopts its estimates from before a restart.
+    /// In the first tick, adopt the estimates from before a restart.
     fn start(&mut self, inputs: &EmoveInputs<'_>, outputs: &EmoveOutputs) {
         let memory = inputs.memory;
         self.motion.start(inputs.external.operator.robot_init);
         self.adopt(&outputs.estimates);
-        // Another gripper may have come in the meantime; one whose pins read as none may still be on.
+        // The gripper may have changed in the meantime; pins that read none may belong to an attached gripper.
         let (before, now) =
             (EmoveGripper::of(outputs.status.end_effector_id), EmoveGripper::attached(memory));
         let is_same = now == EmoveGripper::None || now == before;
@@ -97,7 +96,7 @@ impl State {
         self.held.start(self.grippers.order());
     }
 
-    /// What a new command replaces: motion, ring or fingers that are under way.
+    /// Activities that a new command replaces: motion, ring or fingers.
     fn replaced(&self, watch: &Watch, inputs: &EmoveInputs<'_>) -> Replaced {
         let (tick, memory) = (inputs.tick, inputs.memory);
         let written = &memory.emove;
@@ -116,7 +115,6 @@ impl State {
         }
     }
 
-    /// Follow the echoes until the first command.
     fn sense_neighbours(&mut self, inputs: &EmoveInputs<'_>) {
         self.motion.sense(inputs);
         self.grippers.start(inputs.tick, inputs.memory);
@@ -124,7 +122,7 @@ impl State {
         self.vision.start(&inputs.external.devices.vision);
     }
 
-    /// Whether the held object is still held, and whether anything is between the fingers.
+    /// Update whether the held object is still held, and whether the fingers are empty.
     fn sense_held(&mut self, command: &EmoveCommand, is_sensed: bool, inputs: &EmoveInputs<'_>) {
         let (memory, robot) = (inputs.memory, &self.localization);
         if self.exchange.is_misread(memory) {
@@ -144,7 +142,7 @@ impl State {
         }
     }
 
-    /// An object is held: where it has been released or located before does not count.
+    /// Record a held object. Its earlier release or located place is no longer valid.
     pub(super) fn hold(&mut self, grasped: Grasped) {
         self.held.hold(grasped, self.localization.place());
         self.vision.forget();
@@ -154,19 +152,19 @@ impl State {
         self.held.holding(self.exchange.is_misread(memory), memory)
     }
 
-    /// Has a release been begun at the place of the robot that has not ended?
+    /// True if a release has begun at the place of the robot and has not ended.
     pub(super) fn is_letting_go(&self) -> bool {
         self.held.is_letting_go(self.localization.place().is_some())
     }
 
-    /// Whether it is known where the robot is.
     pub(super) fn place_knowledge(&self, inputs: &EmoveInputs<'_>) -> PlaceKnowledge {
         let is_moving = matches!(self.motion.robot(inputs), Lower::Pending | Lower::Executing);
         let is_half_way = self.exchange.is_half_done() || self.drum.half_way().is_some();
         self.localization.knowledge(is_moving, is_half_way, inputs)
     }
 
-    /// Is the robot still where its last move ended? If [`search`] says so, look where else it is.
+    /// Update whether the robot is still where its last move ended. [`search`] decides whether to search for its
+    /// place.
     fn sense_place(
         &mut self,
         command: &EmoveCommand,
@@ -202,7 +200,7 @@ impl State {
         watch
     }
 
-    /// Is a robot that is half way at the drum so still, and does one that stands there stand there still?
+    /// Update the robot's state at the drum: an unfinished tool command, or fingers around a tool.
     fn sense_drum(&mut self, inputs: &EmoveInputs<'_>) {
         if self.drum.sense_moved_tool(self.localization.last_place(), inputs) {
             self.localization.set_place(None);
@@ -214,7 +212,7 @@ impl State {
         }
     }
 
-    /// How the last order stands.
+    /// Status of the last order.
     fn subordinates(&self, command: &EmoveCommand, inputs: &EmoveInputs<'_>) -> Subordinates {
         let (tick, memory) = (inputs.tick, inputs.memory);
         let gripper = self.grippers.status(tick, memory);
@@ -231,7 +229,7 @@ impl State {
         }
     }
 
-    /// The opening for the goal of the route. While a release is under way, no opening is ordered.
+    /// The opening for the goal of the route. During a release no opening is ordered.
     fn opening(&self, gripper: Lower, inputs: &EmoveInputs<'_>) -> EmoveOpening {
         match self.motion.opening() {
             None => EmoveOpening::Free,

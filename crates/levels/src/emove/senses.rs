@@ -1,4 +1,4 @@
-//! The state variables of the commands. Each table takes those that its rows name (docs/design/tables.md "State
+//! The state variables of the commands. Each table receives those that its rows name (docs/design/tables.md "State
 //! variables").
 
 use interfaces::{
@@ -22,7 +22,7 @@ use super::{
 };
 use crate::{execution::Work, held::Held};
 
-/// The sources of the state variables of a command: state, command, inputs and subordinates.
+/// The sources of the state variables of a command.
 pub struct Senses<'a> {
     state: &'a State,
     command: &'a EmoveCommand,
@@ -32,7 +32,6 @@ pub struct Senses<'a> {
 }
 
 impl<'a> Senses<'a> {
-    /// For a command in a tick.
     #[must_use]
     pub fn new(
         state: &'a State,
@@ -70,13 +69,13 @@ impl Senses<'_> {
         Work::Busy
     }
 
-    /// What lies ahead on the route.
+    /// The next point of the route.
     #[must_use]
     pub fn ahead(&self) -> Ahead {
         self.state.motion.flight().ahead(self.inputs.data)
     }
 
-    /// The departure from the place that the robot leaves.
+    /// The departure from the robot's place.
     #[must_use]
     pub fn departure(&self) -> Departure {
         match self.state.localization.place() {
@@ -118,14 +117,14 @@ impl Senses<'_> {
         Held::of(self.holding(), self.command.object)
     }
 
-    /// Whether something of the object's size is between the fingers.
+    /// The contents of the closed fingers, compared with the size of the object.
     #[must_use]
     pub fn fingers(&self) -> Fingers {
         let state = self.state;
         state.held.fingers(state.localization.place().is_some(), self.command, &state.grippers, self.inputs)
     }
 
-    /// Are they as wide open as a release would leave them?
+    /// The opening, compared with the one after a release.
     #[must_use]
     pub fn spread(&self) -> Spread {
         let attached = self.attached();
@@ -172,7 +171,7 @@ impl Senses<'_> {
         holster(self.command.end_effector_id, self.memory())
     }
 
-    /// Where the robot is in the exchange.
+    /// The position of the robot in the exchange.
     #[must_use]
     pub const fn along(&self) -> ExchangePosition {
         self.along
@@ -184,7 +183,7 @@ impl Senses<'_> {
         shut(self.command, self.inputs)
     }
 
-    /// Is the robot at the command's location?
+    /// The robot's place, relative to the command's location.
     #[must_use]
     pub fn at(&self) -> At {
         self.state.localization.at(self.command)
@@ -207,19 +206,19 @@ impl Senses<'_> {
         sight(self.state.localization.last_place(), self.inputs)
     }
 
-    /// Where the camera is to go next.
+    /// Knowledge of the next position of the camera.
     #[must_use]
     pub fn aim(&self) -> Knowledge {
         known(can_aim(self.command, self.inputs))
     }
 
-    /// Do the open fingers stay within the object's array?
+    /// The open fingers, relative to the object's array.
     #[must_use]
     pub fn reach(&self) -> EmoveReach {
         self.state.vision.reach(self.command, self.inputs)
     }
 
-    /// May a picture be taken again?
+    /// The attempts left for a picture.
     #[must_use]
     pub const fn tries(&self) -> Tries {
         self.state.vision.tries()
@@ -230,7 +229,7 @@ impl Senses<'_> {
         if self.memory().prim.status.link_running { EmoveLink::Up } else { EmoveLink::Down }
     }
 
-    /// Status of Prim; done as long as the command does not need it.
+    /// Status of Prim; done if the command does not need it.
     #[must_use]
     pub const fn prim(&self) -> Lower {
         self.subordinates.prim
@@ -242,9 +241,9 @@ impl Senses<'_> {
         if moving { FingerMotion::Moving } else { FingerMotion::AtRest }
     }
 
-    /// Quick change and gripper while pausing. Grip's PAUSE is done only when a calibration at the start is done (VI.3.1
-    /// UP-INIT); with no gripper, or one that has come since, there is nothing to wait for. A ring that stands half-way
-    /// is at rest, too: ACCEPT decides which commands it prevents.
+    /// Quick change and gripper during a pause. Grip's PAUSE is done only after a calibration at the start is done
+    /// (VI.3.1 UP-INIT). A missing gripper, or one attached since, needs no wait. A ring between its ends is at rest,
+    /// too: ACCEPT decides which commands it prevents.
     #[must_use]
     pub fn tooling(&self) -> Tooling {
         let asked = self.state.grippers.are_ordered(self.memory());
@@ -257,13 +256,13 @@ impl Senses<'_> {
         }
     }
 
-    /// Knowledge of the place of the robot.
+    /// Knowledge of the robot's place.
     #[must_use]
     pub fn place(&self) -> PlaceKnowledge {
         self.state.place_knowledge(self.inputs)
     }
 
-    /// A gripper button of the joystick box that has just been pressed.
+    /// The gripper button of the joystick box, if it was pressed in this tick.
     #[must_use]
     pub fn button(&self) -> JoystickGrip {
         self.state.grippers.pressed(self.memory())

@@ -1,4 +1,4 @@
-//! Where the robot is at the tool drum (docs/design/recovery.md "Drum").
+//! The robot's position at the tool drum (docs/design/recovery.md "Drum").
 //!
 //! ```text
 //!                 z (left)          - near -- Entering -- in  Inside        x into the drum,
@@ -35,23 +35,22 @@ use super::{
 };
 use crate::execution::Execution;
 
-/// A tool is in its place within this along the way in: the fingers of the drum close on it there, in.
+/// Depth tolerance of a tool in its place, where the fingers of the drum close on it, in.
 const SEATED: f64 = 0.15;
-/// The fingers are around it up to this far to the right of the way in, and to the end of ACQ-SLIDE, which
-/// ends where its sensor says, and this much more to the left, in.
+/// The fingers are around the tool up to this far to the right of the way in. To the left they are so up to the end
+/// of ACQ-SLIDE, which a sensor determines, plus this distance, in.
 const AROUND: f64 = 0.25;
-/// A tool that is not in its place is on the way in within this to the left and right, in.
+/// Lateral tolerance of the way in for a tool that is not in its place, in.
 const WIDE_IN: f64 = 0.75;
-/// A tool that is this much nearer than INS-NEAR meets nothing yet, in.
+/// A tool has no contact up to this far beyond INS-NEAR, in.
 const FREE: f64 = 0.15;
 /// The robot is before the drum up to this far from INS-NEAR …
 const FAR: f64 = 10.0;
-/// … and this far beside the way in, in: TOOL-SAFE is 6.1 in away.
+/// … and this far from the axis of the way in, in: TOOL-SAFE is 6.1 in away.
 const WIDE: f64 = 3.0;
-/// A tool has not moved since it was grasped if the robot is within this of the place of the grasp, in.
+/// Largest distance from the pose of the grasp at which a tool has not moved since, in.
 const UNMOVED: f64 = 0.1;
 
-/// The points at the drum, as frames.
 struct DrumPoints {
     near: Frame,
     inside: Frame,
@@ -61,7 +60,6 @@ struct DrumPoints {
 }
 
 impl DrumPoints {
-    /// The points at a drum with the pose `base`.
     fn of(site: &Site, base: &Frame, data: &TaskData<'_>) -> Option<Self> {
         let moved =
             |from: &Frame, relative: Relative| Some(data.moved(from, relative.record(site, data)?.movetable));
@@ -76,7 +74,6 @@ impl DrumPoints {
         })
     }
 
-    /// Where a frame is among them.
     fn locate(&self, present: &Frame) -> AtDrum {
         let way_in = self.inside.position - self.near.position;
         let way_out = self.slid.position - self.inside.position;
@@ -85,7 +82,7 @@ impl DrumPoints {
         if long <= 0.0 || wide <= 0.0 || self.inside.distance(present).radians > LOST_RADIANS {
             return AtDrum::Off;
         }
-        // How far the robot is in from INS-NEAR, how far to the right, and how far from that plane.
+        // Depth of the robot beyond INS-NEAR, distance to the right, and distance from that plane.
         let depth = offset.dot(&way_in) / long + long;
         let right = offset.dot(&way_out) / wide;
         let across = norm(&(offset - way_in * ((depth - long) / long) - way_out * (right / wide)));
@@ -121,7 +118,7 @@ const fn is_tool_command(verb: EmoveVerb) -> bool {
     )
 }
 
-/// Where a frame is at a drum.
+/// The position of the robot at a drum.
 fn locate(drum: &RobotPlace, memory: &CommonMemory, data: &TaskData<'_>) -> AtDrum {
     let points = drum.pose.to_frame().ok().and_then(|base| DrumPoints::of(&drum.site, &base, data));
     match (points, present_frame(memory)) {
@@ -130,8 +127,8 @@ fn locate(drum: &RobotPlace, memory: &CommonMemory, data: &TaskData<'_>) -> AtDr
     }
 }
 
-/// From where a relative move at the drum leads that was interrupted: where the robot stands, but as far
-/// back along the move as it began, so that it ends where it would have ended.
+/// Start of an interrupted relative move at the drum: the robot's position moved back by the completed part of the
+/// move, so that the move ends at its original end.
 pub(super) fn start_of(
     relative: Relative,
     command: &EmoveCommand,
@@ -148,13 +145,12 @@ pub(super) fn start_of(
     Some(Pose::from_frame(&Frame { position: stand.position - way * share, ..stand }))
 }
 
-/// The tool drum, and the force sensor that guards the moves at it.
+/// The tool drum, and the force sensor that guards its moves.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct ToolDrum {
-    /// The drum at which the robot is half way, between the first and the last point of a tool command. Its pose is
-    /// that of the location.
+    /// The drum of an unfinished tool command, between its first and last point. The pose is that of the location.
     half_way: Option<RobotPlace>,
-    /// Where the robot was when the force sensor was last ordered to be calibrated.
+    /// The robot's place at the last order to calibrate the force sensor.
     calibrated: CalibratedAt,
 }
 
@@ -171,7 +167,7 @@ impl ToolDrum {
         self.half_way.as_ref()
     }
 
-    /// Where the robot is at the drum of the command, if it is half way there.
+    /// The position of the robot at the drum of the command, if a tool command is unfinished there.
     pub(super) fn at(&self, command: &EmoveCommand, inputs: &EmoveInputs<'_>) -> AtDrum {
         match &self.half_way {
             Some(drum) if drum.site.has_location_of(&command.site) => {
@@ -181,7 +177,7 @@ impl ToolDrum {
         }
     }
 
-    /// What the force sensor reads without a force, and where that was taken.
+    /// The zero reading of the force sensor, by the place of its calibration.
     pub(super) const fn bias(&self, memory: &CommonMemory) -> Bias {
         match (memory.prim.bias, self.calibrated) {
             (None, _) => Bias::Missing,
@@ -194,8 +190,8 @@ impl ToolDrum {
         self.calibrated = at;
     }
 
-    /// The fingers are around a tool in the drum, which they hold only if nothing has moved it since. `at` is where the
-    /// last motion of the robot ended.
+    /// True if the fingers are around a tool in the drum. They hold it only if nothing has moved it since. `at` is
+    /// the place where the last motion ended.
     pub(super) fn is_around_tool(
         &self,
         at: Option<&RobotPlace>,
@@ -209,7 +205,7 @@ impl ToolDrum {
         }
     }
 
-    /// A relative move of the command is ordered: a robot with a tool command is half way at the drum.
+    /// A relative move of a tool command begins: the command at the drum is unfinished.
     pub(super) fn note_move(&mut self, command: &EmoveCommand, inputs: &EmoveInputs<'_>) {
         let base = base(command, inputs.memory, inputs.data);
         if let (true, Some(base)) = (is_tool_command(command.command), base) {
@@ -217,13 +213,14 @@ impl ToolDrum {
         }
     }
 
-    /// The robot has left the drum, or stands there.
+    /// The tool command at the drum is no longer unfinished.
     pub(super) const fn end(&mut self) {
         self.half_way = None;
     }
 
-    /// A robot that was moved with the fingers around a tool in the drum is half way there again: the tool has moved, or
-    /// the fingers on it. `at` is where its last motion ended. True if it was moved.
+    /// After motion of a robot with the fingers around a tool in the drum, the tool command is unfinished again: the
+    /// tool has moved, or the fingers on it. `at` is the place where the last motion ended. True if the robot was
+    /// moved.
     pub(super) fn sense_moved_tool(&mut self, at: Option<&RobotPlace>, inputs: &EmoveInputs<'_>) -> bool {
         let Some(at) = at.filter(|at| at.gone_to == GoneTo::Drum) else { return false };
         let Some(present) = present_frame(inputs.memory) else { return false };
@@ -236,8 +233,8 @@ impl ToolDrum {
         false
     }
 
-    /// Does a robot that is half way at the drum stay so? The table DRUM says it. Returns the place of a robot that
-    /// stands there. `grasped_at` is the pose at which the held object was grasped.
+    /// Consult DRUM about an unfinished tool command. Returns the place of a robot with the fingers around a tool.
+    /// `grasped_at` is the pose at which the held object was grasped.
     pub(super) fn sense(
         &mut self,
         grasped_at: Option<Pose>,

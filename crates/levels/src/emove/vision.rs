@@ -1,8 +1,8 @@
 //! Vision (V.2.1 LOCATE-OBJ): pictures, and from a picture to a part frame.
 //!
-//! A view movetable leads from a place to the tool frame from which the camera looks at it. Its inverse leads from the
-//! tool frame at which a picture was taken to the place in the middle of the picture; no other mounting data of the
-//! camera is needed. Vision answers in the axes of that place.
+//! A view movetable leads from a place to the tool frame for a picture of it. Its inverse leads from the tool frame
+//! of a picture to the place in the middle of the picture; other mounting data of the camera are not needed. Vision
+//! answers in the axes of that place.
 
 use geometry::{
     frame::{Frame, Rotation, Vector},
@@ -26,15 +26,15 @@ use super::{
     tables::{Action, EmoveReach, Sight, Tries, VisionAnswer},
 };
 
-/// Ticks after which vision counts as silent (4 s).
+/// Ticks after which vision is reported silent (4 s).
 const VISION_LIMIT: u64 = 100;
-/// Pictures of a kind without a result after which LOCATE-OBJ fails.
+/// LOCATE-OBJ fails after this many pictures of one kind without a result.
 const MAX_TRIES: u8 = 3;
-/// A picture says where a part is if the robot is within this of where it was sent, in …
+/// A picture is valid if the robot is within this of its commanded place, in …
 const STANDS_INCHES: f64 = 0.1;
 /// … and radians (half a degree).
 const STANDS_RADIANS: f64 = 0.5 * core::f64::consts::PI / 180.0;
-/// Millimetres in an inch: vision's range is in millimetres (VII.7.6).
+/// Millimetres per inch: vision's range is in millimetres (VII.7.6).
 const MM_PER_INCH: f64 = 25.4;
 
 /// View parameters that a command names (VII.7.6).
@@ -48,7 +48,7 @@ fn looked_at(tool: &Frame, view: MovtabId, data: &TaskData<'_>) -> Frame {
     data.movetable(view).map_or(*tool, |movetable| movetable.unapply(tool))
 }
 
-/// The place moved to the centroid that vision reports.
+/// The place moved to the centroid from vision.
 fn centred(place: &Frame, seen: &VisionResponse) -> Frame {
     place.shifted(Vector::new(0.0, inches(seen.y), inches(seen.z)))
 }
@@ -58,13 +58,11 @@ fn part_frame(place: &Frame, seen: &VisionResponse) -> Frame {
     centred(place, seen).turned(&Rotation::from_axis_angle(&Vector::x_axis(), radians(seen.angle)))
 }
 
-/// Half a turn about the tool's X changes nothing for two fingers: no answer needs more than a quarter, 0.01
-/// degree.
+/// Largest plausible turn, 0.01 degree: a half turn about tool X is equivalent for two fingers.
 const QUARTER_TURN: u32 = 9_000;
 
-/// False if no picture can show what vision answers: then the arm must not be sent there. The centroid lies
-/// at most half the expected range beside the optical axis (ASSUMED: as with a lens of 53 degrees), and the
-/// roll is within a quarter turn.
+/// False if no picture can show the answer of vision; the arm must not move there. The centroid lies at most half the
+/// expected range from the optical axis (ASSUMED: a lens of 53 degrees), and the roll is within a quarter turn.
 fn is_plausible(request: &VisionRequest, answer: &VisionResponse) -> bool {
     let widest = f64::from(request.range_mm) / (2.0 * MM_PER_INCH);
     let inside = |hundredths: i32| inches(hundredths).abs() <= widest;
@@ -74,8 +72,8 @@ fn is_plausible(request: &VisionRequest, answer: &VisionResponse) -> bool {
 /// A finger of any gripper: 0.50 in thick along the tool's Y (ASSUMED), and 1.50 in wide along its Z (VIII.9.5).
 const FINGER: [f64; 2] = [0.50, 1.50];
 
-/// True if the fingers, open by `opening` in at the tool frame `grip`, stay within the array of their `sector`: half a
-/// step from the middle of its outer sectors stands the wall of the tray (VIII.6). `out` are the steps out of the
+/// True if the fingers, open by `opening` in at the tool frame `grip`, stay within the array of their `sector`. The
+/// wall of the tray is half a step from the middle of its outer sectors (VIII.6). `out` are the steps out of the
 /// array, in, in the axes of the sector.
 fn stays_in_array(sector: &Frame, grip: &Frame, opening: f64, out: &[Option<Vector>]) -> bool {
     let axes = sector.rotation.inverse();
@@ -89,8 +87,8 @@ fn stays_in_array(sector: &Frame, grip: &Frame, opening: f64, out: &[Option<Vect
     })
 }
 
-/// True if vision has recognised another object than the requested one (V.2.1: recognition is part of the second
-/// picture).
+/// True if vision has recognised another object than the requested one (V.2.1: the second picture includes
+/// recognition).
 fn is_another(request: &VisionRequest, answer: &VisionResponse) -> bool {
     request.picture == Picture::Precise && answer.recognised != Some(request.object_id)
 }
@@ -106,15 +104,15 @@ fn request(number: u32, picture: Picture, variation: u8, view: &VisionPara) -> V
     }
 }
 
-/// From where the camera is moved next, and how.
+/// The start of the next camera motion, and how it moves.
 struct CameraAim {
     tool: Frame,
     view: MovtabId,
-    /// Parameters of the motion: those with which the view is approached last.
+    /// Parameters of the motion: those of the last approach to the view.
     parameters: TrajParaId,
 }
 
-/// From where LOCATE-OBJ moves the camera next, and how; `None` if the resolvers or the task data do not say.
+/// `None` if the resolvers or the task data are not sufficient.
 fn aim(command: &EmoveCommand, inputs: &EmoveInputs<'_>) -> Option<CameraAim> {
     if command.command != EmoveVerb::LocateObj {
         return None;
@@ -128,13 +126,12 @@ fn aim(command: &EmoveCommand, inputs: &EmoveInputs<'_>) -> Option<CameraAim> {
     })
 }
 
-/// The resolvers and the task data say from where the camera is moved next.
 pub(super) fn can_aim(command: &EmoveCommand, inputs: &EmoveInputs<'_>) -> bool {
     aim(command, inputs).is_some()
 }
 
-/// Does the robot stand where it was sent, as far as that is known? An arm that sinks has moved since the
-/// picture was taken.
+/// True if the robot is at its commanded place, as far as that is known. A sinking arm has moved since the picture
+/// was taken.
 fn is_where_sent(place: Option<&RobotPlace>, memory: &CommonMemory) -> bool {
     let sent = place.and_then(|place| place.pose.to_frame().ok());
     match (sent, present_frame(memory)) {
@@ -143,7 +140,7 @@ fn is_where_sent(place: Option<&RobotPlace>, memory: &CommonMemory) -> bool {
     }
 }
 
-/// What vision has answered. `place` is that of the robot.
+/// The answer of vision. `place` is that of the robot.
 pub(super) fn sight(place: Option<&RobotPlace>, inputs: &EmoveInputs<'_>) -> Sight {
     let (request, answer) = (&inputs.memory.emove.vision, &inputs.external.devices.vision);
     match answer.status {
@@ -157,15 +154,13 @@ pub(super) fn sight(place: Option<&RobotPlace>, inputs: &EmoveInputs<'_>) -> Sig
     }
 }
 
-/// The next view of an object.
 pub(super) struct View {
     pub goal: Pose,
     pub parameters: TrajParaId,
-    /// Where the part is, if the last picture says so.
+    /// Pose of the part, if the last picture determines it.
     pub part: Option<Pose>,
 }
 
-/// Pictures of the camera.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct EmoveVision {
     /// Requests to vision: number and tick of the last one.
@@ -200,9 +195,8 @@ impl EmoveVision {
         self.located.map(|Located { object, site, .. }| LocatedObject { object, site })
     }
 
-    /// The pictures no longer count after a robot controller was switched off, because the arm has sunk, perhaps onto
-    /// the located object; nor after a person has moved the robot near the object, because the fingers may have pushed
-    /// it.
+    /// Discard the pictures after the robot controller was switched off, because the arm has sunk, perhaps onto the
+    /// located object. Discard them also after manual motion near the object, because the fingers may have pushed it.
     pub(super) fn sense(&mut self, memory: &CommonMemory) {
         let may_touch = |located: &Located| may_push(&located.pose, memory);
         let is_pushed = is_led(memory) && self.located.as_ref().is_some_and(may_touch);
@@ -230,7 +224,7 @@ impl EmoveVision {
         if self.tries.saturating_add(1) < MAX_TRIES { Tries::Left } else { Tries::Spent }
     }
 
-    /// The pose of a command, or where vision has found the object.
+    /// The pose of a command, or of the object found by vision.
     pub(super) fn base_frame(
         &self,
         command: &EmoveCommand,
@@ -253,8 +247,8 @@ impl EmoveVision {
         pose.to_frame().map_err(|_| Planning::BadPose)
     }
 
-    /// Would the open fingers at the object that the second picture shows stay within its array? A place that is in
-    /// none has no edge, and what the task data lack is named by the motion to the object.
+    /// The open fingers at the object of the second picture, relative to its array. A place outside any array has no
+    /// edge; the motion to the object reports missing task data.
     pub(super) fn reach(&self, command: &EmoveCommand, inputs: &EmoveInputs<'_>) -> EmoveReach {
         let data = inputs.data;
         let inside = || {
@@ -294,7 +288,7 @@ impl EmoveVision {
         }
     }
 
-    /// The next view: over the centroid, and for [`Action::Align`] turned with the part, which is located then.
+    /// The next view: over the centroid, and for [`Action::Align`] turned with the part, whose place is then known.
     pub(super) fn next_view(
         &mut self,
         action: Action,

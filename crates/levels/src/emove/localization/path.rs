@@ -1,6 +1,6 @@
-//! The path on which the robot is: where it belongs to, and whether the robot has left it.
+//! The path on which the robot is: its ends, and whether the robot has left it.
 //!
-//! The points of the path are not stored: they follow from its two ends and the task data.
+//! The points of the path are not stored: they follow from its ends and the task data.
 
 use geometry::{
     frame::{Frame, norm, rotation_by, rotation_vector},
@@ -21,16 +21,14 @@ use crate::emove::{
     robot_place::{commanded_pose, is_cut_off, near, present_frame},
 };
 
-/// The farthest that a commanded pose moves in a tick, in: 14 in/s (A 2.3), and a little more.
+/// Largest step of a commanded pose per tick, in: 14 in/s (A 2.3) plus a margin.
 const STEP_INCHES: f64 = 0.6;
-/// The farthest that it turns in a tick, radians: 1 rad/s, and a little more.
+/// Largest turn per tick, radians: 1 rad/s plus a margin.
 const STEP_RADIANS: f64 = 0.05;
-/// Ticks of motion that a link that fails can cut off: between Prim and the arm are the queue of T3I, the
-/// line, and the robot controller, which ramps down.
+/// Ticks of motion that a failing link can cut off: the queue of T3I, the line, and the ramp of the robot controller.
 const CUT_OFF_TICKS: f64 = 5.0;
 
-/// The frame of a straight segment that is nearest to a frame: its position, and as much of the segment's
-/// turn as of its length lies before it.
+/// The frame of a straight segment that is nearest to a frame. It turns in proportion to the distance from the start.
 #[must_use]
 pub fn foot(present: &Frame, start: &Frame, end: &Frame) -> Frame {
     let (along, offset) = (end.position - start.position, present.position - start.position);
@@ -40,7 +38,7 @@ pub fn foot(present: &Frame, start: &Frame, end: &Frame) -> Frame {
     Frame { position: start.position + along * share, rotation: rotation_by(&turn) * start.rotation }
 }
 
-/// How far a frame is from a straight segment, in.
+/// Distance of a frame from a straight segment, in.
 #[must_use]
 pub fn beside(present: &Frame, start: &Frame, end: &Frame) -> f64 {
     norm(&(present.position - foot(present, start, end).position))
@@ -70,20 +68,19 @@ pub(super) fn segment(way: &Way, data: &TaskData<'_>) -> Option<(Frame, Frame, [
     Some((start, end, [passed, parameters]))
 }
 
-/// Is a frame on the segment of the way that the robot is on? Points are passed within their break distance.
+/// True if a frame is on the robot's segment of the way. Points are passed within their break distance.
 fn is_in_corridor(present: &Frame, way: &Way, data: &TaskData<'_>) -> Option<bool> {
     let (start, end, passed) = segment(way, data)?;
     let brk_dst = |id| data.traj_para(id).map_or(0, |parameters| parameters.brk_dst.max(0));
     let cut = f64::from(passed.map(brk_dst).into_iter().max()?) / 100.0;
     let turn = start.distance(&end).radians;
     let (before, after) = (present.distance(&start).radians, present.distance(&end).radians);
-    // On the shorter turn from one to the other, with the same tolerance.
+    // Compare along the shorter turn between the two, with the same tolerance.
     let turned = before + after <= turn + LOST_RADIANS;
     Some(beside(present, &start, &end) <= cut + LOST_INCHES && turned)
 }
 
-/// Does Prim still move the robot for its order, or for the one before? A GO-THRU is done before it is at
-/// rest.
+/// True if Prim moves the robot for its present or previous order. A GO-THRU is done before the robot is at rest.
 fn moves(memory: &CommonMemory) -> bool {
     let (order, status) = (&memory.emove.prim, &memory.prim.status);
     let pending = status.echo != order.number;
@@ -94,8 +91,8 @@ fn moves(memory: &CommonMemory) -> bool {
     }
 }
 
-/// Does a commanded pose belong to the way? It is a tick of motion from the one before. It is farther along the
-/// segment after ticks in which E-move was held, and after a link that has restarted where the arm was.
+/// True if a commanded pose continues the way: at most one tick of motion from the previous one. It is farther along
+/// the segment after ticks in which E-move was held, and after a restart of the link where the arm was.
 fn follows(commanded: &Pose, way: &Way, data: &TaskData<'_>) -> bool {
     let (Ok(now), Ok(before)) = (commanded.to_frame(), way.rest.to_frame()) else { return false };
     let within = |ticks: f64| near(&now, &before, ticks * STEP_INCHES, ticks * STEP_RADIANS);
@@ -104,8 +101,8 @@ fn follows(commanded: &Pose, way: &Way, data: &TaskData<'_>) -> bool {
 }
 
 impl Localization {
-    /// Follow the commanded pose while the robot moves, and note what may have moved it meanwhile: the operator,
-    /// or a link that has failed or restarted.
+    /// Follow the commanded pose while the robot moves. Record other causes of motion: the operator, or a link that
+    /// has failed or restarted.
     pub(in crate::emove) fn sense_path(&mut self, memory: &CommonMemory, data: &TaskData<'_>) {
         let Some(way) = &mut self.way else { return };
         let prim = &memory.prim;
@@ -118,7 +115,7 @@ impl Localization {
         }
     }
 
-    /// The path that the robot is on, if it has not left it.
+    /// The path of the robot, unless it has left the path.
     pub(super) fn on_path(&self, inputs: &EmoveInputs<'_>) -> Option<Way> {
         let (way, present) = (self.way?, present_frame(inputs.memory)?);
         let rest = way.rest.to_frame().ok()?;
@@ -129,22 +126,22 @@ impl Localization {
         if at_rest || beside(&way) {
             return Some(way);
         }
-        // What the link has cut off may have begun before the point that Prim had passed.
+        // The cut-off motion may have begun before the point that Prim had passed.
         let before = way.next.checked_sub(1).filter(|_| way.cut_off && way.direction == Direction::Forward);
         before.map(|next| Way { next, ..way }).filter(beside)
     }
 
-    /// The robot is sent along a path; `None` if it returns to the last one.
+    /// The robot starts along a path; `None` if it returns to the last one.
     pub(in crate::emove) fn depart(&mut self, way: Option<Way>, rest: Pose) {
         if way.is_some() {
             (self.place, self.way) = (None, way);
         } else if let (Some(way), Course::Known) = (&mut self.way, self.track.course) {
-            // A robot that comes back from farther away has left its path, and is at no place: both stay as they are.
+            // A robot that returns from farther away has left its path, and is at no place: both stay as they are.
             way.rest = rest;
         }
     }
 
-    /// The camera goes straight from one view to the next.
+    /// The camera moves straight from one view to the next.
     pub(in crate::emove) fn leave_view(&mut self, to: RobotPlace, memory: &CommonMemory) {
         let Some(from) = self.place.take() else { return };
         self.way = Some(Way {
@@ -160,7 +157,6 @@ impl Localization {
         });
     }
 
-    /// The path is a straight one.
     pub(in crate::emove) fn is_straight(&self) -> bool {
         self.way.is_some_and(|way| way.straight)
     }

@@ -1,7 +1,7 @@
 //! Return of a robot to its place or its path (docs/design/recovery.md "Return").
 //!
 //! ```text
-//!   at its place     within 0.02 in: there; within 0.5 in: straight back, unless what it holds may be clamped
+//!   at its place     within 0.02 in: there; within 0.5 in: straight back, unless the held part may be clamped
 //!   off its path     to the nearest point of the segment
 //!   moved farther    back along the record of how the joystick box has moved it; or straight to a resting place;
 //!                    or out of a nest, against its approach
@@ -40,34 +40,35 @@ use crate::{
     places::is_in_mbd,
 };
 
-/// A vise or the pedestal that closes on a part shifts the hand that holds it by this much at most, in: the part has
-/// 0.06 in of play in the vise (docs/cell.md "Budget"), and the fingers yield …
+/// Largest shift of the hand by a closing vise or pedestal, in: the part has 0.06 in of play in the vise
+/// (docs/cell.md "Budget"), and the fingers yield …
 const CLAMP_INCHES: f64 = 0.1;
-/// … and turns it by this much, radians (half a degree).
+/// … and largest turn, radians (half a degree).
 const CLAMP_RADIANS: f64 = 0.5 * core::f64::consts::PI / 180.0;
-/// A robot goes straight to a resting place from within this, in: the short distance of IV.3.3 step 19 (ASSUMED) …
+/// A robot moves straight to a resting place within this distance, in: the short distance of IV.3.3 step 19 (ASSUMED)
+/// …
 const RESTING_INCHES: f64 = 12.0;
-/// … and this, radians (45 degrees).
+/// … and this turn, radians (45 degrees).
 const RESTING_RADIANS: f64 = 45.0 * core::f64::consts::PI / 180.0;
-/// It leaves a nest against the direction of the approach if it is this near to its line, in …
+/// A robot leaves a nest against the direction of the approach within this distance of its line, in …
 const NEST_INCHES: f64 = 2.0;
-/// … and turned by no more than this, radians (10 degrees).
+/// … and this turn, radians (10 degrees).
 const NEST_RADIANS: f64 = 10.0 * core::f64::consts::PI / 180.0;
 
-/// From where a motion begins, and how the robot comes there first.
+/// The start of a motion, and how the robot gets there.
 pub(in crate::emove) struct Origination {
     pub place: Option<RobotPlace>,
-    /// Or the path, of which a motion was interrupted.
+    /// The path of an interrupted motion, instead of a place.
     pub way: Option<Way>,
-    /// The present frame, seen from the place.
+    /// The present frame, relative to the place.
     pub offset: EmoveOffset,
     pub rejoin: Option<Rejoin>,
-    /// It comes to the end of the depart leg.
+    /// The robot returns to the end of the depart leg.
     pub is_out: bool,
 }
 
-/// Parameters of the last motion to a place: those of the stop line of its approach; where none is written, those of the
-/// last point of a trajectory that leads there, as for a motion that goes there (SPECNOTES).
+/// Parameters of the last motion to a place: those of its approach's stop line. Without an approach, they are those
+/// of the last point of a trajectory to the place, as for a motion to it (SPECNOTES).
 fn parameters_at(at: &RobotPlace, data: &TaskData<'_>) -> Option<TrajParaId> {
     let last = |path| Some(data.path(path).last()?.para);
     approach_to(at, data).and_then(last).or_else(|| {
@@ -76,22 +77,22 @@ fn parameters_at(at: &RobotPlace, data: &TaskData<'_>) -> Option<TrajParaId> {
     })
 }
 
-/// May a part that has been brought to a place, or is gripped there, be clamped? A tray does not clamp what lies in its
-/// sectors. No sensor reads the vises, nor the pedestal's hand to the hundredth of an inch.
+/// True if a part carried to a place, or grasped there, may be clamped. A tray does not clamp. No sensor reads the
+/// vises, nor the pedestal's hand to 0.01 in.
 fn clamps(at: &RobotPlace, data: &TaskData<'_>) -> bool {
     let is_tray = at.site.sector.is_some() || is_in_mbd(at.site.record, data);
     matches!(at.gone_to, GoneTo::Object(_) | GoneTo::Brought(_)) && !is_tray
 }
 
-/// A robot may go straight to a resting place: a location whose approach, as such, has no points.
+/// True for a resting place, to which a robot may move straight: a location whose plain approach has no points.
 fn is_resting(id: LocptId, locpt: &Locpt, data: &TaskData<'_>) -> bool {
     let site = Site::point(locpt.name, id);
     let approach = data.approach_location(&site.place()).map(|path| data.path(path));
     is_plain(&site, data) && approach.is_some_and(|path| path.len() == 1)
 }
 
-/// The resting place to which a robot may go straight: it is near, and no other location is nearer. So the robot comes
-/// no nearer to any other location on the way than it goes to this one.
+/// A resting place in reach of a straight move: near, and nearer than any other location. It stays the nearest location
+/// during the move.
 fn resting_place(present: &Frame, data: &TaskData<'_>) -> Option<RobotPlace> {
     let off = |locpt: &Locpt| norm(&(locpt.frame.position - present.position));
     let numbered = (1..).map(LocptId::new).zip(data.locpts);
@@ -104,8 +105,8 @@ fn resting_place(present: &Frame, data: &TaskData<'_>) -> Option<RobotPlace> {
     })
 }
 
-/// How a robot beside the approach of a nest leaves it: out against the direction of the approach until it is level with
-/// its outermost point, and to that point.
+/// The points by which a robot near the approach of a nest leaves it: against the direction of the approach until
+/// level with the outermost point, then to that point.
 fn out_of(nest: &RobotPlace, present: &Frame, data: &TaskData<'_>) -> Option<[Frame; 2]> {
     let seat = nest.pose.to_frame().ok()?;
     let first = data.path(approach_to(nest, data)?).first().filter(|point| point.target != Target::Stop)?;
@@ -122,24 +123,23 @@ fn out_of(nest: &RobotPlace, present: &Frame, data: &TaskData<'_>) -> Option<[Fr
     is_beside.then_some([level, outermost])
 }
 
-/// The point of its path to which a robot at a frame returns that a person has moved: the nearest one of its segment,
-/// with the parameters of that.
+/// The nearest point of the robot's segment, with its parameters, for the return after manual motion.
 fn on_segment(present: &Frame, way: &Way, data: &TaskData<'_>) -> Option<(Frame, TrajParaId)> {
     let (start, end, [_, parameters]) = segment(way, data)?;
     Some((foot(present, &start, &end), parameters))
 }
 
-/// How a robot at a frame comes back to its path, if it is beside it.
+/// The return of a robot to its path, if it is off it.
 fn to_way(present: &Frame, way: &Way, data: &TaskData<'_>) -> Option<Rejoin> {
     let (foot, parameters) = on_segment(present, way, data)?;
     let beside = !near(present, &foot, THERE_INCHES, THERE_RADIANS);
     beside.then(|| Rejoin::to(Pose::from_frame(&foot), parameters))
 }
 
-/// How a robot at its place goes back to it before something else is done.
+/// The return of a robot to its place before another action.
 ///
 /// # Errors
-/// Why it must not.
+/// The reason why the return is refused.
 pub(in crate::emove) fn settle_at(
     at: &RobotPlace,
     offset: EmoveOffset,
@@ -156,8 +156,8 @@ pub(in crate::emove) fn settle_at(
     }
 }
 
-/// The present frame, seen from the place of the robot. A closing vise shifts the hand, and leaves the commanded
-/// pose where it is; the joystick box moves both.
+/// The present frame, relative to the place of the robot. A closing vise shifts the hand but not the commanded pose;
+/// the joystick box moves both.
 fn offset(
     at: &RobotPlace,
     present: Option<&Frame>,
@@ -186,8 +186,8 @@ fn offset(
     }
 }
 
-/// How far the robot is from a place. A vise or the pedestal that has closed on the part in the fingers may have
-/// shifted the hand: the robot is there then, as it is for the next command.
+/// Offset of the robot from a place. A vise or the pedestal that has closed on the held part may have shifted the
+/// hand; the robot is still at the place.
 pub(in crate::emove) fn offset_of_place(
     at: &RobotPlace,
     present: Option<&Frame>,
@@ -203,10 +203,10 @@ pub(in crate::emove) fn offset_of_place(
 }
 
 impl Localization {
-    /// A command that does its work where the robot stands: how the robot comes back to its place before.
+    /// The return to the place before a command that works there.
     ///
     /// # Errors
-    /// Why it must not.
+    /// The reason why the return is refused.
     pub(in crate::emove) fn stand_still(
         &self,
         holding: Holding,
@@ -218,10 +218,10 @@ impl Localization {
         Ok(Flight { rejoin, ..Flight::default() })
     }
 
-    /// From where a motion begins.
+    /// The start of a motion.
     ///
     /// # Errors
-    /// Why the robot cannot come there.
+    /// The reason why the robot cannot reach it.
     pub(in crate::emove) fn origination(
         &self,
         holding: Holding,

@@ -7,22 +7,22 @@ use taskdata::files::{LocptId, TaskData};
 
 use crate::{emove::motion::relative::Relative, places::named};
 
-/// Location points that are looked at in a tick for the nearest ones.
+/// Location points searched per tick.
 const NEAREST_PER_TICK: u32 = 16;
 
-/// The known places around a robot that is at none: the location points are looked through again and again.
+/// The nearest known places of a robot at an unknown place. The search repeats without end.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct Surroundings {
-    /// Location points that have been looked at in this round.
+    /// Location points searched in this round.
     looked: u32,
-    /// The nearest of them, the nearest first.
+    /// The nearest of this round, sorted by distance.
     found: [Option<NearPlace>; 2],
-    /// Those of the last complete round.
+    /// The nearest of the last complete round.
     pub nearest: [Option<NearPlace>; 2],
 }
 
 impl Surroundings {
-    /// Look at some more location points.
+    /// Search more location points.
     pub(super) fn look(&mut self, present: &Frame, data: &TaskData<'_>) {
         for _ in 0..NEAREST_PER_TICK {
             let next = LocptId::new(self.looked.saturating_add(1));
@@ -37,7 +37,7 @@ impl Surroundings {
         }
     }
 
-    /// Keep a place if it is one of the two nearest.
+    /// Insert a place if it is one of the two nearest.
     fn insert(&mut self, place: NearPlace) {
         let nearer = |than: Option<NearPlace>| than.is_none_or(|than| place.inches < than.inches);
         let [first, second] = self.found;
@@ -49,8 +49,8 @@ impl Surroundings {
     }
 }
 
-/// Can a robot that stands at a location point be there as such? Not in a holster, at the tool drum, or at
-/// the pedestal: there it depends on gripper, tool and part how it may leave.
+/// True if a robot can be at a location point without further conditions. In a holster, at the tool drum and at the
+/// pedestal, its departure depends on gripper, tool and part.
 pub(super) fn is_plain(site: &Site, data: &TaskData<'_>) -> bool {
     let has = |relative: Relative| relative.record(site, data).is_some();
     !has(Relative::QcaBack) && !has(Relative::InsIn) && site.location.as_str() != named::PEDESTAL

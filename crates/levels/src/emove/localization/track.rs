@@ -1,8 +1,8 @@
 //! The path on which the joystick box moves the robot (docs/design/recovery.md "Return").
 //!
 //! ```text
-//!   known place . - - point ---- point            the robot is at the end; what it has gone out and
-//!                       |                         back in between is cut off
+//!   known place . - - point ---- point            the robot is at the end; a detour that it has
+//!                       |                         retraced is removed from the record
 //!                     point ------------ end
 //! ```
 //!
@@ -28,31 +28,30 @@ use crate::emove::{
     },
 };
 
-/// The robot moves no farther from one record to the next, in: the joystick box moves it 0.2 in in a tick, and a
-/// process may miss one or two.
+/// Largest distance between two records, in: the joystick box moves the robot 0.2 in per tick, and a process may miss
+/// one or two ticks.
 const STEP_INCHES: f64 = 0.6;
-/// … and turns no farther, radians.
+/// … and largest turn, radians.
 const STEP_RADIANS: f64 = 0.05;
-/// A pose is recorded when it is this far from the last one, in …
+/// A pose is recorded at this distance from the last one, in …
 const SPACING_INCHES: f64 = 0.1;
-/// … or turned so far, radians (1 degree).
+/// … or this turn, radians (1 degree).
 const SPACING_RADIANS: f64 = core::f64::consts::PI / 180.0;
-/// The line of a segment is that to the pose which is this far from its beginning, in: a pose is rounded to 0.01 in.
+/// The pose at this distance from the start of a segment sets its direction, in: poses are rounded to 0.01 in.
 const AIM_INCHES: f64 = 0.5;
-/// The segment is extended as long as the robot stays this near to the line, in; less than the spacing, so that a corner
-/// is one …
+/// A segment is extended while the robot stays this near to its line, in; less than the spacing, so that a corner
+/// starts a new segment …
 const ASIDE_INCHES: f64 = 0.05;
-/// … and turns no farther on it, radians (2 degrees).
+/// … and while it turns no more than this, radians (2 degrees).
 const TURN_RADIANS: f64 = 2.0 * core::f64::consts::PI / 180.0;
-/// The robot is on a segment that was recorded before if it is [`ASIDE_INCHES`] from it at most, and turned off it by no
-/// more than this, radians (half a degree).
+/// The robot is on a recorded segment within [`ASIDE_INCHES`] and this turn, radians (half a degree).
 const AGAIN_RADIANS: f64 = 0.5 * core::f64::consts::PI / 180.0;
 
 fn vector([x, y, z]: [i32; 3]) -> Vector {
     Vector::new(inches(x), inches(y), inches(z))
 }
 
-/// How far two poses are apart, from their points: exact enough for small turns.
+/// Distance of two poses, computed from their points: exact enough for small turns.
 fn apart(a: &Pose, b: &Pose) -> Distance {
     let [tool, wrist, finger] =
         [(a.tool, b.tool), (a.wrist, b.wrist), (a.finger, b.finger)].map(|(a, b)| vector(b) - vector(a));
@@ -60,7 +59,7 @@ fn apart(a: &Pose, b: &Pose) -> Distance {
     Distance { inches: norm(&tool), radians: turned / POINT_DISTANCE }
 }
 
-/// Where a pose is on a line from a point on: how far along it, and how far beside it, in.
+/// Position of a pose relative to a line from a point, in: along the line, and distance from it.
 fn on_line(pose: &Pose, from: &Pose, heading: &Vector) -> (f64, f64) {
     let offset = vector(pose.tool) - vector(from.tool);
     let along = offset.dot(heading);
@@ -74,17 +73,15 @@ fn heading(from: &Pose, to: &Pose) -> Vector {
     if length > 0.0 { way / length } else { Vector::zeros() }
 }
 
-/// The points that count, the first one first.
+/// The recorded points, the oldest first.
 pub(super) fn points(track: &Track) -> impl DoubleEndedIterator<Item = &Pose> + ExactSizeIterator {
     track.points.get(..usize::from(track.count)).unwrap_or_default().iter()
 }
 
-/// The last point.
 fn last(track: &Track) -> Option<&Pose> {
     points(track).next_back()
 }
 
-/// Is a pose on a segment?
 fn is_on(pose: &Pose, from: &Pose, to: &Pose) -> bool {
     let (along, aside) = on_line(pose, from, &heading(from, to));
     if aside > ASIDE_INCHES || along < -ASIDE_INCHES {
@@ -95,14 +92,14 @@ fn is_on(pose: &Pose, from: &Pose, to: &Pose) -> bool {
     along <= length.inches + ASIDE_INCHES && turned <= length.radians + AGAIN_RADIANS
 }
 
-/// The recorded segment that a pose is on, by the number of points up to its beginning.
+/// Number of points up to the start of the recorded segment that contains a pose.
 fn found(track: &Track, pose: &Pose) -> Option<u8> {
     let ends = points(track).skip(1).chain([&track.end]);
     let on = points(track).zip(ends).position(|(from, to)| is_on(pose, from, to));
     u8::try_from(on?.saturating_add(1)).ok()
 }
 
-/// Cut the record off at a pose on the segment that begins with its `count`th point.
+/// Cut the record off at a pose on the segment that starts with its `count`th point.
 fn cut(track: &mut Track, count: u8, pose: &Pose) {
     let next = track.points.get(usize::from(count)).filter(|_| count < track.count).copied();
     let to = next.unwrap_or(track.end);
@@ -113,7 +110,6 @@ fn cut(track: &mut Track, count: u8, pose: &Pose) {
     track.end = *pose;
 }
 
-/// Begin a record with a pose.
 fn begin(track: &mut Track, pose: &Pose) {
     let [first, ..] = &mut track.points;
     *first = track.end;
@@ -161,7 +157,7 @@ const fn is_motion(order: PrimVerb) -> bool {
 }
 
 impl Localization {
-    /// Once a tick: record how the joystick box moves the robot away from its place or way.
+    /// In each tick: record how the joystick box moves the robot away from its place or way.
     pub(in crate::emove) fn sense_track(&mut self, place: PlaceKnowledge, memory: &CommonMemory) {
         let Some(present) = memory.prim.status.sensor_pose.and_then(|pose| memory.changing_pose(pose)) else {
             return;

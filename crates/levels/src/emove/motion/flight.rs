@@ -1,5 +1,5 @@
-//! How a motion command is carried out from where the robot is: from its place, or
-//! on from an interrupted path (docs/design/recovery.md "On the way").
+//! The execution of a motion command from the robot's place, or from an interrupted path (docs/design/recovery.md "On
+//! the way").
 //!
 //! ```text
 //!   from ---depart---> end of depart ---trajectory---> . ---approach---> to
@@ -7,10 +7,10 @@
 //!                           `---trajectory---> . ---approach---> another goal
 //! ```
 //!
-//! The robot moves on to the same goal, or back along the path to the end of the depart leg and from there to another
-//! goal. If it was stopped inside the depart leg, it first completes that leg. If a person has moved it off the path
-//! with the joystick, it first returns to the path and stops there, because the goal may be a nest that is closed at
-//! its sides. The points of the path are not stored: they follow from its two ends and the task data.
+//! A motion to the same goal continues. For another goal the robot moves back along the path to the end of the depart
+//! leg, and from there to the goal. A robot stopped in the depart leg first completes that leg. If the operator has
+//! moved the robot off the path, it first returns to the path and stops there, because the goal may be a nest with
+//! closed sides. The points of the path are not stored: they follow from its ends and the task data.
 
 use geometry::pose::Pose;
 use interfaces::{
@@ -30,46 +30,44 @@ use crate::emove::{
     tables::resume::{EmoveRobot, GoalOf, LegNow, MotionBeginning, MotionStart, WayBack, resume},
 };
 
-/// The motion of a command.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct Flight {
     pub route: Option<Route>,
-    /// The part of an interrupted way that is flown back before.
+    /// The part of an interrupted way that is retraced first.
     pub back: Option<Back>,
-    /// The points to which the robot goes first, back to its place or path.
+    /// The points of the return to the place or path.
     pub rejoin: Option<Rejoin>,
 }
 
-/// How far a motion has come. An order that is given again after progress is no repetition.
+/// Progress of a motion. The same order after progress is not a repetition.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub struct Progress {
     /// Points of the route that were sent.
     pub on: u16,
-    /// The point before which the robot is on its way back.
+    /// The next point, on the way back.
     pub back: u16,
-    /// It has been sent to the end of its way back.
+    /// The robot has been sent to the end of its way back.
     pub is_back: bool,
-    /// Points that lie ahead on the return to its place or path.
+    /// Points left on the return to the place or path.
     pub rejoin: u8,
 }
 
-/// The part of an interrupted way that is flown back.
+/// The retraced part of an interrupted way.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct Back {
     pub route: Route,
-    /// The point before which the robot is, in the direction of the goal: it goes to the one before that.
+    /// The point, in the direction of the goal, that follows the robot: the robot moves to the point before it.
     pub next: u16,
     /// The end of the depart leg has been commanded.
     pub complete: bool,
 }
 
-/// The points to which the robot goes before its route begins: first back along the record of how the joystick box has
-/// moved it.
+/// The points to which the robot moves before its route begins: first back along the record of manual motion.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct Rejoin {
-    /// Points of the record that lie ahead; the last of them is the next one.
+    /// Points of the record that are left; the last one is next.
     pub track: u8,
-    /// The points after them.
+    /// The points after the record.
     pub points: [Option<Pose>; 2],
     pub parameters: TrajParaId,
 }
@@ -85,7 +83,7 @@ impl Back {
         Some(EmoveLeg { at: LegGoal::Computed(frame), parameters: slower(from, to, data) })
     }
 
-    /// Note that it has been commanded.
+    /// Record that the leg has been commanded.
     fn advance(&mut self, data: &TaskData<'_>) {
         if self.next <= self.route.depart_points(data) {
             self.complete = true;
@@ -106,7 +104,7 @@ impl Rejoin {
 
     fn next(&mut self, record: &Track) -> Option<Pose> {
         if record.course != Course::Tracked {
-            // The robot has come back into the neighbourhood of its place or path, which is gone to straight.
+            // The robot is back near its place or path, and moves straight to it.
             self.track = 0;
         }
         if let Some(before) = self.track.checked_sub(1) {
@@ -117,7 +115,7 @@ impl Rejoin {
     }
 }
 
-/// The path on which a robot heads for a point of a route.
+/// The path of a robot that moves to a point of a route.
 fn way(route: &Route, next: u16, rest: Pose, data: &TaskData<'_>) -> Way {
     Way {
         from: route.from,
@@ -132,16 +130,15 @@ fn way(route: &Route, next: u16, rest: Pose, data: &TaskData<'_>) -> Way {
     }
 }
 
-/// The whole way from a place whose depart leg is complete.
+/// The complete way from a place whose depart leg is complete.
 ///
 /// # Errors
-/// Why there is none.
+/// The reason why no way exists.
 fn from_outside(from: &RobotPlace, to: &RobotPlace, data: &TaskData<'_>) -> Result<Route, Planning> {
     let route = Route::between(from, to, data)?;
     Ok(Route { commanded: route.depart_points(data), ..route })
 }
 
-/// The state variables of RESUME for a goal.
 fn start(goal: &RobotPlace, begin: &Origination, data: &TaskData<'_>) -> MotionStart {
     let robot = match (&begin.place, &begin.way) {
         (Some(_), _) => EmoveRobot::AtPlace,
@@ -170,10 +167,10 @@ fn start(goal: &RobotPlace, begin: &Origination, data: &TaskData<'_>) -> MotionS
 }
 
 impl Flight {
-    /// Plan the motion to a goal, which as a place is `to`, from where the robot begins.
+    /// Plan the motion from the robot's start to a goal, whose place is `to`.
     ///
     /// # Errors
-    /// Why there is none.
+    /// The reason why no motion exists.
     pub(in crate::emove) fn plan(
         goal: &EmoveGoal,
         to: &RobotPlace,
@@ -213,7 +210,7 @@ impl Flight {
         }
     }
 
-    /// What lies ahead: first the way itself, if the robot is beside it, then the way back, then the route.
+    /// The next point: on the return to the way, then on the way back, then on the route.
     pub(in crate::emove) fn ahead(&self, data: &TaskData<'_>) -> Ahead {
         match (&self.back, &self.route) {
             _ if self.rejoin.is_some() => Ahead::Rejoin,
@@ -229,14 +226,15 @@ impl Flight {
         }
     }
 
-    /// True while the fingers must not move yet: beside the way, on the way back, and as long as the next point is a
-    /// depart point (docs/design/motion.md "Finger opening").
+    /// True while the fingers must not move: during a return, on the way back, and while the next point is a depart
+    /// point (docs/design/motion.md "Finger opening").
     pub(in crate::emove) fn departing(&self, data: &TaskData<'_>) -> bool {
         let back = self.back.as_ref().is_some_and(|back| !back.complete);
         self.rejoin.is_some() || back || self.route.as_ref().is_some_and(|route| route.departing(data))
     }
 
-    /// The next leg, which is noted as commanded, and the path on which the robot is then ([`super::Motion::send_leg`]).
+    /// The next leg, which is recorded as commanded, and the resulting path of the robot
+    /// ([`super::EmoveMotion::send_leg`]).
     pub(super) fn next_leg(
         &mut self,
         track: &Track,

@@ -1,6 +1,6 @@
 //! The motion of the current command: its route, and the commands to Prim.
 //!
-//! * [`flight`]: how the motion is carried out from where the robot is;
+//! * [`flight`]: execution of the motion from the robot's position;
 //! * [`route`]: depart, trajectory, approach and stop as one list of points;
 //! * [`relative`]: the short moves at holsters and tool drum.
 
@@ -28,11 +28,11 @@ use super::{
     tables::{EmoveContact, Initialization, Pause},
 };
 
-/// Ticks for which a GO-UNTIL may stay not-detected (1 s): the robot stands, and what has not come by then
-/// does not come.
+/// Ticks in which a GO-UNTIL may report not-detected (1 s): the robot is at rest, and a later contact is not
+/// expected.
 const PATIENCE: u32 = 25;
 
-/// Which changing pose stands where in the outputs.
+/// The changing pose of an output.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Slot {
     Departure,
@@ -41,27 +41,26 @@ pub(super) enum Slot {
     Located,
 }
 
-/// The motion of the current command.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct EmoveMotion {
     commander: Commander,
-    /// The motion, if the command is a motion command.
+    /// The motion of a motion command.
     flight: Flight,
-    /// Ticks for which Prim has reported not-detected.
+    /// Ticks in which Prim has reported not-detected.
     undetected: u32,
-    /// Last record number given to a changing pose.
+    /// Last record number of a changing pose.
     last_pose: u32,
-    /// The last `.R` that has been done.
+    /// The last `.R` that was executed.
     robot_init: u32,
 }
 
 impl EmoveMotion {
-    /// In the first tick: only an `.R` that is entered from now on counts.
+    /// In the first tick: ignore an `.R` entered before.
     pub(super) const fn start(&mut self, robot_init: u32) {
         self.robot_init = robot_init;
     }
 
-    /// Follow the echo until the first command, and count how long Prim has not detected anything.
+    /// Follow the echo until the first command, and count the ticks without detection.
     pub(super) fn sense(&mut self, inputs: &EmoveInputs<'_>) {
         let (order, prim) = (&inputs.memory.emove.prim, &inputs.memory.prim.status);
         self.commander.start_from(inputs.tick, order.number, prim.echo);
@@ -74,12 +73,12 @@ impl EmoveMotion {
         (self.flight, self.undetected) = (flight, 0);
     }
 
-    /// What Prim makes of its last command.
+    /// Status of Prim's last command.
     pub(super) fn status(&self, inputs: &EmoveInputs<'_>) -> Lower {
         self.commander.status_of(inputs.tick, &inputs.memory.prim)
     }
 
-    /// The same for the robot: one that has passed a through point flies on to it.
+    /// The same for the robot: after a through point it moves on to the next one.
     pub(super) fn robot(&self, inputs: &EmoveInputs<'_>) -> Lower {
         match self.status(inputs) {
             Lower::Done if inputs.memory.emove.prim.command == PrimVerb::GoThru => Lower::Executing,
@@ -95,7 +94,7 @@ impl EmoveMotion {
         }
     }
 
-    /// `.R`: what is to be done for it, or was. It waits for a pause that stands.
+    /// Progress of `.R`, which waits until the pause is done.
     pub(super) fn initialization(&self, pause: Pause, inputs: &EmoveInputs<'_>) -> Initialization {
         let is_over = || matches!(self.status(inputs), Lower::Done | Lower::Error);
         if pause != Pause::Standing {
@@ -113,7 +112,8 @@ impl EmoveMotion {
         &self.flight
     }
 
-    /// Opening of the fingers at the goal, 0.01 in, and whether it has been commanded; `None` if it does not matter.
+    /// Opening of the fingers at the goal, 0.01 in, and whether it has been commanded; `None` if no opening is
+    /// required.
     pub(super) fn opening(&self) -> Option<(i32, bool)> {
         let route = self.flight.route.as_ref()?;
         Some((route.opening?, route.opening_sent))
@@ -130,12 +130,11 @@ impl EmoveMotion {
         &mut self.commander
     }
 
-    /// The route with the record numbers of its ends, and the last record number given. Searches renumber them.
+    /// The route with the record numbers of its ends, and the last record number. Searches renumber them.
     pub const fn pose_numbers(&mut self) -> (Option<&mut route::Route>, &mut u32) {
         (self.flight.route.as_mut(), &mut self.last_pose)
     }
 
-    /// Forget the motion of a command that has ended.
     pub fn forget_flight(&mut self) {
         self.flight = Flight::default();
     }
@@ -162,7 +161,7 @@ impl EmoveMotion {
         self.last_pose
     }
 
-    /// Give the ends of the route of a new command record numbers.
+    /// Number the ends of the route of a new command.
     pub(super) fn publish_route(&mut self, outputs: &mut EmoveOutputs) {
         if let Some(mut route) = self.flight.route {
             route.departure = self.publish(Slot::Departure, route.from.pose, outputs);
@@ -171,7 +170,7 @@ impl EmoveMotion {
         }
     }
 
-    /// A command to Prim that names no goal.
+    /// Send a command without a goal to Prim.
     pub(super) fn send(&mut self, verb: PrimVerb, inputs: &EmoveInputs<'_>, outputs: &mut EmoveOutputs) {
         outputs.prim = PrimCommand {
             number: self.commander.send(inputs.tick),
@@ -189,9 +188,9 @@ impl EmoveMotion {
         self.send(PrimVerb::RobotInit, inputs, outputs);
     }
 
-    /// GO-THRU or GOTO-PT with the next point: back along `track`, or of the route. Returns the path on which the robot is
-    /// then; `None` on its return to one. `is_straight` is that of the path which is flown back, `rest` the pose
-    /// commanded last.
+    /// GO-THRU or GOTO-PT with the next point, of the route or back along `track`. Returns the resulting path of the
+    /// robot; `None` on its return to a path. `is_straight` belongs to the retraced path; `rest` is the last
+    /// commanded pose.
     pub(super) fn send_leg(
         &mut self,
         verb: PrimVerb,
@@ -214,7 +213,7 @@ impl EmoveMotion {
         path
     }
 
-    /// GOTO-PT with a goal that no route leads to.
+    /// GOTO-PT with a goal outside the route.
     pub(super) fn send_goal(
         &mut self,
         goal: Pose,

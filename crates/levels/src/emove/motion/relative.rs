@@ -1,8 +1,9 @@
 //! Relative moves: the short straight motions at holsters and tool drum (V.2.1 QC-DETACH … REMOVE-TOOL).
 //!
-//! The manual keeps them in code; here a command names each, and task data give its movetable, parameters and sensor
-//! for the name and the location (file REL-MOVES). Some start from the pose of the command's location, independent of
-//! the robot's position; others start from the robot's position, because a sensor ended the guarded move before.
+//! The manual specifies them in the processes. Here a command names each, and task data give its movetable,
+//! parameters and sensor for the name and the location (file REL-MOVES). Some start from the pose of the command's
+//! location, independent of the robot's position. Others start from the robot's position, because a sensor ended the
+//! guarded move before.
 
 use interfaces::{
     CommonMemory,
@@ -37,13 +38,13 @@ pub enum Relative {
     /// QC-ATTACH: completely out of the holster.
     QcaUp,
     Withdraw,
-    /// INSERT-TOOL: to the last point at which nothing can be touched.
+    /// INSERT-TOOL: to the last point without possible contact.
     InsFar,
-    /// INSERT-TOOL: to the fingers of the drum, unless something is in the way.
+    /// INSERT-TOOL: to the fingers of the drum, unless an obstacle is met.
     InsNear,
     /// INSERT-TOOL: in, unless the insertion force is too great.
     InsIn,
-    /// RELEASE-TOOL: to the right until the strike plate gives a moment.
+    /// RELEASE-TOOL: to the right until the strike plate exerts a moment.
     RelSlide,
     /// RELEASE-TOOL: the rest of the slide.
     #[text = "REL-SLIDE"]
@@ -55,7 +56,7 @@ pub enum Relative {
     RelBackOn,
     /// ACQUIRE-TOOL: towards the machine tool.
     AcqNear,
-    /// ACQUIRE-TOOL: on until the strike plate is touched.
+    /// ACQUIRE-TOOL: on until the gripper touches the strike plate.
     AcqStrike,
     /// ACQUIRE-TOOL: to the left until the fingers are around the tool.
     AcqSlide,
@@ -69,16 +70,16 @@ pub enum Relative {
     RemOutOn,
 }
 
-/// From where a relative move leads.
+/// The start of a relative move.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Reference {
     /// From the pose of the command's location.
     Location,
     /// From the last commanded position of the robot.
     Stand,
-    /// From where a gripper is at its seat in the holster.
+    /// From the seat of the gripper in the holster.
     Seat,
-    /// From where an interrupted move at the drum began.
+    /// From the start of an interrupted move at the drum.
     Start,
 }
 
@@ -109,7 +110,7 @@ impl Relative {
         }
     }
 
-    /// Does a sensor guard the move?
+    /// True if a sensor guards the move.
     #[must_use]
     pub const fn is_guarded(self) -> bool {
         matches!(
@@ -128,23 +129,22 @@ impl Relative {
         )
     }
 
-    /// The move's record for a location.
     #[must_use]
     pub fn record<'d>(self, site: &Site, data: &TaskData<'d>) -> Option<&'d RelativeMove> {
         data.relative_move(&Name10::clipped(self.text()), &site.place())
     }
 }
 
-/// What the relative moves of a command lack, the first of them that lacks anything.
+/// The first record that the relative moves of a command lack.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum RelativeMoves {
-    /// Nothing; or the command makes none.
+    /// No record is missing, or the command has no relative move.
     Found,
-    /// A record for the place of the command.
+    /// A record for the place of the command is missing.
     Missing,
-    /// The sensor that is to guard the move.
+    /// The sensor that guards the move is missing.
     Unguarded,
-    /// The pose of the location from which the move leads.
+    /// The pose of the location at which the move starts is missing.
     NoPose,
 }
 
@@ -176,7 +176,7 @@ pub const fn moves_of(verb: EmoveVerb) -> &'static [Relative] {
     }
 }
 
-/// Look up all that the relative moves of a command need.
+/// Look up the records of a command's relative moves.
 #[must_use]
 pub fn look_up(command: &EmoveCommand, memory: &CommonMemory, data: &TaskData<'_>) -> RelativeMoves {
     let located = command.pose.is_some_and(|pose| match pose {
@@ -201,11 +201,10 @@ mod tests {
 
     use super::{Reference, Relative};
 
-    /// The checker of task data has its own list: it must ask for what E-move looks for, and no more. A move
-    /// that E-move makes from where the robot stands may begin anywhere for the checker, one from the
-    /// location only there.
+    /// The checker of task data has its own list, which must equal that of E-move. A move from the robot's position
+    /// may begin anywhere for the checker, a move from the location only there.
     #[test]
-    fn the_checker_of_task_data_knows_the_same_moves() {
+    fn task_data_checker_lists_the_same_relative_moves() {
         let mut ours: Vec<&str> = Relative::ALL.iter().map(|relative| relative.text()).collect();
         ours.sort_unstable();
         ours.dedup();

@@ -14,18 +14,18 @@ use taskdata::files::{MovtabId, PathId, PathPoint, Target, TaskData, TrajParaId}
 
 use crate::emove::robot_place::{gone_to, robot_at};
 
-/// Opening, 0.01 in, when pictures are taken: the camera looks between the open fingers (V.2.1 MOV-TO-VU).
-/// The parts gripper opens as wide; the others open to their stop.
+/// Opening for pictures, 0.01 in: the camera looks between the open fingers (V.2.1 MOV-TO-VU). The parts gripper
+/// opens this wide; the others open to their stop.
 pub const FULL_OPENING: i32 = 500;
 
-/// What planning the way of a motion command came to.
+/// Result of planning a motion command.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Planning {
-    /// There is a way, or the command needs none.
+    /// A way exists, or the command needs none.
     Planned,
-    /// No record holds the pose of the command.
+    /// No record contains the pose of the command.
     NoPose,
-    /// The pose of the command is no frame.
+    /// The pose of the command is not a valid frame.
     BadPose,
     /// Object and grip have no record of END-EFF-PARA.
     NoSizes,
@@ -33,28 +33,28 @@ pub enum Planning {
     NoGrip,
     /// The object has no record of VISION-PARA.
     NoView,
-    /// Nothing is written on the approach of object and grip at the location.
+    /// The task data have no approach for object and grip at the location.
     NoApproach,
-    /// It is not known where the robot is.
+    /// The robot's place is unknown.
     NoStart,
-    /// The robot has been moved off its place, and what it holds may be clamped there.
+    /// The robot has been moved off its place, and the held part may be clamped there.
     OffPlace,
-    /// The robot stopped on a way on which it can only go on, and the goal is another one.
+    /// The robot stopped on a way that it can only continue, and the goal is another one.
     ForwardOnly,
     /// The fingers are around a tool in the drum.
     InDrum,
-    /// No trajectory leads from where the robot is to the location of the goal.
+    /// No trajectory leads from the robot's place to the location of the goal.
     NoTrajectory,
-    /// Nothing says how fast the goal is approached.
+    /// The task data do not specify the speed of the approach.
     NoSpeed,
 }
 
-/// What lies ahead on the route.
+/// The next point of the route.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Ahead {
-    /// A point on the way back to where the robot was before a person moved it.
+    /// A point on the way back to the position before manual motion.
     Rejoin,
-    /// Nothing: the robot is at the goal, or has been sent there.
+    /// None: the robot is at the goal, or has been sent there.
     Nothing,
     Through,
     Stop,
@@ -62,31 +62,31 @@ pub enum Ahead {
     Missing,
 }
 
-/// A planned way and how far it has been commanded.
+/// A planned way and its progress.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct Route {
     pub from: RobotPlace,
     pub to: RobotPlace,
-    /// Depart points, relative to the pose departed from; from where an object was brought to, or where none are
-    /// written, the approach points, which are passed in reverse.
+    /// Depart points, relative to the pose of departure. For a placed object, or without depart points, the approach
+    /// points in reverse.
     pub depart: PathId,
     pub between: PathId,
     /// Approach points, relative to the goal, and the stop.
     pub approach: PathId,
     pub stop: TrajParaId,
     pub commanded: u16,
-    /// The goal has been commanded, or need not be.
+    /// The goal has been commanded, or is not needed.
     pub complete: bool,
-    /// Opening of the fingers at the goal, 0.01 in; `None` if it does not matter.
+    /// Opening of the fingers at the goal, 0.01 in; `None` if no opening is required.
     pub opening: Option<i32>,
     pub opening_sent: bool,
-    /// Record number of the pose departed from, once it is published.
+    /// Record number of the pose of departure, once it is published.
     pub departure: u32,
     /// Record number of the goal, once it is published.
     pub goal: u32,
 }
 
-/// A point of a route that Prim is to be sent to.
+/// The next point for Prim.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EmoveLeg {
     pub at: LegGoal,
@@ -96,32 +96,32 @@ pub struct EmoveLeg {
 /// The end of a leg, as a command to Prim.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum LegGoal {
-    /// A record with a movetable applied.
+    /// A record, and a movetable applied to it.
     Record {
         /// Record of POSE, or changing record.
         pose: u32,
-        /// Record of MOVTAB, if there is one.
+        /// Record of MOVTAB, if the point has one.
         movetable: MovtabId,
     },
-    /// A frame that no record holds: a movetable on the trajectory point before it.
+    /// A frame without a record: a movetable applied to the previous trajectory point.
     Computed(Frame),
 }
 
-/// The goal of a command, looked up.
+/// The goal of a command, from the task data.
 #[derive(Clone, Copy, Debug)]
 pub struct EmoveGoal {
-    /// Where the tool is to be.
+    /// Frame of the tool at the goal.
     pub frame: Frame,
-    /// Opening of the fingers, 0.01 in; `None` if it does not matter.
+    /// Opening of the fingers, 0.01 in; `None` if no opening is required.
     pub opening: Option<i32>,
     pub gone_to: GoneTo,
 }
 
 impl EmoveGoal {
-    /// The goal of a motion command. `base` is the pose of the command, or where vision found the object.
+    /// The goal of a motion command. `base` is the pose of the command, or of the object found by vision.
     ///
     /// # Errors
-    /// What is missing.
+    /// The record that is missing.
     pub fn new(command: &EmoveCommand, base: &Frame, data: &TaskData<'_>) -> Result<Self, Planning> {
         let (place, gone_to) = (command.site.place(), gone_to(command));
         let object = command.object.as_ref();
@@ -147,14 +147,13 @@ impl EmoveGoal {
         Ok(Self { frame, opening, gone_to })
     }
 
-    /// The goal as a place of the robot.
     #[must_use]
     pub fn place(&self, command: &EmoveCommand) -> RobotPlace {
         robot_at(command, self.gone_to, Pose::from_frame(&self.frame))
     }
 }
 
-/// The approach to a place, if one is written.
+/// The approach to a place, if the task data have one.
 #[must_use]
 pub fn approach_to(at: &RobotPlace, data: &TaskData<'_>) -> Option<PathId> {
     let there = at.site.place();
@@ -167,8 +166,8 @@ pub fn approach_to(at: &RobotPlace, data: &TaskData<'_>) -> Option<PathId> {
     }
 }
 
-/// Does the robot leave a place by the approach path, which is passed in reverse? It does with an object that it has
-/// brought, and where no depart path is written.
+/// True if the robot leaves a place by its approach path in reverse: with an object that it brought, and where the
+/// task data have no depart path.
 fn takes_out(from: &RobotPlace, data: &TaskData<'_>) -> bool {
     match from.gone_to {
         GoneTo::Brought(_) => true,
@@ -179,36 +178,36 @@ fn takes_out(from: &RobotPlace, data: &TaskData<'_>) -> bool {
     }
 }
 
-/// The parameters with the lower velocity: those of both ends of a segment hold when it is flown back.
+/// The parameters with the lower velocity: a retraced segment obeys the limits of both ends.
 pub(super) fn slower(a: TrajParaId, b: TrajParaId, data: &TaskData<'_>) -> TrajParaId {
     let velocity = |id| data.traj_para(id).map_or(i32::MAX, |parameters| parameters.vel_max);
     if velocity(b) < velocity(a) { b } else { a }
 }
 
 impl Route {
-    /// The way to a goal at which the robot is.
+    /// The way of a robot that is already at the goal.
     #[must_use]
     pub fn here(from: &RobotPlace, to: &RobotPlace, opening: Option<i32>) -> Self {
         Self { from: *from, to: *to, opening, complete: true, ..Self::default() }
     }
 
-    /// The straight way from one pose to another at the same place, as that of the camera over a part.
+    /// The straight way between two poses at the same place, such as the camera's over a part.
     #[must_use]
     pub fn straight(from: &RobotPlace, to: &RobotPlace, stop: TrajParaId) -> Self {
         Self { from: *from, to: *to, stop, ..Self::default() }
     }
 
-    /// The whole way from one place to another.
+    /// The complete way between two places.
     ///
     /// # Errors
-    /// Why there is none.
+    /// The reason why no way exists.
     pub fn between(from: &RobotPlace, to: &RobotPlace, data: &TaskData<'_>) -> Result<Self, Planning> {
         let (start, end) = (from.site.place(), to.site.place());
         let depart = match from.gone_to {
             GoneTo::Drum => return Err(Planning::InDrum),
             GoneTo::Location => data.depart_location(&start),
-            // With the object the robot goes out as it came in, since the depart path may be that of empty fingers; and
-            // so it does where none is written, as above a holster.
+            // With the object the robot leaves as it came, since the depart path may be for empty fingers. The same
+            // applies without a depart path, as above a holster.
             GoneTo::Object(ObjectGrip { object, grip }) | GoneTo::Brought(ObjectGrip { object, grip }) => {
                 if takes_out(from, data) {
                     data.approach(&object, grip, &start)
@@ -232,20 +231,20 @@ impl Route {
         Ok(route)
     }
 
-    /// The line of the task data that gives a point, from 0, and its parameters; the goal is the last point.
+    /// The line of the task data for a point, from 0, and its parameters; the goal is the last point.
     #[must_use]
     pub fn written<'a>(&self, point: u16, data: &TaskData<'a>) -> Option<&'a PathPoint> {
         let through = self.points(data).nth(usize::from(point)).map(|(_, found)| found);
         through.or_else(|| self.stop_line(data))
     }
 
-    /// The line with the parameters of the final motion: the approach's stop line; where no approach is written, the
-    /// last point before the goal (ASSUMED, SPECNOTES).
+    /// The line with the parameters of the final motion: the stop line of the approach; without an approach, the last
+    /// point before the goal (ASSUMED, SPECNOTES).
     fn stop_line<'a>(&self, data: &TaskData<'a>) -> Option<&'a PathPoint> {
         [self.approach, self.between, self.depart].into_iter().find_map(|path| data.path(path).last())
     }
 
-    /// The points to go through, in the direction of the goal.
+    /// The through points, in the direction of the goal.
     fn points<'a>(&self, data: &TaskData<'a>) -> impl Iterator<Item = (Part, &'a PathPoint)> + use<'a> {
         let part = |part, path| data.path(path).iter().map(move |point| (part, point));
         let (depart, none): (&[PathPoint], &[PathPoint]) = (data.path(self.depart), &[]);
@@ -258,7 +257,7 @@ impl Route {
             .filter(|(_, point)| point.target != Target::Stop)
     }
 
-    /// The next point to go through; `None` if the goal is next, or the route is complete.
+    /// The next through point; `None` if the goal is next, or the route is complete.
     fn next_point<'a>(&self, data: &TaskData<'a>) -> Option<(Part, &'a PathPoint)> {
         if self.complete { None } else { self.points(data).nth(usize::from(self.commanded)) }
     }
@@ -269,7 +268,7 @@ impl Route {
         u16::try_from(points.count()).unwrap_or(u16::MAX)
     }
 
-    /// The point to which the robot was sent last, from 0; the goal is the last.
+    /// The last point sent, from 0; the goal is the last.
     #[must_use]
     pub const fn heading(&self) -> u16 {
         if self.complete { self.commanded } else { self.commanded.saturating_sub(1) }
@@ -281,7 +280,8 @@ impl Route {
         self.points(data).nth(usize::from(point)).map_or(Part::Approach, |(part, _)| part)
     }
 
-    /// Frame of a point, and parameters of the motion to it; the goal is the last point. `None` if a record is missing.
+    /// Frame of a point, and parameters of the motion to it; the goal is the last point. `None` if a record is
+    /// missing.
     #[must_use]
     pub fn point(&self, point: u16, data: &TaskData<'_>) -> Option<(Frame, TrajParaId)> {
         let (departure, goal) = (self.from.pose.to_frame().ok()?, self.to.pose.to_frame().ok()?);
@@ -312,8 +312,8 @@ impl Route {
         }
     }
 
-    /// True while the next point is a depart point: the fingers must not move yet
-    /// (docs/design/motion.md "Finger opening").
+    /// True while the next point is a depart point: the fingers must not move (docs/design/motion.md "Finger
+    /// opening").
     #[must_use]
     pub fn departing(&self, data: &TaskData<'_>) -> bool {
         matches!(self.next_point(data), Some((Part::Depart, _)))
@@ -345,7 +345,7 @@ impl Route {
         Some(EmoveLeg { at, parameters })
     }
 
-    /// Parameters of the point before the next one, on the way out of a place by its approach path.
+    /// Parameters of the previous point, on the departure by an approach path.
     fn behind(&self, data: &TaskData<'_>) -> Option<TrajParaId> {
         match self.commanded.checked_sub(1) {
             Some(before) => self.points(data).nth(usize::from(before)).map(|(_, point)| point.para),
@@ -353,7 +353,7 @@ impl Route {
         }
     }
 
-    /// Note that the next leg has been commanded.
+    /// Record that the next leg has been commanded.
     pub fn advance(&mut self, data: &TaskData<'_>) {
         if self.next_point(data).is_some() {
             self.commanded = self.commanded.saturating_add(1);

@@ -5,7 +5,7 @@ use rcs_core::{Plain, Variables, decision_table};
 use super::Knowledge;
 use crate::execution::Asked;
 
-/// The class of a command, by what it needs before it begins.
+/// The class of a command, by its preconditions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum CommandClass {
     /// No command.
@@ -39,41 +39,41 @@ pub enum Attached {
     None,
 }
 
-/// How the gripper hangs on the robot.
+/// The connection of the gripper to the robot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Coupling {
-    /// There is none.
+    /// No gripper is mated.
     Bare,
-    /// It is mated, and the ring is locked.
+    /// The gripper is mated, and the ring is locked.
     Locked,
-    /// It is mated, and the ring is not locked.
+    /// The gripper is mated, and the ring is not locked.
     Loose,
-    /// The ring has been locked ever since a gripper was mated, and the id pins do not say so any more.
+    /// The ring stayed locked after a gripper was mated, but the id pins no longer report it.
     Misread,
 }
 
-/// The change of a gripper.
+/// The gripper exchange.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum ExchangeWork {
-    /// None is under way.
+    /// No exchange is under way.
     None,
-    /// The robot is in a holster, between the first and the last point of one.
+    /// The robot is in a holster, between the first and the last point of an exchange.
     HalfDone,
 }
 
-/// A tool command.
+/// The tool command at the drum.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum ToolWork {
-    /// None is under way.
+    /// No tool command is under way.
     None,
-    /// The robot is at the tool drum, between the first and the last point of one.
+    /// The robot is at the tool drum, between the first and the last point of a tool command.
     HalfDone,
 }
 
 /// The location of a motion command.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum EmoveTarget {
-    /// No holster, or the command is there to go to one.
+    /// No holster, or the command is the one that moves to a holster.
     Plain,
     /// A holster, as a plain location.
     Holster,
@@ -82,29 +82,29 @@ pub enum EmoveTarget {
 /// A new command and the state of the robot, for [`ACCEPT`].
 #[derive(Clone, Copy, Debug, Default, Variables)]
 pub struct Request {
-    /// Is the command new?
+    /// The decision on a new command is due.
     pub asked: Asked,
     /// The class of the command.
     pub class: CommandClass,
     /// The gripper on the robot.
     pub gripper: Attached,
-    /// Where the robot is.
+    /// Knowledge of the robot's place or way.
     pub start: Knowledge,
-    /// How the gripper hangs on it.
+    /// The connection of the gripper.
     pub coupling: Coupling,
-    /// The change of a gripper.
+    /// The gripper exchange.
     pub exchange: ExchangeWork,
-    /// A tool command.
+    /// The tool command at the drum.
     pub drum: ToolWork,
     /// The location of the command.
     pub target: EmoveTarget,
 }
 
 decision_table! {
-    /// ACCEPT: the state of the robot in which a new command is refused. Nothing has been ordered then, since HALT has
-    /// stopped the robot. A robot that changes a gripper, is half way at the tool drum, or whose gripper is not locked
-    /// moves nowhere. A robot whose id pins fail moves only to a plain location. E-PAUSE and RELEASE need nothing.
-    /// RECORDS decides next.
+    /// ACCEPT: states of the robot in which a new command is refused. No order has been sent, since HALT has stopped
+    /// the robot. A robot in a gripper exchange, in a tool command at the drum, or with a gripper that is not locked
+    /// cannot move elsewhere. A robot with failed id pins moves only to a plain location. E-PAUSE and RELEASE have no
+    /// preconditions. RECORDS decides next.
     pub ACCEPT: fn accept(self::Request) -> super::Action or () {
         1:  asked: Before                                                       => consult;
         2:  class: None                                                         => Refuse(UnknownCommand);

@@ -3,11 +3,11 @@
 use rcs_core::decision_table;
 
 decision_table! {
-    /// ACQUIRE-TOOL (V.2.1): open the tool gripper, move towards the machine tool, calibrate, touch the
-    /// strike plate, calibrate, slide to the left around the tool, grasp it. Done at once if it is held in
-    /// the drum, between the fingers. Sent again after an interruption it goes on from where the robot is at the drum
-    /// (docs/design/recovery.md "Drum"): fingers that are around the tool close, others slide on, or touch
-    /// the strike plate again.
+    /// ACQUIRE-TOOL (V.2.1): open the tool gripper, move towards the machine tool, calibrate, touch the strike plate,
+    /// calibrate, slide to the left around the tool, grasp it. Done at once if the tool is in the drum and held
+    /// between the fingers. After an interruption the command continues from the robot's position at the drum
+    /// (docs/design/recovery.md "Drum"): fingers around the tool close, others slide on, or touch the strike plate
+    /// again.
     pub ACQUIRE_TOOL: fn acquire_tool(enum AcquireToolStep, struct of super::Senses) -> super::Action {
         any {
             1:  work: Busy                                   => Wait;

@@ -1,10 +1,10 @@
-//! What a command carries.
+//! The held object during a command.
 
 use rcs_core::decision_table;
 
 decision_table! {
-    /// CARRIED: what the robot carries must not be lost while it moves. Commands that let go of it, and those
-    /// during which the robot only looks or pauses, do not fail for that.
+    /// CARRIED: a command fails if the robot loses the held object. Exceptions are commands that release it, and
+    /// commands during which the robot only looks or pauses.
     pub CARRIED: fn carried(super::Subordinates) -> super::Action or () {
         1: load: Kept                      => consult;
         2: verb: None | Pause | LocateObj  => consult;

@@ -4,70 +4,68 @@ use rcs_core::{Actions, Plain, Variables, decision_table};
 
 use crate::execution::Outcome;
 
-/// Where the robot is at the drum of the command, if a tool command was interrupted there, by the resolvers.
+/// The robot's position at the drum of the command after an interrupted tool command, by the resolvers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum AtDrum {
-    /// Nowhere there, or no tool command was interrupted.
+    /// Not at the drum, or no tool command was interrupted.
     Off,
-    /// Before it: neither a held tool nor the fingers touch anything, unless the place in the drum is not
-    /// free.
+    /// Before the drum: neither a held tool nor the fingers have contact, unless the place in the drum is occupied.
     Before,
     /// On the way in: a held tool may touch the drum.
     Entering,
-    /// Where a held tool is in its place, and empty fingers are around one.
+    /// Inside the drum: a held tool is in its place, or empty fingers are around a tool.
     Inside,
-    /// Between there and the strike plate: the fingers are half around the tool in the drum.
+    /// Between the tool's place and the strike plate: the fingers are half around the tool.
     Sliding,
     /// To the right of the tool, clear of it, at the strike plate or before it.
     Clear,
 }
 
-/// The bias of the force sensor: the reading that counts as no force (V.1.1 CAL-SENSOR).
+/// The zero reading of the force sensor (V.1.1 CAL-SENSOR).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Bias {
-    /// None was taken, or the sensor has been without power since.
+    /// The sensor was not calibrated, or has lost its power since.
     Missing,
-    /// It was taken at the drum, where the fingers or the tool may have touched something.
+    /// The sensor was calibrated at the drum, where the fingers or the tool may have had contact.
     AtDrum,
-    /// It was taken at TOOL-SAFE, where nothing is touched.
+    /// The sensor was calibrated at TOOL-SAFE, free of contact.
     AtSafe,
 }
 
-/// What the fingers have in the drum.
+/// The tool in the drum, relative to the fingers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum EmoveTool {
-    /// They have closed on a tool, and nothing has moved it since.
+    /// The fingers have closed on a tool, and neither has moved since.
     Grasped,
-    /// They have not.
+    /// The fingers have not closed on a tool, or one of them has moved.
     Loose,
 }
 
-/// The state variables.
 #[derive(Clone, Copy, Debug, Variables)]
 pub struct AtTheDrum {
-    /// Where the robot is at the drum.
+    /// The robot's position at the drum.
     pub at: AtDrum,
-    /// What its fingers have there.
+    /// The tool, relative to the fingers.
     pub tool: EmoveTool,
-    /// How far the current command has come.
+    /// Progress of the current command.
     pub outcome: Outcome,
 }
 
-/// What is believed of the robot at the drum.
+/// The decision on an unfinished tool command.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Actions)]
 pub enum Belief {
-    /// It is half way there still.
+    /// The tool command is still unfinished.
     Keep,
-    /// It has left.
+    /// The robot has left the drum.
     Leave,
-    /// It stands there with the fingers around the tool.
+    /// The robot is in the drum with the fingers around the tool.
     Stand,
 }
 
 decision_table! {
-    /// DRUM: a robot that has been taken away from the drum, as by the joystick box, is no longer half way
-    /// there. One whose fingers have closed on a tool in the drum stands there, also if the command did not
-    /// come to that. Preprocess consults it while a tool command is half done; no header names its rows.
+    /// DRUM: a robot moved away from the drum, as by the joystick box, has left its tool command. Fingers that have
+    /// closed on a tool in the drum place the robot there, even if the command was interrupted. Preprocess consults
+    /// this table while a tool command is unfinished. Headers do not name its rows.
     pub DRUM: fn drum(self::AtTheDrum) -> self::Belief {
         1: at: Off                                                             => Leave;
         2: at: Inside, tool: Grasped, outcome: Idle | Done | Error | Joystick  => Stand;

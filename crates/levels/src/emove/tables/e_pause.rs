@@ -1,4 +1,4 @@
-//! E-PAUSE (V.2.1): coming to rest, and the operator's commands while the robot rests.
+//! E-PAUSE (V.2.1): the stop, and the operator's commands while the robot is at rest.
 
 use rcs_core::{Plain, decision_table};
 
@@ -21,7 +21,7 @@ pub enum EPauseStep {
     Initializing,
     /// The processes below are pausing.
     Pausing,
-    /// They pause. The operator may take the robot and give it back as long as the command stands.
+    /// The processes below pause. The operator may take the robot and give it back until the next command.
     Standing,
     /// The operator has the robot, or has just given it back.
     Led,
@@ -29,14 +29,14 @@ pub enum EPauseStep {
     Resting,
     /// Prim is initializing a link that has failed while the robot paused.
     InitializingAgain,
-    /// The processes below are pausing once more.
+    /// The processes below are pausing again.
     PausingAgain,
 }
 
 decision_table! {
-    /// STANDING: E-PAUSE (V.2.1) after its end. While it stands, the joystick box has robot and gripper. A
-    /// link that fails is reported beside `done`, and the next motion restarts it. When the operator gives
-    /// the robot back, the processes below pause again: jaws keep their air, and may have begun to close.
+    /// STANDING: E-PAUSE (V.2.1) after its end. Until the next command, the joystick box controls robot and gripper.
+    /// A link failure is reported with `done`, and the next motion restarts the link. When the operator gives the
+    /// robot back, the processes below pause again: jaws keep their air, and may have begun to close.
     pub STANDING: fn standing(self::EPauseStep, struct of super::Senses) -> super::Action or () {
         any {
             1:  work: Busy                        => Wait;
@@ -62,11 +62,10 @@ decision_table! {
 }
 
 decision_table! {
-    /// E-PAUSE (V.2.1): do nothing. The first one after the start initializes the link (IV.3.3 step 2),
-    /// waits for the calibration of the parts gripper (VI.3.1 UP-INIT), and finds out where the robot is.
-    /// Fingers that move do first what they were told: a valve that is left open would close them with the
-    /// whole supply pressure. A link that fails before it is done is initialized again, once. STANDING
-    /// decides after that.
+    /// E-PAUSE (V.2.1): do nothing. The first one after the start initializes the link (IV.3.3 step 2), waits for the
+    /// calibration of the parts gripper (VI.3.1 UP-INIT), and searches for the place of the robot. Moving fingers
+    /// first finish their order: a valve left open would close them with the full supply pressure. A link that fails
+    /// before the pause is done is initialized again, once. STANDING decides after that.
     pub E_PAUSE: fn e_pause(self::EPauseStep, struct of super::Senses) -> super::Action {
         Start {
             1:  link: Down                              => RobotInit  -> Initializing;

@@ -1,12 +1,11 @@
-//! When the fingers move on the path to a goal.
+//! Motion of the fingers on the path to a goal.
 
 use rcs_core::decision_table;
 
 decision_table! {
-    /// FINGERS: if the goal of a motion needs an opening, the fingers are brought to it once the last depart point is
-    /// behind, and the final motion waits for them (docs/design/motion.md "Finger opening"). A gripper that is not
-    /// calibrated and holds nothing is calibrated on the way: nothing is between its fingers there. A release that has
-    /// not ended comes first.
+    /// FINGERS: if the goal needs an opening, the fingers move to it after the last depart point, and the final
+    /// motion waits for them (docs/design/motion.md "Finger opening"). An uncalibrated empty gripper is calibrated on
+    /// the way, where its fingers are free. An unfinished release must end first.
     pub FINGERS: fn fingers(super::motion::MotionStep, struct of super::Senses) -> super::Action or () {
         any {
             1:  work: Busy                                                          => consult;

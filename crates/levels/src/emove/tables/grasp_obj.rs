@@ -3,10 +3,10 @@
 use rcs_core::decision_table;
 
 decision_table! {
-    /// GRASP-OBJ (V.2.1): close the gripper on the object; done at once if it is held and between the
-    /// fingers. An object that the fingers sense is grasped again: it may be half gripped. So is what
-    /// counts as held since a release of it has not ended well. A robot that a person has moved off its place goes
-    /// back there first, and one that is lost closes on nothing.
+    /// GRASP-OBJ (V.2.1): close the gripper on the object; done at once if it is held and between the fingers. An
+    /// object detected by the fingers is grasped again, because it may be half gripped. The same applies to a held
+    /// object whose release has failed. A robot moved off its place by the operator returns there first. A robot at
+    /// an unknown place does not close.
     pub GRASP_OBJ: fn grasp_obj(enum GraspObjStep, struct of super::Senses) -> super::Action {
         any {
             1:  work: Busy                                        => Wait;
@@ -15,7 +15,7 @@ decision_table! {
         Start {
             2:  held: Right, fingers: Gripping                    => Finish;
         }
-        /// The robot is going back to its place.
+        /// The robot is returning to its place.
         Correcting {}
         Start | Correcting {
             3:  held: Other                                       => Fail(AlreadyHolding);

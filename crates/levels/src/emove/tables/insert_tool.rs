@@ -3,13 +3,13 @@
 use rcs_core::decision_table;
 
 decision_table! {
-    /// INSERT-TOOL (V.2.1): CAL-SENSOR at TOOL-SAFE, DELTA-MOVE to the last point at which nothing can be
-    /// touched, and two GO-WHILE. The first leads to the fingers of the drum and fails at any contact, the
-    /// second leads into the drum and fails if the insertion force is too great. Done at once if the tool is
-    /// in the drum, and its release has not begun. The robot comes from before the drum: no other way is
-    /// known. Sent again after an interruption, the command continues from where the robot is at the drum
-    /// (docs/design/recovery.md "Drum"). The force sensor is calibrated only at TOOL-SAFE: nothing is touched
-    /// there, and the weight on the sensor has the same direction as at the drum.
+    /// INSERT-TOOL (V.2.1): CAL-SENSOR at TOOL-SAFE, DELTA-MOVE to the last point without possible contact, and two
+    /// GO-WHILE. The first moves to the fingers of the drum and fails at any contact; the second moves into the drum
+    /// and fails if the insertion force is too great. Done at once if the tool is in the drum, and its release has
+    /// not begun. The robot must start before the drum, the only known way in. After an interruption the command
+    /// continues from the robot's position at the drum (docs/design/recovery.md "Drum"). The force sensor is
+    /// calibrated only at TOOL-SAFE: the tool has no contact there, and its weight loads the sensor in the same
+    /// direction as at the drum.
     pub INSERT_TOOL: fn insert_tool(enum InsertToolStep, struct of super::Senses) -> super::Action {
         any {
             1:  work: Busy                                       => Wait;
@@ -33,7 +33,7 @@ decision_table! {
         Calibrating {
             14: otherwise                                        => DeltaMove(InsFar)  -> Approaching;
         }
-        /// The tool is moving to the last point at which it touches nothing.
+        /// The tool is moving to the last point without possible contact.
         Approaching {
             15: otherwise                                        => GoWhile(InsNear)   -> Nearing;
         }

@@ -3,10 +3,10 @@
 use rcs_core::decision_table;
 
 decision_table! {
-    /// LOCATE-OBJ (V.2.1): a fast flood picture, centre the camera over it, a second picture with recognition
-    /// and angle, align. It moves the robot straight, so that nothing may be held: a grasp that was interrupted
-    /// may have ended since, and the robot stands in the nest of the part then. An object so near to the edge of
-    /// its tray that the open fingers would meet the wall is not gone to.
+    /// LOCATE-OBJ (V.2.1): a fast flood picture, centre the camera over the object, a second picture with recognition
+    /// and angle, align. The robot moves straight and must hold no object: an interrupted grasp may have ended since,
+    /// and then the robot is in the nest of the part. The camera does not move to an object so near to the edge of
+    /// its tray that the open fingers would hit the wall.
     pub LOCATE_OBJ: fn locate_obj(enum LocateObjStep, struct of super::Senses) -> super::Action {
         any {
             1:  work: Busy                                                => Wait;
@@ -15,7 +15,7 @@ decision_table! {
         Start {
             2:  held: Nothing, ahead: Rejoin                              => GotoPt   -> Correcting;
         }
-        /// The robot is going back to where pictures are taken.
+        /// The robot is returning to the place of the pictures.
         Correcting {
             3:  otherwise                                                 => Flood    -> Flooding;
         }

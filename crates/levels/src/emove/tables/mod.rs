@@ -1,5 +1,5 @@
 //! Decision tables of E-move: preconditions of a new command, rows common to all commands, and one file per command.
-//! The motion commands share one table, each with its own above it.
+//! The motion commands share MOTION; each has its own table before it.
 
 pub mod accept;
 pub mod acquire_tool;
@@ -64,31 +64,31 @@ use crate::{
     halt::{Advance, Commanding, EFFECT, HALT, Replaced, Stopping},
 };
 
-/// What goes on whatever the command, for [`attend::ATTEND`] and [`search::SEARCH`].
+/// State variables independent of the command, for [`attend::ATTEND`] and [`search::SEARCH`].
 #[derive(Clone, Copy, Debug, Variables)]
 pub struct Watch {
-    /// Was `.R` entered?
+    /// Progress of `.R`.
     pub initialization: Initialization,
-    /// Is the command E-PAUSE?
+    /// Progress of E-PAUSE, if it is the command.
     pub pause: Pause,
-    /// How far it has come.
+    /// Progress of the command.
     pub outcome: Outcome,
-    /// Is it known where the robot is?
+    /// Knowledge of the robot's place.
     pub place: PlaceKnowledge,
-    /// Where the resolvers say that it is.
+    /// Knowledge of the robot's frame, by the resolvers.
     pub resolvers: Knowledge,
 }
 
-/// What the command carries and how its last order stands, for [`carried::CARRIED`] and [`ordered::ORDERED`].
+/// The held object and the status of the last order, for [`carried::CARRIED`] and [`ordered::ORDERED`].
 #[derive(Clone, Copy, Debug, Variables)]
 pub struct Subordinates {
     /// The command.
     pub verb: EmoveVerb,
-    /// Is still held what was held?
+    /// The held object, compared with that at the start of the command.
     pub load: EmoveLoad,
     /// The process that has the last order.
     pub ordered: EmoveRecipient,
-    /// Status of Prim; done as long as the command does not need it.
+    /// Status of Prim; done if the command does not need it.
     pub prim: Lower,
     /// The condition of a guarded move.
     pub contact: EmoveContact,
@@ -96,49 +96,48 @@ pub struct Subordinates {
     pub opening: EmoveOpening,
     /// Status of the attached gripper.
     pub gripper: Lower,
-    /// The locking ring.
+    /// The locking ring, by the answer of Quick Change.
     pub ring: Ring,
-    /// Vision.
+    /// The answer of vision.
     pub vision: VisionAnswer,
 }
 
-/// What preprocess has found in a tick.
+/// Results of preprocess.
 #[derive(Clone, Copy, Debug)]
 pub struct StateVariables {
-    /// What the command buffer holds.
+    /// Contents of the command buffer.
     pub arrival: Arrival,
-    /// The command in it.
     pub verb: EmoveVerb,
-    /// Is the command to be accepted or refused in this tick?
+    /// The decision on a new command is due.
     pub asked: Asked,
-    /// What it replaces.
+    /// The activities that the command replaces.
     pub replaced: Replaced,
-    /// Whether it has sent another point since its last order, for EFFECT.
+    /// For EFFECT: whether the command has sent another point since its last order.
     pub advance: Advance,
     /// A new command and the state of the robot.
     pub request: Request,
     /// The records of the command in the task data.
     pub records: Records,
-    /// What goes on whatever the command.
+    /// State variables independent of the command.
     pub watch: Watch,
-    /// How the last order of the command stands.
+    /// Status of the last order.
     pub subordinates: Subordinates,
     /// The goal of the command, compared with the sensors.
     pub proof: Proof,
-    /// The state variables of the command's tables; ORDERED passes `work` on.
+    /// State variables of the command's tables; ORDERED sets `work`.
     pub situation: Situation,
 }
 
-/// What a row can ask for.
+/// The actions of the rows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Actions)]
 pub enum Action {
-    /// Nothing new.
+    /// No new order.
     Wait,
     /// ROBOT-INIT to Prim.
     RobotInit,
     /// PAUSE to Prim and the gripper, QC-PAUSE to Quick Change.
     Pause,
-    /// PAUSE to Prim, QC-PAUSE to Quick Change; fingers that move do what they were told.
+    /// PAUSE to Prim, QC-PAUSE to Quick Change; moving fingers finish their order.
     StopRobot,
     /// Report joystick-on: the operator has the robot.
     Manual,
@@ -156,7 +155,7 @@ pub enum Action {
     GoUntil(Relative),
     /// GO-WHILE to Prim, with the sensor that task data name.
     GoWhile(Relative),
-    /// CAL-SENSOR to Prim, and where the robot is then.
+    /// CAL-SENSOR to Prim; the argument is the robot's place.
     CalSensor(CalibratedAt),
     /// QC-LOCK to Quick Change.
     Lock,
@@ -166,21 +165,21 @@ pub enum Action {
     Open,
     /// Bring the fingers to the approach size of the object.
     OpenToApproach,
-    /// Bring the fingers to the opening with which the gripper goes through its holster.
+    /// Bring the fingers to the opening for the path through the holster.
     CloseForHolster,
     /// Close on the object.
     Close,
     /// Open to the depart size.
     OpenToDepart,
-    /// Open as far as the gripper does.
+    /// Open as far as the gripper can.
     OpenFully,
     /// UP-INIT to the gripper.
     Calibrate,
     /// Report done: the robot is at the goal.
     Arrive,
-    /// Report done: the robot is at the location of the command, at rest where it was told to stand.
+    /// Report done: the robot is at rest at the end of the command's relative moves.
     Stand,
-    /// Report an error: the bare robot stands clear of the holster, and may go elsewhere.
+    /// Report an error: the bare robot is clear of the holster, and may move elsewhere.
     Leave(Reason),
     /// Report done: the fingers are around a tool in the drum.
     StandInDrum,
@@ -188,15 +187,15 @@ pub enum Action {
     Grasped,
     /// Report done: the tool in the drum is held.
     Acquired,
-    /// Ask vision for the first picture.
+    /// Request the first picture.
     Flood,
-    /// Ask for it again with other parameters.
+    /// Request the first picture again with other parameters.
     FloodAgain,
     /// GOTO-PT to Prim: camera over the centroid.
     Centre,
-    /// Ask vision for the second picture.
+    /// Request the second picture.
     Precise,
-    /// Ask for it again with other parameters.
+    /// Request the second picture again with other parameters.
     PreciseAgain,
     /// GOTO-PT to Prim: camera over the part, turned with it.
     Align,
@@ -204,15 +203,15 @@ pub enum Action {
     Located,
     /// Report done.
     Finish,
-    /// Report an error before anything has been ordered.
+    /// Report an error before any order.
     Refuse(Reason),
     /// Stop the robot and report an error.
     Fail(Reason),
-    /// Stop the robot and report what the gripper reports.
+    /// Stop the robot and report the error of the gripper.
     FailGrip,
-    /// Stop the robot and report what Quick Change reports.
+    /// Stop the robot and report the error of Quick Change.
     FailRing,
-    /// Report what Prim reports.
+    /// Report the error of Prim.
     PassUp,
 }
 

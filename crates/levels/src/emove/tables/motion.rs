@@ -3,13 +3,13 @@
 use rcs_core::decision_table;
 
 decision_table! {
-    /// MOTION: a series of GO-THRU and one GOTO-PT (V.2.1 MOV-TO-LOC). FINGERS has decided before whether the fingers
-    /// move, and whether the final motion waits for them.
+    /// MOTION: a series of GO-THRU and one GOTO-PT (V.2.1 MOV-TO-LOC). Before it, FINGERS decides on finger motion,
+    /// and on the wait of the final motion for the fingers.
     pub MOTION: fn motion(enum MotionStep, struct of super::Senses) -> super::Action {
         any {
             1: work: Busy      => Wait;
         }
-        /// On the way through points; nothing commanded yet at first.
+        /// On the through points; no order yet at first.
         Moving {
             2: ahead: Through  => GoThru;
             3: ahead: Missing  => Fail(BadRecord);
@@ -21,7 +21,7 @@ decision_table! {
         Stopping {
             7: otherwise       => Arrive;
         }
-        /// Back to the way beside which a person has left the robot.
+        /// On the return to the way after manual motion.
         Rejoining {
             8: otherwise       => Wait    -> Moving;
         }

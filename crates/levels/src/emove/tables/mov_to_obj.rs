@@ -3,9 +3,9 @@
 use rcs_core::decision_table;
 
 decision_table! {
-    /// MOV-TO-OBJ (V.2.1): like MOV-TO-LOC, with the fingers opened for the goal. A robot that holds the object is at
-    /// it, once it stands at the goal; one that is elsewhere with it, or holds anything else, or may hold it, must not
-    /// open the fingers.
+    /// MOV-TO-OBJ (V.2.1): like MOV-TO-LOC, with the fingers opened for the goal. A robot that holds the object at
+    /// the goal is done. A robot that holds the object elsewhere, or holds or may hold another object, must not open
+    /// the fingers.
     pub MOV_TO_OBJ: fn mov_to_obj(struct of super::Senses) -> super::Action or () {
         1: held: Nothing                                 => consult;
         2: held: Other | Something                       => Fail(AlreadyHolding);

@@ -3,10 +3,9 @@
 use rcs_core::decision_table;
 
 decision_table! {
-    /// ORDERED: the process with the last order is busy with it, or has done it. A failure ends the command;
-    /// so does a failure of Prim while the ring turns or the fingers move in a holster, and one of fingers
-    /// that open on the way. A contact of the held tool before the fingers of the drum means that the drum is
-    /// occupied.
+    /// ORDERED: the process with the last order executes it, or has done it. A failure ends the command, including a
+    /// failure of Prim while the ring turns or the fingers move in a holster, and a failure of fingers that open
+    /// during a motion. Contact of the held tool before the fingers of the drum means that the drum is occupied.
     pub ORDERED: fn ordered(super::Subordinates) -> super::Action or crate::execution::Work {
         1:  ordered: Nothing | All                                                  => consult(Over);
         2:  opening: Sent, gripper: Error | Joystick | Lost                         => FailGrip;

@@ -1,8 +1,8 @@
-//! QC-ATTACH (V.2.1): the way of the bare robot to the gripper, and out of the holster with it.
+//! QC-ATTACH (V.2.1): the motion of the bare robot to the gripper, and out of the holster with it.
 
 use rcs_core::{Plain, decision_table};
 
-/// Steps of QC-ATTACH: what was ordered last.
+/// Steps of QC-ATTACH, by the last order.
 ///
 /// ```text
 ///   QC-ATTACH (bare):  Start -> (Unlocking) -> Approaching -> Mating        no gripper: Undoing -> Leaving
@@ -18,9 +18,9 @@ pub enum QcAttachStep {
     Unlocking,
     /// The robot is moving close to the gripper.
     Approaching,
-    /// The seat was empty: the robot moves away from it.
+    /// The seat was empty: the robot is moving away from it.
     Undoing,
-    /// The bare robot moves up out of the holster.
+    /// The bare robot is moving up out of the holster.
     Leaving,
     /// The robot is moving slowly onto the gripper.
     Mating,
@@ -30,17 +30,17 @@ pub enum QcAttachStep {
     Closing,
     /// The gripper is sliding back out of its seat.
     Backing,
-    /// It is being lifted a distance out of the holster.
+    /// The gripper is being lifted a distance out of the holster.
     Lifting,
-    /// It is being lifted completely out of the holster.
+    /// The gripper is being lifted completely out of the holster.
     Raising,
-    /// It is being calibrated.
+    /// The gripper is being calibrated.
     Calibrating,
 }
 
 decision_table! {
-    /// QC-LIFT: second part of QC-ATTACH (V.2.1), with the gripper mated: lock, close the gripper, back,
-    /// lift, up, calibrate if required. Done at once if the gripper is locked on and clear of its holster.
+    /// QC-LIFT: second part of QC-ATTACH (V.2.1), with the gripper mated: lock, close the gripper, back, lift, up,
+    /// calibrate if required. Done at once if the gripper is locked and clear of its holster.
     pub QC_LIFT: fn qc_lift(self::QcAttachStep, struct of super::Senses) -> super::Action or () {
         any {
             1:  mate: None | Wrong                                    => consult;
@@ -61,9 +61,9 @@ decision_table! {
         }
         any {
             8:  along: Lifting | Raising | Clear, lock: Unlocked | Between => Fail(RingNotLocked);
-            // EXCHANGE passes no faulty ring on.
+            // EXCHANGE excludes a faulty ring.
             9:  along: Coming, lock: Locked | Between | Faulty        => Fail(RingNotLocked);
-            // Near the seat is not at it, and the ring would catch nothing.
+            // Only at the seat can the ring catch the gripper.
             10: lock: Unlocked | Between                              => DeltaMove(QcaSlow)  -> Mating;
         }
         Closing | Backing {
@@ -92,12 +92,11 @@ decision_table! {
 }
 
 decision_table! {
-    /// QC-ATTACH (V.2.1): down fast, down slowly, lock, close the gripper, back, lift, check the id, up,
-    /// calibrate if required. What is done next depends on where the robot is in the holster and on what is
-    /// mated and locked, so that a command that is sent again goes on (docs/design/recovery.md "Exchange");
-    /// an order that has changed nothing ends it. This table moves the bare robot onto the gripper;
-    /// QC-LIFT, which is consulted before, does the rest once the gripper is mated. A bare robot that has
-    /// found no gripper leaves upward.
+    /// QC-ATTACH (V.2.1): down fast, down slowly, lock, close the gripper, back, lift, check the id, up, calibrate if
+    /// required. The next action depends on the robot's position in the holster and on gripper and ring, so that a
+    /// repeated command continues (docs/design/recovery.md "Exchange"). An order without effect ends the command.
+    /// This table moves the bare robot onto the gripper; QC-LIFT, which is consulted before, continues once the
+    /// gripper is mated. A bare robot that has found no gripper leaves upward.
     pub QC_ATTACH: fn qc_attach(self::QcAttachStep, struct of super::Senses) -> super::Action {
         Start {
             1:  mate: Wrong                                       => Fail(WrongGripper);

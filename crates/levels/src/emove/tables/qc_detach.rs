@@ -1,8 +1,8 @@
-//! QC-DETACH (V.2.1): the way of the gripper into its holster, and out of the holster without it.
+//! QC-DETACH (V.2.1): the motion of the gripper into its holster, and out of the holster without it.
 
 use rcs_core::{Plain, decision_table};
 
-/// Steps of QC-DETACH: what was ordered last.
+/// Steps of QC-DETACH, by the last order.
 ///
 /// ```text
 ///   QC-DETACH (mated):  Start -> Lowering -> Unlocking -> Seating -> Rising
@@ -12,7 +12,7 @@ use rcs_core::{Plain, decision_table};
 pub enum QcDetachStep {
     /// Nothing done yet.
     Start,
-    /// A bare robot that has found no gripper moves up out of the holster.
+    /// A bare robot that has found no gripper is moving up out of the holster.
     Leaving,
     /// The robot is moving up out of the gripper.
     Rising,
@@ -25,9 +25,9 @@ pub enum QcDetachStep {
 }
 
 decision_table! {
-    /// QC-LEAVE: last part of QC-DETACH (V.2.1), with nothing mated: up, and check that the gripper stayed
-    /// in its holster. A bare robot in an empty holster leaves upward. Done at once if the gripper is in
-    /// its holster and the robot clear.
+    /// QC-LEAVE: last part of QC-DETACH (V.2.1), with no gripper mated: up, and check that the gripper stayed in its
+    /// holster. A bare robot in an empty holster leaves upward. Done at once if the gripper is in its holster and the
+    /// robot clear.
     pub QC_LEAVE: fn qc_leave(self::QcDetachStep, struct of super::Senses) -> super::Action or () {
         any {
             1:  mate: Right | Wrong                                 => consult;
@@ -66,11 +66,11 @@ decision_table! {
 }
 
 decision_table! {
-    /// QC-DETACH (V.2.1): down until the large sensors of the holster see the ears, unlock, forward until
-    /// the small ones see them, up, and check that the gripper stayed there. What is done next depends on
-    /// where the robot is in the holster and on what is mated and locked, so that a command that is sent
-    /// again goes on (docs/design/recovery.md "Exchange"). This table leaves the gripper in the holster;
-    /// QC-LEAVE, which is consulted before, does the rest once the robot is bare.
+    /// QC-DETACH (V.2.1): down until the large sensors of the holster see the ears, unlock, forward until the small
+    /// ones see them, up, and check that the gripper stayed there. The next action depends on the robot's position in
+    /// the holster and on gripper and ring, so that a repeated command continues (docs/design/recovery.md
+    /// "Exchange"). This table leaves the gripper in the holster; QC-LEAVE, which is consulted before, continues once
+    /// the robot is bare.
     pub QC_DETACH: fn qc_detach(self::QcDetachStep, struct of super::Senses) -> super::Action {
         Rising {
             1:  otherwise                                                 => Fail(NotDetached);

@@ -11,47 +11,46 @@ use crate::{
 /// A record of the task data that a command names.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum EmoveRecord {
-    /// It is there.
+    /// The record exists, or is not needed.
     Found,
-    /// It is not.
+    /// The record is missing.
     Missing,
 }
 
-/// What the task data say of the holster of a gripper.
+/// Task data of the holster of a gripper.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum HolsterData {
-    /// All that is needed.
+    /// The data are complete.
     Found,
     /// No gripper has the number that the command names.
     NoGripper,
-    /// Nothing says with which opening the gripper goes through its holster.
+    /// The task data have no opening of the gripper for the path through its holster.
     NoOpening,
 }
 
-/// What a new command finds in the task data, for [`RECORDS`]. A record that a command does not need counts
-/// as found.
+/// Results of the look-up in the task data, for [`RECORDS`]. A record that a command does not need is found.
 #[derive(Clone, Copy, Debug, Default, Variables)]
 pub struct Records {
     /// Sizes of object and grip for GRASP-OBJ and ACQUIRE-TOOL: END-EFF-PARA.
     pub sizes: EmoveRecord,
-    /// How LOCATE-OBJ sees the object: VISION-PARA.
+    /// View of the object for LOCATE-OBJ: VISION-PARA.
     pub view: EmoveRecord,
     /// The gripper's holster for QC-ATTACH and QC-DETACH.
     pub holster: HolsterData,
     /// The relative moves of the command.
     pub moves: RelativeMoves,
-    /// The path to its goal.
+    /// The path to the goal.
     pub route: Planning,
     /// The joystick box.
     pub joystick: BoxState,
-    /// Is the command E-PAUSE?
+    /// Progress of E-PAUSE, if it is the command.
     pub pause: Pause,
 }
 
 decision_table! {
-    /// RECORDS: a new command that ACCEPT has not refused is refused if a record that it needs is missing, or if there
-    /// is no path to its goal. While the operator has the robot, only E-PAUSE is accepted: fingers and ring must not
-    /// move at a place that the process above does not know.
+    /// RECORDS: a new command is refused if a record that it needs is missing, or if its goal has no path. While the
+    /// operator has the robot, only E-PAUSE is accepted: fingers and ring must not move at a place that Subtask does
+    /// not know.
     pub RECORDS: fn records(self::Records) -> super::Action or () {
         1:  sizes: Missing               => Refuse(UnknownGrip);
         2:  view: Missing                => Refuse(BadRecord);

@@ -3,9 +3,9 @@
 use rcs_core::decision_table;
 
 decision_table! {
-    /// RELEASE (V.2.1): open the gripper to the depart size, and from something unknown by 0.5 in at least; done
-    /// at once if it is open and holds nothing. A gripper that is not calibrated knows no size: it opens fully. A robot
-    /// that a person has moved off its place goes back there first: an object is let go only there.
+    /// RELEASE (V.2.1): open the gripper to the depart size, for an unknown object by at least 0.5 in; done at once
+    /// if it is open and holds nothing. An uncalibrated gripper has no measured size and opens fully. A robot moved
+    /// off its place by the operator returns there first: an object is released only there.
     pub RELEASE: fn release(enum ReleaseStep, struct of super::Senses) -> super::Action {
         any {
             1: work: Busy                   => Wait;
@@ -15,7 +15,7 @@ decision_table! {
             2: held: Nothing, spread: Open  => Finish;
             3: ahead: Rejoin                => GotoPt        -> Correcting;
         }
-        /// The robot is going back to its place.
+        /// The robot is returning to its place.
         Correcting {}
         Start | Correcting {
             4: spread: Unknown              => OpenFully     -> Opening;

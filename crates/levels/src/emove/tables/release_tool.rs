@@ -3,10 +3,9 @@
 use rcs_core::decision_table;
 
 decision_table! {
-    /// RELEASE-TOOL (V.2.1): open the tool gripper, calibrate, slide to the right until the strike plate
-    /// gives a moment, pull back. Done at once if the robot is before the drum with open fingers and nothing
-    /// in them. Sent again after an interruption it goes on from where the robot is at the drum
-    /// (docs/design/recovery.md "Drum").
+    /// RELEASE-TOOL (V.2.1): open the tool gripper, calibrate, slide to the right until the strike plate exerts a
+    /// moment, pull back. Done at once if the robot is before the drum with open, empty fingers. After an
+    /// interruption the command continues from the robot's position at the drum (docs/design/recovery.md "Drum").
     pub RELEASE_TOOL: fn release_tool(enum ReleaseToolStep, struct of super::Senses) -> super::Action {
         any {
             1:  work: Busy                                  => Wait;

@@ -3,11 +3,11 @@
 use rcs_core::decision_table;
 
 decision_table! {
-    /// REMOVE-TOOL (V.2.1): CAL-SENSOR and a guarded move that the extraction force ends: a GO-WHILE, though
-    /// the manual says GO-UNTIL, for the force is what must not come (SPECNOTES.md, contradiction 18). Done
-    /// at once if the tool is out. A tool that is half let go is not pulled. Sent again after an interruption
-    /// it goes on pulling (docs/design/recovery.md "Drum"). The sensor is calibrated against a tool that is
-    /// half out only if its calibration has been lost with its power: no other command leads out.
+    /// REMOVE-TOOL (V.2.1): CAL-SENSOR and a guarded move that the extraction force ends. It is a GO-WHILE, although
+    /// the manual says GO-UNTIL, because the force must not occur (SPECNOTES.md, contradiction 18). Done at once if
+    /// the tool is out. A partly released tool is not pulled. After an interruption the command continues to pull
+    /// (docs/design/recovery.md "Drum"). At a tool that is half out, the sensor is calibrated only if it has lost its
+    /// calibration with its power: no other command leads out.
     pub REMOVE_TOOL: fn remove_tool(enum RemoveToolStep, struct of super::Senses) -> super::Action {
         any {
             1:  work: Busy                                        => Wait;

@@ -1,82 +1,82 @@
-//! How a motion command begins.
+//! The start of a motion command.
 
 use rcs_core::{Actions, Plain, Variables, decision_table};
 
-/// Where the robot is when the command comes.
+/// The robot's place at the start of the command.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum EmoveRobot {
     /// At a known place.
     AtPlace,
-    /// On the way of a motion that was interrupted.
+    /// On the way of an interrupted motion.
     OnWay,
-    /// Neither.
+    /// At an unknown place.
     Lost,
 }
 
-/// The goal of the command, seen from the way that the robot is on.
+/// The goal of the command, relative to the robot's way.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum GoalOf {
-    /// That way leads to it: same kind, place, object and grip, and within 0.02 in.
+    /// The goal of the way: same kind, place, object and grip, and within 0.02 in.
     Way,
-    /// The pose at which the robot is, or was before a person moved it: same location, and within 0.02 in.
+    /// The robot's pose, or its pose before manual motion: same location, and within 0.02 in.
     Place,
-    /// Neither.
+    /// Another goal.
     Another,
 }
 
-/// The way that the robot is on.
+/// The return along the robot's way.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum WayBack {
-    /// It can be flown back to the end of the depart leg.
+    /// The robot can retrace the way to the end of the depart leg.
     Free,
-    /// It leads from one pose to another at the same object, as from hold to seat: only on.
+    /// The way connects two poses at the same object, such as hold and seat: the robot can only continue.
     Closed,
 }
 
-/// The leg that the robot is in.
+/// The robot's leg on its way.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum LegNow {
     /// The depart leg.
     Depart,
-    /// One after it.
+    /// A leg after it.
     Later,
 }
 
-/// The state variables.
 #[derive(Clone, Copy, Debug, Variables)]
 pub struct MotionStart {
-    /// Where the robot is.
+    /// The robot's place.
     pub robot: EmoveRobot,
-    /// The goal.
+    /// The goal, relative to the way.
     pub goal: GoalOf,
-    /// The way.
+    /// The return along the way.
     pub back: WayBack,
-    /// Its leg.
+    /// The leg on the way.
     pub leg: LegNow,
 }
 
-/// How a motion command begins.
+/// The start of a motion command.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Actions)]
 pub enum MotionBeginning {
     /// Depart from the place where the robot is.
     Depart,
-    /// The robot is at the goal, or beside it: STANCE decides.
+    /// The robot is at the goal, or near it: STANCE decides.
     Settle,
-    /// Go on to the goal of the way.
+    /// Continue to the goal of the way.
     GoOn,
-    /// Go out of the depart leg, and from its end to the goal.
+    /// Complete the depart leg, and move from its end to the goal.
     GoOut,
-    /// Go back to the end of the depart leg, and from there to the goal.
+    /// Return to the end of the depart leg, and move from there to the goal.
     GoBack,
-    /// Refuse: the robot can only go on.
+    /// Refuse: the robot can only continue its way.
     RefuseBack,
-    /// Refuse: it is not known where the robot is.
+    /// Refuse: the robot's place is unknown.
     RefuseStart,
 }
 
 decision_table! {
-    /// RESUME: from where a motion command begins (docs/design/recovery.md "On the way"). A robot that is lost has
-    /// come back before, as RETURN says. Planning consults it when a motion command comes; no header names its rows.
+    /// RESUME: the start of a motion command (docs/design/recovery.md "On the way"). A robot at an unknown place has
+    /// first returned according to RETURN. Planning consults this table for a new motion command. Headers do not name
+    /// its rows.
     pub RESUME: fn resume(self::MotionStart) -> self::MotionBeginning {
         1: robot: AtPlace, goal: Way | Another                              => Depart;
         2: robot: AtPlace, goal: Place                                      => Settle;
@@ -88,43 +88,42 @@ decision_table! {
     }
 }
 
-/// The present frame, seen from the place of the robot.
+/// The present frame, relative to the robot's place.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum EmoveOffset {
-    /// It is there: within 0.02 in and 0.1 degree. A robot that was sent there, and holds a part that may be clamped, is
-    /// there within 0.1 in.
+    /// At the place within 0.02 in and 0.1 degree. With a commanded part that may be clamped, within 0.1 in.
     There,
-    /// A person has moved it, by no more than 0.5 in and 2 degrees.
+    /// Moved by the operator, by at most 0.5 in and 2 degrees.
     Moved,
-    /// So has somebody, and what it holds may be clamped.
+    /// Moved by the operator in the same range, with a part that may be clamped.
     Clamped,
-    /// The resolvers do not tell, and it was not sent there.
+    /// Unknown: the resolvers give no position, and the robot was not sent there.
     Unseen,
 }
 
-/// The state variables.
 #[derive(Clone, Copy, Debug, Variables)]
 pub struct EmoveStanding {
-    /// Where the robot is.
+    /// The present frame, relative to the robot's place.
     pub offset: EmoveOffset,
 }
 
-/// What precedes a command that ends at the place of the robot, or does its work there.
+/// The action before a command that ends or works at the robot's place.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Actions)]
 pub enum Stance {
-    /// Nothing: the robot is there.
+    /// None: the robot is at its place.
     Stay,
-    /// Go back to the place, straight and slowly.
+    /// Return to the place, straight and slowly.
     Correct,
-    /// Refuse: the part would be pulled through the fingers, or out of the vise.
+    /// Refuse: the motion would pull the part through the fingers, or out of the vise.
     RefuseOff,
-    /// Refuse: it is not known where the robot is.
+    /// Refuse: the robot's place is unknown.
     RefuseStart,
 }
 
 decision_table! {
-    /// STANCE: a robot at its place, seen by its resolvers, before a command that ends there (MOV-…) or does its work
-    /// there (LOCATE-OBJ, GRASP-OBJ, RELEASE). Planning consults it when such a command comes; no header names its rows.
+    /// STANCE: a robot at its place, checked by the resolvers, before a command that ends there (MOV-…) or works
+    /// there (LOCATE-OBJ, GRASP-OBJ, RELEASE). Planning consults this table for such a command. Headers do not name
+    /// its rows.
     pub STANCE: fn stance(self::EmoveStanding) -> self::Stance {
         1: offset: There    => Stay;
         2: offset: Moved    => Correct;

@@ -5,10 +5,10 @@ use rcs_core::{Actions, Plain, Variables, decision_table};
 use super::Knowledge;
 pub use interfaces::track::Course;
 
-/// Where the record of its path leads back to.
+/// The start of the robot's recorded path.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum EmoveOrigin {
-    /// Nowhere: there is none, or it is not known where it begins.
+    /// Unknown, or no path is recorded.
     None,
     /// A place.
     Place,
@@ -18,43 +18,41 @@ pub enum EmoveOrigin {
     Way,
 }
 
-/// What the gripper has brought away from there.
+/// The object that the gripper has brought from the start of the path.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Freight {
-    /// Nothing that can be clamped.
+    /// No object that can be clamped.
     Free,
-    /// A part that a vise or the pedestal may have clamped at that place.
+    /// A part that a vise or the pedestal may have clamped there.
     Clampable,
 }
 
 /// The known location that is nearest to the robot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Near {
-    /// It is none to which the robot may go straight, or it is too far away.
+    /// A location without a straight return, or one too far away.
     Nothing,
-    /// It is a resting place, and near enough to go there straight.
+    /// A resting place, near enough for a straight return.
     Resting,
-    /// It does not matter: the robot is beside the path from the nest that it has left to the outermost point of the
-    /// approach of that nest.
+    /// Not relevant: the robot is off the approach of the nest that it has left, but within its outermost point.
     Nest,
 }
 
-/// The state variables.
 #[derive(Clone, Copy, Debug, Variables)]
 pub struct Lost {
-    /// Where the resolvers say that the robot is.
+    /// Knowledge of the robot's frame, by the resolvers.
     pub resolvers: Knowledge,
-    /// What is known of its path.
+    /// Knowledge of its path.
     pub course: Course,
-    /// Where that begins.
+    /// The start of its recorded path.
     pub origin: EmoveOrigin,
-    /// What it has brought away.
+    /// The object that the gripper has brought from there.
     pub freight: Freight,
-    /// What is near.
+    /// The nearest known location.
     pub near: Near,
 }
 
-/// How it comes back.
+/// The return of the robot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Actions)]
 pub enum Return {
     /// Back along the recorded path.
@@ -63,15 +61,15 @@ pub enum Return {
     Straight,
     /// Out of the nest against the direction of its approach, to its outermost point.
     Out,
-    /// Not at all: only the joystick box moves it.
+    /// Refuse: only the joystick box can move the robot.
     Refuse,
 }
 
 decision_table! {
-    /// RETURN: how a robot comes back that is neither at a known place nor on its way (IV.3.3 step 19;
-    /// docs/design/recovery.md "Return"). The controller knows no obstacles: the robot goes back on the path on which
-    /// the joystick box has moved it, else on a short straight line that the task data allow. Planning consults it
-    /// when a motion command comes; no header names its rows.
+    /// RETURN: the return of a robot that is neither at a known place nor on its way (IV.3.3 step 19;
+    /// docs/design/recovery.md "Return"). The controller knows no obstacles. Therefore the robot retraces the path
+    /// recorded while the joystick box moved it, or moves along a short straight line that the task data allow.
+    /// Planning consults this table for a new motion command. Headers do not name its rows.
     pub RETURN: fn returning(self::Lost) -> self::Return {
         1: resolvers: Unknown                    => Refuse;
         2: course: Adrift                        => Refuse;

@@ -2,19 +2,18 @@
 
 use rcs_core::{Actions, decision_table};
 
-/// What is done about where the robot is.
+/// The search for the robot's place.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Actions)]
 pub enum Look {
-    /// Nothing.
+    /// Do not search.
     Rest,
-    /// Look at some more location points for the one at which the robot stands.
+    /// Search more location points for the one at which the robot is.
     Look,
 }
 
 decision_table! {
-    /// SEARCH: while E-PAUSE is the command, the location points are looked through for the one at which the
-    /// robot stands. Preprocess consults it every tick, because the tables ask for what it finds; no header
-    /// names its rows.
+    /// SEARCH: during E-PAUSE, search the location points for the one at which the robot is. Preprocess consults this
+    /// table in every tick, because other tables read the result. Headers do not name its rows.
     pub SEARCH: fn search(super::Watch) -> Look {
         1: place: Known | Unknown                                               => Rest;
         2: place: Searching, pause: Other                                       => Rest;

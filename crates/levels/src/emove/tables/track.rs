@@ -5,75 +5,74 @@ use rcs_core::{Actions, Plain, Variables, decision_table};
 use super::Knowledge;
 pub use interfaces::track::Course;
 
-/// The process or person that moves the robot.
+/// The source of the robot's motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Mover {
     /// The joystick box has the robot, or has had it since the last motion of E-move.
     Box,
-    /// Prim has a motion from E-move.
+    /// Prim executes a motion from E-move.
     Emove,
-    /// Neither: Prim holds the robot, or brings it to rest.
+    /// None: Prim holds the robot, or brings it to rest.
     Hold,
 }
 
-/// The link to the robot controller, seen from the arm.
+/// The link to the robot controller, relative to the arm.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum EmoveLine {
-    /// It has not failed.
+    /// The link has not failed.
     Sound,
-    /// It has failed, or Prim restarts it: the arm may sink.
+    /// The link has failed, or Prim restarts it: the arm may sink.
     Failed,
 }
 
-/// The present pose, seen from the end of the record.
+/// The present pose, relative to the end of the record.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum TrackStep {
-    /// Near it: no farther than the robot moves in a few ticks.
+    /// Near the end: no farther than the robot moves in a few ticks.
     Near,
-    /// Far from it, and near another part of the record: E-move has moved the robot back along it.
+    /// Far from the end, but near another part of the record: E-move has moved the robot back along it.
     Back,
-    /// Far from all of it: E-move was not stepped for a while.
+    /// Far from all parts of the record: E-move was not stepped for a while.
     Far,
 }
 
-/// The state variables.
 #[derive(Clone, Copy, Debug, Variables)]
 pub struct Tracking {
-    /// Is the place or the way of the robot known?
+    /// Knowledge of the robot's place or way.
     pub place: Knowledge,
-    /// What is known of the path so far.
+    /// Knowledge of the path so far.
     pub course: Course,
-    /// What moves the robot.
+    /// The source of the robot's motion.
     pub mover: Mover,
-    /// The link.
+    /// The link to the robot controller.
     pub line: EmoveLine,
-    /// The present pose.
+    /// The present pose, relative to the record.
     pub step: TrackStep,
 }
 
-/// What is done with the record.
+/// The change of the record.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Actions)]
 pub enum TrackChange {
-    /// Nothing.
+    /// No change.
     Keep,
-    /// Drop it, and note the present pose.
+    /// Clear the record, and store the present pose.
     Note,
-    /// Begin it at the pose of the tick before.
+    /// Start the record at the pose of the tick before.
     Begin,
     /// Add the present pose.
     Add,
-    /// Shorten it to the present pose.
+    /// Shorten the record to the present pose.
     Shorten,
     /// A part of the path is missing from now on.
     Break,
-    /// The robot has moved by itself.
+    /// The robot has moved without a command.
     Drift,
 }
 
 decision_table! {
-    /// TRACK: the path on which the joystick box moves the robot away from its last known place or way is recorded,
-    /// so that the robot can go back on it (docs/design/recovery.md "Return"). Preprocess consults it every tick;
-    /// no header names its rows.
+    /// TRACK: record the path on which the joystick box moves the robot away from its last known place or way, so
+    /// that the robot can retrace it (docs/design/recovery.md "Return"). Preprocess consults this table in every
+    /// tick. Headers do not name its rows.
     pub TRACK: fn track(self::Tracking) -> self::TrackChange {
         1:  place: Known                                          => Note;
         2:  course: None | Adrift                                 => Keep;

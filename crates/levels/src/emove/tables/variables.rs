@@ -2,12 +2,12 @@
 
 use rcs_core::Plain;
 
-/// Is it known?
+/// Knowledge of a fact.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Knowledge {
-    /// It is.
+    /// The fact is known.
     Known,
-    /// It is not.
+    /// The fact is not known.
     Unknown,
 }
 
@@ -18,31 +18,31 @@ pub(in crate::emove) const fn known(known: bool) -> Knowledge {
 /// `.R` at the terminal of board 2 (IV.3.3 step 2).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Initialization {
-    /// It was not entered, was entered and done, or waits until the pause stands.
+    /// The operator did not enter it, it is done, or it waits until the pause is done.
     None,
-    /// It was entered: Prim is to initialize the link.
+    /// The operator entered it: Prim must initialize the link.
     Asked,
     /// Prim has initialized the link, or has failed to.
     Over,
 }
 
-/// Is the command E-PAUSE?
+/// Progress of E-PAUSE.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Pause {
-    /// It is another one.
+    /// The command is another one.
     Other,
     /// The processes below do not pause yet.
     UnderWay,
-    /// They do.
+    /// The processes below pause.
     Standing,
 }
 
 /// The process that has the last order of the current command.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum EmoveRecipient {
-    /// Nothing was ordered yet.
+    /// None: no order yet.
     Nothing,
-    /// Prim. Fingers that open on the way are not waited for here.
+    /// Prim. No row waits here for fingers that open on the way.
     Prim,
     /// Prim, with a GO-UNTIL that may end without contact.
     GoUntil,
@@ -50,7 +50,7 @@ pub enum EmoveRecipient {
     Nearing,
     /// The attached gripper.
     Gripper,
-    /// The attached gripper, in a holster: Prim holds the robot there.
+    /// The attached gripper, in a holster where Prim holds the robot.
     GripperInHolster,
     /// Quick Change. If the command has moved the robot, Prim holds it.
     QuickChange,
@@ -63,33 +63,33 @@ pub enum EmoveRecipient {
 /// The condition of a guarded move.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum EmoveContact {
-    /// It has not come.
+    /// The condition has not occurred.
     Awaited,
-    /// It has ended a GO-WHILE.
+    /// The condition has ended a GO-WHILE.
     Met,
-    /// The robot stands at the goal, and the condition has not come for a second.
+    /// The robot is at rest at the goal, and the condition has not occurred within a second.
     Missed,
 }
 
 /// The opening of the fingers for the goal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum EmoveOpening {
-    /// None is needed, or a release must end first.
+    /// No opening is needed, or a release must end first.
     Free,
-    /// The fingers are at rest at it, and it was not ordered.
+    /// The fingers are at rest at the opening without an order.
     Reached,
-    /// It is not ordered yet.
+    /// The opening is not ordered yet.
     Due,
-    /// It is ordered.
+    /// The opening is ordered.
     Sent,
 }
 
-/// The departure of the robot from the place that it leaves.
+/// The departure of the robot from its place.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Departure {
-    /// It is at a known place, and no depart point lies ahead.
+    /// The robot is at a known place, and no depart point is left.
     AtPlace,
-    /// It is off its path, on the path back, or before the last depart point: the fingers must not move.
+    /// The robot is off its path, on the path back, or before the last depart point: the fingers must not move.
     UnderWay,
     /// The robot has left the place.
     Over,
@@ -100,7 +100,7 @@ pub enum Departure {
 pub enum ReleaseWork {
     /// No release is under way.
     None,
-    /// A release that was begun where the robot stands has not ended.
+    /// A release that began at the robot's place has not ended.
     UnderWay,
 }
 
@@ -113,35 +113,35 @@ pub enum EmoveCalibration {
     Missing,
 }
 
-/// What was held when the command came.
+/// The held object, compared with that at the start of the command.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum EmoveLoad {
-    /// It is held still, or nothing was.
+    /// The object is still held, or none was held.
     Kept,
-    /// It is no longer between the fingers.
+    /// The object is no longer between the fingers.
     Lost,
-    /// The gripper has gone, and it with the gripper.
+    /// The gripper is gone, with the object.
     GripperGone,
-    /// The ring is locked, and the id pins say that the gripper has gone.
+    /// The ring is locked, but the id pins report no gripper.
     PinsFail,
 }
 
-/// What closed fingers have between them.
+/// The contents of closed fingers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Fingers {
-    /// Nothing, or nothing of the object's size. So it is if something counts as held and has been half let
-    /// go: a release of it has not ended, or the fingers rest and do not feel or press it.
+    /// Nothing, or nothing of the object's size. Also if a held object is partly released: its release has not ended,
+    /// or fingers at rest neither detect nor press it.
     Empty,
-    /// Something.
+    /// An object.
     Gripping,
 }
 
-/// Are the fingers as wide open as letting go of the object would leave them?
+/// The opening of the fingers, compared with the one after a release.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Spread {
-    /// They are not.
+    /// The fingers are less open.
     Narrow,
-    /// They are, or there are none.
+    /// The fingers are as wide open, or the robot has none.
     Open,
     /// The gripper is not calibrated.
     Unknown,
@@ -152,16 +152,16 @@ pub enum Spread {
 pub enum EmoveLink {
     /// Prim does not command the robot.
     Down,
-    /// It does.
+    /// Prim commands the robot.
     Up,
 }
 
-/// Do the fingers do what they were told last?
+/// The motion of the fingers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum FingerMotion {
-    /// They have done it, or were told nothing that moves them.
+    /// The fingers have executed their last order, or it required no motion.
     AtRest,
-    /// They move.
+    /// The fingers are moving.
     Moving,
 }
 
@@ -170,85 +170,85 @@ pub enum FingerMotion {
 pub enum Tooling {
     /// Not read or not calibrated yet.
     Busy,
-    /// Read, and calibrated if it must be. The ring may stand half-way.
+    /// Read, and calibrated if required. The ring may be between its ends.
     Ready,
-    /// The quick change reports an error.
+    /// Quick Change reports an error.
     RingFaulty,
     /// The gripper reports an error.
     GripFaulty,
 }
 
-/// Is it known where the robot is?
+/// Knowledge of the robot's place.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum PlaceKnowledge {
-    /// It is at a known location.
+    /// The robot is at a known location.
     Known,
-    /// Not all location points have been looked at yet.
+    /// The search has not checked all location points.
     Searching,
-    /// It is at none of them.
+    /// The robot is at no known location.
     Unknown,
 }
 
-/// Where the robot is, seen from the location of the command.
+/// The robot's place, relative to the location of the command.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum At {
     /// Elsewhere, or at no known location.
     Elsewhere,
     /// At TOOL-SAFE, the location near the tool drum (V.4.1 INSERT-TOOL).
     Before,
-    /// There.
+    /// At the location.
     There,
-    /// There, with the fingers around a tool in the drum.
+    /// At the location, with the fingers around a tool in the drum.
     InDrum,
 }
 
-/// What is mated with the quick change, seen from the gripper of the command.
+/// The gripper mated with the quick change, compared with that of the command.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Mate {
-    /// Nothing.
+    /// No gripper.
     None,
-    /// That gripper.
+    /// The gripper of the command.
     Right,
-    /// Another one.
+    /// Another gripper.
     Wrong,
 }
 
-/// What Quick Change says of its locking ring.
+/// The locking ring, by the answer of Quick Change.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Ring {
-    /// It turns, or Quick Change has not answered yet.
+    /// The ring turns, or Quick Change has not answered yet.
     Busy,
-    /// It is locked.
+    /// The ring is locked.
     Locked,
-    /// It is unlocked.
+    /// The ring is unlocked.
     Unlocked,
-    /// It is stuck, its sensors fail, or Quick Change does not answer.
+    /// The ring is stuck, its sensors fail, or Quick Change does not answer.
     Faulty,
 }
 
-/// Where its two sensors see the locking ring.
+/// The locking ring, by its two sensors.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Lock {
     /// Locked.
     Locked,
     /// Unlocked.
     Unlocked,
-    /// In between.
+    /// Between both ends.
     Between,
-    /// Both see it, or Quick Change does not answer.
+    /// Both sensors respond, or Quick Change does not answer.
     Faulty,
 }
 
-/// Where the robot is in the exchange that the command asks for, by the resolvers.
+/// The robot's position in the exchange of the command, by the resolvers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum ExchangePosition {
-    /// Nowhere on it.
+    /// Not in the exchange.
     Off,
-    /// Above the gripper, clear of the holster: where a bare robot comes from.
+    /// Above the gripper, clear of the holster: the start of a bare robot.
     Above,
-    /// Between there and the point close to the gripper.
+    /// Between that point and the point close to the gripper.
     Out,
-    /// Close to the gripper, or between there and the seat.
+    /// Close to the gripper, or between that point and the seat.
     Coming,
     /// On the gripper at its seat.
     Seat,
@@ -258,82 +258,83 @@ pub enum ExchangePosition {
     Low,
     /// A distance out of the holster.
     Lifting,
-    /// Between there and the upper point.
+    /// Between that point and the upper point.
     Raising,
     /// At the upper point, clear of the holster with a gripper.
     Clear,
 }
 
-/// The fingers, for the way through the holster.
+/// The fingers, compared with the opening for the path through the holster.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Shut {
-    /// They are at the opening for it.
+    /// The fingers are at that opening.
     Shut,
-    /// They are not, or it is not known.
+    /// The fingers are at another opening, or it is unknown.
     Open,
-    /// They cannot be brought there: the gripper is not calibrated.
+    /// The gripper is not calibrated, so that the fingers cannot move to that opening.
     Raw,
 }
 
-/// What the four sensors of the command's holster see (V.1.2 hol-R-status …).
+/// Reading of the four sensors of the command's holster (V.1.2 hol-R-status …).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum EmoveHolster {
-    /// Nothing.
+    /// No sensor responds.
     Empty,
-    /// Something, but no gripper at its seat.
+    /// Some sensors respond: no gripper is at its seat.
     Partial,
-    /// A gripper at its seat: all four see its ears.
+    /// All four sensors detect the ears of a gripper at its seat.
     Full,
 }
 
 /// The attached gripper after an order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Readiness {
-    /// It has done what was ordered.
+    /// The gripper has executed the order.
     Ready,
-    /// It has, and must be calibrated: the parts gripper, attached for the first time (VI.3.1 UP-INIT).
+    /// The gripper has executed the order, and must be calibrated: the parts gripper, attached for the first time
+    /// (VI.3.1 UP-INIT).
     Uncalibrated,
-    /// It has not.
+    /// The gripper has not executed the order.
     Faulty,
 }
 
-/// Has vision answered the last request?
+/// The answer of vision to the last request.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum VisionAnswer {
-    /// Not yet.
+    /// No answer yet.
     Waiting,
-    /// It has.
+    /// Vision has answered.
     Answered,
-    /// It has not for four seconds.
+    /// Vision has not answered for four seconds.
     Silent,
 }
 
-/// What vision has answered.
+/// The content of the answer from vision.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Sight {
-    /// It sees the object.
+    /// Vision sees the object.
     Seen,
     /// It sees nothing.
     Missing,
-    /// It sees something else.
+    /// Vision sees another object.
     Unrecognised,
-    /// It says what cannot be, or the robot is not where it was sent.
+    /// The answer is impossible, or the robot is not at its commanded place.
     Implausible,
 }
 
-/// Where the open fingers would be at the object that vision has found.
+/// The open fingers at the object found by vision, relative to its array.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum EmoveReach {
-    /// Within the array of the object's sector, or at a place that is no sector.
+    /// Within the array of the object's sector, or at a place without sectors.
     Inside,
     /// Beyond the edge of the array.
     Outside,
 }
 
-/// May a picture be taken again?
+/// The attempts left for a picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Tries {
-    /// Yes, with other parameters.
+    /// Another picture with other parameters is allowed.
     Left,
     /// No.
     Spent,

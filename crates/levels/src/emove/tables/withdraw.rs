@@ -3,7 +3,7 @@
 use rcs_core::decision_table;
 
 decision_table! {
-    /// WITHDRAW (V.2.1): a DELTA-MOVE from above E-move.
+    /// WITHDRAW (V.2.1): a DELTA-MOVE commanded by Subtask.
     pub WITHDRAW: fn withdraw(enum WithdrawStep, struct of super::Senses) -> super::Action {
         any {
             1: work: Busy  => Wait;
@@ -12,7 +12,7 @@ decision_table! {
         Start {
             2: otherwise   => DeltaMove(Withdraw)  -> Moving;
         }
-        /// The robot is on its way.
+        /// The robot is moving.
         Moving {
             3: otherwise   => Stand;
         }

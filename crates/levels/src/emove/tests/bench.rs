@@ -1,4 +1,4 @@
-//! E-move in the bench of all processes, with the doubles of its neighbours. The test is Subtask.
+//! A bench of E-move with doubles of its neighbours. The test acts as Subtask.
 
 use std::sync::OnceLock;
 
@@ -24,11 +24,10 @@ use crate::{
     emove::Emove,
 };
 
-/// The task data of the tests.
 pub fn data() -> TaskData<'static> {
     static STORE: OnceLock<Store> = OnceLock::new();
     let store = STORE.get_or_init(|| {
-        // More location points than are looked at while Prim pauses.
+        // More location points than one pause searches.
         let many: String = (0..720)
             .map(|n| {
                 let block = if n % 15 == 0 {
@@ -49,18 +48,17 @@ pub fn data() -> TaskData<'static> {
     store.view()
 }
 
-/// An end effector id as records have it; 0 is none.
+/// The id of an end effector, from its code in a record; 0 is none.
 pub fn given(id: u8) -> Option<u8> {
     (id != 0).then_some(id)
 }
 
-/// The frame of a location point.
 pub fn frame_of(location: &str) -> Frame {
     let id = data().locpt_named(&Name16::clipped(location)).expect("a location point");
     data().locpt(id).expect("its record").frame
 }
 
-/// A frame with movetables applied, one after the other.
+/// A frame with movetables applied in sequence.
 pub fn moved(frame: Frame, movetables: &[&str]) -> Frame {
     movetables.iter().fold(frame, |frame, name| {
         let id = data().movetable_named(&Name16::clipped(name)).expect("a movetable");
@@ -70,7 +68,7 @@ pub fn moved(frame: Frame, movetables: &[&str]) -> Frame {
 
 pub type Bench = bench::Bench<Emove, Cell, TaskData<'static>>;
 
-/// A command of Subtask: object, its grip, location and gripper.
+/// A command of Subtask: verb, object, grip, location and gripper.
 pub type EmoveLine = (EmoveVerb, &'static str, i32, &'static str, u8);
 
 pub type End = (StatusReport, Reason);
@@ -80,7 +78,7 @@ impl<'d> Tested<TaskData<'d>> for Emove {
     type End = End;
     const LONGEST: u64 = 1000;
 
-    /// Its location and the records of the object are looked up as Subtask would.
+    /// Location and records of the object are looked up as by Subtask.
     fn order(memory: &mut CommonMemory, (verb, object, grip, location, gripper): EmoveLine, number: u32) {
         let (object, place) = (Name16::clipped(object), Name16::clipped(location));
         let data = data();
@@ -112,7 +110,7 @@ impl<'d> Tested<TaskData<'d>> for Emove {
 }
 
 impl Bench {
-    /// A cell whose robot stands at a location with a gripper; the other grippers are in their holsters.
+    /// A robot at a location with a gripper; the other grippers are in their holsters.
     pub fn new(location: &str, gripper: u8) -> Self {
         Self::of(location, gripper, None)
     }
@@ -130,18 +128,18 @@ impl Bench {
         bench
     }
 
-    /// The same after E-PAUSE: the link runs, and it is known where the robot is.
+    /// The same after E-PAUSE: the link is up, and the robot's place is known.
     pub fn ready(location: &str, gripper: u8) -> Self {
         let mut bench = Self::new(location, gripper);
         assert_eq!(bench.pause(), DONE);
-        // A robot in a holster or at the tool drum may be there in more than one way.
+        // In a holster or at the tool drum, more than one place is possible.
         let plain = !location.starts_with("HOLSTER") && location != "TOOL-TRNS";
         assert_eq!(bench.at(), if plain { location } else { "" });
         bench.world.log.clear();
         bench
     }
 
-    /// Send a command when E-move has seen what the test has changed, by way of its neighbours.
+    /// Send a command after E-move has read, through its neighbours, the changes of the test.
     pub fn command(
         &mut self,
         verb: EmoveVerb,
@@ -171,12 +169,11 @@ impl Bench {
         self.finish()
     }
 
-    /// [`Self::run`] of a line.
     pub fn perform(&mut self, (verb, object, grip, location, gripper): EmoveLine) -> End {
         self.run(verb, object, grip, location, gripper)
     }
 
-    /// Perform a line. How near the robot comes to each of some frames, in.
+    /// Perform a line. Returns the smallest distance of the robot from each frame, in.
     pub fn pass<const N: usize>(&mut self, line: EmoveLine, frames: [Frame; N]) -> [f64; N] {
         let mut nearest = [f64::INFINITY; N];
         self.world.log.clear();
@@ -197,7 +194,7 @@ impl Bench {
         self.run(EmoveVerb::Pause, "", 0, "", 0)
     }
 
-    /// PAUSE at once. How many motions Prim was commanded before.
+    /// PAUSE at once. Returns the number of motions commanded to Prim before.
     pub fn stop(&mut self) -> usize {
         assert_eq!(self.execute(PAUSE), DONE, "{:?}", self.world.log);
         let motions = self.motions().len();
@@ -205,13 +202,13 @@ impl Bench {
         motions
     }
 
-    /// E-move is restarted; its output buffers stay.
+    /// Restart E-move, and keep its output buffers.
     pub fn restart_and_finish(&mut self) {
         self.restart();
         assert_eq!(self.finish(), error(Reason::Restarted));
     }
 
-    /// A person has the robot with the joystick box, and does something with it.
+    /// The operator takes the robot with the joystick box and acts on the bench.
     pub fn lead(&mut self, does: impl FnOnce(&mut Self)) {
         self.world.joystick = true;
         self.wait(5);
@@ -221,14 +218,13 @@ impl Bench {
         self.wait(8);
     }
 
-    /// The robot does not move.
     pub fn assert_stands(&mut self) {
         let there = self.world.frame;
         self.wait(8);
-        assert!(self.off(&there) < 0.01, "it moves: {:?}", self.world.log);
+        assert!(self.off(&there) < 0.01, "the robot moves: {:?}", self.world.log);
     }
 
-    /// A parts gripper with something of a size between its fingers, and an E-move that knows nothing of it.
+    /// A parts gripper with an object between its fingers that E-move cannot name.
     pub fn with_unknown(location: &str, size: i32) -> Self {
         let mut bench = Self::new(location, 1);
         (bench.world.grip.opening, bench.world.object) = (size, Some(size));
@@ -237,7 +233,7 @@ impl Bench {
         bench
     }
 
-    /// A restarted E-move no longer knows that the fingers were empty.
+    /// Restart E-move without the estimate that the fingers were empty.
     pub fn forget_empty(&mut self) {
         self.wait(3);
         self.restart();
@@ -245,14 +241,14 @@ impl Bench {
         assert_eq!(self.pause(), DONE);
     }
 
-    /// The motions that Prim was commanded.
+    /// The motions commanded to Prim.
     pub fn motions(&self) -> Vec<String> {
         let motions = ["GO-THRU", "GOTO-PT", "GO-UNTIL", "DELTA-MOVE"];
         let is_motion = |text: &&String| motions.iter().any(|motion| text.starts_with(motion));
         self.world.log.iter().filter(is_motion).cloned().collect()
     }
 
-    /// Copies of the cell in each tick in which a command executes.
+    /// Copies of the cell in each tick of a command.
     pub fn during(&self, line: EmoveLine) -> impl Iterator<Item = Self> {
         let mut bench = self.clone();
         bench.world.log.clear();
@@ -260,7 +256,7 @@ impl Bench {
         bench.at_every_tick()
     }
 
-    /// Let something go wrong in the command whose text contains a word.
+    /// Make a command fail whose text contains a word.
     pub fn spoil(&mut self, word: &'static str, mishap: Mishap) -> &mut Self {
         self.world.mishaps.push((word, mishap));
         self
@@ -277,28 +273,28 @@ impl Bench {
         self.world.log.iter().map(String::as_str).collect()
     }
 
-    /// Step until the neighbours have been commanded something whose text contains a word.
+    /// Step until a command to a neighbour contains a word.
     pub fn until_logged(&mut self, word: &str) {
         self.until(|bench| bench.world.log.iter().any(|text| text.contains(word)));
     }
 
-    /// How far the robot is from a frame.
+    /// Distance of the robot from a frame.
     pub fn off(&self, frame: &Frame) -> f64 {
         self.world.frame.distance(frame).path()
     }
 
-    /// The location at which the robot is; empty if it is at none.
+    /// The location of the robot; empty if it is at none.
     pub fn at(&self) -> String {
         self.memory.emove.status.at.unwrap_or_default().site.location.to_string()
     }
 
-    /// The name of the object that is held; empty if there is none with a name.
+    /// The name of the held object; empty without one.
     pub fn held(&self) -> String {
         self.memory.emove.status.held.object().unwrap_or_default().to_string()
     }
 }
 
-/// Commands that move the robot, its fingers or a tool, but none of an exchange or RELEASE.
+/// Commands that move the robot, its fingers or a tool, except exchanges and RELEASE.
 pub const ORDINARY: &[EmoveLine] = &[
     (EmoveVerb::MovToLoc, "", 0, "HOME", 1),
     (EmoveVerb::MovToObj, "BLOCK", 1, "BENCH", 1),
@@ -314,7 +310,6 @@ pub const ORDINARY: &[EmoveLine] = &[
     (EmoveVerb::RemoveTool, "CUTTER", 1, "TOOL-TRNS", 1),
 ];
 
-/// A command with a gripper at its holster.
 fn at_holster(verb: EmoveVerb, grip: i32, gripper: u8) -> EmoveLine {
     let (object, holster) =
         [("GRIPPER-1", "HOLSTER-R"), ("GRIPPER-2", "HOLSTER-L"), ("GRIPPER-3", "HOLSTER-C")]
@@ -330,14 +325,14 @@ pub fn detach(gripper: u8) -> EmoveLine {
     at_holster(EmoveVerb::QcDetach, 1, gripper)
 }
 
-/// The robot brings a gripper to its holster, in grip 1, or comes bare to fetch it, in grip 2.
+/// The robot brings a gripper to its holster (grip 1), or comes bare to fetch it (grip 2).
 pub fn to_holster(grip: i32, gripper: u8) -> EmoveLine {
     at_holster(EmoveVerb::MovToHol, grip, gripper)
 }
 
 pub const PAUSE: EmoveLine = (EmoveVerb::Pause, "", 0, "", 0);
 
-/// How a command that executes is interrupted before it is sent again.
+/// Interruptions of a command before it is sent again.
 pub const INTERRUPTIONS: &[fn(&mut Bench)] = &[
     |bench| assert_eq!(bench.execute(PAUSE), DONE, "{:?}", bench.world.log),
     |bench| {

@@ -15,7 +15,7 @@ use super::{
 };
 
 #[test]
-fn motion_is_not_done_if_the_robot_has_not_moved() {
+fn unmoved_robot_does_not_complete_the_motion() {
     let mut bench = Bench::ready("HOME", 1);
     bench.spoil("GOTO-PT", Mishap::Stays);
     assert_eq!(bench.run(MovToLoc, "", 0, "VISE", 0), error(Reason::NotAtGoal));
@@ -23,7 +23,7 @@ fn motion_is_not_done_if_the_robot_has_not_moved() {
 }
 
 #[test]
-fn motion_is_not_done_if_the_arm_hangs_beside_the_goal() {
+fn arm_off_the_goal_does_not_complete_the_motion() {
     for (sag, end, offset) in [
         (0.01, DONE, Offset::None),
         (0.04, DONE, Offset::Slight),
@@ -37,7 +37,7 @@ fn motion_is_not_done_if_the_arm_hangs_beside_the_goal() {
 }
 
 #[test]
-fn withdrawal_is_not_done_if_the_arm_hangs_beside_the_commanded_pose() {
+fn arm_off_the_commanded_pose_does_not_complete_the_withdrawal() {
     let mut bench = Bench::ready("BENCH", 1);
     bench.world.prim.sag = Vector::new(0.0, 0.1, 0.0);
     assert_eq!(bench.run(Withdraw, "", 0, "BENCH", 0), error(Reason::NotAtGoal));
@@ -61,10 +61,10 @@ fn only_the_parts_gripper_confirms_the_grasp_force() {
     }
 }
 
-/// The seat of an object on which the fingers have closed, when a person has led the robot since, and the robot grasps it
-/// again, brings it to the vise and fetches it again.
+/// The operator moves the robot with a held part. Then the robot grasps it again, brings it to the vise and fetches
+/// it.
 #[test]
-fn part_with_which_a_person_has_led_the_robot_has_no_confirmed_place_in_the_fingers() {
+fn part_held_during_manual_motion_has_an_unconfirmed_seat() {
     for (gripper, object, size, sensed) in
         [(1, "BLOCK", 75, Unconfirmed::None), (2, "SHAFT", 204, Unconfirmed::GraspForce)]
     {
@@ -80,19 +80,19 @@ fn part_with_which_a_person_has_led_the_robot_has_no_confirmed_place_in_the_fing
             assert_eq!(bench.memory.emove.status.unconfirmed, Unconfirmed::PartInFingers, "{object} {verb}");
         }
         assert_eq!(bench.run(Release, object, 1, "VISE", gripper), DONE);
-        assert_eq!(bench.memory.emove.status.seat, Seat::NotKnown, "as it was placed");
+        assert_eq!(bench.memory.emove.status.seat, Seat::NotKnown, "seat of the placed object");
         bench.world.object = Some(size);
         assert_eq!(bench.run(GraspObj, object, 1, "VISE", gripper), DONE);
         assert_eq!(
             bench.memory.emove.status.unconfirmed,
             Unconfirmed::PartInFingers,
-            "it lies as it was held"
+            "the regrasped object keeps its seat"
         );
     }
 }
 
 #[test]
-fn picture_shows_where_a_part_is_that_was_let_go_with_an_unknown_place_in_the_fingers() {
+fn picture_locates_a_part_released_with_an_unconfirmed_seat() {
     let mut bench = Bench::ready("BENCH", 1);
     bench.world.object = Some(75);
     assert_eq!(bench.run(GraspObj, "BLOCK", 1, "BENCH", 1), DONE);
@@ -107,9 +107,9 @@ fn picture_shows_where_a_part_is_that_was_let_go_with_an_unknown_place_in_the_fi
     assert_eq!(bench.memory.emove.status.unconfirmed, Unconfirmed::None);
 }
 
-/// Prim keeps `done` of its last command while the arm sinks: nothing was commanded since.
+/// Prim keeps `done` of its last command while the arm sinks.
 #[test]
-fn part_in_the_fingers_of_an_arm_without_pressure_has_no_confirmed_place() {
+fn part_held_by_an_arm_without_pressure_has_an_unconfirmed_seat() {
     for is_closing in [false, true] {
         let mut bench = Bench::ready("BENCH", 1);
         bench.world.object = Some(75);
@@ -128,7 +128,7 @@ fn part_in_the_fingers_of_an_arm_without_pressure_has_no_confirmed_place() {
 }
 
 #[test]
-fn part_that_was_just_released_may_be_pushed_by_an_arm_without_pressure() {
+fn released_part_near_an_arm_without_pressure_has_an_unconfirmed_place() {
     let mut bench = Bench::ready("VISE", 1);
     bench.hold("BLOCK", 75, 1);
     assert_eq!(bench.run(Release, "BLOCK", 1, "VISE", 1), DONE);
@@ -142,10 +142,10 @@ fn part_that_was_just_released_may_be_pushed_by_an_arm_without_pressure() {
     }
 }
 
-/// No picture is taken in the vise. A person leads the robot beside the object before it is grasped, or far from it. An
-/// object that is let go with an unknown place in the fingers keeps it.
+/// No picture is taken in the vise. The operator moves the robot near the object before the grasp, or far from it. A
+/// released object keeps its unconfirmed seat.
 #[test]
-fn part_beside_which_a_person_has_led_the_empty_robot_has_no_confirmed_place_in_the_fingers() {
+fn part_near_manual_motion_of_the_empty_robot_has_an_unconfirmed_seat() {
     for (led_at, fetched_at, unconfirmed) in [
         ("VISE", "VISE", Unconfirmed::PartInFingers),
         ("VISE", "BENCH", Unconfirmed::None),
@@ -168,7 +168,7 @@ fn part_beside_which_a_person_has_led_the_empty_robot_has_no_confirmed_place_in_
 }
 
 #[test]
-fn empty_fingers_have_nothing_that_slides() {
+fn manual_motion_with_empty_fingers_keeps_the_seat() {
     let mut bench = Bench::ready("HOME", 1);
     bench.lead(|_| {});
     bench.pause();

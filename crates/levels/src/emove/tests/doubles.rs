@@ -1,5 +1,5 @@
-//! Test doubles of E-move's neighbours, each a dozen lines that do what the manual's chapter says of the process, and
-//! the cell that they share.
+//! Test doubles of E-move's neighbours, each with a few lines from the manual's chapter on the process, and their
+//! cell.
 
 use std::ops::{Deref, DerefMut};
 
@@ -29,50 +29,50 @@ use crate::{
     places::pose_of,
 };
 
-/// Ticks that a double takes for a command.
+/// Ticks for which a double executes a command.
 const TICKS: u32 = 4;
 
-/// The farthest that Prim goes in a tick if it goes by steps, in.
+/// Largest step of a stepwise motion of Prim, in.
 const STEP: f64 = 0.5;
-/// It turns to the next point this far before a point that it goes through, in.
+/// Distance before a through point at which Prim turns to the next point, in.
 const ROUNDED: f64 = 1.0;
 
 const fn is_motion(verb: PrimVerb) -> bool {
     !matches!(verb, PrimVerb::None | PrimVerb::Pause | PrimVerb::RobotInit | PrimVerb::CalSensor)
 }
 
-/// A share of the way from one frame to another.
+/// A frame at a fraction of the path between two frames.
 fn toward(from: &Frame, to: &Frame, share: f64) -> Frame {
     let turn = rotation_vector(&(from.rotation.inverse() * to.rotation));
     Frame { position: from.position + (to.position - from.position) * share, ..*from }
         .turned(&rotation_by(&(turn * share)))
 }
 
-/// What happens to a command whose text contains a word.
+/// The failure of a command whose text contains a word.
 #[derive(Clone, Copy, Debug)]
 pub enum Mishap {
     /// Prim reports this at the end.
     Prim(PrimReport, Reason),
     /// Grip reports `serror`.
     Grip(Reason),
-    /// V-Grip or Tool-Grip reports this wherever the fingers are.
+    /// V-Grip or Tool-Grip reports this at any opening.
     Jaws(JawsReport),
-    /// Quick Change reports this for ever.
+    /// Quick Change always reports this.
     Ring(QuickChangeReport),
     Joystick,
-    /// What is between the fingers slips out.
+    /// The object slips out of the fingers.
     Slip,
-    /// Prim reports done, and the robot has not moved.
+    /// Prim reports done, but the robot has not moved.
     Stays,
-    /// The gripper stays on the robot, or drops off it, or is another one.
+    /// The gripper stays on the robot, drops off it, or is another one.
     Mated(u8),
-    /// The sensors of the holster see this.
+    /// The sensors of the holster read this.
     Holster(u8),
-    /// Grip never ends.
+    /// Grip never completes.
     Never,
 }
 
-/// The cell with the doubles in it.
+/// The cell with the doubles.
 #[derive(Clone)]
 pub struct Cell {
     scene: Scene,
@@ -87,16 +87,16 @@ pub struct Cell {
     pub dead: Vec<&'static str>,
 }
 
-/// What is where, and what goes wrong.
+/// State of the cell, and its failures.
 #[derive(Clone)]
 pub struct Scene {
     pub frame: Frame,
-    /// The gripper that is mated, and what hangs in the holsters right, left, centre.
+    /// The mated gripper, and the grippers in the holsters right, left, centre.
     pub mated: u8,
     pub resident: [u8; 3],
     pub holsters: [u8; 3],
     pub locked: bool,
-    /// Size of what is where the fingers are, 0.01 in.
+    /// Size of the object at the fingers, 0.01 in.
     pub object: Option<i32>,
     pub joystick: bool,
     /// The gripper button that is pressed.
@@ -106,7 +106,7 @@ pub struct Scene {
     pub log: Vec<String>,
     /// Answers of vision; `Done` after the last.
     pub answers: Vec<VisionStatus>,
-    /// What vision says instead of the truth: Y, Z, angle, and what it has recognised.
+    /// Wrong answers of vision: Y, Z, angle, and the recognised object.
     pub claims: Vec<(i32, i32, i32, u16)>,
 }
 
@@ -204,8 +204,8 @@ impl Scene {
         self.mishaps.iter().find(|(word, _)| text.contains(word)).map(|(_, mishap)| *mishap)
     }
 
-    /// What the holsters feel of the robot where it is, and what mates with it or drops off it there. `seats`
-    /// are the poses of the holsters right, left, centre.
+    /// Update the sensors of the holsters and the mated gripper. `seats` are the poses of the holsters right, left,
+    /// centre.
     pub fn feel_holsters(&mut self, seats: [Frame; 3]) {
         for ((which, id), base) in (0..3).zip(1..).zip(seats) {
             let Frame { position: at, .. } = base.inverse().compose(&self.frame);
@@ -226,7 +226,7 @@ impl Scene {
         }
     }
 
-    /// A motion has ended: what that does to grippers and holsters.
+    /// Effect of a completed motion on grippers and holsters.
     fn moved(&mut self, text: &str, gripper: u8) {
         let which = usize::from(gripper.clamp(1, 3)) - 1;
         let seen = &mut self.holsters[which];
@@ -251,7 +251,7 @@ impl Scene {
     }
 }
 
-/// Works on commands that it writes into a log.
+/// Executes commands, and writes them into a log.
 #[derive(Clone, Default)]
 struct Receiving {
     worker: Worker,
@@ -276,14 +276,14 @@ impl Receiving {
     }
 }
 
-/// Prim: is where it is sent after a while, or goes there by steps.
+/// Prim: reaches its goal after a delay, or in steps.
 #[derive(Clone, Default)]
 pub struct Prim {
     pub by_steps: bool,
-    /// The arm hangs so far from where it was sent.
+    /// Offset of the arm from its commanded position.
     pub sag: Vector,
     receiving: Receiving,
-    /// It tells T3I to begin the link anew.
+    /// Prim orders T3I to restart the link.
     pub restarts: bool,
     pub report: PrimReport,
     pub reason: Reason,
@@ -337,10 +337,10 @@ impl Prim {
         self.outputs(tick, world)
     }
 
-    /// A step towards the goal. True if the motion has come to its end.
+    /// A step towards the goal. True if the motion has ended.
     fn go(memory: &CommonMemory, world: &mut Scene) -> bool {
         let command = &memory.emove.prim;
-        let goal = Self::goal(memory).expect("Prim is sent to records that exist");
+        let goal = Self::goal(memory).expect("a command to Prim names existing records");
         let sensor = command.sensor.unwrap_or_default();
         let condition = |world: &Scene| {
             let bits = match sensor.as_str() {
@@ -377,7 +377,7 @@ impl Prim {
             PrimVerb::CalSensor => self.calibrated |= self.report == PrimReport::Done,
             PrimVerb::None | PrimVerb::Pause => {}
             _ if matches!(self.report, PrimReport::Done | PrimReport::NotDetected) => {
-                world.frame = Self::goal(memory).expect("Prim is sent to records that exist");
+                world.frame = Self::goal(memory).expect("a command to Prim names existing records");
                 world.moved(text, memory.subtask.emove.end_effector_id.unwrap_or(1));
             }
             _ => {}
@@ -410,7 +410,7 @@ impl Prim {
 pub struct Ring {
     receiving: Receiving,
     failed: Option<QuickChangeReport>,
-    /// It stands half-way until it is told to turn.
+    /// The ring is between its ends until an order turns it.
     pub half: bool,
 }
 
@@ -452,12 +452,12 @@ impl Ring {
     }
 }
 
-/// Publish again what a dormant process wrote last.
+/// Publish the last output of a dormant process again.
 fn sleep(header: &mut Header, tick: Tick) {
     (header.stamp, header.republished) = (tick, true);
 }
 
-/// Grip: opens and closes to what it is told, or to the object.
+/// Grip: opens and closes to the commanded opening, or to the object.
 #[derive(Clone)]
 pub struct Grip {
     receiving: Receiving,
@@ -465,7 +465,7 @@ pub struct Grip {
     reason: Reason,
     pub initialized: bool,
     pub opening: i32,
-    /// What both fingers feel, lb.
+    /// Force on each finger, lb.
     pub force: i32,
 }
 
@@ -590,7 +590,7 @@ impl Jaws {
     }
 }
 
-/// Vision: answers what it is told to, a little off the middle of the picture.
+/// Vision: answers with the commanded status, and a small offset from the middle of the picture.
 #[derive(Clone, Default)]
 pub struct EmoveVision {
     left: u32,

@@ -37,7 +37,7 @@ pub const SCENARIOS: &[fn()] = &[
     contact_before_the_drum_is_reported_as_occupied_drum,
     insert_tool_requires_a_calibration_at_tool_safe,
     tool_commands_refuse_an_unknown_object,
-    robot_moved_away_from_the_drum_forgets_the_tool_command,
+    robot_moved_away_from_the_drum_clears_the_tool_command,
 ];
 
 const INSERTION: &[&str] =
@@ -57,21 +57,21 @@ fn loaded() -> Bench {
     bench
 }
 
-/// A robot whose tool is in the drum.
+/// A robot with its tool in the drum.
 fn inserted() -> Bench {
     let mut bench = loaded();
     assert_eq!(run(&mut bench, InsertTool), DONE);
     bench
 }
 
-/// A robot before the drum with open fingers, and a tool in it.
+/// A robot before the drum with open fingers, and a tool in the drum.
 fn empty() -> Bench {
     let mut bench = Bench::ready("TOOL-SAFE", 3);
     bench.world.v_grip.opening = 350;
     bench
 }
 
-/// ACQUIRE-TOOL with a tool that comes between the fingers by the slide.
+/// ACQUIRE-TOOL; the slide brings the tool between the fingers.
 fn acquire(bench: &mut Bench) -> (StatusReport, Reason) {
     bench.world.log.clear();
     bench.command(AcquireTool, "CUTTER", 1, "TOOL-TRNS", 3);
@@ -87,7 +87,7 @@ fn tool_is_inserted_and_released() {
     assert_eq!(bench.log(), INSERTION);
     assert!(bench.off(&moved(frame_of("TOOL-TRNS"), &["INS-IN"])) < 0.02);
     assert_eq!(bench.at(), "TOOL-TRNS");
-    assert_eq!(run(&mut bench, InsertTool), DONE, "it is in");
+    assert_eq!(run(&mut bench, InsertTool), DONE, "the tool is in the drum");
     assert!(bench.log().is_empty());
     assert_eq!(run(&mut bench, ReleaseTool), DONE);
     assert_eq!(
@@ -96,7 +96,7 @@ fn tool_is_inserted_and_released() {
     );
     assert!(bench.off(&moved(frame_of("TOOL-TRNS"), &["INS-IN", "REL-SLIDE", "REL-BACK"])) < 0.02);
     assert!(!bench.memory.emove.status.held.is_held());
-    assert_eq!(run(&mut bench, ReleaseTool), DONE, "it is left");
+    assert_eq!(run(&mut bench, ReleaseTool), DONE, "the tool is released");
     assert!(bench.log().is_empty());
     assert_eq!(bench.run(MovToLoc, "", 0, "TOOL-SAFE", 0), DONE);
 }
@@ -114,11 +114,11 @@ fn tool_is_acquired_and_removed() {
     );
     assert!(bench.off(&moved(frame_of("TOOL-TRNS"), &["ACQ-STRIKE", "ACQ-SLIDE"])) < 0.02);
     assert_eq!(bench.held(), "CUTTER");
-    assert_eq!(run(&mut bench, AcquireTool), DONE, "it is held");
+    assert_eq!(run(&mut bench, AcquireTool), DONE, "the tool is held");
     assert!(bench.log().is_empty());
     assert_eq!(run(&mut bench, RemoveTool), DONE);
     assert_eq!(bench.log(), ["CAL-SENSOR", "GO-WHILE REM-OUT REM-FX"]);
-    assert_eq!(run(&mut bench, RemoveTool), DONE, "it is out");
+    assert_eq!(run(&mut bench, RemoveTool), DONE, "the tool is out");
     assert!(bench.log().is_empty());
     assert_eq!(bench.run(MovToLoc, "", 0, "TOOL-SAFE", 0), DONE);
     assert!(bench.memory.emove.status.held.is_held());
@@ -144,13 +144,13 @@ fn tool_commands_without_their_preconditions_are_refused() {
     assert_eq!(run(&mut bench, RemoveTool), error(Reason::NothingHeld));
     let mut bench = loaded();
     assert_eq!(run(&mut bench, RemoveTool), error(Reason::NotPrepared), "the tool is not in the drum");
-    assert_eq!(run(&mut bench, AcquireTool), error(Reason::NotPrepared), "it is held outside of the drum");
+    assert_eq!(run(&mut bench, AcquireTool), error(Reason::NotPrepared), "the tool is held outside the drum");
     let mut bench = Bench::ready("TOOL-SAFE", 3);
     bench.world.object = Some(248);
     assert_eq!(bench.run(EmoveVerb::GraspObj, "CUTTER", 1, "", 3), DONE);
     assert_eq!(bench.run(AcquireTool, "PIN", 1, "TOOL-TRNS", 3), error(Reason::AlreadyHolding));
     assert_eq!(bench.run(InsertTool, "PIN", 1, "TOOL-TRNS", 3), error(Reason::NothingHeld));
-    // At the drum with closed fingers, or with a tool that is not in it, letting go may do anything.
+    // At the drum, a release with closed fingers, or with a tool outside its place, is unsafe.
     let mut bench = Bench::ready("TOOL-SAFE", 3);
     assert_eq!(run(&mut bench, ReleaseTool), error(Reason::NotPrepared));
     bench.hold("CUTTER", SIZE, 3);
@@ -167,7 +167,7 @@ fn tool_commands_without_their_preconditions_are_refused() {
     assert_eq!(
         run(&mut bench, InsertTool),
         error(Reason::UnknownSensor),
-        "a move that is to be guarded and is not"
+        "the task data name no sensor for a guarded move"
     );
     let mut bench = empty();
     assert_eq!(bench.run(AcquireTool, "CUTTER", 9, "TOOL-TRNS", 3), error(Reason::UnknownGrip));
@@ -211,7 +211,7 @@ fn slipping_tool_is_reported_as_lost() {
         assert_eq!(bench.finish(), error(Reason::ObjectLost), "{verb}");
     }
     let mut bench = empty();
-    assert_eq!(run(&mut bench, AcquireTool), error(Reason::NoToolInDrum), "there is no tool");
+    assert_eq!(run(&mut bench, AcquireTool), error(Reason::NoToolInDrum), "the drum is empty");
 }
 
 #[test]
@@ -238,19 +238,19 @@ fn contact_before_the_drum_is_reported_as_occupied_drum() {
     assert_eq!(run(&mut bench, InsertTool), error(Reason::DrumOccupied));
     assert_eq!(orders(&bench), INSERTION[..3]);
     assert!(bench.memory.emove.status.held.is_held());
-    // Sent again, the command goes back to where nothing is touched, and is not calibrated on the contact.
+    // Sent again, the command returns to a place without contact, and does not calibrate during contact.
     assert_eq!(run(&mut bench, InsertTool), error(Reason::DrumOccupied));
     assert_eq!(orders(&bench), INSERTION[1..3]);
     bench.world.mishaps.clear();
     assert_eq!(run(&mut bench, InsertTool), DONE, "the drum has been emptied");
     assert_eq!(orders(&bench), &INSERTION[1..]);
-    // REMOVE-TOOL leads away, too.
+    // REMOVE-TOOL also leads away.
     let mut bench = loaded();
     bench.spoil("INS-NEAR", detected);
     assert_eq!(run(&mut bench, InsertTool), error(Reason::DrumOccupied));
     assert_eq!(run(&mut bench, RemoveTool), DONE);
     assert_eq!(bench.run(MovToLoc, "", 0, "TOOL-SAFE", 0), DONE);
-    // A sensor that fails on the way says nothing about the drum.
+    // A sensor failure on the way does not mean that the drum is occupied.
     let mut bench = loaded();
     bench.spoil("INS-NEAR", Mishap::Prim(PrimReport::SensorError, Reason::SensorError));
     assert_eq!(run(&mut bench, InsertTool), error(Reason::SensorError));
@@ -263,7 +263,7 @@ fn insert_tool_requires_a_calibration_at_tool_safe() {
         let mut bench = loaded();
         interrupt(&mut bench, InsertTool, word, frame);
         bench.world.prim.calibrated = false;
-        assert_eq!(run(&mut bench, InsertTool), refused, "{word}: the sensor was without power");
+        assert_eq!(run(&mut bench, InsertTool), refused, "{word}: the sensor has lost its power");
         assert!(orders(&bench).is_empty(), "{:?}", bench.log());
         // The remedy.
         assert_eq!(run(&mut bench, RemoveTool), DONE, "{word}");
@@ -271,20 +271,20 @@ fn insert_tool_requires_a_calibration_at_tool_safe() {
         assert_eq!(run(&mut bench, InsertTool), DONE, "{word}");
         assert_eq!(bench.log(), INSERTION, "{word}");
     }
-    // REMOVE-TOOL at once, from before the drum, leaves the calibration of TOOL-SAFE.
+    // REMOVE-TOOL at once, from before the drum, keeps the calibration of TOOL-SAFE.
     let mut bench = loaded();
     interrupt(&mut bench, InsertTool, "INS-NEAR", at(-3.0, 0.0));
     assert_eq!(run(&mut bench, RemoveTool), DONE);
     assert_eq!(run(&mut bench, InsertTool), DONE);
     assert_eq!(bench.log(), &INSERTION[1..]);
-    // REMOVE-TOOL has calibrated it at the drum.
+    // REMOVE-TOOL calibrates the sensor at the drum.
     let mut bench = inserted();
     assert_eq!(run(&mut bench, RemoveTool), DONE);
-    assert_eq!(run(&mut bench, InsertTool), refused, "the robot stands before the drum");
+    assert_eq!(run(&mut bench, InsertTool), refused, "the robot is before the drum");
     let mut bench = inserted();
     interrupt(&mut bench, RemoveTool, "REM-OUT", at(-3.0, 0.0));
     assert_eq!(run(&mut bench, InsertTool), refused, "the robot is on its way out");
-    // What E-move believes of the calibration outlives a restart of E-move.
+    // A restart of E-move keeps the place of the calibration.
     let mut bench = loaded();
     interrupt(&mut bench, InsertTool, "INS-NEAR", at(-3.0, 0.0));
     bench.restart();
@@ -298,14 +298,14 @@ fn gripper_failure_ends_the_tool_command() {
     let mut bench = inserted();
     bench.spoil("RELEASE", Mishap::Jaws(JawsReport::Stuck));
     assert_eq!(run(&mut bench, ReleaseTool), error(Reason::JawsStuck));
-    // What was half let go is not pulled out, and does not count as inserted.
+    // A partly released tool is neither pulled out nor done.
     bench.world.mishaps.clear();
     bench.world.log.clear();
     for verb in [InsertTool, RemoveTool] {
         assert_eq!(run(&mut bench, verb), error(Reason::ReleaseNotEnded), "{verb}");
     }
     assert!(bench.log().iter().all(|word| *word == "PAUSE"), "{:?}", bench.log());
-    // It is grasped anew.
+    // It is grasped again.
     bench.world.tool_grip.opening = SIZE + 50;
     bench.world.log.clear();
     assert_eq!(run(&mut bench, AcquireTool), DONE);
@@ -338,12 +338,12 @@ fn motion_failure_ends_the_tool_command() {
     }
 }
 
-/// A robot that is off the place of a tool in the drum, in, into the drum and to the left.
+/// The place of a tool in the drum, moved into the drum by `x` and to the left by `z`, in.
 fn at(x: f64, z: f64) -> Frame {
     frame_of("TOOL-TRNS").shifted(Vector::new(x, 0.0, z))
 }
 
-/// PAUSE after the order with a word, with the robot somewhere; what was ordered is no longer in the log.
+/// PAUSE after the order with a word, with the robot at a frame; clears the log.
 fn interrupt(bench: &mut Bench, verb: EmoveVerb, word: &str, frame: Frame) {
     bench.world.log.clear();
     bench.command(verb, "CUTTER", 1, "TOOL-TRNS", 3);
@@ -373,21 +373,21 @@ fn interrupted_insertion_resumes() {
         assert!(bench.memory.emove.status.drum);
         assert_eq!(run(&mut bench, ReleaseTool), DONE);
     }
-    // It may be undone as well.
+    // The insertion can be undone as well.
     let mut bench = loaded();
     interrupt(&mut bench, InsertTool, "INS-IN", at(-1.0, 0.0));
     assert_eq!(run(&mut bench, ReleaseTool), error(Reason::NotPrepared), "the tool is half in");
     assert_eq!(run(&mut bench, AcquireTool), error(Reason::NotPrepared));
     assert_eq!(run(&mut bench, RemoveTool), DONE);
     assert_eq!(bench.log().last(), Some(&"GO-WHILE REM-OUT REM-FX"));
-    assert!(!bench.log().contains(&"CAL-SENSOR"), "nothing is calibrated against a force");
+    assert!(!bench.log().contains(&"CAL-SENSOR"), "no calibration under a force");
     assert_eq!(bench.run(MovToLoc, "", 0, "TOOL-SAFE", 0), DONE);
     let mut bench = loaded();
     interrupt(&mut bench, InsertTool, "INS-FAR", at(-5.0, 0.0));
     assert_eq!(run(&mut bench, ReleaseTool), error(Reason::NotPrepared), "the tool is not in the drum");
     assert_eq!(run(&mut bench, RemoveTool), DONE);
     assert!(!bench.log().iter().any(|order| order.contains("REM-OUT")), "the tool is out");
-    // From where nothing is known to be a way.
+    // Places without a known way.
     for verb in [InsertTool, RemoveTool] {
         let mut bench = Bench::ready("HOME", 3);
         bench.hold("CUTTER", SIZE, 3);
@@ -411,11 +411,11 @@ fn interrupted_tool_release_resumes() {
         assert_eq!(run(&mut bench, ReleaseTool), DONE, "{word} {x} {z}");
         assert_eq!(bench.log(), orders, "{word} {x} {z}");
         let end = if orders == WHOLE { -2.0 + z } else { z.min(-2.0).max(if z < -1.5 { z } else { -2.0 }) };
-        assert!(bench.off(&at(-4.99, end)) < 0.03, "{word} {x} {z}: the moves end where they would have");
+        assert!(bench.off(&at(-4.99, end)) < 0.03, "{word} {x} {z}: the moves reach their original ends");
         assert!(!bench.memory.emove.status.held.is_held() && !bench.memory.emove.status.drum);
         assert_eq!(bench.run(MovToLoc, "", 0, "TOOL-SAFE", 0), DONE);
     }
-    // Fingers that were closed since would tear at the drum.
+    // Fingers closed since then would pull at the drum.
     for (verb, z) in [(ReleaseTool, -1.0), (AcquireTool, -1.0), (ReleaseTool, -1.8)] {
         let mut bench = inserted();
         interrupt(&mut bench, ReleaseTool, "REL-SLIDE", at(0.0, z));
@@ -449,7 +449,7 @@ fn interrupted_acquisition_resumes() {
         assert_eq!(acquire_from(&mut bench), DONE, "{word} {x} {z}");
         assert_eq!(bench.log(), orders, "{word} {x} {z}");
         let end = if orders == WHOLE { at(0.25, 0.5) } else { at(x, z.max(0.5 * f64::from(z < 0.0))) };
-        assert!(bench.off(&end) < 0.03, "{word} {x} {z}: the slide ends where it would have");
+        assert!(bench.off(&end) < 0.03, "{word} {x} {z}: the slide reaches its original end");
         assert!(bench.memory.emove.status.held.object().is_some() && bench.memory.emove.status.drum);
         assert_eq!(run(&mut bench, RemoveTool), DONE);
     }
@@ -480,11 +480,11 @@ fn interrupted_removal_resumes() {
         assert_eq!(run(&mut bench, RemoveTool), DONE, "{word} {x}");
         assert_eq!(bench.log(), orders, "{word} {x}");
         let end = if orders.is_empty() { x } else { -6.0 };
-        assert!(bench.off(&at(end, 0.0)) < 0.03, "{word} {x}: the move ends where it would have");
+        assert!(bench.off(&at(end, 0.0)) < 0.03, "{word} {x}: the move reaches its original end");
         assert!(bench.memory.emove.status.held.is_held() && !bench.memory.emove.status.drum);
         assert_eq!(bench.run(MovToLoc, "", 0, "TOOL-SAFE", 0), DONE);
     }
-    // Or back in.
+    // The tool can also return into the drum.
     let mut bench = inserted();
     interrupt(&mut bench, RemoveTool, "REM-OUT", at(-0.5, 0.0));
     assert_eq!(run(&mut bench, InsertTool), DONE);
@@ -503,7 +503,7 @@ fn robot_in_the_drum_refuses_other_commands() {
 }
 
 #[test]
-fn insertion_resumes_after_the_operator_led_the_robot_away_and_back() {
+fn insertion_resumes_after_manual_motion_away_and_back() {
     let mut bench = loaded();
     interrupt(&mut bench, InsertTool, "INS-IN", at(-1.0, 0.0));
     bench.lead(|bench| {
@@ -534,7 +534,7 @@ fn tool_acquired_after_manual_motion_has_an_unconfirmed_seat() {
 }
 
 #[test]
-fn robot_moved_away_from_the_drum_forgets_the_tool_command() {
+fn robot_moved_away_from_the_drum_clears_the_tool_command() {
     for away in [at(-1.0, 3.5), at(-20.0, 0.0), at(1.0, 0.0), at(-1.0, -1.0), at(-5.0, 5.0)] {
         let mut bench = loaded();
         interrupt(&mut bench, InsertTool, "INS-IN", at(-1.0, 0.0));

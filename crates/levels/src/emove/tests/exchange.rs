@@ -20,14 +20,14 @@ pub const SCENARIOS: &[fn()] = &[
     repeated_exchange_is_done_at_once,
     exchange_fails_a_second_after_a_guarded_move_detects_nothing,
     quick_change_failure_is_reported,
-    gripper_that_stays_on_is_reported,
-    gripper_that_is_not_attached_is_reported,
+    gripper_still_attached_after_detach_is_reported,
+    missing_gripper_after_attach_is_reported,
     motion_failure_ends_the_exchange,
     uncalibrated_parts_gripper_is_calibrated_after_attaching,
     exchange_without_holster_data_is_refused,
 ];
 
-/// A robot above the holster of the gripper that it has, fingers closed for it.
+/// A robot above the holster of its gripper, with the fingers closed for it.
 fn above(gripper: u8) -> Bench {
     let mut bench = Bench::ready("HOME", gripper);
     assert_eq!(bench.perform(to_holster(1, gripper)), DONE);
@@ -59,7 +59,7 @@ fn gripper_exchange_follows_the_order_of_the_manual() {
                 ]
             );
             let end = moved(frame_of(old_holster), &["QCD-DOWN", "QCD-SEAT", "QCD-UP"]);
-            assert!(bench.off(&end) < 0.05, "each from where the one before ended");
+            assert!(bench.off(&end) < 0.05, "each move starts at the end of the one before");
             assert_eq!((bench.world.mated, bench.world.locked), (0, false));
             assert_eq!(bench.at(), old_holster);
             assert_eq!(bench.perform(to_holster(2, to)), DONE);
@@ -75,7 +75,7 @@ fn gripper_exchange_follows_the_order_of_the_manual() {
             );
             assert!(
                 bench.off(&moved(frame_of(new_holster), &["QCA-UP"])) < 0.02,
-                "all from the holster's pose"
+                "all moves start at the holster's pose"
             );
             assert_eq!((bench.world.mated, bench.world.locked), (to, true));
             assert_eq!(bench.run(MovToLoc, "", 0, "HOME", 0), DONE);
@@ -90,9 +90,9 @@ fn gripper_closes_on_the_way_to_its_holster() {
     assert_eq!(bench.memory.emove.grip.position, 100);
     let mut bench = above(2);
     assert_eq!(bench.log(), ["GRASP 50", "GO-THRU", "GO-THRU A/D-5", "GOTO-PT"]);
-    assert_eq!(bench.perform(to_holster(1, 2)), DONE, "the robot is there");
+    assert_eq!(bench.perform(to_holster(1, 2)), DONE, "the robot is at the holster");
     assert!(bench.log().is_empty());
-    // Away from a part whose depart points come first.
+    // The robot leaves a part, with depart points first.
     let mut bench = Bench::ready("HOME", 1);
     assert_eq!(bench.run(MovToObj, "BLOCK", 1, "HOLSTER-C", 1), DONE);
     assert_eq!(bench.run(Release, "BLOCK", 1, "HOLSTER-C", 1), DONE);
@@ -111,8 +111,8 @@ fn gripper_closes_on_the_way_to_its_holster() {
     assert_eq!(bench.log(), ["POSITION", "GO-THRU", "GO-THRU A/D-5"], "the final motion waits");
 }
 
-/// No depart path is written for a gripper: the exchange leads the robot up. Sent elsewhere before that it goes out as
-/// it came in, not straight to the first point of the trajectory.
+/// No depart path is written for a gripper: the exchange moves the robot up. For another goal it first leaves as it
+/// came, not straight to the first point of the trajectory.
 #[test]
 fn robot_above_a_holster_leaves_upward() {
     let mut bench = above(1);
@@ -131,7 +131,7 @@ fn detach_without_its_preconditions_is_refused() {
         assert_eq!(
             bench.perform(detach(1)),
             error(Reason::WrongGripper),
-            "it is neither on nor in its holster"
+            "the gripper is neither attached nor in its holster"
         );
     }
     let mut bench = above(1);
@@ -146,7 +146,7 @@ fn detach_without_its_preconditions_is_refused() {
     }
 }
 
-/// Something hangs in the holster from the start, or is hung there when the robot is on its way.
+/// The holster is occupied from the start, or during the motion.
 #[test]
 fn gripper_is_not_brought_to_an_occupied_holster() {
     for (bits, ticks) in [(0b0001, 0), (0b1111, 0), (0b1111, 10)] {
@@ -158,7 +158,7 @@ fn gripper_is_not_brought_to_an_occupied_holster() {
         assert_eq!(bench.motions().is_empty(), ticks == 0, "{bits:04b} after {ticks} ticks");
     }
     let mut bare = Bench::ready("HOME", 0);
-    assert_eq!(bare.perform(to_holster(1, 1)), DONE, "it fetches what is there");
+    assert_eq!(bare.perform(to_holster(1, 1)), DONE, "a bare robot fetches the gripper");
 }
 
 #[test]
@@ -171,12 +171,12 @@ fn attach_without_its_preconditions_is_refused() {
         assert_eq!(bench.perform(attach(1)), error(Reason::HolsterEmpty));
     }
     let mut bench = Bench::ready("HOLSTER-L", 1);
-    assert_eq!(bench.perform(attach(2)), error(Reason::WrongGripper), "another one is on");
+    assert_eq!(bench.perform(attach(2)), error(Reason::WrongGripper), "another gripper is attached");
     let mut bench = Bench::ready("HOLSTER-R", 1);
     bench.world.holsters[0] = 0b0011;
-    assert_eq!(bench.perform(attach(1)), DONE, "it is on and still in its holster");
+    assert_eq!(bench.perform(attach(1)), DONE, "the gripper is attached and still in its holster");
     assert_eq!(bench.log(), ["DELTA-MOVE QCA-LIFT", "DELTA-MOVE QCA-UP"]);
-    // A bare robot with a locked ring is unlocked first.
+    // A bare robot with a locked ring first unlocks it.
     let mut bench = bare(2);
     bench.world.locked = true;
     assert_eq!(bench.perform(attach(2)), DONE);
@@ -186,7 +186,7 @@ fn attach_without_its_preconditions_is_refused() {
 #[test]
 fn repeated_exchange_is_done_at_once() {
     let mut bench = above(3);
-    assert_eq!(bench.perform(attach(3)), DONE, "it is on, locked and clear");
+    assert_eq!(bench.perform(attach(3)), DONE, "the gripper is attached, locked and clear");
     assert!(bench.log().is_empty());
     assert_eq!(bench.perform(detach(3)), DONE);
     assert_eq!(bench.perform(detach(3)), DONE);
@@ -205,7 +205,7 @@ fn exchange_fails_a_second_after_a_guarded_move_detects_nothing() {
         let since = bench.tick;
         assert_eq!(bench.finish(), error(Reason::NotDetected), "{word}");
         let waited = bench.tick.since(since);
-        assert!((25..=28).contains(&waited), "{waited} ticks are not a second");
+        assert!((25..=28).contains(&waited), "{waited} ticks instead of a second");
         bench.step();
         assert_eq!(bench.log().last(), Some(&"PAUSE"));
     }
@@ -238,20 +238,24 @@ fn quick_change_failure_is_reported() {
     }
     let mut bench = above(1);
     bench.spoil("QC-UNLOCK", Mishap::Ring(QuickChangeReport::Locked));
-    assert_eq!(bench.perform(detach(1)), error(Reason::QuickChangeFault), "it says done and is locked");
+    assert_eq!(
+        bench.perform(detach(1)),
+        error(Reason::QuickChangeFault),
+        "Quick Change reports done, but the ring is locked"
+    );
     let mut bench = bare(1);
     bench.world.dead.push("Quick Change");
     assert_eq!(bench.perform(attach(1)), error(Reason::NeighbourLost));
-    // A gripper that is on, clear of its holster and not locked.
+    // A gripper is attached, clear of its holster, and not locked.
     let mut bench = above(1);
     bench.world.locked = false;
     assert_eq!(bench.perform(attach(1)), error(Reason::RingNotLocked));
-    // The ring has not answered yet when the command comes.
+    // The command arrives before the ring has answered.
     let mut bench = bare(1);
     bench.command(Pause, "", 0, "", 0);
     bench.wait(2);
     assert_eq!(bench.perform(attach(1)), DONE);
-    // It opens by itself while the gripper is being carried.
+    // The ring opens by itself while the gripper is carried.
     let mut bench = bare(1);
     bench.begin(attach(1));
     bench.until_logged("DELTA-MOVE QCA-LIFT");
@@ -260,13 +264,17 @@ fn quick_change_failure_is_reported() {
 }
 
 #[test]
-fn gripper_that_stays_on_is_reported() {
+fn gripper_still_attached_after_detach_is_reported() {
     let mut bench = above(1);
     bench.spoil("QCD-UP", Mishap::Mated(1));
     assert_eq!(bench.perform(detach(1)), error(Reason::NotDetached));
     let mut bench = above(1);
     bench.spoil("QCD-UP", Mishap::Holster(0b0011));
-    assert_eq!(bench.perform(detach(1)), error(Reason::NotDetached), "it is off, and not at its seat");
+    assert_eq!(
+        bench.perform(detach(1)),
+        error(Reason::NotDetached),
+        "the gripper is detached, but not at its seat"
+    );
     let mut bench = above(1);
     bench.begin(detach(1));
     bench.until_logged("DELTA-MOVE QCD-UP");
@@ -277,7 +285,7 @@ fn gripper_that_stays_on_is_reported() {
 }
 
 #[test]
-fn gripper_that_is_not_attached_is_reported() {
+fn missing_gripper_after_attach_is_reported() {
     for (word, id, reason) in [
         ("QCA-LIFT", 0, Reason::NotAttached),
         ("QCA-LIFT", 2, Reason::WrongGripperId),
@@ -289,7 +297,7 @@ fn gripper_that_is_not_attached_is_reported() {
         bench.spoil(word, Mishap::Mated(id));
         assert_eq!(bench.perform(attach(1)), error(reason), "{word} {id}");
         bench.step();
-        assert_eq!(bench.log().last(), Some(&"PAUSE"), "the robot holds still");
+        assert_eq!(bench.log().last(), Some(&"PAUSE"), "the robot stops");
         assert_eq!(bench.log().contains(&"DELTA-MOVE QCA-UP"), word == "QCA-UP");
     }
 }
@@ -313,12 +321,12 @@ fn motion_failure_ends_the_exchange() {
     assert_eq!(bench.finish(), error(Reason::NeighbourLost), "Prim holds the robot while the ring turns");
     let mut bench = bare(2);
     bench.spoil("GRASP", Mishap::Jaws(JawsReport::Opened));
-    assert_eq!(bench.perform(attach(2)), error(Reason::JawsStuck), "it does not close");
+    assert_eq!(bench.perform(attach(2)), error(Reason::JawsStuck), "the gripper does not close");
     let mut bench = bare(2);
     bench.begin(attach(2));
     bench.until_logged("DELTA-MOVE QCA-UP");
     bench.world.dead.push("gripper");
-    assert_eq!(bench.finish(), error(Reason::NeighbourLost), "its process has died on the way");
+    assert_eq!(bench.finish(), error(Reason::NeighbourLost), "the gripper process stopped during the motion");
 }
 
 #[test]

@@ -1,5 +1,5 @@
-//! QC-attach(1), QC-detach(1) and GRASP-OBJ that are interrupted and sent again (docs/design/recovery.md
-//! "Exchange", "Held").
+//! QC-attach(1), QC-detach(1) and GRASP-OBJ that are interrupted and sent again (docs/design/recovery.md "Exchange",
+//! "Held").
 
 use interfaces::{
     Reason,
@@ -27,21 +27,21 @@ pub const SCENARIOS: &[fn()] = &[
     order_without_effect_ends_the_exchange,
     ring_that_stays_locked_ends_the_exchange,
     impossible_detach_is_reported,
-    exchange_resumes_after_the_operator_led_the_robot_out_and_back,
-    fingers_stuck_in_a_release_have_not_released,
+    exchange_resumes_after_manual_motion_out_and_back,
+    release_with_stuck_fingers_keeps_the_object,
     object_regrasped_by_the_operator_is_not_released,
     grasp_after_a_release_clears_the_placed_object,
-    unknown_contents_count_as_held,
+    unknown_contents_are_treated_as_held,
     bare_robot_leaves_an_empty_holster,
     failed_id_pins_keep_the_estimates,
 ];
 
-/// A bare robot above the holster of gripper 1, 2 or 3, with the real processes.
+/// A bare robot above the holster of a gripper, with the real processes.
 fn bare(gripper: u8) -> Bench {
     above(0, 2, gripper)
 }
 
-/// A robot above the holster of the gripper that it has, with the real processes.
+/// A robot above the holster of its gripper, with the real processes.
 fn with(gripper: u8) -> Bench {
     above(gripper, 1, gripper)
 }
@@ -86,13 +86,13 @@ fn interrupted_detach_resumes_from_every_tick() {
     }
 }
 
-/// Where a robot is in an exchange, from the pose of the holster.
+/// Positions in an exchange, relative to the pose of the holster.
 const ABOVE: &[&str] = &["QCA-SLOW", "QCD-UP"];
 const BARE: &[&str] = &["HOL-BARE"];
 const FAST: &[&str] = &["QCA-FAST"];
 const SEAT: &[&str] = &["QCA-SLOW"];
 const LOW: &[&str] = &["QCA-BACK"];
-/// Between low and seat, and as much above as the large sensors see the ears.
+/// Between low point and seat, raised by the distance at which the large sensors see the ears.
 const HIGH: &[&str] = &["HOL-HIGH"];
 const OVER: &[&str] = &["HOL-OVER"];
 const LIFTING: &[&str] = &["WITHDRAW"];
@@ -101,8 +101,7 @@ const RAISED: &[&str] = &["HOL-ABOVE"];
 const CLEAR: &[&str] = &["QCA-UP"];
 const AWAY: &[&str] = &["QCA-UP", "300ty", "300ty"];
 
-/// A robot in the holster of gripper 1: where it is, what it has, whether its ring is locked, and what the
-/// sensors of the holster see.
+/// A robot in the holster of gripper 1, with a gripper, a ring and a reading of the holster's sensors.
 fn halfway(at: &[&str], mated: u8, locked: bool, holster: u8) -> Bench {
     let mut bench = Bench::ready("HOME", mated);
     bench.world.frame = moved(frame_of("HOLSTER-R"), at);
@@ -113,7 +112,7 @@ fn halfway(at: &[&str], mated: u8, locked: bool, holster: u8) -> Bench {
     bench
 }
 
-/// What the sensors of a holster see of no gripper, and of one that is not quite at its seat.
+/// Readings of a holster's sensors without a gripper, and with one that is not quite at its seat.
 const BLIND: u8 = 0;
 const SLIPPED: u8 = 0b0111;
 
@@ -121,7 +120,7 @@ const SLIPPED: u8 = 0b0111;
 fn exchange_resumes_from_each_position() {
     let from = |at: &[&str], mated, locked, bits, command, first: &str| {
         let mut bench = halfway(at, mated, locked, bits);
-        // The sensors of the holster are those of the place, or what is given.
+        // The sensors of the holster read as at this position, or as specified.
         bench.world.prim.by_steps = bits != BLIND && bits != SLIPPED;
         assert_eq!(bench.perform(command), DONE, "{at:?} {:?}", bench.world.log);
         assert_eq!(bench.log().first().copied().unwrap_or_default(), first, "{at:?}");
@@ -148,13 +147,13 @@ fn exchange_resumes_from_each_position() {
     from(FAST, 0, true, 0b1111, detach(1), "QC-UNLOCK");
     from(BARE, 0, false, 0b1111, detach(1), "DELTA-MOVE QCD-UP");
     from(ABOVE, 0, false, 0b1111, detach(1), "");
-    // At the seat, and the small sensors do not see it yet.
+    // At the seat, but the small sensors do not see it yet.
     from(SEAT, 1, false, SLIPPED, detach(1), "GO-UNTIL QCD-SEAT HOL-SEAT");
-    // The gripper lies at its seat, and the robot stands over it, where QCD-SEAT has ended.
+    // The gripper lies at its seat, and the robot is above it, where QCD-SEAT has ended.
     let mut bench = halfway(OVER, 1, false, 0b1111);
     assert_eq!(bench.perform(detach(1)), DONE, "{:?}", bench.world.log);
     assert_eq!(bench.log(), ["DELTA-MOVE QCD-UP"]);
-    // The gripper needs calibrating, and the command had ended before.
+    // The gripper needs calibration, but the command has ended.
     let mut bench = halfway(CLEAR, 1, true, 0);
     bench.world.grip.initialized = false;
     assert_eq!(bench.perform(attach(1)), DONE);
@@ -179,20 +178,20 @@ fn impossible_attach_is_reported() {
     let mut bench = halfway(AWAY, 1, true, 0);
     assert_eq!(bench.perform(attach(1)), DONE);
     assert!(bench.log().is_empty());
-    // A gripper that came loose below the seat, with a ring that is neither locked nor unlocked.
+    // A loose gripper below the seat, with a ring between its ends.
     let mut bench = halfway(LOW, 1, false, 0b0011);
     bench.world.ring.half = true;
     assert_eq!(bench.perform(attach(1)), DONE);
     assert_eq!(bench.log()[..2], ["DELTA-MOVE QCA-SLOW", "QC-LOCK"]);
-    // The robot is at the seat, and nothing mates there: it goes a little away, and says so.
+    // At the seat no gripper mates: the robot moves away and reports it.
     let mut bench = halfway(SEAT, 0, false, 0b1111);
     bench.world.resident[0] = 0;
     assert_eq!(bench.perform(attach(1)), error(Reason::NotAttached));
     assert_eq!(bench.log()[0], "DELTA-MOVE QCA-FAST");
 }
 
-/// Id pins without contact read as a bare robot. The ring opens before the robot leaves the seat: it may hold a gripper
-/// that is in its holster.
+/// Id pins without contact read as a bare robot. The ring opens before the robot leaves the seat, because it may hold
+/// a gripper that is in its holster.
 #[test]
 fn locked_ring_at_the_seat_opens_before_the_robot_leaves() {
     let mut bench = halfway(SEAT, 0, true, 0b1111);
@@ -219,7 +218,7 @@ fn order_without_effect_ends_the_exchange() {
         (SEAT, 1, true, 0b1111, "QCA-BACK"),
         (LOW, 1, true, 0b0011, "QCA-LIFT"),
         (RAISED, 1, true, 0, "QCA-UP"),
-        // Two rows that could take turns.
+        // Two rows that could alternate.
         (BARE, 0, false, 0b1111, "QCA-"),
         (LIFTING, 1, true, 0b0011, "QCA-"),
     ] {
@@ -253,7 +252,7 @@ fn impossible_detach_is_reported() {
     let mut bench = halfway(AWAY, 0, false, 0b1111);
     assert_eq!(bench.perform(detach(1)), DONE);
     assert!(bench.log().is_empty());
-    // What is felt above the holster must not go into it.
+    // An object detected above the holster must not enter it.
     let mut bench = halfway(RAISED, 1, true, 0);
     bench.world.object = Some(bench.world.grip.opening);
     bench.forget_empty();
@@ -262,7 +261,7 @@ fn impossible_detach_is_reported() {
     bench.world.grip.initialized = false;
     bench.forget_empty();
     assert_eq!(bench.perform(detach(1)), error(Reason::HeldNotKnown));
-    // The gripper goes while it is being lowered or pushed to its seat, and is not where it should be.
+    // The gripper is lost on the way down or to its seat, and is not in its place.
     for (word, at, bits) in
         [("QC-UNLOCK", LOW, 0b0011), ("QC-UNLOCK", LOW, 0b1111), ("QC-UNLOCK", CLEAR, 0b1111)]
     {
@@ -286,7 +285,7 @@ fn robot_in_a_holster_refuses_other_commands() {
         assert_eq!(bench.perform(line), error(Reason::InHolster), "{}", line.0);
         assert!(bench.log().is_empty());
         bench.assert_stands();
-        // Either way out of it is left.
+        // Both ways out of the holster are possible.
         let mut other = bench.clone();
         assert_eq!(other.perform(detach(1)), DONE, "{:?}", other.world.log);
         assert_eq!(bench.perform(attach(1)), DONE, "{:?}", bench.world.log);
@@ -298,14 +297,14 @@ fn robot_in_a_holster_refuses_other_commands() {
     bench.wait(4);
     assert_eq!(bench.pause(), DONE);
     assert_eq!(bench.run(MovToLoc, "", 0, "HOME", 0), error(Reason::InHolster));
-    // The operator who takes it out of the holster ends the exchange.
+    // Manual motion out of the holster ends the exchange.
     bench.lead(|bench| bench.world.frame = frame_of("HOME"));
     assert_eq!(bench.pause(), DONE);
     assert_eq!(bench.run(MovToLoc, "", 0, "VISE", 0), DONE);
 }
 
 #[test]
-fn exchange_resumes_after_the_operator_led_the_robot_out_and_back() {
+fn exchange_resumes_after_manual_motion_out_and_back() {
     let mut bench = bare(1);
     bench.begin(attach(1));
     bench.wait(4);
@@ -337,7 +336,7 @@ fn gripper_mated_in_its_holster_holds_nothing() {
 }
 
 #[test]
-fn unlocked_gripper_led_away_keeps_its_exchange_open() {
+fn unlocked_gripper_moved_away_keeps_its_exchange_open() {
     let mut bench = halfway(LOW, 1, true, 0b0011);
     bench.begin(detach(1));
     while bench.world.locked {
@@ -379,7 +378,7 @@ fn interrupted_grasp_resumes_from_every_tick() {
 }
 
 #[test]
-fn fingers_stuck_in_a_release_have_not_released() {
+fn release_with_stuck_fingers_keeps_the_object() {
     let mut bench = Bench::ready("HOME", 2);
     assert_eq!(bench.run(MovToObj, "SHAFT", 1, "BENCH", 2), DONE);
     bench.hold("SHAFT", 204, 2);
@@ -393,7 +392,7 @@ fn fingers_stuck_in_a_release_have_not_released() {
     assert_eq!(stuck.pause(), DONE);
     assert_eq!(stuck.memory.emove.estimates.placed, None);
     assert!(matches!(stuck.memory.emove.status.held, Holding::Object(_)));
-    // The robot does not leave with it, whether E-move is restarted or not.
+    // The robot does not leave with the object, with or without a restart of E-move.
     for restarted in [false, true] {
         if restarted {
             stuck.restart_and_finish();
@@ -404,11 +403,11 @@ fn fingers_stuck_in_a_release_have_not_released() {
             assert!(!stuck.log().iter().any(|word| word.starts_with("GO")), "{:?}", stuck.log());
         }
     }
-    assert_eq!(stuck.run(MovObjTo, "SHAFT", 1, "BENCH", 2), DONE, "it is there");
+    assert_eq!(stuck.run(MovObjTo, "SHAFT", 1, "BENCH", 2), DONE, "the robot is there");
     assert_eq!(stuck.perform((Release, "SHAFT", 1, "BENCH", 2)), DONE);
     assert_eq!(stuck.memory.emove.status.held, Holding::Nothing);
     assert!(stuck.memory.emove.estimates.placed.is_some());
-    // A restarted E-move still knows that it lets go.
+    // A restarted E-move continues the release.
     bench.command(Release, "SHAFT", 1, "BENCH", 2);
     bench.wait(3);
     bench.restart_and_finish();
@@ -441,7 +440,7 @@ fn object_regrasped_by_the_operator_is_not_released() {
 fn partly_released_object_is_grasped_again() {
     for (gripper, object, size, wide, stuck) in [
         (1, "BLOCK", 75, 140, Mishap::Grip(Reason::GripUnattainable)),
-        // They still feel it.
+        // The fingers still detect it.
         (1, "BLOCK", 75, 75, Mishap::Grip(Reason::GripUnattainable)),
         (2, "SHAFT", 204, 250, Mishap::Jaws(JawsReport::Stuck)),
         (3, "CUTTER", 250, 300, Mishap::Jaws(JawsReport::Stuck)),
@@ -465,10 +464,10 @@ fn partly_released_object_is_grasped_again() {
         bench.world.object = Some(size);
         for mut fork in bench.during((GraspObj, object, 1, "BENCH", gripper)) {
             fork.stop();
-            assert_eq!(fork.held(), object, "what they have closed on has its name");
+            assert_eq!(fork.held(), object, "the grasped object has its name");
         }
         assert_eq!(bench.run(GraspObj, object, 1, "BENCH", gripper), DONE);
-        assert!(!bench.log().is_empty(), "they are closed");
+        assert!(!bench.log().is_empty(), "the fingers are closed");
         assert!(matches!(bench.memory.emove.status.held, Holding::Object(_)), "{object}");
     }
 }
@@ -484,7 +483,7 @@ fn grasp_after_a_release_clears_the_placed_object() {
     assert_eq!(bench.memory.emove.status.placed, None);
 }
 
-/// Jaws that were stuck may still go where their air presses them, and hold nothing without air.
+/// Stuck jaws may still move where their air presses them, and hold nothing without air.
 #[test]
 fn pressurised_jaws_count_as_moving() {
     for (close, open) in [(false, false), (true, false), (false, true)] {
@@ -506,7 +505,7 @@ fn pressurised_jaws_count_as_moving() {
     }
 }
 
-/// Jaws that do not stand still within their time limit have no air, wherever they stop later.
+/// Jaws that do not come to rest in time have no air, wherever they stop later.
 #[test]
 fn jaws_without_air_have_no_grasp() {
     let mut bench = Bench::ready("BENCH", 2);
@@ -526,8 +525,8 @@ fn jaws_without_air_have_no_grasp() {
 }
 
 #[test]
-fn unknown_contents_count_as_held() {
-    // Not calibrated: it may hold something.
+fn unknown_contents_are_treated_as_held() {
+    // Not calibrated: it may hold an object.
     let blind = |location: &str| {
         let mut bench = Bench::new(location, 1);
         bench.world.grip.initialized = false;
@@ -535,7 +534,7 @@ fn unknown_contents_count_as_held() {
         assert_eq!(bench.memory.emove.status.held, Holding::NotKnown);
         bench
     };
-    // Felt, and it is not known what it is.
+    // An object is detected that has no name.
     let felt = |location: &str| Bench::with_unknown(location, 75);
     for (verb, object, location, something, not_known) in [
         (MovToObj, "BLOCK", "BENCH", Reason::AlreadyHolding, Reason::HeldNotKnown),
@@ -550,16 +549,16 @@ fn unknown_contents_count_as_held() {
         let mut bench = blind("HOME");
         assert_eq!(bench.run(verb, object, 1, location, 1), error(not_known), "{verb}");
     }
-    // At the object it is grasped anew.
+    // At the object it is grasped again.
     let mut bench = felt("BENCH");
     assert_eq!(bench.run(GraspObj, "BLOCK", 1, "BENCH", 1), DONE);
     assert_eq!(bench.held(), "BLOCK");
-    // RELEASE lets go of whatever it is.
+    // RELEASE releases any object.
     for mut bench in [felt("HOME"), blind("HOME")] {
         assert_eq!(bench.run(Release, "BLOCK", 1, "HOME", 1), DONE);
         assert_eq!(bench.log(), ["OPEN-GRIP"]);
     }
-    // It opens, even if what is held is wider than the depart size of the command's object.
+    // It opens, even if the object is wider than the depart size of the command's object.
     for (size, opened) in [(75, 350), (345, 395), (480, 500)] {
         let mut bench = Bench::with_unknown("HOME", size);
         assert_eq!(bench.run(Release, "BLOCK", 1, "HOME", 1), DONE);
@@ -618,7 +617,7 @@ fn gripper_torn_off_a_locked_ring_is_attached_again() {
         bench.wait(4);
         assert_eq!(bench.perform(fetch), error(Reason::PinsFail));
         assert_eq!(bench.memory.emove.status.pins, Pins::Differ);
-        // Its own holster feels the gripper: the robot is bare, although the ring is locked …
+        // Its own holster detects the gripper: the robot is bare, although the ring is locked …
         let mut locked = bench.clone();
         locked.world.resident[usize::from(gripper) - 1] = gripper;
         locked.wait(10);
@@ -627,7 +626,7 @@ fn gripper_torn_off_a_locked_ring_is_attached_again() {
         assert_eq!(locked.perform(fetch), DONE);
         assert_eq!(locked.perform(attach(gripper)), DONE);
         assert_eq!((locked.world.mated, locked.world.locked), (gripper, true));
-        // … a person opens the ring and puts the gripper into its holster …
+        // … the operator opens the ring and puts the gripper into its holster …
         let mut opened = bench.clone();
         opened.world.real.as_mut().unwrap().open_ring();
         opened.world.resident[usize::from(gripper) - 1] = gripper;
@@ -670,7 +669,7 @@ fn failed_id_pins_keep_the_estimates() {
         assert_eq!(bench.memory.emove.status.held, held);
         assert_eq!(bench.run(MovToLoc, "", 0, "VISE", 0), DONE);
         assert_eq!(bench.memory.emove.status.held, held);
-        // A ring that was open is another matter: what is felt then has no name.
+        // A ring that was open is different: the detected object has no name.
         other.world.locked = false;
         other.wait(4);
         (other.world.locked, other.world.mated) = (true, gripper);

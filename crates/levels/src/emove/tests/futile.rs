@@ -20,15 +20,14 @@ fn pairs<A: Copy, B: Copy>(all: &[A], with: &'static [B]) -> Vec<(A, B)> {
     all.iter().flat_map(|&a| with.iter().map(move |&b| (a, b))).collect()
 }
 
-/// What the tables of both commands test.
+/// The common variables of both commands' tables.
 type Exchange = ((((Mate, Lock), EmoveHolster), ExchangePosition), At);
 
-/// The values of what the tables of both commands test.
 fn exchanges() -> Vec<Exchange> {
     pairs(&pairs(&pairs(&pairs(Mate::ALL, Lock::ALL), EmoveHolster::ALL), ExchangePosition::ALL), At::ALL)
 }
 
-/// What the tables of QC-ATTACH test.
+/// The situations of QC-ATTACH.
 fn attach() -> impl Iterator<Item = Situation> {
     pairs(&pairs(&exchanges(), Shut::ALL), Readiness::ALL).into_iter().map(
         |((((((mate, lock), holster), along), at), shut), readiness)| {
@@ -41,7 +40,7 @@ fn attach() -> impl Iterator<Item = Situation> {
     )
 }
 
-/// What the tables of QC-DETACH test.
+/// The situations of QC-DETACH.
 fn detach() -> impl Iterator<Item = Situation> {
     pairs(&exchanges(), Held::ALL).into_iter().map(|(((((mate, lock), holster), along), at), held)| {
         Situation::QcDetach(
@@ -52,8 +51,8 @@ fn detach() -> impl Iterator<Item = Situation> {
     })
 }
 
-/// The orders that a command gives from its first step until it ends, or until EFFECT ends it: the row that
-/// ordered last orders again, and nothing has changed.
+/// Trace the orders of a command until it ends, or until EFFECT ends it because a row repeats its order without a
+/// change.
 fn orders(verb: EmoveVerb, situation: &Situation) {
     let (mut step, mut last) = (Step::first(verb), None);
     let mut orders = Vec::new();

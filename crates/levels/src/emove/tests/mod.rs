@@ -1,4 +1,4 @@
-//! E-move alone, against test doubles of Prim, Quick Change, the three grippers and vision.
+//! E-move with test doubles of Prim, Quick Change, the three grippers and vision.
 
 mod bench;
 mod confirmed;
@@ -32,7 +32,7 @@ fn every_row_fires() {
         exchange_again::SCENARIOS,
     ];
     let mut silent = silent::<Emove, TaskData<'_>>(&scenarios.concat());
-    // Of these no header tells: tests of their own consult them.
+    // Headers do not name these rows; their own tests consult them.
     let elsewhere = ["ATTEND", "SEARCH", "RESUME", "DRUM", "RETURN", "TRACK", "STANCE"];
     silent.retain(|row| !elsewhere.iter().any(|name| row.starts_with(name)));
     assert_eq!(silent, [""; 0]);

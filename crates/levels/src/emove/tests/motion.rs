@@ -67,7 +67,7 @@ fn robot_passing_a_through_point_stays_on_its_path() {
     for _ in 0..1000 {
         bench.step();
         let moves = matches!(bench.memory.emove.prim.command, PrimVerb::GoThru | PrimVerb::GotoPt);
-        // While it moves, the arm is farther behind than where a robot at rest still is on its way.
+        // The moving arm lags farther behind than a robot at rest may be off its way.
         bench.world.prim.sag = Vector::new(if moves { 1.0 } else { 0.0 }, 0.0, 0.0);
         if bench.memory.emove.prim.command == PrimVerb::GotoPt {
             assert!(passed > 1, "{:?}", bench.world.log);
@@ -75,9 +75,9 @@ fn robot_passing_a_through_point_stays_on_its_path() {
         }
         passed += u32::from(moves && bench.memory.prim.status.report == PrimReport::Done);
         let around = *bench.process.state().localization.surroundings();
-        assert_eq!(around, Surroundings::default(), "no places are looked for: {:?}", bench.world.log);
+        assert_eq!(around, Surroundings::default(), "no search for the place: {:?}", bench.world.log);
     }
-    panic!("never there: {:?}", bench.world.log);
+    panic!("the robot never arrives: {:?}", bench.world.log);
 }
 
 #[test]
@@ -101,21 +101,21 @@ fn parts_gripper_fetches_places_and_releases_a_part() {
     let command = bench.memory.emove.grip;
     assert_eq!((command.position, command.force, command.end_effector_id), (60, 30, Some(1)));
     assert!(bench.memory.emove.status.held.is_held());
-    assert_eq!(bench.run(GraspObj, "BLOCK", 1, "BENCH", 1), DONE, "it is held");
+    assert_eq!(bench.run(GraspObj, "BLOCK", 1, "BENCH", 1), DONE, "the part is held");
     assert!(bench.log().is_empty());
-    assert_eq!(bench.run(MovToObj, "BLOCK", 1, "BENCH", 1), DONE, "so it has been gone to");
+    assert_eq!(bench.run(MovToObj, "BLOCK", 1, "BENCH", 1), DONE, "the robot approached with this grip");
     assert!(bench.log().is_empty());
     assert_eq!(bench.run(MovObjTo, "BLOCK", 1, "VISE", 1), DONE);
     assert_eq!(bench.log(), ["GO-THRU A/D-5", "GO-THRU", "GO-THRU A/D-5", "GOTO-PT"]);
-    assert_eq!(bench.run(MovObjTo, "BLOCK", 1, "VISE", 1), DONE, "it is there");
+    assert_eq!(bench.run(MovObjTo, "BLOCK", 1, "VISE", 1), DONE, "the part is there");
     assert!(bench.log().is_empty());
     assert_eq!(bench.run(Release, "BLOCK", 1, "VISE", 1), DONE);
     assert_eq!(bench.log(), ["OPEN-GRIP"]);
     assert_eq!((bench.memory.emove.grip.position, bench.memory.emove.status.held.is_held()), (350, false));
-    assert_eq!(bench.run(Release, "BLOCK", 1, "VISE", 1), DONE, "nothing is held and the fingers are open");
+    assert_eq!(bench.run(Release, "BLOCK", 1, "VISE", 1), DONE, "the fingers are empty and open");
     assert!(bench.log().is_empty());
     assert_eq!(bench.run(MovToObj, "BLOCK", 1, "VISE", 1), DONE);
-    assert_eq!(bench.log(), ["POSITION"], "the robot is there; the fingers are not as they should be");
+    assert_eq!(bench.log(), ["POSITION"], "the robot is there, but the fingers are not at their opening");
 }
 
 #[test]
@@ -130,7 +130,7 @@ fn jaws_fetch_place_and_release_their_parts() {
         bench.world.object = Some(size);
         assert_eq!(bench.run(GraspObj, object, 1, "BENCH", gripper), DONE);
         assert_eq!(bench.log(), [format!("GRASP {}", if gripper == 2 { 200 } else { 250 })]);
-        assert_eq!(bench.pause(), DONE, "a pause leaves it held");
+        assert_eq!(bench.pause(), DONE, "a pause keeps the part held");
         assert!(bench.memory.emove.status.held.is_held());
         assert_eq!(bench.run(MovObjTo, object, 1, "VISE", gripper), DONE);
         assert_eq!(bench.run(Release, object, 1, "VISE", gripper), DONE);
@@ -165,7 +165,7 @@ fn fingers_open_only_after_the_depart_points() {
     assert_eq!(bench.log(), ["GO-THRU A/D-5", "POSITION", "GO-THRU", "GO-THRU A/D-5", "GOTO-PT"]);
     bench.hold("BLOCK", 75, 1);
     assert_eq!(bench.run(MovToObj, "PIN", 1, "BENCH", 1), error(Reason::AlreadyHolding));
-    assert_eq!(bench.run(MovToVu, "PIN", 1, "BENCH", 1), error(Reason::BadRecord), "there is no view of it");
+    assert_eq!(bench.run(MovToVu, "PIN", 1, "BENCH", 1), error(Reason::BadRecord), "PIN has no view");
     assert_eq!(bench.run(GraspObj, "PIN", 1, "BENCH", 1), error(Reason::AlreadyHolding));
     assert_eq!(bench.run(MovToHol, "GRIPPER-1", 1, "HOLSTER-R", 1), error(Reason::NoTrajectory));
     assert!(bench.memory.emove.status.held.is_held());
@@ -181,7 +181,11 @@ fn gripper_failure_stops_the_motion() {
     let mut bench = Bench::ready("HOME", 2);
     bench.world.v_grip.opening = 50;
     bench.spoil("POSE", Mishap::Jaws(JawsReport::Closed));
-    assert_eq!(bench.run(MovToObj, "SHAFT", 1, "BENCH", 2), error(Reason::JawsStuck), "they went nowhere");
+    assert_eq!(
+        bench.run(MovToObj, "SHAFT", 1, "BENCH", 2),
+        error(Reason::JawsStuck),
+        "the jaws did not move"
+    );
     let mut bench = Bench::ready("HOME", 2);
     bench.world.object = Some(250);
     assert_eq!(bench.run(GraspObj, "SHAFT", 1, "BENCH", 2), error(Reason::JawsStuck), "another size");
@@ -223,7 +227,7 @@ fn failure_of_prim_is_passed_up() {
             let location = if verb == MovToHol { "HOLSTER-R" } else { "BENCH" };
             bench.spoil("GO-THRU", Mishap::Prim(report, reason));
             assert_eq!(bench.run(verb, object, 1, location, gripper), error(reason), "{verb}");
-            assert!(bench.memory.emove.status.at.is_none(), "it is not known where the robot is");
+            assert!(bench.memory.emove.status.at.is_none(), "the robot's place is unknown");
         }
     }
     let mut bench = Bench::ready("HOME", 0);
@@ -264,7 +268,7 @@ fn lost_part_is_reported_with_each_gripper() {
         (bench.world.grip.opening, bench.world.v_grip.opening, bench.world.tool_grip.opening) =
             (size + 30, size + 30, size + 30);
         bench.wait(3);
-        assert!(bench.memory.emove.status.held.object().is_none(), "fingers that stand wider have lost it");
+        assert!(bench.memory.emove.status.held.object().is_none(), "fingers opened wider have lost the part");
         assert_eq!(bench.run(MovObjTo, object, 1, "VISE", gripper), error(Reason::NothingHeld));
     }
 }
@@ -275,7 +279,7 @@ fn part_without_contact_force_is_lost() {
     bench.hold("BLOCK", 100, 1);
     bench.command(MovObjTo, "BLOCK", 1, "VISE", 1);
     bench.wait(6);
-    // A short dip is none: a part that is pushed to the other finger, or noise.
+    // A short dip is no loss: noise, or a part pushed to the other finger.
     bench.world.grip.force = 0;
     bench.wait(3);
     bench.world.grip.force = 30;
@@ -302,7 +306,7 @@ fn command_for_another_gripper_is_refused() {
             let mut bench = Bench::ready("HOME", attached);
             assert_eq!(bench.run(verb, "BLOCK", 1, location, 1), error(Reason::WrongGripper), "{verb}");
             bench.wait(3);
-            assert!(bench.log().is_empty(), "nothing was under way");
+            assert!(bench.log().is_empty(), "no order was active");
         }
     }
     let mut bench = Bench::ready("HOME", 2);
@@ -310,7 +314,7 @@ fn command_for_another_gripper_is_refused() {
 }
 
 #[test]
-fn grasp_of_nothing_is_reported() {
+fn missed_grasp_is_reported() {
     for (gripper, object, _) in PARTS {
         let mut bench = Bench::ready("HOME", gripper);
         assert_eq!(bench.run(GraspObj, object, 1, "BENCH", gripper), error(Reason::GraspMissed));
@@ -321,7 +325,7 @@ fn grasp_of_nothing_is_reported() {
 }
 
 #[test]
-fn release_of_nothing_opens_or_is_done_at_once() {
+fn release_without_an_object_opens_or_is_done_at_once() {
     let mut bench = Bench::ready("HOME", 1);
     assert_eq!(bench.run(Release, "BLOCK", 1, "", 1), DONE);
     assert_eq!(bench.log(), ["OPEN-GRIP"], "the fingers were narrow");
@@ -331,7 +335,7 @@ fn release_of_nothing_opens_or_is_done_at_once() {
     let mut bench = Bench::ready("HOME", 1);
     bench.spoil("OPEN-GRIP", Mishap::Grip(Reason::None));
     assert_eq!(bench.run(Release, "BLOCK", 1, "", 1), error(Reason::GripUnattainable));
-    // What is held is released by whatever holds it, with its own depart size.
+    // The present gripper releases the held object with the object's own depart size.
     let mut bench = Bench::ready("HOME", 1);
     bench.hold("BLOCK", 75, 1);
     assert_eq!(bench.run(Release, "CUTTER", 1, "", 3), DONE);
@@ -353,7 +357,7 @@ fn vision_locates_an_object() {
     assert!((distance.inches - 0.2_f64.hypot(0.1) * 2.0).abs() < 0.03, "{} in", distance.inches);
     assert!((distance.radians.to_degrees() - 10.0).abs() < 0.1, "{} rad", distance.radians);
     assert_eq!(bench.run(MovToVu, "SHAFT", 1, "BENCH", 0), error(Reason::BadRecord));
-    // A grasp that was interrupted has ended since: the robot does not drag the part to where the camera looks.
+    // An interrupted grasp has ended since: the robot must not drag the part to the place of the picture.
     bench.hold("BLOCK", 75, 1);
     assert_eq!(bench.run(MovToVu, "BLOCK", 1, "BENCH", 1), error(Reason::AlreadyHolding));
     assert_eq!(bench.run(LocateObj, "BLOCK", 1, "BENCH", 1), error(Reason::AlreadyHolding));
@@ -365,7 +369,7 @@ fn vision_locates_an_object() {
 #[test]
 fn object_at_the_edge_of_its_tray_is_refused() {
     let outside = error(Reason::AtTrayEdge);
-    // The block lies twice as far from the middle as each of the two pictures says.
+    // The block lies twice as far from the middle as each of the two pictures reports.
     for (array, (y, z, angle), end) in [
         ("SLOT", (98, 0, 0), DONE),
         ("SLOT", (102, 0, 0), outside),
@@ -374,7 +378,7 @@ fn object_at_the_edge_of_its_tray_is_refused() {
         ("SLOT", (0, 186, 0), DONE),
         ("SLOT", (0, 189, 0), outside),
         ("SLOT", (0, -189, 0), outside),
-        // Turned by a quarter the fingers open along the longer side.
+        // Turned by a quarter, the fingers open along the longer side.
         ("SLOT", (161, 0, 9_000), DONE),
         ("SLOT", (164, 0, 9_000), outside),
         ("SLOT", (0, -124, -9_000), DONE),
@@ -395,14 +399,14 @@ fn object_at_the_edge_of_its_tray_is_refused() {
         assert_eq!(
             bench.memory.emove.estimates.located.is_some(),
             end == DONE,
-            "the next command looks again"
+            "the next command takes a new picture"
         );
     }
 }
 
-/// What vision has found in one sector is not where a command for another sector of the same tray leads.
+/// The object located in one sector does not apply to a command for another sector of the tray.
 #[test]
-fn located_object_counts_only_for_its_sector() {
+fn located_object_is_valid_only_in_its_sector() {
     let mut bench = Bench::ready("HOME", 1);
     let array = data().array_named(&Name16::clipped("SLOTS")).unwrap_or_default();
     assert_eq!(bench.run(MovToVu, "BLOCK", 1, "BENCH", 1), DONE);
@@ -420,7 +424,7 @@ fn located_object_counts_only_for_its_sector() {
     (told.site.array, told.site.sector, told.pose) = (array, Some(2), pose.number);
     assert_eq!(bench.finish(), DONE);
     let off = bench.world.frame.distance(&moved(there, &["GRASP-MTB"])).inches;
-    assert!(off < 0.1, "{off} in from where the command leads");
+    assert!(off < 0.1, "{off} in from the goal of the command");
 }
 
 #[test]
@@ -448,7 +452,7 @@ fn failed_picture_is_retried_and_then_reported() {
     assert_eq!(
         bench.run(LocateObj, "BLOCK", 1, "BENCH", 1),
         error(Reason::BadRecord),
-        "the resolvers do not say from where the camera looks"
+        "the resolvers give no position of the camera"
     );
     let mut bench = Bench::ready("HOME", 1);
     bench.spoil("GOTO-PT", Mishap::Prim(PrimReport::Error, Reason::NotAtGoal));
@@ -479,7 +483,7 @@ fn located_object_is_discarded_after_a_lost_link() {
 
 #[test]
 fn implausible_picture_moves_nothing() {
-    // BLOCK is looked at from 590 mm: the picture ends before 11.61 in.
+    // The picture of BLOCK is taken from 590 mm: it ends before 11.61 in.
     const TRUTH: (i32, i32, i32, u16) = (20, -10, 1000, 17);
     for (claims, end, log) in [
         (vec![(1_162, 0, 0, 0), (0, -1_162, 0, 0), (0, 0, 9_001, 0)], error(Reason::VisionImplausible), 3),
@@ -537,8 +541,8 @@ fn missing_data_are_reported() {
     bench.world.frame = moved(frame_of("HOME"), &["300ty"]);
     bench.wait(2);
     assert_eq!(bench.run(MovToLoc, "", 0, "BENCH", 0), error(Reason::UnknownStart));
-    // The places that are nearest: HOME, three inches away, and another one.
-    assert_eq!(bench.memory.emove.nearest, [None; 2], "the location points are looked through");
+    // The nearest places: HOME, three inches away, and another one.
+    assert_eq!(bench.memory.emove.nearest, [None; 2], "the search is not complete");
     bench.wait(60);
     let [Some(first), Some(second)] = bench.memory.emove.nearest else { panic!("two places") };
     assert_eq!(first.location.as_str(), "HOME");
@@ -550,5 +554,5 @@ fn missing_data_are_reported() {
     let nowhere = Target::LocationPoint(LocptId::new(9_999));
     let points: Vec<_> = data().path_points.iter().map(|p| PathPoint { target: nowhere, ..*p }).collect();
     bench.data.path_points = points.leak();
-    assert_eq!(bench.run(MovToLoc, "", 0, "HOME", 0), error(Reason::BadRecord), "a point of the way");
+    assert_eq!(bench.run(MovToLoc, "", 0, "HOME", 0), error(Reason::BadRecord), "a point of the path");
 }

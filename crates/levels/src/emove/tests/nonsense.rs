@@ -1,4 +1,4 @@
-//! Whatever the neighbours say and whatever is commanded.
+//! Arbitrary commands and arbitrary outputs of the neighbours.
 
 use interfaces::{
     EmoveOutputs, Header, Reason,
@@ -18,7 +18,7 @@ use crate::emove::{Emove, gripper::EmoveGripper};
 const OBJECTS: [&str; 6] = ["", "BLOCK", "SHAFT", "CUTTER", "GRIPPER-1", "GRIPPER-3"];
 const LOCATIONS: [&str; 6] = ["", "HOME", "BENCH", "HOLSTER-R", "HOLSTER-C", "TOOL-TRNS"];
 
-/// What a tick brings: a command or none, and what each neighbour says.
+/// The inputs of a tick: a command or none, and the outputs of each neighbour.
 #[derive(Clone, Debug)]
 struct Nonsense {
     command: Option<(u8, usize, i32, usize, u8)>,
@@ -52,7 +52,7 @@ fn nonsense() -> impl Strategy<Value = Nonsense> {
         })
 }
 
-/// Write what a tick brings into common memory.
+/// Write the inputs of a tick into common memory.
 fn bring(bench: &mut Bench, tick: &Nonsense) {
     if let Some((verb, object, grip, location, gripper)) = tick.command {
         let verb = EmoveVerb::from_code(verb).unwrap();
@@ -97,10 +97,10 @@ fn bring(bench: &mut Bench, tick: &Nonsense) {
 proptest! {
     #![proptest_config(ProptestConfig { cases: 400, ..ProptestConfig::default() })]
 
-    /// Nothing panics; only the attached gripper is commanded, only its process runs; a process that goes on
-    /// from a remembered state writes the same bits.
+    /// Nothing panics; only the attached gripper is commanded, only its process runs; a restored process writes the
+    /// same bits.
     #[test]
-    fn nothing_panics(
+    fn arbitrary_inputs_cause_no_panic(
         gripper in 0_u8..4,
         at in 1_usize..6,
         ticks in prop::collection::vec(nonsense(), 1..150),
@@ -126,7 +126,7 @@ proptest! {
             prop_assert!(was.grip.number == is.grip.number || attached == EmoveGripper::Parts);
             prop_assert!(was.v_grip.number == is.v_grip.number || attached == EmoveGripper::V);
             prop_assert!(was.tool_grip.number == is.tool_grip.number || attached == EmoveGripper::Tool);
-            // Id pins that name no gripper over a locked ring say nothing.
+            // Without a gripper id, the pins are ignored while the ring is locked.
             let locked = before.quick_change.status.ring == RingPosition::Locked;
             prop_assert!(!is.status.held.is_held() || attached != EmoveGripper::None || locked);
         }

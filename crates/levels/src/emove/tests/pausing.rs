@@ -27,7 +27,7 @@ use crate::{
 
 pub const SCENARIOS: &[fn()] = &[
     failed_pause_reports_its_reason,
-    returned_robot_is_done_when_everything_rests,
+    returned_robot_is_done_when_all_processes_rest,
     command_during_manual_control_is_refused,
     link_failure_during_pause_is_initialized_again_or_reported,
 ];
@@ -46,10 +46,10 @@ fn link_failure_during_pause_is_initialized_again_or_reported() {
     assert_eq!(bench.memory.emove.status.report, StatusReport::Executing);
     let mut again = bench.clone();
     (again.world.prim.report, again.world.prim.reason) = (PrimReport::T3LinkErr, Reason::LinkError);
-    assert_eq!(again.finish(), error(Reason::LinkError), "not a third time");
+    assert_eq!(again.finish(), error(Reason::LinkError), "no third initialization");
     bench.world.dead.push("Prim");
     assert_eq!(bench.finish(), error(Reason::NeighbourLost));
-    // The pause is done and stands.
+    // The pause is done.
     let mut bench = Bench::ready("HOME", 1);
     assert_eq!(bench.pause(), DONE);
     (bench.world.prim.report, bench.world.prim.reason) = (PrimReport::T3LinkErr, Reason::LinkError);
@@ -58,7 +58,7 @@ fn link_failure_during_pause_is_initialized_again_or_reported() {
     assert_eq!(
         (status.report, status.reason),
         (StatusReport::Done, Reason::LinkError),
-        "no failure of E-PAUSE"
+        "E-PAUSE has not failed"
     );
     assert_eq!(bench.pause(), DONE);
 }
@@ -71,8 +71,8 @@ fn operator_initializes_the_link_during_a_pause() {
     bench.external.operator.robot_init = 7;
     bench.wait(40);
     assert_eq!(bench.log(), ["ROBOT-INIT", "PAUSE", "QC-PAUSE"]);
-    assert_eq!(bench.memory.emove.status.report, StatusReport::Done, "what is done stays done");
-    // An E-move that starts again does not obey it once more.
+    assert_eq!(bench.memory.emove.status.report, StatusReport::Done, "the report stays done");
+    // A restarted E-move does not initialize it again.
     bench.restart_and_finish();
     assert_eq!(bench.pause(), DONE);
     bench.world.log.clear();
@@ -86,14 +86,14 @@ fn first_pause_starts_the_link() {
     assert_eq!(bench.pause(), DONE);
     assert_eq!(bench.log(), ["ROBOT-INIT", "PAUSE", "QC-PAUSE", "PAUSE"], "Prim, Quick Change, Grip");
     assert_eq!(bench.pause(), DONE);
-    assert!(!bench.log().contains(&"ROBOT-INIT"), "it runs");
+    assert!(!bench.log().contains(&"ROBOT-INIT"), "the link is up");
 }
 
 #[test]
 fn pause_accepts_each_gripper_at_the_start() {
     for gripper in 0..=3 {
         let mut bench = Bench::new("HOME", gripper);
-        // Fingers on something of any size are not the pause's business.
+        // The pause does not depend on the opening of the fingers.
         (bench.world.v_grip.opening, bench.world.tool_grip.opening) = (200, 200);
         assert_eq!(bench.pause(), DONE);
         assert_eq!(bench.memory.emove.status.end_effector_id, given(gripper));
@@ -156,7 +156,7 @@ fn failed_pause_reports_its_reason() {
     bench.command(Pause, "", 0, "", 0);
     bench.wait(3);
     bench.world.mated = 2;
-    assert_eq!(bench.finish(), DONE, "a gripper that has come since is not waited for");
+    assert_eq!(bench.finish(), DONE, "E-PAUSE does not wait for a gripper attached since");
 }
 
 #[test]
@@ -181,10 +181,7 @@ fn fingers_finish_their_order_before_pause() {
             assert!(closed.is_none_or(|closed| closed < paused), "{log:?}");
             let held = fork.memory.emove.status.held;
             let named = held.object().is_some_and(|held| held.as_str() == object);
-            assert!(
-                closed.is_none() || named,
-                "what they have closed on has the name of the command: {held:?}"
-            );
+            assert!(closed.is_none() || named, "the grasped object has the name in the command: {held:?}");
         }
         assert_eq!(bench.run(GraspObj, object, 1, "", gripper), DONE);
         assert!(bench.memory.emove.status.held.is_held());
@@ -195,16 +192,16 @@ fn fingers_finish_their_order_before_pause() {
 fn pause_finds_the_location_of_the_robot() {
     let mut bench = Bench::new("HOLSTER-C", 0);
     assert_eq!(bench.pause(), DONE);
-    assert!(bench.memory.emove.status.at.is_none(), "a holster is no plain location");
+    assert!(bench.memory.emove.status.at.is_none(), "a holster is not a plain location");
     bench.world.frame = frame_of("BENCH");
     assert_eq!(bench.pause(), DONE);
     assert_eq!(bench.at(), "BENCH");
     bench.world.frame = moved(frame_of("HOME"), &["300ty"]);
-    assert_eq!(bench.pause(), DONE, "it need not be anywhere");
+    assert_eq!(bench.pause(), DONE, "the robot may be at an unknown place");
     assert!(bench.memory.emove.status.at.is_none());
 }
 
-/// Only E-PAUSE looks for the robot, and only while it is done or under way.
+/// E-move searches for the robot's place only while E-PAUSE is done or under way.
 #[test]
 fn location_search_runs_only_during_pause() {
     let rows = |watch: Watch| (search((), &watch).row, search((), &watch).action);
@@ -229,9 +226,9 @@ fn location_search_runs_only_during_pause() {
     }
 }
 
-/// A pause that stands goes on; a command that has ended does not.
+/// A pause that is done continues; another command that has ended does not.
 #[test]
-fn only_a_standing_pause_continues() {
+fn only_a_finished_pause_continues() {
     for &pause in tables::Pause::ALL {
         for &outcome in Outcome::ALL {
             let watch = Watch {
@@ -244,14 +241,14 @@ fn only_a_standing_pause_continues() {
             let goes_on =
                 pause == tables::Pause::Standing && matches!(outcome, Outcome::Done | Outcome::Joystick);
             assert_eq!(attend((), &watch) == Verdict::Passed(()), goes_on, "{pause} {outcome}");
-            // `.R` initializes the link, then the pause goes on.
+            // `.R` initializes the link, then the pause continues.
             for (initialization, action) in [
                 (tables::Initialization::Asked, Action::RobotInit),
                 (tables::Initialization::Over, Action::StopRobot),
             ] {
                 let expected = if goes_on { action } else { Action::Wait };
                 let Verdict::Decided(found) = attend((), &Watch { initialization, ..watch }) else {
-                    panic!("{pause} {outcome}: the tables of the commands know nothing of it");
+                    panic!("{pause} {outcome}: the tables of the commands must not decide");
                 };
                 assert_eq!(found.action, expected, "{pause} {outcome}");
             }
@@ -273,7 +270,7 @@ fn operator_moves_robot_and_fingers() {
         bench.world.log.clear();
         bench.world.button = JoystickGrip::Open;
         bench.wait(20);
-        assert_eq!(bench.log().len(), 1, "pressing counts, not holding down: {:?}", bench.log());
+        assert_eq!(bench.log().len(), 1, "only a new press acts: {:?}", bench.log());
         assert!(!bench.memory.emove.status.held.is_held(), "the fingers are open");
         assert!(bench.memory.emove.status.placed.is_some());
         bench.world.button = JoystickGrip::None;
@@ -281,10 +278,10 @@ fn operator_moves_robot_and_fingers() {
         bench.world.button = JoystickGrip::Close;
         bench.wait(20);
         assert_eq!(bench.log().len(), 2);
-        assert_eq!(bench.memory.emove.status.placed, None, "it may be between the fingers again");
+        assert_eq!(bench.memory.emove.status.placed, None, "the part may be between the fingers again");
         let closed = [bench.world.grip.opening, bench.world.v_grip.opening, bench.world.tool_grip.opening];
         assert_eq!(closed[usize::from(gripper) - 1], [10, 50, 100][usize::from(gripper) - 1]);
-        // The operator has carried the robot to the vise and gives it back.
+        // The operator has moved the robot to the vise and gives it back.
         bench.world.frame = frame_of("VISE");
         (bench.world.joystick, bench.world.button) = (false, JoystickGrip::None);
         bench.wait(10);
@@ -294,8 +291,7 @@ fn operator_moves_robot_and_fingers() {
             (StatusReport::Done, Reason::None, "VISE")
         );
     }
-    // Without frame switches the buttons work as well, and a robot that is switched over while it pauses is
-    // the operator's.
+    // Without frame switches the buttons also work. A robot switched over during a pause belongs to the operator.
     let mut bench = Bench::ready("HOME", 1);
     bench.world.joystick = true;
     assert_eq!(bench.pause(), (StatusReport::JoystickOn, Reason::JoystickOn));
@@ -304,13 +300,13 @@ fn operator_moves_robot_and_fingers() {
     assert_eq!(bench.memory.emove.status.report, StatusReport::Done);
     bench.world.dead.push("Prim");
     bench.wait(5);
-    assert_eq!(bench.memory.emove.status.report, StatusReport::Done, "done stays");
+    assert_eq!(bench.memory.emove.status.report, StatusReport::Done, "the report stays done");
 }
 
-/// The operator gives the robot back while the fingers still move, while the ring still pauses, and with a link that
-/// fails; and takes it once more before everything rests.
+/// The operator gives the robot back while the fingers move, while the ring pauses, or with a failing link, and takes
+/// it again before all processes are at rest.
 #[test]
-fn returned_robot_is_done_when_everything_rests() {
+fn returned_robot_is_done_when_all_processes_rest() {
     let led = || {
         let mut bench = Bench::ready("HOME", 2);
         assert_eq!(bench.pause(), DONE);
@@ -349,12 +345,12 @@ fn returned_robot_is_done_when_everything_rests() {
     let mut bench = led();
     bench.spoil("PAUSE", Mishap::Prim(PrimReport::T3LinkErr, Reason::LinkError));
     ticks(&mut bench);
-    assert_eq!(bench.memory.emove.status.reason, Reason::LinkError, "the reason stands beside it");
+    assert_eq!(bench.memory.emove.status.reason, Reason::LinkError, "done with a reason");
     let mut bench = led();
     bench.memory.prim.status.report = PrimReport::T3LinkErr;
     bench.world.dead.push("Prim");
     bench.wait(2);
-    assert_eq!(bench.memory.emove.status.report, StatusReport::Done, "the reason stands beside it");
+    assert_eq!(bench.memory.emove.status.report, StatusReport::Done, "done with a reason");
 }
 
 #[test]
@@ -368,7 +364,7 @@ fn operator_interrupts_a_command() {
     bench.world.joystick = false;
     bench.wait(10);
     assert_eq!(bench.memory.emove.status.report, StatusReport::Done);
-    // A command that was interrupted and not followed by a pause ends in an error when the box is let go.
+    // An interrupted command without a pause ends in an error when the box is released.
     let mut bench = Bench::ready("HOME", 1);
     bench.spoil("GO-THRU", Mishap::Joystick);
     assert_eq!(bench.run(MovToLoc, "", 0, "VISE", 0), (StatusReport::JoystickOn, Reason::JoystickOn));
@@ -379,7 +375,7 @@ fn operator_interrupts_a_command() {
     assert_eq!((status.report, status.reason), error(Reason::JoystickOn));
 }
 
-/// A command that comes in the tick in which the operator takes the robot: fingers and ring stay as they are.
+/// A command arrives in the tick in which the operator takes the robot: fingers and ring stay as they are.
 #[test]
 fn command_during_manual_control_is_refused() {
     for (holds, verb, object, location) in [

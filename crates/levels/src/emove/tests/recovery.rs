@@ -1,5 +1,5 @@
-//! Motions that are interrupted and sent again, or followed by another command (docs/design/recovery.md
-//! "On the way", "Replaced", "Estimates").
+//! Motions that are interrupted and sent again, or followed by another command (docs/design/recovery.md "On the way",
+//! "Replaced", "Estimates").
 
 use geometry::frame::{Frame, Vector};
 use interfaces::{
@@ -54,7 +54,7 @@ fn interrupted_motion_resumes_to_its_goal_from_every_tick() {
             assert_eq!(fork.perform(TO_VISE), DONE, "{told}");
             let again = fork.motions();
             let rest = if again.is_empty() { &[] } else { &full[told.saturating_sub(1)..] };
-            assert_eq!(again, rest, "no point twice, {told} told");
+            assert_eq!(again, rest, "no point is repeated, {told} points were sent");
             assert!(fork.off(&moved(frame_of("VISE"), &["GRASP-MTB"])) < 0.02);
             assert_eq!((fork.at(), fork.held()), ("VISE".to_owned(), "BLOCK".to_owned()));
             seen[told] += 1;
@@ -81,14 +81,14 @@ fn motion_to_another_goal_passes_the_end_of_the_depart_leg() {
         let back = vec!["GO-THRU"; told.saturating_sub(1)];
         let then = if told == 1 { vec!["GO-THRU A/D-5"] } else { back };
         let then = then.into_iter().chain(["GO-THRU", "GOTO-PT"]).collect::<Vec<_>>();
-        assert_eq!(fork.motions(), then, "{told} told");
+        assert_eq!(fork.motions(), then, "{told} points were sent");
         assert!(fork.off(&frame_of("HOME")) < 0.02);
         // Points are passed within an inch.
-        assert!(near > from.min(5.0) - 1.1, "{near} in: it does not go back into the depart leg");
+        assert!(near > from.min(5.0) - 1.1, "{near} in: no return into the depart leg");
         seen[told] += 1;
     }
     assert!(seen[1..].iter().all(|ticks| *ticks > 0), "in every leg: {seen:?}");
-    // Interrupted a second time, on the way back, it still knows the way.
+    // A second interruption, on the way back, keeps the way.
     for ticks in (10..300).step_by(29) {
         for later in (5..120).step_by(17) {
             let mut bench = loaded();
@@ -118,7 +118,7 @@ fn motion_back_uses_the_approach_of_the_place() {
             assert_eq!(fork.motions(), then);
         }
     }
-    // A robot that was to open its fingers for the goal orders it again when it is due.
+    // An interrupted opening for the goal is ordered again when it is due.
     let mut bench = Bench::ready("HOME", 1);
     bench.world.prim.by_steps = true;
     for mut fork in bench.during((MovToObj, "BLOCK", 1, "BENCH", 1)) {
@@ -126,7 +126,7 @@ fn motion_back_uses_the_approach_of_the_place() {
         assert_eq!(fork.perform((MovToObj, "BLOCK", 1, "BENCH", 1)), DONE);
         assert_eq!(fork.world.grip.opening, 300, "{:?}", fork.world.log);
     }
-    // The camera over a part goes on, or back to the view.
+    // The camera over a part continues, or returns to the view.
     let mut bench = Bench::ready("HOME", 1);
     assert_eq!(bench.run(MovToVu, "BLOCK", 1, "BENCH", 1), DONE);
     bench.world.prim.by_steps = true;
@@ -145,7 +145,7 @@ fn motion_at_an_object_resumes_forward_only() {
     let to_pin = (MovToObj, "PIN", 1, "BENCH", 1);
     let mut bench = Bench::ready("HOME", 1);
     assert_eq!(bench.perform(to_pin), DONE);
-    // A pin that lies two inches farther is still the same place; it has no depart points.
+    // A pin two inches farther is still at the same place; it has no depart points.
     bench.world.prim.by_steps = true;
     let further = |bench: &mut Bench| {
         bench.send(to_pin);
@@ -157,12 +157,12 @@ fn motion_at_an_object_resumes_forward_only() {
     bench.stop();
     for other in [TO_HOME, to_block, to_pin] {
         assert_eq!(bench.perform(other), error(Reason::ForwardOnly));
-        assert_eq!(bench.motions(), [""; 0], "nothing moves");
+        assert_eq!(bench.motions(), [""; 0], "no motion is ordered");
     }
     further(&mut bench);
     assert_eq!(bench.finish(), DONE);
     assert!(bench.off(&moved(frame_of("BENCH"), &["300ty", "GRASP-MTB"])) < 0.02);
-    // From the place as such, or from a view, there is a way back.
+    // From a plain location, or from a view, the robot can go back.
     for (verb, gripper) in [(MovToLoc, 1), (MovToVu, 1)] {
         let mut bench = Bench::ready("HOME", gripper);
         assert_eq!(bench.run(verb, "BLOCK", 1, "BENCH", 1), DONE);
@@ -174,8 +174,8 @@ fn motion_at_an_object_resumes_forward_only() {
     }
 }
 
-/// E-PAUSE brings all to rest itself; every other command waits until all is at rest, whether it is accepted
-/// or refused.
+/// E-PAUSE stops all processes itself. Every other command waits until they are at rest, whether it is accepted or
+/// refused.
 #[test]
 fn new_command_stops_the_running_one_before_it_is_answered() {
     for (next, end) in [
@@ -190,7 +190,7 @@ fn new_command_stops_the_running_one_before_it_is_answered() {
             let moving = prim.echo != fork.memory.emove.prim.number || prim.report == PrimReport::Executing;
             let before = fork.world.log.len();
             assert_eq!(fork.execute(next), end, "{:?}", fork.world.log);
-            // What was ordered in the tick before is on its way to Prim.
+            // The order of the tick before is on its way to Prim.
             let at = fork.log()[before..].iter().position(|text| *text == "PAUSE");
             assert!(!moving || at.is_some_and(|at| at <= 1), "{:?}", fork.world.log);
             fork.assert_stands();
@@ -198,7 +198,7 @@ fn new_command_stops_the_running_one_before_it_is_answered() {
     }
 }
 
-/// A command that is found after a restart is not executed, and what was ordered for it is stopped.
+/// A command found after a restart is not executed, and its orders are stopped.
 #[test]
 fn restarted_emove_stops_its_orders() {
     let bench = loaded();
@@ -211,17 +211,17 @@ fn restarted_emove_stops_its_orders() {
         assert!(arrived || fork.memory.emove.prim.command == PrimVerb::Pause);
         fork.assert_stands();
     }
-    // The operator who has the robot keeps it.
+    // The operator keeps the robot.
     let mut bench = Bench::ready("HOME", 1);
     bench.spoil("GO-THRU", Mishap::Joystick);
     assert_eq!(bench.run(MovToLoc, "", 0, "VISE", 0), (StatusReport::JoystickOn, Reason::JoystickOn));
     let sent = bench.memory.emove.prim.number;
     bench.restart();
     bench.wait(5);
-    assert_eq!(bench.memory.emove.prim.number, sent, "nothing is sent");
+    assert_eq!(bench.memory.emove.prim.number, sent, "no order is sent");
 }
 
-/// Nothing that Subtask has commanded goes on without it.
+/// No order continues without Subtask.
 #[test]
 fn loss_of_subtask_stops_everything() {
     let bench = loaded();
@@ -244,7 +244,7 @@ fn restarted_emove_keeps_its_estimates() {
         let Estimates { place, held, placed, located, exchange, .. } = bench.memory.emove.estimates;
         (place, held, placed, located, exchange)
     };
-    // Before the grasp what vision has located, after it what is held, and then what was let go.
+    // The estimates are the located object before the grasp, then the held one, then the released one.
     let mut bench = Bench::ready("HOME", 1);
     assert_eq!(bench.run(MovToVu, "BLOCK", 1, "BENCH", 1), DONE);
     for (verb, location) in [
@@ -265,7 +265,7 @@ fn restarted_emove_keeps_its_estimates() {
         assert_eq!(estimates(&bench), before, "after {verb}");
     }
     assert!(bench.memory.emove.status.placed.is_some());
-    // What the sensors contradict is not believed.
+    // Estimates that the sensors contradict are discarded.
     let mut bench = loaded();
     bench.held = true;
     bench.world.frame = frame_of("HOME");
@@ -276,7 +276,7 @@ fn restarted_emove_keeps_its_estimates() {
     bench.restart_and_finish();
     let status = bench.memory.emove.status;
     assert_eq!((status.at.is_some(), status.held.is_held()), (false, false));
-    // A change of a gripper is one of the estimates.
+    // A gripper exchange is one of the estimates.
     let mut bench = Bench::ready("HOLSTER-R", 1);
     bench.world.frame = moved(frame_of("HOLSTER-R"), &["QCA-LIFT"]);
     bench.world.prim.by_steps = true;
@@ -286,7 +286,7 @@ fn restarted_emove_keeps_its_estimates() {
     assert_eq!(bench.memory.emove.status.exchange, Some(1));
 }
 
-/// The robot is moved, by a person with the joystick box or otherwise.
+/// The operator or another cause moves the robot.
 fn nudge(bench: &mut Bench, by_hand: bool, does: impl FnOnce(&mut Frame)) {
     if by_hand {
         bench.lead(|bench| does(&mut bench.world.frame));
@@ -297,7 +297,7 @@ fn nudge(bench: &mut Bench, by_hand: bool, does: impl FnOnce(&mut Frame)) {
     }
 }
 
-/// A bare robot on its way from HOME to the vise for so many ticks.
+/// A bare robot on its way from HOME to the vise for a number of ticks.
 fn under_way(ticks: u32) -> Bench {
     let mut bench = Bench::ready("HOME", 0);
     bench.world.prim.by_steps = true;
@@ -323,7 +323,7 @@ fn nudge_inside_the_corridor_keeps_the_path() {
         nudge(&mut bench, by_hand, |frame| frame.position += across * aside);
         assert_eq!(bench.run(MovToLoc, "", 0, "VISE", 0), end, "{aside} in");
     }
-    // Off its way and at a known location: the search finds it there.
+    // Off its way and at a known location, the search finds the robot.
     for by_hand in [true, false] {
         let mut bench = under_way(90);
         bench.stop();
@@ -337,7 +337,7 @@ fn nudge_inside_the_corridor_keeps_the_path() {
 #[test]
 fn robot_off_its_path_returns_to_it_first() {
     for aside in [0.1, 0.3, -2.0] {
-        // On the first leg: no point was passed beside yet.
+        // On the first leg no point has been passed.
         let mut bench = under_way(20);
         let before = bench.world.frame.position;
         bench.step();
@@ -363,8 +363,8 @@ fn robot_off_its_path_returns_to_it_first() {
     }
 }
 
-/// What `cut` makes of the link stops the robot short of where it was sent, or aside: does the command sent again
-/// go on?
+/// A link failure made by `cut` stops the robot short of its goal, or off its path. The repeated command must
+/// continue.
 fn stopped_short(cut: impl Fn(&mut Bench)) {
     for (short, aside, end) in
         [(1.5, 0.0, DONE), (1.5, 4.5, error(Reason::UnknownStart)), (4.0, 0.0, error(Reason::UnknownStart))]
@@ -416,7 +416,7 @@ fn robot_that_moved_while_emove_was_held_keeps_its_path() {
         // A held process does not see the ticks that it has missed.
         farther += u32::from((fork.world.frame.position - before).norm() > 2.0);
         let told = fork.stop();
-        assert_eq!(fork.perform(TO_VISE), DONE, "{told} told: {:?}", fork.world.log);
+        assert_eq!(fork.perform(TO_VISE), DONE, "{told} points were sent: {:?}", fork.world.log);
     }
     assert!(farther > 5, "{farther}");
 }
@@ -444,7 +444,7 @@ fn unlocked_ring_refuses_every_motion() {
 }
 
 #[test]
-fn motion_begins_where_the_robot_is() {
+fn motion_begins_at_the_place_of_the_robot() {
     let row = |robot, goal, back, leg| {
         let decision = resume((), &MotionStart { robot, goal, back, leg });
         (decision.row, decision.action)

@@ -19,9 +19,9 @@ use crate::emove::tables::{
 };
 
 pub const SCENARIOS: &[fn()] = &[
-    release_beside_the_place_corrects_first,
+    release_off_the_place_corrects_first,
     part_that_may_be_clamped_is_not_moved,
-    grasp_and_picture_beside_the_place_correct_first,
+    grasp_and_picture_off_the_place_correct_first,
     motion_to_a_held_object_corrects_at_its_place_only,
 ];
 
@@ -31,7 +31,7 @@ const BLOCK_TO_VISE: EmoveLine = (MovObjTo, "BLOCK", 1, "VISE", 1);
 const BLOCK_TO_BENCH: EmoveLine = (MovObjTo, "BLOCK", 1, "BENCH", 1);
 const TO_BLOCK: EmoveLine = (MovToObj, "BLOCK", 1, "BENCH", 1);
 
-/// The joystick box moves the robot while E-PAUSE stands, 0.15 in in a tick at most.
+/// The joystick box moves the robot during E-PAUSE, by at most 0.15 in per tick.
 fn jog(bench: &mut Bench, by: [f64; 3]) {
     jog_and_turn(bench, by, [0.0; 3]);
 }
@@ -59,7 +59,7 @@ fn course(bench: &Bench) -> Course {
     bench.memory.emove.estimates.track.course
 }
 
-/// A robot with a block in its fingers, which it has brought to a place.
+/// A robot that has brought a block to a place, and holds it.
 fn brought(place: EmoveLine) -> Bench {
     let mut bench = Bench::ready("HOME", 1);
     assert_eq!(bench.perform(TO_BLOCK), DONE);
@@ -69,7 +69,7 @@ fn brought(place: EmoveLine) -> Bench {
 }
 
 #[test]
-fn robot_beside_its_place_returns_straight() {
+fn robot_near_its_place_returns_straight() {
     for (aside, motions) in [(0.01, &[][..]), (0.05, &["GOTO-PT"]), (0.3, &["GOTO-PT"]), (0.48, &["GOTO-PT"])]
     {
         let mut bench = Bench::ready("HOME", 1);
@@ -78,7 +78,7 @@ fn robot_beside_its_place_returns_straight() {
         assert_eq!(bench.motions(), motions, "{aside} in");
         assert!(bench.off(&frame_of("HOME")) < 0.02, "{aside} in");
     }
-    // So does one that is turned.
+    // So does a turned robot.
     let mut bench = Bench::ready("HOME", 1);
     jog_and_turn(&mut bench, [0.0; 3], [0.0, 0.02, 0.0]);
     assert_eq!(bench.perform(TO_HOME), DONE);
@@ -86,7 +86,7 @@ fn robot_beside_its_place_returns_straight() {
 }
 
 #[test]
-fn release_beside_the_place_corrects_first() {
+fn release_off_the_place_corrects_first() {
     let there = moved(frame_of("BENCH"), &["GRASP-MTB"]);
     let mut bench = brought(BLOCK_TO_BENCH);
     jog(&mut bench, [0.3, 0.0, 0.0]);
@@ -123,7 +123,7 @@ fn part_that_may_be_clamped_is_not_moved() {
     jog(&mut empty, [0.0, 0.3, 0.0]);
     assert_eq!(empty.perform((MovToObj, "BLOCK", 1, "VISE", 1)), DONE);
     assert!(empty.off(&moved(frame_of("VISE"), &["GRASP-MTB"])) < 0.02);
-    // Moved back, the part may be let go.
+    // The part may be released after the robot has moved back.
     jog(&mut bench, [0.0, -0.3, 0.0]);
     assert_eq!(bench.perform(release), DONE);
     assert_eq!(bench.motions(), [""; 0]);
@@ -135,7 +135,7 @@ fn part_that_may_be_clamped_is_not_moved() {
 }
 
 #[test]
-fn grasp_and_picture_beside_the_place_correct_first() {
+fn grasp_and_picture_off_the_place_correct_first() {
     let mut bench = Bench::ready("HOME", 1);
     assert_eq!(bench.perform(TO_BLOCK), DONE);
     let mut lost = bench.clone();
@@ -144,7 +144,7 @@ fn grasp_and_picture_beside_the_place_correct_first() {
     assert_eq!(bench.perform((GraspObj, "BLOCK", 1, "BENCH", 1)), DONE);
     assert_eq!(bench.motions(), ["GOTO-PT"]);
     assert!(bench.off(&moved(frame_of("BENCH"), &["GRASP-MTB"])) < 0.01);
-    // Where the robot is lost there is nothing to close on.
+    // At an unknown place no grasp is possible.
     jog(&mut lost, [0.0, 0.0, 2.0]);
     assert_eq!(lost.perform((GraspObj, "BLOCK", 1, "BENCH", 1)), error(Reason::UnknownStart));
     let mut bench = Bench::ready("HOME", 1);
@@ -199,7 +199,7 @@ fn robot_moved_by_hand_retraces_its_path() {
     assert!(near.iter().all(|inches| *inches < 0.15), "{near:?}");
     assert!(fork.off(&frame_of("HOME")) < 0.02);
     assert_eq!(fork.at(), "HOME");
-    // To another place it goes by way of the place that it has left.
+    // For another goal the robot first returns to the place that it has left.
     let near = bench.pass(TO_VISE, [second, first, frame_of("HOME")]);
     assert!(near.iter().all(|inches| *inches < 0.15), "{near:?}");
 }
@@ -223,7 +223,7 @@ fn motion_back_by_hand_shortens_the_recorded_path() {
     let far = Frame { position: far.position + Vector::new(4.0, 0.0, 0.0), ..far };
     let [near] = bench.pass(TO_HOME, [far]);
     assert!(near > 2.0, "{near}");
-    // Back at its place it is at a place.
+    // A robot moved back is at its place again.
     let mut bench = Bench::ready("HOME", 1);
     jog(&mut bench, [4.0, 0.0, 0.0]);
     jog(&mut bench, [-4.1, 0.0, 0.0]);
@@ -285,7 +285,7 @@ fn incomplete_record_allows_short_returns_only() {
         bench.stop();
         bench.wait(100);
     };
-    // Straight to a resting place that is near.
+    // Straight to a resting place nearby.
     for (by, end) in [(4.0, DONE), (11.0, DONE), (13.0, error(Reason::UnknownStart))] {
         let mut bench = Bench::ready("HOME", 1);
         miss(&mut bench, [by, 0.0, 0.0]);
@@ -336,7 +336,7 @@ fn sunken_arm_waits_for_the_joystick_box() {
         bench.wait(10);
         assert_eq!(course(&bench), Course::Adrift);
         assert_eq!(bench.perform(TO_HOME), error(Reason::UnknownStart));
-        // Moved near to a known place by a person it is found there.
+        // Moved near to a known place by the operator, the robot is found there.
         jog(&mut bench, [0.0, 0.0, 2.8]);
         bench.stop();
         assert_eq!(bench.perform(TO_HOME), DONE);
@@ -358,7 +358,7 @@ fn path_is_recorded_up_to_its_capacity() {
         jog(&mut bench, [0.0, 0.0, 1.0]);
     }
     assert_eq!(course(&bench), Course::Broken);
-    // A straight one has two ends, also a turn.
+    // A straight path has two ends, with a turn as well.
     let mut bench = Bench::ready("HOME", 1);
     jog(&mut bench, [20.0, 0.0, 0.0]);
     assert_eq!(bench.memory.emove.estimates.track.count, 1);
@@ -412,7 +412,7 @@ fn return_table_decides_by_record_and_surroundings() {
 }
 
 #[test]
-fn track_table_decides_by_what_moves_the_robot() {
+fn track_table_decides_by_the_source_of_motion() {
     let known = Tracking {
         place: Knowledge::Unknown,
         course: Course::Known,

@@ -1,5 +1,5 @@
-//! E-move with the real Quick Change, Grip, V-Grip and Tool-Grip, their devices simulated: what one sends is
-//! what the other takes, sleeping and waking included. Prim and vision are doubles.
+//! E-move with the real Quick Change, Grip, V-Grip and Tool-Grip and their simulated devices, which tests their
+//! interfaces, including sleep and wake. Prim and vision are doubles.
 
 use interfaces::{
     CommonMemory, ExternalInputs, Header, Reason, StatusReport,
@@ -37,7 +37,7 @@ pub struct Real {
     jaws: [Fingers; 2],
 }
 
-/// Step a process, or publish again what it wrote last.
+/// Step a process, or publish its last output again.
 fn step<P: Process<()>>(
     process: &mut P,
     dormant: bool,
@@ -88,7 +88,7 @@ impl Real {
         self.ring.place = 0.0;
     }
 
-    /// Opening of a gripper, and the ends of its way, in.
+    /// Opening of a gripper, and its stops, in.
     fn opening(&self, gripper: u8) -> (f64, (f64, f64)) {
         match gripper {
             1 => (self.parts.opening, (0.10, 5.00)),
@@ -96,7 +96,7 @@ impl Real {
         }
     }
 
-    /// What the valves of the tick before have done, and what the sensors see of it.
+    /// Apply the valves of the tick before, and read the sensors.
     fn devices(&mut self, before: &CommonMemory, external: &mut ExternalInputs, world: &mut Scene) {
         let outputs = before.device_outputs();
         self.ring.turn(outputs.quick_change);
@@ -135,7 +135,7 @@ fn exchange(bench: &mut Bench, from: u8, to: u8) {
     assert_eq!(bench.run(MovToLoc, "", 0, "HOME", 0), DONE);
 }
 
-/// Take an object at the bench, carry it to the vise, leave it there and go home.
+/// Grasp an object at the bench, carry it to the vise, release it there and move home.
 fn carry(bench: &mut Bench, object: &'static str, size: i32, gripper: u8) {
     assert_eq!(bench.run(MovToObj, object, 1, "BENCH", gripper), DONE);
     bench.world.object = Some(size);

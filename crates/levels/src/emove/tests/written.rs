@@ -1,4 +1,4 @@
-//! Estimates that a person writes while E-move is not stepped.
+//! Estimates that the operator writes while E-move is not stepped.
 
 use interfaces::{
     emove::{EmoveVerb::MovObjTo, Estimates, Holding, Located, ObjectGrip, PlacedObject},
@@ -10,7 +10,6 @@ use rcs_core::name::Name16;
 use super::bench::{Bench, DONE};
 
 impl Bench {
-    /// Write a value between two ticks.
     fn put(&mut self, variable: Variable, object: &str, grip: i32) {
         let object = Some(Name16::clipped(object)).filter(|object| !object.is_empty());
         let before = self.memory;
@@ -29,7 +28,7 @@ fn block() -> Holding {
 }
 
 #[test]
-fn felt_object_gets_the_written_name() {
+fn detected_object_adopts_the_written_name() {
     let mut bench = Bench::with_unknown("HOME", 75);
     bench.put(Variable::Held, "BLOCK", 1);
     bench.wait(10);
@@ -38,7 +37,7 @@ fn felt_object_gets_the_written_name() {
     assert_eq!(held(&bench), block());
     bench.put(Variable::Held, "", 0);
     bench.wait(10);
-    assert_eq!(held(&bench), Holding::Something, "it is held, and has no name");
+    assert_eq!(held(&bench), Holding::Something, "the object is held without a name");
 }
 
 #[test]
@@ -65,7 +64,7 @@ fn sensors_and_task_data_override_written_values() {
     let mut bench = Bench::ready("HOME", 1);
     bench.put(Variable::Held, "BLOCK", 1);
     bench.wait(10);
-    assert_eq!(held(&bench), Holding::Nothing, "nothing is felt");
+    assert_eq!(held(&bench), Holding::Nothing, "the fingers are empty");
 }
 
 #[test]
