@@ -182,7 +182,6 @@ impl State {
         command.command == EmoveVerb::MovObjTo && held == command.object
     }
 
-    /// Record the goal as the place of the robot at rest.
     fn settle(&mut self, command: &EmoveCommand, gone_to: GoneTo, outputs: &EmoveOutputs) {
         let [_, goal, ..] = outputs.poses;
         self.localization.arrive(robot_at(command, gone_to, goal.pose));

@@ -37,7 +37,7 @@ pub enum EmoveGripper {
     Tool,
 }
 
-/// True if the sensors of the ring do not report it locked.
+/// True if the sensors of the ring report it unlocked, or between its ends.
 pub(super) const fn is_open(memory: &CommonMemory) -> bool {
     matches!(memory.quick_change.status.ring, RingPosition::Unlocked | RingPosition::Between)
 }

@@ -73,7 +73,6 @@ impl HolsterPoints {
         })
     }
 
-    /// The position of a frame in the exchange.
     fn along(&self, present: &Frame) -> ExchangePosition {
         let at = |point: &Frame| norm(&(present.position - point.position));
         let segments = [
@@ -158,7 +157,7 @@ pub(super) fn seat_pose(command: &EmoveCommand, memory: &CommonMemory, data: &Ta
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct GripperExchange {
     commander: Commander,
-    /// The attached gripper in the tick before.
+    /// In the tick before.
     attached: EmoveGripper,
     /// The holster of an exchange that is under way.
     holster: Option<Exchange>,
@@ -186,7 +185,6 @@ impl GripperExchange {
         outputs.quick_change = QuickChangeCommand { number: self.commander.send(tick), command: verb };
     }
 
-    /// Status of the last command to Quick Change.
     pub(super) fn status(&self, tick: Tick, memory: &CommonMemory) -> Lower {
         self.commander.status_of(tick, &memory.quick_change)
     }

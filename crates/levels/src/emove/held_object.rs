@@ -30,7 +30,7 @@ const LEAST_RELEASE: i32 = 50;
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct HeldObject {
     held: Option<Grasped>,
-    /// The object of the last grasp command. None while an object is held if its release was interrupted.
+    /// The object of the last grasp command. `None` with a held object means that its release was interrupted.
     grasping: Option<Grasped>,
     /// The fingers were empty, and have not been commanded to close since.
     empty: bool,
@@ -228,7 +228,6 @@ impl HeldObject {
         self.disturbed = drum.or_else(near).copied().or(self.disturbed);
     }
 
-    /// True if an object has been released at a place.
     fn is_placed_at(&self, at: Option<&RobotPlace>) -> bool {
         self.placed.zip(at).is_some_and(|(placed, at)| placed.site == at.site)
     }
@@ -356,7 +355,6 @@ impl HeldObject {
         now.map_or(size, |now| size.max(now.saturating_add(LEAST_RELEASE).min(FULL_OPENING)))
     }
 
-    /// Clear the places where objects were released or disturbed.
     pub const fn forget_places(&mut self) {
         (self.placed, self.disturbed) = (None, None);
     }

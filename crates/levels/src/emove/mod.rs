@@ -14,7 +14,7 @@
 //! ```
 //!
 //! A tick follows the manual (II.2.1): [`sense`], decide, [`act`], [`report`]. [`State`] consists of the current
-//! command and these parts, whose fields are private to each:
+//! command and these parts. No part reads the fields of another:
 //!
 //! * [`held_object`]: the object in the fingers;
 //! * [`grippers`] and [`gripper`]: the three grippers as one;
@@ -77,7 +77,6 @@ use crate::execution::{Course, Execution};
 
 pub type EmoveInputs<'a> = Inputs<'a, TaskData<'a>>;
 
-/// State of E-move: the current command, and the parts.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct State {
     /// The command of Subtask and its progress.

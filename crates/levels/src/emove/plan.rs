@@ -63,7 +63,6 @@ fn holster(command: &EmoveCommand, data: &TaskData<'_>) -> HolsterData {
     }
 }
 
-/// The connection of the gripper to the robot.
 const fn coupling(memory: &CommonMemory) -> Coupling {
     let status = &memory.quick_change.status;
     match (status.end_effector_id, status.ring) {
@@ -73,7 +72,7 @@ const fn coupling(memory: &CommonMemory) -> Coupling {
     }
 }
 
-/// The location of a motion command, which is not a gripper exchange.
+/// The location of a command; `Holster` if MOV-TO-LOC names one.
 fn target(command: &EmoveCommand, data: &TaskData<'_>) -> EmoveTarget {
     match Relative::QcaBack.record(&command.site, data) {
         Some(_) if command.command == EmoveVerb::MovToLoc => EmoveTarget::Holster,
@@ -86,7 +85,6 @@ const fn record(is_needed: bool, is_found: bool) -> EmoveRecord {
 }
 
 impl State {
-    /// Look up the data of a new command, and store the results.
     pub(super) fn look_up(
         &mut self,
         command: &EmoveCommand,

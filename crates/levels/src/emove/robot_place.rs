@@ -61,7 +61,6 @@ pub const fn is_cut_off(memory: &CommonMemory) -> bool {
     status.restarting || failed
 }
 
-/// The pose of the location that a command names.
 #[must_use]
 pub fn base(command: &EmoveCommand, memory: &CommonMemory, data: &TaskData<'_>) -> Option<Frame> {
     pose_of(command.pose?, memory, data)

@@ -152,7 +152,6 @@ impl State {
         self.held.holding(self.exchange.is_misread(memory), memory)
     }
 
-    /// True if a release has begun at the place of the robot and has not ended.
     pub(super) fn is_letting_go(&self) -> bool {
         self.held.is_letting_go(self.localization.place().is_some())
     }
@@ -212,7 +211,6 @@ impl State {
         }
     }
 
-    /// Status of the last order.
     fn subordinates(&self, command: &EmoveCommand, inputs: &EmoveInputs<'_>) -> Subordinates {
         let (tick, memory) = (inputs.tick, inputs.memory);
         let gripper = self.grippers.status(tick, memory);

@@ -5,7 +5,7 @@
 //!                  |               /                      |                 seen from above
 //!            x ----+    TOOL-SAFE       Before         Sliding
 //!                                  \                      |
-//!                                   - back -- Beside -- slid, strike
+//!                                   - back -- Clear --- slid, strike
 //! ```
 //!
 //! All points follow from the pose of the drum's location and the relative moves of the four tool commands.
@@ -118,7 +118,6 @@ const fn is_tool_command(verb: EmoveVerb) -> bool {
     )
 }
 
-/// The position of the robot at a drum.
 fn locate(drum: &RobotPlace, memory: &CommonMemory, data: &TaskData<'_>) -> AtDrum {
     let points = drum.pose.to_frame().ok().and_then(|base| DrumPoints::of(&drum.site, &base, data));
     match (points, present_frame(memory)) {

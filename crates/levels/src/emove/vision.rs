@@ -37,7 +37,7 @@ const STANDS_RADIANS: f64 = 0.5 * core::f64::consts::PI / 180.0;
 /// Millimetres per inch: vision's range is in millimetres (VII.7.6).
 const MM_PER_INCH: f64 = 25.4;
 
-/// View parameters that a command names (VII.7.6).
+/// VII.7.6.
 #[must_use]
 pub(super) fn view_of<'a>(command: &EmoveCommand, data: &TaskData<'a>) -> Option<&'a VisionPara> {
     data.vision_para(command.object_vision)
@@ -48,7 +48,6 @@ fn looked_at(tool: &Frame, view: MovtabId, data: &TaskData<'_>) -> Frame {
     data.movetable(view).map_or(*tool, |movetable| movetable.unapply(tool))
 }
 
-/// The place moved to the centroid from vision.
 fn centred(place: &Frame, seen: &VisionResponse) -> Frame {
     place.shifted(Vector::new(0.0, inches(seen.y), inches(seen.z)))
 }

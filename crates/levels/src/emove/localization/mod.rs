@@ -44,13 +44,11 @@ pub struct Localization {
     place: Option<RobotPlace>,
     /// The robot has been moved away from `place`.
     away: bool,
-    /// The path that the robot is on.
     way: Option<Way>,
     /// The path from the last known place or way, on which the joystick box has moved the robot.
     track: Track,
     /// Location points searched so far.
     searched: u32,
-    /// The nearest known places of a robot at an unknown place.
     surroundings: Surroundings,
 }
 

@@ -22,7 +22,6 @@ pub struct Surroundings {
 }
 
 impl Surroundings {
-    /// Search more location points.
     pub(super) fn look(&mut self, present: &Frame, data: &TaskData<'_>) {
         for _ in 0..NEAREST_PER_TICK {
             let next = LocptId::new(self.looked.saturating_add(1));

@@ -66,7 +66,7 @@ fn on_line(pose: &Pose, from: &Pose, heading: &Vector) -> (f64, f64) {
     (along, norm(&(offset - heading * along)))
 }
 
-/// The direction from one pose to another; zero if they coincide.
+/// Zero if the poses coincide.
 fn heading(from: &Pose, to: &Pose) -> Vector {
     let way = vector(to.tool) - vector(from.tool);
     let length = norm(&way);
@@ -119,7 +119,7 @@ fn begin(track: &mut Track, pose: &Pose) {
     track.course = Course::Tracked;
 }
 
-/// Add a pose. False if the record is full.
+/// False if the record is full.
 fn add(track: &mut Track, pose: &Pose) -> bool {
     let moved = apart(&track.end, pose);
     if moved.inches < SPACING_INCHES && moved.radians < SPACING_RADIANS {

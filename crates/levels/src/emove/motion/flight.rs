@@ -83,7 +83,6 @@ impl Back {
         Some(EmoveLeg { at: LegGoal::Computed(frame), parameters: slower(from, to, data) })
     }
 
-    /// Record that the leg has been commanded.
     fn advance(&mut self, data: &TaskData<'_>) {
         if self.next <= self.route.depart_points(data) {
             self.complete = true;

@@ -44,9 +44,8 @@ pub(super) enum Slot {
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct EmoveMotion {
     commander: Commander,
-    /// The motion of a motion command.
     flight: Flight,
-    /// Ticks in which Prim has reported not-detected.
+    /// Ticks for which Prim has reported not-detected.
     undetected: u32,
     /// Last record number of a changing pose.
     last_pose: u32,
@@ -68,7 +67,6 @@ impl EmoveMotion {
         self.undetected = if undetected { self.undetected.saturating_add(1) } else { 0 };
     }
 
-    /// A new command, with its motion.
     pub(super) const fn begin(&mut self, flight: Flight) {
         (self.flight, self.undetected) = (flight, 0);
     }
@@ -170,7 +168,6 @@ impl EmoveMotion {
         }
     }
 
-    /// Send a command without a goal to Prim.
     pub(super) fn send(&mut self, verb: PrimVerb, inputs: &EmoveInputs<'_>, outputs: &mut EmoveOutputs) {
         outputs.prim = PrimCommand {
             number: self.commander.send(inputs.tick),

@@ -4,7 +4,7 @@
 //! ```text
 //!   departure --depart--> . --trajectory--> . --approach--> . --stop--> goal
 //!   data of the object         by the pair       data of the new
-//!   that was gone to           of locations      object and grip
+//!   at the departure           of locations      object and grip
 //! ```
 
 use geometry::{frame::Frame, pose::Pose};
@@ -62,13 +62,12 @@ pub enum Ahead {
     Missing,
 }
 
-/// A planned way and its progress.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct Route {
     pub from: RobotPlace,
     pub to: RobotPlace,
-    /// Depart points, relative to the pose of departure. For a placed object, or without depart points, the approach
-    /// points in reverse.
+    /// Depart points, relative to the pose of departure. After bringing an object, or without depart points,
+    /// the approach points in reverse.
     pub depart: PathId,
     pub between: PathId,
     /// Approach points, relative to the goal, and the stop.
@@ -96,7 +95,6 @@ pub struct EmoveLeg {
 /// The end of a leg, as a command to Prim.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum LegGoal {
-    /// A record, and a movetable applied to it.
     Record {
         /// Record of POSE, or changing record.
         pose: u32,
@@ -353,7 +351,6 @@ impl Route {
         }
     }
 
-    /// Record that the next leg has been commanded.
     pub fn advance(&mut self, data: &TaskData<'_>) {
         if self.next_point(data).is_some() {
             self.commanded = self.commanded.saturating_add(1);

@@ -18,7 +18,7 @@ pub enum CommandClass {
     ObjectMove,
     /// A motion to a holster: MOV-TO-HOL.
     HolsterMove,
-    /// The change of a gripper: QC-ATTACH, QC-DETACH.
+    /// A gripper exchange: QC-ATTACH, QC-DETACH.
     Exchange,
     /// Work at an object: LOCATE-OBJ, GRASP-OBJ.
     AtObject,
@@ -88,7 +88,7 @@ pub struct Request {
     pub class: CommandClass,
     /// The gripper on the robot.
     pub gripper: Attached,
-    /// Knowledge of the robot's place or way.
+    /// Knowledge of the robot's place. An unfinished tool command is sufficient.
     pub start: Knowledge,
     /// The connection of the gripper.
     pub coupling: Coupling,

@@ -48,7 +48,7 @@ pub fn data() -> TaskData<'static> {
     store.view()
 }
 
-/// The id of an end effector, from its code in a record; 0 is none.
+/// The id of an end effector, from its code in a record (0: without one).
 pub fn given(id: u8) -> Option<u8> {
     (id != 0).then_some(id)
 }
@@ -241,7 +241,6 @@ impl Bench {
         assert_eq!(self.pause(), DONE);
     }
 
-    /// The motions commanded to Prim.
     pub fn motions(&self) -> Vec<String> {
         let motions = ["GO-THRU", "GOTO-PT", "GO-UNTIL", "DELTA-MOVE"];
         let is_motion = |text: &&String| motions.iter().any(|motion| text.starts_with(motion));
@@ -256,7 +255,7 @@ impl Bench {
         bench.at_every_tick()
     }
 
-    /// Make a command fail whose text contains a word.
+    /// Make commands fail whose text contains a word.
     pub fn spoil(&mut self, word: &'static str, mishap: Mishap) -> &mut Self {
         self.world.mishaps.push((word, mishap));
         self

@@ -265,7 +265,6 @@ fn insert_tool_requires_a_calibration_at_tool_safe() {
         bench.world.prim.calibrated = false;
         assert_eq!(run(&mut bench, InsertTool), refused, "{word}: the sensor has lost its power");
         assert!(orders(&bench).is_empty(), "{:?}", bench.log());
-        // The remedy.
         assert_eq!(run(&mut bench, RemoveTool), DONE, "{word}");
         assert_eq!(bench.run(MovToLoc, "", 0, "TOOL-SAFE", 0), DONE);
         assert_eq!(run(&mut bench, InsertTool), DONE, "{word}");

@@ -1,4 +1,4 @@
-//! QC-attach(1), QC-detach(1) and GRASP-OBJ that are interrupted and sent again (docs/design/recovery.md "Exchange",
+//! QC-ATTACH, QC-DETACH and GRASP-OBJ that are interrupted and sent again (docs/design/recovery.md "Exchange",
 //! "Held").
 
 use interfaces::{
@@ -291,7 +291,6 @@ fn robot_in_a_holster_refuses_other_commands() {
         assert_eq!(bench.perform(attach(1)), DONE, "{:?}", bench.world.log);
         assert_eq!(bench.run(MovToLoc, "", 0, "HOME", 0), DONE);
     }
-    // A bare robot.
     let mut bench = bare(1);
     bench.begin(attach(1));
     bench.wait(4);

@@ -1,4 +1,4 @@
-//! The tables of a gripper change against a world in which no order has an effect (docs/design/recovery.md
+//! The tables of a gripper exchange against a world in which no order has an effect (docs/design/recovery.md
 //! "Exchange").
 
 use interfaces::emove::EmoveVerb;

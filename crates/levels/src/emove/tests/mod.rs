@@ -19,7 +19,6 @@ use taskdata::files::TaskData;
 
 use crate::{coverage::silent, emove::Emove};
 
-/// Every row of every table fires in some scenario.
 #[test]
 fn every_row_fires() {
     let scenarios = [

@@ -155,7 +155,7 @@ fn fingers_at_their_opening_are_not_commanded() {
     assert!(!bench.log().contains(&"POSE 350"));
 }
 
-/// Fingers move only after the last depart point, and the final motion waits for them.
+/// The final motion waits for the fingers.
 #[test]
 fn fingers_open_only_after_the_depart_points() {
     let mut bench = Bench::ready("HOME", 1);
@@ -279,7 +279,7 @@ fn part_without_contact_force_is_lost() {
     bench.hold("BLOCK", 100, 1);
     bench.command(MovObjTo, "BLOCK", 1, "VISE", 1);
     bench.wait(6);
-    // A short dip is no loss: noise, or a part pushed to the other finger.
+    // A short dip is not a loss: noise, or a part pushed to the other finger.
     bench.world.grip.force = 0;
     bench.wait(3);
     bench.world.grip.force = 30;

@@ -201,7 +201,6 @@ fn pause_finds_the_location_of_the_robot() {
     assert!(bench.memory.emove.status.at.is_none());
 }
 
-/// E-move searches for the robot's place only while E-PAUSE is done or under way.
 #[test]
 fn location_search_runs_only_during_pause() {
     let rows = |watch: Watch| (search((), &watch).row, search((), &watch).action);

@@ -221,7 +221,6 @@ fn restarted_emove_stops_its_orders() {
     assert_eq!(bench.memory.emove.prim.number, sent, "no order is sent");
 }
 
-/// No order continues without Subtask.
 #[test]
 fn loss_of_subtask_stops_everything() {
     let bench = loaded();

@@ -78,7 +78,7 @@ fn robot_near_its_place_returns_straight() {
         assert_eq!(bench.motions(), motions, "{aside} in");
         assert!(bench.off(&frame_of("HOME")) < 0.02, "{aside} in");
     }
-    // So does a turned robot.
+    // A turned robot also returns.
     let mut bench = Bench::ready("HOME", 1);
     jog_and_turn(&mut bench, [0.0; 3], [0.0, 0.02, 0.0]);
     assert_eq!(bench.perform(TO_HOME), DONE);
