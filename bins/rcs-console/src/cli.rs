@@ -63,6 +63,7 @@ pub struct Cli {
 pub enum Colour {
     /// If the terminal has colours and NO_COLOR is not set
     Auto,
+    /// No colours
     Never,
 }
 

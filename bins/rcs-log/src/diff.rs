@@ -33,7 +33,9 @@ const LISTED: usize = 40;
 /// Arguments of `diff`.
 #[derive(Clone, Debug, clap::Args)]
 pub struct Arguments {
+    /// The one log
     pub a: PathBuf,
+    /// The other log
     pub b: PathBuf,
     /// What is compared with what
     #[arg(long, value_enum, default_value_t = Align::Tick)]

@@ -22,6 +22,7 @@ use crate::{
 /// Arguments of `info`.
 #[derive(Clone, Debug, clap::Args)]
 pub struct Arguments {
+    /// The log
     pub file: PathBuf,
     #[command(flatten)]
     answer: Answer,

@@ -23,6 +23,7 @@ use crate::{Error, info, story, why};
 /// Arguments of `page` and `open`.
 #[derive(Clone, Debug, clap::Args)]
 pub struct Arguments {
+    /// The log
     pub file: PathBuf,
     /// Where to write the page [default: the log's name with .html]
     #[arg(long, short, value_name = "FILE")]

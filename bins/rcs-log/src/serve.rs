@@ -20,6 +20,7 @@ const LOOK: Duration = Duration::from_millis(50);
 /// Arguments of `serve`.
 #[derive(Clone, Debug, clap::Args)]
 pub struct Arguments {
+    /// The log
     pub file: PathBuf,
     /// The port on 127.0.0.1; 0 for any that is free
     #[arg(long, value_name = "PORT", default_value_t = 8765)]

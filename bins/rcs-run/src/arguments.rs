@@ -472,6 +472,8 @@ fn port(text: &str) -> Result<u16, String> {
 /// Yes or no.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Switch {
+    /// Yes
     On,
+    /// No
     Off,
 }

@@ -225,6 +225,7 @@ mod tests {
 
     #[derive(Clone, Copy, Debug, Variables)]
     struct Situation {
+        /// Where the fingers are.
         fingers: Fingers,
     }
 

@@ -38,6 +38,7 @@ pub enum Fault {
     Unanswered,
     /// The device does not accept a connection.
     NoConnection,
+    /// The connection has ended.
     Disconnected,
     /// The device refused the request with this exception code.
     Exception(u8),
@@ -48,11 +49,15 @@ pub enum Fault {
 /// The wrong part of an answer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum FrameFault {
+    /// Protocol identifier.
     Protocol,
+    /// Length.
     Length,
     /// Transaction identifier: the answer belongs to another request.
     Transaction,
+    /// Unit.
     Unit,
+    /// Function.
     Function,
     /// Address, quantity or value that an answer repeats.
     Echo,

@@ -14,12 +14,14 @@ pub const MOST_OUT: usize = 121;
 /// Words of all spans of a direction, one after the other. Bits are packed 16 per word, the first one lowest.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub struct InWords {
+    /// The words.
     pub words: [u16; MOST_IN],
 }
 
 /// Words of all spans of outputs, as [`InWords`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub struct OutWords {
+    /// The words.
     pub words: [u16; MOST_OUT],
 }
 
@@ -50,7 +52,9 @@ pub enum Area {
     Coil,
     /// Inputs of one bit.
     Discrete,
+    /// Input registers.
     Input,
+    /// Registers that can be written.
     Holding,
 }
 
@@ -71,8 +75,11 @@ impl Area {
 /// Consecutive registers, or bits for [`Area::Coil`] and [`Area::Discrete`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub struct Span {
+    /// The table.
     pub area: Area,
+    /// First address.
     pub first: u16,
+    /// Number of addresses.
     pub count: u16,
 }
 

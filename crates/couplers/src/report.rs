@@ -13,6 +13,7 @@ use crate::{
 pub enum Mode {
     /// Connect, set up and read; write nothing.
     Watch,
+    /// Write the outputs.
     Run,
     /// Write the safe outputs. The device is tripped until it is released.
     Safe,
@@ -25,6 +26,7 @@ pub enum Mode {
 pub struct Orders {
     /// Number of the tick. A session whose orders keep their number is without a controller.
     pub tick: u64,
+    /// Mode of the device.
     pub mode: Mode,
     /// Number of releases so far: a change releases a tripped device.
     pub go: u32,
@@ -93,17 +95,24 @@ pub enum Refusal {
 /// A register with another value than expected.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub struct RegisterFault {
+    /// Address of the register.
     pub address: u16,
+    /// Value expected.
     pub expected: u16,
+    /// Value found.
     pub found: u16,
 }
 
 /// Lengths of the process data, bits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub struct Lengths {
+    /// Inputs that the plan reads.
     pub inputs_expected: u32,
+    /// Inputs of the device.
     pub inputs_found: u32,
+    /// Outputs that the plan writes.
     pub outputs_expected: u32,
+    /// Outputs of the device.
     pub outputs_found: u32,
 }
 
@@ -114,9 +123,11 @@ pub struct Counters {
     pub exchanges: u32,
     /// Requests and connections that failed; each is counted once.
     pub failures: u32,
+    /// Connections.
     pub connections: u32,
     /// Connections after which the device continued without a trip.
     pub returns: u32,
+    /// Trips.
     pub trips: u32,
     /// Releases that were refused: an output was asked for that may not be on at rest, or the device was absent.
     pub refused_releases: u32,
@@ -125,16 +136,19 @@ pub struct Counters {
 /// State of a session.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct Report {
+    /// State of the device.
     pub state: State,
     /// Why it is not set up.
     pub refusal: Option<Refusal>,
     /// Time before which the inputs were not sampled, ns: when their request was sent. `None` before the first answer.
     pub read_at: Option<u64>,
+    /// The newest inputs.
     pub inputs: InWords,
     /// The outputs that the device acknowledged last, or had at the start.
     pub acknowledged: OutWords,
     /// The last fault of the connection.
     pub fault: Option<Fault>,
+    /// Counters.
     pub counters: Counters,
 }
 

@@ -24,17 +24,21 @@ use crate::{
 /// The goal of the command, compared with the sensors.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Evidence {
+    /// The goal holds.
     Holds,
     /// Nothing contradicts it, and a part of it has no sensor.
     Unsensed,
     /// The robot is not at the goal.
     Elsewhere,
+    /// The robot still moves.
     Moving,
     /// The object is not held.
     NotHeld,
     /// The object is held in another grip.
     OtherGrip,
+    /// Something is still held.
     StillHeld,
+    /// Something unknown is held.
     Unknown,
     /// The sensors do not show whether something is held.
     NotKnown,
@@ -71,6 +75,7 @@ pub enum Evidence {
 pub enum Reading {
     /// They may be older than the end of the command.
     Awaited,
+    /// They are newer.
     Newest,
 }
 
@@ -79,13 +84,16 @@ pub enum Reading {
 pub struct Claim {
     /// Its goal, compared with the sensors.
     pub evidence: Evidence,
+    /// How new the readings are.
     pub reading: Reading,
 }
 
 /// What [`CONFIRM`] can ask for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Actions)]
 pub enum Doubt {
+    /// Wait for a newer reading.
     Wait,
+    /// Report an error.
     Fail(Reason),
 }
 

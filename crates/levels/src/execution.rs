@@ -32,9 +32,13 @@ use crate::{halt::Halt, rows::Rows};
 /// How far the current command has come.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Outcome {
+    /// Nothing was commanded yet.
     Idle,
+    /// Under way.
     Executing,
+    /// Finished.
     Done,
+    /// Failed.
     Error,
     /// Given up, because the operator took the robot.
     Joystick,
@@ -57,11 +61,13 @@ impl Outcome {
 /// What to do with the tables of the current command.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain, Actions)]
 pub enum Course {
+    /// Leave everything as it is.
     Rest,
     /// Report that the command was not executed, because the process was restarted.
     Refuse,
     /// Consult the tables, from the first step.
     Begin,
+    /// Consult the tables.
     Continue,
 }
 
@@ -94,6 +100,7 @@ decision_table! {
 pub enum Asked {
     /// No: the current command goes on.
     Before,
+    /// Yes.
     Now,
 }
 
@@ -101,6 +108,7 @@ pub enum Asked {
 /// watches or calibrates.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Actions)]
 pub enum Refusal {
+    /// Report an error.
     Fail(Reason),
 }
 
@@ -116,7 +124,9 @@ pub enum Work {
 /// A row that has ordered something of a process below.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub struct LastOrder {
+    /// Its table.
     pub table: u8,
+    /// Its number.
     pub row: u8,
     /// The state variables of its table at that time, as one number.
     pub variables: u64,
@@ -135,11 +145,15 @@ pub trait Ending: Sized {
 /// The current command of a process and how far it has come.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct Execution {
+    /// Echo and adoption.
     pub receiver: Receiver,
+    /// How far it has come.
     pub outcome: Outcome,
+    /// Why it failed.
     pub reason: Reason,
     /// Part of its goal that no sensor has confirmed at its end.
     pub unconfirmed: Unconfirmed,
+    /// The rows for the header.
     pub rows: Rows,
     /// The command is new and neither accepted nor refused yet.
     pub waiting: bool,

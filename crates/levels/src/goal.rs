@@ -10,6 +10,7 @@ use rcs_core::Plain;
 /// What confirms a goal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Sensor {
+    /// The resolvers of the robot.
     Resolvers,
     /// The commanded motion of the process itself.
     #[text = "commanded motion"]
@@ -23,6 +24,7 @@ pub enum Sensor {
     /// The force sensor at the wrist.
     #[text = "force sensor"]
     Force,
+    /// The potentiometer of the fingers.
     #[text = "potentiometer of the fingers"]
     Fingers,
     /// The strain gages of the fingers.
@@ -37,6 +39,7 @@ pub enum Sensor {
     /// The four sensors of a holster.
     #[text = "holster sensors"]
     HolsterSensors,
+    /// The vision system.
     Camera,
     /// Potentiometer and strain gages of the pedestal's hand.
     #[text = "sensors of the pedestal's hand"]

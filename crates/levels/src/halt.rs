@@ -37,6 +37,7 @@ pub enum Intake {
 /// Does the new command stop what is below by itself?
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Kind {
+    /// No.
     Other,
     /// Yes: its own table sends a pause down and waits for it.
     Pause,
@@ -45,6 +46,7 @@ pub enum Kind {
 /// The joystick box.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum BoxState {
+    /// It is off.
     Off,
     /// It is on: the operator has the robot, and nothing is sent.
     On,
@@ -74,6 +76,7 @@ pub enum Below {
     AtRest,
     /// They were told to pause and are coming to rest.
     Pausing,
+    /// Something else.
     UnderWay,
 }
 
@@ -101,10 +104,13 @@ impl Below {
 /// What a new command may replace, for [`HALT`].
 #[derive(Clone, Copy, Debug, Variables)]
 pub struct Replaced {
+    /// The command.
     pub intake: Intake,
     /// Does it stop what is below by itself?
     pub kind: Kind,
+    /// The process above.
     pub above: Above,
+    /// The joystick box.
     pub joystick: BoxState,
     /// What the processes below are doing.
     pub below: Below,
@@ -162,13 +168,16 @@ pub enum Order {
 /// What the command has achieved since its last order, besides the state variables: points of a route, for example.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Advance {
+    /// Nothing.
     None,
+    /// It has advanced.
     Made,
 }
 
 /// The row that fired, for [`EFFECT`].
 #[derive(Clone, Copy, Debug, Variables)]
 pub struct Fired {
+    /// What it orders.
     pub order: Order,
     /// The advance of the command since its last order.
     pub advance: Advance,
@@ -177,6 +186,7 @@ pub struct Fired {
 /// What [`EFFECT`] can ask for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Actions)]
 pub enum Futile {
+    /// Report an error.
     Fail(Reason),
 }
 

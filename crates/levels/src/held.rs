@@ -6,9 +6,11 @@ use rcs_core::{Plain, name::Name16};
 /// Is the object of the command held (V.3.1)?
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Held {
+    /// The gripper holds nothing.
     Nothing,
     /// It holds the object of the command.
     Right,
+    /// It holds another object.
     Other,
     /// It holds something, and nothing says what it is.
     Something,

@@ -51,18 +51,23 @@ pub fn is_in_mbd(point: LocptId, data: &TaskData<'_>) -> bool {
 /// What a look-up of task data did not find: a state variable of the tables ACCEPT.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Missing {
+    /// Nothing: all was found.
     Nothing,
     /// The location, or it is only an owner of others.
     Location,
+    /// The object.
     Object,
     /// The name of an object, which the location needs.
     ObjectName,
     /// An array of the object at the location.
     Array,
+    /// The sector.
     Sector,
+    /// The grip of the object.
     Grip,
     /// The grip movetable of object, grip and location.
     GripMovetable,
+    /// The holster of a gripper.
     Holster,
 }
 

@@ -7,6 +7,7 @@ use rcs_core::Plain;
 pub enum Attachment {
     /// It is mated and the quick change is locked.
     Attached,
+    /// It is not.
     Detached,
 }
 
@@ -15,12 +16,15 @@ pub enum Attachment {
 pub enum Addressee {
     /// That of this process, or the commander did not say.
     This,
+    /// Another one.
     Other,
 }
 
 /// The time of a command, or of a motion that it waits for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Clock {
+    /// Within its limit.
     Running,
+    /// Over its limit.
     Expired,
 }

@@ -194,6 +194,7 @@ impl FromStr for FieldConfig {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, clap::ValueEnum)]
 #[serde(rename_all = "kebab-case")]
 pub enum OperatorAccess {
+    /// Nobody
     None,
     /// Programs of the user who runs it, on this machine
     Owner,
@@ -320,6 +321,7 @@ fn lag(ms: &str) -> Result<u16, String> {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, clap::ValueEnum)]
 #[serde(rename_all = "kebab-case")]
 pub enum Boards {
+    /// All in one thread
     One,
     /// One operating system process per board: 0 (this one), 2, 4, 6, 8
     Split,

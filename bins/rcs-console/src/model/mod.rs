@@ -50,11 +50,13 @@ pub enum Screen {
     Process,
     /// The link to the robot, and the times of the ticks
     Link,
+    /// Joints, sensors and parts
     Cell,
     /// Requests to the run, and its answers (IV.2)
     Terminal,
     /// Joystick box, robot controller, emergency stops (III.3.3, IV.3.3)
     Panels,
+    /// Checklists of chapter IV
     Procedures,
 }
 

@@ -20,6 +20,7 @@ pub use self::{
 /// Which ticks belong together.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
 pub enum Align {
+    /// Ticks of the same number
     Tick,
     /// Ticks at the same distance from the beginning of the same command
     Command,

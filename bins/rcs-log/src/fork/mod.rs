@@ -35,6 +35,7 @@ use crate::{
 #[derive(Clone, Debug, clap::Args)]
 #[group(id = "when", required = true, multiple = false, args = ["tick", "at_failure"])]
 pub struct Arguments {
+    /// The log
     pub file: PathBuf,
     /// The last tick that is as in the log; 0 makes the changes before the first tick
     #[arg(long, value_name = "N")]

@@ -55,6 +55,7 @@ const FAULT: &str = "fault";
 /// Arguments of `why`.
 #[derive(Clone, Debug, clap::Args)]
 pub struct Arguments {
+    /// The log
     pub file: PathBuf,
     /// The tick to explain [default: the one in which the last failure began]
     #[arg(long, value_name = "N")]

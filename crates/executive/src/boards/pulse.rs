@@ -35,6 +35,7 @@ const BOARD_0: Epoch = 1;
 pub struct Fingerprint {
     /// Fingerprint of the program: its version control revision, and the layout of all buffers.
     pub program: u64,
+    /// Fingerprint of the task data.
     pub data: u64,
     /// Fingerprint of the job, including the blocks that it loads during the run.
     pub job: u64,
@@ -111,6 +112,7 @@ pub struct SystemPulse {
 /// Result of a board's check of a load.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub struct Checked {
+    /// The load.
     pub load: u32,
     /// [`Fingerprint::data`] of the task data with this load; 0 if it has errors or could not be read.
     pub data: u64,
@@ -121,6 +123,7 @@ pub struct Checked {
 pub struct BoardReport {
     /// Fingerprint of its program, data and job.
     pub fingerprint: Fingerprint,
+    /// Its process id.
     pub pid: u32,
     /// True if it reads all its neighbours and waits for pulses; false after it has left.
     pub ready: bool,

@@ -16,6 +16,7 @@ pub const PARTS: usize = 24;
 pub struct CellView {
     /// The tick after which it was taken; [`Tick::BEFORE_START`] if there is none yet.
     pub tick: Tick,
+    /// The robot controller.
     pub controller: ControllerView,
     /// The panel of the rotary table's controller.
     pub table: TableView,
@@ -29,12 +30,15 @@ pub struct CellView {
     pub pedestal_fingers: [f64; 2],
     /// Clear width between the jaws of the vise, in.
     pub vise_opening: f64,
+    /// The drum holds its tool.
     pub drum_closed: bool,
     /// Identification number of the gripper on the robot.
     pub gripper: Option<u8>,
     /// Number of parts in the cell; the view has the first [`PARTS`].
     pub part_count: u32,
+    /// The parts, by their numbers.
     pub parts: [PartView; PARTS],
+    /// The job.
     pub job: JobView,
     /// Delays of ticks.
     pub lateness: LatenessView,
@@ -45,6 +49,7 @@ pub struct CellView {
 pub struct ControllerView {
     /// Stage of its start-up, such as `hydraulics enabled` or `DEPC`.
     pub stage: Text<24>,
+    /// Lamps and latching keys.
     pub lamps: Lamps,
     /// The last warning or error on its screen, with its code; empty if there was none.
     pub screen: Text<96>,
@@ -63,18 +68,24 @@ pub struct ControllerView {
 /// Lamps and keys of the console.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub struct Lamps {
+    /// Control power is on.
     pub power: bool,
+    /// FAULT RESET is lit.
     pub fault_reset: bool,
+    /// HYD ENABLED is lit.
     pub hydraulics_enabled: bool,
     /// MANUAL is on: the actuators have pressure.
     pub hydraulics_on: bool,
+    /// Auto mode.
     pub auto: bool,
+    /// Hold is on.
     pub hold: bool,
 }
 
 /// The panel of the rotary table's controller (IV.1 step 3).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub struct TableView {
+    /// The controller has power.
     pub power: bool,
     /// The mode switch is at MANUAL.
     pub manual: bool,
@@ -87,12 +98,15 @@ pub struct TableView {
 pub struct PartView {
     /// Its number in the cell, from 1; 0 for no part.
     pub id: u32,
+    /// Its name at present.
     pub name: Name16,
     /// A location: a unit, that of the vise, the drum or the pedestal, `gripper`, `floor` or `elsewhere`.
     pub location: Name16,
     /// The nearest sector of the unit; 0 elsewhere.
     pub sector: u16,
+    /// The gripper holds it.
     pub held: bool,
+    /// The vise holds it.
     pub clamped: bool,
     /// Its middle in world coordinates, in.
     pub position: [f64; 3],
@@ -121,5 +135,6 @@ pub struct LatenessView {
     pub p50: f64,
     /// 99 of 100 ticks have at most this delay.
     pub p99: f64,
+    /// The greatest delay.
     pub max: f64,
 }

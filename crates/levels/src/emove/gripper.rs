@@ -29,10 +29,13 @@ const STOP_BAND: i32 = 5;
 pub enum EmoveGripper {
     /// The robot is bare.
     None,
+    /// Parts gripper.
     #[text = "parts gripper"]
     Parts,
+    /// v-gripper.
     #[text = "v-gripper"]
     V,
+    /// Tool gripper.
     #[text = "tool gripper"]
     Tool,
 }

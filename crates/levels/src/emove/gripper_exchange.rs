@@ -156,6 +156,7 @@ pub(super) fn seat_pose(command: &EmoveCommand, memory: &CommonMemory, data: &Ta
 
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct GripperExchange {
+    /// Commands to Quick Change.
     commander: Commander,
     /// In the tick before.
     attached: EmoveGripper,

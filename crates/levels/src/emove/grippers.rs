@@ -31,14 +31,18 @@ use super::gripper::EmoveGripper;
 /// A command to the attached gripper, independent of its type.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum FingerVerb {
+    /// Nothing yet.
     #[text = ""]
     None,
     /// Leave the fingers as they are.
     Pause,
     /// Bring the fingers to an opening with no object between them.
     Stand,
+    /// Open and let go.
     Release,
+    /// Close on an object.
     Grasp,
+    /// Calibrate the sensors.
     Calibrate,
 }
 
@@ -62,11 +66,15 @@ impl FingerOrder {
 /// The interfaces to the three gripper processes, and the last order.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct Grippers {
+    /// Commands to Grip.
     parts: Commander,
+    /// Commands to V-Grip.
     v: Commander,
+    /// Commands to Tool-Grip.
     tool: Commander,
     /// The gripper that has the last order.
     to: EmoveGripper,
+    /// The last order.
     order: FingerVerb,
     /// Last size commanded to jaws, 0.01 in.
     size: i32,

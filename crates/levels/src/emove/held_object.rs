@@ -29,6 +29,7 @@ const LEAST_RELEASE: i32 = 50;
 
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct HeldObject {
+    /// What the gripper holds.
     held: Option<Grasped>,
     /// The object of the last grasp command. `None` with a held object means that its release was interrupted.
     grasping: Option<Grasped>,

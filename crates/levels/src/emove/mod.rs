@@ -81,6 +81,7 @@ pub type EmoveInputs<'a> = Inputs<'a, TaskData<'a>>;
 pub struct State {
     /// The command of Subtask and its progress.
     pub execution: Execution,
+    /// Step of its table.
     pub step: Step,
     /// The process that has its last order.
     pub ordered: EmoveRecipient,
@@ -88,12 +89,19 @@ pub struct State {
     pub uses_prim: bool,
     /// The points sent when the last order was given.
     pub ordered_at: Progress,
+    /// The object in the fingers.
     pub held: HeldObject,
+    /// The gripper processes.
     pub grippers: Grippers,
+    /// The change of a gripper.
     pub exchange: GripperExchange,
+    /// The tool drum.
     pub drum: ToolDrum,
+    /// Where the robot is.
     pub localization: Localization,
+    /// The motion of the command.
     pub motion: EmoveMotion,
+    /// Pictures.
     pub vision: EmoveVision,
 }
 

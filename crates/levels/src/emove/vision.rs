@@ -166,6 +166,7 @@ pub struct EmoveVision {
     commander: Commander,
     /// Pictures without a result in this step.
     tries: u8,
+    /// What vision has located.
     located: Option<Located>,
 }
 

@@ -29,14 +29,18 @@ pub(super) fn value(scale: &Scale, counts: f64) -> f64 {
 /// Steady readings, counts.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct Readings {
+    /// Potentiometer.
     pub potentiometer: f64,
+    /// Left strain gage.
     pub left: f64,
+    /// Right strain gage.
     pub right: f64,
 }
 
 /// Sums over the ticks since the readings have been steady.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct Steady {
+    /// Ticks in the sums.
     pub ticks: u32,
     /// Sum of the potentiometer's counts.
     pub potentiometer: u32,

@@ -21,6 +21,7 @@ pub(super) const SUPPLY_FORCE: f64 = 80.0;
 /// Goal of the current command: a copy, because the buffer of a commander that restarts is empty.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct GripGoal {
+    /// What to do.
     pub verb: GripVerb,
     /// Opening, or the grasp size, in.
     pub opening: f64,

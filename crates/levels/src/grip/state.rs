@@ -41,7 +41,9 @@ pub enum Touch {
 pub struct State {
     /// The command and how far it has come.
     pub execution: Execution,
+    /// Step of its table.
     pub step: Step,
+    /// Its goal.
     pub goal: GripGoal,
     /// Since when it has not been waiting, or the calibration has been under way.
     pub since: Tick,
@@ -49,6 +51,7 @@ pub struct State {
     pub settled: u8,
     /// Ticks below the grasp size without force.
     pub missed: u8,
+    /// Step of UP-INIT.
     pub phase: GripPhase,
     /// Scale and offset of the sensors, once they are known, or of the time before a restart.
     pub calibration: Option<Calibration>,
@@ -60,6 +63,7 @@ pub struct State {
     pub steady: Steady,
     /// The last readings, if the gripper was attached in the last tick.
     pub sensed: Option<Sensed>,
+    /// What is between the fingers.
     pub felt: Felt,
     /// What they touched in the last tick.
     pub touch: Touch,

@@ -17,9 +17,11 @@ pub(super) const WINDOW: usize = 4;
 pub struct State {
     /// The command of E-move and how far it has come.
     pub execution: Execution,
+    /// Step of its table.
     pub step: Step,
     /// The current command: a copy, because the buffer of a commander that restarts is empty.
     pub verb: JawsVerb,
+    /// When it came.
     pub since: Tick,
     /// `commanded-size` of the last command that had one, 0.01 in.
     pub size: Option<i32>,
@@ -32,6 +34,7 @@ pub struct State {
     pub gripping_ticks: u8,
     /// Ticks for which the gripper has been attached.
     pub attached_ticks: u8,
+    /// Air.
     pub valves: JawValves,
     /// Ticks for which the valves have been as they are.
     pub air_ticks: u8,

@@ -74,6 +74,7 @@ impl Coordinates {
 pub struct PrimManual {
     /// The box has the robot in this tick.
     pub engaged: bool,
+    /// Coordinates of the motion.
     pub coordinates: Coordinates,
     /// Commanded translation, a share of [`SPEED`], in `coordinates`.
     pub translate: [f64; 3],

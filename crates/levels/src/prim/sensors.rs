@@ -36,6 +36,7 @@ pub struct ForceCalibration {
     pub bias: Option<[f64; FORCE_AXES]>,
     /// Sum of the readings taken so far.
     pub sum: [f64; FORCE_AXES],
+    /// How many.
     pub samples: u32,
 }
 

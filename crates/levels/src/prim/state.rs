@@ -27,7 +27,9 @@ pub struct PrimGoal {
 /// The last command that was accepted, with its records looked up.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct PrimTarget {
+    /// What to do.
     pub verb: PrimVerb,
+    /// The goal of a motion.
     pub goal: Option<PrimGoal>,
     /// `"sensor"` of a guarded move.
     pub sensor: Option<SensorPara>,
@@ -54,6 +56,7 @@ pub const RESTART_TICKS: u64 = 250;
 /// The last RESTARTs that Prim has sent by itself, the latest first.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct RestartTimes {
+    /// When they were sent.
     pub ticks: [Option<Tick>; MOST_RESTARTS],
 }
 
@@ -76,21 +79,27 @@ impl RestartTimes {
 pub struct State {
     /// The command of E-move and how far it has come.
     pub execution: Execution,
+    /// Step of its table.
     pub step: Step,
     /// Step of LINK: is the link being restarted?
     pub link: LinkStep,
     /// The last restarts.
     pub restarts: RestartTimes,
+    /// The path to the goal.
     pub way: PrimPath,
+    /// Commands to T3I.
     pub t3i: Commander,
+    /// What is to be done.
     pub target: PrimTarget,
     /// The commanded motion, if Prim commands the robot.
     pub motion: Option<PrimMotion>,
     /// The motion of the joystick box.
     pub manual: PrimManual,
+    /// The end of a motion.
     pub standstill: Standstill,
     /// The resolver frame of the tick before, if it was valid.
     pub resolver_frame: Option<WireFrame>,
+    /// The force sensor.
     pub calibration: ForceCalibration,
     /// What the sensor of the guarded move reads.
     pub sensed: i32,

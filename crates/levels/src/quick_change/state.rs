@@ -11,9 +11,11 @@ use crate::execution::Execution;
 pub struct State {
     /// The command of E-move and how far it has come.
     pub execution: Execution,
+    /// Step of its table.
     pub step: Step,
     /// The current command: a copy, because the buffer of a commander that restarts is empty.
     pub command: QuickChangeVerb,
+    /// When it came.
     pub since: Tick,
     /// The reading that counts.
     pub ring: RingPosition,

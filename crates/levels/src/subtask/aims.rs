@@ -27,11 +27,15 @@ pub const GRIPPERS: [&str; 3] = ["GRIPPER-1", "GRIPPER-2", "GRIPPER-3"];
 /// The target of a command to E-move: an object, a location, or an object at a location.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct SubtaskAim {
+    /// The object, if there is one.
     pub object: Option<Name16>,
+    /// Its grip.
     pub grip: i32,
     /// The record of END-EFF-PARA, if the object has that grip.
     pub parameters: EndEffId,
+    /// Gripper that is needed.
     pub end_effector_id: Option<u8>,
+    /// The location.
     pub site: Site,
     /// Record number of the pose, once it is assigned.
     pub pose: Option<u32>,

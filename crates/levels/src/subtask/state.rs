@@ -16,10 +16,13 @@ use crate::execution::Execution;
 pub struct State {
     /// The command of Task and its progress.
     pub execution: Execution,
+    /// Step of its table.
     pub step: Step,
     /// The recipient of the last order.
     pub ordered: SubtaskRecipient,
+    /// Commands to E-move.
     pub emove: Commander,
+    /// Commands to the Active Pedestal.
     pub pedestal: Commander,
     /// The part in the pedestal's hand.
     pub regrip: Option<Regrip>,

@@ -25,12 +25,15 @@ pub const GRACE_TICKS: u8 = 25;
 pub struct State {
     /// The command number and its adoption.
     pub receiver: Receiver,
+    /// The current command.
     pub command: T3iVerb,
+    /// Step of its table.
     pub step: Step,
     /// Step of RECEIVE: was a command refused?
     pub receive: ReceiveStep,
     /// The host's end of the link.
     pub host: Host,
+    /// The velocity limits.
     pub limits: Limits,
     /// The position last sent, or reported.
     pub position: Position,
@@ -42,6 +45,7 @@ pub struct State {
     pub before: Before,
     /// Step of FOLLOW: is the robot on its path?
     pub following: Following,
+    /// The path that was sent.
     pub track: Track,
     /// Ticks since the last report of the robot controller, up to [`GRACE_TICKS`].
     pub reported: u8,
@@ -51,7 +55,9 @@ pub struct State {
     pub left: Option<PathLeft>,
     /// Points that wait; the first `queued` are valid, the oldest first.
     pub queue: [WireFrame; QUEUE_POINTS],
+    /// How many.
     pub queued: u8,
+    /// The rows for the header.
     pub rows: Rows,
 }
 

@@ -43,9 +43,11 @@ pub const IN_HAND: &str = "H_ROBOT";
 /// The state of the Data System as Task estimates it.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct DataSystem {
+    /// Numbers of the commands to it.
     pub commander: Commander,
     /// The command that was written last.
     pub request: DataBaseCommand,
+    /// How often it was written.
     pub tries: u8,
     /// Connection, pending updates and carried object: an output, adopted again after a restart.
     pub updates: DataBaseUpdates,

@@ -30,6 +30,7 @@ pub enum Placed {
 /// The place of the part during a regrip.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum TaskPart {
+    /// No.
     Elsewhere,
     /// In the pedestal's hand. The robot may hold it too.
     InPedestal,

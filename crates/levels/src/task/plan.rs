@@ -21,6 +21,7 @@ pub enum TaskVerb {
     /// No command yet, or an unknown word.
     #[text = ""]
     None,
+    /// Do nothing.
     Pause,
     /// Move an object from one location to another.
     Transfer,
@@ -40,7 +41,9 @@ pub enum TaskVerb {
     AcquireTool,
     /// Pull a tool out of the drum.
     RemoveTool,
+    /// Connect the Data System.
     Startup,
+    /// Disconnect it.
     Shutdown,
 }
 
@@ -50,14 +53,18 @@ pub const TOOL_GRIPPER: u8 = 3;
 /// The command names an object (V.4.1).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Handling {
+    /// The command names no object.
     NoObject,
+    /// It does.
     Object,
 }
 
 /// The progress of a command that was sent before and not finished (docs/design/recovery.md "Ledger").
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Resumed {
+    /// No.
     Not,
+    /// It was.
     Begun,
     /// It was interrupted while Subtask had its tool command.
     AtTool,
@@ -79,12 +86,15 @@ pub enum Grips {
 pub enum TaskGripper {
     /// A gripper may have this number, or no object is named.
     Valid,
+    /// It cannot.
     Invalid,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct Location {
+    /// Its name and records.
     pub site: Site,
+    /// Its T-POSE.
     pub pose: ChangingPose,
 }
 
@@ -93,6 +103,7 @@ pub struct Location {
 pub struct PlanSite {
     /// Named by the command.
     pub location: Option<Location>,
+    /// Grip of the object there.
     pub grip: i32,
     /// Record of END-EFF-PARA, if the object has that grip.
     pub parameters: EndEffId,
@@ -101,12 +112,15 @@ pub struct PlanSite {
 /// A command, looked up.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct Plan {
+    /// What to do.
     pub verb: TaskVerb,
     /// The object, if the command names one.
     pub object: Option<Name16>,
+    /// Its serial number.
     pub serial: Name16,
     /// `obj-endeff-id#` for Subtask (V.3.2): gripper for the object; none if any gripper will do.
     pub end_effector_id: Option<u8>,
+    /// Where the object is.
     pub source: PlanSite,
     /// The destination of the object, or of the robot alone.
     pub destination: PlanSite,

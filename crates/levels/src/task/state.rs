@@ -15,9 +15,11 @@ use crate::execution::Execution;
 pub struct State {
     /// The command of the HWSC and its progress.
     pub execution: Execution,
+    /// Step of its table.
     pub step: Step,
     /// The recipient of the last order.
     pub ordered: TaskRecipient,
+    /// What has the robot.
     pub control: Control,
     /// The command with its names looked up.
     pub plan: Plan,
@@ -25,6 +27,8 @@ pub struct State {
     pub last_pose: u32,
     /// The support of the held object that a person has confirmed.
     pub confirmed: Option<Confirmed>,
+    /// Commands to Subtask.
     pub subtask: Commander,
+    /// Commands to the Data System.
     pub data_system: DataSystem,
 }

@@ -17,6 +17,7 @@ use crate::places::named;
 /// The support of the held object when the gripper opens.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum TaskSupport {
+    /// Nothing that is known.
     None,
     /// The sector of a tray, or the nest, where the robot is with the object.
     Place,

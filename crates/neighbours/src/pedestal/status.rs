@@ -18,6 +18,7 @@ pub const REASON: usize = 160;
 pub enum Verdict {
     /// The last mailgram was accepted.
     Taken,
+    /// It is not a command.
     #[text = "no command"]
     NoCommand,
     /// The sensor words of the simulated cell cannot be read.

@@ -14,10 +14,12 @@ pub const TEXT: usize = 240;
 /// Kind of trouble in the cell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Trouble {
+    /// No trouble.
     #[text = ""]
     None,
     /// The last line was refused.
     Refused,
+    /// The cell has a fault.
     Fault,
     /// An emergency has stopped the robot.
     Emergency,

@@ -20,6 +20,7 @@ pub const REASON: usize = 160;
 /// The field `task-state`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum TaskState {
+    /// Task runs.
     Runs,
     /// Task's switch on the joystick box holds Task (III.3.3): it does not read its commands.
     Held,

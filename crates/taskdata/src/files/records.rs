@@ -149,7 +149,9 @@ pub struct Object {
 /// END-EFF-PARA: openings and force of a grip of an object (VII.7.1).
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct EndEffPara {
+    /// The object.
     pub object: ObjectId,
+    /// Reference grip number.
     pub grip: i32,
     /// Opening while the object is approached, 0.01 in.
     pub appr_size: i32,
@@ -164,6 +166,7 @@ pub struct EndEffPara {
 /// OBJ-GRIPS: which gripper handles an object (VII.7.2).
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct ObjGrips {
+    /// The object.
     pub object: ObjectId,
     /// `endeff-id#`: 1 parts, 2 v-blocks, 3 tool gripper.
     pub endeff_id: i32,
@@ -174,6 +177,7 @@ pub struct ObjGrips {
 /// The object location form (VII.7.3): the array or location point at an owner to which an object is assigned.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct ObjLoc {
+    /// The object.
     pub object: ObjectId,
     /// Array or location point to which it is assigned.
     pub assigned: Reference,
@@ -201,7 +205,9 @@ pub struct PedPara {
 /// GRIP-LOC: the movetable of a grip at a location (VII.7.5).
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct GripLoc {
+    /// The object.
     pub object: ObjectId,
+    /// Grip number.
     pub grip: i32,
     /// Location point, array, owner or `$$$`.
     pub at: Reference,
@@ -212,7 +218,9 @@ pub struct GripLoc {
 /// VISION-PARA: how an object is found with the camera at a location (VII.7.6).
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct VisionPara {
+    /// The object.
     pub object: ObjectId,
+    /// Reference grip number.
     pub grip: i32,
     /// Number of the object in the vision system.
     pub id: i32,
@@ -242,6 +250,7 @@ pub enum Direction {
 /// An approach or depart trajectory (VII.7.7).
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct ApprDept {
+    /// Approach or depart.
     pub direction: Direction,
     /// Object, view of an object, or a plain location point, array, owner or `$$$`.
     pub subject: Reference,
@@ -249,6 +258,7 @@ pub struct ApprDept {
     pub grip: i32,
     /// Where it applies: location point, array, owner or `$$$`; the same as the subject for a plain location.
     pub at: Reference,
+    /// Its points.
     pub path: PathId,
 }
 
@@ -256,9 +266,13 @@ pub struct ApprDept {
 /// are of this project.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum SensorSource {
+    /// Force along the tool's X.
     Fx,
+    /// Force along the tool's Y.
     Fy,
+    /// Force along the tool's Z.
     Fz,
+    /// Moment about the tool's Y.
     My,
     /// Large holster sensors: the ears are near.
     Near,
@@ -280,7 +294,9 @@ impl SensorSource {
 /// thresholds in code.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct SensorPara {
+    /// Name of the sensor.
     pub name: Name10,
+    /// The signal that is watched.
     pub source: SensorSource,
     /// Holster: 1 right, 2 left, 3 centre. Beam: 1 to 8, 0 for any. Forces: 0.
     pub which: i32,
@@ -299,6 +315,7 @@ pub struct RelativeMove {
     pub at: Reference,
     /// The movetable of the motion, applied to the start pose of the command.
     pub movetable: MovtabId,
+    /// Its parameters.
     pub para: TrajParaId,
     /// Sensor of a guarded move, a name of SENSOR-PARA; empty for none.
     pub sensor: Name10,

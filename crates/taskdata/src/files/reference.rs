@@ -7,6 +7,7 @@ use rcs_core::Plain;
 /// passes them as integers (`locpt-type`, `pose-type`) without giving values; these codes are ASSUMED.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum RefType {
+    /// Nothing.
     #[text = ""]
     None,
     /// `lpt`: a location point.
@@ -15,8 +16,10 @@ pub enum RefType {
     /// `arr`: an array.
     #[text = "arr"]
     Array,
+    /// `own`: an owner.
     #[text = "own"]
     Owner,
+    /// `pos`: a pose.
     #[text = "pos"]
     Pose,
     /// `mtb`: a movetable.

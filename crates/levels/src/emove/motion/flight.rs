@@ -32,6 +32,7 @@ use crate::emove::{
 
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct Flight {
+    /// The way to its goal.
     pub route: Option<Route>,
     /// The part of an interrupted way that is retraced first.
     pub back: Option<Back>,
@@ -55,6 +56,7 @@ pub struct Progress {
 /// The retraced part of an interrupted way.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct Back {
+    /// The way.
     pub route: Route,
     /// The point, in the direction of the goal, that follows the robot: the robot moves to the point before it.
     pub next: u16,
@@ -69,6 +71,7 @@ pub struct Rejoin {
     pub track: u8,
     /// The points after the record.
     pub points: [Option<Pose>; 2],
+    /// Parameters of the motions.
     pub parameters: TrajParaId,
 }
 

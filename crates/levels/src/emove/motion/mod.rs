@@ -43,7 +43,9 @@ pub(super) enum Slot {
 
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct EmoveMotion {
+    /// Commands to Prim.
     commander: Commander,
+    /// The motion, if the command is a motion command.
     flight: Flight,
     /// Ticks for which Prim has reported not-detected.
     undetected: u32,

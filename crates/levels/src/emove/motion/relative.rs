@@ -37,6 +37,7 @@ pub enum Relative {
     QcaLift,
     /// QC-ATTACH: completely out of the holster.
     QcaUp,
+    /// WITHDRAW.
     Withdraw,
     /// INSERT-TOOL: to the last point without possible contact.
     InsFar,

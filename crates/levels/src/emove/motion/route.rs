@@ -56,7 +56,9 @@ pub enum Ahead {
     Rejoin,
     /// None: the robot is at the goal, or has been sent there.
     Nothing,
+    /// A point to go through.
     Through,
+    /// The goal, to stop at.
     Stop,
     /// A point whose record is missing.
     Missing,
@@ -64,20 +66,26 @@ pub enum Ahead {
 
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct Route {
+    /// The place left.
     pub from: RobotPlace,
+    /// The goal.
     pub to: RobotPlace,
     /// Depart points, relative to the pose of departure. After bringing an object, or without depart points,
     /// the approach points in reverse.
     pub depart: PathId,
+    /// Intermediate trajectory.
     pub between: PathId,
     /// Approach points, relative to the goal, and the stop.
     pub approach: PathId,
+    /// Parameters of the final motion.
     pub stop: TrajParaId,
+    /// Points commanded so far.
     pub commanded: u16,
     /// The goal has been commanded, or is not needed.
     pub complete: bool,
     /// Opening of the fingers at the goal, 0.01 in; `None` if no opening is required.
     pub opening: Option<i32>,
+    /// The opening has been commanded.
     pub opening_sent: bool,
     /// Record number of the pose of departure, once it is published.
     pub departure: u32,

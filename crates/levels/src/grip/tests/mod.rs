@@ -708,6 +708,7 @@ fn valves_are_off_while_the_readings_are_old() {
 #[test]
 fn every_row_fires() {
     let mut silent = silent::<Grip, ()>(&[
+        valves_are_off_while_the_readings_are_old,
         fingers_that_are_moved_while_they_settle_are_moved_back,
         a_force_that_changes_while_the_fingers_settle_is_servoed_again,
         a_grasp_ends_when_the_fingers_stand_still,

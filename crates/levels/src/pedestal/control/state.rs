@@ -11,13 +11,17 @@ use crate::execution::Execution;
 pub struct State {
     /// The command of Subtask and how far it has come.
     pub execution: Execution,
+    /// Step of its table.
     pub step: Step,
     /// The current command: a copy, because the buffer of a commander that restarts is empty.
     pub command: PedestalCommand,
     /// `cycle-cnt` of the command that is echoed, executed or not.
     pub cycle: Tick,
+    /// Who has its orders.
     pub ordered: PedestalRecipient,
+    /// Commands to the hand.
     pub hand: Commander,
+    /// Commands to the table.
     pub table: Commander,
     /// GRIP was ordered, and no opening since.
     pub gripped: bool,

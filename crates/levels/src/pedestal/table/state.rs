@@ -11,11 +11,13 @@ use crate::execution::Execution;
 pub struct State {
     /// The command and how far it has come.
     pub execution: Execution,
+    /// Step of its table.
     pub step: Step,
     /// The current command: a copy, because the buffer of a commander that restarts is empty.
     pub command: TableCommand,
     /// When it came, or when the calibration began or ended, whichever was last.
     pub since: Tick,
+    /// Step of CALIBRATE.
     pub phase: TablePhase,
     /// Potentiometer at the + limit, counts, once it was read there, or of the time before a restart.
     pub at_limit: Option<u16>,

@@ -21,7 +21,9 @@ pub const LINK_VELOCITY: f64 = 14.0;
 pub struct Limits {
     /// in/s.
     pub velocity: f64,
+    /// in/s².
     pub acceleration: f64,
+    /// in/s³.
     pub jerk: f64,
 }
 

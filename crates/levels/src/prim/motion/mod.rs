@@ -54,6 +54,7 @@ pub struct PrimMotion {
     pub goal: FrameData,
     /// The segment before, braking into its through point.
     pub residual: Option<Segment>,
+    /// The segment under way.
     pub current: Option<Segment>,
     /// What comes after it.
     pub next: Option<SegmentOrder>,

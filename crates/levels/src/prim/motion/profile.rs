@@ -24,13 +24,16 @@ pub struct SegmentState {
     pub position: f64,
     /// in/s, never negative but for rounding.
     pub velocity: f64,
+    /// in/s².
     pub acceleration: f64,
 }
 
 /// A stretch of constant jerk.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct JerkPhase {
+    /// Seconds.
     pub duration: f64,
+    /// in/s³.
     pub jerk: f64,
 }
 
@@ -39,6 +42,7 @@ pub struct JerkPhase {
 pub struct Profile {
     /// State at clock 0.
     pub start: SegmentState,
+    /// To the cruise velocity.
     pub change: [JerkPhase; 3],
     /// At the cruise velocity, seconds.
     pub cruise: f64,

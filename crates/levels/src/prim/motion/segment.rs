@@ -14,6 +14,7 @@ use super::{
 pub struct FrameData {
     /// Tool point, inches.
     pub position: [f64; 3],
+    /// Rotation matrix, row by row.
     pub rotation: [f64; 9],
 }
 
@@ -41,16 +42,19 @@ impl FrameData {
 /// Where to go, and how.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct SegmentOrder {
+    /// The goal.
     pub goal: FrameData,
     /// GO-THRU: the next segment may start before this one has ended. Path to the through point at which it
     /// may be given, inches; 0 for at the point itself.
     pub through: Option<f64>,
+    /// Limits of TRAJ-PARA.
     pub limits: Limits,
 }
 
 /// A segment under way.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct Segment {
+    /// Where it goes.
     pub order: SegmentOrder,
     /// From start to goal, inches.
     pub translation: [f64; 3],
@@ -58,6 +62,7 @@ pub struct Segment {
     pub rotation: [f64; 3],
     /// [`Distance::path`] from start to goal, inches.
     pub length: f64,
+    /// The motion along it.
     pub profile: Profile,
     /// Velocity that the profile was planned for, in/s.
     pub velocity: f64,
