@@ -1,4 +1,4 @@
-//! From counts to inches and pounds: scale and offset of the sensors, found by UP-INIT.
+//! Conversion from counts to inches and pounds: scale and offset of the sensors, measured by UP-INIT.
 
 use interfaces::{
     device::{ADC_FULL_SCALE, GripSensors},
@@ -8,8 +8,7 @@ use rcs_core::Plain;
 
 use super::goal::{CLOSED_END, OPEN_END, SUPPLY_FORCE};
 
-/// Readings that differ by more than this from the last ones are not steady, counts: the noise, and less than
-/// a fine flow.
+/// Greatest difference between consecutive steady readings, counts: above the noise, below a fine flow.
 const STEADY_COUNTS: u16 = 6;
 /// Least difference of the potentiometer between the ends of travel, counts.
 const LEAST_TRAVEL: f64 = 1000.0;
@@ -61,7 +60,7 @@ pub(super) fn calibration(closed: &Readings, open: &Readings, free: &Readings) -
     }
 }
 
-/// Do the readings tell the ends of travel and the supply force from none, without a converter at its end?
+/// True if the readings distinguish the ends of travel, and the supply force from no force, within the converters.
 pub(super) fn is_plausible(closed: &Readings, open: &Readings, free: &Readings) -> bool {
     let full = f64::from(ADC_FULL_SCALE);
     let unsaturated = |r: &Readings| r.potentiometer < full && r.left < full && r.right < full;
@@ -73,7 +72,7 @@ pub(super) fn is_plausible(closed: &Readings, open: &Readings, free: &Readings) 
 }
 
 impl Steady {
-    /// Take in the readings of a tick; those of the tick before tell whether they are steady.
+    /// Add the readings of a tick; those of the previous tick show whether they are steady.
     pub(super) fn note(&mut self, now: &GripSensors, before: &GripSensors) {
         let still = |now: u16, before: u16| now.abs_diff(before) <= STEADY_COUNTS;
         let steady = still(now.potentiometer, before.potentiometer)

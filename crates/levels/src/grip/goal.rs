@@ -14,8 +14,8 @@ use crate::execution::Course;
 pub(super) const CLOSED_END: f64 = 0.10;
 /// Opening at the open end of travel, in.
 pub(super) const OPEN_END: f64 = 5.00;
-/// Force on each finger with the whole supply pressure behind it, lb: what the strain gages feel when the
-/// fingers are shut on each other. ASSUMED: the pads meet at the closed end of travel.
+/// Force on each finger with the whole supply pressure: the strain gages measure it when the fingers are shut on
+/// each other, lb. ASSUMED: the pads meet at the closed end of travel.
 pub(super) const SUPPLY_FORCE: f64 = 80.0;
 
 /// Goal of the current command: a copy, because the buffer of a commander that restarts is empty.
@@ -43,7 +43,7 @@ impl From<&GripCommand> for GripGoal {
 }
 
 impl GripGoal {
-    /// Can a gripper of this sort reach opening and force?
+    /// True if a gripper of this type can reach opening and force.
     #[must_use]
     pub fn is_attainable(&self) -> bool {
         let reachable =

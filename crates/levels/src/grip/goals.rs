@@ -19,7 +19,7 @@ pub static OPENING: Goal = Goal {
 };
 
 pub static FORCE: Goal = Goal {
-    holds: "both fingers feel the commanded force, or the fingers have passed the grasp size and feel nothing",
+    holds: "both fingers have the commanded force, or they have passed the grasp size without force",
     sensors: &[Sensor::StrainGages, Sensor::Fingers],
     tolerance: "2 lb; a finger touches from 1 lb on",
     age: 0,

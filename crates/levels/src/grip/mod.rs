@@ -1,14 +1,14 @@
 //! Grip (VI.3): the parts gripper, end effector 1, by eight air valves, a potentiometer and two strain gages.
 //!
-//! Air flow is not proportional: six flow valves open or close the fingers at three speeds, and trapped air keeps the
-//! opening. So the servo chooses a flow by the remaining distance, coarse to fine, stops inside a dead band, lets the
-//! readings settle, and only then decides. It does not oscillate: a flow that was stopped starts again only if the
-//! settled reading is outside a wider band than the one that stopped it.
+//! Air flow is not proportional: six flow valves open or close the fingers at three speeds, and trapped air keeps
+//! the opening. So the servo chooses a flow by the remaining distance, coarse to fine, stops inside a dead band,
+//! lets the readings settle, and only then decides. It does not oscillate: a stopped flow starts again only if the
+//! settled reading is outside a wider band.
 //!
-//! The command selects the table. UP-INIT runs by itself when the system is booted, and a command that comes
-//! meanwhile waits; later it runs by command alone, and without a calibration commands that move the fingers
-//! are refused: UP-INIT closes with the whole supply pressure, and a part may be held. Only OPEN-GRIP to the
-//! open end works without: all open flows until the readings are steady, and the calibration stays deferred.
+//! The command selects the table. UP-INIT starts by itself when the system starts, and commands wait for it. Later
+//! it starts only by command: UP-INIT closes with the whole supply pressure, and a part may be held. Without a
+//! calibration, commands that move the fingers are refused. Only OPEN-GRIP to the open end works without: all open
+//! flows until the readings are steady, and the calibration stays deferred.
 //!
 //! ```text
 //!   a command                               the calibration (UP-INIT)
@@ -34,20 +34,11 @@
 //!    Done         (Error: too late, without the gripper)
 //! ```
 //!
-//! A gripper that is attached when the system is booted is calibrated at once. The process of a gripper attached later
+//! A gripper that is attached when the system starts is calibrated at once. The process of a gripper attached later
 //! was dormant, and a process that wakes moves nothing before it gets a command (docs/design/handshake.md "Wake"):
-//! E-move sends UP-INIT when the gripper is clear of its holster (V.2.1 QC-ATTACH). When the gripper is taken off, a
-//! calibration under way is void and all valves go off; one that was finished is kept. PAUSE leaves the valves as they
-//! are, literally (VI.3.1): sent while a flow is on, the flow stays on, and PAUSE is done when the fingers rest.
-//!
-//! * [`servoed`]: the command buffer and the sensor words of each servoed gripper;
-//! * [`state`]: the state;
-//! * [`goal`]: what a command asks of the fingers;
-//! * [`calibration`]: from counts to inches and pounds;
-//! * [`presence`]: what is between the fingers;
-//! * [`preprocess`]: the state variables;
-//! * [`tables`]: the decision tables, one file per command;
-//! * [`postprocess`]: valves and status.
+//! E-move sends UP-INIT when the gripper is clear of its holster (V.2.1 QC-ATTACH). When the gripper is removed, a
+//! calibration in progress is void and all valves go off; a finished one is kept. PAUSE leaves the valves as they
+//! are, literally (VI.3.1): if a flow is on it stays on, and PAUSE is done when the fingers rest.
 
 pub mod calibration;
 pub mod goal;
@@ -80,14 +71,14 @@ use self::{
 };
 use crate::execution::Course;
 
-/// The process that servoes a gripper.
+/// The process with the servo of a gripper.
 #[derive(Clone, Debug, Default)]
 pub struct Servo<S> {
     state: State,
     gripper: PhantomData<S>,
 }
 
-/// Consult UP-INIT and CALIBRATION: what they leave to decide.
+/// Consult UP-INIT and CALIBRATION; returns the remaining decision.
 ///
 /// # Errors
 /// The row that decides.
@@ -120,7 +111,7 @@ impl<S: Servoed, Data: ?Sized> Process<Data> for Servo<S> {
         self.state.sense::<S, Data>(inputs, outputs)
     }
 
-    /// A calibration goes on in the tick of a refusal, and while a command waits for it.
+    /// A calibration continues in the tick of a refusal, and while a command waits for it.
     fn decide(&mut self, seen: &StateVariables) -> Action {
         let state = &mut self.state;
         let course = state.execution.execute(seen.arrival);
@@ -163,7 +154,7 @@ impl<S: Servoed, Data: ?Sized> Process<Data> for Servo<S> {
         *outputs = self.state.report(action, seen, inputs.tick);
     }
 
-    /// Without a calibration the sensors do not agree with it: CALIBRATION row 5 forgets it.
+    /// If the sensors contradict the written calibration, CALIBRATION row 5 discards it.
     fn write(&mut self, write: &Write, _: &Inputs<'_, Data>, outputs: &mut GripOutputs) {
         if write.variable == Variable::Calibration {
             (self.state.calibration, outputs.calibration) = (None, None);

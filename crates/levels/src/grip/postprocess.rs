@@ -1,4 +1,4 @@
-//! Postprocess of Grip: the valves, the calibration that a row asks for, and the status to the commander.
+//! Postprocess of Grip: the valves, the calibration, and the status to the commander.
 
 use geometry::units::{hundredths, rounded};
 use interfaces::{
@@ -21,7 +21,7 @@ const OPEN_FULLY: u8 = valve::SUPPLY | valve::OPEN_COARSE | valve::OPEN_MEDIUM |
 const FINGER_HEIGHT: i32 = 0;
 
 impl State {
-    /// Carry out what a row asks for. Without the gripper all valves are off.
+    /// Carry out the action of a row. Without the gripper all valves are off.
     pub(super) fn act(&mut self, action: Action, seen: &StateVariables, tick: Tick) {
         match action {
             Action::Begin | Action::Widen => (self.since, self.steady) = (tick, Steady::default()),
@@ -79,12 +79,12 @@ impl State {
         }
     }
 
-    /// The steady readings that end a phase of the calibration; those of the next one are awaited.
+    /// The steady readings at the end of a calibration phase; the next phase starts.
     fn take_readings(&mut self) -> Readings {
         core::mem::take(&mut self.steady).mean()
     }
 
-    /// The last readings set scale and offset.
+    /// Set scale and offset from the last readings.
     fn calibrate(&mut self) {
         let free = self.take_readings();
         self.calibration = Some(calibration(&self.closed, &self.open, &free));

@@ -1,9 +1,8 @@
 //! Preprocess of Grip: its state variables, from the command and the sensors.
 //!
-//! Bands are chosen for valves that act between one and two samples after the reading that they answer, at
-//! the flows of [`interfaces::device::valve`]: a coarse flow moves 0.16 in a tick, a medium one 0.04
-//! in or 4 lb, a fine one 0.01 in or 1 lb. Each band is wider than two ticks of the flow used in it, so no
-//! flow overshoots the next finer band.
+//! The bands allow for valves that act one to two samples after a reading, at the flows of
+//! [`interfaces::device::valve`]: per tick, a coarse flow moves 0.16 in, a medium one 0.04 in or 4 lb, a fine one
+//! 0.01 in or 1 lb. Each band is wider than two ticks of its flow, so no flow overshoots the next finer band.
 
 use interfaces::{
     GripOutputs,
@@ -30,45 +29,43 @@ use super::{
 };
 use crate::execution::{Asked, Outcome};
 
-/// Farther than this from the goal a coarse flow is used, in.
+/// Least distance for a coarse flow, in.
 const FAR: f64 = 0.40;
-/// Farther than this a medium flow is used, in.
+/// Least distance for a medium flow, in.
 const MIDDLE: f64 = 0.10;
-/// Closer than this the fingers are stopped, in.
+/// The fingers are stopped within this distance, in.
 const DEAD_BAND: f64 = 0.010;
-/// Fingers that came to rest within this are where they should be, in: above the dead band by twice the
-/// noise.
+/// Tolerance for fingers at rest, in: the dead band and twice the noise.
 const REST_BAND: f64 = 0.016;
 
-/// The least force that the servo aims at, lb: below it contact comes and goes.
+/// Least force of the servo, lb: contact is not reliable below it.
 const LEAST_FORCE: f64 = 3.0;
-/// Farther than this from the commanded force a medium flow is used, lb.
+/// Least difference from the commanded force for a medium flow, lb.
 const FORCE_MIDDLE: f64 = 12.0;
-/// Closer than this the flow is stopped, lb.
+/// The flow is stopped within this difference, lb.
 const FORCE_DEAD_BAND: f64 = 1.0;
-/// A force that came to rest within this is as commanded, lb.
+/// Tolerance for a force at rest, lb.
 const FORCE_REST_BAND: f64 = 2.0;
-/// So far below the grasp size fingers without force have missed the object, in: reported openings are
-/// rounded to 0.01 in, and "nothing held" must read at or below the grasp size.
+/// Fingers without force this far below the grasp size have missed the object, in. Reported openings are rounded to
+/// 0.01 in, and "nothing held" must read at or below the grasp size.
 const MISSED_BELOW: f64 = 0.02;
-/// Ticks in which force must build up if there is anything between the fingers.
+/// Ticks in which the force of an object must build up.
 const MISSED_TICKS: u8 = 3;
 
-/// Ticks with the valves off after which readings count as settled: two until the last flow has ended, and a
-/// window.
+/// Ticks with the valves off until readings are settled: two until the last flow has ended, and a window.
 const SETTLE_TICKS: u8 = 6;
-/// Ticks after which fingers that stand still are at rest: valves act two ticks late.
+/// Ticks until motionless fingers are at rest: valves act two ticks late.
 const STILL_TICKS: u8 = 5;
-/// Ticks that a command may take, by its greatest flow: fine, medium, coarse (26, 12 and 6 s). The whole
-/// travel takes 490, 125 and 55 ticks, a grasp 30 more.
+/// Time limit of a command by its greatest flow, ticks: fine, medium, coarse (26, 12 and 6 s). The whole travel
+/// takes 490, 125 and 55 ticks, a grasp 30 more.
 const LIMIT_TICKS: [u64; 3] = [650, 300, 150];
-/// Ticks that UP-INIT may take (16 s); it takes about 100.
+/// Time limit of UP-INIT, ticks (16 s); it takes about 100.
 const CALIBRATION_LIMIT_TICKS: u64 = 400;
-/// Steady ticks that make a calibration reading; longer than valves take to act.
+/// Steady ticks for a calibration reading; longer than valves take to act.
 const STEADY_TICKS: u32 = 12;
 
 impl State {
-    /// Read the inputs of a tick. A process whose outputs were republished was dormant in the tick before.
+    /// Read the inputs of a tick. If the outputs were republished, the process was dormant in the previous tick.
     pub(super) fn sense<S: Servoed, Data: ?Sized>(
         &mut self,
         inputs: &Inputs<'_, Data>,
@@ -184,8 +181,7 @@ impl State {
         }
     }
 
-    /// Count ticks: since the command has not been waiting, since the valves went off, since the object
-    /// should have been felt.
+    /// Count ticks: since the end of waiting, since the valves went off, since the object should have been sensed.
     fn count(&mut self, arrival: Arrival, step: Step, measured: &Measured, tick: Tick) {
         if step == Step::Start && !self.is_calibrating() {
             self.since = tick;
@@ -202,14 +198,14 @@ impl State {
         self.missed = if missing { self.missed.saturating_add(1) } else { 0 };
     }
 
-    /// The words of the sensors are old: what is held is unknown, and readings settle again.
+    /// The sensor words are old: the part presence is unknown, and the readings settle again.
     fn await_readings(&mut self) {
         (self.felt, self.touch, self.touch_ticks) = (Felt::NotKnown, Touch::Unclear, 0);
         (self.still_ticks, self.settled, self.missed) = (0, 0, 0);
         self.steady = Steady::default();
     }
 
-    /// Do the sensors agree with the calibration?
+    /// Whether the sensors agree with the calibration.
     fn sensors(&self, connection: Connection, measured: &Measured) -> Sensors {
         match (&self.calibration, &self.sensed) {
             _ if connection == Connection::Stale => Sensors::Stale,
@@ -220,7 +216,7 @@ impl State {
         }
     }
 
-    /// What the sensors read while calibrating.
+    /// The readings during the calibration.
     fn readings(&self, tick: Tick) -> Calibrating {
         let plausible = || is_plausible(&self.closed, &self.open, &self.steady.mean());
         if tick.since(self.since) > CALIBRATION_LIMIT_TICKS {
@@ -244,7 +240,7 @@ impl State {
         if tick.since(self.since) > limit { Clock::Expired } else { Clock::Running }
     }
 
-    /// The opening, seen from the commanded one.
+    /// The opening, compared with the commanded one.
     fn opening(&self, step: Step, measured: &Measured) -> GripOpening {
         let (opening, dead_band) = match step {
             Step::Start | Step::Move => (measured.opening, DEAD_BAND),

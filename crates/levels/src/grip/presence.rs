@@ -1,9 +1,9 @@
 //! Part presence between the fingers of Grip, by strain gages and potentiometer alone.
 //!
-//! A part is between the fingers if both strain gages read a force and the fingers are above the closed end of travel,
-//! where fingers that press on each other read a force too. Nothing is between them if neither reads a force. Contact
-//! of one finger alone is not enough: a part that is held with little force may touch only one of them. A value counts
-//! after `FELT_TICKS`.
+//! A part is between the fingers if both strain gages read a force and the fingers are above the closed end of
+//! travel, where fingers that press on each other read a force, too. Nothing is between them if neither reads a
+//! force. Contact of one finger alone is not enough: a part held with little force may touch only one of them. A
+//! value counts after `FELT_TICKS`.
 
 use interfaces::{
     device::{ADC_FULL_SCALE, GripSensors},
@@ -21,23 +21,22 @@ use super::{
     },
 };
 
-/// A finger that feels more than this touches something, lb.
+/// A force above this is contact, lb.
 pub(super) const CONTACT: f64 = 1.0;
-/// The same near the closed end, where no opening is below: in above the closed end.
+/// The closed end reaches this far above the closed opening, in: no smaller opening exists.
 pub(super) const MISSED_AT_END: f64 = 0.02;
-/// Ticks for which the sensors must say the same (0.2 s): longer than it takes to push a part from one finger
-/// to the other.
+/// Ticks for which the sensors must agree (0.2 s): longer than it takes to push a part from one finger to the
+/// other.
 pub(super) const FELT_TICKS: u8 = 5;
-/// Validity of the potentiometer that differ by more than this from the last are those of fingers that move,
-/// counts: the noise, and less than a fine flow.
+/// Greatest difference of consecutive potentiometer readings at rest, counts: above the noise, below a fine flow.
 const STILL_COUNTS: u16 = 6;
-/// So far beyond an end of travel no fingers are: the potentiometer fails, in.
+/// Openings farther beyond an end of travel are impossible: the potentiometer fails, in.
 const BEYOND: f64 = 0.15;
-/// A finger that feels less than this has a strain gage that fails, lb.
+/// Smaller forces are impossible: the strain gage fails, lb.
 const LEAST_PLAUSIBLE_FORCE: f64 = -5.0;
 
 impl State {
-    /// Consult TOUCH and PRESENCE; `before` are the readings of the tick before.
+    /// Consult TOUCH and PRESENCE; `before` are the readings of the previous tick.
     pub(super) fn detect(&mut self, before: Option<&GripSensors>, measured: &Measured) {
         let still = match (before, &self.sensed) {
             (Some(before), Some(Sensed { last, .. })) => {
@@ -65,7 +64,7 @@ impl State {
         }
     }
 
-    /// The calibration has opened the fingers and read them without force: there is nothing between them.
+    /// The calibration has opened the fingers and read no force: they are empty.
     pub(super) fn set_empty(&mut self) {
         (self.felt, self.touch, self.touch_ticks) = (Felt::Nothing, Touch::Free, FELT_TICKS);
     }
@@ -87,7 +86,7 @@ fn pads(measured: &Measured, still: bool) -> Pads {
     }
 }
 
-/// Can the fingers of a gripper read so?
+/// True if the fingers of a gripper can read these values.
 pub(super) fn is_plausible(counts: &GripSensors, measured: &Measured) -> bool {
     let inside = |counts: u16| counts > 0 && counts < ADC_FULL_SCALE;
     inside(counts.potentiometer)

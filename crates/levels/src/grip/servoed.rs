@@ -10,13 +10,13 @@ use super::tables::Attachment;
 
 /// The sensor words and the command of a servoed gripper.
 ///
-/// The hand of the Active Pedestal is nearly identical to the parts gripper (III.9.2): one servo serves both.
+/// The hand of the Active Pedestal is nearly identical to the parts gripper (III.9.2), so both use one servo.
 pub trait Servoed {
     const NAME: &'static str;
-    /// `endeff-id#` of the gripper; 0 for one that is not on the quick change.
+    /// `endeff-id#` of the gripper; 0 if it is never on the quick change.
     const END_EFFECTOR_ID: u8;
 
-    /// What a failure is called there.
+    /// The reason code of a failure for this gripper.
     #[must_use]
     fn reason(reason: Reason) -> Reason {
         reason
@@ -24,7 +24,7 @@ pub trait Servoed {
     fn command(memory: &CommonMemory) -> &GripCommand;
     /// The sensor words, and whether their gripper is attached.
     fn sensors(devices: &DeviceInputs) -> (Attachment, GripSensors);
-    /// How the controller is connected with them.
+    /// The connection with the devices of the gripper.
     fn connection(devices: &DeviceInputs) -> Connection;
 }
 

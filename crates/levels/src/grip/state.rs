@@ -13,7 +13,7 @@ use super::{
 };
 use crate::execution::Execution;
 
-/// Readings that are kept to report a steady opening and a velocity.
+/// Stored readings, for a steady opening and a velocity.
 pub(super) const WINDOW: usize = 4;
 
 /// The last readings of the attached gripper.
@@ -25,27 +25,27 @@ pub struct Sensed {
     pub window: [u16; WINDOW],
 }
 
-/// What the fingers touch in a tick.
+/// Contact of the fingers in a tick.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain, Actions)]
 pub enum Touch {
     /// Not certain: one finger touches, or both do while they move.
     Unclear,
-    /// Neither finger touches anything, or they touch each other.
+    /// Neither finger touches an object, or they touch each other.
     Free,
-    /// Both fingers touch something between them, at rest.
+    /// Both fingers touch an object at rest.
     Both,
 }
 
 /// State of Grip.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct State {
-    /// The command and how far it has come.
+    /// The command and its progress.
     pub execution: Execution,
     /// Step of its table.
     pub step: Step,
     /// Its goal.
     pub goal: GripGoal,
-    /// Since when it has not been waiting, or the calibration has been under way.
+    /// Start of its execution after a wait, or of the calibration.
     pub since: Tick,
     /// Ticks in [`Step::Settle`].
     pub settled: u8,
@@ -53,23 +53,23 @@ pub struct State {
     pub missed: u8,
     /// Step of UP-INIT.
     pub phase: GripPhase,
-    /// Scale and offset of the sensors, once they are known, or of the time before a restart.
+    /// Scale and offset of the sensors, from a calibration or from before a restart.
     pub calibration: Option<Calibration>,
     /// Readings at the closed end, while calibrating.
     pub closed: Readings,
     /// Readings at the open end, while calibrating.
     pub open: Readings,
-    /// How long the readings have been steady, while calibrating.
+    /// Duration of steady readings, while calibrating.
     pub steady: Steady,
-    /// The last readings, if the gripper was attached in the last tick.
+    /// The last readings, if the gripper was attached in the previous tick.
     pub sensed: Option<Sensed>,
     /// What is between the fingers.
     pub felt: Felt,
-    /// What they touched in the last tick.
+    /// Their contact in the previous tick.
     pub touch: Touch,
-    /// Ticks for which that has been the same.
+    /// Ticks with the same contact.
     pub touch_ticks: u8,
-    /// Ticks for which the fingers have stood still.
+    /// Ticks for which the fingers have been at rest.
     pub still_ticks: u8,
     /// Command bits to the valves.
     pub valves: u8,

@@ -13,7 +13,7 @@ pub static REST: Goal = Goal {
 };
 
 pub static CLOSED: Goal = Goal {
-    holds: "the fingers stand at the commanded size, or closed",
+    holds: "the fingers are at the commanded size, or closed",
     sensors: &[Sensor::Fingers],
     tolerance: "0.10 in",
     age: 0,
@@ -22,7 +22,7 @@ pub static CLOSED: Goal = Goal {
 
 /// VG-RELEASE, TG-RELEASE, VGRIP-POSE, TGRIP-POSE.
 pub static OPENED: Goal = Goal {
-    holds: "the fingers stand at the commanded size, or open",
+    holds: "the fingers are at the commanded size, or open",
     sensors: &[Sensor::Fingers],
     tolerance: "0.10 in",
     age: 0,

@@ -2,14 +2,14 @@
 
 use interfaces::{CommonMemory, jaws::JawsCommand};
 
-/// What makes one gripper differ from another.
+/// Parameters that differ between grippers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Parameters {
     /// `endeff-id#`.
     pub end_effector_id: u8,
-    /// Opening at the closed end of the fingers' way, in.
+    /// Opening at the closed end of travel, in.
     pub closed: f64,
-    /// Opening at the open end of the fingers' way, in.
+    /// Opening at the open end of travel, in.
     pub opened: f64,
 }
 
@@ -28,7 +28,7 @@ pub struct CylindricalPartGripper;
 
 impl JawsKind for CylindricalPartGripper {
     const NAME: &'static str = "V-Grip";
-    /// The way of the fingers is ASSUMED.
+    /// The travel is ASSUMED.
     const PARAMETERS: Parameters = Parameters { end_effector_id: 2, closed: 0.50, opened: 3.50 };
 
     fn command(memory: &CommonMemory) -> &JawsCommand {
@@ -42,7 +42,7 @@ pub struct ToolGripper;
 
 impl JawsKind for ToolGripper {
     const NAME: &'static str = "Tool-Grip";
-    /// The way of the fingers is ASSUMED.
+    /// The travel is ASSUMED.
     const PARAMETERS: Parameters = Parameters { end_effector_id: 3, closed: 1.00, opened: 4.00 };
 
     fn command(memory: &CommonMemory) -> &JawsCommand {

@@ -1,9 +1,9 @@
-//! V-Grip (VI.4) and Tool-Grip (VI.5): grippers that open and close by air, with a potentiometer for the position of
-//! their fingers.
+//! V-Grip (VI.4) and Tool-Grip (VI.5): grippers that open and close by air, with a potentiometer for the position
+//! of their fingers.
 //!
-//! TG-LEVEL is VG-LEVEL with other parameters, so there is one process here and a [`JawsKind`] each. Nothing is
-//! servoed: a command gives air to one side, waits until the reading of the potentiometer is steady, and reports where
-//! the fingers have stopped.
+//! TG-LEVEL is VG-LEVEL with other parameters, so both share one process, with a [`JawsKind`] each. There is no
+//! servo: a command gives air to one side, waits until the potentiometer reading is steady, and reports where the
+//! fingers have stopped.
 //!
 //! ```text
 //!    GRASP    closed ........................... size ........................... opened
@@ -14,8 +14,9 @@
 //!             closed        jaws-stuck       at-position       jaws-stuck         opened
 //! ```
 //!
-//! Fingers that have stopped on the wrong side, or where nothing wanted them, are reported as what they are,
-//! with a reason beside it. Air stays on until the next command: what is held is pressed, not only enclosed.
+//! Fingers that have stopped at the wrong end, or at neither an end nor the commanded size, are reported at their
+//! actual position, with a reason. Air stays on until the next command: a part is held only while the fingers
+//! press.
 //!
 //! ```text
 //!               ACCEPT               AIR: gripper, motion
@@ -27,13 +28,7 @@
 //! ```
 //!
 //! The process is dormant while its gripper is in the holster (II.2.3). When it wakes it adopts the number of the
-//! command in its buffer and executes nothing before a new one comes (docs/design/handshake.md "Wake").
-//!
-//! * [`kind`]: differences between the grippers;
-//! * [`state`]: the state;
-//! * [`preprocess`]: the state variables;
-//! * [`tables`]: the decision tables, one file per command;
-//! * [`postprocess`]: valves and status.
+//! command in its buffer and executes nothing before a new one arrives (docs/design/handshake.md "Wake").
 
 pub mod goals;
 pub mod kind;

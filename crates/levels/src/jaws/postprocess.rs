@@ -54,8 +54,8 @@ impl State {
         }
     }
 
-    /// The outputs of this tick. Of the words of VI.4.2 only `jaws-stuck` is bad news, so it stands for every
-    /// failure that finds the fingers nowhere; the reason says which.
+    /// The outputs of this tick. Of the words of VI.4.2 only `jaws-stuck` reports a failure, so it is used for
+    /// every failure without a finger position; the reason has the details.
     pub(super) fn report(&self, seen: &StateVariables, tick: Tick) -> JawsOutputs {
         let report = match self.execution.outcome {
             Outcome::Idle => JawsReport::Idle,

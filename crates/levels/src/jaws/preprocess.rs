@@ -17,32 +17,31 @@ use super::{
     },
 };
 
-/// Counts of the potentiometer at opening 0. ASSUMED; all grippers use the same connections (III.3.7,
-/// III.3.8).
+/// Counts of the potentiometer at opening 0. ASSUMED; all grippers use the same connections (III.3.7, III.3.8).
 pub const POTENTIOMETER_OFFSET: f64 = 205.0;
-/// Counts of the potentiometer an inch. ASSUMED.
+/// Counts of the potentiometer per inch. ASSUMED.
 pub const POTENTIOMETER_SCALE: f64 = 600.0;
 
-/// Ticks after a change of the air in which fingers may not have begun to move.
+/// Ticks after a change of the air in which the fingers may not have started to move.
 pub(super) const START_TICKS: u8 = 6;
-/// Ticks after which fingers that closing air has stopped on something press it (1 s, ASSUMED): the pressure builds up
-/// behind them, or comes back after a drop, and they have no force sensors (VI.4).
+/// Ticks until stopped fingers with closing air press (1 s, ASSUMED): the pressure must build up, also after a
+/// drop, and there are no force sensors (VI.4).
 pub(super) const PRESSED_TICKS: u8 = 25;
-/// Ticks after which the readings of a gripper that was attached just now count.
+/// Ticks until the readings of a newly attached gripper count.
 const SETTLED_TICKS: u8 = 5;
-/// Ticks in which any way of the fingers must end (4 s).
+/// Time limit for any travel of the fingers, ticks (4 s).
 pub(super) const LIMIT_TICKS: u64 = 100;
 /// Greatest difference of the readings in a window for fingers at rest, counts.
 const STILL_COUNTS: u16 = 4;
-/// So near to an end of their way the fingers are at it, in.
+/// Tolerance for fingers at an end of travel, in.
 const STOP_BAND: f64 = 0.05;
-/// So far beyond an end of their way no fingers are: the potentiometer fails, in.
+/// Openings farther beyond an end of travel are impossible: the potentiometer fails, in.
 const BEYOND: f64 = 0.15;
-/// Distance from `commanded-size` within which the fingers are at it, in.
+/// Tolerance for fingers at `commanded-size`, in.
 const SIZE_BAND: f64 = 0.10;
 
 impl State {
-    /// Read the inputs of a tick. A process whose outputs were republished was dormant in the tick before.
+    /// Read the inputs of a tick. If the outputs were republished, the process was dormant in the previous tick.
     pub(super) fn sense<K: JawsKind, Data: ?Sized>(
         &mut self,
         inputs: &Inputs<'_, Data>,
@@ -71,7 +70,7 @@ impl State {
         let stop = stop(opening, &K::PARAMETERS);
         let connection = devices.field.grip;
         let motion = if connection.is_old() {
-            // The fingers may move, and their time stands.
+            // The fingers may move, and their time limit is suspended.
             (self.since, self.gripping_ticks) = (self.since.next(), 0);
             JawsMotion::Moving
         } else {

@@ -71,7 +71,7 @@ impl<K: JawsKind + Default> Bench<K>
 where
     Jaws<K>: Buffers<Outputs = JawsOutputs>,
 {
-    /// A bench with the gripper attached, after a tick in which nothing was commanded.
+    /// A bench with the gripper attached, after a tick without a command.
     fn new(opening: f64) -> Self {
         let mut bench = Self::before(Fingers::new::<K>(opening));
         bench.attach(true);
@@ -88,7 +88,7 @@ const CLOSED: (JawsReport, Reason) = (JawsReport::Closed, Reason::None);
 const OPENED: (JawsReport, Reason) = (JawsReport::Opened, Reason::None);
 
 #[test]
-fn the_two_processes_differ_in_name_id_and_way() {
+fn processes_differ_in_name_id_and_travel() {
     assert_eq!((<VGrip as Process<()>>::NAME, <ToolGrip as Process<()>>::NAME), ("V-Grip", "Tool-Grip"));
     let mut v = VBench::new(2.0);
     let mut tool = ToolBench::new(2.0);
@@ -103,12 +103,12 @@ fn the_two_processes_differ_in_name_id_and_way() {
     assert_eq!(tool.execute(order(JawsVerb::Grasp, 0.0)), (JawsReport::Stuck, Reason::WrongGripper));
 }
 
-/// VI.4.2: which status a command ends with, wherever its fingers stop.
+/// VI.4.2: the status at the end of each command, for each position of the fingers.
 #[test]
 fn every_command_reports_where_its_fingers_stopped() {
     use JawsReport::{AtPosition, Closed, Opened, Stuck};
     use JawsVerb::{Grasp, Pause, Pose, Release};
-    // Fingers that no air moves stay where they are put: closed, between, opened.
+    // Fingers without effective air stay in place: closed, between, opened.
     for (verb, place, size, expected, reason) in [
         (Grasp, 0.50, 2.0, Closed, Reason::None),
         (Grasp, 2.00, 2.0, Closed, Reason::None),
@@ -136,7 +136,7 @@ fn every_command_reports_where_its_fingers_stopped() {
 }
 
 #[test]
-fn what_is_held_is_felt_whatever_was_commanded() {
+fn part_presence_is_reported_after_every_command() {
     let mut bench = VBench::new(2.0);
     let felt: Vec<_> = (0..5).map(|_| bench.step().status.felt).collect();
     assert_eq!(felt, [Felt::NotKnown, Felt::NotKnown, Felt::NotKnown, Felt::NotKnown, Felt::Something]);
@@ -161,7 +161,7 @@ fn what_is_held_is_felt_whatever_was_commanded() {
 }
 
 #[test]
-fn open_fingers_that_are_told_to_close_do_not_count_as_empty() {
+fn open_fingers_with_closing_air_are_not_empty() {
     let mut bench = VBench::new(3.5);
     assert_eq!(bench.wait(20).status.felt, Felt::Nothing);
     bench.world.speed = 0.0;
@@ -172,12 +172,12 @@ fn open_fingers_that_are_told_to_close_do_not_count_as_empty() {
 }
 
 #[test]
-fn an_object_is_pressed_until_it_is_released() {
+fn fingers_press_until_release() {
     let mut bench = VBench::new(3.5);
     bench.world.object = Some(2.0);
     assert_eq!(bench.execute(order(JawsVerb::Grasp, 1.95)), CLOSED);
     assert_eq!((bench.outputs().status.size, bench.outputs().valves.close), (200, true));
-    // The commander says nothing about the size: it is still the one that was commanded last.
+    // The next command has no size: the last one stays valid.
     assert_eq!(bench.execute(order(JawsVerb::Pause, 0.0)), (JawsReport::AtPosition, Reason::None));
     assert!(bench.wait(100).valves.close, "still pressed");
     bench.world.object = None;
@@ -186,9 +186,9 @@ fn an_object_is_pressed_until_it_is_released() {
     assert!(bench.outputs().valves.open && !bench.outputs().valves.close);
 }
 
-/// The air may fail when the fingers touch the object, and come back: until they press it, it is not grasped.
+/// Air may fail when the fingers touch the object, and return: the object is grasped only once they press it.
 #[test]
-fn fingers_that_closed_on_something_have_grasped_it_when_they_have_stood_for_a_second() {
+fn grasp_is_done_after_a_second_at_rest() {
     let mut bench = VBench::new(3.5);
     bench.world.object = Some(2.0);
     bench.send(order(JawsVerb::Grasp, 2.0));
@@ -208,7 +208,7 @@ fn fingers_that_closed_on_something_have_grasped_it_when_they_have_stood_for_a_s
 }
 
 #[test]
-fn the_way_of_the_fingers_is_reported_as_executing_with_its_velocity() {
+fn moving_fingers_report_executing_with_their_velocity() {
     let mut bench = ToolBench::new(4.0);
     bench.send(order(JawsVerb::Grasp, 0.0));
     let status = bench.wait(8).status;
@@ -226,7 +226,7 @@ fn the_way_of_the_fingers_is_reported_as_executing_with_its_velocity() {
 }
 
 #[test]
-fn a_potentiometer_that_never_rests_or_reads_nonsense_is_not_believed() {
+fn implausible_potentiometer_is_an_error() {
     let mut bench = VBench::new(2.0);
     bench.world.noise = 60;
     assert_eq!(bench.execute(order(JawsVerb::Grasp, 0.0)), (JawsReport::Stuck, Reason::JawsStuck));
@@ -244,7 +244,7 @@ fn a_potentiometer_that_never_rests_or_reads_nonsense_is_not_believed() {
 }
 
 #[test]
-fn without_the_gripper_commands_fail_and_there_is_no_air() {
+fn missing_gripper_fails_commands_and_turns_the_air_off() {
     let mut bench = VBench::new(3.5);
     bench.send(order(JawsVerb::Grasp, 0.0));
     bench.wait(3);
@@ -261,9 +261,9 @@ fn without_the_gripper_commands_fail_and_there_is_no_air() {
     assert_eq!(bench.execute(other), (JawsReport::Stuck, Reason::WrongGripper), "meant for another gripper");
 }
 
-/// A part in the fingers is pressed while the id pins have no contact, and while the process is restarted.
+/// The fingers press a part while the id pins have no contact, and while the process is restarted.
 #[test]
-fn the_air_stays_on_without_the_id_and_after_a_restart() {
+fn air_stays_on_without_the_id_and_after_a_restart() {
     for id in [0, 7] {
         let mut bench = VBench::new(3.5);
         bench.world.object = Some(2.0);
@@ -283,7 +283,7 @@ fn the_air_stays_on_without_the_id_and_after_a_restart() {
 }
 
 #[test]
-fn a_process_that_starts_or_wakes_adopts_the_command_and_gives_no_air() {
+fn starting_or_waking_process_executes_nothing() {
     let mut bench = VBench::new(3.5);
     assert_eq!(bench.execute(order(JawsVerb::Release, 0.0)), OPENED);
     bench.attach(false);
@@ -310,7 +310,7 @@ fn a_process_that_starts_or_wakes_adopts_the_command_and_gives_no_air() {
 }
 
 #[test]
-fn fingers_are_waited_for_while_their_device_is_late() {
+fn late_device_only_delays_a_command() {
     let mut bench = VBench::new(3.5);
     bench.world.object = Some(2.0);
     bench.send(order(JawsVerb::Grasp, 2.0));
@@ -334,18 +334,18 @@ fn fingers_are_waited_for_while_their_device_is_late() {
 fn every_row_fires() {
     let mut silent = silent::<VGrip, ()>(&[
         every_command_reports_where_its_fingers_stopped,
-        a_potentiometer_that_never_rests_or_reads_nonsense_is_not_believed,
-        without_the_gripper_commands_fail_and_there_is_no_air,
-        a_process_that_starts_or_wakes_adopts_the_command_and_gives_no_air,
-        fingers_are_waited_for_while_their_device_is_late,
+        implausible_potentiometer_is_an_error,
+        missing_gripper_fails_commands_and_turns_the_air_off,
+        starting_or_waking_process_executes_nothing,
+        late_device_only_delays_a_command,
     ]);
     silent.retain(|row| !["PRESENCE ", "VALVES "].iter().any(|table| row.starts_with(table)));
     assert_eq!(silent, [""; 0]);
 }
 
-/// From every state, with fingers that move and with fingers that do not, with and without the gripper.
+/// From every state, with fingers that move or do not, with and without the gripper.
 #[test]
-fn every_command_ends_from_every_state_whether_the_fingers_obey_or_not() {
+fn every_command_ends_from_every_state() {
     let worlds: Vec<_> = [(true, 3.0, 1), (true, 0.0, 1), (true, 3.0, 60), (false, 3.0, 1)]
         .into_iter()
         .flat_map(|world| [None, Some(2.0), Some(1.5)].map(|object| (world, object)))
@@ -370,8 +370,8 @@ fn every_command_ends_from_every_state_whether_the_fingers_obey_or_not() {
 }
 
 proptest! {
-    /// Whatever is commanded and whatever the sensors read: no panic, no air both ways or without the
-    /// gripper, every command ends, and the same inputs give the same bits, also after a restore.
+    /// Random commands and sensors: no panic, no air to both sides or without the gripper, every command ends, and
+    /// the same inputs give the same bytes, also after a restore.
     #[test]
     fn nonsense(ticks in prop::collection::vec((0_u8..30, any::<i32>(), any::<u8>(), any::<u16>()), 1..200)) {
         let (mut bench, mut twin) = (ToolBench::new(2.0), ToolBench::new(2.0));

@@ -8,8 +8,7 @@ use interfaces::{
 
 use crate::grip::{Servo, servoed::Servoed, tables::Attachment};
 
-/// The gripper on the rotary table. It has finger position and force sensing and nothing else, and is always
-/// there.
+/// The gripper on the rotary table. It has only finger position and force sensors, and is always attached.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct PedestalHand;
 
@@ -17,7 +16,7 @@ impl Servoed for PedestalHand {
     const NAME: &'static str = "Pedestal Hand";
     const END_EFFECTOR_ID: u8 = 0;
 
-    /// The pedestal's hand is named where its failure stands beside those of the robot's grippers.
+    /// The pedestal's hand is named, to distinguish its failures from those of the robot's grippers.
     fn reason(reason: Reason) -> Reason {
         match reason {
             Reason::GripNotCalibrated => Reason::HandNotCalibrated,

@@ -10,9 +10,9 @@
 //!   8 valves   rotary table controller
 //! ```
 //!
-//! The manual gives the interface of the upper process; the two below are "transparent to the RCS-II/T3 controller".
-//! Both calibrate themselves when they are booted (IV.5.1 steps 7 and 10). None of the three opens the hand without a
-//! command, also after a failure.
+//! The manual gives the interface of the upper process; the two below are "transparent to the RCS-II/T3
+//! controller". Both calibrate themselves at the start (IV.5.1 steps 7 and 10). None of the three opens the hand
+//! without a command, not even after a failure.
 
 pub mod control;
 pub mod hand;

@@ -15,7 +15,7 @@ use crate::{
 };
 
 pub static REST: Goal = Goal {
-    holds: "the robot has come to rest, or the link is down",
+    holds: "the robot is at rest, or the link is down",
     sensors: &[Sensor::Resolvers],
     tolerance: "no motion above 0.02 in, 0.1 degree per tick for 3 ticks",
     age: 0,
@@ -44,7 +44,7 @@ pub static POINT: Goal = Goal {
     unconfirmed: &[Unconfirmed::Position],
 };
 pub static CONTACT: Goal = Goal {
-    holds: "the condition has come, and the robot rests",
+    holds: "the condition holds, and the robot rests",
     sensors: &[Sensor::Guard, Sensor::Resolvers],
     tolerance: "that of the sensor; no motion above 0.02 in, 0.1 degree per tick for 3 ticks",
     age: 1,
@@ -58,13 +58,12 @@ pub static CALIBRATED: Goal = Goal {
     unconfirmed: &[],
 };
 
-/// Seconds from a point that Prim commands to the resolvers that it reads, without the lag of the robot: T3 Interface,
-/// the line, and the reading.
+/// Seconds from a commanded point to the resolver reading of it, without the lag of the robot: T3 Interface, the
+/// line, and the reading.
 const HOPS_S: f64 = 3.0 * TICK_S;
 
 impl State {
-    /// The goal of a command, compared with the sensors.
-    /// `lag_ms` is the expected lag of the robot, ms.
+    /// The goal of a command, compared with the sensors. `lag_ms` is the expected lag of the robot, ms.
     pub(super) fn proof(
         &self,
         verb: PrimVerb,
@@ -93,7 +92,7 @@ impl State {
     }
 }
 
-/// The robot passes a through point, as far behind its command as it follows.
+/// The robot passes a through point within the distance by which it follows its command.
 fn passes(goal: &PrimGoal, resolvers: Option<&Frame>, lag_ms: u16) -> Proof {
     let Some(present) = resolvers else { return Proof::unsensed(Unconfirmed::Position) };
     let PrimGoal { frame, limits, through } = goal;

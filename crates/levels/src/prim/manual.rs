@@ -1,12 +1,12 @@
 //! The joystick box moves the robot (III.3.3): a velocity instead of a goal.
 //!
-//! Stick and buttons command a velocity in the coordinates of the frame switch. It is kept in world coordinates, and
-//! its change is limited by [`ACCELERATION`]; so a sudden move of the stick, a switch that is turned off and a rotation
-//! of the tool frame all give ramps. Another frame takes effect only at rest.
+//! Stick and buttons command a velocity in the coordinates of the frame switch. The velocity is stored in world
+//! coordinates, and its change is limited by [`ACCELERATION`]. So a sudden stick motion, a switch that is turned
+//! off and a rotation of the tool frame all cause ramps. Another frame takes effect only at rest.
 //!
-//! A rotation leaves its centre where it is: the tool point, or the wrist point 30.00 in behind it (VII.2
-//! `wo`). Its velocity is counted at the lever of [`INCHES_PER_RADIAN`], or at the tool point if that is
-//! farther from the centre, so that all frames have the same limits in inches of path.
+//! A rotation does not move its centre: the tool point, or the wrist point, 30.00 in from it (VII.2 `wo`). Its
+//! velocity is measured at the lever [`INCHES_PER_RADIAN`], or at the tool point if that is farther from the
+//! centre. So all frames have the same limits in inches of path.
 
 use geometry::{
     frame::{Frame, INCHES_PER_RADIAN, Vector, norm, rotation_by, rotation_from_x_y},
@@ -15,14 +15,14 @@ use geometry::{
 use interfaces::device::{JoystickBox, KNOB_FULL, joystick_frame};
 use rcs_core::{Plain, tick::TICK_S};
 
-/// in/s of path with stick and velocity knob at their ends. ASSUMED.
+/// Greatest path velocity, in/s, with stick and velocity knob at their ends. ASSUMED.
 pub const SPEED: f64 = 5.0;
-/// in/s² of path at most. ASSUMED: that of a free path (VIII.10).
+/// Greatest path acceleration, in/s². ASSUMED: that of a free path (VIII.10).
 pub const ACCELERATION: f64 = 10.0;
-/// in/s² that a ramp may have: a tool point that swings about the wrist at [`SPEED`] is accelerated by 5² /
-/// 30 in/s² besides.
+/// Acceleration of a ramp, in/s². The rest of [`ACCELERATION`] is for a tool point that swings about the wrist at
+/// [`SPEED`]: 5² / 30 in/s².
 const RAMP: f64 = 9.0;
-/// Deflection of the stick that counts as none, of 1: potentiometers do not come back to 0. ASSUMED.
+/// Deflections up to this share are treated as 0: potentiometers do not return to 0 exactly. ASSUMED.
 const PLAY: f64 = 0.03;
 
 /// Coordinates of manual motions (III.3.3).
@@ -55,7 +55,7 @@ impl Coordinates {
         }
     }
 
-    /// Centre of rotations, inches behind the tool point.
+    /// Distance from the tool point back to the centre of rotation, inches.
     const fn behind(self) -> f64 {
         match self {
             Self::WristOrigin => POINT_DISTANCE,
@@ -63,22 +63,21 @@ impl Coordinates {
         }
     }
 
-    /// Inches of path in a radian.
+    /// Path per radian, inches.
     const fn lever(self) -> f64 {
         INCHES_PER_RADIAN.max(self.behind())
     }
 }
 
-/// A manual motion.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct PrimManual {
-    /// The box has the robot in this tick.
+    /// The joystick box controls the robot in this tick.
     pub engaged: bool,
     /// Coordinates of the motion.
     pub coordinates: Coordinates,
-    /// Commanded translation, a share of [`SPEED`], in `coordinates`.
+    /// Commanded translation, as a share of [`SPEED`], in `coordinates`.
     pub translate: [f64; 3],
-    /// Commanded rotation, a share of [`SPEED`] at the lever, about the axes of the tool.
+    /// Commanded rotation, as a share of [`SPEED`] at the lever, about the axes of the tool.
     pub rotate: [f64; 3],
     /// in/s, in world coordinates.
     pub linear: [f64; 3],
@@ -86,32 +85,32 @@ pub struct PrimManual {
     pub angular: [f64; 3],
 }
 
-/// A share from -1 to 1 that two buttons ask for.
+/// The share from -1 to 1 that two buttons command.
 fn buttons(plus: bool, minus: bool) -> f64 {
     f64::from(i8::from(plus).saturating_sub(i8::from(minus)))
 }
 
-/// The share commanded by a deflected stick, from -1 to 1: it is 0 at the end of the play and grows from there.
+/// The share from -1 to 1 that a stick commands: 0 at the end of the play, linear beyond it.
 fn deflection(counts: i16) -> f64 {
     let share = f64::from(counts).abs() / f64::from(KNOB_FULL);
     let beyond = ((share - PLAY) / (1.0 - PLAY)).clamp(0.0, 1.0);
     if counts < 0 { -beyond } else { beyond }
 }
 
-/// A stick or a button that moves the robot is moved beyond its play.
+/// True if a stick or button is moved beyond its play.
 #[must_use]
 pub fn is_moved(joystick: &JoystickBox) -> bool {
     let pressed = [joystick.up, joystick.down, joystick.roll_plus, joystick.roll_minus];
     deflection(joystick.x) != 0.0 || deflection(joystick.y) != 0.0 || pressed.contains(&true)
 }
 
-/// A vector no longer than 1.
+/// The vector, shortened to a length of 1.
 fn within_one(v: Vector) -> Vector {
     let length = norm(&v);
     if length > 1.0 { v / length } else { v }
 }
 
-/// A velocity on its way to another one, changed by `most` at most.
+/// The velocity, changed towards another by `most` at most.
 fn towards(from: [f64; 3], to: &Vector, most: f64) -> Vector {
     let from = Vector::from(from);
     let change = to - from;
@@ -120,13 +119,13 @@ fn towards(from: [f64; 3], to: &Vector, most: f64) -> Vector {
 }
 
 impl PrimManual {
-    /// No motion is commanded: the velocity ramps down.
+    /// Ramp down to rest.
     pub fn release(&mut self) {
         self.engaged = false;
         (self.translate, self.rotate) = ([0.0; 3], [0.0; 3]);
     }
 
-    /// Stick and buttons ask for a motion. While one in other coordinates ramps down they are not heard.
+    /// Command the motion of stick and buttons. They have no effect while a motion in other coordinates ramps down.
     pub fn ask(&mut self, joystick: &JoystickBox) {
         self.engaged = true;
         let coordinates = Coordinates::of(joystick);
@@ -151,13 +150,13 @@ impl PrimManual {
         self.linear != [0.0; 3] || self.angular != [0.0; 3]
     }
 
-    /// Something moves, or is to move.
+    /// True if the robot moves or is to move.
     #[must_use]
     pub fn is_moving(&self) -> bool {
         self.has_speed() || self.translate != [0.0; 3] || self.rotate != [0.0; 3]
     }
 
-    /// Let a tick pass; `knob` is the velocity knob, 0 to 1000. The frame after it.
+    /// Advance by a tick and return the new frame; `knob` is the velocity knob, 0 to 1000.
     pub fn step(&mut self, frame: &Frame, knob: u16) -> Frame {
         let speed = SPEED * f64::from(knob.min(KNOB_FULL)) / f64::from(KNOB_FULL);
         let lever = self.coordinates.lever();
@@ -171,7 +170,7 @@ impl PrimManual {
         (self.linear, self.angular) = (linear.into(), angular.into());
         let centre = Vector::new(-self.coordinates.behind(), 0.0, 0.0);
         let turned = turned * frame.rotation;
-        // Thousands of products of rotations are no rotation any more.
+        // Rounding errors of thousands of products: make it a rotation again.
         let (x, y) = (turned.matrix().column(0).into_owned(), turned.matrix().column(1).into_owned());
         let rotation = rotation_from_x_y(&x, &y).unwrap_or(turned);
         Frame { position: frame.shifted(centre).position + moved, rotation }.shifted(-centre)

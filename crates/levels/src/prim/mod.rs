@@ -1,15 +1,15 @@
 //! Prim (V.1): divides a motion command into trajectory points, one every 40 ms.
 //!
-//! A command of E-move names records; Prim looks them up, gives the goal to the trajectory generator, and sends T3I a
-//! point whenever T3I is ready for one. Three things are separate:
+//! A command of E-move names records. Prim looks them up, gives the goal to the trajectory generator, and sends T3I
+//! a point whenever T3I is ready for one. Three things are separate:
 //!
 //! * the *command* (its table decides when it is done or has failed);
 //! * the *motion* ([`motion`], or [`manual`] while the operator has the robot), which continues when a GO-THRU is done,
 //!   and ramps down when a command has failed;
 //! * the *path clock* ([`tables::path_clock`]), which stops while T3I has enough points.
 //!
-//! So three tables are consulted in every tick, whatever the command: ATTEND says whether the tables of the command are
-//! consulted; PATH-CLOCK and RECORD-POSE use the motion after the row of the command.
+//! So three tables are consulted in every tick, for every command: ATTEND decides whether the tables of the command
+//! are consulted; PATH-CLOCK and RECORD-POSE use the motion after the row of the command.
 //!
 //! ```text
 //!                        ROBOT-INIT: RESTART, link runs, frame-feedback taken over
@@ -19,17 +19,17 @@
 //!     T3I: PAUSE         link off, link error, refused or silent T3I; a restart        T3I: POINT
 //! ```
 //!
-//! A motion also leads from the left to the right if T3I reports that the robot is at its commanded position; the
-//! command stays in execution, and then continues from rest at the robot's position. So the robot is never commanded to
-//! jump to a position that Prim assumes. PAUSE ramps down and then repeats the last point under its number: T3I holds
-//! it, its queue is not cut short, and the commanded position stays exact. PAUSE goes to T3I only while Prim has no
-//! position.
+//! A motion also leads from the left to the right if T3I reports that the robot is at its commanded position. The
+//! command stays in execution, and continues from rest at the robot's position. So the robot is never commanded to
+//! jump to a position that Prim assumes. PAUSE ramps down and then repeats the last point under its number: T3I
+//! holds it, its queue is not cut short, and the commanded position stays exact. PAUSE goes to T3I only while Prim
+//! has no position.
 //!
-//! A stick or button of the joystick box that is moved while a frame switch is on stops every motion with
-//! `joystick-on`; only PAUSE lets the box move the robot. The sensors of guarded moves are in [`sensors`].
+//! A stick or button that is moved while a frame switch is on stops every motion with `joystick-on`; only during
+//! PAUSE does the box move the robot. The sensors of guarded moves are in [`sensors`].
 //!
-//! T3I queues up to four points. Prim reads in tick k+2 what T3I says to the point of tick k, so that T3I
-//! must say `Executing` while it has room for fewer than two. With that the queue cannot overrun.
+//! T3I queues up to four points. In tick k+2 Prim reads the answer to the point of tick k, so T3I reports
+//! `Executing` while it has room for fewer than two. This prevents an overrun of the queue.
 
 pub mod goals;
 pub mod manual;
@@ -112,10 +112,10 @@ impl<'d> Process<TaskData<'d>> for Prim {
 }
 
 impl State {
-    /// Consult ATTEND, which decides in every tick whether the tables of the command are consulted.
+    /// Consult ATTEND.
     ///
     /// # Errors
-    /// The action if they are not.
+    /// The action of ATTEND, if the tables of the command are not consulted.
     fn attend(&mut self, course: Course, seen: &mut StateVariables) -> Result<Course, Action> {
         let attendance =
             Attendance { course, kind: CommandKind::of(seen.verb), operator: seen.situation.operator };

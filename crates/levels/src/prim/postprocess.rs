@@ -28,7 +28,7 @@ use super::{
 use crate::execution::Outcome;
 
 impl State {
-    /// Begin an accepted command: the detected pose is that of the last GO-UNTIL.
+    /// Begin an accepted command; the detected pose of the last GO-UNTIL stays.
     pub(super) fn begin(&self, outputs: &mut PrimOutputs) {
         if self.target.verb == PrimVerb::GoUntil {
             let [_, _, detected, _] = &mut outputs.poses;
@@ -109,8 +109,7 @@ impl State {
         }
     }
 
-    /// The condition has come: publish where the resolvers see the robot, or without them where it was sent,
-    /// and stop it.
+    /// The condition holds: publish the resolver frame, or without resolvers the commanded one, and stop the robot.
     fn detect(&mut self, seen: &StateVariables, outputs: &mut PrimOutputs) {
         let commanded = self.motion.as_ref().map(PrimMotion::frame);
         let [_, _, detected, _] = &mut outputs.poses;
@@ -133,8 +132,8 @@ impl State {
         *t3i = T3iCommand { cycle: tick, number: self.t3i.send(tick), command, frame };
     }
 
-    /// Consult the tables that look at the motion as the command's row has left it, and do what they ask for.
-    /// True if the commanded pose is recorded.
+    /// Consult the tables that use the motion after the command's row, and carry out their actions. True if the
+    /// commanded pose is recorded.
     pub(super) fn follow_path(
         &mut self,
         seen: &StateVariables,
@@ -164,7 +163,7 @@ impl State {
         record.action
     }
 
-    /// Let a tick pass on the path; `knob` is the velocity knob, 0 to 1000.
+    /// Advance the path by a tick; `knob` is the velocity knob, 0 to 1000.
     fn advance(&mut self, knob: u16) {
         let Some(motion) = &mut self.motion else { return };
         if self.manual.is_moving() {
@@ -219,7 +218,7 @@ impl State {
         outputs.joystick_leds = if engaged { devices.joystick.frame } else { 0 };
     }
 
-    /// Write a pose record, under a new number if the pose is another; no pose empties the record.
+    /// Write a pose record, under a new number if the pose differs. `None` empties the record.
     fn publish(&mut self, record: &mut ChangingPose, pose: Option<Pose>) {
         match pose {
             None => *record = ChangingPose::default(),
@@ -232,7 +231,7 @@ impl State {
     }
 }
 
-/// Push-buttons F and H (III.3.3); both together mean nothing.
+/// Push-buttons F and H (III.3.3); both together have no meaning.
 const fn gripper_buttons(joystick: &JoystickBox) -> JoystickGrip {
     match (joystick.open, joystick.close) {
         (true, false) => JoystickGrip::Open,

@@ -30,17 +30,17 @@ use super::{
 };
 use crate::{execution::Asked, halt::Above, places::pose_of};
 
-/// Ticks in a row that the robot must rest at the goal (docs/design/motion.md "Rest").
+/// Consecutive ticks of rest at the goal before the robot is at rest (docs/design/motion.md "Rest").
 const SETTLED: u32 = 3;
-/// Ticks after the last point in which it must have come to rest: 2 s (docs/design/motion.md "Rest").
+/// Time limit for rest after the last point, ticks: 2 s (docs/design/motion.md "Rest").
 const PATIENCE: u32 = 50;
-/// Inches that count as at the goal, and as no motion from a tick to the next.
+/// Tolerance of the goal, and greatest motion per tick at rest, inches.
 const AT_GOAL_INCHES: f64 = 0.02;
-/// Radians that count as at the goal, and as no motion: 0.1 degree.
+/// The same for rotations, radians: 0.1 degree.
 const AT_GOAL_RADIANS: f64 = 0.1 * core::f64::consts::PI / 180.0;
 
 impl State {
-    /// Read the inputs of a tick. `outputs` holds what was written in the tick before.
+    /// Read the inputs of a tick. `outputs` are those of the previous tick.
     pub(super) fn sense(
         &mut self,
         inputs: &Inputs<'_, TaskData<'_>>,
@@ -90,8 +90,8 @@ impl State {
         StateVariables { arrival, verb, request, field, proof, situation, button, feedback, resolvers }
     }
 
-    /// After a time in which Prim was held or suspended the motion goes on from rest, because T3I has stopped
-    /// the robot dead. A Prim that is stepped singly goes on from point to point.
+    /// After Prim was held or suspended the motion continues from rest, because T3I has stopped the robot. If Prim
+    /// is stepped singly, the motion continues from point to point.
     fn resume_from_rest(&mut self, inputs: &Inputs<'_, TaskData<'_>>) {
         let stopped = inputs.external.operator.is_stopped(ProcessId::Prim.board());
         let held = stopped || inputs.external.devices.joystick.hold & single_step::PRIM != 0;
@@ -104,7 +104,7 @@ impl State {
         }
     }
 
-    /// Look up the records that a new command names. What is complete is kept.
+    /// Look up the records that a new command names; keep them if they are complete.
     fn look_up(&mut self, command: &PrimCommand, inputs: &Inputs<'_, TaskData<'_>>) -> Request {
         let missing = match target(command, inputs) {
             Ok(target) => {
@@ -128,11 +128,11 @@ impl State {
         }
     }
 
-    /// What T3I says, as far as it answers what was `sent`.
+    /// The state of T3I, as far as it answers the command `sent`.
     ///
-    /// A point is sent each tick, and its echo comes back two ticks later: while points flow, the echo of the
-    /// point before counts as well. Any other command must be echoed itself, so that an error from before a
-    /// RESTART is not taken for one of it.
+    /// A point is sent in each tick and echoed two ticks later. So the echo of the previous point is accepted while
+    /// points are sent. Any other command must be echoed itself, so that an error from before a RESTART is not
+    /// taken for an answer to it.
     fn interface(&self, inputs: &Inputs<'_, TaskData<'_>>, sent: &T3iCommand) -> Interface {
         let t3i = &inputs.memory.t3i;
         let (number, echo) = (self.t3i.number, t3i.status.echo);
@@ -148,7 +148,7 @@ impl State {
         match t3i.status.report {
             T3iReport::Error => fault(&t3i.status),
             _ if self.motion.is_some() && !t3i.status.link_running => silence(&t3i.status),
-            // A T3I that is held reads nothing: what is sent to it would be lost.
+            // A held T3I reads no commands: a new one would be lost.
             _ if t3i.header.republished => Interface::Busy,
             T3iReport::Executing => Interface::Busy,
             T3iReport::Finished if echo == number => Interface::Finished,
@@ -156,8 +156,8 @@ impl State {
         }
     }
 
-    /// Watch the resolvers after the last point: does the robot rest at the goal, and does it rest at all?
-    /// Without them the report of T3I must do.
+    /// Watch the resolvers after the last point for rest at the goal, and for rest anywhere. Without resolvers the
+    /// report of T3I is used.
     fn ends(
         &mut self,
         inputs: &Inputs<'_, TaskData<'_>>,
@@ -195,12 +195,12 @@ impl State {
         guard
     }
 
-    /// The readings of CAL-SENSOR: only those of one rest count together.
+    /// The readings of CAL-SENSOR; all must be from the same rest.
     fn samples(&mut self, inputs: &Inputs<'_, TaskData<'_>>, rest: PrimRest) -> Samples {
         let DeviceInputs { force, field, .. } = &inputs.external.devices;
         self.calibration.watch_power(force);
         if field.force.is_old() {
-            // The bias stays: the sensor has had power.
+            // The bias stays: the sensor was not without power.
             return Samples::Faulty;
         }
         if rest != PrimRest::Arrived {
@@ -216,7 +216,7 @@ impl State {
 }
 
 impl Standstill {
-    /// Has the robot rested for so many `ticks`?
+    /// Whether the robot has rested for so many `ticks`.
     const fn rest(&self, ticks: u32) -> PrimRest {
         if ticks >= SETTLED {
             PrimRest::Arrived
@@ -242,7 +242,7 @@ impl CommandKind {
     }
 }
 
-/// A command with its records, or the first of them that is missing.
+/// A command with its records, or the first missing one.
 fn target(command: &PrimCommand, inputs: &Inputs<'_, TaskData<'_>>) -> Result<PrimTarget, PrimMissing> {
     let verb = command.command;
     let sensor = match verb {
@@ -282,7 +282,7 @@ fn switches(joystick: &JoystickBox) -> Switches {
     }
 }
 
-/// Does a command need a position?
+/// Whether a command needs a position.
 const fn position(verb: PrimVerb) -> Position {
     match verb {
         PrimVerb::None | PrimVerb::Pause | PrimVerb::RobotInit => Position::NotNeeded,
@@ -295,14 +295,14 @@ const fn position(verb: PrimVerb) -> Position {
     }
 }
 
-/// Does the operator move the robot?
+/// Whether the operator moves the robot.
 fn operator(joystick: &JoystickBox) -> PrimOperator {
     let on = switches(joystick) != Switches::Off && joystick.velocity > 0;
     if on && is_moved(joystick) { PrimOperator::Moves } else { PrimOperator::Idle }
 }
 
-/// T3I's check of the report after the last RESTART: none before T3I has echoed the RESTART, or while it starts the
-/// link.
+/// T3I's check of the report after the last RESTART; not available before T3I has echoed the RESTART, or while it
+/// starts the link.
 const fn report(interface: Interface, status: &T3iStatus) -> ReportCheck {
     match interface {
         Interface::Busy | Interface::Silent => ReportCheck::NoReport,
@@ -311,7 +311,7 @@ const fn report(interface: Interface, status: &T3iStatus) -> ReportCheck {
     }
 }
 
-/// What a fault of T3I stands for.
+/// The meaning of a fault of T3I.
 const fn fault(status: &T3iStatus) -> Interface {
     match status.fault {
         _ if matches!(status.following, Following::OffPath) => Interface::OffPath,
@@ -323,7 +323,7 @@ const fn fault(status: &T3iStatus) -> Interface {
     }
 }
 
-/// What a link that does not respond stands for.
+/// The meaning of a link that does not respond.
 const fn silence(status: &T3iStatus) -> Interface {
     if status.controller_ready { Interface::LinkSilent } else { Interface::LinkOff }
 }

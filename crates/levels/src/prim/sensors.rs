@@ -1,4 +1,4 @@
-//! The sensors of guarded moves: from device words they derive "the condition holds", or "the sensor is faulty".
+//! The sensors of guarded moves: device words become "the condition holds" or "the sensor is faulty".
 //!
 //! Low-level sensors that affect the motion from cycle to cycle are inputs of Prim (V.1.1). A guarded move names one
 //! (SENSOR-PARA); it watches the tool gripper's force sensor (III.3.8), the proximity sensors of a holster (III.3.4) or
@@ -6,7 +6,8 @@
 //!
 //! A force is the reading less the *bias*, which CAL-SENSOR takes with the robot at rest: strain gages drift, and
 //! measure the weight of the held part. Without a bias a force is not valid, and the guarded move is refused with
-//! `sensor-error`; also if a reading is at an end of its converter, where greater forces cannot be distinguished.
+//! `sensor-error`. The same applies to a reading at an end of its converter, where greater forces cannot be
+//! distinguished.
 
 use interfaces::{
     device::{
@@ -20,7 +21,7 @@ use taskdata::files::{SensorPara, SensorSource};
 
 use super::tables::{Guard, Samples};
 
-/// Readings that make a bias: 0.4 s of them. ASSUMED.
+/// Readings for a bias: 0.4 s. ASSUMED.
 pub const SAMPLES: u32 = 10;
 /// `endeff-id#` of the gripper with the beams.
 const BEAM_GRIPPER: u8 = 1;
@@ -29,10 +30,10 @@ const NEAR: u8 = 0x03;
 /// Both small sensors of a holster: the ears are seated.
 const SEATED: u8 = 0x0C;
 
-/// The bias of the force sensor and how it is taken. Counts, in the order tool Fx, Fy, Fz, My.
+/// The bias of the force sensor and its measurement. Counts, in the order tool Fx, Fy, Fz, My.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct ForceCalibration {
-    /// The reading without load, if it was taken and the sensor has had power ever since.
+    /// The reading without load; cleared when the sensor loses power.
     pub bias: Option<[f64; FORCE_AXES]>,
     /// Sum of the readings taken so far.
     pub sum: [f64; FORCE_AXES],
@@ -40,11 +41,11 @@ pub struct ForceCalibration {
     pub samples: u32,
 }
 
-/// What the sensor of a guarded move says.
+/// The reading of the sensor of a guarded move.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GuardReading {
     pub guard: Guard,
-    /// lb or in lb, or 1 while a switch is on.
+    /// lb or in lb; 1 while a switch is on.
     pub value: f64,
 }
 
@@ -62,9 +63,8 @@ impl GuardReading {
     }
 }
 
-/// Counts off the middle of the converters as tool Fx, Fy, Fz, My: tool X, Y, Z are sensor Z, -Y, X
-/// (III.3.8). `None` if the sensor has no power, or an axis is overloaded: its neighbours cannot be trusted
-/// then either.
+/// Counts from the middle of the converters as tool Fx, Fy, Fz, My: tool X, Y, Z are sensor Z, -Y, X (III.3.8).
+/// `None` if the sensor has no power, or an axis is overloaded: then the other axes are not valid either.
 fn tool_axes(force: &ForceSensor) -> Option<[f64; FORCE_AXES]> {
     let sound = |counts: u16| (1..ADC_FULL_SCALE).contains(&counts);
     if !force.valid || ![force.x, force.y, force.z, force.moment].into_iter().all(sound) {
@@ -75,14 +75,14 @@ fn tool_axes(force: &ForceSensor) -> Option<[f64; FORCE_AXES]> {
 }
 
 impl ForceCalibration {
-    /// Each tick: a bias does not outlive the power of its sensor.
+    /// Each tick: clear the bias when the sensor has no power.
     pub fn watch_power(&mut self, force: &ForceSensor) {
         if !force.valid {
             *self = Self::default();
         }
     }
 
-    /// Forget the readings of a bias that is being taken.
+    /// Discard the readings of an unfinished bias.
     pub fn begin(&mut self) {
         (self.sum, self.samples) = ([0.0; FORCE_AXES], 0);
     }
@@ -106,7 +106,7 @@ impl ForceCalibration {
         }
     }
 
-    /// The mean of the readings is the bias from now on.
+    /// Take the mean of the readings as the bias.
     pub fn finish(&mut self) {
         if self.samples > 0 {
             self.bias = Some(self.sum.map(|sum| sum / f64::from(self.samples)));
@@ -114,13 +114,13 @@ impl ForceCalibration {
         self.begin();
     }
 
-    /// Force along, or moment about, an axis of the tool: lb or in lb. `None` if it cannot be trusted.
+    /// Force along, or moment about, an axis of the tool: lb or in lb. `None` if it is not valid.
     fn force(&self, axis: usize, counts_per_unit: i32, force: &ForceSensor) -> Option<f64> {
         let counts = *tool_axes(force)?.get(axis)? - *self.bias?.get(axis)?;
         Some(counts / f64::from(counts_per_unit))
     }
 
-    /// What a sensor says in this tick. `end_effector` is the id of the gripper that is on, if one is.
+    /// The reading of a sensor in this tick. `end_effector` is the id of the attached gripper.
     #[must_use]
     pub fn read(
         &self,
@@ -153,7 +153,7 @@ impl ForceCalibration {
     }
 }
 
-/// Do both sensors of a pair see the ears?
+/// Whether both sensors of a pair detect the ears.
 fn holster(sensors: &HolsterSensors, which: i32, pair: u8) -> GuardReading {
     match which {
         1 => GuardReading::switch(sensors.right & pair == pair),
@@ -163,7 +163,7 @@ fn holster(sensors: &HolsterSensors, which: i32, pair: u8) -> GuardReading {
     }
 }
 
-/// Is a beam broken, 1 to 8, or any (0)? Grippers without beams cannot tell.
+/// Whether a beam is broken, 1 to 8, or any (0). Faulty for grippers without beams.
 fn beam(beams: u8, which: i32, end_effector: Option<u8>) -> GuardReading {
     let mask = match u32::try_from(which) {
         Ok(0) => u8::MAX,
@@ -202,7 +202,7 @@ mod tests {
     }
 
     #[test]
-    fn axes_are_those_of_the_tool_and_the_bias_is_taken_off() {
+    fn forces_are_in_tool_axes_without_the_bias() {
         let rest = ForceSensor { x: 2148, y: 1948, z: 2248, moment: 2088, valid: true };
         let calibration = calibrated(&rest);
         assert_eq!(calibration.bias, Some([200.0, 100.0, 100.0, 40.0]));
@@ -218,13 +218,13 @@ mod tests {
                 assert_eq!((reading.value, reading.guard == Guard::Met), (value, guard), "{source}");
             }
         }
-        // At the threshold itself the condition holds.
+        // The condition holds at the threshold itself.
         let at = calibration.read(&sensor(SensorSource::Fx, 0, -30), &devices(pushed), Some(3));
         assert_eq!(at.guard, Guard::Met);
     }
 
     #[test]
-    fn what_cannot_be_trusted_is_faulty() {
+    fn invalid_reading_is_faulty() {
         let good = force(2048);
         let watched = sensor(SensorSource::Fx, 0, 25);
         let read = |c: &ForceCalibration, force| c.read(&watched, &devices(force), Some(3)).guard;
@@ -246,7 +246,7 @@ mod tests {
     }
 
     #[test]
-    fn a_holster_sensor_is_a_pair() {
+    fn holster_sensor_needs_both_of_a_pair() {
         let calibration = ForceCalibration::default();
         for (which, sensors) in [
             (1, HolsterSensors { right: 0x0F, ..HolsterSensors::default() }),
@@ -273,7 +273,7 @@ mod tests {
     }
 
     #[test]
-    fn beams_are_counted_from_one_and_belong_to_the_parts_gripper() {
+    fn beams_count_from_one_on_the_parts_gripper_only() {
         let mut devices = DeviceInputs::default();
         devices.grip.beams = 0x82;
         let read = |which, id| {

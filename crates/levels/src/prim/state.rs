@@ -13,14 +13,14 @@ use super::{
 };
 use crate::execution::Execution;
 
-/// Where a motion goes.
+/// The goal of a motion.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct PrimGoal {
     /// `^-pose` with `^-movtab` applied.
     pub frame: FrameData,
     /// Limits of `^-traj-para`.
     pub limits: Limits,
-    /// GO-THRU: brk-dst of `^-traj-para`, inches of path. The robot is not to stop at the goal.
+    /// GO-THRU: brk-dst of `^-traj-para`, inches of path. The robot does not stop at the goal.
     pub through: Option<f64>,
 }
 
@@ -37,20 +37,20 @@ pub struct PrimTarget {
     pub end_effector_id: Option<u8>,
 }
 
-/// How long the robot has stood since T3I finished the last point of a motion, ticks.
+/// How long the robot has been at rest since T3I finished the last point of a motion, ticks.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct Standstill {
     /// Since T3I finished the last point.
     pub finished: u32,
-    /// The last ticks of them at the goal.
+    /// The most recent of these ticks that were at the goal.
     pub settled: u32,
-    /// The last ticks of them without motion.
+    /// The most recent of these ticks without motion.
     pub still: u32,
 }
 
-/// RESTARTs in [`RESTART_TICKS`] that are too many.
+/// Greatest number of RESTARTs in [`RESTART_TICKS`].
 pub const MOST_RESTARTS: usize = 10;
-/// Ticks in which so many RESTARTs are too many: 10 s. ASSUMED.
+/// Period for [`MOST_RESTARTS`], ticks: 10 s. ASSUMED.
 pub const RESTART_TICKS: u64 = 250;
 
 /// The last RESTARTs that Prim has sent by itself, the latest first.
@@ -77,11 +77,11 @@ impl RestartTimes {
 /// State of Prim.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct State {
-    /// The command of E-move and how far it has come.
+    /// The command of E-move and its progress.
     pub execution: Execution,
     /// Step of its table.
     pub step: Step,
-    /// Step of LINK: is the link being restarted?
+    /// Step of LINK.
     pub link: LinkStep,
     /// The last restarts.
     pub restarts: RestartTimes,
@@ -91,21 +91,21 @@ pub struct State {
     pub t3i: Commander,
     /// What is to be done.
     pub target: PrimTarget,
-    /// The commanded motion, if Prim commands the robot.
+    /// The commanded motion; none while Prim has no position.
     pub motion: Option<PrimMotion>,
     /// The motion of the joystick box.
     pub manual: PrimManual,
     /// The end of a motion.
     pub standstill: Standstill,
-    /// The resolver frame of the tick before, if it was valid.
+    /// The resolver frame of the previous tick, if it was valid.
     pub resolver_frame: Option<WireFrame>,
     /// The force sensor.
     pub calibration: ForceCalibration,
-    /// What the sensor of the guarded move reads.
+    /// Reading of the sensor of the guarded move.
     pub sensed: i32,
-    /// The record button was pressed in the tick before.
+    /// The record button was pressed in the previous tick.
     pub record_button: bool,
-    /// The process is stepped singly: its switch on the joystick box was on in the tick before.
+    /// The process is stepped singly: its switch on the joystick box was on in the previous tick.
     pub single_step: bool,
     /// Number of the newest pose record.
     pub newest_pose: u32,

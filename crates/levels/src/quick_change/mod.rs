@@ -1,6 +1,6 @@
 //! Quick Change (VI.2): turns the locking ring, watches it, and reads which gripper is mated.
 //!
-//! Two reflectance sensors detect the ring at the ends of its travel. Together they give one of four readings; a
+//! Two reflectance sensors detect the ring at the ends of its travel. Together they give one of four readings. A
 //! reading that may be temporary (the ring moves, a sensor switches late) counts only after some ticks.
 //!
 //! ```text
@@ -14,13 +14,12 @@
 //!                       '---------> Implausible     both seen, 3 ticks: qc-sens-malf
 //! ```
 //!
-//! QC-LOCK and QC-UNLOCK give the ring air and enable the control port, until the ring has arrived, both
-//! sensors see it, or 25 ticks have passed; then the port is disabled again, so that nothing can unlock a
-//! gripper by accident. In between the status is that of the ring, not of a command: QC-PAUSE watches from
-//! the first tick on, before any command, after a restart and after the end of the other commands. A ring that
-//! had air before a restart may go on in that tick, and is read from the next one on. One thing
-//! is kept: a ring that did not arrive, or sensors that failed while it turned, are reported until the next
-//! command, whatever the sensors say meanwhile.
+//! QC-LOCK and QC-UNLOCK give the ring air and enable the control port until the ring has arrived, both sensors
+//! detect it, or 25 ticks have passed. Then the port is disabled again, so that no gripper is unlocked by accident.
+//! Between commands the status is that of the ring: QC-PAUSE watches it from the first tick on, also before any
+//! command, after a restart and after the end of other commands. A ring that had air before a restart may still
+//! move in that tick, and is read from the next one on. If a ring did not arrive, or sensors failed while it
+//! turned, this is reported until the next command, regardless of later readings.
 //!
 //! ```text
 //!    QC-LOCK, QC-UNLOCK            arrived
@@ -30,11 +29,6 @@
 //!                   |  late
 //!                   '----------------------------> Stuck     until the next command
 //! ```
-//!
-//! * [`state`]: the state of Quick Change;
-//! * [`preprocess`]: the state variables;
-//! * [`tables`]: the decision tables, one file per command;
-//! * [`postprocess`]: valves and status.
 
 pub mod goals;
 pub mod postprocess;

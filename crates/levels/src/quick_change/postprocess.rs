@@ -36,8 +36,8 @@ impl State {
                 end_effector_id: self.end_effector_id,
                 ring: self.reading,
             },
-            // With the port disabled the ring cannot move, whatever the two air lines do (VI.2.1 QC-LOCK): it
-            // is enabled only while the ring is to turn.
+            // With the port disabled the ring cannot move, regardless of the two air lines (VI.2.1 QC-LOCK): it is
+            // enabled only while the ring is to turn.
             valves: QuickChangeValves { lock, unlock, port: lock || unlock },
         }
     }

@@ -10,18 +10,18 @@ use super::{
     tables::{Clock, Id, Request, Situation, StateVariables},
 };
 
-/// Ticks after which a ring that neither sensor sees is stuck (0.5 s): longer than it is on its way.
+/// Ticks after which a ring that neither sensor detects is stuck (0.5 s): longer than its travel takes.
 pub(super) const STUCK_TICKS: u8 = 12;
-/// Ticks after which sensors that contradict each other, or an id that no gripper has, are a malfunction.
+/// Ticks after which contradicting sensors, or an id without a gripper, are a malfunction.
 pub(super) const MALFUNCTION_TICKS: u8 = 3;
 /// Ticks in which a commanded ring must arrive (1 s).
 pub(super) const TURN_TICKS: u64 = 25;
-/// The greatest id of a gripper: 1 parts, 2 v, 3 tool (III.3.6 to III.3.8); 0 is none.
+/// The greatest id of a gripper: 1 parts, 2 v, 3 tool (III.3.6 to III.3.8); 0 without a gripper.
 const GREATEST_ID: u8 = 3;
 
 impl State {
-    /// Read the inputs of a tick. `outputs` are those of the last one. A ring that had air when the process was
-    /// restarted may go on in this tick: it is read in the next one.
+    /// Read the inputs of a tick. `outputs` are those of the previous tick. A ring that had air when the process
+    /// was restarted may still move in this tick: it is read in the next one.
     pub(super) fn sense<Data: ?Sized>(
         &mut self,
         inputs: &Inputs<'_, Data>,
@@ -36,7 +36,7 @@ impl State {
         let devices = &inputs.external.devices;
         let (sensors, connection) = (&devices.quick_change, devices.field.quick_change);
         if connection.is_old() {
-            // The last reading stays, and the time of the ring stands.
+            // The last reading stays, and the time of the ring does not advance.
             self.since = self.since.next();
         } else if !may_go_on {
             self.read_ring(sensors);

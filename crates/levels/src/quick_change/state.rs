@@ -9,7 +9,7 @@ use crate::execution::Execution;
 /// State of Quick Change.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct State {
-    /// The command of E-move and how far it has come.
+    /// The command of E-move and its progress.
     pub execution: Execution,
     /// Step of its table.
     pub step: Step,
@@ -17,13 +17,13 @@ pub struct State {
     pub command: QuickChangeVerb,
     /// When it came.
     pub since: Tick,
-    /// The reading that counts.
+    /// The valid reading.
     pub ring: RingPosition,
-    /// What the sensors say in this tick.
+    /// The sensor reading of this tick.
     pub reading: RingPosition,
     /// Ticks for which it has been the same.
     pub reading_ticks: u8,
-    /// The last legal `endeff-id#` of the mated gripper, if there was one.
+    /// The last legal `endeff-id#` of a mated gripper.
     pub end_effector_id: Option<u8>,
     /// Ticks for which the id has been illegal.
     pub illegal_ticks: u8,

@@ -53,12 +53,12 @@ impl World<QuickChange> for Ring {
 }
 
 impl Bench {
-    /// A process that has read nothing yet, and a ring.
+    /// A process without a reading yet, and a ring.
     fn at(place: f64) -> Self {
         Self::before(Ring::at(place))
     }
 
-    /// A tick in which the sensors say this.
+    /// A tick with these sensor readings.
     fn read(&mut self, locked: bool, unlocked: bool, end_effector_id: u8) -> QuickChangeOutputs {
         self.world.claim = Some(QuickChangeSensors { locked, unlocked, end_effector_id });
         self.step()
@@ -68,7 +68,7 @@ impl Bench {
         self.read(locked, unlocked, id).status.report
     }
 
-    /// The last of some ticks.
+    /// The status after some ticks.
     fn watch(&mut self, ticks: u8, locked: bool, unlocked: bool, id: u8) -> QuickChangeStatus {
         (0..ticks).map(|_| self.read(locked, unlocked, id).status).last().unwrap()
     }
@@ -85,20 +85,20 @@ const UNLOCKED: (QuickChangeReport, Reason) = (QuickChangeReport::Unlocked, Reas
 #[test]
 fn every_row_fires() {
     let silent = silent::<QuickChange, ()>(&[
-        a_ring_that_does_not_arrive_is_stuck_until_the_next_command,
-        sensors_that_fail_on_the_way_stop_the_ring,
-        a_ring_that_was_not_read_yet_is_not_turned,
-        a_ring_that_locks_under_an_illegal_id_is_a_fault_of_the_sensors,
-        a_ring_seen_by_neither_sensor_is_stuck_only_after_a_while,
-        a_malfunction_is_reported_only_after_a_while,
-        a_restart_and_an_unknown_command_are_named_and_the_ring_still_reported,
+        late_ring_is_stuck_until_the_next_command,
+        failing_sensors_stop_the_ring,
+        unread_ring_is_not_turned,
+        ring_locking_under_an_illegal_id_is_a_sensor_fault,
+        undetected_ring_is_stuck_after_a_while,
+        malfunction_is_reported_after_a_while,
+        restart_and_unknown_command_are_reported_with_the_ring,
         ring_turns_only_while_its_device_answers,
     ]);
     assert_eq!(silent, [""; 0]);
 }
 
 #[test]
-fn the_ring_is_locked_and_unlocked_with_the_port_enabled_only_while_it_turns() {
+fn port_is_enabled_only_while_the_ring_turns() {
     let mut bench = Bench::at(0.0);
     bench.step();
     let began = bench.tick;
@@ -125,7 +125,7 @@ fn ring_turns_only_while_its_device_answers() {
         bench.send(verb);
         bench.wait(4);
         let half = bench.world.place;
-        // The readings stand still.
+        // The readings do not change.
         bench.world.claim = Some(bench.world.sensors());
         bench.external.devices.field.quick_change = Connection::Stale;
         let status = bench.wait(40).status;
@@ -147,7 +147,7 @@ fn ring_turns_only_while_its_device_answers() {
 }
 
 #[test]
-fn a_ring_that_does_not_arrive_is_stuck_until_the_next_command() {
+fn late_ring_is_stuck_until_the_next_command() {
     for (verb, place, done) in
         [(QuickChangeVerb::Lock, 0.0, LOCKED), (QuickChangeVerb::Unlock, 1.0, UNLOCKED)]
     {
@@ -170,7 +170,7 @@ fn a_ring_that_does_not_arrive_is_stuck_until_the_next_command() {
 }
 
 #[test]
-fn sensors_that_fail_on_the_way_stop_the_ring() {
+fn failing_sensors_stop_the_ring() {
     for (verb, locked) in [(QuickChangeVerb::Lock, false), (QuickChangeVerb::Unlock, true)] {
         let mut bench = Bench::at(f64::from(u8::from(locked)));
         bench.step();
@@ -190,7 +190,7 @@ fn sensors_that_fail_on_the_way_stop_the_ring() {
 }
 
 #[test]
-fn a_ring_that_was_not_read_yet_is_not_turned() {
+fn unread_ring_is_not_turned() {
     for (verb, locked) in [(QuickChangeVerb::Lock, false), (QuickChangeVerb::Unlock, true)] {
         let mut bench = Bench::at(0.5);
         bench.step();
@@ -201,7 +201,7 @@ fn a_ring_that_was_not_read_yet_is_not_turned() {
 }
 
 #[test]
-fn a_ring_that_locks_under_an_illegal_id_is_a_fault_of_the_sensors() {
+fn ring_locking_under_an_illegal_id_is_a_sensor_fault() {
     let mut bench = Bench::at(0.0);
     bench.read(false, true, 4);
     bench.send(QuickChangeVerb::Lock);
@@ -211,7 +211,7 @@ fn a_ring_that_locks_under_an_illegal_id_is_a_fault_of_the_sensors() {
 }
 
 #[test]
-fn a_restart_while_the_ring_turns_leaves_it_where_it_is() {
+fn restart_while_the_ring_turns_stops_it() {
     let mut bench = Bench::at(0.0);
     bench.step();
     bench.send(QuickChangeVerb::Lock);
@@ -223,9 +223,9 @@ fn a_restart_while_the_ring_turns_leaves_it_where_it_is() {
     assert_eq!((bench.execute(QuickChangeVerb::Lock), bench.world.place), (LOCKED, 1.0));
 }
 
-/// The air of the last tick may still turn it: where it was seen says nothing.
+/// The air of the previous tick may still turn it: the old reading is not valid.
 #[test]
-fn a_ring_that_had_air_before_a_restart_is_read_in_the_next_tick() {
+fn restarted_process_reads_a_ring_with_air_in_the_next_tick() {
     let mut bench = Bench::at(1.0);
     bench.step();
     bench.send(QuickChangeVerb::Unlock);
@@ -239,7 +239,7 @@ fn a_ring_that_had_air_before_a_restart_is_read_in_the_next_tick() {
 }
 
 #[test]
-fn the_ring_is_reported_before_any_command_and_echoed_after_it() {
+fn ring_is_reported_before_any_command() {
     let mut bench = Bench::at(1.0);
     let before = bench.step().status;
     assert_eq!((before.echo, before.report, before.end_effector_id), (0, QuickChangeReport::Locked, Some(1)));
@@ -250,7 +250,7 @@ fn the_ring_is_reported_before_any_command_and_echoed_after_it() {
 }
 
 #[test]
-fn a_ring_seen_by_neither_sensor_is_stuck_only_after_a_while() {
+fn undetected_ring_is_stuck_after_a_while() {
     let mut bench = Bench::at(1.0);
     assert_eq!(bench.report(true, false, 1), QuickChangeReport::Locked);
     for _ in 1..STUCK_TICKS {
@@ -261,7 +261,7 @@ fn a_ring_seen_by_neither_sensor_is_stuck_only_after_a_while() {
 }
 
 #[test]
-fn where_the_ring_is_is_published_in_every_tick_whatever_is_reported() {
+fn ring_position_is_published_in_every_tick() {
     let readings = [
         (true, false, RingPosition::Locked),
         (false, true, RingPosition::Unlocked),
@@ -290,7 +290,7 @@ fn where_the_ring_is_is_published_in_every_tick_whatever_is_reported() {
 }
 
 #[test]
-fn a_malfunction_is_reported_only_after_a_while() {
+fn malfunction_is_reported_after_a_while() {
     let mut bench = Bench::at(1.0);
     for (locked, unlocked, id) in [(true, true, 1), (true, false, 4), (true, false, 255)] {
         assert_eq!(bench.report(true, false, 1), QuickChangeReport::Locked);
@@ -304,7 +304,7 @@ fn a_malfunction_is_reported_only_after_a_while() {
 }
 
 #[test]
-fn a_restart_and_an_unknown_command_are_named_and_the_ring_still_reported() {
+fn restart_and_unknown_command_are_reported_with_the_ring() {
     let mut bench = Bench::at(1.0);
     QuickChange::order(&mut bench.memory, QuickChangeVerb::Pause, 7);
     assert_eq!(bench.finish(), (QuickChangeReport::Locked, Reason::Restarted), "it adopts the command");
@@ -312,9 +312,9 @@ fn a_restart_and_an_unknown_command_are_named_and_the_ring_still_reported() {
     assert_eq!(bench.execute(QuickChangeVerb::None).1, Reason::UnknownCommand);
 }
 
-/// From every step and reading, with a ring that turns, one that is stuck and sensors that fail.
+/// From every step and reading, with a ring that turns, one that is stuck, and sensors that fail.
 #[test]
-fn every_command_ends_from_every_state_whether_the_ring_obeys_or_not() {
+fn every_command_ends_from_every_state() {
     let mut ends = std::collections::BTreeSet::new();
     let worlds = [0.0, 0.3, 1.0].into_iter().flat_map(|place| {
         [(0.125, 1), (0.0, 1), (0.02, 1), (0.125, 9)].map(|(speed, id)| Ring { speed, id, ..Ring::at(place) })
@@ -335,8 +335,8 @@ fn every_command_ends_from_every_state_whether_the_ring_obeys_or_not() {
 }
 
 proptest! {
-    /// Whatever the sensors say and whatever is commanded: air and port only for a command that turns the
-    /// ring, never for longer than its time, ids are legal, and the same inputs give the same bits.
+    /// Random commands and sensors: air and port only for a command that turns the ring and never longer than its
+    /// time limit, only legal ids, and the same inputs give the same bytes.
     #[test]
     fn the_ring_is_moved_only_by_command(
         readings in prop::collection::vec((any::<bool>(), any::<bool>(), any::<u8>(), 0_u8..40), 1..300)

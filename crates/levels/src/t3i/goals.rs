@@ -3,7 +3,7 @@
 use crate::goal::{Goal, Sensor};
 
 pub static REST: Goal = Goal {
-    holds: "the last position is repeated, and the controller has acknowledged it; without a link nothing is sent",
+    holds: "the last position is repeated, and the controller has acknowledged it; without a link T3I sends nothing",
     sensors: &[Sensor::Link],
     tolerance: "",
     age: 0,

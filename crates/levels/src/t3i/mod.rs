@@ -1,8 +1,8 @@
-//! T3 Interface (VI.1): turns the frames of Prim into positions on the DEPC line, resolver angles into a
+//! T3 Interface (VI.1): converts the frames of Prim into positions on the DEPC line and resolver angles into a
 //! frame, and watches the link.
 //!
-//! Prim may send a point every tick. T3I queues them by number, sends one frame a tick, and says in its
-//! status whether it wants another:
+//! Prim may send a point in every tick. T3I queues them by number, sends one frame per tick, and reports whether it
+//! is ready for another:
 //!
 //! | tick | Prim | T3I | line | controller |
 //! |---|---|---|---|---|
@@ -10,19 +10,19 @@
 //! | k+1 | writes n+1 | reads n, sends it, reports 3 | frame n | acknowledges n and moves |
 //! | k+2 | reads 3, writes n+2 | reads the ACK of n, sends n+1 | frame n+1 | acknowledges n+1 and moves |
 //!
-//! While nothing moves the last position is repeated every tick, so that a dead link is detected within three ticks. A
-//! point beyond the velocity limits stays in the queue and is approached as fast as they allow. RESTART, PAUSE and the
-//! loss of the link empty the queue; while Prim is held or lost the queue waits and the position stands.
+//! While nothing moves the last position is repeated in every tick, so that a dead link is detected within three
+//! ticks. A point beyond the velocity limits stays in the queue and is approached as fast as they allow. RESTART,
+//! PAUSE and the loss of the link empty the queue. While Prim is held or lost the queue waits and the position is
+//! repeated.
 //!
-//! When the link starts again the controller reports the position of the robot. T3I compares the words of the report
-//! with those that it sent, and publishes the result (`check`): Prim continues, or a person decides.
+//! When the link starts again the controller reports the position of the robot. T3I compares the words of the
+//! report with those that it sent, and publishes the result (`check`): Prim continues, or the operator decides.
 //!
-//! While the link runs, T3I compares the resolvers with the path that it has sent in the time of the expected lag. A
-//! robot that is off this path is stopped (`following`, `left`): the rest of the way to the last position would be a
-//! short cut.
+//! While the link runs, T3I compares the resolvers with the path that it has sent in the time of the expected lag.
+//! A robot that is off this path is stopped (`following`, `left`): the rest of the motion would be a short cut.
 //!
-//! Four tables decide in a tick: REPORT for the report of the controller, RECEIVE for the command in the buffer, FOLLOW
-//! for the robot, then the table of the current command for the output.
+//! Four tables decide in a tick: REPORT for the report of the controller, RECEIVE for the command in the buffer,
+//! FOLLOW for the robot, then the table of the current command for the output.
 //!
 //! ```text
 //!                 a point that is missing or cannot be sent
@@ -70,7 +70,8 @@ impl Default for T3i {
 }
 
 impl T3i {
-    /// A process for another period of the link, or another patience with it (`answer_ticks`, at least 1).
+    /// A process with the limits of another tick length, and another time limit for answers (`answer_ticks`, at
+    /// least 1).
     #[must_use]
     pub fn new(limits: Limits, answer_ticks: u16) -> Self {
         Self { state: State::new(limits, answer_ticks) }

@@ -27,7 +27,7 @@ use super::{
 };
 
 impl State {
-    /// Do with the command in the buffer what RECEIVE says.
+    /// Carry out the action of RECEIVE for the command in the buffer.
     pub(super) fn take(&mut self, intake: T3iIntake, seen: &StateVariables) {
         let arrival = seen.request.arrival;
         if matches!(arrival, Arrival::New | Arrival::Restarted) {
@@ -48,7 +48,7 @@ impl State {
         }
     }
 
-    /// Do with the words that a report is compared with what REPORT says.
+    /// Carry out the action of REPORT for the words with which a report is compared.
     pub(super) fn compare(&mut self, comparison: Comparison) {
         match comparison {
             Comparison::Keep => {}
@@ -59,7 +59,7 @@ impl State {
         }
     }
 
-    /// Do with the motion what FOLLOW says.
+    /// Carry out the action of FOLLOW for the motion.
     pub(super) fn supervise(&mut self, supervision: Supervision, seen: &StateVariables) {
         match supervision {
             Supervision::Continue => {}
@@ -175,7 +175,7 @@ impl Action {
     }
 }
 
-/// The tool frame at the angles of the resolvers; counts beyond 17 bits are turns too many and do not matter.
+/// The tool frame at the angles of the resolvers; counts beyond 17 bits are whole turns and do not matter.
 pub(super) fn resolver_frame(resolvers: &Resolvers) -> WireFrame {
     let turn = 2.0 * PI / f64::from(RESOLVER_COUNTS);
     WireFrame::from_frame(

@@ -24,14 +24,14 @@ use super::{
     },
 };
 
-/// Counts of a word by which a report may be beside what was sent: both ends round.
+/// Counts per word by which a report may differ from the sent position: both ends round.
 const NEAR_COUNTS: i32 = 2;
 /// Length of a tick, ms.
 const TICK_MS: u16 = 40;
 
 impl State {
-    /// Read the line and the command buffer. `outputs` holds what was written in the tick before: a T3I that
-    /// is restarted learns from it what was sent.
+    /// Read the line and the command buffer. `outputs` are those of the previous tick: a restarted T3I learns from
+    /// them what was sent.
     pub(super) fn sense<Data: ?Sized>(
         &mut self,
         inputs: &Inputs<'_, Data>,
@@ -89,11 +89,12 @@ impl State {
         }
     }
 
-    /// Give the host's end of the link the bytes that have arrived. The queue does not outlive the link.
+    /// Give the received bytes to the host's end of the link. The queue is emptied when the link is lost.
     fn receive_bytes<Data: ?Sized>(&mut self, inputs: &Inputs<'_, Data>) -> (HostEvent, Reported) {
         let devices = &inputs.external.devices;
         self.host.set_patience(devices.link_patience.unwrap_or(PATIENCE_TICKS));
-        // First, because a port that has taken a part of a frame is not ready either, and this says more.
+        // First, because a port that has taken part of a frame is not ready either, and this fault is more
+        // specific.
         let torn = if devices.link_unsent { self.host.unsent() } else { HostEvent::None };
         let event = self.host.receive(&devices.link_rx, devices.link_ready).max(torn);
         match event {
@@ -109,7 +110,7 @@ impl State {
         (event, self.place())
     }
 
-    /// Is the robot within the limit of the path that it was sent along?
+    /// Whether the robot is within the limit of its path.
     fn followed<Data: ?Sized>(&mut self, resolvers: &WireFrame, inputs: &Inputs<'_, Data>) -> Followed {
         let devices = &inputs.external.devices;
         self.reported = self.reported.saturating_add(1).min(GRACE_TICKS);
@@ -125,7 +126,7 @@ impl State {
         }
     }
 
-    /// Is the position that was reported last on the way to which the robot was sent?
+    /// Whether the last reported position is on the commanded way.
     fn place(&self) -> Reported {
         let reported = self.host.position();
         let near = |sent: &SentWords| {
@@ -135,7 +136,7 @@ impl State {
         if self.sent.as_ref().is_some_and(near) { Reported::Near } else { Reported::Far }
     }
 
-    /// What the point of a new command is worth.
+    /// Whether the point of a new command can be sent.
     fn point(&self, command: &T3iCommand) -> Point {
         if command.number != successor(self.receiver.echo) {
             Point::Gap
@@ -157,7 +158,7 @@ impl State {
         }
     }
 
-    /// As far as the limits allow towards the oldest point, or towards a new one that finds the queue empty.
+    /// The next step within the limits towards the oldest point, or towards a new one if the queue is empty.
     fn advance(&self, arrival: Arrival, command: &T3iCommand) -> Option<Step> {
         let new =
             Some(&command.frame).filter(|_| arrival == Arrival::New && command.command == T3iVerb::Point);

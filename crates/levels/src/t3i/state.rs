@@ -13,11 +13,11 @@ use rcs_core::{Plain, handshake::Receiver};
 use super::tables::{Before, Step, receive::ReceiveStep};
 use crate::rows::Rows;
 
-/// Points that wait for the line (docs/design/link.md "Queue"): one that is being sent, one that was allowed,
-/// one that is on its way, and one to spare.
+/// Points in the queue (docs/design/link.md "Queue"): one that is being sent, one that was permitted, one in
+/// transit, and one spare.
 pub const QUEUE_POINTS: usize = 4;
 
-/// Ticks that the resolvers have to come near a reported position: 1 s.
+/// Ticks in which the resolvers must come near a reported position: 1 s.
 pub const GRACE_TICKS: u8 = 25;
 
 /// State of T3I.
@@ -29,21 +29,21 @@ pub struct State {
     pub command: T3iVerb,
     /// Step of its table.
     pub step: Step,
-    /// Step of RECEIVE: was a command refused?
+    /// Step of RECEIVE.
     pub receive: ReceiveStep,
     /// The host's end of the link.
     pub host: Host,
     /// The velocity limits.
     pub limits: Limits,
-    /// The position last sent, or reported.
+    /// The position sent or reported last.
     pub position: Position,
-    /// The words with which a report is compared.
+    /// The words with which a report is compared; none before the first position.
     pub sent: Option<SentWords>,
     /// Step of REPORT: is the robot where it was sent?
     pub check: ReportCheck,
-    /// What was sent in the tick before.
+    /// The output of the previous tick.
     pub before: Before,
-    /// Step of FOLLOW: is the robot on its path?
+    /// Step of FOLLOW.
     pub following: Following,
     /// The path that was sent.
     pub track: Track,
@@ -53,7 +53,7 @@ pub struct State {
     pub deviation: i32,
     /// Where the robot left its path.
     pub left: Option<PathLeft>,
-    /// Points that wait; the first `queued` are valid, the oldest first.
+    /// Waiting points; the first `queued` are valid, the oldest first.
     pub queue: [WireFrame; QUEUE_POINTS],
     /// How many.
     pub queued: u8,
@@ -62,7 +62,7 @@ pub struct State {
 }
 
 impl State {
-    /// Before the first tick.
+    /// The state before the first tick.
     pub(super) fn new(limits: Limits, answer_ticks: u16) -> Self {
         Self { limits, host: Host::new(answer_ticks), ..Self::default() }
     }
@@ -75,12 +75,12 @@ impl State {
         self.queue.first().filter(|_| self.queued > 0)
     }
 
-    /// True if another point finds room.
+    /// True if the queue has room for another point.
     pub(super) fn has_room(&self) -> bool {
         usize::from(self.queued) < QUEUE_POINTS
     }
 
-    /// Append a point; without room it is left out.
+    /// Append a point; a full queue drops it.
     pub(super) fn append(&mut self, point: WireFrame) {
         if let Some(slot) = self.queue.get_mut(usize::from(self.queued)) {
             *slot = point;
@@ -101,7 +101,7 @@ impl State {
         self.clear_from(0);
     }
 
-    /// Equal states are equal bytes: what does not count is zero.
+    /// Zero the unused places, so that equal states have equal bytes.
     fn clear_from(&mut self, place: usize) {
         self.queue.iter_mut().skip(place).for_each(|point| *point = WireFrame::default());
     }
@@ -112,7 +112,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_queue_keeps_order_and_bound() {
+    fn queue_keeps_order_and_bound() {
         let point = |x| WireFrame { tool: [x, 0, 0], ..WireFrame::default() };
         let mut state = State::nbs();
         assert_eq!(state.first(), None);

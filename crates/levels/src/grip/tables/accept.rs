@@ -3,8 +3,8 @@
 use rcs_core::decision_table;
 
 decision_table! {
-    /// ACCEPT: a command that moves the fingers needs its gripper, and an opening and a force that it can
-    /// reach. A calibration that is under way goes on beside a refusal.
+    /// ACCEPT: a command that moves the fingers needs its gripper, and an opening and a force within reach. A
+    /// calibration in progress continues during a refusal.
     pub ACCEPT: fn accept(super::Request) -> crate::execution::Refusal or () {
         1: asked: Before      => consult;
         2: verb: None         => Fail(UnknownCommand);

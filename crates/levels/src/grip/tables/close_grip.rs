@@ -1,10 +1,8 @@
-//! CLOSE-GRIP (VI.3.1).
-
 use rcs_core::decision_table;
 
 decision_table! {
-    /// CLOSE-GRIP (VI.3.1): close until both fingers touch, then servo the force to `sforce`. Done as well if
-    /// there is nothing between the fingers; E-move tells the two apart by the opening.
+    /// CLOSE-GRIP (VI.3.1): close until both fingers touch, then servo the force to `sforce`. Also done if no
+    /// object is between the fingers; E-move distinguishes the two by the opening.
     pub CLOSE_GRIP: fn close_grip(super::Step, super::Situation) -> super::Action {
         Start | Move {
             1:  grasp: Far                            => Close(Coarse)  -> Move;

@@ -1,4 +1,4 @@
-//! What EXECUTE and ACCEPT leave of the command, and where the calibration begins. No header names the rows.
+//! The command after EXECUTE and ACCEPT, and the first phase of the calibration. No header names the rows.
 
 use interfaces::grip::GripVerb;
 use rcs_core::{Actions, Plain, Variables, decision_table};
@@ -20,43 +20,43 @@ pub enum Acceptance {
 pub enum TargetOpening {
     /// The open end of travel.
     OpenEnd,
-    /// Less.
+    /// Less than that.
     Narrower,
 }
 
-/// The event after which START is consulted.
+/// The event for which START is consulted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum GripBeginning {
     /// The process starts.
     Start,
-    /// It was dormant.
+    /// The process was dormant.
     Wake,
 }
 
 /// The calibration in the output buffers, from before a restart.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Written {
-    /// There is one.
+    /// It is present.
     Calibration,
-    /// There is none.
+    /// It is missing.
     Nothing,
 }
 
 /// The command buffer of a process that starts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum StartBuffer {
-    /// It is empty.
+    /// The buffer is empty.
     Empty,
-    /// It has a command: the system was started before.
+    /// The buffer has a command: the system was started before.
     Command,
 }
 
-/// What is done with the calibration in the output buffers.
+/// Use of the calibration in the output buffers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Actions)]
 pub enum Adoption {
-    /// Nothing.
+    /// It stays as it is.
     Keep,
-    /// It counts when the sensors agree.
+    /// It is adopted when the sensors agree.
     Adopt,
 }
 
@@ -80,14 +80,14 @@ pub struct Started {
     pub beginning: GripBeginning,
     /// The calibration in the output buffers.
     pub written: Written,
-    /// Is the gripper there?
+    /// Whether the gripper is attached.
     pub gripper: Attachment,
     /// The command buffer.
     pub buffer: StartBuffer,
 }
 
 decision_table! {
-    /// COMMAND: the command that the tables below execute.
+    /// COMMAND: the command in execution, for the following tables.
     pub COMMAND: fn command(self::Commanded) -> super::GripActivity {
         1: course: Rest                           => Nothing;
         2: course: Refuse                         => Refused;
@@ -101,9 +101,9 @@ decision_table! {
 }
 
 decision_table! {
-    /// START: where the calibration begins with a process that starts or wakes. A process that became dormant during a
-    /// calibration, before E-move knew the gripper, begins again. A gripper that is attached later may hold a part, and
-    /// so may one that is attached when the process is restarted: UP-INIT calibrates it.
+    /// START: the first phase of the calibration when a process starts or wakes. If the process became dormant
+    /// during a calibration, before E-move knew the gripper, the calibration starts again. A gripper that is
+    /// attached later, or when the process is restarted, may hold a part: UP-INIT calibrates it.
     pub START: fn start(super::GripPhase, self::Started) -> self::Adoption {
         Valid {
             1: otherwise                           => Keep;
@@ -129,7 +129,7 @@ mod tests {
     use crate::grip::tables::{GripActivity, GripPhase};
 
     #[test]
-    fn only_open_grip_to_the_open_end_needs_no_calibration() {
+    fn only_full_open_grip_needs_no_calibration() {
         for &verb in GripVerb::ALL {
             for &target in TargetOpening::ALL {
                 let commanded =
@@ -147,7 +147,7 @@ mod tests {
     }
 
     #[test]
-    fn only_a_gripper_that_is_attached_at_boot_is_calibrated_by_itself() {
+    fn only_a_gripper_attached_at_the_start_calibrates_itself() {
         for &beginning in GripBeginning::ALL {
             for &gripper in Attachment::ALL {
                 for &buffer in StartBuffer::ALL {

@@ -1,5 +1,5 @@
-//! Decision tables of Grip: what a new command needs, the calibration, what commands have in common, and a
-//! file a command.
+//! Decision tables of Grip: preconditions of a new command, the calibration, rows common to all commands, and one
+//! file per command.
 
 pub mod accept;
 pub mod close_grip;
@@ -23,7 +23,7 @@ use crate::execution::{Asked, EXECUTE};
 /// Step of all commands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Step {
-    /// Not begun: the command is new, or waits for the calibration.
+    /// Not started: the command is new, or waits for the calibration.
     Start,
     /// The servo moves the fingers, or presses.
     Move,
@@ -31,15 +31,15 @@ pub enum Step {
     Settle,
 }
 
-/// Step of UP-INIT: how far the calibration has come. It outlasts the commands.
+/// Step of UP-INIT: progress of the calibration. It outlasts the commands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum GripPhase {
-    /// Never done: begins at once, since the gripper is there when the system is booted (VI.3.1).
+    /// Not calibrated: begins at once, since the gripper is attached when the system starts (VI.3.1).
     Missing,
-    /// Never done, or interrupted: waits for UP-INIT. So begins a process whose gripper comes later, which is
-    /// then still in its holster, and one that was started in the middle of a job: a part may be held.
+    /// Not calibrated, or interrupted: waits for UP-INIT. This is the first phase if the gripper was still in its
+    /// holster, or if the process was started in the middle of a job: a part may be held.
     Deferred,
-    /// Done before the process was restarted: counts again when the sensors of the gripper agree.
+    /// Calibrated before the process was restarted: adopted when the sensors of the gripper agree.
     Adopting,
     /// The fingers close, until the readings are steady.
     Closing,
@@ -55,21 +55,21 @@ pub enum GripPhase {
     Failed,
 }
 
-/// Can a gripper of this sort reach the opening and the force of a command?
+/// Whether opening and force of a command are within the gripper's range.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum GripReach {
-    /// Yes, or the command names none.
+    /// Within range, or the command has none.
     Within,
-    /// No.
+    /// Beyond the range.
     Beyond,
 }
 
-/// The command that is being executed.
+/// The command in execution.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain, Actions)]
 pub enum GripActivity {
-    /// None: nothing was commanded yet, or it has ended.
+    /// No command has arrived, or the last one has ended.
     Nothing,
-    /// None: it was refused, or found at the start and not executed.
+    /// The command was refused, or found at the start and not executed.
     Refused,
     /// PAUSE.
     Pause,
@@ -81,53 +81,53 @@ pub enum GripActivity {
     OpenWide,
 }
 
-/// What the sensors read while calibrating.
+/// The readings during the calibration.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Calibrating {
-    /// Something changes.
+    /// A reading changes.
     Unsteady,
-    /// Steady for long enough.
+    /// The readings have been steady for long enough.
     Steady,
-    /// Steady, and the sensors do not tell the ends of travel apart.
+    /// The readings are steady, but do not distinguish the ends of travel.
     Implausible,
-    /// The calibration takes longer than its limit.
+    /// The calibration exceeds its time limit.
     Late,
 }
 
-/// Do the sensors read what fingers within their travel can read, by a calibration from before a restart?
+/// Whether fingers within their travel can read these values, by a calibration from before a restart.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Sensors {
-    /// Yes.
+    /// The readings are possible.
     Plausible,
-    /// No.
+    /// The readings are impossible.
     Implausible,
-    /// The words of their device are old.
+    /// The words of the device are old.
     Stale,
-    /// Their device has not answered for a second.
+    /// The device has not answered for a second.
     Lost,
-    /// The valves of their device are off until an operator releases them.
+    /// The valves of the device are off until an operator releases them.
     Tripped,
 }
 
-/// What the fingers do.
+/// The motion of the fingers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum GripMotion {
-    /// They move, or have come to rest only just now.
+    /// They move, or have just come to rest.
     Moving,
     /// They are at rest.
     Still,
 }
 
-/// Have the readings settled since the valves went off?
+/// Whether the readings have settled since the valves went off.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum GripRest {
-    /// Not yet.
+    /// They have not settled yet.
     Waiting,
-    /// Yes.
+    /// They have settled.
     Rested,
 }
 
-/// Opening of the fingers, seen from the commanded one.
+/// The opening, compared with the commanded one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum GripOpening {
     /// Much too narrow: a coarse flow cannot overshoot.
@@ -146,16 +146,16 @@ pub enum GripOpening {
     VeryWide,
 }
 
-/// What the fingers feel on the way to a grasp.
+/// Contact of the fingers during a grasp.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Grasp {
-    /// Nothing, far from the grasp size.
+    /// No contact, far from the grasp size.
     Far,
-    /// Nothing, where the object is expected.
+    /// No contact, where the object is expected.
     Near,
-    /// Nothing for some ticks, though the grasp size is passed: there is no object.
+    /// No contact for some ticks below the grasp size: the object is missing.
     Missed,
-    /// One finger touches, the other does not.
+    /// One finger touches.
     OneFinger,
     /// Both touch, force much too low: a medium flow cannot overshoot.
     Loose,
@@ -169,7 +169,7 @@ pub enum Grasp {
     Crushing,
 }
 
-/// How much air flows.
+/// The air flow.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Plain)]
 pub enum AirFlow {
     /// 0.25 in/s.
@@ -180,47 +180,47 @@ pub enum AirFlow {
     Coarse,
 }
 
-/// What a new command needs, for [`accept::ACCEPT`].
+/// The state variables of [`accept::ACCEPT`].
 #[derive(Clone, Copy, Debug, Variables)]
 pub struct Request {
-    /// Is the command new?
+    /// Whether the command is new.
     pub asked: Asked,
     /// The command.
     pub verb: GripVerb,
-    /// For which gripper is it?
+    /// The gripper for which the command is.
     pub addressee: Addressee,
-    /// Is the gripper there?
+    /// Whether the gripper is attached.
     pub gripper: Attachment,
-    /// Are opening and force attainable?
+    /// Whether opening and force are within range.
     pub reach: GripReach,
 }
 
 /// The state variables of a tick, for the tables of calibration and commands.
 #[derive(Clone, Copy, Debug, Variables)]
 pub struct Situation {
-    /// The command that is being executed.
+    /// The command in execution.
     pub command: GripActivity,
-    /// Is the gripper there?
+    /// Whether the gripper is attached.
     pub gripper: Attachment,
-    /// What the sensors read while calibrating.
+    /// The readings during the calibration.
     pub readings: Calibrating,
-    /// Do the sensors agree with a calibration from before a restart?
+    /// Whether the sensors agree with a calibration from before a restart.
     pub sensors: Sensors,
     /// Time of the command.
     pub clock: Clock,
-    /// What the fingers do.
+    /// The motion of the fingers.
     pub motion: GripMotion,
-    /// What is between them.
+    /// The part presence.
     pub felt: Felt,
-    /// Have the readings settled?
+    /// Whether the readings have settled.
     pub rest: GripRest,
-    /// The opening, seen from the commanded one.
+    /// The opening, compared with the commanded one.
     pub opening: GripOpening,
-    /// What the fingers feel.
+    /// The contact of the fingers.
     pub grasp: Grasp,
 }
 
-/// What the sensors say in inches and pounds; 0 before the first calibration and without the gripper.
+/// The readings in inches and pounds; 0 before the first calibration and without the gripper.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Measured {
     /// Opening by the newest reading, in.
@@ -235,36 +235,33 @@ pub struct Measured {
     pub right: f64,
 }
 
-/// What preprocess has found in a tick.
+/// The results of preprocess in a tick.
 #[derive(Clone, Copy, Debug)]
 pub struct StateVariables {
-    /// What the command buffer holds.
     pub arrival: Arrival,
-    /// What a new command needs.
     pub request: Request,
-    /// The state variables; EXECUTE and ACCEPT decide on `command`.
+    /// The state variables; EXECUTE and ACCEPT set `command`.
     pub situation: Situation,
-    /// Opening and forces.
     pub measured: Measured,
 }
 
-/// What [`up_init::CALIBRATION`] leaves to decide.
+/// The remaining decision after [`up_init::CALIBRATION`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum GripDuty {
-    /// Nothing: the valves stay as they are.
+    /// No decision remains; the valves stay as they are.
     Nothing,
-    /// Nothing: the valves go off with a command that is refused.
+    /// No decision remains; the valves go off with a refused command.
     Refused,
     /// The table of the command decides.
     Command,
 }
 
-/// What a row can ask for.
+/// The actions of Grip.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Actions)]
 pub enum Action {
     /// The valves stay as they are.
     Keep,
-    /// All valves off: a refused command ends what was under way.
+    /// All valves off: a refused command ends the current motion.
     Refuse,
     /// All valves off: trapped air holds opening and force.
     Stop,
@@ -272,11 +269,11 @@ pub enum Action {
     Finish,
     /// The valves stay as they are; report done.
     Pause,
-    /// Open with a flow, or a smaller one if the commanded speed asks for that.
+    /// Open with a flow, or a smaller one for the commanded speed.
     Open(AirFlow),
-    /// Close with a flow, or a smaller one if the commanded speed asks for that.
+    /// Close with a flow, or a smaller one for the commanded speed.
     Close(AirFlow),
-    /// Close on with one finger in contact; report `paused`.
+    /// Continue to close with one finger in contact; report `paused`.
     AwaitFinger,
     /// All valves off; report an error.
     Fail(Reason),
@@ -286,23 +283,23 @@ pub enum Action {
     CloseFully,
     /// The fingers begin to open without a calibration: all open flows.
     Widen,
-    /// The readings are those of the closed end; all open flows.
+    /// Take the readings as those of the closed end; all open flows.
     NoteClosed,
     /// All open flows.
     OpenFully,
-    /// The readings are those of the open end; vent.
+    /// Take the readings as those of the open end; vent.
     NoteOpen,
     /// Vent both sides.
     Vent,
-    /// The readings are those without force: set scale and offset of the sensors; all valves off.
+    /// Take the readings as those without force: set scale and offset of the sensors; all valves off.
     Calibrate,
     /// The same, and report done.
     CalibrateAndFinish,
-    /// All valves off: there is no calibration, and no command that fails with it.
+    /// All valves off: the calibration has failed, but no command with it.
     GiveUp,
-    /// The calibration from before the restart counts.
+    /// Adopt the calibration from before the restart.
     Adopt,
-    /// The calibration from before the restart does not count.
+    /// Discard the calibration from before the restart.
     Forget,
 }
 

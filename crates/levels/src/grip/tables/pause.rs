@@ -1,10 +1,8 @@
-//! PAUSE (VI.3.1).
-
 use rcs_core::decision_table;
 
 decision_table! {
-    /// PAUSE (VI.3.1): the valves stay as they are, and the fingers are waited for until they are at rest;
-    /// without the gripper the valves are off.
+    /// PAUSE (VI.3.1): the valves stay as they are, and the command waits until the fingers are at rest. Without
+    /// the gripper the valves are off.
     pub PAUSE: fn pause(super::Step, super::Situation) -> super::Action {
         any {
             1: gripper: Detached  => Finish;

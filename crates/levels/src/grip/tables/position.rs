@@ -1,5 +1,3 @@
-//! POSITION and OPEN-GRIP (VI.3.1).
-
 use rcs_core::decision_table;
 
 decision_table! {

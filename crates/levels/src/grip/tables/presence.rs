@@ -1,4 +1,4 @@
-//! Part presence between the fingers, from readings that have to last. No header names the rows.
+//! Part presence between the fingers, from readings that last. No header names the rows.
 
 use rcs_core::{Actions, Plain, Variables, decision_table};
 
@@ -7,20 +7,20 @@ use crate::grip::state::Touch;
 /// Fingers whose strain gage reads a force.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Contacts {
-    /// None.
+    /// No finger.
     None,
-    /// One.
+    /// One finger.
     One,
-    /// Both.
+    /// Both fingers.
     Both,
 }
 
 /// The opening, compared with the closed end of travel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum ClosedEnd {
-    /// There the fingers press on each other.
+    /// The fingers are at the closed end, where they press on each other.
     Reached,
-    /// Not reached.
+    /// The fingers are above it.
     Above,
 }
 
@@ -33,16 +33,16 @@ pub enum Stillness {
     Changed,
 }
 
-/// The readings of the sensors.
+/// Validity of the sensor readings.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Validity {
-    /// Calibrated, plausible, and there were readings in the tick before.
+    /// Calibrated, plausible, and also read in the previous tick.
     Valid,
-    /// One of these is not so.
+    /// Not calibrated, not plausible, or not read in the previous tick.
     Invalid,
 }
 
-/// How long the touch has been the same.
+/// Duration of the same contact.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Period {
     /// Less than 0.2 s.
@@ -51,7 +51,7 @@ pub enum Period {
     Long,
 }
 
-/// What happens to the count of ticks with the same touch.
+/// Update of the count of ticks with the same contact.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Actions)]
 pub enum Count {
     /// It continues.
@@ -63,11 +63,11 @@ pub enum Count {
 /// The state variables of [`TOUCH`].
 #[derive(Clone, Copy, Debug, Variables)]
 pub struct Pads {
-    /// The fingers with a force.
+    /// Fingers whose strain gage reads a force.
     pub contact: Contacts,
-    /// The opening.
+    /// The opening, compared with the closed end of travel.
     pub closed_end: ClosedEnd,
-    /// The potentiometer.
+    /// The potentiometer, compared with the previous tick.
     pub potentiometer: Stillness,
 }
 
@@ -76,15 +76,15 @@ pub struct Pads {
 pub struct GripContact {
     /// The readings.
     pub readings: Validity,
-    /// What the fingers touch.
+    /// The contact of the fingers.
     pub touch: Touch,
-    /// How long that has been the same.
+    /// The duration of the same contact.
     pub period: Period,
 }
 
 decision_table! {
-    /// TOUCH: what the fingers touch in this tick. Moving fingers may push a part; fingers that hold one may be moved a
-    /// little.
+    /// TOUCH: the contact of the fingers in this tick. Moving fingers may push a part; fingers that hold one may be
+    /// moved a little.
     pub TOUCH: fn touch(interfaces::grip::Felt, self::Pads) -> crate::grip::state::Touch {
         any {
             1: contact: None                          => Free;
@@ -102,8 +102,8 @@ decision_table! {
 }
 
 decision_table! {
-    /// PRESENCE: what is between the fingers. A touch counts when it has lasted. An earlier contact is only evidence
-    /// against *nothing*.
+    /// PRESENCE: the part presence. A contact counts when it has lasted. A shorter one is only evidence against
+    /// *nothing*.
     pub PRESENCE: fn presence(interfaces::grip::Felt, self::GripContact) -> self::Count {
         any {
             1: readings: Invalid             => Restart   -> NotKnown;
@@ -127,7 +127,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn invalid_readings_say_nothing_whatever_was_known() {
+    fn invalid_readings_make_the_presence_unknown() {
         for &felt in Felt::ALL {
             for &touch in Touch::ALL {
                 let contact = GripContact { readings: Validity::Invalid, touch, period: Period::Long };

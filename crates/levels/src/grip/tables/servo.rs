@@ -1,10 +1,10 @@
-//! What POSITION, OPEN-GRIP and CLOSE-GRIP have in common.
+//! Rows common to POSITION, OPEN-GRIP and CLOSE-GRIP.
 
 use rcs_core::decision_table;
 
 decision_table! {
-    /// SERVO: the fingers are moved only while the gripper is there and time is left; once the valves are
-    /// off, the readings settle before they count. Without new readings the valves are off.
+    /// SERVO: the fingers move only while the gripper is attached and the time limit is not over. Once the valves
+    /// are off, the readings settle before they count. Without new readings the valves are off.
     pub SERVO: fn servo(super::Step, super::Situation) -> super::Action or () {
         any {
             1: gripper: Detached  => Fail(WrongGripper);

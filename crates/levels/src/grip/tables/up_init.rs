@@ -1,11 +1,11 @@
-//! UP-INIT (VI.3.1), and what follows from a calibration that is missing.
+//! UP-INIT (VI.3.1), and the effects of a missing calibration.
 
 use rcs_core::decision_table;
 
 decision_table! {
-    /// UP-INIT (VI.3.1): close and open the gripper and read the sensors at both ends of travel and without
-    /// force. OPEN-GRIP without a calibration opens it to the end of travel. CALIBRATION, which is
-    /// consulted after it, begins both.
+    /// UP-INIT (VI.3.1): close and open the gripper and read the sensors at both ends of travel and without force.
+    /// OPEN-GRIP without a calibration opens it to the end of travel. CALIBRATION, which is consulted after it,
+    /// starts both.
     pub UP_INIT: fn up_init(super::GripPhase, super::Situation) -> super::Action or () {
         Missing | Deferred | Adopting | Valid | Failed {
             1:  otherwise                            => consult;
@@ -39,10 +39,10 @@ decision_table! {
 }
 
 decision_table! {
-    /// CALIBRATION: UP-INIT runs by itself if the gripper is there when the system is booted (VI.3.1), and
-    /// commands wait for it. Later it runs by command alone, since a part may be held: commands that need
-    /// the calibration are refused. OPEN-GRIP to the open end does not need it: what is held without a
-    /// calibration can be released.
+    /// CALIBRATION: UP-INIT starts by itself if the gripper is attached when the system starts (VI.3.1), and
+    /// commands wait for it. Later it starts only by command, since a part may be held: commands that need the
+    /// calibration are refused. OPEN-GRIP to the open end does not need it, so that a part can be released without
+    /// a calibration.
     pub CALIBRATION: fn calibration(super::GripPhase, super::Situation) -> super::Action or super::GripDuty {
         Missing {
             1: gripper: Attached, command: Nothing          => Begin   -> Closing;

@@ -57,13 +57,13 @@ impl World<Grip> for Gripper {
 }
 
 impl Bench {
-    /// A bench with the gripper attached, after one tick in which nothing was commanded: a command that
-    /// stands in the buffer in the first tick is one of the time before a restart.
+    /// A bench with the gripper attached, after one tick without a command: a command in the first tick is one from
+    /// before a restart.
     pub fn new(gripper: Gripper) -> Self {
         Self::boot(gripper, true)
     }
 
-    /// The same, the gripper being in its holster.
+    /// The same with the gripper in its holster.
     pub fn without(gripper: Gripper) -> Self {
         Self::boot(gripper, false)
     }
@@ -91,7 +91,7 @@ impl Bench {
         self.world.patterns.clear();
     }
 
-    /// Command and finish; panics unless it is done. Ticks until then, and what is written.
+    /// Execute a command; panics unless it is done. Returns the ticks and the outputs.
     pub fn done(&mut self, command: GripVerb, opening: f64, force: i32) -> (u64, GripOutputs) {
         self.command(command, opening, force);
         let began = self.tick;

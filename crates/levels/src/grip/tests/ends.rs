@@ -1,4 +1,4 @@
-//! Every command ends, from whatever state and in whatever world it begins.
+//! Every command ends, from every state and in every environment.
 
 use interfaces::{
     Reason,
@@ -14,7 +14,7 @@ use crate::{
     },
 };
 
-/// What stands between the fingers: nothing, a part, one that only one finger reaches, two that fill them.
+/// Objects between the fingers: none, a part, one that only one finger reaches, two that fill the opening.
 const OBJECTS: [Option<Object>; 4] = [
     None,
     Some(Object { size: 0.625, off_centre: 0.0 }),
@@ -22,12 +22,12 @@ const OBJECTS: [Option<Object>; 4] = [
     Some(Object { size: 4.9, off_centre: 0.0 }),
 ];
 
-/// Openings that the fingers have at first, in; whether the gripper is on, has no air, and feels nothing.
+/// Initial openings, in; whether the gripper is attached, has no air, and reads no force.
 const OPENINGS: [f64; 4] = [0.1, 0.625, 3.0, 5.0];
 const WORLDS: [(bool, bool, bool); 4] =
     [(true, false, false), (true, true, false), (true, false, true), (false, false, false)];
 
-/// A process in the middle of things: state and world agree in nothing but by chance.
+/// A process in the middle of a command: state and environment agree only by chance.
 fn beginning(phase: GripPhase, step: Step, attached: bool, world: &Gripper, remembered: &State) -> Bench {
     let mut bench = Bench::without(world.clone());
     bench.attach(attached);
@@ -44,7 +44,7 @@ fn beginning(phase: GripPhase, step: Step, attached: bool, world: &Gripper, reme
 }
 
 #[test]
-fn every_command_ends_from_every_state_whether_the_fingers_obey_or_not() {
+fn every_command_ends_from_every_state() {
     let remembered = calibrated(26).process.state;
     let mut ends = [0; 2];
     let worlds = OBJECTS.into_iter().flat_map(|object| OPENINGS.map(|opening| (object, opening)));

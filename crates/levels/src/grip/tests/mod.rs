@@ -49,7 +49,7 @@ fn reason(bench: &mut Bench) -> Reason {
 }
 
 #[test]
-fn positions_are_reached_without_hunting() {
+fn position_is_reached_without_hunting() {
     let mut bench = calibrated(3);
     for (opening, most_ticks) in
         [(0.60, 60), (3.00, 60), (3.50, 40), (0.10, 60), (5.00, 60), (4.99, 20), (5.00, 20)]
@@ -66,9 +66,9 @@ fn positions_are_reached_without_hunting() {
     }
 }
 
-/// By a little, more and much, so that each alternative of POSITION row 9 fires.
+/// Small, medium and large displacements, so that each alternative of POSITION row 9 fires.
 #[test]
-fn fingers_that_are_moved_while_they_settle_are_moved_back() {
+fn fingers_displaced_while_settling_are_moved_back() {
     for by in [-1.0, -0.2, -0.05, 0.05, 0.2, 1.0] {
         let mut bench = calibrated(3);
         bench.command(GripVerb::Position, 2.5, 0);
@@ -85,7 +85,7 @@ fn fingers_that_are_moved_while_they_settle_are_moved_back() {
 }
 
 #[test]
-fn a_commanded_speed_is_not_exceeded() {
+fn commanded_speed_is_not_exceeded() {
     let mut bench = calibrated(4);
     for (velocity, in_a_tick) in [(25, 0.01), (99, 0.01), (100, 0.04), (399, 0.04), (400, 0.16), (0, 0.16)] {
         for opening in [2.0, 3.0] {
@@ -101,7 +101,7 @@ fn a_commanded_speed_is_not_exceeded() {
 }
 
 #[test]
-fn a_grasp_has_the_commanded_force() {
+fn grasp_reaches_the_commanded_force() {
     let mut bench = calibrated(5);
     bench.world.object = Some(Object { size: 0.625, off_centre: 0.0 });
     for force in [30, 60, 5, 80] {
@@ -117,7 +117,7 @@ fn a_grasp_has_the_commanded_force() {
 }
 
 #[test]
-fn a_grasp_that_both_fingers_touch_waits_for_neither() {
+fn grasp_with_both_fingers_touching_waits_for_neither() {
     let mut bench = calibrated(5);
     bench.world.object = Some(Object { size: 0.625, off_centre: 0.0 });
     for force in [30, 60] {
@@ -136,7 +136,7 @@ fn a_grasp_that_both_fingers_touch_waits_for_neither() {
 }
 
 #[test]
-fn an_interrupted_grasp_or_opening_goes_on() {
+fn interrupted_grasp_or_opening_continues() {
     let interruptions: [fn(&mut Bench); 2] = [
         |bench| {
             bench.restart();
@@ -165,14 +165,14 @@ fn an_interrupted_grasp_or_opening_goes_on() {
     );
 }
 
-/// Up to the tick after the valves went off.
+/// Step until the tick after the valves went off.
 fn settle(bench: &mut Bench) {
     bench.step();
     bench.until(|bench| bench.process.state.settled != 0);
 }
 
 #[test]
-fn a_force_that_changes_while_the_fingers_settle_is_servoed_again() {
+fn force_changing_while_settling_is_servoed_again() {
     for changed in [30.0, 10.0, 0.0] {
         let mut bench = calibrated(18);
         bench.done(GripVerb::OpenGrip, 3.0, 0);
@@ -186,7 +186,7 @@ fn a_force_that_changes_while_the_fingers_settle_is_servoed_again() {
 }
 
 #[test]
-fn a_grasp_ends_when_the_fingers_stand_still() {
+fn grasp_ends_when_the_fingers_rest() {
     let mut bench = calibrated(18);
     bench.done(GripVerb::OpenGrip, 3.0, 0);
     bench.world.object = Some(Object { size: 1.5, off_centre: 0.0 });
@@ -201,7 +201,7 @@ fn a_grasp_ends_when_the_fingers_stand_still() {
 }
 
 #[test]
-fn a_grasp_of_nothing_is_done_at_or_below_the_grasp_size() {
+fn empty_grasp_is_done_at_or_below_the_grasp_size() {
     let mut bench = calibrated(6);
     for grasp_size in [0.60, 0.61, 0.13, 0.10, 2.50] {
         bench.done(GripVerb::Position, 3.0, 0);
@@ -226,7 +226,7 @@ fn one_finger_waits_for_the_other() {
 }
 
 #[test]
-fn a_gripper_that_is_attached_at_the_start_calibrates_by_itself() {
+fn gripper_attached_at_the_start_calibrates_itself() {
     let mut bench = Bench::new(Gripper::new(2.0, 8));
     let status = bench.wait(200).status;
     assert_eq!((status.initialized, status.report, status.echo), (true, GripReport::Idle, 0));
@@ -237,7 +237,7 @@ fn a_gripper_that_is_attached_at_the_start_calibrates_by_itself() {
 }
 
 #[test]
-fn a_gripper_that_comes_later_is_calibrated_by_command_and_keeps_the_calibration() {
+fn gripper_attached_later_is_calibrated_once_by_command() {
     let mut bench = Bench::without(Gripper::new(2.0, 9));
     bench.done(GripVerb::Pause, 0.0, 0);
     bench.attach(true);
@@ -252,7 +252,7 @@ fn a_gripper_that_comes_later_is_calibrated_by_command_and_keeps_the_calibration
 }
 
 #[test]
-fn a_process_that_wakes_adopts_the_command_and_moves_nothing() {
+fn waking_process_adopts_the_command_and_moves_nothing() {
     for sleeping_with in [GripVerb::Position, GripVerb::CloseGrip, GripVerb::UpInit] {
         let mut bench = calibrated(19);
         bench.done(GripVerb::OpenGrip, 3.0, 0);
@@ -272,7 +272,7 @@ fn a_process_that_wakes_adopts_the_command_and_moves_nothing() {
 }
 
 #[test]
-fn a_process_that_wakes_uncalibrated_waits_for_up_init() {
+fn uncalibrated_waking_process_waits_for_up_init() {
     let mut bench = Bench::without(Gripper::new(2.0, 20));
     bench.sleep(10);
     bench.attach(true);
@@ -283,7 +283,7 @@ fn a_process_that_wakes_uncalibrated_waits_for_up_init() {
 }
 
 #[test]
-fn a_calibration_that_is_slept_through_begins_again_unless_the_gripper_went() {
+fn dormancy_restarts_a_calibration_unless_the_gripper_left() {
     let mut bench = Bench::new(Gripper::new(2.0, 21));
     bench.sleep(1);
     assert!(bench.wait(200).status.initialized, "booted before E-move knew which gripper is on");
@@ -300,7 +300,7 @@ fn a_calibration_that_is_slept_through_begins_again_unless_the_gripper_went() {
 }
 
 #[test]
-fn a_command_before_the_calibration_is_executed_after_it() {
+fn command_waits_for_the_calibration() {
     let mut bench = Bench::new(Gripper::new(2.0, 10));
     bench.wait(5);
     bench.done(GripVerb::Position, 3.0, 0);
@@ -314,7 +314,7 @@ fn a_command_before_the_calibration_is_executed_after_it() {
 }
 
 #[test]
-fn a_pause_that_waits_for_a_calibration_fails_with_it_but_not_without_the_gripper() {
+fn pause_fails_with_the_calibration_it_waits_for() {
     let mut bench = Bench::new(Gripper::new(2.0, 10));
     bench.world.strain[0].1 = 0.0;
     bench.command(GripVerb::Pause, 0.0, 0);
@@ -327,7 +327,7 @@ fn a_pause_that_waits_for_a_calibration_fails_with_it_but_not_without_the_grippe
 }
 
 #[test]
-fn unattainable_commands_are_refused() {
+fn unattainable_command_is_refused() {
     let mut bench = calibrated(11);
     for (verb, opening, force, velocity, why) in [
         (GripVerb::Position, 0.09, 0, 0, Reason::GripUnattainable),
@@ -348,7 +348,7 @@ fn unattainable_commands_are_refused() {
 }
 
 #[test]
-fn without_the_gripper_commands_fail_and_valves_are_off() {
+fn missing_gripper_fails_commands_and_turns_the_valves_off() {
     let mut bench = calibrated(12);
     bench.command(GripVerb::Position, 0.5, 0);
     bench.wait(5);
@@ -370,7 +370,7 @@ fn without_the_gripper_commands_fail_and_valves_are_off() {
 }
 
 #[test]
-fn pause_leaves_the_valves_as_they_are_and_waits_until_the_fingers_rest() {
+fn pause_keeps_the_valves_and_waits_for_rest() {
     let mut bench = calibrated(13);
     bench.done(GripVerb::Position, 0.5, 0);
     bench.command(GripVerb::Position, 3.0, 0);
@@ -386,14 +386,14 @@ fn pause_leaves_the_valves_as_they_are_and_waits_until_the_fingers_rest() {
     bench.done(GripVerb::Position, 3.0, 0);
     let (ticks, outputs) = bench.done(GripVerb::Pause, 0.0, 0);
     assert_eq!((ticks, outputs.valves.bits), (1, 0), "they rest");
-    // A potentiometer that never rests.
+    // A potentiometer whose reading never rests.
     bench.world.noise = 40;
     let (ticks, _) = bench.done(GripVerb::Pause, 0.0, 0);
     assert_eq!(ticks, 152);
 }
 
 #[test]
-fn a_restarted_process_adopts_its_calibration_and_moves_nothing() {
+fn restarted_process_adopts_its_calibration_and_moves_nothing() {
     let mut bench = holding(14);
     let (force, position) = (bench.world.force, bench.memory.grip.status.position);
     bench.restart();
@@ -406,14 +406,14 @@ fn a_restarted_process_adopts_its_calibration_and_moves_nothing() {
     assert!((bench.world.force - 30.0).abs() <= 3.0);
     bench.done(GripVerb::OpenGrip, 2.0, 0);
     assert!((bench.world.opening - 2.0).abs() <= 0.02);
-    // Restarted in the middle of an opening: it stops, and the same command can be given again.
+    // Restarted during an opening: the fingers stop, and the same command can be sent again.
     bench.command(GripVerb::OpenGrip, 4.0, 0);
     bench.wait(5);
     bench.restart();
     assert_eq!((bench.step().valves.bits, bench.memory.grip.status.reason), (0, Reason::Restarted));
     bench.done(GripVerb::OpenGrip, 4.0, 0);
     assert!((bench.world.opening - 4.0).abs() <= 0.02);
-    // Restarted while its gripper is in the holster: it counts when the gripper is there.
+    // Restarted while its gripper is in the holster: adopted when the gripper is attached.
     bench.attach(false);
     bench.restart();
     assert!(!bench.wait(5).status.initialized);
@@ -424,9 +424,9 @@ fn a_restarted_process_adopts_its_calibration_and_moves_nothing() {
     bench.done(GripVerb::Position, 1.0, 0);
 }
 
-/// UP-INIT closes with the whole supply pressure: what is held would be crushed and dropped.
+/// UP-INIT closes with the whole supply pressure: a held part would be crushed and dropped.
 #[test]
-fn without_a_calibration_only_up_init_moves_the_fingers() {
+fn uncalibrated_fingers_move_only_for_up_init() {
     let fails: [fn(&mut Bench); 3] = [
         |b| b.memory.grip.calibration = None,
         |b| b.world.potentiometer.0 = 4000.0,
@@ -453,7 +453,7 @@ fn without_a_calibration_only_up_init_moves_the_fingers() {
 }
 
 #[test]
-fn what_does_not_finish_is_given_up() {
+fn unfinished_command_fails_after_its_time_limit() {
     let mut bench = calibrated(15);
     bench.world.object = Some(Object { size: 2.0, off_centre: 0.0 });
     bench.command(GripVerb::Position, 1.0, 0);
@@ -468,7 +468,7 @@ fn what_does_not_finish_is_given_up() {
 }
 
 #[test]
-fn sensors_that_tell_nothing_are_not_calibrated() {
+fn implausible_sensors_are_not_calibrated() {
     for (fault, breakage) in [
         ("strain gage", (|g: &mut Gripper| g.strain[0].1 = 0.0) as fn(&mut Gripper)),
         ("potentiometer", |g| g.potentiometer.1 = 0.0),
@@ -492,7 +492,7 @@ fn sensors_that_tell_nothing_are_not_calibrated() {
 }
 
 #[test]
-fn what_is_held_is_felt_whatever_was_commanded() {
+fn part_presence_is_reported_for_every_command() {
     let mut bench = Bench::new(Gripper::new(1.0, 23));
     assert_eq!(bench.wait(5).status.felt, Felt::NotKnown, "not calibrated");
     assert_eq!(bench.done(GripVerb::UpInit, 0.0, 0).1.status.felt, Felt::Nothing, "open and vented");
@@ -506,7 +506,7 @@ fn what_is_held_is_felt_whatever_was_commanded() {
     bench.world.object = None;
     bench.world.force = 80.0;
     assert_eq!(bench.wait(20).status.felt, Felt::Nothing);
-    // A pause in the middle of a grasp: the fingers close on, and what they close on is felt.
+    // A pause during a grasp: the fingers continue to close and sense the object.
     bench.done(GripVerb::OpenGrip, 3.0, 0);
     bench.world.object = Some(Object { size: 0.625, off_centre: 0.0 });
     bench.command(GripVerb::CloseGrip, 0.60, 30);
@@ -516,22 +516,22 @@ fn what_is_held_is_felt_whatever_was_commanded() {
 }
 
 #[test]
-fn what_is_felt_settles_for_five_ticks_and_never_becomes_nothing_at_once() {
+fn part_presence_changes_after_five_ticks() {
     let mut bench = holding(24);
-    // It falls: neither finger feels anything.
+    // The part falls: neither finger reads a force.
     bench.world.force = 0.0;
     let felt: Vec<_> = (0..6).map(|_| bench.step().status.felt).collect();
     assert_eq!(felt, [[Felt::Something; 4].as_slice(), &[Felt::Nothing; 2]].concat());
-    // It is pushed between the fingers.
+    // A part is pushed between the fingers.
     bench.world.force = 20.0;
     let felt: Vec<_> = (0..6).map(|_| bench.step().status.felt).collect();
     assert_eq!(felt, [[Felt::NotKnown; 4].as_slice(), &[Felt::Something; 2]].concat());
-    // One finger alone tells nothing.
+    // Contact of one finger alone is not evidence.
     bench.world.strain[0].1 = 0.0;
     assert_eq!(bench.wait(10).status.felt, Felt::NotKnown);
     bench.world.strain[0].1 = 40.5;
     assert_eq!(bench.wait(10).status.felt, Felt::Something);
-    // Sensors that fail.
+    // Faulty sensors.
     for breakage in [
         (|g: &mut Gripper| g.strain[1] = (0.0, 0.0)) as fn(&mut Gripper),
         |g| g.strain[1] = (5000.0, 0.0),
@@ -545,7 +545,7 @@ fn what_is_felt_settles_for_five_ticks_and_never_becomes_nothing_at_once() {
         assert_eq!(broken.step().status.felt, Felt::NotKnown);
         assert_eq!(broken.wait(20).status.felt, Felt::NotKnown);
     }
-    // A gripper that comes back may hold another thing.
+    // A gripper that returns may hold another part.
     bench.attach(false);
     assert_eq!(bench.step().status.felt, Felt::NotKnown);
     bench.attach(true);
@@ -594,8 +594,8 @@ fn work(
 proptest! {
     #![proptest_config(ProptestConfig { cases: 400, ..ProptestConfig::default() })]
 
-    /// From any opening, with any noise of 1 or 2 counts and valves that act at once or a tick late:
-    /// positions to 0.02 in, forces to 3 lb, never both ways at once, and the same bits twice.
+    /// From any opening, with noise of 1 or 2 counts and valves that act at once or a tick late: positions to 0.02
+    /// in, forces to 3 lb, never both directions at once, and the same bytes twice.
     #[test]
     fn servo(
         seed in any::<u64>(),
@@ -613,7 +613,7 @@ proptest! {
         prop_assert_eq!(once, work(bench(), &commands, size)?);
     }
 
-    /// UP-INIT finds scale and offset from any opening, whatever the sensors' offsets and scales are.
+    /// UP-INIT finds scale and offset from any opening, for any offsets and scales of the sensors.
     #[test]
     fn calibration(
         seed in any::<u64>(),
@@ -642,7 +642,7 @@ proptest! {
         }
     }
 
-    /// Whatever the sensors read and whatever is commanded, nothing panics and no valves fight.
+    /// Random sensors and commands: no panic, and no valves in both directions.
     #[test]
     fn nonsense(
         seed in any::<u64>(),
@@ -672,7 +672,7 @@ proptest! {
 }
 
 #[test]
-fn a_state_that_is_restored_from_its_bytes_goes_on_to_the_bit() {
+fn restored_state_continues_identically() {
     let mut bench = calibrated(17);
     bench.command(GripVerb::Position, 3.0, 0);
     bench.wait(7);
@@ -684,7 +684,7 @@ fn a_state_that_is_restored_from_its_bytes_goes_on_to_the_bit() {
 }
 
 #[test]
-fn valves_are_off_while_the_readings_are_old() {
+fn stale_readings_turn_the_valves_off() {
     let mut bench = calibrated(31);
     let calibration = bench.memory.grip.calibration;
     bench.command(GripVerb::Position, 4.0, 0);
@@ -708,20 +708,20 @@ fn valves_are_off_while_the_readings_are_old() {
 #[test]
 fn every_row_fires() {
     let mut silent = silent::<Grip, ()>(&[
-        valves_are_off_while_the_readings_are_old,
-        fingers_that_are_moved_while_they_settle_are_moved_back,
-        a_force_that_changes_while_the_fingers_settle_is_servoed_again,
-        a_grasp_ends_when_the_fingers_stand_still,
-        a_command_before_the_calibration_is_executed_after_it,
-        a_pause_that_waits_for_a_calibration_fails_with_it_but_not_without_the_gripper,
-        unattainable_commands_are_refused,
-        without_the_gripper_commands_fail_and_valves_are_off,
-        pause_leaves_the_valves_as_they_are_and_waits_until_the_fingers_rest,
-        a_restarted_process_adopts_its_calibration_and_moves_nothing,
-        without_a_calibration_only_up_init_moves_the_fingers,
-        what_does_not_finish_is_given_up,
-        sensors_that_tell_nothing_are_not_calibrated,
-        without_a_calibration_the_fingers_open_fully_and_no_less,
+        stale_readings_turn_the_valves_off,
+        fingers_displaced_while_settling_are_moved_back,
+        force_changing_while_settling_is_servoed_again,
+        grasp_ends_when_the_fingers_rest,
+        command_waits_for_the_calibration,
+        pause_fails_with_the_calibration_it_waits_for,
+        unattainable_command_is_refused,
+        missing_gripper_fails_commands_and_turns_the_valves_off,
+        pause_keeps_the_valves_and_waits_for_rest,
+        restarted_process_adopts_its_calibration_and_moves_nothing,
+        uncalibrated_fingers_move_only_for_up_init,
+        unfinished_command_fails_after_its_time_limit,
+        implausible_sensors_are_not_calibrated,
+        uncalibrated_fingers_only_open_fully,
     ]);
     let in_no_header = ["COMMAND ", "START ", "TOUCH ", "PRESENCE "];
     silent.retain(|row| !in_no_header.iter().any(|table| row.starts_with(table)));
@@ -729,7 +729,7 @@ fn every_row_fires() {
 }
 
 #[test]
-fn without_a_calibration_the_fingers_open_fully_and_no_less() {
+fn uncalibrated_fingers_only_open_fully() {
     let mut bench = holding(26);
     bench.memory.grip.calibration = None;
     bench.restart();
@@ -753,7 +753,7 @@ fn without_a_calibration_the_fingers_open_fully_and_no_less() {
 }
 
 #[test]
-fn a_calibration_goes_on_beside_a_command_that_is_refused() {
+fn calibration_continues_during_a_refusal() {
     let (mut bench, mut twin) = (Bench::new(Gripper::new(2.0, 22)), Bench::new(Gripper::new(2.0, 22)));
     bench.command(GripVerb::Position, 9.0, 0);
     for _ in 0..200 {

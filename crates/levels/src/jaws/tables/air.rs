@@ -1,10 +1,10 @@
-//! What the commands that move the fingers have in common.
+//! Rows common to the commands that move the fingers.
 
 use rcs_core::decision_table;
 
 decision_table! {
-    /// AIR: the command waits until fingers with air stop. It fails without the gripper, and if the fingers never stop;
-    /// then there is no air.
+    /// AIR: the command waits until fingers with air stop. It fails without the gripper, or if the fingers never
+    /// stop; then the air is off.
     pub AIR: fn air(super::Step, super::Situation) -> super::Action or () {
         any {
             1: gripper: Detached    => Refuse(WrongGripper);

@@ -1,9 +1,7 @@
-//! VG-GRASP, TG-GRASP (VI.4.1).
-
 use rcs_core::decision_table;
 
 decision_table! {
-    /// VG-GRASP, TG-GRASP (VI.4.1): close the fingers and see where they stop. At `commanded-size` counts as
+    /// VG-GRASP, TG-GRASP (VI.4.1): close the fingers and report where they stop. `commanded-size` is reported as
     /// closed.
     pub GRASP: fn grasp(super::Step, super::Situation) -> super::Action {
         Start {

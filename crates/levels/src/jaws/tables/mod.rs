@@ -1,5 +1,5 @@
-//! Decision tables of V-Grip and Tool-Grip: what a new command needs, what commands have in common, and a
-//! file a command.
+//! Decision tables of V-Grip and Tool-Grip: preconditions of a new command, rows common to all commands, and one
+//! file per command.
 
 pub mod accept;
 pub mod air;
@@ -31,81 +31,76 @@ pub enum Step {
     Move,
 }
 
-/// What the fingers do.
+/// The motion of the fingers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum JawsMotion {
-    /// They move, may not have begun to, or do not press yet what they have closed on.
+    /// They move, may not have started to, or do not press yet on the object.
     Moving,
-    /// They stand still.
+    /// The fingers are at rest.
     Stopped,
-    /// They move for longer than the whole way takes.
+    /// The fingers move for longer than their whole travel takes.
     Endless,
 }
 
-/// Where the fingers are, seen from the ends of their way.
+/// The position of the fingers between the ends of travel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Stop {
     /// Closed.
     Closed,
-    /// Somewhere between.
+    /// Between the ends.
     Between,
     /// Opened.
     Opened,
 }
 
-/// Where the fingers are, seen from `commanded-size`.
+/// The position of the fingers relative to `commanded-size`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Size {
-    /// There.
+    /// At the commanded size.
     Commanded,
     /// Elsewhere, or no size was commanded.
     Other,
 }
 
-/// What a new command needs, for [`accept::ACCEPT`].
+/// The state variables of [`accept::ACCEPT`].
 #[derive(Clone, Copy, Debug, Variables)]
 pub struct Request {
-    /// Is the command new?
+    /// Whether the command is new.
     pub asked: Asked,
     /// The command.
     pub verb: JawsVerb,
-    /// For which gripper is it?
+    /// The gripper for which the command is.
     pub addressee: Addressee,
-    /// Is the gripper there?
+    /// Whether the gripper is attached.
     pub gripper: Attachment,
 }
 
 /// The state variables of a tick, for the tables of the commands.
 #[derive(Clone, Copy, Debug, Variables)]
 pub struct Situation {
-    /// Is the gripper there?
+    /// Whether the gripper is attached.
     pub gripper: Attachment,
-    /// What the fingers do.
+    /// The motion of the fingers.
     pub motion: JawsMotion,
-    /// Where they are on their way.
+    /// The position of the fingers in their travel.
     pub stop: Stop,
-    /// Where they are, seen from the commanded size.
+    /// The position of the fingers relative to the commanded size.
     pub size: Size,
-    /// How the controller is connected with the gripper.
+    /// The connection with the gripper.
     pub connection: Connection,
 }
 
-/// What preprocess has found in a tick.
+/// The results of preprocess in a tick.
 #[derive(Clone, Copy, Debug)]
 pub struct StateVariables {
-    /// What the command buffer holds.
     pub arrival: Arrival,
-    /// The current command.
     pub verb: JawsVerb,
-    /// What a new command needs.
     pub request: Request,
-    /// The state variables of the command's table.
     pub situation: Situation,
-    /// The gripper on the ring.
     pub mated: Mated,
-    /// What is between the fingers.
+    /// The part presence.
     pub felt: Felt,
-    /// `commanded-size` that counts once the command is accepted, 0.01 in.
+    /// `commanded-size` for an accepted command, 0.01 in.
     pub size: Option<i32>,
     /// Opening by the mean of the last readings, in.
     pub opening: f64,
@@ -113,7 +108,7 @@ pub struct StateVariables {
     pub velocity: f64,
 }
 
-/// What a row can ask for.
+/// The actions of V-Grip and Tool-Grip.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Actions)]
 pub enum Action {
     /// The valves stay as they are.
@@ -124,12 +119,12 @@ pub enum Action {
     Open,
     /// The valves stay as they are; the command is done, with this status.
     Report(JawsReport),
-    /// The valves stay as they are; the fingers stopped where the command did not send them: an error, with
-    /// this status.
+    /// The valves stay as they are; the fingers stopped at another position than commanded: an error, with this
+    /// status.
     Wrong(JawsReport),
     /// The valves stay as they are; report an error.
     Refuse(Reason),
-    /// No air; report an error.
+    /// Air off; report an error.
     Fail(Reason),
 }
 

@@ -10,7 +10,7 @@ use super::Stop;
 pub enum Settling {
     /// The fingers have stopped, and the gripper has been attached for 0.2 s.
     Settled,
-    /// One of these is not so.
+    /// The fingers move, or were attached more recently.
     Unsettled,
 }
 
@@ -26,9 +26,9 @@ pub enum JawTravel {
 /// The closing side.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Closing {
-    /// It has air.
+    /// The closing side has air.
     On,
-    /// It has none.
+    /// The closing side has no air.
     Off,
 }
 
@@ -52,9 +52,9 @@ impl From<JawValves> for Closing {
 }
 
 decision_table! {
-    /// PRESENCE: what is between the fingers (VI.4 has no force sensors). At an end of their travel they hold nothing,
-    /// although an object as small as the opening of closed fingers reads the same. Fingers that seem to rest open
-    /// while air closes them have no air, or their potentiometer is stuck: they may close on something at any time.
+    /// PRESENCE: the part presence (VI.4 has no force sensors). Fingers at an end of travel hold nothing, although
+    /// an object as small as the closed opening reads the same. Fingers that seem to rest open while air closes
+    /// them have no air, or their potentiometer is stuck: they may close on something at any time.
     pub PRESENCE: fn presence(self::JawReading) -> interfaces::grip::Felt {
         1: readings: Unsettled        => NotKnown;
         2: stop: Opened, closing: On  => NotKnown;

@@ -1,10 +1,8 @@
-//! VG-RELEASE, VGRIP-POSE, TG-RELEASE, TGRIP-POSE (VI.4.1).
-
 use rcs_core::decision_table;
 
 decision_table! {
-    /// VG-RELEASE, VGRIP-POSE, TG-RELEASE, TGRIP-POSE (VI.4.1): open the fingers and see where they stop. At
-    /// `commanded-size` counts as opened.
+    /// VG-RELEASE, VGRIP-POSE, TG-RELEASE, TGRIP-POSE (VI.4.1): open the fingers and report where they stop.
+    /// `commanded-size` is reported as opened.
     pub RELEASE: fn release(super::Step, super::Situation) -> super::Action {
         Start {
             1: otherwise        => Open  -> Move;

@@ -1,11 +1,11 @@
-//! Air of the fingers, whether a command is executing or not. No header names the rows.
+//! Air of the fingers, with and without a command. No header names the rows.
 
 use rcs_core::{Actions, Plain, Variables, decision_table};
 
 /// The gripper on the ring.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Mated {
-    /// It may be that of this process. Id pins without contact on a locked ring say nothing of the gripper.
+    /// It may be that of this process: id pins without contact on a locked ring do not identify the gripper.
     Possible,
     /// The ring is not locked, or on another gripper.
     Gone,
@@ -14,9 +14,9 @@ pub enum Mated {
 /// Air to the fingers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain, Actions)]
 pub enum Air {
-    /// As it is.
+    /// The valves stay as they are.
     Keep,
-    /// None.
+    /// Both sides are off.
     Off,
     /// To the side that closes.
     Close,
@@ -34,8 +34,8 @@ pub struct Supply {
 }
 
 decision_table! {
-    /// VALVES: air stays on after the end of a command, because a part is held only while the fingers press. Without
-    /// the gripper there is none.
+    /// VALVES: air stays on after the end of a command, because a part is held only while the fingers press.
+    /// Without the gripper the air is off.
     pub VALVES: fn valves(self::Supply) -> self::Air {
         1: mated: Gone  => Off;
         2: set: Keep    => Keep;

@@ -11,9 +11,9 @@ use crate::{
     goal::{Goal, Sensor},
 };
 
-/// The hand is open if it stands no more than this below its opening, 0.01 in (ASSUMED).
+/// Greatest difference between the opening of an open hand and the commanded one, 0.01 in (ASSUMED).
 const OPEN_WITHIN: i32 = 10;
-/// The table is at an angle if it stands within this of it, 0.1 degree: several steps of its motor (ASSUMED).
+/// Tolerance of the table's angle, 0.1 degree: several steps of its motor (ASSUMED).
 const AT_ANGLE: u32 = 10;
 
 pub static REST: Goal = Goal {

@@ -17,14 +17,8 @@
 //!     can't-do                           error
 //! ```
 //!
-//! A failure sends nothing to the hand, which keeps holding its part. Before a new command is accepted or refused, the
-//! table stops and the hand finishes its command; the same holds after a restart.
-//!
-//! * [`state`]: the state;
-//! * [`orders`]: orders of a command to hand and table;
-//! * [`preprocess`]: the state variables;
-//! * [`tables`]: the decision tables, one file per command;
-//! * [`postprocess`]: commands to hand and table, and the status.
+//! After a failure the hand gets no command and keeps holding its part. Before a new command is accepted or
+//! refused, the table stops and the hand finishes its command; also after a restart.
 
 pub mod goals;
 pub mod orders;

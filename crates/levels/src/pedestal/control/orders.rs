@@ -8,7 +8,7 @@ use interfaces::{
 use super::tables::{PedestalAngle, PedestalOpening};
 use crate::{grip::goal::GripGoal, pedestal::table::is_within_limits};
 
-/// The command that opens or closes the hand, by the command of the pedestal; without its number.
+/// The hand's command for a command of the pedestal, without its number.
 pub(super) fn hand_command(command: &PedestalCommand) -> GripCommand {
     let (verb, force) = match command.command {
         PedestalVerb::PreGrip | PedestalVerb::Release => (GripVerb::OpenGrip, 0),
@@ -18,7 +18,7 @@ pub(super) fn hand_command(command: &PedestalCommand) -> GripCommand {
     GripCommand { command: verb, force, position: command.grasp_size, ..GripCommand::default() }
 }
 
-/// The absolute angle that a command leads to, 0.1 degree.
+/// The absolute angle at the end of a command, 0.1 degree.
 pub(super) const fn table_angle(command: &PedestalCommand, table: &TableStatus) -> i32 {
     match command.command {
         PedestalVerb::Flip => match table.position {
@@ -33,7 +33,7 @@ pub(super) const fn table_angle(command: &PedestalCommand, table: &TableStatus) 
     }
 }
 
-/// Can the table turn as a command asks?
+/// Whether the table can turn to the commanded angle.
 pub(super) fn angle(command: &PedestalCommand, table: &TableStatus) -> PedestalAngle {
     match command.command {
         PedestalVerb::Flip if table.position.is_none() => PedestalAngle::Unknown,
@@ -49,7 +49,7 @@ pub(super) fn angle(command: &PedestalCommand, table: &TableStatus) -> PedestalA
     }
 }
 
-/// Can the hand do what a command asks?
+/// Whether the hand can reach the commanded opening and force.
 pub(super) fn opening(command: &PedestalCommand) -> PedestalOpening {
     if GripGoal::from(&hand_command(command)).is_attainable() {
         PedestalOpening::Within

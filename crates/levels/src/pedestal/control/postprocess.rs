@@ -60,7 +60,7 @@ impl State {
         }
     }
 
-    /// A process below has failed; one that does not answer gives no reason.
+    /// Pass up the failure of a process below; without an answer it has no reason.
     fn pass_up(&mut self, lower: Lower, below: Reason) {
         let silent = lower == Lower::Lost || below == Reason::None;
         self.execution.fail(if silent { Reason::NeighbourLost } else { below });
@@ -97,7 +97,7 @@ impl State {
     }
 }
 
-/// The angle of the table; not known of one that does not answer.
+/// The angle of the table; not known if the table does not answer.
 fn table_position<Data: ?Sized>(inputs: &Inputs<'_, Data>) -> Option<i32> {
     let table = &inputs.memory.table;
     table.status.position.filter(|_| table.header.stamp == inputs.tick.previous())

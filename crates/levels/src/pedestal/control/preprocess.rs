@@ -24,8 +24,7 @@ use crate::{
 };
 
 impl State {
-    /// Read the inputs of a tick.
-    /// A process that starts adopts what it has written of its hand.
+    /// Read the inputs of a tick. A starting process adopts its last command to the hand.
     pub(super) fn sense<Data: ?Sized>(
         &mut self,
         inputs: &Inputs<'_, Data>,
@@ -48,7 +47,7 @@ impl State {
         }
         let hand = self.hand.status_of(tick, &memory.hand);
         let table = self.table.status_of(tick, &memory.table);
-        // A hand that was told to open and has not, as one that was restarted meanwhile, still grips.
+        // A hand that was commanded to open and has not, for example after a restart, still grips.
         if written.hand.command == GripVerb::OpenGrip && hand == Lower::Done {
             self.gripped = false;
         }
@@ -95,8 +94,7 @@ impl State {
         }
     }
 
-    /// What the hand feels. Fingers that stand no wider than the grasp size have missed the object
-    /// (VIII.9.1).
+    /// The object in the hand. Fingers no wider than the grasp size have missed it (VIII.9.1).
     fn object(&self, felt: Felt, memory: &CommonMemory) -> Object {
         let gripping = self.command.command == PedestalVerb::Grip;
         let wide = !gripping || memory.hand.status.position > self.command.grasp_size;
@@ -109,7 +107,7 @@ impl State {
     }
 }
 
-/// What the hand feels; nothing is known of one that does not answer.
+/// The part presence of the hand; not known if it does not answer.
 pub(super) fn felt<Data: ?Sized>(inputs: &Inputs<'_, Data>) -> Felt {
     let hand = &inputs.memory.hand;
     if hand.header.stamp == inputs.tick.previous() { hand.status.felt } else { Felt::NotKnown }

@@ -9,13 +9,13 @@ use crate::execution::Execution;
 /// State of the pedestal process.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct State {
-    /// The command of Subtask and how far it has come.
+    /// The command of Subtask and its progress.
     pub execution: Execution,
     /// Step of its table.
     pub step: Step,
     /// The current command: a copy, because the buffer of a commander that restarts is empty.
     pub command: PedestalCommand,
-    /// `cycle-cnt` of the command that is echoed, executed or not.
+    /// `cycle-cnt` of the echoed command, executed or not.
     pub cycle: Tick,
     /// Who has its orders.
     pub ordered: PedestalRecipient,
@@ -23,6 +23,6 @@ pub struct State {
     pub hand: Commander,
     /// Commands to the table.
     pub table: Commander,
-    /// GRIP was ordered, and no opening since.
+    /// GRIP was ordered, and no opening afterwards.
     pub gripped: bool,
 }

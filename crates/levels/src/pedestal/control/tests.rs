@@ -1,4 +1,4 @@
-//! Scenarios of the pedestal process: against statuses by hand, and together with hand and table and their
+//! Scenarios of the pedestal process: with scripted statuses, and with the processes of hand and table and their
 //! devices.
 
 use interfaces::{
@@ -21,7 +21,7 @@ use crate::{
     pedestal::{Hand, Table},
 };
 
-/// The pedestal process, and what its lower neighbours are made to say.
+/// The pedestal process with scripted neighbours.
 type Bench = bench::Bench<Pedestal, ByHand>;
 /// All three processes with a simulated hand and a simulated table.
 type Cell = bench::Bench<Pedestal, Real>;
@@ -52,7 +52,7 @@ impl Tested<()> for Pedestal {
     }
 }
 
-/// Hand and table say what a test has written.
+/// Hand and table report the statuses that a test has written.
 #[derive(Clone, Default)]
 struct ByHand {
     silent: bool,
@@ -66,7 +66,7 @@ impl World<Pedestal> for ByHand {
 }
 
 impl Bench {
-    /// A bench after a tick in which nothing was commanded, with hand and table calibrated.
+    /// A bench after a tick without a command, with hand and table calibrated.
     fn new() -> Self {
         let mut bench = Self::before(ByHand::default());
         bench.memory.hand.status.initialized = true;
@@ -87,8 +87,7 @@ impl Bench {
         bench
     }
 
-    /// The hand answers its last command, with fingers that have something between them where they stand in
-    /// the way of an object of 2.56 in.
+    /// The hand answers its last command. Fingers that are as wide as an object of 2.56 in have it between them.
     fn hand(&mut self, report: GripReport, position: i32) -> &mut Self {
         let status = &mut self.memory.hand.status;
         (status.echo, status.report, status.position) = (self.memory.pedestal.hand.number, report, position);
@@ -112,7 +111,7 @@ impl Bench {
         self
     }
 
-    /// What is reported in the next tick.
+    /// The report of the next tick.
     fn end(&mut self) -> (PedestalReport, Reason) {
         let status = self.step().status;
         (status.report, status.reason)
@@ -152,7 +151,7 @@ impl World<Pedestal> for Real {
 }
 
 impl Cell {
-    /// A cell whose hand holds an object at the angle where it takes one, as in Figure VII.13.
+    /// A cell whose hand holds an object at the angle for receiving one, as in Figure VII.13.
     fn taken() -> Self {
         let (fingers, rotary) = (Gripper::new(1.0, 1987), Rotary::new(-1200));
         let world = Real { hand: Hand::default(), table: Table::default(), fingers, rotary };
@@ -169,7 +168,7 @@ const EXECUTING: (PedestalReport, Reason) = (PedestalReport::Executing, Reason::
 const DONE: (PedestalReport, Reason) = (PedestalReport::Done, Reason::None);
 
 #[test]
-fn pre_grip_opens_the_hand_and_turns_the_table_at_once() {
+fn pre_grip_opens_the_hand_and_turns_the_table_together() {
     let mut bench = Bench::new();
     bench.send((PedestalVerb::PreGrip, 450, 0, -1000));
     let outputs = bench.step();
@@ -185,7 +184,7 @@ fn pre_grip_opens_the_hand_and_turns_the_table_at_once() {
 }
 
 #[test]
-fn commands_are_not_done_while_hand_or_table_are_elsewhere() {
+fn command_is_not_done_before_hand_and_table_arrive() {
     let error = |reason| (PedestalReport::Error, reason);
     for (hand, table, end) in [
         (450, true, DONE),
@@ -251,7 +250,7 @@ fn grip_flip_and_release_command_one_neighbour_each() {
 }
 
 #[test]
-fn what_cannot_be_done_is_refused_before_anything_moves() {
+fn unattainable_command_is_refused_before_any_motion() {
     for (verb, size, force, angle, reason) in [
         (PedestalVerb::None, 0, 0, 0, Reason::UnknownCommand),
         (PedestalVerb::PreGrip, 450, 0, -100, Reason::TableLimit),
@@ -277,7 +276,7 @@ fn what_cannot_be_done_is_refused_before_anything_moves() {
 }
 
 #[test]
-fn a_hand_that_closes_on_nothing_or_cannot_tell_is_an_error() {
+fn grip_without_a_sensed_object_fails() {
     for (felt, position, reason) in [
         (Felt::Nothing, 250, Reason::HandMissed),
         (Felt::Something, 250, Reason::HandMissed),
@@ -293,19 +292,19 @@ fn a_hand_that_closes_on_nothing_or_cannot_tell_is_an_error() {
 }
 
 #[test]
-fn what_the_hand_holds_and_the_angle_are_published_whatever_is_commanded() {
+fn object_and_angle_are_published_for_every_command() {
     let mut bench = Bench::new();
     let status = bench.step().status;
     assert_eq!((status.felt, status.gripped, status.table_position), (Felt::Nothing, false, Some(-2135)));
     bench.send((PedestalVerb::Grip, 250, 50, 0));
     bench.step();
-    // A PAUSE in the middle of a GRIP: the hand goes on, and what it holds is known.
+    // A PAUSE during a GRIP: the hand finishes, and its object is published.
     bench.send((PedestalVerb::Pause, 0, 0, 0));
     bench.step();
     bench.hand(GripReport::Done, 256).table(PedestalReport::Done);
     let status = bench.step().status;
     assert_eq!((status.report, status.felt, status.gripped), (PedestalReport::Done, Felt::Something, true));
-    // A restarted process finds it out again.
+    // A restarted process determines it again.
     bench.restart();
     let status = bench.step().status;
     assert_eq!((status.reason, status.felt, status.gripped), (Reason::Restarted, Felt::Something, true));
@@ -313,14 +312,14 @@ fn what_the_hand_holds_and_the_angle_are_published_whatever_is_commanded() {
     bench.memory.hand.status.felt = Felt::Nothing;
     bench.send((PedestalVerb::Flip, 0, 0, 1835));
     assert_eq!(bench.end(), (PedestalReport::Error, Reason::HandLost), "it was gripped before");
-    // Hand and table that do not answer are not believed.
+    // The statuses of a hand and table without an answer are not used.
     bench.world.silent = true;
     let status = bench.step().status;
     assert_eq!((status.felt, status.table_position), (Felt::NotKnown, None));
 }
 
 #[test]
-fn pre_grip_calibrates_a_hand_that_was_not_told_to_grip() {
+fn pre_grip_calibrates_only_a_hand_without_an_object() {
     let mut bench = Bench::new();
     bench.memory.hand.status.initialized = false;
     bench.send((PedestalVerb::PreGrip, 450, 0, -1000));
@@ -330,14 +329,14 @@ fn pre_grip_calibrates_a_hand_that_was_not_told_to_grip() {
     bench.memory.hand.status.initialized = true;
     let outputs = bench.hand(GripReport::Done, 500).step();
     assert_eq!((outputs.hand.command, outputs.table.command), (GripVerb::OpenGrip, TableVerb::Turn));
-    // One that reports done and is not calibrated is not told again.
+    // A hand that reports done and is not calibrated gets no second UP-INIT.
     bench.hand(GripReport::Done, 500).table(PedestalReport::Done).step();
     bench.memory.hand.status.initialized = false;
     bench.send((PedestalVerb::PreGrip, 450, 0, -1000));
     bench.step();
     let (report, reason) = bench.hand(GripReport::Done, 500).end();
     assert_eq!((report, reason), (PedestalReport::CannotDo, Reason::HandNotCalibrated));
-    // One that may hold something is not closed on it.
+    // A hand that may hold an object is not closed on it.
     bench.memory.hand.status.initialized = true;
     bench.send((PedestalVerb::Grip, 250, 50, 0));
     bench.step();
@@ -350,7 +349,7 @@ fn pre_grip_calibrates_a_hand_that_was_not_told_to_grip() {
 }
 
 #[test]
-fn a_flip_that_is_interrupted_is_ended_by_what_is_left() {
+fn interrupted_flip_is_completed_by_the_remaining_angle() {
     let mut cell = Cell::taken();
     let goal = -2135 + 1835;
     for (nth, verb) in [PedestalVerb::Pause, PedestalVerb::None].into_iter().cycle().take(4).enumerate() {
@@ -359,7 +358,7 @@ fn a_flip_that_is_interrupted_is_ended_by_what_is_left() {
         cell.send((PedestalVerb::Flip, 0, 50, left));
         cell.wait(20);
         if verb == PedestalVerb::None {
-            // A restart stops the table, and the same command can be given again.
+            // A restart stops the table, and the same command can be sent again.
             if nth == 1 {
                 cell.restart()
             } else {
@@ -380,12 +379,12 @@ fn a_flip_that_is_interrupted_is_ended_by_what_is_left() {
     assert!(
         (cell.world.rotary.angle() + 30.0).abs() < 0.06 && (cell.world.fingers.force - 50.0).abs() <= 3.0
     );
-    assert_eq!(cell.execute((PedestalVerb::Flip, 0, 50, 0)), DONE, "nothing is left");
+    assert_eq!(cell.execute((PedestalVerb::Flip, 0, 50, 0)), DONE, "no angle remains");
     assert_eq!(cell.memory.pedestal.status.table_position, Some(goal));
 }
 
 #[test]
-fn an_object_that_comes_loose_is_noticed_while_it_is_turned() {
+fn object_lost_while_turning_is_reported() {
     for when in [0, 1, 5] {
         let mut bench = Bench::gripping();
         bench.send((PedestalVerb::Flip, 0, 0, 1835));
@@ -399,7 +398,7 @@ fn an_object_that_comes_loose_is_noticed_while_it_is_turned() {
 }
 
 #[test]
-fn failures_below_are_passed_up_and_send_nothing_to_the_hand() {
+fn failure_below_is_passed_up_without_a_command_to_the_hand() {
     let pass_up = |verb, fail: &dyn Fn(&mut Bench), reason| {
         let mut bench = Bench::gripping();
         bench.send((verb, 250, 50, if verb == PedestalVerb::Flip { 1835 } else { -1000 }));
@@ -427,7 +426,7 @@ fn failures_below_are_passed_up_and_send_nothing_to_the_hand() {
 }
 
 #[test]
-fn a_neighbour_that_does_not_answer_is_lost() {
+fn silent_neighbour_is_lost() {
     for (verb, angle) in [(PedestalVerb::Grip, 0), (PedestalVerb::Flip, 100)] {
         let mut bench = Bench::new();
         bench.send((verb, 250, 50, angle));
@@ -454,7 +453,7 @@ fn pause_stops_the_table_and_waits_for_the_hand() {
 }
 
 #[test]
-fn a_restarted_process_adopts_the_command_and_stops_the_table() {
+fn restarted_process_adopts_the_command_and_stops_the_table() {
     let mut bench = Bench::new();
     bench.send((PedestalVerb::Flip, 0, 0, 100));
     let before = bench.step();
@@ -462,13 +461,13 @@ fn a_restarted_process_adopts_the_command_and_stops_the_table() {
     bench.restart();
     assert_eq!(bench.end(), EXECUTING);
     let PedestalOutputs { hand, table, .. } = bench.memory.pedestal;
-    assert_eq!((hand, table.command), (before.hand, TableVerb::Pause), "the hand is told nothing");
+    assert_eq!((hand, table.command), (before.hand, TableVerb::Pause), "no command to the hand");
     assert_eq!(bench.end(), EXECUTING, "the table stops");
     assert_eq!(bench.memory.pedestal.table, table, "it is stopped once");
     assert_eq!(bench.table(PedestalReport::Done).end(), (PedestalReport::Error, Reason::Restarted));
     bench.send((PedestalVerb::Flip, 0, 0, 100));
     bench.step();
-    assert_eq!(bench.table(PedestalReport::Done).end(), DONE, "whatever the hand holds");
+    assert_eq!(bench.table(PedestalReport::Done).end(), DONE, "with any object in the hand");
     // While the table comes to rest after a PAUSE.
     bench.send((PedestalVerb::Flip, 0, 0, 100));
     bench.step();
@@ -498,13 +497,13 @@ fn replaced(verb: PedestalVerb, paused: bool) -> Bench {
         assert_eq!(bench.end(), EXECUTING, "the hand still moves");
         bench.hand(GripReport::Done, 450);
     }
-    assert_eq!(bench.end(), EXECUTING, "they have come to rest");
+    assert_eq!(bench.end(), EXECUTING, "they are at rest");
     assert_eq!(bench.memory.pedestal.hand, before.hand);
     bench
 }
 
 #[test]
-fn a_new_command_stops_the_table_and_waits_for_the_hand_before_it_is_answered() {
+fn new_command_waits_until_table_and_hand_rest() {
     for paused in [false, true] {
         let mut bench = replaced(PedestalVerb::None, paused);
         assert_eq!(bench.end(), (PedestalReport::CannotDo, Reason::UnknownCommand));
@@ -516,24 +515,24 @@ fn a_new_command_stops_the_table_and_waits_for_the_hand_before_it_is_answered() 
 #[test]
 fn every_row_fires() {
     let silent = silent::<Pedestal, ()>(&[
-        commands_are_not_done_while_hand_or_table_are_elsewhere,
+        command_is_not_done_before_hand_and_table_arrive,
         grip_flip_and_release_command_one_neighbour_each,
-        what_cannot_be_done_is_refused_before_anything_moves,
-        a_hand_that_closes_on_nothing_or_cannot_tell_is_an_error,
-        what_the_hand_holds_and_the_angle_are_published_whatever_is_commanded,
-        pre_grip_calibrates_a_hand_that_was_not_told_to_grip,
-        failures_below_are_passed_up_and_send_nothing_to_the_hand,
+        unattainable_command_is_refused_before_any_motion,
+        grip_without_a_sensed_object_fails,
+        object_and_angle_are_published_for_every_command,
+        pre_grip_calibrates_only_a_hand_without_an_object,
+        failure_below_is_passed_up_without_a_command_to_the_hand,
         pause_stops_the_table_and_waits_for_the_hand,
-        a_restarted_process_adopts_the_command_and_stops_the_table,
-        a_new_command_stops_the_table_and_waits_for_the_hand_before_it_is_answered,
+        restarted_process_adopts_the_command_and_stops_the_table,
+        new_command_waits_until_table_and_hand_rest,
     ]);
     // The pedestal process does not watch Subtask.
     assert_eq!(silent, ["HALT 4"]);
 }
 
-/// FIX-GRIP (V.3.1) with the clevis of Figure VII.13, from booting on.
+/// FIX-GRIP (V.3.1) with the clevis of Figure VII.13, from the start of the system.
 #[test]
-fn the_pedestal_takes_turns_and_gives_back_an_object() {
+fn pedestal_takes_turns_and_returns_an_object() {
     let mut cell = Cell::taken();
     assert!((cell.world.rotary.angle() + 213.5).abs() < 0.06);
     assert!((cell.world.fingers.force - 50.0).abs() <= 3.0);
@@ -548,7 +547,7 @@ fn the_pedestal_takes_turns_and_gives_back_an_object() {
 }
 
 #[test]
-fn the_object_stays_gripped_whatever_fails() {
+fn object_stays_gripped_after_every_failure() {
     for (fault, breakage) in [
         ("the table is blocked", (|c: &mut Cell| c.world.rotary.blocked = true) as fn(&mut Cell)),
         ("the table's controller is off", |c| c.world.rotary.off = true),
@@ -557,7 +556,7 @@ fn the_object_stays_gripped_whatever_fails() {
         ("the hand process is restarted", |c| c.world.hand = Hand::default()),
         ("the table process is restarted", |c| c.world.table = Table::default()),
         ("the angle is beyond the limit", |c| c.memory.subtask.pedestal.table_angle = 9000),
-        ("the command is none", |c| c.memory.subtask.pedestal.command = PedestalVerb::None),
+        ("unknown command", |c| c.memory.subtask.pedestal.command = PedestalVerb::None),
     ] {
         for later in [0, 30] {
             let mut cell = Cell::taken();
@@ -582,9 +581,9 @@ fn the_object_stays_gripped_whatever_fails() {
     }
 }
 
-/// A hand that is restarted before its fingers have opened keeps its part, and the pedestal process says so.
+/// A hand that is restarted before its fingers have opened keeps its part, and the pedestal process reports it.
 #[test]
-fn what_the_hand_has_not_let_go_is_gripped() {
+fn object_not_released_by_the_hand_is_gripped() {
     let mut kept = 0;
     for later in 0..40 {
         let mut cell = Cell::taken();
@@ -602,8 +601,8 @@ fn what_the_hand_has_not_let_go_is_gripped() {
 }
 
 proptest! {
-    /// Whatever is commanded and whatever the neighbours say: no panic, the hand is opened only for PRE-GRIP
-    /// and RELEASE, and the same inputs give the same bits.
+    /// Random commands and neighbours: no panic, the hand is opened only for PRE-GRIP and RELEASE, and the same
+    /// inputs give the same bytes.
     #[test]
     fn nonsense(
         ticks in prop::collection::vec(

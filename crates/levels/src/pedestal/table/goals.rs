@@ -11,7 +11,7 @@ pub static REST: Goal = Goal {
 };
 
 pub static CALIBRATED: Goal = Goal {
-    holds: "the table stands at the + limit with the counter at zero, and then at -20.00 degrees",
+    holds: "the table is at the + limit with the counter at zero, and then at -20.00 degrees",
     sensors: &[Sensor::Table],
     tolerance: "0.05 degree on the counter, 12 counts on the potentiometer",
     age: 0,
@@ -19,7 +19,7 @@ pub static CALIBRATED: Goal = Goal {
 };
 
 pub static TURNED: Goal = Goal {
-    holds: "the table stands at the angle",
+    holds: "the table is at the angle",
     sensors: &[Sensor::Table],
     tolerance: "0.05 degree on the counter, 12 counts on the potentiometer",
     age: 0,

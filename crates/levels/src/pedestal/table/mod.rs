@@ -1,8 +1,8 @@
 //! Rotary table of the pedestal (III.9.1, III.10): a step motor behind a controller that counts its steps.
 //!
-//! The controller takes orders by number over a serial link: turn by so many steps, set the counter, stop. The counter
-//! gives an angle only after it was set at a known angle: to zero at the + limit (IV.1 step 3). So the table calibrates
-//! first, automatically when it is booted, and before the first commanded turn. Then it is parked at -20.00, clear of
+//! The controller takes numbered orders over a serial link: turn by some steps, set the counter, stop. The counter
+//! gives an angle only after it was set at a known angle: to zero at the + limit (IV.1 step 3). So the table is
+//! calibrated at the start and before the first commanded turn if necessary. Then it is parked at -20.00, clear of
 //! the switch.
 //!
 //! ```text
@@ -33,13 +33,8 @@
 //!            ^ restarted in the middle of a job: a table that turns is stopped
 //! ```
 //!
-//! An angle is valid if counter and potentiometer agree. If they do not, steps were lost, and the table has to find its
-//! + limit again.
-//!
-//! * [`state`]: the state;
-//! * [`preprocess`]: the state variables;
-//! * [`tables`]: the decision tables, one file per command;
-//! * [`postprocess`]: orders to the motor, and the status.
+//! An angle is valid if counter and potentiometer agree. If they do not, steps were lost, and the table must find
+//! its + limit again.
 
 pub mod goals;
 pub mod postprocess;
@@ -89,7 +84,7 @@ impl<Data: ?Sized> Process<Data> for Table {
         self.state.sense(inputs, outputs)
     }
 
-    /// A calibration goes on in the tick of a refusal, and while a command waits for it.
+    /// A calibration continues in the tick of a refusal, and while a command waits for it.
     fn decide(&mut self, seen: &StateVariables) -> Action {
         let state = &mut self.state;
         let course = state.execution.execute(seen.arrival);

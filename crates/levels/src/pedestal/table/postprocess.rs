@@ -14,8 +14,7 @@ use super::{
 };
 use crate::execution::Outcome;
 
-/// Steps that lead to the + limit from anywhere: twice as far as from one limit to the other. The switch ends
-/// the turn.
+/// Steps that lead to the + limit from any angle: twice the distance between the limits. The switch ends the turn.
 const TO_THE_LIMIT: i32 = steps(AT_LIMIT.saturating_sub(LIMIT_MINUS).saturating_mul(2));
 
 impl State {
@@ -59,7 +58,7 @@ impl State {
         (self.standing, self.unanswered) = (0, 0);
     }
 
-    /// Stop, unless that was the last order anyway.
+    /// Stop, unless that was the last order.
     fn stop(&mut self, tick: Tick) {
         if self.order.order != MotorOrder::Stop {
             self.order(MotorOrder::Stop, 0, tick);
@@ -86,7 +85,7 @@ impl State {
     }
 }
 
-/// `status` (VI.7.2): `can't-do` for a command that is refused, `error` for one that something prevents.
+/// `status` (VI.7.2): `can't-do` for a refused command, `error` for a failed one.
 pub(in crate::pedestal) const fn report_of(outcome: Outcome, reason: Reason) -> PedestalReport {
     match outcome {
         Outcome::Idle => PedestalReport::Idle,

@@ -22,30 +22,29 @@ use super::{
 
 /// Angle at the + limit, 0.1 degree (IV.1 step 3: the counter is set to zero there).
 pub const AT_LIMIT: i32 = 0;
-/// Greatest angle that can be commanded, 0.1 degree: the table is parked there, clear of the switch (IV.1
-/// step 3: -20.00).
+/// Greatest angle that can be commanded, 0.1 degree: the parking angle, clear of the switch (IV.1 step 3: -20.00).
 pub const LIMIT_PLUS: i32 = -200;
-/// Least angle that can be commanded, 0.1 degree: a little short of the - limit. ASSUMED.
+/// Least angle that can be commanded, 0.1 degree: slightly before the - limit. ASSUMED.
 pub const LIMIT_MINUS: i32 = -3400;
 
-/// So far from the goal the counter is still there, steps: the switch stops the motor a few steps late.
+/// Tolerance of the goal, steps: the switch stops the motor a few steps late.
 const ON_GOAL: i32 = 5;
-/// Counts of the potentiometer for a tenth of a degree on the counter. A counted turn of 183.5 degrees turns
-/// the table by 180 (VII.7.4); 10 counts a degree of the table are ASSUMED.
+/// Counts of the potentiometer per tenth of a degree on the counter. A counted turn of 183.5 degrees turns the
+/// table by 180 (VII.7.4); 10 counts per degree of the table are ASSUMED.
 const COUNTS_PER_TENTH: f64 = 180.0 / 183.5;
-/// So far counter and potentiometer may be apart, counts: 1.2 degrees, and some times the noise.
+/// Greatest difference of counter and potentiometer, counts: 1.2 degrees, several times the noise.
 const AGREEMENT: f64 = 12.0;
 
-/// Ticks without motion after which the motor stands: a ramp begins and ends slowly.
+/// Ticks without motion until the motor is at rest: a ramp begins and ends slowly.
 const STANDING_TICKS: u8 = 3;
 /// Ticks in which the controller must take an order (1 s).
 const SILENCE_TICKS: u8 = 25;
-/// Ticks that a turn, a stop or a calibration may take (60 s): a whole turn takes a quarter of it.
+/// Time limit for a turn, a stop or a calibration, ticks (60 s): four times a whole turn.
 pub(super) const LIMIT_TICKS: u64 = 1500;
 
 impl State {
-    /// Read the inputs of a tick.
-    /// A process that starts in the middle of a job adopts the calibration that it has written before.
+    /// Read the inputs of a tick. A process that starts in the middle of a job adopts the calibration in its
+    /// outputs.
     pub(super) fn sense<Data: ?Sized>(
         &mut self,
         inputs: &Inputs<'_, Data>,
@@ -87,7 +86,7 @@ impl State {
         }
     }
 
-    /// The last order stands: its number is not given to another one.
+    /// Adopt the last order, so that its number is not used again.
     fn adopt(&mut self, order: &MotorCommand, tick: Tick) {
         if order.number != 0 {
             self.order = *order;
@@ -131,7 +130,7 @@ impl State {
         if agrees { Counter::Agrees } else { Counter::Disagrees }
     }
 
-    /// Does the potentiometer read an angle, 0.1 degree? Not before it was read at the + limit.
+    /// True if the potentiometer reads an angle, 0.1 degree. It is false before the reading at the + limit.
     fn reads(&self, angle: i32, sensors: &PedestalSensors) -> bool {
         self.at_limit.is_some_and(|at_limit| {
             let turned = f64::from(angle.saturating_sub(AT_LIMIT)) * COUNTS_PER_TENTH;
@@ -148,7 +147,7 @@ fn angle(command: &TableCommand) -> TableAngle {
     }
 }
 
-/// Can the table turn to an angle, 0.1 degree?
+/// True if the table can turn to an angle, 0.1 degree.
 pub(in crate::pedestal) fn is_within_limits(angle: i32) -> bool {
     (LIMIT_MINUS..=LIMIT_PLUS).contains(&angle)
 }

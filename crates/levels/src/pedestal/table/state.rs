@@ -9,25 +9,25 @@ use crate::execution::Execution;
 /// State of the table process.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct State {
-    /// The command and how far it has come.
+    /// The command and its progress.
     pub execution: Execution,
     /// Step of its table.
     pub step: Step,
     /// The current command: a copy, because the buffer of a commander that restarts is empty.
     pub command: TableCommand,
-    /// When it came, or when the calibration began or ended, whichever was last.
+    /// The latest of: arrival of the command, start and end of the calibration.
     pub since: Tick,
     /// Step of CALIBRATE.
     pub phase: TablePhase,
-    /// Potentiometer at the + limit, counts, once it was read there, or of the time before a restart.
+    /// Potentiometer at the + limit, counts, from this calibration or from before a restart.
     pub at_limit: Option<u16>,
-    /// Numbers of the orders to the motor.
+    /// Numbers the orders to the motor.
     pub motor: Commander,
     /// The last order to the motor.
     pub order: MotorCommand,
-    /// Ticks for which it has not been taken.
+    /// Ticks for which the controller has not taken it.
     pub unanswered: u8,
-    /// Ticks for which the motor has been standing, its last order taken.
+    /// Ticks for which the motor has been at rest with its last order taken.
     pub standing: u8,
 }
 

@@ -66,7 +66,7 @@ const DONE: (PedestalReport, Reason) = (PedestalReport::Done, Reason::None);
 const STUCK: (PedestalReport, Reason) = (PedestalReport::Error, Reason::TableStuck);
 
 #[test]
-fn a_table_that_is_booted_calibrates_itself() {
+fn starting_table_calibrates_itself() {
     for start in [-3400, -1200, -210, LIMIT_PLUS, -5, AT_LIMIT] {
         let mut bench = Bench::new(Rotary::new(start));
         let status = bench.wait(600).status;
@@ -82,7 +82,7 @@ fn a_table_that_is_booted_calibrates_itself() {
 }
 
 #[test]
-fn a_calibrated_table_is_calibrated_again_by_command() {
+fn calibrate_command_calibrates_again() {
     let mut bench = Bench::calibrated();
     bench.execute((TableVerb::Turn, -1000));
     assert_eq!(bench.execute((TableVerb::Calibrate, 0)), DONE);
@@ -104,7 +104,7 @@ fn angles_are_reached_and_reported() {
 }
 
 #[test]
-fn angles_beyond_the_limits_cannot_be_done() {
+fn angle_beyond_the_limits_is_refused() {
     let mut bench = Bench::calibrated();
     for angle in [LIMIT_PLUS + 1, LIMIT_MINUS - 1, 1600, i32::MAX, i32::MIN] {
         let before = bench.world.position;
@@ -115,7 +115,7 @@ fn angles_beyond_the_limits_cannot_be_done() {
 }
 
 #[test]
-fn a_turn_before_the_calibration_is_made_after_it() {
+fn turn_waits_for_the_calibration() {
     let mut bench = Bench::new(Rotary::new(-1200));
     bench.wait(4);
     assert_eq!(bench.execute((TableVerb::Turn, -2135)), DONE);
@@ -126,7 +126,7 @@ fn a_turn_before_the_calibration_is_made_after_it() {
 }
 
 #[test]
-fn pause_stops_a_turning_table_and_a_new_turn_starts_from_rest() {
+fn pause_stops_a_turning_table() {
     let mut bench = Bench::calibrated();
     bench.send((TableVerb::Turn, -3000));
     bench.wait(40);
@@ -142,7 +142,7 @@ fn pause_stops_a_turning_table_and_a_new_turn_starts_from_rest() {
 }
 
 #[test]
-fn a_slow_line_is_waited_for() {
+fn turn_waits_for_a_slow_line() {
     let mut table = Rotary::new(-1200);
     table.delay = 8;
     let mut bench = Bench::new(table);
@@ -153,7 +153,7 @@ fn a_slow_line_is_waited_for() {
 }
 
 #[test]
-fn what_keeps_the_table_from_its_angle_is_an_error_and_the_next_turn_calibrates_again() {
+fn failed_turn_is_an_error_and_the_next_one_calibrates_again() {
     for (fault, breakage) in [
         ("lost steps", (|t: &mut Rotary| t.slip = 4) as fn(&mut Rotary)),
         ("potentiometer", |t| t.wrong = 200.0),
@@ -181,7 +181,7 @@ fn what_keeps_the_table_from_its_angle_is_an_error_and_the_next_turn_calibrates_
 }
 
 #[test]
-fn a_calibration_that_fails_fails_the_command_that_needs_it_and_no_other() {
+fn failed_calibration_fails_only_commands_that_need_it() {
     for breakage in [(|t: &mut Rotary| t.blocked = true) as fn(&mut Rotary), |t| t.off = true] {
         for (verb, end) in [(TableVerb::Turn, STUCK), (TableVerb::Calibrate, STUCK), (TableVerb::Pause, DONE)]
         {
@@ -195,7 +195,7 @@ fn a_calibration_that_fails_fails_the_command_that_needs_it_and_no_other() {
 }
 
 #[test]
-fn a_calibration_that_fails_does_not_count_for_a_refused_command_nor_for_none() {
+fn failed_calibration_does_not_end_a_refused_or_missing_command() {
     for refused in [false, true] {
         let mut bench = Bench::new(Rotary { blocked: true, ..Rotary::new(-1200) });
         if refused {
@@ -211,9 +211,9 @@ fn a_calibration_that_fails_does_not_count_for_a_refused_command_nor_for_none() 
     }
 }
 
-/// Whatever the tick in which the calibration is given up.
+/// In every tick in which the calibration can fail.
 #[test]
-fn a_command_that_is_refused_while_a_calibration_fails_keeps_its_reason() {
+fn command_refused_during_a_failing_calibration_keeps_its_reason() {
     let astray = || Bench::new(Rotary { wrong: 500.0, ..Rotary::new(-1200) });
     let mut bench = astray();
     let failed = (1_u32..).find(|_| {
@@ -228,7 +228,7 @@ fn a_command_that_is_refused_while_a_calibration_fails_keeps_its_reason() {
 }
 
 #[test]
-fn a_restarted_process_stops_the_table_and_adopts_its_calibration() {
+fn restarted_process_stops_the_table_and_adopts_its_calibration() {
     let mut bench = Bench::calibrated();
     bench.execute((TableVerb::Turn, -1000));
     bench.restart();
@@ -238,7 +238,7 @@ fn a_restarted_process_stops_the_table_and_adopts_its_calibration() {
     assert_eq!((bench.world.position, status.calibrated, status.position), (before, true, Some(-1000)));
     assert_eq!(bench.memory.table.motor, order, "a table that stands is not stopped");
     assert_eq!(bench.execute((TableVerb::Turn, -2135)), DONE);
-    // In the middle of a turn: it stops, and the same command goes on.
+    // During a turn: the table stops, and the same command continues.
     bench.execute((TableVerb::Turn, -1500));
     let restarts = |bench: &mut Bench| {
         bench.restart();
@@ -258,7 +258,7 @@ fn a_restarted_process_stops_the_table_and_adopts_its_calibration() {
 }
 
 #[test]
-fn a_restarted_process_adopts_no_calibration_that_the_sensors_deny() {
+fn restarted_process_rejects_a_contradicted_calibration() {
     for breakage in [
         (|b: &mut Bench| b.world.wrong = 200.0) as fn(&mut Bench),
         |b| b.world.offset += 5_000,
@@ -282,7 +282,7 @@ fn a_restarted_process_adopts_no_calibration_that_the_sensors_deny() {
 }
 
 #[test]
-fn an_angle_that_the_potentiometer_denies_is_not_published_until_it_agrees() {
+fn contradicted_angle_is_not_published() {
     let mut bench = Bench::calibrated();
     bench.execute((TableVerb::Turn, -1000));
     bench.world.wrong = 100.0;
@@ -295,19 +295,19 @@ fn an_angle_that_the_potentiometer_denies_is_not_published_until_it_agrees() {
 #[test]
 fn every_row_fires() {
     let silent = silent::<Table, ()>(&[
-        a_calibrated_table_is_calibrated_again_by_command,
-        angles_beyond_the_limits_cannot_be_done,
-        pause_stops_a_turning_table_and_a_new_turn_starts_from_rest,
-        what_keeps_the_table_from_its_angle_is_an_error_and_the_next_turn_calibrates_again,
-        a_calibration_that_fails_fails_the_command_that_needs_it_and_no_other,
-        a_restarted_process_stops_the_table_and_adopts_its_calibration,
-        a_restarted_process_adopts_no_calibration_that_the_sensors_deny,
+        calibrate_command_calibrates_again,
+        angle_beyond_the_limits_is_refused,
+        pause_stops_a_turning_table,
+        failed_turn_is_an_error_and_the_next_one_calibrates_again,
+        failed_calibration_fails_only_commands_that_need_it,
+        restarted_process_stops_the_table_and_adopts_its_calibration,
+        restarted_process_rejects_a_contradicted_calibration,
     ]);
     assert_eq!(silent, [""; 0]);
 }
 
 #[test]
-fn a_table_that_never_stops_is_stuck() {
+fn table_that_never_stops_is_stuck() {
     for (verb, end) in [(TableVerb::Turn, STUCK), (TableVerb::Pause, STUCK)] {
         let mut bench = Bench::calibrated();
         bench.execute((TableVerb::Turn, -300));
@@ -317,7 +317,7 @@ fn a_table_that_never_stops_is_stuck() {
 }
 
 #[test]
-fn a_calibration_goes_on_beside_a_command_that_is_refused() {
+fn calibration_continues_during_a_refusal() {
     let mut bench = Bench::new(Rotary::new(-1200));
     assert_eq!(bench.execute((TableVerb::Turn, 0)), (PedestalReport::CannotDo, Reason::TableLimit));
     let status = bench.wait(600).status;
@@ -326,8 +326,8 @@ fn a_calibration_goes_on_beside_a_command_that_is_refused() {
 }
 
 proptest! {
-    /// From any angle to any other, over lines of any delay: reached to 0.06 degree, and the same bits twice.
-    /// At 25 steps a tick the whole way takes 1360 of the 1500 ticks that a turn has.
+    /// From any angle to any other, over lines of any delay: reached to 0.06 degree, and the same bytes twice. At
+    /// 25 steps per tick the whole travel takes 1360 of the 1500 ticks permitted for a turn.
     #[test]
     fn turns(
         start in LIMIT_MINUS..=AT_LIMIT,
@@ -350,8 +350,7 @@ proptest! {
         prop_assert_eq!(run()?, run()?);
     }
 
-    /// Whatever is commanded and whatever the sensors read: no panic, and every order has a number of its
-    /// own.
+    /// Random commands and sensors: no panic, and every order has its own number.
     #[test]
     fn nonsense(ticks in prop::collection::vec((0_u8..30, any::<i32>(), any::<u32>()), 1..200)) {
         let mut bench = Bench::new(Rotary::new(-1200));

@@ -6,14 +6,14 @@
 use interfaces::device::KNOB_FULL;
 use rcs_core::{Plain, tick::TICK_S};
 
-/// in/s in a count of `vel-max`. ASSUMED.
+/// in/s per count of `vel-max`. ASSUMED.
 const VELOCITY_COUNT: f64 = 0.1;
-/// in/s² in a count of `acc-fac`: a velocity count gained in each tick (4 is 10 in/s²). ASSUMED.
+/// in/s² per count of `acc-fac`: a velocity count per tick (4 is 10 in/s²). ASSUMED.
 const ACCELERATION_COUNT: f64 = VELOCITY_COUNT / TICK_S;
-/// in/s³ in a count of `smooth`: an acceleration count of change in each tick, so that a bigger number is
-/// less smoothing (VII.6). ASSUMED.
+/// in/s³ per count of `smooth`: an acceleration count per tick, so a larger number is less smoothing (VII.6).
+/// ASSUMED.
 const JERK_COUNT: f64 = ACCELERATION_COUNT / TICK_S;
-/// in/s that the DEPC link takes (A 2.3).
+/// Greatest velocity on the DEPC link, in/s (A 2.3).
 pub const LINK_VELOCITY: f64 = 14.0;
 
 /// Limits along a path, whose inches are those of [`geometry::frame::Distance::path`].
@@ -28,9 +28,8 @@ pub struct Limits {
 }
 
 impl Limits {
-    /// Limits from the counts of a TRAJ-PARA record; the velocity is cut to [`LINK_VELOCITY`].
-    ///
-    /// `None` if a count is not positive: such a move would never end.
+    /// Limits from the counts of a TRAJ-PARA record; the velocity is limited to [`LINK_VELOCITY`]. `None` if a
+    /// count is not positive: such a move would never end.
     #[must_use]
     pub fn from_counts(acc_fac: i32, vel_max: i32, smooth: i32) -> Option<Self> {
         if acc_fac <= 0 || vel_max <= 0 || smooth <= 0 {
@@ -43,13 +42,13 @@ impl Limits {
         })
     }
 
-    /// Half the acceleration and jerk: the share of each of two motions that are superposed.
+    /// Half the acceleration and jerk: the share of each of two superposed motions.
     #[must_use]
     pub fn share(&self) -> Self {
         Self { velocity: self.velocity, acceleration: self.acceleration * 0.5, jerk: self.jerk * 0.5 }
     }
 
-    /// The acceleration and jerk that both allow, with this one's velocity.
+    /// The smaller acceleration and jerk of both, with this velocity.
     #[must_use]
     pub fn within(&self, other: &Self) -> Self {
         Self {
@@ -59,7 +58,7 @@ impl Limits {
         }
     }
 
-    /// The velocity that the knob (0 to [`KNOB_FULL`]) leaves, in/s.
+    /// The velocity at a position of the knob (0 to [`KNOB_FULL`]), in/s.
     #[must_use]
     pub fn velocity_at(&self, knob: u16) -> f64 {
         self.velocity * (f64::from(knob.min(KNOB_FULL)) / f64::from(KNOB_FULL))
@@ -71,7 +70,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn counts_are_those_of_the_printed_forms() {
+    fn counts_match_the_printed_forms() {
         // VIII.10: a free path is 4/100/8.
         let limits = Limits::from_counts(4, 100, 8).unwrap();
         assert!((limits.velocity - 10.0).abs() < 1e-12);
@@ -82,12 +81,12 @@ mod tests {
     }
 
     #[test]
-    fn the_link_limits_the_velocity() {
+    fn link_limits_the_velocity() {
         assert!((Limits::from_counts(1, i32::MAX, 1).unwrap().velocity - LINK_VELOCITY).abs() < 1e-12);
     }
 
     #[test]
-    fn counts_that_are_not_positive_are_refused() {
+    fn counts_below_one_are_refused() {
         for (a, v, s) in [(0, 1, 1), (1, 0, 1), (1, 1, 0), (-4, 100, 8), (4, i32::MIN, 8)] {
             assert_eq!(Limits::from_counts(a, v, s), None);
         }

@@ -1,34 +1,33 @@
 //! The trajectory generator: the manual's Traj-program, which it does not describe (V.1).
 //!
-//! Each segment is a straight line with its own jerk-limited [`profile`]. A profile always stops at the end of its
-//! line, through points included, so that a stop is possible at any time, and a missing next goal is no problem. At a
-//! through point two motions are superposed: the old segment continues braking (the *residual*) while the new one
-//! already starts from rest *at the through point*:
+//! Each segment is a straight line with its own jerk-limited [`profile`]. Every profile stops at the end of its
+//! line, also at through points, so that the motion can stop at any time and needs no next goal. At a through point
+//! two motions are superposed: the old segment continues to brake (the *residual*) while the new one starts from
+//! rest *at the through point*:
 //!
 //! ```text
-//!  velocity   old ________                       frame = new segment's frame, displaced by what
-//!                         \      ________ new            the residual still lacks to its goal
+//!  velocity   old ________                       frame = new segment's frame, displaced by
+//!                         \      ________ new            the rest of the residual
 //!                          \    /
 //!                           \  /
 //!                            \/
 //!                            /\
 //!   ________________________/__\__________ time
-//!                          ^ handed over: not before the old segment brakes
+//!                          ^ new segment starts: not before the old one brakes
 //! ```
 //!
-//! * The new segment starts no earlier than the old one brakes, and no faster than it brakes: the sum of both
-//!   velocities never exceeds the larger of their limits, and a straight passage that is handed over in time
-//!   runs at full speed.
-//! * Braking towards a through point and starting over a residual use half of acceleration and jerk each: the
-//!   vector sum keeps the limits whatever the angle between the segments. Lone starts and the stop at a last
-//!   point use all.
-//! * At most two motions are superposed: a through point counts as passed only when no older residual is
-//!   left.
-//! * Knob, PAUSE and an early new goal are handled alike: as a new velocity for the running profile. After a stop the
-//!   next segment starts from where the stop ended.
+//! * The new segment starts no earlier than the old one brakes, and accelerates no faster than it brakes. So the
+//!   sum of both velocities never exceeds the larger of their limits, and a straight passage runs at full speed if
+//!   its next goal arrives in time.
+//! * Braking towards a through point and starting over a residual use half of acceleration and jerk each, so the
+//!   vector sum keeps the limits at any angle between the segments. Starts without a residual and the stop at a last
+//!   point use all of them.
+//! * At most two motions are superposed: a through point is passed only when no older residual is left.
+//! * Knob, PAUSE and an early new goal are handled alike, as a new velocity for the running profile. After a stop
+//!   the next segment starts where the stop ended.
 //!
-//! Rotations are superposed as world rotations; their acceleration then has a small extra term, at most the
-//! product of both angular velocities.
+//! Rotations are superposed as world rotations. Their acceleration then has a small extra term, at most the product
+//! of both angular velocities.
 
 pub mod limits;
 pub mod profile;
@@ -48,17 +47,16 @@ use self::{
 /// The commanded motion of the tool frame.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct PrimMotion {
-    /// The commanded frame.
     pub at: FrameData,
     /// Goal of the last order; the commanded frame after a halt.
     pub goal: FrameData,
-    /// The segment before, braking into its through point.
+    /// The previous segment, which brakes into its through point.
     pub residual: Option<Segment>,
     /// The segment under way.
     pub current: Option<Segment>,
     /// What comes after it.
     pub next: Option<SegmentOrder>,
-    /// Everything is to come to rest before the next segment starts.
+    /// The motion comes to rest before the next segment starts.
     pub halting: bool,
 }
 
@@ -81,14 +79,14 @@ impl PrimMotion {
         self.frame().distance(&self.goal.frame()).path()
     }
 
-    /// Nothing moves and nothing waits to move.
+    /// True if nothing moves and no order is waiting.
     #[must_use]
     pub fn is_at_rest(&self) -> bool {
         self.current.is_none() && self.residual.is_none() && self.next.is_none() && !self.halting
     }
 
-    /// The last order was a GO-THRU and the next one may be given: no older residual is left, and the point
-    /// is nearer than the brake distance.
+    /// The last order was a GO-THRU and the next one may be given: no older residual is left, and the point is
+    /// nearer than the brake distance.
     #[must_use]
     pub fn is_passing(&self) -> bool {
         let alone = self.residual.is_none() && self.next.is_none() && !self.halting;
@@ -96,8 +94,7 @@ impl PrimMotion {
         alone && self.current.as_ref().is_none_or(near)
     }
 
-    /// Go to a goal, by the shortest way that is continuous: on from a through point that
-    /// [`is_passing`](Self::is_passing), else after a halt.
+    /// Go to a goal: directly from a through point that [`is_passing`](Self::is_passing), else after a halt.
     pub fn go(&mut self, goal: &Frame, limits: &Limits, through: Option<f64>) {
         self.halting = !self.is_passing();
         let goal = FrameData::from(goal);
@@ -105,7 +102,7 @@ impl PrimMotion {
         self.next = Some(SegmentOrder { goal, through, limits: *limits });
     }
 
-    /// Come to rest as soon as the limits allow, and forget the goal.
+    /// Come to rest as soon as the limits allow, and discard the goal.
     pub fn halt(&mut self) {
         self.next = None;
         self.halting = self.current.is_some() || self.residual.is_some();
@@ -114,7 +111,7 @@ impl PrimMotion {
         }
     }
 
-    /// The robot has been put elsewhere by other means while nothing moved; what waits to move starts there.
+    /// Set the position of a robot at rest that was moved by other means. A waiting order starts there.
     pub fn put(&mut self, frame: &Frame) {
         self.at = FrameData::from(frame);
         if self.next.is_none() {
@@ -122,8 +119,8 @@ impl PrimMotion {
         }
     }
 
-    /// The robot has been at rest for a while, at any point of the motion: continue from rest at the last point,
-    /// straight to the goal of the last order.
+    /// Continue from rest at the last point, straight to the goal of the last order. The robot may have stopped
+    /// anywhere.
     pub fn stand(&mut self) {
         let under_way = self.current.filter(|_| !self.halting).map(|segment| segment.order);
         let next = self.next.or(under_way);
@@ -131,7 +128,7 @@ impl PrimMotion {
         *self = if next.is_some() { Self { goal: self.goal, next, ..rested } } else { rested };
     }
 
-    /// Let a tick pass on the path clock; `knob` is the velocity knob, 0 to 1000.
+    /// Advance the path clock by a tick; `knob` is the velocity knob, 0 to 1000.
     pub fn step(&mut self, knob: u16) {
         if let (Some(order), None, None) = (self.next, &self.current, &self.residual) {
             self.start_from_rest(&order, knob);
@@ -148,7 +145,7 @@ impl PrimMotion {
         self.retire();
     }
 
-    /// The frame on the current line, displaced by what the residual lacks.
+    /// The frame on the current line, displaced by the rest of the residual.
     fn superposed(&self) -> Frame {
         let frame = self
             .current
@@ -157,7 +154,7 @@ impl PrimMotion {
         self.residual.as_ref().map_or(frame, |residual| residual.missing().apply(&frame))
     }
 
-    /// Take up the next order at rest, with all of its limits.
+    /// Start the next order from rest, with all of its limits.
     fn start_from_rest(&mut self, order: &SegmentOrder, knob: u16) {
         self.current = Some(Segment::new(&self.at.frame(), order));
         self.next = None;
@@ -165,7 +162,7 @@ impl PrimMotion {
         self.plan(&SegmentState::default(), knob);
     }
 
-    /// Plan the current profile again if the velocity differs from the one it was planned for.
+    /// Plan the current profile again if the permitted velocity has changed.
     fn follow(&mut self, knob: u16) {
         let current = self.current.as_ref().filter(|current| {
             !current.profile.is_braking() && self.velocity(&current.order, knob) != current.velocity
@@ -175,12 +172,12 @@ impl PrimMotion {
         }
     }
 
-    /// Velocity that the current segment may have now, in/s.
+    /// Velocity permitted for the current segment, in/s.
     fn velocity(&self, order: &SegmentOrder, knob: u16) -> f64 {
         if self.halting { 0.0 } else { order.limits.velocity_at(knob) }
     }
 
-    /// Plan the current segment from a state on it. What cannot be planned is left as it was: it ends at the
+    /// Plan the current segment from a state on it. If that is impossible the old plan remains: it ends at the
     /// goal, and the next tick tries again.
     fn plan(&mut self, from: &SegmentState, knob: u16) {
         let Some(current) = &self.current else { return };
@@ -195,7 +192,7 @@ impl PrimMotion {
         };
         let plan = if velocity > 0.0 {
             let stop = |down: &Limits| Profile::to_goal(from, length, velocity, &up, down);
-            // All of the limits for a last stop, unless the residual still needs its share when it begins.
+            // A last stop uses all of the limits, unless the residual still needs its share when the stop begins.
             let whole = if order.through.is_some() { None } else { stop(&order.limits) };
             whole
                 .filter(|plan| plan.braking_point().is_some_and(|begin| begin >= overlap))
@@ -208,8 +205,8 @@ impl PrimMotion {
         }
     }
 
-    /// Start the segment of the next order as soon as the `old` one brakes. `before` is the clock of the old
-    /// one a tick ago.
+    /// Start the segment of the next order as soon as the `old` one brakes. `before` is the clock of the old one in
+    /// the previous tick.
     fn hand_over(&mut self, order: &SegmentOrder, old: Segment, before: f64, knob: u16) {
         let clock = old.profile.clock;
         let Some(braking_point) = old.profile.braking_point().filter(|begin| clock >= *begin) else {
@@ -219,7 +216,7 @@ impl PrimMotion {
         let late = clock - begin;
         let at =
             |clock, segment: Segment| Segment { profile: Profile { clock, ..segment.profile }, ..segment };
-        // Plan for the moment at which the new segment begins, which may lie between two ticks.
+        // Plan for the moment at which the new segment begins, possibly between two ticks.
         self.residual = Some(at(begin, old));
         self.current = Some(Segment::new(&old.order.goal.frame(), order));
         self.next = None;
@@ -228,7 +225,7 @@ impl PrimMotion {
         self.current = self.current.map(|current| at(late, current));
     }
 
-    /// Forget the segments that have come to rest.
+    /// Drop the segments that are at rest.
     fn retire(&mut self) {
         self.residual = self.residual.filter(|residual| !residual.is_at_rest());
         let Some(current) = &self.current else { return };

@@ -1,12 +1,13 @@
 //! Distance along a segment over time: a jerk-limited profile in closed form.
 //!
 //! A profile changes the velocity to a cruise velocity, cruises, and stops at the goal: up to seven phases of constant
-//! jerk, from any velocity and acceleration. The change and the stop may have different limits. Because the profile is
-//! continuous in time and only its *samples* are sent, differences of samples are means of the true velocity,
-//! acceleration and jerk, and cannot exceed the limits, wherever the phases begin between the ticks.
+//! A profile changes the velocity to a cruise velocity, cruises, and stops at the goal: up to seven phases of
+//! constant jerk, from any velocity and acceleration. The change and the stop may have different limits. A profile
+//! is continuous in time and only its *samples* are sent. So differences of samples are means of the true velocity,
+//! acceleration and jerk, and stay within the limits, wherever the phases begin between the ticks.
 //!
-//! The cruise velocity is the highest that still lets the profile stop in the distance that is left. It is found by a
-//! fixed number of bisections over the closed forms; the remaining distance is cruised, so that the end is exact.
+//! The cruise velocity is the highest from which the profile can stop in the remaining distance. A fixed number of
+//! bisections over the closed forms finds it; the remaining distance is cruised, so that the end is exact.
 
 use rcs_core::Plain;
 
@@ -14,7 +15,7 @@ use super::limits::Limits;
 
 /// Bisections for the cruise velocity: 14 in/s over 2^48 is less than a rounding error of the path.
 const BISECTIONS: u32 = 48;
-/// Path that is no motion, inches.
+/// Shorter paths are treated as no motion, inches.
 pub const NO_PATH: f64 = 1e-9;
 
 /// State along a segment.
@@ -22,13 +23,13 @@ pub const NO_PATH: f64 = 1e-9;
 pub struct SegmentState {
     /// Path from the start, inches.
     pub position: f64,
-    /// in/s, never negative but for rounding.
+    /// in/s, negative only by rounding.
     pub velocity: f64,
     /// in/s².
     pub acceleration: f64,
 }
 
-/// A stretch of constant jerk.
+/// A phase of constant jerk.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct JerkPhase {
     /// Seconds.
@@ -37,18 +38,18 @@ pub struct JerkPhase {
     pub jerk: f64,
 }
 
-/// A planned motion along a segment, and how far its clock has come.
+/// A planned motion along a segment, and its clock.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct Profile {
     /// State at clock 0.
     pub start: SegmentState,
     /// To the cruise velocity.
     pub change: [JerkPhase; 3],
-    /// At the cruise velocity, seconds.
+    /// Duration at the cruise velocity, seconds.
     pub cruise: f64,
     /// From the cruise velocity to rest.
     pub stop: [JerkPhase; 3],
-    /// It ends at the goal; otherwise where it comes to rest.
+    /// The profile ends at the goal; otherwise where it comes to rest.
     pub to_goal: bool,
     /// Seconds since `start`.
     pub clock: f64,
@@ -72,7 +73,7 @@ impl SegmentState {
         phases.iter().fold(*self, |state, phase| state.after(phase.duration, phase.jerk))
     }
 
-    /// The velocity that is left when the acceleration has been taken away.
+    /// The velocity after the acceleration has been reduced to zero.
     #[must_use]
     fn settled(&self, limits: &Limits) -> f64 {
         self.velocity + self.acceleration * self.acceleration.abs() / (2.0 * limits.jerk)
@@ -85,11 +86,11 @@ fn duration(phases: &[JerkPhase; 3]) -> f64 {
 
 /// The fastest change from a state to a velocity without acceleration.
 fn change(from: &SegmentState, velocity: f64, limits: &Limits) -> [JerkPhase; 3] {
-    // A slow-down is a speed-up seen in a mirror.
+    // A slow-down is a mirrored speed-up.
     let side = if velocity >= from.settled(limits) { 1.0 } else { -1.0 };
     let gain = side * (velocity - from.velocity);
     let begin = side * from.acceleration;
-    // Gained on the way from `begin` up to the peak and down to nothing: (2 peak² - begin²) / 2 jerk.
+    // Velocity gained from `begin` up to the peak and down to zero: (2 peak² - begin²) / 2 jerk.
     let peak = libm::sqrt((limits.jerk * gain + begin * begin / 2.0).max(0.0)).min(limits.acceleration);
     let level = gain - (peak * peak - begin * begin / 2.0) / limits.jerk;
     [
@@ -110,20 +111,18 @@ fn stopping_path(velocity: f64, limits: &Limits) -> f64 {
     velocity * time / 2.0
 }
 
-/// Where a profile with this cruise velocity ends if it does not cruise at all.
+/// End of a profile with this cruise velocity and no cruise.
 fn end(from: &SegmentState, velocity: f64, change_limits: &Limits, stop_limits: &Limits) -> f64 {
     from.after_all(&change(from, velocity, change_limits)).position + stopping_path(velocity, stop_limits)
 }
 
-/// The highest cruise velocity from which the profile ends no later than at `goal`.
-///
-/// `None` if the goal would be overrun, or if a dip to a lower `cap` would take more path than is left.
+/// The highest cruise velocity from which the profile ends no later than at `goal`. `None` if the goal would be
+/// overrun, or if a dip to a lower `cap` needs more than the remaining path.
 fn cruise_velocity(from: &SegmentState, goal: f64, cap: f64, up: &Limits, down: &Limits) -> Option<f64> {
     if end(from, cap, up, down) <= goal {
         return Some(cap);
     }
-    // Above the settled velocity the end grows with the cruise velocity; below it does not, and is not
-    // searched.
+    // The end grows with the cruise velocity only above the settled velocity; below it no search is needed.
     let (mut low, mut high) = (from.settled(up).max(0.0), cap);
     if low >= high || end(from, low, up, down) > goal {
         return None;
@@ -140,9 +139,8 @@ fn cruise_velocity(from: &SegmentState, goal: f64, cap: f64, up: &Limits, down: 
 }
 
 impl Profile {
-    /// To the goal, at `cap` in/s at most: speed changes within `up`, the stop within `down`.
-    ///
-    /// `None` if that is impossible from this state: then what was planned before stays best.
+    /// A profile to the goal, at `cap` in/s at most: speed changes within `up`, the stop within `down`. `None` if
+    /// that is impossible from this state; then the old profile remains in use.
     #[must_use]
     pub fn to_goal(from: &SegmentState, goal: f64, cap: f64, up: &Limits, down: &Limits) -> Option<Self> {
         let nothing = Self { start: *from, to_goal: true, ..Self::default() };
@@ -158,9 +156,7 @@ impl Profile {
         Some(profile)
     }
 
-    /// To rest as soon as `limits` allow, anywhere before the goal.
-    ///
-    /// `None` if the goal would be overrun.
+    /// A profile to rest as soon as `limits` allow, before the goal. `None` if the goal would be overrun.
     #[must_use]
     pub fn to_rest(from: &SegmentState, goal: f64, limits: &Limits) -> Option<Self> {
         let change = change(from, 0.0, limits);
@@ -179,7 +175,7 @@ impl Profile {
         self.braking_point().is_some_and(|begin| self.clock >= begin)
     }
 
-    /// Seconds until rest, 0 or less once there.
+    /// Seconds until rest; 0 or less at rest.
     #[must_use]
     pub fn remaining(&self) -> f64 {
         duration(&self.change) + self.cruise + duration(&self.stop) - self.clock
@@ -201,7 +197,7 @@ impl Profile {
         };
         let mut state = run(self.start, &[a, b, c]);
         if self.clock > duration(&self.change) {
-            // What rounding leaves of it would grow with the square of the time at cruise.
+            // Its rounding error would grow with the square of the cruise time.
             state.acceleration = 0.0;
         }
         run(state, &[cruise, d, e, f])
@@ -224,7 +220,7 @@ mod tests {
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(4000))]
 
-        /// Also from the middle of a profile, under another cap, the end is the goal and no limit is broken.
+        /// The end is the goal and the limits hold, also from the middle of a profile with another cap.
         #[test]
         fn ends_at_the_goal_within_limits(
             up in limits(), down in limits(), goal in 1e-6_f64..200.0,
@@ -260,8 +256,8 @@ mod tests {
     }
 
     #[test]
-    fn a_long_move_is_as_long_as_the_book_says() {
-        // 10 in/s, 10 in/s², 500 in/s³ over 30 in: 2 ramps of 1.02 s, and 19.8 in of cruise.
+    fn long_move_has_the_printed_duration() {
+        // 10 in/s, 10 in/s², 500 in/s³ over 30 in: 2 ramps of 1.02 s, and a cruise of 19.8 in.
         let limits = Limits::from_counts(4, 100, 8).unwrap();
         let profile = Profile::to_goal(&SegmentState::default(), 30.0, 10.0, &limits, &limits).unwrap();
         assert!((profile.remaining() - (2.0 * 1.02 + 1.98)).abs() < 1e-9, "{}", profile.remaining());
@@ -269,7 +265,7 @@ mod tests {
     }
 
     #[test]
-    fn a_goal_that_cannot_be_reached_any_more_is_refused() {
+    fn unreachable_goal_is_refused() {
         let limits = Limits::from_counts(4, 100, 8).unwrap();
         let fast = SegmentState { position: 0.0, velocity: 10.0, acceleration: 0.0 };
         assert_eq!(Profile::to_goal(&fast, 4.0, 10.0, &limits, &limits), None);

@@ -1,4 +1,4 @@
-//! A straight line from one frame to another, with the rotation about one axis in step.
+//! A straight line from one frame to another, with a simultaneous rotation about one axis.
 
 use geometry::frame::{Distance, Frame, Rotation, Vector, norm, rotation_by, rotation_vector};
 use nalgebra::Matrix3;
@@ -39,13 +39,13 @@ impl FrameData {
     }
 }
 
-/// Where to go, and how.
+/// A goal and the limits of the motion to it.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct SegmentOrder {
     /// The goal.
     pub goal: FrameData,
-    /// GO-THRU: the next segment may start before this one has ended. Path to the through point at which it
-    /// may be given, inches; 0 for at the point itself.
+    /// GO-THRU: the next segment may start before this one has ended. Remaining path at which it may be given,
+    /// inches; 0 for at the point itself.
     pub through: Option<f64>,
     /// Limits of TRAJ-PARA.
     pub limits: Limits,
@@ -64,7 +64,7 @@ pub struct Segment {
     pub length: f64,
     /// The motion along it.
     pub profile: Profile,
-    /// Velocity that the profile was planned for, in/s.
+    /// Velocity for which the profile was planned, in/s.
     pub velocity: f64,
 }
 
@@ -103,9 +103,8 @@ impl Segment {
         }
     }
 
-    /// What is still missing to the goal: the frame on the line is the goal less this.
-    ///
-    /// Nothing once the profile has ended at the goal, so that the last point is exactly the goal.
+    /// The remaining displacement to the goal. It is zero once the profile has ended at the goal, so the last point
+    /// is exactly the goal.
     #[must_use]
     pub fn missing(&self) -> Displacement {
         let over = self.profile.to_goal && self.profile.remaining() <= 0.0;
@@ -117,7 +116,7 @@ impl Segment {
         }
     }
 
-    /// At rest, at the goal or where a profile to rest ended.
+    /// True if it rests at the goal, or where a profile to rest ended.
     #[must_use]
     pub fn is_at_rest(&self) -> bool {
         self.profile.remaining() <= 0.0

@@ -1,4 +1,4 @@
-//! Random moves, watched from outside: only the sampled frames are checked, as T3I sees them.
+//! Random moves, checked by the sampled frames that T3I receives.
 
 use std::collections::VecDeque;
 
@@ -11,7 +11,7 @@ use rcs_core::tick::TICK_S;
 
 use super::{PrimMotion, limits::Limits};
 
-/// A small generator (SplitMix64), so that a seed names a run.
+/// A small generator (SplitMix64), so that a seed identifies a run.
 struct Random(u64);
 
 impl Random {
@@ -46,7 +46,7 @@ impl Random {
         let translation = if self.below(8) == 0 { Vector::zeros() } else { self.vector() * size };
         let turn = if self.below(4) == 0 { Vector::zeros() } else { self.vector() * (size / 8.0) };
         let rotation = rotation_by(&turn) * from.rotation;
-        // Orthonormal to the bit, as poses from forms are.
+        // Exactly orthonormal, like poses from forms.
         let rotation = geometry::frame::rotation_from_x_y(
             &rotation.matrix().column(0).into_owned(),
             &rotation.matrix().column(1).into_owned(),
@@ -76,7 +76,7 @@ impl Rate {
     }
 }
 
-/// Limits of all segments that were under way in a tick, and whether two were.
+/// Limits of all segments that were active in a tick, and whether there were two.
 #[derive(Clone, Copy, Debug, Default)]
 struct Allowed {
     limits: Limits,
@@ -122,7 +122,7 @@ impl Watch {
             allowed = allowed.with(&segment.order.limits);
         }
         if let (Some(next), None) = (before.next, motion.next) {
-            // A short move may be over in the tick in which it starts.
+            // A short move may end in the tick in which it starts.
             allowed = allowed.with(&next.limits);
         }
         allowed.superposed = before.residual.is_some() || motion.residual.is_some();
@@ -140,8 +140,8 @@ impl Watch {
         let v = [Rate::between(&f[0], &f[1]), Rate::between(&f[1], &f[2]), Rate::between(&f[2], &f[3])];
         let a = [v[0].change(&v[1]), v[1].change(&v[2])];
         let j = a[0].change(&a[1]);
-        // Two rotations at once: an extra acceleration of the product of their velocities, twice that while
-        // it changes.
+        // Two simultaneous rotations: an extra acceleration of the product of their velocities, and twice that
+        // while it changes.
         let product =
             if allowed.superposed { allowed.limits.velocity.powi(2) / INCHES_PER_RADIAN } else { 0.0 };
         let limits = allowed.limits;
@@ -155,7 +155,7 @@ impl Watch {
                 return Err(format!("{what} {} over {limit}", norm(&rate.linear)));
             }
             let angular = norm(&rate.angular) * INCHES_PER_RADIAN;
-            // A rotation vector is exact to 1e-9 rad or so.
+            // A rotation vector is exact to about 1e-9 rad.
             if angular > limit + extra + rounding * 1e3 {
                 return Err(format!("angular {what} {angular} over {limit} + {extra}"));
             }
@@ -164,7 +164,7 @@ impl Watch {
     }
 }
 
-/// While one segment is under way alone, the tool point is on its line and not beyond its goal.
+/// While only one segment is active, the tool point is on its line and not beyond its goal.
 fn on_the_line(motion: &PrimMotion) -> Result<(), String> {
     let (None, Some(segment)) = (&motion.residual, &motion.current) else { return Ok(()) };
     let line = Vector::from(segment.translation);
@@ -181,7 +181,7 @@ fn on_the_line(motion: &PrimMotion) -> Result<(), String> {
     Ok(())
 }
 
-/// `moves` random moves under random interference; returns the ticks it took.
+/// Execute `moves` random moves with random interference; return the number of ticks.
 fn run(seed: u64, moves: u32) -> Result<u64, String> {
     let mut random = Random(seed);
     let mut motion = PrimMotion::at_rest(&straight_down(Vector::new(-66.5, -5.5, -14.0)));
@@ -238,14 +238,14 @@ fn run(seed: u64, moves: u32) -> Result<u64, String> {
     Ok(watch.ticks)
 }
 
-/// After a halt everything comes to rest, soon, and stays.
+/// After a halt the motion comes to rest in bounded time and stays at rest.
 fn rest(motion: &mut PrimMotion, watch: &mut Watch, knob: u16) -> Result<(), String> {
     let all = [&motion.residual, &motion.current];
     let longest = all.into_iter().flatten().map(|s| {
         let slow = s.order.limits.share();
         slow.velocity / slow.acceleration + 2.0 * slow.acceleration / slow.jerk
     });
-    // A residual and the segment over it stop one after the other at worst, within the smaller of both
+    // In the worst case a residual and the segment over it stop one after the other, within the smaller of both
     // limits.
     let slowest = 4.0 * longest.fold(0.0, f64::max) + 1.0;
     let mut left = (slowest / TICK_S) as u32 + 2;
@@ -260,7 +260,7 @@ fn rest(motion: &mut PrimMotion, watch: &mut Watch, knob: u16) -> Result<(), Str
     if motion.frame() == frame { Ok(()) } else { Err("creeps after a halt".into()) }
 }
 
-/// Moves of the ordinary test; `RCS_MOVES` asks for more (a million, docs/design/motion.md "Limits").
+/// Number of moves; `RCS_MOVES` overrides it (a million in docs/design/motion.md "Limits").
 fn moves() -> u32 {
     std::env::var("RCS_MOVES").ok().and_then(|text| text.parse().ok()).unwrap_or(200_000)
 }
@@ -286,7 +286,7 @@ fn shifted(frame: &Frame, x: f64, y: f64) -> Frame {
 }
 
 #[test]
-fn a_straight_passage_runs_at_full_speed() {
+fn straight_passage_runs_at_full_speed() {
     let start = straight_down(Vector::new(-60.0, 0.0, 0.0));
     let (via, end) = (shifted(&start, 20.0, 0.0), shifted(&start, 40.0, 0.0));
     let mut motion = PrimMotion::at_rest(&start);
@@ -308,7 +308,7 @@ fn a_straight_passage_runs_at_full_speed() {
 }
 
 #[test]
-fn a_corner_is_cut_within_the_brake_distance() {
+fn corner_is_cut_within_the_brake_distance() {
     let start = straight_down(Vector::new(-60.0, 0.0, 0.0));
     let (via, end) = (shifted(&start, 20.0, 0.0), shifted(&start, 20.0, 20.0));
     let mut motion = PrimMotion::at_rest(&start);
@@ -326,7 +326,7 @@ fn a_corner_is_cut_within_the_brake_distance() {
 }
 
 #[test]
-fn zero_knob_holds_and_full_knob_goes_on() {
+fn knob_at_zero_holds_and_at_full_resumes() {
     let start = straight_down(Vector::new(-60.0, 0.0, 0.0));
     let goal = shifted(&start, 20.0, 0.0);
     let mut motion = PrimMotion::at_rest(&start);
@@ -348,7 +348,7 @@ fn zero_knob_holds_and_full_knob_goes_on() {
 }
 
 #[test]
-fn a_point_without_brake_distance_is_passed_at_rest() {
+fn point_without_brake_distance_is_passed_at_rest() {
     let start = straight_down(Vector::new(-60.0, 0.0, 0.0));
     let via = shifted(&start, 5.0, 0.0);
     let mut motion = PrimMotion::at_rest(&start);
@@ -361,7 +361,7 @@ fn a_point_without_brake_distance_is_passed_at_rest() {
 }
 
 #[test]
-fn a_halt_forgets_the_goal() {
+fn halt_discards_the_goal() {
     let start = straight_down(Vector::new(-60.0, 0.0, 0.0));
     let mut motion = PrimMotion::at_rest(&start);
     motion.go(&shifted(&start, 20.0, 0.0), &printed(), None);
@@ -377,7 +377,7 @@ fn a_halt_forgets_the_goal() {
 }
 
 #[test]
-fn a_halt_before_the_first_tick_forgets_the_goal() {
+fn halt_before_the_first_tick_discards_the_goal() {
     let start = straight_down(Vector::new(-60.0, 0.0, 0.0));
     let mut motion = PrimMotion::at_rest(&start);
     assert_eq!(motion.distance(), 0.0);
@@ -387,7 +387,7 @@ fn a_halt_before_the_first_tick_forgets_the_goal() {
 }
 
 #[test]
-fn a_robot_that_has_stood_goes_on_to_its_goal_from_there() {
+fn stopped_robot_continues_to_its_goal() {
     let start = straight_down(Vector::new(-60.0, 0.0, 0.0));
     let goal = shifted(&start, 20.0, 0.0);
     let mut motion = PrimMotion::at_rest(&start);
@@ -399,7 +399,7 @@ fn a_robot_that_has_stood_goes_on_to_its_goal_from_there() {
     motion.stand();
     assert_eq!((motion.frame(), motion.current), (here, None));
     assert!((motion.distance() - here.distance(&goal).path()).abs() < 1e-12);
-    // Put elsewhere meanwhile, it still has its goal.
+    // Moved by other means, it keeps its goal.
     motion.put(&start);
     assert_eq!((motion.frame(), motion.goal.frame()), (start, goal));
     while !motion.is_at_rest() {
@@ -408,7 +408,7 @@ fn a_robot_that_has_stood_goes_on_to_its_goal_from_there() {
     assert_eq!(motion.frame(), goal);
     motion.stand();
     assert!(motion.is_at_rest());
-    // At rest it has no other goal than where it is put.
+    // At rest its only goal is its new position.
     motion.put(&start);
     assert_eq!((motion.frame(), motion.distance()), (start, 0.0));
 }
@@ -416,13 +416,13 @@ fn a_robot_that_has_stood_goes_on_to_its_goal_from_there() {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(300))]
 
-    /// Shrinks to the shortest run that breaks something.
+    /// The failing case shrinks to the shortest run.
     #[test]
     fn short_runs_break_no_limit(seed in any::<u64>(), moves in 1_u32..40) {
         run(seed, moves).map_err(TestCaseError::fail)?;
     }
 
-    /// Counts at their extremes neither hang nor leave the numbers.
+    /// Extreme counts cause neither a hang nor a value that is not finite.
     #[test]
     fn extreme_counts_stay_finite(
         a in prop::sample::select(vec![1, 1000, i32::MAX]),

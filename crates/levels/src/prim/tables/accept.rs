@@ -1,9 +1,7 @@
-//! Preconditions of a command before anything moves.
-
 use rcs_core::decision_table;
 
 decision_table! {
-    /// ACCEPT: a new command is refused if a record that it names is missing or cannot be used.
+    /// ACCEPT: a new command is refused if one of its records is missing or unusable.
     pub ACCEPT: fn accept(super::Request) -> super::Action or () {
         1: asked: Before                           => consult;
         2: missing: Command                        => Fail(UnknownCommand);

@@ -1,4 +1,4 @@
-//! The table of every tick for finished commands.
+//! The table that is consulted in every tick, also for finished commands.
 
 use rcs_core::{Actions, Plain, decision_table};
 
@@ -13,15 +13,15 @@ pub enum Attention {
     Begin,
     /// They are consulted.
     Continue,
-    /// They are consulted once more, and what the command has reported does not count any more.
+    /// They are consulted again, and the report of the command is withdrawn.
     Resume,
 }
 
 decision_table! {
-    /// ATTEND (III.3.3): are the tables of the current command consulted, and with which outcome? An outcome
-    /// stays until a new command comes, except that the joystick box can change it. PAUSE never ends: while
-    /// it stands, the operator may take the robot and give it back. And the robot may still fly on after a
-    /// motion that is done: the operator can stop it, and E-move must learn of it.
+    /// ATTEND (III.3.3): decides whether the tables of the current command are consulted, and with which outcome.
+    /// An outcome stays until a new command arrives; only the joystick box can change it. PAUSE never ends: during
+    /// it the operator may take the robot and return it. After a motion is done the robot may still move: the
+    /// operator can stop it, and E-move must be informed.
     pub ATTEND: fn attend(crate::execution::Outcome, super::Attendance) -> Attention {
         any {
             1:  course: Begin                                => Begin;

@@ -1,12 +1,9 @@
-//! CAL-SENSOR (V.1.1).
-
 use rcs_core::decision_table;
 
 decision_table! {
-    /// CAL-SENSOR (V.1.1): take what the force sensor reads at rest as no force. A robot that moves is
-    /// stopped first.
+    /// CAL-SENSOR (V.1.1): take the reading of the force sensor at rest as zero. A moving robot is stopped first.
     pub CAL_SENSOR: fn cal_sensor(enum CalSensorStep, super::Situation) -> super::Action {
-        /// The robot comes to rest, and the sensor is read while it rests.
+        /// The robot comes to rest, and the sensor is read at rest.
         Reading {
             1: rest: UnderWay                    => Halt;
             2: rest: Settling                    => Wait;

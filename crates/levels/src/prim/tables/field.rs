@@ -1,11 +1,10 @@
-//! The devices behind field I/O.
+//! The devices on field I/O.
 
 use rcs_core::decision_table;
 
 decision_table! {
-    /// FIELD (extension): the robot moves only while all devices answer, since a part may be held by one and a
-    /// fixture opened by another. A device that is late for less than a second is waited for at rest, with the
-    /// velocity knob at 0.
+    /// FIELD (extension): the robot moves only while all devices answer, since one may hold a part and another open
+    /// a fixture. If a device is late by less than a second, the robot waits at rest, with the velocity knob at 0.
     pub FIELD: fn field(super::Devices) -> super::Action or () {
         1: position: NotNeeded        => consult;
         2: connection: Tripped        => Fail(DeviceTripped);

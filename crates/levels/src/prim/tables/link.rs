@@ -11,10 +11,10 @@
 use rcs_core::decision_table;
 
 decision_table! {
-    /// LINK (V.1.2 restart-status): Prim restarts a link that has failed, while the command goes on
-    /// executing, and then goes on from rest where the robot is. A restart without a report, or too many of
-    /// them, is a lost link; so is a controller that has switched DTR off. A robot that is not where it was
-    /// sent, or has left its path, waits for a person.
+    /// LINK (V.1.2 restart-status): Prim restarts a failed link while the command stays in execution, and then
+    /// continues from rest at the robot's position. A restart without a report, too many restarts, and a controller
+    /// with DTR off are a lost link. If the robot is not at its commanded position, or has left its path, the
+    /// operator decides.
     pub LINK: fn link(enum LinkStep, super::Situation) -> super::Action or () {
         any {
             1:  position: NotNeeded                              => consult;
@@ -27,14 +27,14 @@ decision_table! {
             8:  t3i: LinkError, restarts: Many                   => Fail(LinkError)         -> Commanding;
             9:  t3i: Refused, restarts: Many                     => Fail(InterfaceRefused)  -> Commanding;
         }
-        /// The command needs no restart now.
+        /// The command needs no restart.
         Commanding {
             10: t3i: LinkSilent | LinkError | Refused            => Recover                 -> Restarting;
             11: posture: Unpositioned, restarts: Few             => Recover                 -> Restarting;
             12: posture: Unpositioned, restarts: Many            => Fail(LinkError);
             13: posture: Moving | Ending | Standing              => consult;
         }
-        /// RESTART is sent; where the robot is must be reported.
+        /// RESTART is sent; the robot's position must be reported.
         Restarting {
             14: t3i: LinkSilent, report: NoReport                => Fail(LinkOff)           -> Commanding;
             15: t3i: LinkError, report: NoReport                 => Fail(LinkError)         -> Commanding;

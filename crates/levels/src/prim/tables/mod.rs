@@ -26,10 +26,10 @@ use crate::{
     halt::Above,
 };
 
-/// What T3I says of the last command to it (VI.1.2 status-report, status-arg-out).
+/// The answer of T3I to the last command (VI.1.2 status-report, status-arg-out).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Interface {
-    /// It has points enough, has not echoed the command yet, or is held.
+    /// It has enough points, has not echoed the command yet, or is held.
     Busy,
     /// It is ready for a new point.
     Ready,
@@ -39,8 +39,7 @@ pub enum Interface {
     Silent,
     /// The robot controller's DTR is off.
     LinkOff,
-    /// DTR is on, and the DEPC link does not respond, or does not run any more although Prim commands the
-    /// robot.
+    /// DTR is on, but the DEPC link does not respond, or has stopped while Prim commands the robot.
     LinkSilent,
     /// The DEPC link has another error.
     LinkError,
@@ -50,25 +49,25 @@ pub enum Interface {
     Refused,
 }
 
-/// What the robot was told to do.
+/// The commanded motion of the robot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Posture {
-    /// Nothing: where it is was never taken over, or is lost.
+    /// None: its position was never taken over, or is lost.
     Unpositioned,
-    /// The path is under way.
+    /// The path is being sent.
     Moving,
     /// The last point of the path is sent, but not finished.
     Ending,
-    /// It stands where it was told to be.
+    /// The robot is at its commanded position.
     Standing,
 }
 
-/// Does the command need a commanded position?
+/// Whether the command needs a commanded position.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Position {
-    /// PAUSE and ROBOT-INIT do not.
+    /// PAUSE and ROBOT-INIT need none.
     NotNeeded,
-    /// Motions do, and CAL-SENSOR.
+    /// Motions and CAL-SENSOR need one.
     Needed,
 }
 
@@ -77,26 +76,25 @@ pub enum Position {
 pub enum Restarts {
     /// Fewer than 10 in the last 10 s.
     Few,
-    /// 10 in the last 10 s: the link is of no use.
+    /// 10 in the last 10 s: the link is unusable.
     Many,
 }
 
 /// The path to the goal of the command.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum PrimPath {
-    /// It is under way, or has ended.
+    /// It is being followed, or has ended.
     Kept,
     /// The link was restarted: the robot rests, and the path starts again.
     Lost,
 }
 
-/// The operator with the joystick box (III.3.3).
+/// The operator at the joystick box (III.3.3).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum PrimOperator {
-    /// Does not move the robot.
+    /// The operator does not move the robot.
     Idle,
-    /// A frame switch is on, the velocity knob is not at zero, and a stick or button is moved beyond its
-    /// play.
+    /// A frame switch is on, the velocity knob is not at zero, and a stick or button is moved beyond its play.
     Moves,
 }
 
@@ -112,22 +110,22 @@ pub enum PrimLink {
 /// A through point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Passage {
-    /// On the way.
+    /// The robot is farther away than the brake distance.
     UnderWay,
-    /// Nearer than the brake distance: the next goal is welcome.
+    /// Nearer than the brake distance: the next goal may be given.
     Passing,
 }
 
 /// How a motion comes to rest (docs/design/motion.md "Rest").
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum PrimRest {
-    /// The robot does not stand where it was told to be.
+    /// Points are still to be finished.
     UnderWay,
-    /// All points are finished; the resolvers are watched.
+    /// All points are finished; the resolvers do not show rest yet.
     Settling,
-    /// The resolvers say that the robot rests.
+    /// The resolvers show that the robot is at rest.
     Arrived,
-    /// It should have come to rest long ago.
+    /// The time for coming to rest is over.
     Late,
 }
 
@@ -136,18 +134,18 @@ pub enum PrimRest {
 pub enum Guard {
     /// The condition does not hold.
     Clear,
-    /// It holds.
+    /// The condition holds.
     Met,
     /// The sensor is overloaded, not calibrated, or not there.
     Faulty,
 }
 
-/// The readings that make a bias of the force sensor.
+/// The readings for the bias of the force sensor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Samples {
-    /// Another one is wanted.
+    /// Another reading is needed.
     Wanted,
-    /// There are enough.
+    /// All readings are taken.
     Complete,
     /// The sensor is overloaded, or not there.
     Faulty,
@@ -156,15 +154,15 @@ pub enum Samples {
 /// The frame switches of the joystick box (III.3.3).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Switches {
-    /// None is on.
+    /// No switch is on.
     Off,
-    /// One: the box may move the robot.
+    /// One switch is on: the box may move the robot.
     One,
-    /// Two or more, or one that the box does not have: no frame is selected.
+    /// Two or more switches, or one that the box does not have: no frame is selected.
     Several,
 }
 
-/// What a command is, for the joystick box.
+/// Kind of a command, for the joystick box.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum CommandKind {
     /// ROBOT-INIT, CAL-SENSOR: it ends, and moves nothing afterwards.
@@ -175,10 +173,10 @@ pub enum CommandKind {
     Lasting,
 }
 
-/// PAUSE to T3I after a start of Prim: a command of the time before may still stand in the buffer.
+/// PAUSE to T3I after a start of Prim, since the buffer may hold a command from before.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum FirstPause {
-    /// Prim has sent nothing since its start.
+    /// Prim has not sent it yet.
     Due,
     /// It is sent.
     Sent,
@@ -193,10 +191,10 @@ pub enum Button {
     Pressed,
 }
 
-/// What a new command lacks.
+/// The first thing that a new command lacks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum PrimMissing {
-    /// Nothing: it can be executed.
+    /// The command is complete.
     Nothing,
     /// A command word.
     Command,
@@ -208,14 +206,14 @@ pub enum PrimMissing {
     Movetable,
     /// The record of TRAJ-PARA.
     Parameters,
-    /// Limits above 0 in that record.
+    /// Limits above 0 in the record of TRAJ-PARA.
     Limits,
 }
 
-/// What a new command needs, for [`accept::ACCEPT`].
+/// The state variables of [`accept::ACCEPT`].
 #[derive(Clone, Copy, Debug, Default, Variables)]
 pub struct Request {
-    /// Is the command new?
+    /// Whether the command is new.
     pub asked: Asked,
     /// The first thing that it lacks.
     pub missing: PrimMissing,
@@ -224,9 +222,9 @@ pub struct Request {
 /// The state variables of [`attend::ATTEND`].
 #[derive(Clone, Copy, Debug, Variables)]
 pub struct Attendance {
-    /// What EXECUTE says.
+    /// The decision of EXECUTE.
     pub course: Course,
-    /// What the command is.
+    /// The kind of the command.
     pub kind: CommandKind,
     /// The operator.
     pub operator: PrimOperator,
@@ -235,9 +233,9 @@ pub struct Attendance {
 /// The devices behind field I/O, for [`field::FIELD`].
 #[derive(Clone, Copy, Debug, Variables)]
 pub struct Devices {
-    /// Does the command need a position?
+    /// Whether the command needs a commanded position.
     pub position: Position,
-    /// How the controller is connected with the worst of all devices.
+    /// The connection with the worst of all devices.
     pub connection: Connection,
 }
 
@@ -250,17 +248,17 @@ pub struct Situation {
     pub emove: Above,
     /// The frame switches of the joystick box.
     pub switches: Switches,
-    /// What the robot was told to do.
+    /// The commanded motion of the robot.
     pub posture: Posture,
-    /// Does the command need a position?
+    /// Whether the command needs a commanded position.
     pub position: Position,
     /// The operator.
     pub operator: PrimOperator,
     /// The link after a RESTART.
     pub link: PrimLink,
-    /// What T3I makes of the report to the last RESTART.
+    /// T3I's check of the report after the last RESTART.
     pub report: ReportCheck,
-    /// The RESTARTs of the last time.
+    /// The recent RESTARTs.
     pub restarts: Restarts,
     /// The path to the goal.
     pub way: PrimPath,
@@ -281,7 +279,7 @@ pub struct Situation {
 pub struct Path {
     /// The first command to T3I.
     pub first_pause: FirstPause,
-    /// What the robot was told to do, by the command's row of this tick too.
+    /// The commanded motion of the robot, after the command's row of this tick.
     pub posture: Posture,
     /// T3I.
     pub t3i: Interface,
@@ -289,57 +287,52 @@ pub struct Path {
     pub button: Button,
 }
 
-/// What preprocess has found in a tick.
+/// The results of preprocess in a tick.
 #[derive(Clone, Copy, Debug)]
 pub struct StateVariables {
-    /// What the command buffer holds.
     pub arrival: Arrival,
     /// The new command, or the one that was accepted last.
     pub verb: PrimVerb,
-    /// What a new command needs.
     pub request: Request,
-    /// The devices behind field I/O.
     pub field: Devices,
     /// The goal of the command, compared with the sensors.
     pub proof: Proof,
-    /// The state variables.
     pub situation: Situation,
-    /// The record button.
     pub button: Button,
-    /// The frame that T3I feeds back over a link that runs.
+    /// The frame that T3I feeds back while the link runs.
     pub feedback: Option<Frame>,
-    /// Where the resolvers see the robot, if they can be believed.
+    /// The resolver frame, if it is valid.
     pub resolvers: Option<Frame>,
 }
 
-/// What a row can ask for.
+/// The actions of Prim.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Actions)]
 pub enum Action {
-    /// Nothing new; a motion goes on.
+    /// Nothing new; a motion continues.
     Wait,
     /// Move to the goal.
     Go,
     /// Ramp down and stop.
     Halt,
-    /// RESTART to T3I; the position is forgotten.
+    /// RESTART to T3I; the position is discarded.
     Restart,
-    /// The same, because the link has failed; RESTARTs of this kind are counted.
+    /// The same after a link failure; these RESTARTs are counted.
     Recover,
-    /// Take the frame that T3I feeds back as the commanded one; the path to the goal is planned again.
+    /// Take the frame that T3I feeds back as the commanded one; plan the path to the goal again.
     Resume,
     /// Take the frame that T3I feeds back as the commanded one; report done.
     TakePosition,
     /// Report `joystick-on`, ramp down and stop.
     Yield,
-    /// Report `joystick-on`, and move as the box asks for.
+    /// Report `joystick-on`, and move as the box commands.
     Drive,
-    /// Publish where the robot is, ramp down and stop.
+    /// Publish the robot's position, ramp down and stop.
     Detect,
     /// Report `not-detected`.
     Miss,
     /// Take a reading of the force sensor.
     Sample,
-    /// Take the mean of the readings as no force; report done.
+    /// Take the mean of the readings as zero; report done.
     Calibrate,
     /// Report done.
     Finish,

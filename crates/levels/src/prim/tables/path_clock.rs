@@ -1,7 +1,7 @@
 //! The path clock: a table of every tick, for all commands.
 //!
-//! Time on the path is counted in points, not in ticks: when T3I has enough of them the path stops, and no time is lost
-//! or made up for afterwards. The clock continues after a GO-THRU is done, and during the ramp after an error.
+//! Time on the path is counted in points, not in ticks. When T3I has enough points the path stops, and later no
+//! time is lost or made up for. The clock continues after a GO-THRU is done, and during the ramp after an error.
 
 use rcs_core::{Actions, Plain, decision_table};
 
@@ -12,13 +12,13 @@ pub enum PathProgress {
     Repeat,
     /// The next point is sent.
     Advance,
-    /// PAUSE to T3I, and the motion is forgotten.
+    /// PAUSE to T3I; the motion is discarded.
     Abandon,
 }
 
 decision_table! {
-    /// PATH-CLOCK (docs/design/link.md "Path clock"): is the next point sent? A robot that does not follow
-    /// must not be asked to jump, so that a lost link and a robot off its path leave no motion behind.
+    /// PATH-CLOCK (docs/design/link.md "Path clock"): decides whether the next point is sent. A robot that does not
+    /// follow must not be commanded to jump, so a lost link and a robot off its path end the motion.
     pub PATH_CLOCK: fn path_clock(super::Path) -> PathProgress {
         1: first_pause: Due                                                    => Abandon;
         2: posture: Unpositioned                                               => Repeat;

@@ -3,10 +3,10 @@
 use rcs_core::decision_table;
 
 decision_table! {
-    /// PAUSE (V.1.1): do nothing. A motion ramps down within its limits; then the last point is repeated. The command is
-    /// done when the resolvers show that the robot rests. From there on the joystick box moves the robot while one of
-    /// its frame switches is on. A link that fails meanwhile, or a robot that leaves its path, is reported; the next
-    /// motion restarts the link.
+    /// PAUSE (V.1.1): do nothing. A motion ramps down within its limits; then the last point is repeated. The
+    /// command is done when the resolvers show that the robot rests. From then on the joystick box moves the robot
+    /// while one of its frame switches is on. A link failure, or a robot that leaves its path, is reported; the
+    /// next motion restarts the link.
     pub PAUSE: fn pause(enum PauseStep, super::Situation) -> super::Action {
         any {
             1:  t3i: Silent                                                  => Fail(InterfaceSilent);
@@ -19,9 +19,9 @@ decision_table! {
             8:  posture: Unpositioned,            switches: One              => Yield   -> Start;
             9:  posture: Standing,                switches: One              => Drive   -> Driving;
         }
-        /// Nothing done yet, or nothing to do.
+        /// Start: no motion to stop, or not yet done.
         Start {}
-        /// The motion of the command before ramps down.
+        /// The motion of the previous command ramps down.
         Stopping {}
         /// The box moves the robot.
         Driving {}
@@ -30,7 +30,7 @@ decision_table! {
             11: posture: Standing, switches: Off, rest: Arrived              => Finish  -> Resting;
             12: posture: Standing, switches: Off, rest: Late                 => Fail(NotAtGoal);
         }
-        /// The robot has come to rest.
+        /// The robot is at rest.
         Resting {
             13: posture: Standing, switches: Off                             => Finish;
         }

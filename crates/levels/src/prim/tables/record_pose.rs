@@ -7,13 +7,13 @@ use rcs_core::{Actions, Plain, decision_table};
 pub enum Recording {
     /// It stays as it is.
     Keep,
-    /// The commanded pose is put into it; Prim and E-move are suspended until the operator goes on.
+    /// It takes the commanded pose; Prim and E-move are suspended until the operator continues.
     Record,
 }
 
 decision_table! {
-    /// RECORD-POSE (III.3.3): is the commanded pose recorded? A Prim that is stepped is not suspended any
-    /// more.
+    /// RECORD-POSE (III.3.3): decides whether the commanded pose is recorded. A Prim that is stepped singly is not
+    /// suspended again.
     pub RECORD_POSE: fn record_pose(super::Path) -> Recording {
         1: button: Idle                                          => Keep;
         2: button: Pressed, posture: Unpositioned                => Keep;

@@ -1,14 +1,11 @@
-//! ROBOT-INIT (V.1.1).
-
 use rcs_core::decision_table;
 
 decision_table! {
-    /// ROBOT-INIT (V.1.1): RESTART to T3I. It clears the errors of the link, so that only those count which
-    /// come after the RESTART, and ends the stop of a robot that left its path. The position that is reported is
-    /// taken over wherever it is: the way on after the robot was moved by other means. The joystick box does not
-    /// hinder it: nothing moves.
+    /// ROBOT-INIT (V.1.1): RESTART to T3I. It clears the errors of the link, so that only those after the RESTART
+    /// count, and ends the stop of a robot that left its path. The reported position is taken over, wherever the
+    /// robot is: so work continues after the robot was moved by other means. The joystick box has no effect on it.
     pub ROBOT_INIT: fn robot_init(enum RobotInitStep, super::Situation) -> super::Action {
-        /// Nothing sent yet.
+        /// No RESTART sent yet.
         Start {
             1:  t3i: LinkOff | LinkSilent | LinkError | OffPath | Refused  => Restart  -> Restarting;
         }
@@ -27,7 +24,7 @@ decision_table! {
             11: posture: Unpositioned | Standing                           => Restart  -> Restarting;
             12: posture: Moving | Ending                                   => Halt;
         }
-        /// RESTART is sent. A link that fails again after its report is restarted again.
+        /// RESTART is sent. If the link fails after its report, it is restarted again.
         Restarting {
             13: link: Down                                                 => Wait;
             14: link: Running                                              => TakePosition;

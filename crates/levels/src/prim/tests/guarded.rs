@@ -6,24 +6,24 @@ use rcs_core::tick::TICK_S;
 use super::*;
 
 pub(super) const SCENARIOS: &[fn()] = &[
-    a_condition_that_holds_already_ends_a_guarded_move_without_motion,
-    a_force_sensor_that_cannot_be_trusted_stops_the_robot,
-    a_restarted_prim_knows_what_the_force_sensor_reads_without_a_force,
-    cal_sensor_stops_the_robot_first_and_takes_the_mean,
-    a_sensor_that_cannot_be_calibrated_is_an_error,
-    a_sensor_that_is_not_in_the_task_data_is_refused,
+    met_condition_ends_a_guarded_move_without_motion,
+    invalid_force_sensor_stops_the_robot,
+    restarted_prim_keeps_the_bias,
+    cal_sensor_stops_the_robot_and_takes_the_mean,
+    faulty_sensor_fails_cal_sensor,
+    sensor_missing_in_task_data_is_refused,
 ];
 
-/// A force sensor at rest with something in the gripper.
+/// A force sensor at rest with a part in the gripper.
 const LOADED: ForceSensor = ForceSensor { x: 2100, y: 2000, z: 1900, moment: 2048, valid: true };
 
-/// The reading of [`LOADED`] with a push of so many pounds along tool X.
+/// The reading of [`LOADED`] with a push of some pounds along tool X.
 fn pushed(pounds: i32) -> ForceSensor {
     let z = i32::from(LOADED.z) + pounds * FORCE_COUNTS_PER_LB;
     ForceSensor { z: z.clamp(0, 4095) as u16, ..LOADED }
 }
 
-/// Path of a stop from the speed of the last tick, inches, whatever the acceleration was.
+/// Greatest path of a stop from the speed of the last tick, inches, at any acceleration.
 pub(super) fn stopping_path(speed: f64, acceleration: f64, jerk: f64) -> f64 {
     let ramp = acceleration / jerk;
     let fastest = speed + acceleration * TICK_S + acceleration * ramp / 2.0;
@@ -56,7 +56,7 @@ impl Rig {
 }
 
 #[test]
-fn go_until_ramps_down_where_it_trips_and_says_where_that_was() {
+fn go_until_ramps_down_and_publishes_where_it_tripped() {
     for stalls in [0, 3] {
         let mut rig = Rig::initialized();
         rig.world.stalls = stalls;
@@ -69,7 +69,7 @@ fn go_until_ramps_down_where_it_trips_and_says_where_that_was() {
             }
             assert_eq!(rig.memory.prim.status.detected_pose, None);
         };
-        // The tick of the trip: T3I has told in it where the resolvers see the robot.
+        // The tick of the trip: T3I has reported the resolver frame in it.
         let seen = rig.pose(rig.memory.prim.status.sensor_pose).copied();
         let status = rig.memory.prim.status;
         assert_eq!(rig.pose(status.detected_pose).copied(), seen);
@@ -91,7 +91,7 @@ fn go_until_ramps_down_where_it_trips_and_says_where_that_was() {
 }
 
 #[test]
-fn a_condition_that_holds_already_ends_a_guarded_move_without_motion() {
+fn met_condition_ends_a_guarded_move_without_motion() {
     for (verb, report) in
         [(PrimVerb::GoUntil, PrimReport::Done), (PrimVerb::GoWhile, PrimReport::DetectedErr)]
     {
@@ -108,7 +108,7 @@ fn a_condition_that_holds_already_ends_a_guarded_move_without_motion() {
 }
 
 #[test]
-fn a_goal_without_the_condition_is_not_detected_until_it_comes() {
+fn goal_without_condition_reports_not_detected() {
     let mut rig = Rig::initialized();
     rig.guard(PrimVerb::GoUntil, 1, "NEAR-R");
     assert_eq!(rig.finish(), PrimReport::NotDetected);
@@ -122,7 +122,7 @@ fn a_goal_without_the_condition_is_not_detected_until_it_comes() {
     assert_eq!(rig.reason(), Reason::None);
     let detected = rig.pose(rig.memory.prim.status.detected_pose);
     assert_eq!(detected, Some(&Pose::from_frame(&shifted(10.0, 0.0))));
-    // A new command ends it as well.
+    // A new command ends it, too.
     rig.external.devices.holsters.right = 0;
     rig.guard(PrimVerb::GoUntil, 1, "NEAR-R");
     assert_eq!(rig.finish(), PrimReport::NotDetected);
@@ -130,7 +130,7 @@ fn a_goal_without_the_condition_is_not_detected_until_it_comes() {
 }
 
 #[test]
-fn go_while_reaches_its_goal_or_stops_with_an_error() {
+fn go_while_reaches_its_goal_or_fails() {
     let mut rig = Rig::calibrated();
     rig.external.devices.force = pushed(24);
     rig.guard(PrimVerb::GoWhile, 1, "PUSH-X");
@@ -154,7 +154,7 @@ fn go_while_reaches_its_goal_or_stops_with_an_error() {
 }
 
 #[test]
-fn a_force_sensor_that_cannot_be_trusted_stops_the_robot() {
+fn invalid_force_sensor_stops_the_robot() {
     let dead = ForceSensor { valid: false, ..LOADED };
     let overloaded = ForceSensor { moment: 4095, ..LOADED };
     for verb in [PrimVerb::GoUntil, PrimVerb::GoWhile] {
@@ -179,7 +179,7 @@ fn a_force_sensor_that_cannot_be_trusted_stops_the_robot() {
 }
 
 #[test]
-fn a_restarted_prim_knows_what_the_force_sensor_reads_without_a_force() {
+fn restarted_prim_keeps_the_bias() {
     let restarted = |power: bool| {
         let mut rig = Rig::calibrated();
         rig.restart();
@@ -195,7 +195,7 @@ fn a_restarted_prim_knows_what_the_force_sensor_reads_without_a_force() {
 }
 
 #[test]
-fn cal_sensor_stops_the_robot_first_and_takes_the_mean() {
+fn cal_sensor_stops_the_robot_and_takes_the_mean() {
     let mut rig = Rig::initialized();
     rig.external.devices.force = pushed(90);
     rig.command(PrimVerb::GotoPt, 3);
@@ -203,7 +203,7 @@ fn cal_sensor_stops_the_robot_first_and_takes_the_mean() {
     rig.command(PrimVerb::CalSensor, 0);
     let mut noise = 0_i32;
     for _ in 0..300 {
-        // What is read while the robot moves does not count; at rest the readings swing by 2 lb.
+        // Readings in motion do not count; at rest the readings swing by 2 lb.
         noise = 2 - noise;
         if rig.at_rest() {
             rig.external.devices.force = pushed(noise);
@@ -226,7 +226,7 @@ fn cal_sensor_stops_the_robot_first_and_takes_the_mean() {
 }
 
 #[test]
-fn a_sensor_that_cannot_be_calibrated_is_an_error() {
+fn faulty_sensor_fails_cal_sensor() {
     let mut rig = Rig::calibrated();
     for force in [ForceSensor { valid: false, ..LOADED }, ForceSensor { y: 0, ..LOADED }] {
         rig.external.devices.force = force;
@@ -235,7 +235,7 @@ fn a_sensor_that_cannot_be_calibrated_is_an_error() {
 }
 
 #[test]
-fn a_sensor_that_is_not_in_the_task_data_is_refused() {
+fn sensor_missing_in_task_data_is_refused() {
     let mut rig = Rig::initialized();
     for verb in [PrimVerb::GoUntil, PrimVerb::GoWhile] {
         rig.guard(verb, 3, "NOSE");
@@ -245,7 +245,7 @@ fn a_sensor_that_is_not_in_the_task_data_is_refused() {
 }
 
 #[test]
-fn beams_guard_too() {
+fn broken_beam_trips_a_guarded_move() {
     let mut rig = Rig::initialized();
     rig.guard(PrimVerb::GoUntil, 3, "BEAM-3");
     rig.wait(20);
@@ -255,7 +255,7 @@ fn beams_guard_too() {
 }
 
 #[test]
-fn all_three_motions_take_a_movetable_and_delta_move_ends_as_goto_pt_does() {
+fn motions_apply_movetables_and_delta_move_ends_like_goto_pt() {
     for verb in [PrimVerb::DeltaMove, PrimVerb::GoWhile, PrimVerb::GoUntil] {
         let mut rig = Rig::initialized();
         rig.guard(verb, 1, "NEAR-R");

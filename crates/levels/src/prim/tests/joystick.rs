@@ -1,4 +1,4 @@
-//! PAUSE with the joystick box, the record button, and what becomes of a Prim that was held.
+//! PAUSE with the joystick box, the record button, and a held Prim.
 
 use geometry::{
     frame::{Rotation, rotation_vector},
@@ -14,18 +14,18 @@ use super::*;
 use crate::prim::manual::{ACCELERATION, SPEED};
 
 pub(super) const SCENARIOS: &[fn()] = &[
-    the_box_is_done_when_the_robot_stands,
-    the_box_waits_until_a_motion_has_ramped_down,
-    two_frames_are_none,
-    a_stick_is_heard_of_after_a_motion_is_done,
-    without_a_position_the_box_moves_nothing,
-    a_recorded_pose_suspends_until_the_operator_goes_on,
+    manual_motion_ends_when_the_robot_rests,
+    box_waits_until_a_motion_has_ramped_down,
+    two_frame_switches_select_no_frame,
+    stick_is_reported_after_a_motion_is_done,
+    box_without_a_position_moves_nothing,
+    recorded_pose_suspends_until_the_operator_continues,
 ];
 
 const FULL: i16 = 1000;
 
 impl Rig {
-    /// A rig on which PAUSE stands.
+    /// A rig in which PAUSE is done.
     pub(super) fn paused() -> Self {
         let mut rig = Self::initialized();
         assert_eq!(rig.run(PrimVerb::Pause, 0), PrimReport::Done);
@@ -41,7 +41,7 @@ impl Rig {
         (joystick.x, joystick.y) = (x, y);
     }
 
-    /// Both sticks back, no button; then until nothing moves.
+    /// Centre both sticks, release the buttons, and wait for rest.
     fn let_go(&mut self) {
         let joystick = &mut self.external.devices.joystick;
         (joystick.x, joystick.y) = (0, 0);
@@ -66,7 +66,7 @@ fn turn(from: &Frame, to: &Frame) -> Vector {
 }
 
 #[test]
-fn translations_follow_the_axes_of_the_frame_at_the_speed_of_the_knob() {
+fn translations_follow_the_frame_axes_at_knob_speed() {
     let mut rig = Rig::paused();
     let at = rig.commanded();
     for (switch, axes) in [
@@ -97,7 +97,7 @@ fn translations_follow_the_axes_of_the_frame_at_the_speed_of_the_knob() {
 }
 
 #[test]
-fn rotations_leave_their_centre_where_it_is() {
+fn rotations_keep_their_centre() {
     for (switch, x, y, roll) in [
         (joystick_frame::TOOL_ORIGIN, FULL, 0, false),
         (joystick_frame::TOOL_ORIGIN, 0, FULL, false),
@@ -125,7 +125,7 @@ fn rotations_leave_their_centre_where_it_is() {
         } else {
             assert!(tool < 1e-9, "{tool}");
         }
-        // The speed of the point that is farther off is that of a translation.
+        // The point that is farther away has the speed of a translation.
         rig.step();
         let lever = if switch == joystick_frame::WRIST_ORIGIN { POINT_DISTANCE } else { 14.0 };
         let rate = norm(&turn(&here, &rig.commanded())) / TICK_S;
@@ -136,7 +136,7 @@ fn rotations_leave_their_centre_where_it_is() {
 }
 
 #[test]
-fn a_stick_that_is_not_quite_centred_moves_nothing() {
+fn stick_within_its_play_moves_nothing() {
     let mut rig = Rig::paused();
     let at = rig.commanded();
     rig.frame_switch(joystick_frame::WORLD);
@@ -148,7 +148,7 @@ fn a_stick_that_is_not_quite_centred_moves_nothing() {
 }
 
 #[test]
-fn the_box_is_done_when_the_robot_stands() {
+fn manual_motion_ends_when_the_robot_rests() {
     let mut rig = Rig::paused();
     rig.frame_switch(joystick_frame::WORLD);
     rig.stick(FULL, FULL);
@@ -163,7 +163,7 @@ fn the_box_is_done_when_the_robot_stands() {
     let held = rig.commanded();
     rig.wait(20);
     assert_eq!((rig.commanded(), rig.world.t3i.output), (held, WireFrame::from_frame(&held)));
-    // It can be taken again, by the same PAUSE.
+    // The same PAUSE permits another manual motion.
     rig.frame_switch(joystick_frame::TOOL);
     rig.wait(20);
     assert_eq!(rig.report(), PrimReport::JoystickOn);
@@ -171,7 +171,7 @@ fn the_box_is_done_when_the_robot_stands() {
 }
 
 #[test]
-fn the_box_waits_until_a_motion_has_ramped_down() {
+fn box_waits_until_a_motion_has_ramped_down() {
     let mut rig = Rig::initialized();
     rig.command(PrimVerb::GotoPt, 3);
     rig.wait(30);
@@ -187,21 +187,21 @@ fn the_box_waits_until_a_motion_has_ramped_down() {
 }
 
 #[test]
-fn two_frames_are_none() {
+fn two_frame_switches_select_no_frame() {
     let mut rig = Rig::paused();
     let at = rig.commanded();
     rig.frame_switch(joystick_frame::WORLD | joystick_frame::TOOL);
     rig.stick(FULL, 0);
     rig.wait(30);
     assert_eq!((rig.commanded(), rig.report(), rig.leds()), (at, PrimReport::JoystickOn, 0));
-    // A bit that is no switch of the box is no frame either.
+    // A bit without a switch selects no frame.
     rig.frame_switch(0x40);
     rig.wait(30);
     assert_eq!((rig.commanded(), rig.report(), rig.leds()), (at, PrimReport::JoystickOn, 0));
     rig.frame_switch(joystick_frame::WORLD);
     rig.wait(30);
     assert_eq!(rig.leds(), joystick_frame::WORLD);
-    // The second one while it moves: ramp down.
+    // A second switch during the motion causes a ramp down.
     rig.frame_switch(joystick_frame::WORLD | joystick_frame::WRIST_ORIGIN);
     rig.wait(40);
     let held = rig.commanded();
@@ -210,7 +210,7 @@ fn two_frames_are_none() {
 }
 
 #[test]
-fn a_stick_stops_every_motion_and_the_commander_hears_of_it() {
+fn stick_stops_every_motion_and_is_reported() {
     for verb in
         [PrimVerb::GoThru, PrimVerb::GotoPt, PrimVerb::GoUntil, PrimVerb::GoWhile, PrimVerb::DeltaMove]
     {
@@ -246,7 +246,7 @@ fn a_stick_stops_every_motion_and_the_commander_hears_of_it() {
         rig.frame_switch(joystick_frame::WORLD);
         rig.wait(20);
         assert_ne!(rig.commanded(), held);
-        // With the switch on and the stick at rest a motion goes on, until the stick is moved.
+        // With the switch on and the stick at rest a motion continues until the stick is moved.
         rig.let_go();
         rig.guard(verb, 2, "SEATED-R");
         rig.wait(10);
@@ -258,7 +258,7 @@ fn a_stick_stops_every_motion_and_the_commander_hears_of_it() {
 }
 
 #[test]
-fn a_stick_is_heard_of_after_a_motion_is_done() {
+fn stick_is_reported_after_a_motion_is_done() {
     let mut rig = Rig::initialized();
     assert_eq!(rig.run(PrimVerb::GoThru, 1), PrimReport::Done);
     let flying = rig.commanded();
@@ -275,7 +275,7 @@ fn a_stick_is_heard_of_after_a_motion_is_done() {
 }
 
 #[test]
-fn a_command_in_the_middle_of_a_manual_motion_begins_when_that_has_ramped_down() {
+fn command_waits_until_a_manual_motion_has_ramped_down() {
     let mut rig = Rig::paused();
     rig.frame_switch(joystick_frame::WORLD);
     rig.stick(-FULL, FULL);
@@ -287,7 +287,7 @@ fn a_command_in_the_middle_of_a_manual_motion_begins_when_that_has_ramped_down()
 }
 
 #[test]
-fn without_a_position_the_box_moves_nothing() {
+fn box_without_a_position_moves_nothing() {
     let mut rig = Rig::new();
     rig.wait(3);
     rig.frame_switch(joystick_frame::WORLD);
@@ -298,13 +298,13 @@ fn without_a_position_the_box_moves_nothing() {
     rig.external.devices.joystick.record = true;
     let status = rig.step().status;
     assert_eq!((status.recording, status.recorded_pose), (false, None));
-    // ROBOT-INIT moves nothing either, and is not hindered.
+    // ROBOT-INIT moves nothing and is executed.
     assert_eq!(rig.run(PrimVerb::RobotInit, 0), PrimReport::Done);
     assert_eq!(rig.run(PrimVerb::CalSensor, 0), PrimReport::JoystickOn);
 }
 
 #[test]
-fn the_gripper_buttons_are_passed_on_while_the_box_has_the_robot() {
+fn gripper_buttons_are_published_while_the_box_is_on() {
     let mut rig = Rig::paused();
     let joystick = |rig: &mut Rig, frame, open, close| {
         let joystick = &mut rig.external.devices.joystick;
@@ -323,7 +323,7 @@ fn the_gripper_buttons_are_passed_on_while_the_box_has_the_robot() {
 }
 
 #[test]
-fn a_recorded_pose_suspends_until_the_operator_goes_on() {
+fn recorded_pose_suspends_until_the_operator_continues() {
     let mut rig = Rig::paused();
     assert_eq!((rig.memory.prim.status.recorded_pose, rig.memory.prim.status.recording), (None, false));
     rig.frame_switch(joystick_frame::WORLD);
@@ -336,7 +336,7 @@ fn a_recorded_pose_suspends_until_the_operator_goes_on() {
     let pose = rig.pose(status.recorded_pose).copied();
     assert_eq!(pose, Some(Pose::from_frame(&rig.commanded())));
     assert_eq!(pose, rig.pose(status.present_pose).copied());
-    // The last point is the one recorded, and the robot holds it.
+    // The last point is the recorded one, and the robot stays there.
     rig.wait(2);
     let held = rig.world.t3i.output;
     assert_eq!(held, WireFrame::from_frame(&rig.commanded()));
@@ -348,15 +348,15 @@ fn a_recorded_pose_suspends_until_the_operator_goes_on() {
     assert!(!rig.memory.prim.status.recording && !rig.memory.prim.header.republished);
     rig.external.devices.joystick.resume = false;
     rig.wait(40);
-    assert!(!rig.memory.prim.status.recording, "the button was never let go");
+    assert!(!rig.memory.prim.status.recording, "the button was never released");
     assert_eq!(rig.pose(rig.memory.prim.status.recorded_pose).copied(), pose);
-    // The stick was held all the time: from rest again.
+    // The stick was deflected all the time: the motion starts from rest.
     rig.check_path(&held.to_frame().unwrap());
     assert_ne!(rig.world.t3i.output, held);
 }
 
 #[test]
-fn a_prim_that_was_held_goes_on_from_rest_to_its_goal() {
+fn held_prim_resumes_from_rest_to_its_goal() {
     for verb in [PrimVerb::GotoPt, PrimVerb::GoThru, PrimVerb::Pause] {
         let mut rig = Rig::initialized();
         if verb == PrimVerb::Pause {
@@ -384,7 +384,7 @@ fn a_prim_that_was_held_goes_on_from_rest_to_its_goal() {
 }
 
 #[test]
-fn a_step_is_a_knot_point_of_the_trajectory() {
+fn single_step_is_one_trajectory_point() {
     let mut rig = Rig::initialized();
     rig.command(PrimVerb::GotoPt, 3);
     rig.wait(60);
@@ -401,7 +401,7 @@ fn a_step_is_a_knot_point_of_the_trajectory() {
         let step = a.to_frame().unwrap().distance(&b.to_frame().unwrap()).inches;
         assert!((step - 0.4).abs() < 0.02, "{step} in: the points lie where they would");
     }
-    // Let go in the tick after a step: from rest all the same.
+    // Released in the tick after a step: also from rest.
     let held = rig.world.t3i.output;
     (rig.held, rig.external.devices.joystick.hold) = (false, 0);
     rig.world.t3i.path.clear();

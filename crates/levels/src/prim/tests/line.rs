@@ -1,5 +1,4 @@
-//! Prim, T3I and the controller's end of the DEPC line together, tick by tick: what one sends is what the
-//! next takes.
+//! Prim, T3I and the controller's end of the DEPC line together, tick by tick.
 
 use std::sync::LazyLock;
 
@@ -24,8 +23,7 @@ use crate::{
     t3i::T3i,
 };
 
-pub(super) const SCENARIOS: &[fn()] =
-    &[a_robot_that_lags_too_far_is_stopped_and_pause_takes_its_position_over];
+pub(super) const SCENARIOS: &[fn()] = &[lagging_robot_is_stopped_and_pause_takes_its_position];
 
 type Bench = bench::Bench<Prim, Whole, TaskData<'static>>;
 
@@ -33,7 +31,7 @@ type Bench = bench::Bench<Prim, Whole, TaskData<'static>>;
 struct Whole {
     t3i: T3i,
     line: Line,
-    /// Where the robot was after each tick.
+    /// Robot position after each tick.
     track: Vec<Vector>,
 }
 
@@ -89,7 +87,7 @@ impl Bench {
         bench
     }
 
-    /// A robot on its way to the first goal for so many ticks.
+    /// A robot that has moved towards the first goal for some ticks.
     fn going(ticks: u32) -> Self {
         let mut bench = Self::initialized();
         bench.command(PrimVerb::GotoPt, 1);
@@ -97,21 +95,21 @@ impl Bench {
         bench
     }
 
-    /// How far the robot is from a goal.
+    /// Distance of the robot from a goal.
     fn off(&self, goal: &Frame) -> f64 {
         self.world.line.robot.at.to_tool(&T3).distance(goal).path()
     }
 
-    /// The robot never moves faster than the parameters say.
+    /// The robot never moves faster than the parameters allow.
     fn check_track(&self) {
         for two in self.world.track.windows(2) {
             let step = norm(&(two[1] - two[0]));
-            // The end plate is rounded to words; the tool point stands 20 in off it.
+            // The end plate is rounded to words; the tool point is 20 in from it.
             assert!(step < 10.0 * 0.04 + 0.03, "{step} in in a tick");
         }
     }
 
-    /// A command that goes on ends at the first goal.
+    /// The command continues and ends at the first goal.
     fn arrives(&mut self, case: &str) {
         assert_eq!(self.finish(), PrimReport::Done, "{case}");
         assert!(self.off(&goals()[0]) < 0.03, "{case}");
@@ -131,7 +129,7 @@ impl Bench {
 }
 
 #[test]
-fn robot_init_brings_the_line_up_where_the_robot_is() {
+fn robot_init_starts_the_line_at_the_robot_position() {
     let bench = Bench::initialized();
     assert!(bench.memory.prim.status.link_running);
     assert!(bench.process.state().motion.unwrap().frame().distance(&home()).path() < 0.05);
@@ -139,7 +137,7 @@ fn robot_init_brings_the_line_up_where_the_robot_is() {
 }
 
 #[test]
-fn a_trajectory_is_flown_and_its_end_is_reached() {
+fn trajectory_reaches_its_end() {
     let mut bench = Bench::initialized();
     for _ in 0..3 {
         assert_eq!(bench.run(PrimVerb::GoThru, 1), PrimReport::Done);
@@ -153,7 +151,7 @@ fn a_trajectory_is_flown_and_its_end_is_reached() {
 }
 
 #[test]
-fn a_held_robot_delays_the_path_and_loses_nothing() {
+fn held_robot_only_delays_the_path() {
     let mut bench = Bench::initialized();
     bench.command(PrimVerb::GotoPt, 1);
     for tick in 0..200 {
@@ -165,9 +163,9 @@ fn a_held_robot_delays_the_path_and_loses_nothing() {
     bench.arrives("");
 }
 
-/// One answer is lost, damaged or late, in each of many ticks of a motion: it goes on and ends at its goal.
+/// One answer is lost, damaged or late, in each of many ticks of a motion; the motion ends at its goal.
 #[test]
-fn a_motion_survives_an_answer_that_is_lost_damaged_or_late() {
+fn motion_survives_a_lost_damaged_or_late_answer() {
     for answer in [Answer::IsLost, Answer::IsDamaged, Answer::IsLate(2), Answer::IsLate(5)] {
         for after in (1..46).step_by(3) {
             let mut bench = Bench::going(after);
@@ -183,7 +181,7 @@ fn a_motion_survives_an_answer_that_is_lost_damaged_or_late() {
 }
 
 #[test]
-fn hold_on_the_panel_only_delays_a_motion() {
+fn panel_hold_only_delays_a_motion() {
     for after in [1, 10, 25, 45] {
         for held in [3, 10, 75, 400] {
             let mut bench = Bench::going(after);
@@ -197,7 +195,7 @@ fn hold_on_the_panel_only_delays_a_motion() {
 }
 
 #[test]
-fn a_cut_line_is_waited_for_and_then_lost() {
+fn cut_line_is_lost_after_a_wait() {
     for (cut, over) in [(90, PrimReport::Done), (140, PrimReport::T3LinkOff)] {
         let mut bench = Bench::initialized();
         bench.external.devices.link_patience = Some(125);
@@ -222,7 +220,7 @@ fn a_cut_line_is_waited_for_and_then_lost() {
 }
 
 #[test]
-fn a_robot_that_was_led_away_meanwhile_is_not_moved_before_robot_init() {
+fn robot_moved_by_hand_waits_for_robot_init() {
     let mut bench = Bench::going(25);
     bench.world.line.connected = false;
     bench.wait(5);
@@ -240,7 +238,7 @@ fn a_robot_that_was_led_away_meanwhile_is_not_moved_before_robot_init() {
 }
 
 #[test]
-fn a_robot_that_lags_too_far_is_stopped_and_pause_takes_its_position_over() {
+fn lagging_robot_is_stopped_and_pause_takes_its_position() {
     let mut bench = Bench::initialized();
     bench.wait(30);
     bench.command(PrimVerb::GotoPt, 1);
@@ -252,13 +250,13 @@ fn a_robot_that_lags_too_far_is_stopped_and_pause_takes_its_position_over() {
     let is_off_path = |bench: &Bench| {
         let status = bench.memory.prim.status;
         assert_eq!((status.report, status.reason), (PrimReport::Error, Reason::OffPath));
-        assert!(!status.link_running && status.present_pose.is_none(), "nothing is ramped down");
+        assert!(!status.link_running && status.present_pose.is_none(), "no ramp");
     };
     is_off_path(&bench);
     let stood = bench.world.line.robot.at;
-    // The limit, and the way in the expected lag and in the ticks between Prim and the line.
+    // The limit, plus the path in the expected lag and in the ticks between Prim and the line.
     assert!((0.5..2.0).contains(&bench.off(&home())), "{}", bench.off(&home()));
-    // The resolvers tell the truth again: only ROBOT-INIT, which PAUSE sends, lets the robot move.
+    // The resolvers are correct again: only ROBOT-INIT, which PAUSE sends, permits motion.
     assert_eq!(bench.run(PrimVerb::GotoPt, 1), PrimReport::Error);
     is_off_path(&bench);
     assert_eq!(bench.run(PrimVerb::Pause, 0), PrimReport::Error);
@@ -271,7 +269,7 @@ fn a_robot_that_lags_too_far_is_stopped_and_pause_takes_its_position_over() {
 }
 
 #[test]
-fn a_restarted_t3i_is_restarted_by_prim_in_the_middle_of_a_motion() {
+fn prim_restarts_the_link_of_a_restarted_t3i_in_motion() {
     for after in [2, 30, 60] {
         let mut bench = Bench::going(after);
         bench.world.t3i = T3i::default();
@@ -280,14 +278,14 @@ fn a_restarted_t3i_is_restarted_by_prim_in_the_middle_of_a_motion() {
 }
 
 #[test]
-fn a_held_prim_holds_the_robot_at_once_and_goes_on_from_rest() {
+fn held_prim_stops_the_robot_and_resumes_from_rest() {
     let mut bench = Bench::initialized();
     bench.command(PrimVerb::GotoPt, 1);
     bench.wait(30);
     assert!(bench.last_ways(1)[0] > 0.2);
     bench.hold_prim(true);
     bench.wait(12);
-    // The point of the tick before is still sent; then the robot stands, and the line is kept up.
+    // The point of the previous tick is still sent; then the robot rests, and the line stays up.
     assert!(bench.last_ways(10).iter().all(|way| *way < 1e-9), "{:?}", bench.last_ways(12));
     for _ in 0..3 {
         bench.held = false;
@@ -306,7 +304,7 @@ fn a_held_prim_holds_the_robot_at_once_and_goes_on_from_rest() {
 }
 
 #[test]
-fn the_joystick_box_moves_the_robot_and_records_where_it_stands() {
+fn joystick_box_moves_the_robot_and_records_its_pose() {
     let mut bench = Bench::initialized();
     assert_eq!(bench.run(PrimVerb::Pause, 0), PrimReport::Done);
     for (frame, x, y) in [(1, 1000, 0), (2, 0, -1000), (4, 1000, 0), (8, 0, 1000)] {

@@ -1,5 +1,4 @@
-//! Prim against a model of T3I that stalls, fails and watches the order of points; in [`line`], against T3I
-//! itself.
+//! Prim against a model of T3I that stalls, fails and checks the order of points; in [`line`], against T3I itself.
 
 mod guarded;
 mod joystick;
@@ -99,7 +98,7 @@ type Rig = bench::Bench<Prim, Below, TaskData<'static>>;
 #[derive(Clone)]
 struct Below {
     t3i: ModelT3i,
-    /// One in so many ticks T3I takes no point; 0 for never.
+    /// T3I takes no point in one of this many ticks; 0 for never.
     stalls: u64,
     noise: u64,
     emove_dead: bool,
@@ -143,7 +142,7 @@ impl<'d> Tested<TaskData<'d>> for Prim {
 }
 
 impl<W: World<Prim>> bench::Bench<Prim, W, TaskData<'static>> {
-    /// What E-move writes in a tick.
+    /// A tick in which E-move writes a command.
     fn command(&mut self, command: PrimVerb, pose: u32) {
         let before = self.memory.emove.prim;
         self.send(PrimCommand {
@@ -190,7 +189,7 @@ impl Rig {
         self.process.state().motion.expect("Prim commands the robot").frame()
     }
 
-    /// Prim commands the robot, and the path has ended.
+    /// True if Prim commands the robot and the path has ended.
     fn at_rest(&self) -> bool {
         self.process.state().motion.is_some_and(|motion| motion.is_at_rest())
     }
@@ -202,7 +201,7 @@ impl Rig {
         rig
     }
 
-    /// The points that went to the robot never jump, and speed changes as the parameters allow.
+    /// The sent points never jump, and speed changes as the parameters allow.
     fn check_path(&self, from: &Frame) {
         let mut points = vec![from.position; 2];
         points.extend(self.world.t3i.path.iter().map(|wire| wire.to_frame().unwrap().position));
@@ -217,7 +216,7 @@ impl Rig {
 }
 
 #[test]
-fn starts_with_pause_and_without_a_position() {
+fn starting_prim_sends_pause_and_has_no_position() {
     let mut rig = Rig::new();
     rig.wait(5);
     let out = rig.memory.prim;
@@ -228,7 +227,7 @@ fn starts_with_pause_and_without_a_position() {
 }
 
 #[test]
-fn robot_init_takes_the_position_over() {
+fn robot_init_takes_over_the_position() {
     let mut rig = Rig::new();
     rig.wait(3);
     rig.command(PrimVerb::RobotInit, 0);
@@ -244,7 +243,7 @@ fn robot_init_takes_the_position_over() {
 }
 
 #[test]
-fn a_trajectory_ends_exactly_whatever_stalls() {
+fn stalled_trajectory_ends_exactly() {
     for stalls in [0, 2, 3, 7, 50] {
         let mut rig = Rig::initialized();
         rig.world.stalls = stalls;
@@ -270,7 +269,7 @@ fn through_point_is_not_passed_while_the_resolvers_are_far_from_it() {
 }
 
 #[test]
-fn a_through_point_without_a_next_command_is_stopped_at() {
+fn through_point_without_a_next_command_stops_the_robot() {
     let mut rig = Rig::initialized();
     assert_eq!(rig.run(PrimVerb::GoThru, 1), PrimReport::Done);
     rig.wait(200);
@@ -280,7 +279,7 @@ fn a_through_point_without_a_next_command_is_stopped_at() {
 }
 
 #[test]
-fn pause_ramps_down_and_keeps_the_last_point() {
+fn pause_ramps_down_and_repeats_the_last_point() {
     for after in [1, 5, 13, 40, 60] {
         let mut rig = Rig::initialized();
         rig.world.stalls = 5;
@@ -297,7 +296,7 @@ fn pause_ramps_down_and_keeps_the_last_point() {
 }
 
 #[test]
-fn a_goal_before_its_time_is_reached_without_a_jump() {
+fn early_goal_is_reached_without_a_jump() {
     let mut rig = Rig::initialized();
     rig.command(PrimVerb::GotoPt, 3);
     rig.wait(30);
@@ -307,7 +306,7 @@ fn a_goal_before_its_time_is_reached_without_a_jump() {
 }
 
 #[test]
-fn the_knob_stops_the_path() {
+fn knob_at_zero_stops_the_path() {
     let mut rig = Rig::initialized();
     rig.command(PrimVerb::GotoPt, 3);
     rig.wait(40);
@@ -322,7 +321,7 @@ fn the_knob_stops_the_path() {
 }
 
 #[test]
-fn movetables_and_changing_poses_make_the_goal() {
+fn goal_is_a_changing_pose_with_its_movetable() {
     let mut rig = Rig::initialized();
     rig.command(PrimVerb::GotoPt, 1);
     rig.memory.emove.prim.movetable = MovtabId::new(1);
@@ -338,7 +337,7 @@ fn movetables_and_changing_poses_make_the_goal() {
 }
 
 #[test]
-fn missing_records_and_bad_parameters_are_refused_and_stop_the_robot() {
+fn unusable_records_are_refused_and_stop_the_robot() {
     let mut rig = Rig::initialized();
     rig.command(PrimVerb::GotoPt, 3);
     rig.wait(30);
@@ -366,7 +365,7 @@ fn missing_records_and_bad_parameters_are_refused_and_stop_the_robot() {
 }
 
 #[test]
-fn a_silent_t3i_is_noticed() {
+fn silent_t3i_is_reported() {
     let mut rig = Rig::initialized();
     rig.command(PrimVerb::GotoPt, 3);
     rig.wait(30);
@@ -382,7 +381,7 @@ fn a_silent_t3i_is_noticed() {
 }
 
 #[test]
-fn a_t3i_that_does_not_echo_gets_one_point_more_and_no_other() {
+fn t3i_without_echo_gets_only_one_more_point() {
     let mut rig = Rig::initialized();
     rig.command(PrimVerb::GotoPt, 3);
     rig.wait(30);
@@ -394,7 +393,7 @@ fn a_t3i_that_does_not_echo_gets_one_point_more_and_no_other() {
 }
 
 #[test]
-fn a_last_point_that_is_not_echoed_is_noticed() {
+fn unechoed_last_point_is_reported() {
     let mut rig = Rig::initialized();
     rig.command(PrimVerb::GotoPt, 2);
     rig.wait(5);
@@ -404,7 +403,7 @@ fn a_last_point_that_is_not_echoed_is_noticed() {
 }
 
 #[test]
-fn a_held_t3i_is_waited_for() {
+fn prim_waits_for_a_held_t3i() {
     let mut rig = Rig::initialized();
     rig.world.t3i.held = true;
     rig.wait(2);
@@ -418,7 +417,7 @@ fn a_held_t3i_is_waited_for() {
 }
 
 #[test]
-fn a_point_is_sent_every_tick() {
+fn one_point_is_sent_per_tick() {
     let mut rig = Rig::initialized();
     rig.command(PrimVerb::GotoPt, 3);
     rig.step();
@@ -431,14 +430,14 @@ fn a_point_is_sent_every_tick() {
 }
 
 #[test]
-fn pause_is_done_when_the_resolvers_show_that_the_robot_rests() {
+fn pause_is_done_when_the_resolvers_show_rest() {
     let mut rig = Rig::initialized();
     rig.command(PrimVerb::GotoPt, 2);
     rig.wait(20);
     rig.command(PrimVerb::Pause, 0);
     rig.step();
     for _ in 0..20 {
-        // The arm still settles: it is in another place in each tick.
+        // The arm still settles: its position differs in each tick.
         rig.world.t3i.off = if rig.world.t3i.off == 0 { 3 } else { 0 };
         rig.step();
         assert_eq!(rig.report(), PrimReport::Executing);
@@ -446,13 +445,13 @@ fn pause_is_done_when_the_resolvers_show_that_the_robot_rests() {
     rig.world.t3i.off = 0;
     rig.wait(5);
     assert_eq!(rig.report(), PrimReport::Done);
-    // A vise that closes on the part shifts the hand of a robot that pauses.
+    // A vise that closes on the part shifts the hand of a paused robot.
     rig.world.t3i.off = 6;
     rig.wait(2);
     assert_eq!(rig.report(), PrimReport::Done);
 }
 
-/// The arm swings by 0.03 in until the command is over.
+/// The arm swings by 0.03 in until the command ends.
 fn swing(rig: &mut Rig) -> (PrimReport, Reason) {
     for _ in 0..300 {
         rig.world.t3i.off = if rig.tick.0.is_multiple_of(3) { 3 } else { 0 };
@@ -466,7 +465,7 @@ fn swing(rig: &mut Rig) -> (PrimReport, Reason) {
 }
 
 #[test]
-fn a_robot_that_swings_through_the_goal_is_not_at_rest() {
+fn robot_swinging_through_its_goal_is_not_at_rest() {
     for verb in [PrimVerb::GotoPt, PrimVerb::CalSensor, PrimVerb::Pause, PrimVerb::GoUntil] {
         let mut rig = Rig::initialized();
         rig.external.devices.force = ForceSensor { x: 2048, y: 2048, z: 2048, moment: 2048, valid: true };
@@ -480,7 +479,7 @@ fn a_robot_that_swings_through_the_goal_is_not_at_rest() {
 }
 
 #[test]
-fn robot_init_in_the_middle_of_a_motion_stops_the_robot_first() {
+fn robot_init_during_a_motion_stops_the_robot_first() {
     let mut rig = Rig::initialized();
     rig.command(PrimVerb::GotoPt, 3);
     rig.wait(30);
@@ -490,7 +489,7 @@ fn robot_init_in_the_middle_of_a_motion_stops_the_robot_first() {
 }
 
 #[test]
-fn without_e_move_the_robot_stops() {
+fn loss_of_e_move_stops_the_robot() {
     let mut rig = Rig::initialized();
     rig.command(PrimVerb::GotoPt, 3);
     rig.wait(30);
@@ -508,7 +507,7 @@ fn without_e_move_the_robot_stops() {
 }
 
 #[test]
-fn a_robot_that_does_not_arrive_is_an_error_after_two_seconds() {
+fn robot_not_arriving_fails_after_two_seconds() {
     for verb in [PrimVerb::GotoPt, PrimVerb::GoUntil, PrimVerb::DeltaMove] {
         let mut rig = Rig::initialized();
         rig.world.t3i.off = 3;
@@ -522,9 +521,9 @@ fn a_robot_that_does_not_arrive_is_an_error_after_two_seconds() {
     }
 }
 
-/// Whatever is commanded whenever, points stay in order and the path has no jump.
+/// Random commands at random times: points stay in order and the path has no jump.
 #[test]
-fn random_commands_never_make_the_robot_jump() {
+fn random_commands_cause_no_jump() {
     for seed in 1..=400 {
         let mut rig = Rig::initialized();
         rig.world.noise = seed;
@@ -556,7 +555,7 @@ fn random_commands_never_make_the_robot_jump() {
 }
 
 #[test]
-fn a_restored_prim_goes_on_to_the_bit() {
+fn restored_prim_continues_identically() {
     let mut rig = Rig::initialized();
     rig.command(PrimVerb::GotoPt, 3);
     rig.wait(30);
@@ -567,7 +566,7 @@ fn a_restored_prim_goes_on_to_the_bit() {
 }
 
 #[test]
-fn devices_that_are_lost_or_tripped_stop_the_robot() {
+fn lost_or_tripped_device_stops_the_robot() {
     for (connection, reason) in
         [(Connection::Lost, Reason::DeviceSilent), (Connection::Tripped, Reason::DeviceTripped)]
     {
@@ -593,16 +592,16 @@ fn devices_that_are_lost_or_tripped_stop_the_robot() {
 #[test]
 fn every_row_fires() {
     const SCENARIOS: &[fn()] = &[
-        starts_with_pause_and_without_a_position,
-        devices_that_are_lost_or_tripped_stop_the_robot,
+        starting_prim_sends_pause_and_has_no_position,
+        lost_or_tripped_device_stops_the_robot,
         through_point_is_not_passed_while_the_resolvers_are_far_from_it,
-        missing_records_and_bad_parameters_are_refused_and_stop_the_robot,
-        a_silent_t3i_is_noticed,
-        a_t3i_that_does_not_echo_gets_one_point_more_and_no_other,
-        a_robot_that_swings_through_the_goal_is_not_at_rest,
-        robot_init_in_the_middle_of_a_motion_stops_the_robot_first,
-        without_e_move_the_robot_stops,
-        a_robot_that_does_not_arrive_is_an_error_after_two_seconds,
+        unusable_records_are_refused_and_stop_the_robot,
+        silent_t3i_is_reported,
+        t3i_without_echo_gets_only_one_more_point,
+        robot_swinging_through_its_goal_is_not_at_rest,
+        robot_init_during_a_motion_stops_the_robot_first,
+        loss_of_e_move_stops_the_robot,
+        robot_not_arriving_fails_after_two_seconds,
     ];
     let scenarios =
         [SCENARIOS, line::SCENARIOS, guarded::SCENARIOS, joystick::SCENARIOS, recovery::SCENARIOS].concat();

@@ -1,4 +1,4 @@
-//! Random commands, sensors and operators: whatever they do, the points stay within the limits.
+//! Random commands, sensors and operators: the points stay within the limits.
 
 use geometry::frame::{INCHES_PER_RADIAN, Rotation, rotation_vector};
 use interfaces::device::ForceSensor;
@@ -10,12 +10,12 @@ use crate::{
     prim::{manual::ACCELERATION, tables::TABLES},
 };
 
-/// in/s of every set of parameters at most.
+/// Greatest velocity of all sets of parameters, in/s.
 const VELOCITY: f64 = 10.0;
-/// in/s³ of the smoothest of them.
+/// Smallest jerk limit of all sets, in/s³.
 const JERK: f64 = 250.0;
 
-/// Checks the points that Prim sends, one after the other.
+/// Checks consecutive points of Prim.
 struct Watch {
     number: u32,
     frames: [Frame; 3],
@@ -32,12 +32,12 @@ impl Watch {
         self.frames[1].distance(&self.frames[2]).path() / TICK_S
     }
 
-    /// A tick of the rig, checked. Points are counted, not ticks: without a point the path stands.
+    /// A checked tick of the rig. Time is counted in points: the path stops while no point is sent.
     fn step(&mut self, rig: &mut Rig) -> Result<(), String> {
         let before = rig.commanded();
         rig.step();
         let (header, command) = (rig.memory.prim.header, rig.memory.prim.status.echo);
-        // The condition, or a sensor that fails.
+        // The condition, or a faulty sensor.
         let decided = header.decided.unwrap();
         let table = TABLES[usize::from(decided.table) - 1].name;
         if matches!((table, decided.row), ("GO-UNTIL" | "GO-WHILE", 1 | 2)) && !rig.at_rest() {
@@ -80,7 +80,7 @@ impl Watch {
             ("acceleration", norm(&(now.0 - before.0)) / TICK_S, ACCELERATION),
             ("angular acceleration", norm(&(now.1 - before.1)) / TICK_S, ACCELERATION),
         ] {
-            // Rotation vectors are exact to 1e-9 rad or so.
+            // Rotation vectors are exact to about 1e-9 rad.
             if value > limit * (1.0 + 1e-9) + 1e-4 {
                 return Err(format!("{what} {value} over {limit}"));
             }
@@ -95,7 +95,7 @@ impl Rig {
         (self.world.noise >> 11) % n
     }
 
-    /// The world around Prim does something.
+    /// Random changes of the devices and of T3I.
     fn disturb(&mut self, operator: bool) {
         if self.below(30) == 0 {
             self.external.devices.holsters.right = [0, 3, 15][self.below(3) as usize];
@@ -139,7 +139,7 @@ impl Rig {
     }
 }
 
-/// A run of random commands; what was wrong.
+/// A run of random commands; returns the first error.
 fn run(seed: u64, operator: bool) -> Result<(), String> {
     let mut rig = Rig::initialized();
     (rig.world.noise, rig.world.stalls) = (seed, seed % 8);
@@ -153,7 +153,7 @@ fn run(seed: u64, operator: bool) -> Result<(), String> {
                 .map_err(|text| format!("seed {seed}, command {number}, tick {tick}: {text}"))?;
         }
     }
-    // Whatever was done, it can be ended.
+    // The last command can be ended in every state.
     (rig.external.devices.joystick.velocity, rig.world.stalls) = (1000, 0);
     rig.frame_switch(0);
     rig.command(PrimVerb::GotoPt, 2);
@@ -165,7 +165,7 @@ fn run(seed: u64, operator: bool) -> Result<(), String> {
     Ok(())
 }
 
-/// The rows that fire in none of many runs.
+/// Rows that do not fire in any of many runs.
 fn silent_in(scenario: fn()) -> Vec<String> {
     silent::<Prim, TaskData<'_>>(&[scenario])
 }
@@ -175,16 +175,16 @@ fn runs(operator: bool) {
 }
 
 #[test]
-fn random_guarded_moves_break_no_limit_and_stop_where_they_trip() {
+fn random_guarded_moves_keep_limits_and_stop_where_they_trip() {
     let silent = silent_in(|| runs(false));
-    // They have tripped, missed and failed.
+    // The moves tripped, missed and failed.
     for row in ["GO-UNTIL 1", "GO-UNTIL 2", "GO-UNTIL 6", "GO-UNTIL 9"] {
         assert!(!silent.contains(&row.to_owned()), "{row} has not fired");
     }
 }
 
 #[test]
-fn a_random_operator_breaks_no_limit() {
+fn random_operator_keeps_the_limits() {
     let missing = silent_in(|| runs(true)).into_iter().filter(|row| row.starts_with("PAUSE"));
     let expected = ["PAUSE 1", "PAUSE 2", "PAUSE 3", "PAUSE 4", "PAUSE 5", "PAUSE 6", "PAUSE 8", "PAUSE 12"];
     assert_eq!(

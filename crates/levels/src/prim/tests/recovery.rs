@@ -1,4 +1,4 @@
-//! What becomes of a command when the link fails: Prim restarts it, and goes on.
+//! Commands during link failures: Prim restarts the link and the command continues.
 
 use interfaces::device::ForceSensor;
 
@@ -6,16 +6,16 @@ use super::*;
 use crate::prim::state::{MOST_RESTARTS, RESTART_TICKS};
 
 pub(super) const SCENARIOS: &[fn()] = &[
-    a_motion_goes_on_from_rest_to_its_goal_after_every_fault,
-    a_link_that_fails_while_pause_stands_is_reported_and_the_next_motion_restarts_it,
-    a_restart_without_a_report_is_a_lost_link,
-    too_many_restarts_are_a_lost_link_and_pass,
-    a_link_that_fails_again_and_again_is_lost_by_its_last_fault,
-    a_robot_that_is_elsewhere_waits_for_robot_init,
-    robot_init_restarts_a_link_that_fails_after_its_report,
-    robot_init_says_what_is_wrong_with_the_link,
-    robot_init_clears_a_fault_of_the_link_but_not_a_robot_off_its_path,
-    a_link_that_fails_leaves_no_motion_behind,
+    motion_resumes_from_rest_after_every_fault,
+    link_failure_in_pause_is_reported_and_next_motion_restarts,
+    restart_without_a_report_is_a_lost_link,
+    too_many_restarts_are_a_lost_link_for_a_while,
+    repeated_link_failure_reports_its_last_fault,
+    displaced_robot_waits_for_robot_init,
+    robot_init_restarts_a_link_failing_after_its_report,
+    robot_init_reports_the_fault_of_the_link,
+    robot_init_clears_link_faults_but_not_a_robot_off_its_path,
+    link_failure_ends_the_motion,
 ];
 
 const FAULTS: [LinkFault; 5] = [
@@ -27,7 +27,7 @@ const FAULTS: [LinkFault; 5] = [
 ];
 
 impl Rig {
-    /// The link fails and is restarted; the command goes on executing meanwhile. Where the robot stopped.
+    /// Fail and restart the link while the command stays in execution. Returns where the robot stopped.
     fn lose_and_restart(&mut self, fault: LinkFault) -> WireFrame {
         self.world.t3i.fault = fault;
         self.wait(3);
@@ -41,7 +41,7 @@ impl Rig {
 }
 
 #[test]
-fn a_motion_goes_on_from_rest_to_its_goal_after_every_fault() {
+fn motion_resumes_from_rest_after_every_fault() {
     for (verb, end) in [
         (PrimVerb::GotoPt, PrimReport::Done),
         (PrimVerb::DeltaMove, PrimReport::Done),
@@ -66,7 +66,7 @@ fn a_motion_goes_on_from_rest_to_its_goal_after_every_fault() {
 }
 
 #[test]
-fn it_goes_on_to_the_goal_of_the_command_that_is_current_then() {
+fn restart_resumes_towards_the_current_goal() {
     let mut rig = Rig::initialized();
     rig.command(PrimVerb::GotoPt, 3);
     rig.wait(30);
@@ -77,7 +77,7 @@ fn it_goes_on_to_the_goal_of_the_command_that_is_current_then() {
 }
 
 #[test]
-fn a_robot_that_flies_on_is_sent_on_by_the_next_motion() {
+fn next_motion_continues_after_a_fault_in_a_through_motion() {
     let mut rig = Rig::initialized();
     assert_eq!(rig.run(PrimVerb::GoThru, 1), PrimReport::Done);
     rig.world.t3i.fault = LinkFault::Checksum;
@@ -91,7 +91,7 @@ fn a_robot_that_flies_on_is_sent_on_by_the_next_motion() {
 }
 
 #[test]
-fn a_link_that_fails_while_pause_stands_is_reported_and_the_next_motion_restarts_it() {
+fn link_failure_in_pause_is_reported_and_next_motion_restarts() {
     for (fault, report) in [
         (LinkFault::NotResponding, PrimReport::T3LinkOff),
         (LinkFault::DepcError, PrimReport::T3LinkErr),
@@ -109,7 +109,7 @@ fn a_link_that_fails_while_pause_stands_is_reported_and_the_next_motion_restarts
 }
 
 #[test]
-fn a_guarded_move_asks_its_condition_before_the_first_point() {
+fn restarted_guarded_move_tests_its_condition_first() {
     for (verb, report) in
         [(PrimVerb::GoUntil, PrimReport::Done), (PrimVerb::GoWhile, PrimReport::DetectedErr)]
     {
@@ -124,7 +124,7 @@ fn a_guarded_move_asks_its_condition_before_the_first_point() {
 }
 
 #[test]
-fn a_guarded_move_that_was_stopping_is_done_where_it_rests() {
+fn stopping_guarded_move_is_done_where_it_rests() {
     let mut rig = Rig::initialized();
     rig.guard(PrimVerb::GoUntil, 3, "NEAR-R");
     rig.wait(40);
@@ -132,14 +132,14 @@ fn a_guarded_move_that_was_stopping_is_done_where_it_rests() {
     rig.wait(3);
     let detected = rig.memory.prim.status.detected_pose;
     let stopped = rig.lose_and_restart(LinkFault::NotResponding);
-    // The condition has passed: it has come all the same.
+    // The condition was met earlier and does not hold now.
     rig.external.devices.holsters.right = 0;
     assert_eq!((rig.finish(), rig.world.t3i.output), (PrimReport::Done, stopped));
     assert_eq!((rig.memory.prim.status.detected_pose, rig.world.t3i.path.len()), (detected, 0));
 }
 
 #[test]
-fn a_missed_condition_is_waited_for_after_a_restart() {
+fn missed_condition_may_still_arrive_after_a_restart() {
     let mut rig = Rig::initialized();
     rig.guard(PrimVerb::GoUntil, 2, "NEAR-R");
     assert_eq!(rig.finish(), PrimReport::NotDetected);
@@ -152,7 +152,7 @@ fn a_missed_condition_is_waited_for_after_a_restart() {
 }
 
 #[test]
-fn cal_sensor_begins_its_samples_anew() {
+fn restart_discards_the_samples_of_cal_sensor() {
     let force = |z| ForceSensor { x: 2048, y: 2048, z, moment: 2048, valid: true };
     let mut rig = Rig::initialized();
     rig.external.devices.force = force(2048);
@@ -166,7 +166,7 @@ fn cal_sensor_begins_its_samples_anew() {
 }
 
 #[test]
-fn a_restart_without_a_report_is_a_lost_link() {
+fn restart_without_a_report_is_a_lost_link() {
     for (broken, report) in [
         (LinkFault::NotResponding, PrimReport::T3LinkOff),
         (LinkFault::Checksum, PrimReport::T3LinkErr),
@@ -182,7 +182,7 @@ fn a_restart_without_a_report_is_a_lost_link() {
 }
 
 #[test]
-fn a_controller_whose_dtr_is_off_is_a_link_that_is_off() {
+fn controller_with_dtr_off_reports_link_off() {
     for before_the_restart in [true, false] {
         let mut rig = Rig::initialized();
         rig.command(PrimVerb::GotoPt, 3);
@@ -198,9 +198,9 @@ fn a_controller_whose_dtr_is_off_is_a_link_that_is_off() {
     }
 }
 
-/// A command that is done stays done; that the arm may sink is reported beside it.
+/// A command that is done stays done; the link failure is reported with it, since the arm may sink.
 #[test]
-fn controller_that_goes_off_after_the_end_of_a_motion_is_reported_beside_done() {
+fn controller_off_after_a_motion_is_reported_with_done() {
     let mut rig = Rig::initialized();
     rig.command(PrimVerb::GotoPt, 3);
     assert_eq!(rig.finish(), PrimReport::Done);
@@ -212,7 +212,7 @@ fn controller_that_goes_off_after_the_end_of_a_motion_is_reported_beside_done() 
 }
 
 #[test]
-fn too_many_restarts_are_a_lost_link_and_pass() {
+fn too_many_restarts_are_a_lost_link_for_a_while() {
     let most = u32::try_from(MOST_RESTARTS).unwrap();
     for (faults, report) in [(most - 1, PrimReport::Done), (most, PrimReport::T3LinkErr)] {
         let mut rig = Rig::initialized();
@@ -230,7 +230,7 @@ fn too_many_restarts_are_a_lost_link_and_pass() {
 }
 
 #[test]
-fn a_link_that_fails_again_and_again_is_lost_by_its_last_fault() {
+fn repeated_link_failure_reports_its_last_fault() {
     for (fault, report, next) in [
         (LinkFault::NotResponding, PrimReport::T3LinkOff, PrimReport::T3LinkOff),
         (LinkFault::DepcError, PrimReport::T3LinkErr, PrimReport::T3LinkErr),
@@ -249,7 +249,7 @@ fn a_link_that_fails_again_and_again_is_lost_by_its_last_fault() {
 }
 
 #[test]
-fn a_robot_that_is_elsewhere_waits_for_robot_init() {
+fn displaced_robot_waits_for_robot_init() {
     let mut rig = Rig::initialized();
     rig.command(PrimVerb::GotoPt, 3);
     rig.wait(30);
@@ -273,7 +273,7 @@ fn a_robot_that_is_elsewhere_waits_for_robot_init() {
 }
 
 #[test]
-fn robot_init_restarts_a_link_that_fails_after_its_report() {
+fn robot_init_restarts_a_link_failing_after_its_report() {
     let most = u32::try_from(MOST_RESTARTS).unwrap();
     for (faults, report) in
         [(1, PrimReport::Done), (most, PrimReport::Done), (most + 2, PrimReport::T3LinkErr)]
@@ -286,7 +286,7 @@ fn robot_init_restarts_a_link_that_fails_after_its_report() {
 }
 
 #[test]
-fn robot_init_says_what_is_wrong_with_the_link() {
+fn robot_init_reports_the_fault_of_the_link() {
     for (broken, dtr_off, reason) in [
         (LinkFault::InvalidCommand, false, Reason::InterfaceRefused),
         (LinkFault::DepcError, false, Reason::LinkError),
@@ -302,7 +302,7 @@ fn robot_init_says_what_is_wrong_with_the_link() {
 }
 
 #[test]
-fn robot_init_clears_a_fault_of_the_link_but_not_a_robot_off_its_path() {
+fn robot_init_clears_link_faults_but_not_a_robot_off_its_path() {
     let mut rig = Rig::initialized();
     rig.world.t3i.fault = LinkFault::DepcError;
     rig.wait(3);
@@ -314,7 +314,7 @@ fn robot_init_clears_a_fault_of_the_link_but_not_a_robot_off_its_path() {
 }
 
 #[test]
-fn a_link_that_fails_leaves_no_motion_behind() {
+fn link_failure_ends_the_motion() {
     for (fault, dtr_off) in [
         (LinkFault::NotResponding, true),
         (LinkFault::NotResponding, false),
@@ -332,7 +332,7 @@ fn a_link_that_fails_leaves_no_motion_behind() {
 }
 
 #[test]
-fn a_restarted_prim_goes_on_where_the_robot_stands() {
+fn restarted_prim_resumes_at_the_robot_position() {
     let mut rig = Rig::initialized();
     rig.command(PrimVerb::GotoPt, 3);
     rig.wait(30);

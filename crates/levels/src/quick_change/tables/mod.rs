@@ -16,32 +16,32 @@ use rcs_core::{Actions, Plain, Variables, commands, handshake::Arrival};
 use super::goals;
 use crate::execution::{Asked, EXECUTE};
 
-/// Step of all commands: it outlasts the command, so that a failure is reported until the next one.
+/// Step of all commands. It outlasts the command, so that a failure is reported until the next one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Step {
-    /// The ring is to turn, or nothing was commanded yet.
+    /// The ring is to turn, or no command has arrived yet.
     Start,
     /// The command has ended: the sensors are watched.
     Watch,
     /// The ring did not arrive in time.
     Stuck,
-    /// The sensors failed on the way.
+    /// The sensors failed while the ring turned.
     Faulty,
 }
 
-/// What the id pins of the mated gripper are worth.
+/// The id pins of the mated gripper.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Id {
-    /// The id of a gripper, or of none.
+    /// The id of a gripper, or 0.
     Legal,
     /// An id that no gripper has.
     Illegal,
 }
 
-/// What a new command needs, for [`accept::ACCEPT`].
+/// The state variables of [`accept::ACCEPT`].
 #[derive(Clone, Copy, Debug, Variables)]
 pub struct Request {
-    /// Is the command new?
+    /// Whether the command is new.
     pub asked: Asked,
     /// The command.
     pub verb: QuickChangeVerb,
@@ -50,37 +50,34 @@ pub struct Request {
 /// The state variables of a tick, for the tables of the commands.
 #[derive(Clone, Copy, Debug, Variables)]
 pub struct Situation {
-    /// Where the ring is.
+    /// The position of the ring.
     pub ring: RingPosition,
-    /// What the id is worth.
+    /// Whether the id is legal.
     pub id: Id,
     /// Time of the command.
     pub clock: Clock,
-    /// How the controller is connected with the quick change.
+    /// The connection with the quick change.
     pub connection: Connection,
 }
 
-/// What preprocess has found in a tick.
+/// The results of preprocess in a tick.
 #[derive(Clone, Copy, Debug)]
 pub struct StateVariables {
-    /// What the command buffer holds.
     pub arrival: Arrival,
-    /// What a new command needs.
     pub request: Request,
-    /// The state variables of the command's table.
     pub situation: Situation,
 }
 
-/// How the ring fails a command.
+/// Why the ring fails a command.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Failure {
-    /// It did not arrive in time: `qc-stuck`.
+    /// The ring did not arrive in time: `qc-stuck`.
     Stuck,
-    /// Its sensors, or the id pins, failed: `qc-sens-malf`.
+    /// The ring sensors or the id pins failed: `qc-sens-malf`.
     SensorMalfunction,
-    /// Its device does not answer.
+    /// The device does not answer.
     Silent,
-    /// The outputs of its device are safe until an operator releases them.
+    /// The device keeps its outputs safe until an operator releases them.
     Tripped,
 }
 
@@ -106,12 +103,12 @@ impl Failure {
     }
 }
 
-/// What a row can ask for.
+/// The actions of Quick Change.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Actions)]
 pub enum Action {
     /// Leave the ring as it is until a reading counts.
     Wait,
-    /// Leave the ring as it is and report what the sensors say; a command that is under way is done.
+    /// Leave the ring as it is and report the sensor readings; a current command is done.
     Report(QuickChangeReport),
     /// Enable the port and turn the ring towards locked.
     Lock,
@@ -122,7 +119,7 @@ pub enum Action {
 }
 
 commands! {
-    /// Consult the table of a command, and that of QC-PAUSE once the command has ended.
+    /// Consult the table of a command, or QC-PAUSE once the command has ended.
     pub fn of_command(QuickChangeVerb, Step, Situation) -> Action {
         others: EXECUTE, accept::ACCEPT;
         Lock: goals::LOCKED         => qc_lock::qc_lock then qc_pause::qc_pause;

@@ -1,10 +1,8 @@
-//! QC-LOCK (VI.2.1).
-
 use rcs_core::decision_table;
 
 decision_table! {
-    /// QC-LOCK (VI.2.1): lock, check that the ring did not get stuck, disable the control port. Done at once
-    /// if it is locked. While the sensors are not read the port is disabled.
+    /// QC-LOCK (VI.2.1): lock, check that the ring did not get stuck, disable the control port. Done at once if it
+    /// is locked. While the sensors are not read the port is disabled.
     pub QC_LOCK: fn qc_lock(super::Step, super::Situation) -> super::Action or () {
         Start {
             1:  ring: Unread                              => Wait;

@@ -1,10 +1,8 @@
-//! QC-PAUSE (VI.2.1).
-
 use rcs_core::decision_table;
 
 decision_table! {
-    /// QC-PAUSE (VI.2.1): do nothing; the sensors are checked for the status. Decides without a command and
-    /// after the end of the other commands too: a failure of theirs is reported until the next command.
+    /// QC-PAUSE (VI.2.1): do nothing; the sensors are checked for the status. Also consulted without a command and
+    /// after the end of other commands, whose failure is reported until the next command.
     pub QC_PAUSE: fn qc_pause(super::Step, super::Situation) -> super::Action {
         Stuck {
             1: otherwise          => Report(Stuck);

@@ -1,11 +1,9 @@
-//! QC-UNLOCK (VI.2.1).
-
 use rcs_core::decision_table;
 
 decision_table! {
-    /// QC-UNLOCK (VI.2.1): unlock, and check that neither ring nor sensors fail. Done at once if it is
-    /// unlocked. The id does not count: its contacts part while the gripper drops.
-    /// While the sensors are not read the port is disabled.
+    /// QC-UNLOCK (VI.2.1): unlock, and check that neither ring nor sensors fail. Done at once if it is unlocked.
+    /// The id is ignored: its contacts separate while the gripper drops. While the sensors are not read the port is
+    /// disabled.
     pub QC_UNLOCK: fn qc_unlock(super::Step, super::Situation) -> super::Action or () {
         Start {
             1: ring: Unread                            => Wait;

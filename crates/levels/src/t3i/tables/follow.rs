@@ -1,4 +1,4 @@
-//! Supervision of the robot while it moves: a table of every tick, for all commands.
+//! Supervision of the robot's motion: a table of every tick, for all commands.
 
 use rcs_core::{Actions, Plain, decision_table};
 
@@ -7,15 +7,15 @@ use rcs_core::{Actions, Plain, decision_table};
 pub enum Supervision {
     /// It continues.
     Continue,
-    /// The queue is emptied, nothing more is sent, and the robot stops by its own means.
+    /// The queue is emptied, nothing more is sent, and the controller stops the robot.
     Stop,
 }
 
 decision_table! {
-    /// FOLLOW (docs/design/link.md "Following"): is the robot on the path that it is sent along? A robot that is not
-    /// is stopped where it is; only a RESTART, which Prim sends for ROBOT-INIT, ends that. After a start of the link
-    /// the resolvers have a second to come near the reported position: those of the simulated cell follow a robot at
-    /// a serial port, and see it for the first time then.
+    /// FOLLOW (docs/design/link.md "Following"): decides whether the robot is on its path. A robot that is off its
+    /// path is stopped where it is; only a RESTART, which Prim sends for ROBOT-INIT, ends that. After a start of
+    /// the link the resolvers have a second to come near the reported position: those of the simulated cell follow
+    /// a robot at a serial port, which they then see for the first time.
     pub FOLLOW: fn follow(interfaces::t3i::Following, super::Feedback) -> Supervision {
         any {
             1: restart: Asked                               => Continue  -> Joining;

@@ -1,5 +1,5 @@
-//! Decision tables of T3I: commands from Prim, reports of the robot controller, supervision of the robot, rows common
-//! to all commands, and one file per command.
+//! Decision tables of T3I: commands from Prim, reports of the robot controller, supervision of the robot, rows
+//! common to all commands, and one file per command.
 
 pub mod follow;
 pub mod pause;
@@ -15,14 +15,14 @@ use geometry::pose::WireFrame;
 use interfaces::t3i::{T3iCommand, T3iReport, T3iVerb};
 use rcs_core::{Actions, Plain, Variables, commands, handshake::Arrival};
 
-/// What a new POINT is worth.
+/// The check of a new POINT.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Point {
     /// It is the next in order, and the line can carry its frame.
     Next,
-    /// A number was left out: a point is missing, and the path would have a jump.
+    /// A number is missing: the path would have a jump.
     Gap,
-    /// The frame is none, or has no words on the line.
+    /// The frame is not valid, or cannot be expressed in words on the line.
     Unsendable,
     /// The queue is full.
     Full,
@@ -31,31 +31,31 @@ pub enum Point {
 /// The link, as a precondition of points.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum T3iLink {
-    /// It runs.
+    /// The link runs.
     Running,
-    /// No report has come yet.
+    /// The controller has not reported its position yet.
     Starting,
-    /// It has failed since the last RESTART.
+    /// The link has failed since the last RESTART.
     Failed,
 }
 
 /// The controller's DTR.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Dtr {
-    /// It is on, or this end of the line has stopped in the middle of a frame and does not look.
+    /// It is on, or this end of the line has stopped in the middle of a frame and does not check it.
     On,
-    /// The controller does not run its DEPC function, or is not there.
+    /// The controller does not run its DEPC function, or is not connected.
     Off,
 }
 
 /// The start of the link.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum LinkStart {
-    /// It goes on, or is over.
+    /// In progress or over.
     Over,
     /// The link was lost in this tick, or is to be restarted.
     Begun,
-    /// A report has come in this tick.
+    /// A report was received in this tick.
     Reported,
 }
 
@@ -64,27 +64,27 @@ pub enum LinkStart {
 pub enum Words {
     /// No position was ever sent.
     Nothing,
-    /// Those of the position that was sent last and of the one before.
+    /// The words of the last position sent and of the one before.
     Sent,
 }
 
 /// The position of the last report.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Reported {
-    /// No word is more than 2 counts beside the way from the words before to the last ones.
+    /// Every word is within 2 counts of the way from the previous words to the last ones.
     Near,
-    /// A word is.
+    /// A word is farther away.
     Far,
 }
 
-/// What was sent in the tick before.
+/// The output of the previous tick.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Before {
-    /// Nothing that counts.
+    /// Nothing relevant.
     Nothing,
-    /// A point, or a part of the way to it.
+    /// A point, or a step towards it.
     Point,
-    /// A reported position that is not that of the last words, without an error to report.
+    /// A repeated reported position other than the last words, without an error to report.
     Repeated,
 }
 
@@ -104,23 +104,23 @@ pub enum Followed {
     Unknown,
     /// The robot is within the limit of the path.
     Near,
-    /// It is not.
+    /// The robot is beyond the limit.
     Far,
 }
 
-/// The time that the resolvers have to come near a reported position.
+/// The time in which the resolvers must come near a reported position.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Grace {
-    /// It is not over.
+    /// The time is running.
     Running,
-    /// It is over.
+    /// The time is over.
     Over,
 }
 
-/// What there is to report as an error.
+/// The error to report.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Trouble {
-    /// Nothing.
+    /// No error to report.
     None,
     /// The robot has left its path.
     OffPath,
@@ -130,50 +130,50 @@ pub enum Trouble {
     Fault,
 }
 
-/// What the line can take in this tick.
+/// The state of the line in this tick.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum T3iLine {
-    /// No position is known: nothing but a restart.
+    /// No position is known: only a restart can be sent.
     Down,
     /// A frame is outstanding.
     Busy,
-    /// A frame.
+    /// A frame can be sent.
     Free,
 }
 
-/// Does Prim work?
+/// Whether Prim is active.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum T3iCommander {
-    /// It has run in the last tick.
+    /// Prim ran in the previous tick.
     Live,
-    /// It is held, dormant or lost.
+    /// Prim is held, dormant or lost.
     Still,
 }
 
-/// Points that wait, before this tick's frame.
+/// Waiting points, before this tick's frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum PointQueue {
-    /// None: the output is the goal.
+    /// No point: the output is the goal.
     Empty,
-    /// One: another may come.
+    /// One point: another may be sent.
     One,
-    /// More than one: none may come.
+    /// More than one point: no other may be sent.
     More,
 }
 
-/// The position to send on the way to the oldest point.
+/// The next position on the way to the oldest point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum NextPosition {
-    /// It has words on the line.
+    /// It can be expressed in words on the line.
     Sendable,
-    /// It has none, or nothing is to be sent.
+    /// It cannot be expressed in words, or no position is to be sent.
     Unsendable,
 }
 
-/// What is in the command buffer, for [`receive::RECEIVE`].
+/// The command buffer, for [`receive::RECEIVE`].
 #[derive(Clone, Copy, Debug, Variables)]
 pub struct Request {
-    /// Is it new?
+    /// Whether the command is new.
     pub arrival: Arrival,
     /// The command.
     pub command: T3iVerb,
@@ -190,11 +190,11 @@ pub struct Answer {
     pub dtr: Dtr,
     /// The start of the link.
     pub start: LinkStart,
-    /// What a report is compared with.
+    /// The words with which a report is compared.
     pub words: Words,
     /// The report.
     pub place: Reported,
-    /// What was sent in the tick before.
+    /// The output of the previous tick.
     pub before: Before,
 }
 
@@ -203,16 +203,16 @@ pub struct Answer {
 pub struct Feedback {
     /// A RESTART of Prim.
     pub restart: Restarting,
-    /// The resolvers and the path.
+    /// The resolvers, compared with the path.
     pub place: Followed,
-    /// The time for a reported position.
+    /// The time limit for a reported position.
     pub grace: Grace,
 }
 
 /// The state variables of a tick, for the tables of the commands.
 #[derive(Clone, Copy, Debug, Variables)]
 pub struct Situation {
-    /// What there is to report as an error.
+    /// The error to report.
     pub trouble: Trouble,
     /// The line.
     pub line: T3iLine,
@@ -220,43 +220,40 @@ pub struct Situation {
     pub prim: T3iCommander,
     /// The queue.
     pub queue: PointQueue,
-    /// The way to the oldest point.
+    /// The next position on the way to the oldest point.
     pub way: NextPosition,
 }
 
-/// What preprocess has found in a tick.
+/// The results of preprocess in a tick.
 #[derive(Clone, Copy, Debug)]
 pub struct StateVariables {
-    /// What is in the command buffer.
     pub request: Request,
-    /// What came from the robot controller.
+    /// The answer of the robot controller.
     pub answer: Answer,
-    /// What the resolvers say.
+    /// The resolvers, compared with the path.
     pub feedback: Feedback,
     /// Tool frame of the resolvers.
     pub resolvers: WireFrame,
-    /// The command.
     pub command: T3iCommand,
-    /// Does Prim work?
+    /// Whether Prim is active.
     pub prim: T3iCommander,
-    /// The line.
     pub line: T3iLine,
-    /// As far as the limits allow towards the oldest point, the new one included.
+    /// The next step within the limits towards the oldest point, the new one included.
     pub advance: Option<Advance>,
 }
 
-/// What a row can ask for; each with the report to Prim.
+/// The actions of T3I; each with the report to Prim.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Actions)]
 pub enum Action {
-    /// Nothing goes out, or what the link itself has to repeat.
+    /// Send nothing, or only what the link itself has to repeat.
     Nothing(T3iReport),
-    /// A restart goes out.
+    /// Send a restart.
     Restart(T3iReport),
-    /// The last position once more, so that the loss of the link is noticed.
+    /// Send the last position again, so that a loss of the link is detected.
     Repeat(T3iReport),
-    /// The next point, or as much of the way to it as the limits allow.
+    /// Send the next point, or a step towards it within the limits.
     Advance(T3iReport),
-    /// The last position once more. The queue is emptied, and the command counts as invalid from now on.
+    /// Send the last position again. The queue is emptied, and the command is invalid from now on.
     Refuse(T3iReport),
 }
 

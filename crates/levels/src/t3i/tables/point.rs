@@ -1,11 +1,9 @@
-//! POINT (VI.1.1).
-
 use rcs_core::decision_table;
 
 decision_table! {
-    /// POINT (VI.1.1): one point a tick. "Ready" is said one point ahead: Prim's answer to it arrives two
-    /// ticks later. While Prim stands still the robot is held at once; what is said then is for a Prim that
-    /// is stepped singly, whose next point lets one out of the queue.
+    /// POINT (VI.1.1): one point per tick. "Ready" is reported one point early: Prim's answer arrives two ticks
+    /// later. While Prim is not active the robot is stopped at once. The report is then for a Prim that is stepped
+    /// singly, whose next point releases one from the queue.
     pub POINT: fn point(enum PointStep, super::Situation) -> super::Action {
         /// The points of the queue are sent.
         Sending {

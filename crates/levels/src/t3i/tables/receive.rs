@@ -5,23 +5,23 @@ use rcs_core::{Actions, Plain, decision_table};
 /// What to do with the command in the buffer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain, Actions)]
 pub enum T3iIntake {
-    /// Go on with the current command.
+    /// Continue the current command.
     Keep,
-    /// Empty the queue, forget all faults, and begin the link again.
+    /// Empty the queue, clear all faults, and start the link again.
     Restart,
     /// Empty the queue.
     Pause,
     /// Append the point to the queue.
     Append,
-    /// Leave the point out; the reason is already reported.
+    /// Drop the point; the reason is already reported.
     Ignore,
     /// Empty the queue and report an invalid command.
     Refuse,
 }
 
 decision_table! {
-    /// RECEIVE (VI.1.1): is the command taken? A refusal lasts until RESTART or PAUSE, because the next
-    /// point is already on its way when Prim reads of it; a failed link until RESTART.
+    /// RECEIVE (VI.1.1): decides whether the command is accepted. A refusal lasts until RESTART or PAUSE, because
+    /// the next point is already in transit when Prim reads it. A failed link lasts until RESTART.
     pub RECEIVE: fn receive(enum ReceiveStep, super::Request) -> T3iIntake {
         any {
             1:  arrival: Nothing | Same                                      => Keep;

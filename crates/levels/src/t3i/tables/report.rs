@@ -2,20 +2,20 @@
 
 use rcs_core::{Actions, Plain, decision_table};
 
-/// What happens to the words that a report is compared with.
+/// Update of the words with which a report is compared.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain, Actions)]
 pub enum Comparison {
-    /// They stay those of the last point and of the one before.
+    /// They stay those of the last point and the one before.
     Keep,
-    /// They become those of the position that is repeated.
+    /// They become those of the repeated position.
     TakeRepeated,
 }
 
 decision_table! {
-    /// REPORT (A 2.3): is the robot where it was sent? When an answer is lost, the robot may have gone to the
-    /// last words, or not, or be between them. A robot that is elsewhere was moved by other means, and so may
-    /// have been one whose controller was off: a person decides. The first point that is sent then, which is
-    /// after ROBOT-INIT, ends the doubt.
+    /// REPORT (A 2.3): decides whether the robot is at its commanded position. When an answer is lost, the robot
+    /// may be at the last words, at the previous ones, or between them. Elsewhere it was moved by other means; so
+    /// it may have been if its controller was off. Then the operator decides, and the first point sent afterwards,
+    /// after ROBOT-INIT, ends the uncertainty.
     pub REPORT: fn report(interfaces::t3i::ReportCheck, super::Answer) -> Comparison {
         any {
             1:  dtr: Off, words: Sent                      => Keep  -> Elsewhere;

@@ -1,9 +1,7 @@
-//! RESTART (VI.1.1).
-
 use rcs_core::decision_table;
 
 decision_table! {
-    /// RESTART (VI.1.1): begin the link again and wait for the report.
+    /// RESTART (VI.1.1): start the link again and wait for the report.
     pub RESTART: fn restart(enum RestartStep, super::Situation) -> super::Action {
         /// Nothing sent yet.
         Start {

@@ -3,8 +3,8 @@
 use rcs_core::decision_table;
 
 decision_table! {
-    /// TROUBLE: after a refusal or a failure of the link the last position is repeated, whatever the command. A robot
-    /// that has left its path gets no position: it would move there on a way of its own.
+    /// TROUBLE: after a refusal or a failure of the link the last position is repeated, for every command. A robot
+    /// that has left its path gets no position: its way there would be undefined.
     pub TROUBLE: fn trouble(super::Situation) -> super::Action or () {
         1: trouble: Refusal | Fault, line: Free         => Repeat(Error);
         2: trouble: Refusal | Fault, line: Busy | Down  => Nothing(Error);

@@ -1,4 +1,4 @@
-//! Supervision: the resolvers against the path that was sent, with robots that lag, freeze, jump and stop.
+//! Supervision: the resolvers against the sent path, with robots that lag, freeze, jump and stop.
 
 use std::collections::VecDeque;
 
@@ -6,7 +6,7 @@ use interfaces::t3i::{Following, PathLeft};
 
 use super::*;
 
-/// A robot that shows its position so many ticks late.
+/// A robot whose resolvers lag by some ticks.
 struct Lagging {
     bench: Bench,
     ticks: usize,
@@ -45,7 +45,7 @@ impl Lagging {
         (0..ticks).for_each(|_| self.tick());
     }
 
-    /// Sends points along X until the robot is off its path, `points` at most. True if it follows to the last one.
+    /// Sends up to `points` points along X until the robot is off its path. True if it follows to the last one.
     fn goes(&mut self, points: u32, inches: f64) -> bool {
         for _ in 0..points {
             self.x += inches;
@@ -71,7 +71,7 @@ impl Lagging {
 }
 
 #[test]
-fn a_robot_within_the_expected_lag_follows_at_every_speed() {
+fn robot_within_the_expected_lag_follows_at_every_speed() {
     for inches in [0.01, 0.1, 0.2, 0.4, 0.55] {
         for ticks in 0..=5 {
             let mut robot = Lagging::by(ticks);
@@ -82,7 +82,7 @@ fn a_robot_within_the_expected_lag_follows_at_every_speed() {
 }
 
 #[test]
-fn a_robot_beyond_the_expected_lag_is_stopped_within_half_an_inch_of_the_path() {
+fn robot_beyond_the_expected_lag_stops_within_half_an_inch() {
     for inches in [0.1, 0.2, 0.4, 0.55] {
         for ticks in [13, 25, 75] {
             let mut robot = Lagging::by(ticks);
@@ -96,7 +96,7 @@ fn a_robot_beyond_the_expected_lag_is_stopped_within_half_an_inch_of_the_path() 
 }
 
 #[test]
-fn the_robot_states_its_lag() {
+fn expected_lag_comes_from_the_robot() {
     for (lag, ticks, follows) in
         [(Some(400), 10, true), (Some(400), 13, false), (Some(0), 3, false), (None, 5, true)]
     {
@@ -107,7 +107,7 @@ fn the_robot_states_its_lag() {
 }
 
 #[test]
-fn a_robot_that_stops_or_jumps_is_off_its_path_and_one_that_rests_for_long_is_not() {
+fn stop_or_jump_is_off_the_path_and_rest_is_not() {
     let mut robot = Lagging::by(2);
     assert!(robot.goes(20, 0.3));
     robot.frozen = true;
@@ -126,7 +126,7 @@ fn a_robot_that_stops_or_jumps_is_off_its_path_and_one_that_rests_for_long_is_no
 }
 
 #[test]
-fn resolvers_that_are_not_valid_are_not_compared() {
+fn invalid_resolvers_are_not_compared() {
     let mut robot = Lagging::by(2);
     robot.bench.external.devices.resolvers.valid = false;
     robot.frozen = true;
@@ -144,7 +144,7 @@ pub(super) fn a_robot_off_its_path_gets_nothing_until_a_restart() {
     assert_eq!((bench.report(), bench.row()), (T3iReport::Error, ("TROUBLE", 3)));
     assert!(bench.memory.device_outputs().robot_stop);
     let stood = bench.at();
-    // Points that are on their way, PAUSE, a restart of the process.
+    // Points in transit, PAUSE, a restart of the process.
     for command in [T3iVerb::Point, T3iVerb::Point, T3iVerb::Pause, T3iVerb::Point] {
         *x += 0.4;
         bench.memory.prim.t3i.frame = WireFrame::from_frame(&beside(*x));
@@ -173,7 +173,7 @@ pub(super) fn a_robot_off_its_path_gets_nothing_until_a_restart() {
     assert!((bench.robot_tool().position.x - x - 0.1).abs() < 0.02);
 }
 
-/// The resolvers of the simulated cell see a robot at a serial port for the first time when it has reported.
+/// The resolvers of the simulated cell detect a robot at a serial port only after its report.
 #[test]
 pub(super) fn the_resolvers_have_a_second_to_come_near_a_reported_position() {
     let mut bench = Bench::new();

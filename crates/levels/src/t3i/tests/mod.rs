@@ -1,4 +1,4 @@
-//! T3I with the controller's end of the link behind it, tick by tick.
+//! T3I with the controller's end of the link, tick by tick.
 
 use nalgebra::Rotation3;
 
@@ -32,7 +32,7 @@ use crate::{
 /// T3I, the line, the controller; the test is Prim.
 type Bench = bench::Bench<T3i, Below>;
 
-/// The line, and whether Prim is stepped in the next ticks.
+/// The line, and whether Prim is stepped in the following ticks.
 #[derive(Clone)]
 struct Below {
     line: Line,
@@ -76,7 +76,7 @@ impl Bench {
         Self { external, ..Self::before(Below { line, prim_runs: true }) }
     }
 
-    /// A bench on which RESTART is finished.
+    /// A bench after RESTART has finished.
     fn running() -> Self {
         let mut bench = Self::new();
         bench.step();
@@ -104,13 +104,13 @@ impl Bench {
         self.memory.t3i.status.fault
     }
 
-    /// Row that fired, as table and number.
+    /// The row that fired, as table and number.
     fn row(&self) -> (&'static str, u8) {
         let Decided { table, row } = self.memory.t3i.header.decided.unwrap();
         (tables::TABLES[usize::from(table) - 1].name, row)
     }
 
-    /// An invalid command is the fault, by this row.
+    /// Asserts that this row reports an invalid command.
     fn assert_refused_by(&self, table: &'static str, row: u8) {
         let refused = (T3iReport::Error, LinkFault::InvalidCommand, (table, row));
         assert_eq!((self.report(), self.fault(), self.row()), refused);
@@ -128,7 +128,7 @@ impl Bench {
         self.at().to_tool(&T3)
     }
 
-    /// The line carries nothing, not even what is on its way.
+    /// The line drops everything, including bytes in transit.
     fn cut(&mut self) {
         self.world.line.connected = false;
         self.external.devices.link_rx = LinkBytes::default();
@@ -142,7 +142,7 @@ fn beside(x: f64) -> Frame {
 }
 
 #[test]
-fn restart_brings_the_link_up_and_holds_the_reported_position() {
+fn restart_starts_the_link_and_holds_the_reported_position() {
     let mut bench = Bench::new();
     bench.step();
     bench.command(T3iVerb::Restart);
@@ -158,14 +158,14 @@ fn restart_brings_the_link_up_and_holds_the_reported_position() {
 }
 
 #[test]
-fn one_point_a_tick_is_sustained() {
+fn one_point_per_tick_is_sustained() {
     let mut bench = Bench::running();
     let mut reports = Vec::new();
     for n in 1..=50 {
         bench.point(&beside(0.1 * f64::from(n)));
         bench.step();
         reports.push(bench.report());
-        // Read in the tick after it was written, sent in the same, executed by the cell before the next.
+        // Read in the tick after it was written, sent in the same tick, executed by the cell before the next.
         assert!((bench.robot_tool().position.x - 0.1 * f64::from(n)).abs() < 0.01, "point {n}");
         assert_eq!(bench.row(), ("POINT", 8));
     }
@@ -176,7 +176,7 @@ fn one_point_a_tick_is_sustained() {
 }
 
 #[test]
-fn a_point_beyond_the_limits_is_scaled_back_on_a_straight_line() {
+fn point_beyond_the_limits_is_approached_in_a_straight_line() {
     let mut bench = Bench::running();
     let mut goal = home();
     goal.position += Vector::new(3.0, 4.0, 0.0);
@@ -194,18 +194,18 @@ fn a_point_beyond_the_limits_is_scaled_back_on_a_straight_line() {
         ticks += 1;
         assert_eq!(bench.report(), T3iReport::Ready);
     }
-    // 5 in at 0.56 in a tick.
+    // 5 in at 0.56 in per tick.
     assert_eq!(ticks, 9);
     assert_eq!(bench.memory.t3i.status.counters.limited, 8);
     assert_eq!(bench.memory.t3i.status.frame_feedback.tool, WireFrame::from_frame(&goal).tool);
 }
 
 #[test]
-fn a_queue_that_fills_asks_prim_to_wait_and_never_overflows() {
+fn full_queue_makes_prim_wait_and_never_overflows() {
     let mut bench = Bench::running();
     let mut x = 0.0;
     let mut waited = 0;
-    // Prim answers each report one tick later, as it would: 0.9 in a point is more than the line can do.
+    // Prim answers each report one tick later; 0.9 in per point is more than the line can do.
     for _ in 0..200 {
         let report = bench.report();
         bench.step();
@@ -222,7 +222,7 @@ fn a_queue_that_fills_asks_prim_to_wait_and_never_overflows() {
 }
 
 #[test]
-fn a_gap_in_the_numbers_is_an_invalid_command_until_pause() {
+fn gap_in_the_numbers_is_invalid_until_pause() {
     let mut bench = Bench::running();
     bench.point(&beside(0.1));
     bench.step();
@@ -230,7 +230,7 @@ fn a_gap_in_the_numbers_is_an_invalid_command_until_pause() {
     bench.point(&beside(0.3));
     bench.step();
     bench.assert_refused_by("RECEIVE", 8);
-    // The next point was on its way already.
+    // The next point was already in transit.
     bench.point(&beside(0.4));
     bench.step();
     bench.assert_refused_by("RECEIVE", 10);
@@ -245,7 +245,7 @@ fn a_gap_in_the_numbers_is_an_invalid_command_until_pause() {
 }
 
 #[test]
-fn a_frame_without_words_is_an_invalid_command() {
+fn unsendable_frame_is_an_invalid_command() {
     for frame in [WireFrame::default(), WireFrame { tool: [50_000, 0, 0], ..WireFrame::from_frame(&home()) }]
     {
         let mut bench = Bench::running();
@@ -256,9 +256,9 @@ fn a_frame_without_words_is_an_invalid_command() {
     }
 }
 
-/// A robot near the largest word, and a goal behind it: the tool turns half around on the way, and the end
-/// plate would leave the words.
-fn beside_the_end_of_the_words() -> (Bench, Frame) {
+/// A robot near the largest word, and a goal behind the robot: the tool turns half around on the way, and the end
+/// plate would leave the range of the words.
+fn bench_at_the_largest_word() -> (Bench, Frame) {
     let turned = |degrees: f64| Frame {
         position: Vector::new(320.0, 0.0, 0.0),
         rotation: Rotation3::from_axis_angle(&Vector::z_axis(), degrees.to_radians()),
@@ -272,8 +272,8 @@ fn beside_the_end_of_the_words() -> (Bench, Frame) {
 }
 
 #[test]
-fn a_way_without_words_is_an_invalid_command() {
-    let (mut bench, goal) = beside_the_end_of_the_words();
+fn unsendable_way_is_an_invalid_command() {
+    let (mut bench, goal) = bench_at_the_largest_word();
     let at = bench.process.state.position.plate;
     bench.point(&goal);
     bench.step();
@@ -286,7 +286,7 @@ fn a_way_without_words_is_an_invalid_command() {
     assert_eq!((bench.report(), bench.fault()), (T3iReport::Error, LinkFault::InvalidCommand));
 }
 
-/// One tick in which the answer to what was sent last does not come yet.
+/// One tick without the answer to the last frame.
 fn unanswered(bench: &mut Bench) {
     let late = std::mem::take(&mut bench.external.devices.link_rx);
     bench.step();
@@ -294,7 +294,7 @@ fn unanswered(bench: &mut Bench) {
 }
 
 #[test]
-fn while_a_frame_is_outstanding_nothing_is_sent() {
+fn outstanding_frame_blocks_the_line() {
     let mut bench = Bench::running();
     bench.point(&beside(5.0));
     unanswered(&mut bench);
@@ -314,8 +314,8 @@ fn while_a_frame_is_outstanding_nothing_is_sent() {
 }
 
 #[test]
-fn the_first_of_two_points_without_words_is_an_invalid_command() {
-    let (mut bench, goal) = beside_the_end_of_the_words();
+fn first_of_two_unsendable_points_is_an_invalid_command() {
+    let (mut bench, goal) = bench_at_the_largest_word();
     bench.point(&goal);
     unanswered(&mut bench);
     bench.point(&goal);
@@ -324,7 +324,7 @@ fn the_first_of_two_points_without_words_is_an_invalid_command() {
 }
 
 #[test]
-fn a_command_without_a_word_is_invalid() {
+fn unknown_command_is_invalid() {
     let mut bench = Bench::running();
     bench.command(T3iVerb::None);
     bench.step();
@@ -342,7 +342,7 @@ fn points_before_the_report_are_refused() {
 }
 
 #[test]
-fn pause_empties_the_queue_and_holds() {
+fn pause_empties_the_queue_and_holds_the_position() {
     let mut bench = Bench::running();
     bench.point(&beside(5.0));
     bench.step();
@@ -357,7 +357,7 @@ fn pause_empties_the_queue_and_holds() {
 }
 
 #[test]
-fn while_prim_is_held_or_lost_the_position_stands() {
+fn held_or_lost_prim_holds_the_position() {
     for lost in [true, false] {
         let mut bench = Bench::running();
         bench.point(&beside(5.0));
@@ -376,7 +376,7 @@ fn while_prim_is_held_or_lost_the_position_stands() {
 }
 
 #[test]
-fn a_cut_line_is_noticed_reported_and_mended_only_by_restart() {
+fn cut_line_is_reported_until_restart() {
     let mut bench = Bench::running();
     bench.point(&beside(5.0));
     bench.step();
@@ -403,7 +403,7 @@ fn a_cut_line_is_noticed_reported_and_mended_only_by_restart() {
 }
 
 #[test]
-fn bytes_that_the_port_did_not_take_are_said_to_be_not_transmitted() {
+fn unsent_bytes_are_reported_as_not_transmitted() {
     let mut bench = Bench::running();
     bench.point(&beside(5.0));
     bench.step();
@@ -424,7 +424,7 @@ fn bytes_that_the_port_did_not_take_are_said_to_be_not_transmitted() {
 }
 
 #[test]
-fn a_prim_that_is_stepped_singly_lets_one_point_out_a_step() {
+fn singly_stepped_prim_sends_one_point_per_step() {
     let mut bench = Bench::running();
     for n in 1..=6 {
         // Its answer to the report of the tick before; then it stands again.
@@ -442,7 +442,7 @@ fn a_prim_that_is_stepped_singly_lets_one_point_out_a_step() {
 }
 
 #[test]
-fn a_restart_without_an_answer_is_an_error_at_the_end_of_patience() {
+fn unanswered_restart_fails_after_the_time_limit() {
     for (patience, ticks) in [(Some(100), 100), (None, 1500)] {
         let mut bench = Bench::running();
         bench.external.devices.link_patience = patience;
@@ -459,12 +459,12 @@ fn a_restart_without_an_answer_is_an_error_at_the_end_of_patience() {
     }
 }
 
-/// What T3I makes of a report.
+/// The check of a report.
 fn check(bench: &Bench) -> ReportCheck {
     bench.memory.t3i.status.check
 }
 
-/// A robot that is sent along X, and whose line is cut: `taken` says whether the last words arrive.
+/// A robot that moves along X, and whose line is cut; the last words arrive if `taken`.
 fn cut_off(taken: bool) -> Bench {
     let mut bench = Bench::running();
     for point in 1..=5 {
@@ -483,7 +483,7 @@ fn cut_off(taken: bool) -> Bench {
     bench
 }
 
-/// The line is mended and the link restarted.
+/// Reconnect the line and restart the link.
 fn restarted(mut bench: Bench) -> Bench {
     bench.world.line.connected = true;
     bench.command(T3iVerb::Restart);
@@ -492,14 +492,14 @@ fn restarted(mut bench: Bench) -> Bench {
     bench
 }
 
-/// Words that the robot is moved by, otherwise than over the line.
+/// Move the robot by some words, by other means than the line.
 fn led(mut bench: Bench, words: i16) -> Bench {
     bench.world.line.robot.at.words[0] += words;
     bench
 }
 
 #[test]
-fn a_robot_that_took_the_last_words_or_not_or_is_between_is_where_it_was_sent() {
+fn robot_near_the_last_words_is_at_its_commanded_position() {
     for (taken, words) in
         [(true, 0), (true, 2), (true, -15), (true, -32), (false, 0), (false, -2), (false, 32)]
     {
@@ -514,9 +514,9 @@ fn a_robot_that_took_the_last_words_or_not_or_is_between_is_where_it_was_sent() 
     }
 }
 
-/// Between the last words and those before the robot stands at neither; from then on it is sent where it stands.
+/// A robot between the last words and the previous ones; further positions start where it is.
 #[test]
-fn where_the_robot_stands_after_a_report_counts_for_the_next_one() {
+fn next_report_is_compared_with_the_reported_position() {
     for (words, expected) in
         [(2, ReportCheck::AsSent), (15, ReportCheck::Elsewhere), (-15, ReportCheck::Elsewhere)]
     {
@@ -530,10 +530,10 @@ fn where_the_robot_stands_after_a_report_counts_for_the_next_one() {
 }
 
 #[test]
-fn a_robot_that_is_elsewhere_stays_so_until_it_is_sent_on() {
+fn displaced_robot_stays_displaced_until_the_next_point() {
     let mut bench = restarted(led(cut_off(true), 100));
     assert_eq!(check(&bench), ReportCheck::Elsewhere);
-    // Another RESTART, and another loss of the link, do not make it right.
+    // Another RESTART, or another loss of the link, does not change that.
     for connected in [true, false] {
         bench.world.line.connected = connected;
         bench.wait(5);
@@ -547,7 +547,7 @@ fn a_robot_that_is_elsewhere_stays_so_until_it_is_sent_on() {
 }
 
 #[test]
-fn a_report_after_dtr_was_off_is_not_believed_to_be_where_it_was_sent() {
+fn report_after_dtr_off_is_not_trusted() {
     let mut bench = Bench::running();
     bench.point(&beside(0.3));
     bench.step();
@@ -558,7 +558,7 @@ fn a_report_after_dtr_was_off_is_not_believed_to_be_where_it_was_sent() {
     bench.world.line.on = true;
     let bench = restarted(bench);
     assert_eq!(check(&bench), ReportCheck::Elsewhere);
-    // Before anything was sent it does not matter.
+    // Before the first position it does not matter.
     let mut bench = Bench::new();
     (bench.world.line.on, bench.external.devices.link_ready) = (false, false);
     bench.step();
@@ -568,7 +568,7 @@ fn a_report_after_dtr_was_off_is_not_believed_to_be_where_it_was_sent() {
 }
 
 #[test]
-fn a_restarted_t3i_knows_from_its_outputs_what_was_sent() {
+fn restarted_t3i_takes_the_sent_words_from_its_outputs() {
     for (words, expected) in [(0, ReportCheck::AsSent), (3, ReportCheck::Elsewhere)] {
         let mut bench = cut_off(true);
         bench.restart();
@@ -577,7 +577,7 @@ fn a_restarted_t3i_knows_from_its_outputs_what_was_sent() {
         let bench = restarted(led(bench, words));
         assert_eq!(check(&bench), expected);
     }
-    // Nor does it forget that a person has to decide.
+    // It also keeps the result that the operator must decide.
     let mut bench = restarted(led(cut_off(true), 100));
     bench.restart();
     bench.step();
@@ -585,7 +585,7 @@ fn a_restarted_t3i_knows_from_its_outputs_what_was_sent() {
 }
 
 #[test]
-fn a_joint_limit_silences_the_controller_and_restart_mends_it() {
+fn restart_recovers_from_a_joint_limit() {
     let mut bench = Bench::running();
     let mut goal = home();
     let mut reports = Vec::new();
@@ -606,13 +606,13 @@ fn a_joint_limit_silences_the_controller_and_restart_mends_it() {
         (bench.report(), bench.world.line.controller.state()),
         (T3iReport::Finished, ControllerState::Running)
     );
-    // Where the robot really stands, not where it was sent.
+    // The robot's true position, not the commanded one.
     assert!(bench.world.line.robot.joints[5] <= T3.limits[5].1);
     assert_eq!(bench.memory.t3i.status.frame_feedback, WireFrame::from_frame(&bench.robot_tool()));
 }
 
 #[test]
-fn hold_on_the_panel_is_survived() {
+fn panel_hold_does_not_lose_the_link() {
     let mut bench = Bench::running();
     bench.point(&beside(1.0));
     bench.step();
@@ -628,7 +628,7 @@ fn hold_on_the_panel_is_survived() {
 }
 
 #[test]
-fn a_restarted_t3i_does_not_move_and_says_so() {
+fn restarted_t3i_does_not_move_and_reports_it() {
     let mut bench = Bench::running();
     bench.point(&beside(0.3));
     bench.restart();
@@ -640,7 +640,7 @@ fn a_restarted_t3i_does_not_move_and_says_so() {
 }
 
 #[test]
-fn feedback_is_the_resolver_frame_until_the_link_runs() {
+fn feedback_is_the_resolver_frame_before_the_link_runs() {
     let mut bench = Bench::new();
     bench.cut();
     bench.world.line.robot.joints[0] += 0.2;
@@ -655,7 +655,7 @@ fn feedback_is_the_resolver_frame_until_the_link_runs() {
 }
 
 #[test]
-fn a_state_that_is_restored_goes_on_to_the_bit() {
+fn restored_state_continues_identically() {
     let mut bench = Bench::running();
     bench.point(&beside(5.0));
     bench.step();
@@ -668,18 +668,18 @@ fn a_state_that_is_restored_goes_on_to_the_bit() {
 #[test]
 fn every_row_fires() {
     let silent = silent::<T3i, ()>(&[
-        a_gap_in_the_numbers_is_an_invalid_command_until_pause,
-        a_way_without_words_is_an_invalid_command,
-        while_a_frame_is_outstanding_nothing_is_sent,
-        the_first_of_two_points_without_words_is_an_invalid_command,
-        a_command_without_a_word_is_invalid,
+        gap_in_the_numbers_is_invalid_until_pause,
+        unsendable_way_is_an_invalid_command,
+        outstanding_frame_blocks_the_line,
+        first_of_two_unsendable_points_is_an_invalid_command,
+        unknown_command_is_invalid,
         points_before_the_report_are_refused,
-        while_prim_is_held_or_lost_the_position_stands,
-        a_robot_that_is_elsewhere_stays_so_until_it_is_sent_on,
-        a_report_after_dtr_was_off_is_not_believed_to_be_where_it_was_sent,
+        held_or_lost_prim_holds_the_position,
+        displaced_robot_stays_displaced_until_the_next_point,
+        report_after_dtr_off_is_not_trusted,
         follow::a_robot_off_its_path_gets_nothing_until_a_restart,
         follow::the_resolvers_have_a_second_to_come_near_a_reported_position,
     ]);
-    // Points are taken only while the link runs, and a link that is lost is a fault.
+    // Points are taken only while the link runs, and a lost link is a fault.
     assert_eq!(silent, ["POINT 1"]);
 }

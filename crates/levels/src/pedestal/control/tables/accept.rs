@@ -3,8 +3,8 @@
 use rcs_core::decision_table;
 
 decision_table! {
-    /// ACCEPT: a command that hand or table cannot execute is refused before anything moves. Half of a
-    /// PRE-GRIP would be worse than none.
+    /// ACCEPT: a command that hand or table cannot execute is refused before anything moves, since half a PRE-GRIP
+    /// would be worse than none.
     pub ACCEPT: fn accept(super::Request) -> super::Action or () {
         1: asked: Before    => consult;
         2: verb: None       => Fail(UnknownCommand);

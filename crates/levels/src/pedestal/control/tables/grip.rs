@@ -1,12 +1,10 @@
-//! GRIP (VI.7.1).
-
 use rcs_core::decision_table;
 
 decision_table! {
-    /// GRIP (VI.7.1): grasp the object with `grasp-force`; no command to the table. A hand that has closed on
-    /// nothing is an error, since the robot is about to let go.
+    /// GRIP (VI.7.1): grasp the object with `grasp-force`; no command to the table. A hand that closes without an
+    /// object is an error, since the robot is about to release it.
     pub GRIP: fn grip(enum GripStep, super::Situation) -> super::Action {
-        /// Nothing sent yet.
+        /// No command sent yet.
         Start {
             1: otherwise            => Close  -> Closing;
         }

@@ -1,5 +1,5 @@
-//! Decision tables of the pedestal process: what a new command needs, what has become of its orders, and a
-//! file a command.
+//! Decision tables of the pedestal process: preconditions of a new command, results of its orders, and one file per
+//! command.
 
 pub mod accept;
 pub mod flip;
@@ -22,84 +22,84 @@ use crate::{
     halt::{HALT, Replaced, Stopping},
 };
 
-/// Can the table turn as a command asks?
+/// Whether the table can turn to the commanded angle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum PedestalAngle {
-    /// Yes, or it is not to turn.
+    /// The angle is within the limits, or the table is not to turn.
     Within,
     /// The angle is beyond the limits.
     Beyond,
-    /// The angle of the table is not known: a relative angle leads nowhere.
+    /// The angle of the table is not known, so a relative angle has no meaning.
     Unknown,
 }
 
-/// Can the hand do what a command asks?
+/// Whether the hand can reach the commanded opening and force.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum PedestalOpening {
-    /// Yes, or it is not to move.
+    /// Both are within its range, or the hand is not to move.
     Within,
-    /// Opening or force are beyond its range.
+    /// Opening or force is beyond its range.
     Beyond,
 }
 
 /// The processes that have the orders of the current command.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum PedestalRecipient {
-    /// Nothing was ordered yet.
+    /// No process.
     Nothing,
     /// The hand.
     Hand,
     /// The table.
     Table,
-    /// Both.
+    /// Hand and table.
     Both,
 }
 
-/// What the hand feels (VI.7.2 `grip-size`, `grip-force`).
+/// The object in the hand (VI.7.2 `grip-size`, `grip-force`).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Object {
-    /// Its sensors cannot tell, or it does not answer.
+    /// The sensors do not show it, or the hand does not answer.
     NotKnown,
-    /// Nothing, and nothing was gripped.
+    /// No object, and none was gripped.
     None,
-    /// The object between its fingers.
+    /// The object is between the fingers.
     Held,
-    /// Nothing, or fingers that stand no wider than the grasp size, though an object was gripped.
+    /// An object was gripped, but the sensors show none, or the fingers are no wider than the grasp size.
     Lost,
 }
 
-/// Are the sensors of the hand calibrated?
+/// Calibration of the hand's sensors.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum PedestalCalibration {
-    /// Yes.
+    /// The sensors are calibrated.
     Known,
-    /// No.
+    /// The sensors are not calibrated.
     Missing,
 }
 
-/// Was the hand told to grip, and not to open since?
+/// Whether the hand was commanded to grip, and not to open afterwards.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Gripped {
-    /// No: it holds nothing that it was to hold.
+    /// It was not: it holds no object of a command.
     No,
-    /// Yes: it may hold the object.
+    /// It was: it may hold the object.
     Yes,
 }
 
-/// What a new command needs, for [`accept::ACCEPT`].
+/// The state variables of [`accept::ACCEPT`].
 #[derive(Clone, Copy, Debug, Variables)]
 pub struct Request {
-    /// Is the command new?
+    /// Whether the command is new.
     pub asked: Asked,
     /// The command.
     pub verb: PedestalVerb,
-    /// Can the table turn as it asks?
+    /// Whether the table can turn to the commanded angle.
     pub angle: PedestalAngle,
-    /// Can the hand do what it asks?
+    /// Whether the hand can reach the commanded opening and force.
     pub opening: PedestalOpening,
 }
 
-/// How the orders of the command stand, for [`ordered::ORDERED`].
+/// The orders of the command, for [`ordered::ORDERED`].
 #[derive(Clone, Copy, Debug, Variables)]
 pub struct Subordinates {
     /// The command.
@@ -110,46 +110,42 @@ pub struct Subordinates {
     pub hand: Lower,
     /// Status of the table.
     pub table: Lower,
-    /// What the hand holds.
+    /// The object in the hand.
     pub object: Object,
 }
 
 /// The state variables of a tick, for the tables of the commands.
 #[derive(Clone, Copy, Debug, Variables)]
 pub struct Situation {
-    /// What the hand holds.
+    /// The object in the hand.
     pub object: Object,
-    /// Are its sensors calibrated?
+    /// Whether its sensors are calibrated.
     pub calibration: PedestalCalibration,
-    /// Was it told to grip?
+    /// Whether it was commanded to grip.
     pub gripped: Gripped,
-    /// What has become of its last command, whichever command of the pedestal that was for.
+    /// Result of its last command, for any command of the pedestal.
     pub fingers: Work,
 }
 
-/// What preprocess has found in a tick.
+/// The results of preprocess in a tick.
 #[derive(Clone, Copy, Debug)]
 pub struct StateVariables {
-    /// What the command buffer holds.
     pub arrival: Arrival,
-    /// The current command.
     pub verb: PedestalVerb,
-    /// What a new command replaces.
+    /// The variables of HALT.
     pub replaced: Replaced,
-    /// What a new command needs.
     pub request: Request,
-    /// How the orders of the command stand.
+    /// The orders of the command.
     pub subordinates: Subordinates,
     /// The goal of the command, compared with the statuses of hand and table.
     pub proof: Proof,
-    /// The state variables of the command's table.
     pub situation: Situation,
 }
 
-/// What a row can ask for.
+/// The actions of the pedestal process.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Actions)]
 pub enum Action {
-    /// Nothing new.
+    /// Send nothing new.
     Wait,
     /// UP-INIT to the hand.
     Calibrate,
@@ -165,7 +161,7 @@ pub enum Action {
     StopTable,
     /// Report done.
     Finish,
-    /// Report an error: the hand holds nothing.
+    /// Report an error: the hand holds no object.
     Lose(Reason),
     /// Report an error.
     Fail(Reason),

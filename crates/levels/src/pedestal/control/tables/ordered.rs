@@ -3,8 +3,7 @@
 use rcs_core::decision_table;
 
 decision_table! {
-    /// ORDERED: hand and table are waited for. A failure ends the command, and so does an object that comes
-    /// loose in FLIP.
+    /// ORDERED: wait for hand and table. A failure ends the command; also the loss of the object in FLIP.
     pub ORDERED: fn ordered(super::Subordinates) -> super::Action or () {
         1: verb: Flip, object: Lost                               => Lose(HandLost);
         2: ordered: Nothing                                       => consult;

@@ -1,12 +1,10 @@
-//! PAUSE (VI.7.1).
-
 use rcs_core::decision_table;
 
 decision_table! {
-    /// PAUSE (VI.7.1): do nothing. A turning table stops; the hand goes on to the end of what it was told,
-    /// since half a grasp holds nothing, and is waited for. That it fails is no matter of PAUSE.
+    /// PAUSE (VI.7.1): do nothing. A turning table stops. The hand finishes its command, since half a grasp holds
+    /// nothing, and PAUSE waits for it. A failure of the hand does not fail PAUSE.
     pub PAUSE: fn pause(enum PauseStep, super::Situation) -> super::Action {
-        /// Nothing sent yet.
+        /// No command sent yet.
         Start {
             1: otherwise      => StopTable  -> Stopping;
         }

@@ -3,8 +3,7 @@
 use rcs_core::decision_table;
 
 decision_table! {
-    /// ACCEPT: the table turns to no angle beyond its limits. A calibration that is under way goes on beside
-    /// a refusal.
+    /// ACCEPT: a turn beyond the limits is refused. A calibration in progress continues.
     pub ACCEPT: fn accept(super::Request) -> crate::execution::Refusal or () {
         1: asked: Before  => consult;
         2: verb: None     => Fail(UnknownCommand);

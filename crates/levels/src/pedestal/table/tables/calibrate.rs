@@ -3,11 +3,11 @@
 use rcs_core::decision_table;
 
 decision_table! {
-    /// CALIBRATE (IV.1 step 3, IV.5.1 step 10): turn to the + limit, set the counter to zero, park at -20.00.
-    /// Runs by itself when the table is booted, and before the first command that turns it. Commands wait for
-    /// it. A motor that does not take its order, does not come to rest in time or stands elsewhere ends it. A
-    /// process that is restarted in the middle of a job stops the table and adopts the calibration from
-    /// before, if counter and potentiometer agree.
+    /// CALIBRATE (IV.1 step 3, IV.5.1 step 10): turn to the + limit, set the counter to zero, park at -20.00. It
+    /// starts by itself when the system starts, and before the first command that turns the table; commands wait
+    /// for it. It fails if the motor does not take its order, does not come to rest in time, or stops elsewhere. A
+    /// process that is restarted in the middle of a job stops the table and adopts its last calibration, if counter
+    /// and potentiometer agree.
     pub CALIBRATE: fn calibrate(super::TablePhase, super::Situation) -> super::Action or super::TableDuty {
         Missing {
             1:  command: Nothing                                     => SeekLimit         -> Seeking;

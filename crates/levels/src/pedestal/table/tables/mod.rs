@@ -1,5 +1,5 @@
-//! Decision tables of the table process: what a new command needs, the calibration, what commands have in common, and
-//! one file per command.
+//! Decision tables of the table process: preconditions of a new command, the calibration, rows common to all
+//! commands, and one file per command.
 
 pub mod accept;
 pub mod calibrate;
@@ -23,16 +23,16 @@ pub enum Step {
     Turning,
 }
 
-/// Step of CALIBRATE: how far the calibration has come. It outlasts the commands.
+/// Step of CALIBRATE: progress of the calibration. It outlasts the commands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum TablePhase {
-    /// Never done: begins at once, since the table was booted just now (IV.5.1 step 10).
+    /// Not calibrated: begins at once, since the system has just started (IV.5.1 step 10).
     Missing,
-    /// Not done since the process was started in the middle of a job: the table may stand beside the robot,
-    /// so it waits for a command that turns it.
+    /// Not calibrated since the process was started in the middle of a job: the table may be next to the robot, so
+    /// the calibration waits for a command that turns it.
     Deferred,
-    /// The process was started in the middle of a job: the table comes to rest, and the calibration from
-    /// before counts if counter and potentiometer agree.
+    /// The process was started in the middle of a job: the table comes to rest. Its last calibration is adopted if
+    /// counter and potentiometer agree.
     Adopting,
     /// The table turns towards its + limit.
     Seeking,
@@ -46,21 +46,21 @@ pub enum TablePhase {
     Failed,
 }
 
-/// Can the table turn to the commanded angle?
+/// Whether the commanded angle is within the limits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum TableAngle {
-    /// Yes, or none is commanded.
+    /// Within the limits, or no angle is commanded.
     Within,
-    /// It is beyond a limit.
+    /// Beyond a limit.
     Beyond,
 }
 
-/// The command that is being executed.
+/// The command in execution.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum TableActivity {
-    /// None: nothing was commanded yet, or it has ended.
+    /// No command has arrived, or the last one has ended.
     Nothing,
-    /// None: it was refused, or found at the start and not executed.
+    /// The command was refused, or found at the start and not executed.
     Refused,
     /// PAUSE.
     Pause,
@@ -71,7 +71,7 @@ pub enum TableActivity {
 }
 
 impl TableActivity {
-    /// What EXECUTE and ACCEPT leave of a command.
+    /// The command in execution, after EXECUTE and ACCEPT.
     #[must_use]
     pub const fn of(course: Course, accepted: bool, verb: TableVerb) -> Self {
         match course {
@@ -87,99 +87,97 @@ impl TableActivity {
     }
 }
 
-/// What the motor does.
+/// The state of the motor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Motor {
     /// Its controller has not taken the last order yet.
     Pending,
-    /// It turns.
+    /// The motor turns.
     Turning,
-    /// It has come to rest only just now.
+    /// The motor has just stopped.
     Settling,
-    /// It stands.
+    /// The motor is at rest.
     Standing,
-    /// Its controller does not take the last order.
+    /// Its controller does not take the last order in time.
     Silent,
 }
 
-/// Do counter and potentiometer agree where the table is?
+/// Whether counter and potentiometer agree.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Counter {
-    /// Yes.
+    /// They agree.
     Agrees,
-    /// No: steps were lost, the counter was never set, or the potentiometer fails.
+    /// They differ: steps were lost, the counter was never set, or the potentiometer fails.
     Disagrees,
 }
 
-/// Where the table is.
+/// The place of the table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Turned {
-    /// Where the step that is under way wants it: at the + limit, with the counter set, parked, at the angle.
+    /// At the goal of the current step: at the + limit, with the counter set, parked, or at the angle.
     There,
     /// Anywhere else.
     Elsewhere,
 }
 
-/// What a new command needs, for [`accept::ACCEPT`].
+/// The state variables of [`accept::ACCEPT`].
 #[derive(Clone, Copy, Debug, Variables)]
 pub struct Request {
-    /// Is the command new?
+    /// Whether the command is new.
     pub asked: Asked,
     /// The command.
     pub verb: TableVerb,
-    /// Can the table turn to the angle?
+    /// Whether the commanded angle is within the limits.
     pub angle: TableAngle,
 }
 
 /// The state variables of a tick, for the tables of calibration and commands.
 #[derive(Clone, Copy, Debug, Variables)]
 pub struct Situation {
-    /// The command that is being executed.
+    /// The command in execution.
     pub command: TableActivity,
-    /// What the motor does.
+    /// The state of the motor.
     pub motor: Motor,
-    /// Do counter and potentiometer agree?
+    /// Whether counter and potentiometer agree.
     pub counter: Counter,
-    /// Is the table where it should be?
+    /// Whether the table is at the goal of the current step.
     pub place: Turned,
     /// Time of the command.
     pub clock: Clock,
 }
 
-/// What preprocess has found in a tick.
+/// The results of preprocess in a tick.
 #[derive(Clone, Copy, Debug)]
 pub struct StateVariables {
-    /// What the command buffer holds.
     pub arrival: Arrival,
-    /// What a new command needs.
     pub request: Request,
-    /// The state variables; EXECUTE and ACCEPT decide on `command`.
+    /// The state variables; EXECUTE and ACCEPT set `command`.
     pub situation: Situation,
-    /// What the counter shows, 0.1 degree, unless the table stands elsewhere by its potentiometer.
+    /// The angle by the counter, 0.1 degree; none if the potentiometer contradicts it.
     pub angle: Option<i32>,
 }
 
-/// What [`calibrate::CALIBRATE`] leaves to decide.
+/// The remaining decision after [`calibrate::CALIBRATE`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum TableDuty {
-    /// Nothing.
+    /// No decision remains.
     Nothing,
     /// The table of the command decides.
     Command,
 }
 
-/// What a row can ask for.
+/// The actions of the table process.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Actions)]
 pub enum Action {
     /// No new order.
     Wait,
     /// The calibration begins: turn towards the + limit.
     SeekLimit,
-    /// The table stands at the + limit: set the counter to zero.
+    /// The table is at the + limit: set the counter to zero.
     SetCounter,
     /// Turn to -20.00.
     Park,
-    /// The calibration is over: the time of a command that has waited begins.
+    /// The calibration has ended: the time limit of a waiting command begins.
     EndWait,
     /// Turn to the commanded angle.
     Turn,
@@ -187,10 +185,9 @@ pub enum Action {
     Stop,
     /// Report done.
     Finish,
-    /// Stop; report an error. The angle is not known any more.
+    /// Stop; report an error. The angle is no longer known.
     Lose(Reason),
-    /// Stop: there is no calibration, and no command that fails with it. The time of one that has waited
-    /// begins.
+    /// Stop: the calibration has failed, but no command with it. The time limit of a waiting command begins.
     GiveUp,
 }
 

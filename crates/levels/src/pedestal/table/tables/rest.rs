@@ -1,10 +1,9 @@
-//! What TURN and PAUSE have in common.
+//! Rows common to TURN and PAUSE.
 
 use rcs_core::decision_table;
 
 decision_table! {
-    /// REST: nothing is decided before the motor has taken its order and stands. A table that turns already
-    /// is stopped first.
+    /// REST: wait until the motor has taken its order and is at rest. A table that already turns is stopped first.
     pub REST: fn rest(super::Step, super::Situation) -> super::Action or () {
         any {
             1: motor: Standing | Silent   => consult;

@@ -1,9 +1,7 @@
-//! TURN.
-
 use rcs_core::decision_table;
 
 decision_table! {
-    /// TURN: turn to the commanded angle, which counter and potentiometer must both show in the end.
+    /// TURN: turn to the commanded angle. Counter and potentiometer must both show it at the end.
     pub TURN: fn turn(super::Step, super::Situation) -> super::Action {
         any {
             1: motor: Silent     => Lose(TableStuck);
