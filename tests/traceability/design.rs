@@ -149,7 +149,7 @@ fn a_reference_that_leads_nowhere_is_found() {
 Text with `no/reference.rs` in it.
 - code: `tests/traceability/sources.rs` (`has_test`, `Sources::nothing`), `tests/nowhere.rs`,
   called by `somebody`
-- test: `levels::execution::tests::an_outcome_stays_until_a_new_number_comes`
+- test: `levels::execution::tests::outcome_stays_until_a_new_number`
 - test: `levels::execution::tests::no_such_test` (what is not: no test)
 - test: `tests/traceability/design.rs:
   a_reference_that_leads_nowhere_is_found`, and `no_test_of_this_name`

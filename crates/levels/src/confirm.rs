@@ -26,7 +26,7 @@ use crate::{
 pub enum Evidence {
     /// The goal holds.
     Holds,
-    /// Nothing contradicts it, and a part of it has no sensor.
+    /// No sensor contradicts it, and a part of it has no sensor.
     Unsensed,
     /// The robot is not at the goal.
     Elsewhere,
@@ -50,7 +50,7 @@ pub enum Evidence {
     GripperOn,
     /// The id pins do not name the gripper that was on the robot when the ring was locked.
     PinsDiffer,
-    /// The locking ring is not where the command has turned it.
+    /// The locking ring is not at its commanded position.
     Ring,
     /// The robot is still in a holster.
     InHolster,
@@ -70,7 +70,7 @@ pub enum Evidence {
     NoAnswer,
 }
 
-/// How new the readings are.
+/// Age of the readings.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Reading {
     /// They may be older than the end of the command.
@@ -82,13 +82,13 @@ pub enum Reading {
 /// A command that a row reports as done, for [`CONFIRM`].
 #[derive(Clone, Copy, Debug, Variables)]
 pub struct Claim {
-    /// Its goal, compared with the sensors.
+    /// The goal of the command, compared with the sensors.
     pub evidence: Evidence,
     /// How new the readings are.
     pub reading: Reading,
 }
 
-/// What [`CONFIRM`] can ask for.
+/// The actions of [`CONFIRM`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Actions)]
 pub enum Doubt {
     /// Wait for a newer reading.
@@ -98,8 +98,8 @@ pub enum Doubt {
 }
 
 decision_table! {
-    /// CONFIRM: a command is done only if the sensors confirm its goal in this tick. Readings that are older than the
-    /// end of the command are given the time to arrive; then the command fails.
+    /// CONFIRM: a command is done only if the sensors confirm its goal in this tick. If the readings are older than
+    /// the end of the command, the command waits for newer ones; then it fails.
     pub CONFIRM: fn confirm(Claim) -> Doubt or () {
         1:  evidence: Holds | Unsensed     => consult;
         2:  reading: Awaited               => Wait;
@@ -135,7 +135,7 @@ pub struct Proof {
 impl Proof {
     pub const HOLDS: Self = Self::of(Evidence::Holds);
 
-    /// The sensors say this, and see the whole goal.
+    /// The sensors cover the whole goal, with this result.
     #[must_use]
     pub const fn of(evidence: Evidence) -> Self {
         Self { evidence, unconfirmed: Unconfirmed::None }
@@ -153,13 +153,13 @@ impl Proof {
         }
     }
 
-    /// The goal holds if a condition does.
+    /// The goal holds if a condition is true.
     #[must_use]
     pub const fn when(holds: bool, otherwise: Evidence) -> Self {
         if holds { Self::HOLDS } else { Self::of(otherwise) }
     }
 
-    /// The robot is at a place, by its offset from there.
+    /// The robot is at a place, by its offset from it.
     #[must_use]
     pub const fn at(offset: Offset) -> Self {
         match offset {
@@ -169,7 +169,7 @@ impl Proof {
         }
     }
 
-    /// Both goals: the first contradiction counts, else the first part without a sensor.
+    /// Both goals: the first contradiction, else the first part without a sensor.
     #[must_use]
     pub const fn and(self, other: Self) -> Self {
         match (self.evidence, other.evidence) {
@@ -179,13 +179,13 @@ impl Proof {
         }
     }
 
-    /// The goal, with one more part that has no sensor and is named first.
+    /// The goal with another part without a sensor, which is named first.
     #[must_use]
     pub const fn and_unsensed(self, unconfirmed: Unconfirmed) -> Self {
         if self.is_done() { Self::unsensed(unconfirmed) } else { self }
     }
 
-    /// The goal, of which a part in the fingers is part. A part whose seat is not known is named before all else.
+    /// The goal with a part in the fingers. A part with an unknown seat is named first.
     #[must_use]
     pub const fn with_part(self, seat: Seat) -> Self {
         match seat {
@@ -201,8 +201,8 @@ impl Proof {
 }
 
 impl Execution {
-    /// Consult [`CONFIRM`] about a row that reports done: the row, or that of CONFIRM, which has this number. A process
-    /// that waits stays in its step.
+    /// Consult [`CONFIRM`], the table with this number, about a row that reports done. Returns that row or the row
+    /// of CONFIRM. A process that waits stays in its step.
     pub fn confirm<Action: Ending, Step>(
         &mut self,
         number: u8,
@@ -268,7 +268,7 @@ mod tests {
     static GOAL: Goal =
         Goal { holds: "it holds", sensors: &[Sensor::Resolvers], tolerance: "", age: 2, unconfirmed: &[] };
 
-    /// What CONFIRM makes of a row from step 7 to step 8.
+    /// The result of CONFIRM for a row from step 7 to step 8.
     fn ask(execution: &mut Execution, action: Act, proof: Proof) -> (u8, u8, Act, u8) {
         let row = Choice { table: 3, row: 5, action, next: 8_u8, values: Values::default() };
         let choice = execution.confirm(9, 7_u8, row, (&GOAL, proof));
@@ -322,7 +322,7 @@ mod tests {
             let mut execution = Execution::default();
             assert_eq!(execution.execute(Arrival::New), Course::Begin);
             let mut tick = |action| ask(&mut execution, action, Proof::of(evidence));
-            assert_eq!(tick(Act::Order), (3, 5, Act::Order, 8), "nothing is claimed yet");
+            assert_eq!(tick(Act::Order), (3, 5, Act::Order, 8), "no claim yet");
             assert_eq!(tick(Act::Finish), (9, 2, Act::Wait, 7), "{evidence:?}");
             assert_eq!(tick(Act::Finish), (9, 2, Act::Wait, 7));
             assert_eq!(tick(Act::Finish), (9, row, Act::Fail(reason), 8));
@@ -376,7 +376,7 @@ mod tests {
         {
             let process = Ladder::processes().iter().find(|process| process.name == name).unwrap();
             let mut rows = 0;
-            // PAUSE commands nothing: its goal is what the process does itself.
+            // PAUSE sends no commands: its goal is the process's own state.
             for table in process.tables.iter().filter(|table| !table.name.ends_with("PAUSE")) {
                 for row in table.rows {
                     let finished = name == "T3 Interface" && row.argument == Some("Finished");

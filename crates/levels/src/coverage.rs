@@ -1,4 +1,4 @@
-//! Which rows of which tables have fired in the tests of a process.
+//! Rows of the tables that fire in the tests of a process.
 
 use std::{
     cell::RefCell,
@@ -10,13 +10,12 @@ use rcs_core::table::Table;
 
 use crate::{confirm::CONFIRM, execution::EXECUTE};
 
-/// Tables and rows that have fired, with what the tables were consulted with.
+/// Tables and rows that have fired, with their state variables.
 #[derive(Debug, Default)]
 pub struct Coverage(BTreeSet<(u8, u8, u8, u64)>);
 
 impl Coverage {
-    /// Take in what a process has reported. Each row that has fired must be the one that the table as text gives for
-    /// the same values.
+    /// Record the rows in a header. Each must be the row that the table as text gives for the same values.
     pub fn note(&mut self, tables: &[&Table], header: &Header) {
         let rows = header.consulted().into_iter().chain(header.beside.into_iter().flatten());
         for Consulted { decided: Decided { table, row }, values } in rows {
@@ -28,9 +27,9 @@ impl Coverage {
         }
     }
 
-    /// Rows that have not fired, as `GET-OBJECT 3`. Rows that no header ever names are left out: those that
-    /// pass on to the table below, and those of EXECUTE that do not refuse. CONFIRM has rows for all processes; its own
-    /// tests reach them.
+    /// Rows that have not fired, as `GET-OBJECT 3`. Rows that no header names are left out: those that pass on to
+    /// the next table, and those of EXECUTE that do not refuse. CONFIRM has rows for all processes; its own tests
+    /// cover them.
     pub fn missing(&self, tables: &[&Table]) -> Vec<String> {
         let own = tables.iter().zip(1_u8..).filter(|(table, _)| table.name != CONFIRM.name);
         let rows = own.flat_map(|(table, number)| {
@@ -47,16 +46,16 @@ impl Coverage {
 }
 
 thread_local! {
-    /// What has fired in this thread, by the name of the process.
+    /// Rows that have fired in this thread, by the name of the process.
     static FIRED: RefCell<BTreeMap<&'static str, Coverage>> = const { RefCell::new(BTreeMap::new()) };
 }
 
-/// Take in what a process has reported in a test.
+/// Record the rows that a process reports in a test.
 pub fn note(process: &'static str, tables: &[&Table], header: &Header) {
     FIRED.with_borrow_mut(|fired| fired.entry(process).or_default().note(tables, header));
 }
 
-/// The rows of a process that fire in none of some scenarios, as [`Coverage::missing`] has them.
+/// The rows of a process that do not fire in any of some scenarios, as [`Coverage::missing`] lists them.
 pub fn silent<P: Process<Data>, Data>(scenarios: &[fn()]) -> Vec<String> {
     FIRED.take();
     scenarios.iter().for_each(|scenario| scenario());

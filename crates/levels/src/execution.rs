@@ -1,7 +1,7 @@
 //! The table common to all processes: the upper of the two state tables (II.2.2.2).
 //!
-//! The lower tables belong to commands; this one decides whether they are consulted at all. An outcome, once
-//! reached, stays until a new command number comes.
+//! The lower tables belong to commands; this one decides whether they are consulted. An outcome stays until a new
+//! command number arrives.
 //!
 //! ```text
 //!            new number           table says Finish
@@ -14,9 +14,9 @@
 //!     |______ new number ___|
 //! ```
 //!
-//! What a process consults in addition, and in which order, is declared once: `before` and `after` in `commands!`
-//! of its `tables/mod.rs`. The function `decide` that follows from it is described in `docs/design/tables.md`
-//! "Order of the tables". [`Execution::halt`] and [`Execution::effect`] are in [`halt`](crate::halt), and
+//! The other tables of a process and their order are declared once: `before` and `after` in `commands!` of its
+//! `tables/mod.rs`. The function `decide` that follows from it is described in `docs/design/tables.md` "Order of
+//! the tables". [`Execution::halt`] and [`Execution::effect`] are in [`halt`](crate::halt), and
 //! [`Execution::confirm`] in [`confirm`](crate::confirm).
 
 use interfaces::{Reason, StatusReport, Unconfirmed};
@@ -29,7 +29,7 @@ use rcs_core::{
 
 use crate::{halt::Halt, rows::Rows};
 
-/// How far the current command has come.
+/// Progress of the current command.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Outcome {
     /// Nothing was commanded yet.
@@ -40,7 +40,7 @@ pub enum Outcome {
     Done,
     /// Failed.
     Error,
-    /// Given up, because the operator took the robot.
+    /// Given up because the operator took the robot.
     Joystick,
 }
 
@@ -58,7 +58,7 @@ impl Outcome {
     }
 }
 
-/// What to do with the tables of the current command.
+/// Use of the tables of the current command.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain, Actions)]
 pub enum Course {
     /// Leave everything as it is.
@@ -74,12 +74,12 @@ pub enum Course {
 /// The command buffer, for [`EXECUTE`].
 #[derive(Clone, Copy, Debug, Variables)]
 pub struct Buffer {
-    /// What the command buffer holds now.
+    /// Whether the command is new.
     pub arrival: Arrival,
 }
 
 decision_table! {
-    /// Upper state table: are the tables of the current command consulted?
+    /// EXECUTE, the upper state table: decides whether the tables of the current command are consulted.
     pub EXECUTE: fn execute(Outcome, Buffer) -> Course {
         any {
             1: arrival: Nothing    => Rest    -> Idle;
@@ -95,54 +95,54 @@ decision_table! {
     }
 }
 
-/// Is the command in the buffer a new one? Only then it is checked.
+/// Whether the command in the buffer is new. Only a new one is checked.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Asked {
-    /// No: the current command goes on.
+    /// It is not: the current command continues.
     Before,
     /// Yes.
     Now,
 }
 
-/// What a table ACCEPT decides in a process that does something beside its command in the same tick: it
-/// watches or calibrates.
+/// The result of ACCEPT in a process that does something else in the same tick as its command, such as watching or
+/// calibrating.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Actions)]
 pub enum Refusal {
     /// Report an error.
     Fail(Reason),
 }
 
-/// What the current command has ordered last of a process below, once failures are passed up.
+/// Result of the last order to a process below, after failures are passed up.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Work {
-    /// It is not done yet.
+    /// The order is not done yet.
     Busy,
-    /// It is done, or nothing was ordered.
+    /// The order is done, or there was none.
     Over,
 }
 
-/// A row that has ordered something of a process below.
+/// A row that has given an order to a process below.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub struct LastOrder {
     /// Its table.
     pub table: u8,
     /// Its number.
     pub row: u8,
-    /// The state variables of its table at that time, as one number.
+    /// The state variables of its table in that tick, as one number.
     pub variables: u64,
 }
 
-/// The actions with which a command ends, for [`CONFIRM`](crate::confirm::CONFIRM).
+/// The actions that end a command, for [`CONFIRM`](crate::confirm::CONFIRM).
 pub trait Ending: Sized {
     const WAIT: Self;
 
     fn fail(reason: Reason) -> Self;
 
-    /// The action reports the command as done.
+    /// True if the action reports the command as done.
     fn ends(&self) -> bool;
 }
 
-/// The current command of a process and how far it has come.
+/// The current command of a process and its progress.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct Execution {
     /// Echo and adoption.
@@ -151,26 +151,26 @@ pub struct Execution {
     pub outcome: Outcome,
     /// Why it failed.
     pub reason: Reason,
-    /// Part of its goal that no sensor has confirmed at its end.
+    /// The part of its goal without a sensor, when it ended.
     pub unconfirmed: Unconfirmed,
     /// The rows for the header.
     pub rows: Rows,
     /// The command is new and neither accepted nor refused yet.
     pub waiting: bool,
-    /// What is done so that it can be.
+    /// The stop of the previous command.
     pub halt: Halt,
-    /// What was ordered last for the command.
+    /// The last order of the command.
     pub last_order: Option<LastOrder>,
-    /// Ticks for which a row has reported it done and the sensors have contradicted.
+    /// Ticks in which a row reported it done and the sensors contradicted.
     pub claimed: u8,
 }
 
-/// How far a command has come, for the process above.
+/// Progress of a command, for the process above.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Report {
     pub outcome: Outcome,
     pub reason: Reason,
-    /// Part of the goal that no sensor has confirmed, for a command that is done.
+    /// The part of the goal that no sensor has confirmed, for a command that is done.
     pub unconfirmed: Unconfirmed,
 }
 
@@ -180,8 +180,8 @@ const EXECUTE_NUMBER: u8 = 1;
 const ACCEPT_NUMBER: u8 = 2;
 
 impl Execution {
-    /// A tick begins: read the number of the command in the buffer. Is the command to be accepted or refused, as soon
-    /// as HALT allows it?
+    /// Start a tick: read the number of the command in the buffer. Also returns whether the command is to be
+    /// accepted or refused as soon as HALT permits it.
     pub fn observe(&mut self, tick: Tick, number: u32) -> (Arrival, Asked) {
         self.rows.begin(tick);
         let arrival = self.receiver.observe(number);
@@ -189,7 +189,7 @@ impl Execution {
         (arrival, if is_asked { Asked::Now } else { Asked::Before })
     }
 
-    /// The process was dormant in the tick before: the next command number it reads is adopted, not executed.
+    /// The process was dormant in the previous tick: the next command number is adopted, not executed.
     pub fn wake(&mut self) {
         self.receiver = Receiver::default();
     }
@@ -211,7 +211,7 @@ impl Execution {
         decision.action
     }
 
-    /// Note what a table ACCEPT has decided whose process does more in the same tick. False if it refused the
+    /// Record the result of ACCEPT, for a process that does more in the same tick. False if ACCEPT refused the
     /// command.
     pub fn accepts<Step>(&mut self, verdict: Verdict<Refusal, Step, ()>) -> bool {
         match verdict {
@@ -224,8 +224,8 @@ impl Execution {
         }
     }
 
-    /// True in the tick in which a command was accepted: `asked` is that of the tick, HALT has let the command pass, and
-    /// none of the tables that check a new command has refused it. `checks` are the numbers of these tables.
+    /// True in the tick in which a command is accepted: `asked` is that of the tick, HALT has passed the command,
+    /// and none of the tables that check it has refused it. `checks` are the numbers of these tables.
     #[must_use]
     pub fn accepted(&self, asked: Asked, checks: &[u8]) -> bool {
         let is_refused = self.rows.decided.is_some_and(|decided| checks.contains(&decided.table));
@@ -240,7 +240,7 @@ impl Execution {
         (self.outcome, self.reason) = (Outcome::Error, reason);
     }
 
-    /// The process below ended with something other than done: pass it up.
+    /// Pass up the failure of the process below.
     pub fn pass_up(&mut self, lower: Lower, reason: Reason) {
         match lower {
             Lower::Joystick => (self.outcome, self.reason) = (Outcome::Joystick, Reason::JoystickOn),
@@ -249,10 +249,11 @@ impl Execution {
         }
     }
 
-    /// What the process above is to see. A process that was restarted executes until what it had commanded is at rest.
+    /// The status for the process above. A restarted process reports executing until its previous orders have come
+    /// to rest.
     ///
-    /// `standing` is the reason that the process below reports while the command is a PAUSE. A link that fails while a
-    /// PAUSE stands is no failure of it: the reason accompanies `done` (docs/design/link.md).
+    /// `standing` is the reason from the process below during a PAUSE. A link failure during a PAUSE does not fail
+    /// it: the reason accompanies `done` (docs/design/link.md).
     #[must_use]
     pub const fn report(&self, standing: Option<Reason>) -> Report {
         let Self { outcome, reason, .. } = *self;
@@ -278,7 +279,7 @@ mod tests {
     use rcs_core::table::Values;
 
     #[test]
-    fn an_outcome_stays_until_a_new_number_comes() {
+    fn outcome_stays_until_a_new_number() {
         let mut e = Execution::default();
         let mut course = |number, end: fn(&mut Execution)| {
             let arrival = e.receiver.observe(number);
@@ -297,7 +298,7 @@ mod tests {
     }
 
     #[test]
-    fn a_refusal_beside_something_else_ends_the_command() {
+    fn refusal_with_other_work_ends_the_command() {
         let mut e = Execution::default();
         e.execute(Arrival::New);
         assert!(e.accepts(Verdict::<Refusal, (), ()>::Passed(())));
@@ -323,7 +324,7 @@ mod tests {
     }
 
     #[test]
-    fn a_restarted_process_refuses_what_stands_in_its_buffer() {
+    fn restarted_process_refuses_the_command_in_its_buffer() {
         let mut e = Execution::default();
         let arrival = e.receiver.observe(7);
         assert_eq!((e.execute(arrival), e.reason), (Course::Refuse, Reason::Restarted));

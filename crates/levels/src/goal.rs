@@ -1,13 +1,13 @@
-//! The goal of a command: what must hold at its end, and which sensors confirm it (V: execution depends on "whether any
-//! subgoals of the command have been achieved", and on "what sensory values are being observed").
+//! The goal of a command: the condition at its end, and the sensors that confirm it (V: execution depends on
+//! "whether any subgoals of the command have been achieved", and on "what sensory values are being observed").
 //!
-//! `commands!` takes a goal for each command, so that a command without one does not compile. `rcs-run tables` prints
-//! them. [`CONFIRM`](crate::confirm::CONFIRM) compares the goal with the sensors when a row reports the end.
+//! `commands!` requires a goal for each command, so that a command without one does not compile. `rcs-run tables`
+//! prints them. [`CONFIRM`](crate::confirm::CONFIRM) compares the goal with the sensors when a row reports the end.
 
 use interfaces::Unconfirmed;
 use rcs_core::Plain;
 
-/// What confirms a goal.
+/// The sensors or reports that confirm a goal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Sensor {
     /// The resolvers of the robot.
@@ -57,15 +57,15 @@ pub enum Sensor {
 
 #[derive(Debug)]
 pub struct Goal {
-    /// What must hold.
+    /// The condition.
     pub holds: &'static str,
     pub sensors: &'static [Sensor],
     /// The tolerance, with its unit; empty if the reading has two values.
     pub tolerance: &'static str,
-    /// Greatest age of a reading at the end of the command, ticks: the hops of the ladder from the sensor. So long the
-    /// process waits for a newer reading before the command fails.
+    /// Greatest age of a reading at the end of the command, ticks: the hops of the ladder from the sensor. The
+    /// process waits this long for a newer reading before the command fails.
     pub age: u8,
-    /// The part that no sensor confirms: the status names it.
+    /// The part without a sensor, which the status names.
     pub unconfirmed: &'static [Unconfirmed],
 }
 

@@ -4,14 +4,14 @@
 //!              new command, something is under way below: Stop
 //!   Clear -----------------------------------------------------> Stopping
 //!     ^                                                              |
-//!     |      what is below has come to rest, or a command is         |
+//!     |      the processes below are at rest, or a command is        |
 //!     |      accepted while the operator has the robot               |
 //!     '--------------------------------------------------------------'
 //! ```
 //!
-//! [`HALT`] is consulted after EXECUTE and before ACCEPT, so that a command that is refused stops what was
-//! under way too, and its end is reported only when nothing moves any more. If nothing is under way, a
-//! command is accepted in the tick in which it comes.
+//! [`HALT`] is consulted after EXECUTE and before ACCEPT, so that a refused command also stops the previous one,
+//! and the refusal is reported only at rest. Without orders in progress, a command is accepted in the tick in which
+//! it arrives.
 
 use interfaces::{Header, Reason};
 use rcs_core::{
@@ -26,7 +26,7 @@ use crate::execution::{Course, Ending, Execution, LastOrder};
 /// The command of a process, for [`HALT`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Intake {
-    /// It has been accepted or refused, or there is none.
+    /// It has been accepted or refused, or the buffer has none.
     Taken,
     /// It is new and neither accepted nor refused yet.
     Asked,
@@ -34,12 +34,12 @@ pub enum Intake {
     Adopted,
 }
 
-/// Does the new command stop what is below by itself?
+/// Whether the new command itself stops the processes below.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Kind {
     /// No.
     Other,
-    /// Yes: its own table sends a pause down and waits for it.
+    /// Its own table sends a pause down and waits for it.
     Pause,
 }
 
@@ -48,7 +48,7 @@ pub enum Kind {
 pub enum BoxState {
     /// It is off.
     Off,
-    /// It is on: the operator has the robot, and nothing is sent.
+    /// It is on: the operator has the robot, and no command is sent.
     On,
 }
 
@@ -57,31 +57,31 @@ pub enum BoxState {
 pub enum Above {
     /// It wrote its buffers in the last tick, or is not watched.
     Live,
-    /// It did not write them: nothing commands this process any more.
+    /// It did not write them: this process has no commander.
     Lost,
 }
 
 impl Above {
-    /// By the header of its buffers, read in this tick.
+    /// From the header of its buffers.
     #[must_use]
     pub fn of(header: &Header, tick: Tick) -> Self {
         if header.stamp == tick.previous() { Self::Live } else { Self::Lost }
     }
 }
 
-/// What the processes below are doing.
+/// The state of the processes below.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Below {
-    /// Nothing: what they were told last has ended, or they do not answer.
+    /// Their last commands have ended, or they do not answer.
     AtRest,
-    /// They were told to pause and are coming to rest.
+    /// They were commanded to pause and are coming to rest.
     Pausing,
     /// Something else.
     UnderWay,
 }
 
 impl Below {
-    /// By the status of one process below, and whether a pause was the last that it was told.
+    /// From the status of one process below, and whether its last command was a pause.
     #[must_use]
     pub const fn of(status: Lower, pausing: bool) -> Self {
         match (status, pausing) {
@@ -101,36 +101,36 @@ impl Below {
     }
 }
 
-/// What a new command may replace, for [`HALT`].
+/// The state variables of [`HALT`].
 #[derive(Clone, Copy, Debug, Variables)]
 pub struct Replaced {
     /// The command.
     pub intake: Intake,
-    /// Does it stop what is below by itself?
+    /// Whether the command itself stops the processes below.
     pub kind: Kind,
     /// The process above.
     pub above: Above,
     /// The joystick box.
     pub joystick: BoxState,
-    /// What the processes below are doing.
+    /// The state of the processes below.
     pub below: Below,
 }
 
-/// What [`HALT`] can ask for.
+/// The actions of [`HALT`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Actions)]
 pub enum Halting {
     /// A pause to the processes below.
     Stop,
-    /// Nothing new: they are coming to rest.
+    /// Wait: the processes below are coming to rest.
     Wait,
     /// A pause to the processes below, and the command fails.
     Abandon(Reason),
 }
 
 decision_table! {
-    /// HALT: a new command replaces what is under way. It is accepted or refused when the processes below
-    /// have come to rest. What a process had under way before it was restarted is stopped too, and so is what
-    /// it has under way when the process above is lost.
+    /// HALT: a new command replaces the previous one. It is accepted or refused when the processes below are at
+    /// rest. Orders from before a restart of the process are stopped, too, and so are its orders when the process
+    /// above is lost.
     pub HALT: fn halt(enum Halt, Replaced) -> Halting or () {
         any {
             1:  joystick: On                                                        => consult;
@@ -138,7 +138,7 @@ decision_table! {
             3:  joystick: Off, intake: Taken, above: Lost, below: AtRest | Pausing  => consult;
             4:  joystick: Off, intake: Taken, above: Lost, below: UnderWay          => Abandon(NeighbourLost);
         }
-        /// Nothing was told to stop for the sake of a new command.
+        /// No stop for a new command is in progress.
         Clear {
             5:  joystick: Off, intake: Asked, kind: Pause                           => consult;
             6:  joystick: Off, intake: Asked | Adopted, below: AtRest               => consult;
@@ -146,7 +146,7 @@ decision_table! {
             8:  joystick: Off, intake: Asked, kind: Other, below: Pausing           => Wait  -> Stopping;
             9:  joystick: Off, intake: Asked | Adopted, below: UnderWay             => Stop  -> Stopping;
         }
-        /// What is below is coming to rest.
+        /// The processes below are coming to rest.
         Stopping {
             10: joystick: Off, intake: Asked | Adopted, below: Pausing | UnderWay   => Wait;
             11: joystick: Off, intake: Asked | Adopted, below: AtRest               => Wait  -> Clear;
@@ -157,15 +157,15 @@ decision_table! {
 /// An order to a process below, for [`EFFECT`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Order {
-    /// The row that fired orders nothing.
+    /// The row that fired gives no order.
     None,
-    /// It orders something, and did not order it last with the same state variables.
+    /// It gives an order, and is not the last row that gave one with the same state variables.
     New,
-    /// It was the last one that ordered something, and the state variables are those of that time.
+    /// It is the last row that gave an order, and the state variables are the same as then.
     Repeated,
 }
 
-/// What the command has achieved since its last order, besides the state variables: points of a route, for example.
+/// Progress of the command since its last order, apart from the state variables: points of a route, for example.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Advance {
     /// Nothing.
@@ -174,16 +174,16 @@ pub enum Advance {
     Made,
 }
 
-/// The row that fired, for [`EFFECT`].
+/// The state variables of [`EFFECT`].
 #[derive(Clone, Copy, Debug, Variables)]
 pub struct Fired {
     /// What it orders.
     pub order: Order,
-    /// The advance of the command since its last order.
+    /// Progress of the command since its last order.
     pub advance: Advance,
 }
 
-/// What [`EFFECT`] can ask for.
+/// The actions of [`EFFECT`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Actions)]
 pub enum Futile {
     /// Report an error.
@@ -191,8 +191,8 @@ pub enum Futile {
 }
 
 decision_table! {
-    /// EFFECT: an order that has changed no state variable of its table, nor advanced the command, is not given again by
-    /// the same row. The command fails.
+    /// EFFECT: the same row does not repeat an order that has changed no state variable of its table and has not
+    /// advanced the command. The command fails.
     pub EFFECT: fn effect(Fired) -> Futile or () {
         1: order: None | New               => consult;
         2: order: Repeated, advance: Made  => consult;
@@ -216,16 +216,16 @@ pub trait Stopping: Ending {
 
 /// The actions of a process that commands others, for [`EFFECT`].
 pub trait Commanding: Ending {
-    /// The action orders something of a process below that changes a state variable when it is carried out.
+    /// True if the action gives a process below an order that changes a state variable when it is carried out.
     fn is_order(&self) -> bool;
 }
 
 impl Execution {
-    /// Consult [`HALT`], the table with this number, about what EXECUTE has said. What is to be done with the
-    /// tables: `Begin` in the tick in which a command is accepted or refused.
+    /// Consult [`HALT`], the table with this number, after EXECUTE. Returns the use of the tables: `Begin` in the
+    /// tick in which a command is accepted or refused.
     ///
     /// # Errors
-    /// What HALT asks for: no other table is to be consulted.
+    /// The action of HALT, if no other table is to be consulted.
     pub fn halt(&mut self, number: u8, course: Course, replaced: &Replaced) -> Result<Course, Halting> {
         self.waiting |= course == Course::Begin;
         let intake = match course {
@@ -235,7 +235,7 @@ impl Execution {
         };
         match halt(self.halt, &Replaced { intake, ..*replaced }) {
             Verdict::Passed(()) if self.waiting => {
-                // A command can come into the middle of a stop that the joystick box has ended.
+                // A command may arrive during a stop that the joystick box has ended.
                 (self.waiting, self.halt, self.last_order) = (false, Halt::Clear, None);
                 Ok(Course::Begin)
             }
@@ -245,7 +245,7 @@ impl Execution {
                 if let Halting::Abandon(reason) = decision.action {
                     self.fail(reason);
                 }
-                // The header of a restarted process says that it was restarted.
+                // The header of a restarted process shows the restart.
                 if intake == Intake::Asked {
                     self.rows.decide(&decision.of(number));
                 } else {
@@ -256,7 +256,8 @@ impl Execution {
         }
     }
 
-    /// Consult [`EFFECT`], the table with this number, about a row that fired: the row, or that of EFFECT.
+    /// Consult [`EFFECT`], the table with this number, about a row that fired. Returns that row or the row of
+    /// EFFECT.
     pub fn effect<Action: Commanding, Step>(
         &mut self,
         number: u8,

@@ -1,9 +1,9 @@
-//! What the attached gripper holds, as the tables of Task, Subtask and E-move ask for it.
+//! The object in the attached gripper, as the tables of Task, Subtask and E-move test it.
 
 use interfaces::emove::Holding;
 use rcs_core::{Plain, name::Name16};
 
-/// Is the object of the command held (V.3.1)?
+/// Whether the object of the command is held (V.3.1).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Held {
     /// The gripper holds nothing.
@@ -12,14 +12,14 @@ pub enum Held {
     Right,
     /// It holds another object.
     Other,
-    /// It holds something, and nothing says what it is.
+    /// The gripper holds an unidentified object.
     Something,
-    /// Its sensors do not tell: counts as held.
+    /// Its sensors do not show it; treated as held.
     NotKnown,
 }
 
 impl Held {
-    /// What is held, seen from a command about `object`.
+    /// The held object, compared with the `object` of a command.
     #[must_use]
     pub fn of(holding: Holding, object: Option<Name16>) -> Self {
         match holding {

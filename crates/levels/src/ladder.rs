@@ -1,10 +1,9 @@
-//! The ladder: all control processes, stepped once a tick.
+//! The ladder: all control processes, stepped once per tick.
 //!
-//! Every process reads common memory of the tick before and writes only its own part of the next one, so the order in
-//! which they are stepped does not change the result ([`Ladder::step_in_order`] lets a test check it).
+//! Every process reads common memory of the previous tick and writes only its own part of the next one. So the
+//! order of the processes does not change the result ([`Ladder::step_in_order`] lets a test check it).
 //!
-//! The processes of an Active Pedestal that is a separate system are not stepped: their received outputs are copied
-//! instead.
+//! The processes of an Active Pedestal in a separate system are not stepped: their received outputs are copied.
 
 use interfaces::{
     CommonMemory, Decided, ExternalInputs, Header, OutsidePedestal,
@@ -38,7 +37,7 @@ pub struct ProcessInfo {
 }
 
 impl ProcessInfo {
-    /// A table by the number in a header.
+    /// A table by its number in a header.
     #[must_use]
     pub fn table(&self, number: u8) -> Option<&'static Table> {
         self.tables.get(usize::from(number.checked_sub(1)?)).copied()
@@ -78,18 +77,18 @@ macro_rules! ladder {
     )+) => {
         static PROCESSES: [ProcessInfo; PROCESS_COUNT] = [ $( info::<$id>(), )+ ];
 
-        /// What all processes remember.
+        /// The states of all processes.
         #[derive(Clone, Copy, Debug, PartialEq, Plain)]
         pub struct LadderState {
             $( #[doc = $doc] pub $field: StateOf<$id>, )+
-            /// Single-step buttons of the tick before.
+            /// Single-step buttons of the previous tick.
             pub buttons: u8,
         }
 
         #[derive(Clone, Debug, Default)]
         pub struct Ladder {
             $( $field: $id, )+
-            /// Single-step buttons as they were in the tick before: pressing counts, not holding down.
+            /// Single-step buttons of the previous tick: only pressing steps, not holding down.
             buttons: u8,
         }
 
@@ -103,7 +102,7 @@ macro_rules! ladder {
                 match process { $( ProcessId::$id => self.$field.step(inputs, &mut after.$field), )+ }
             }
 
-            /// Give a process the values that a person writes into it (IV.2.6).
+            /// Write the values that a person has given for a process (IV.2.6).
             fn write_into(
                 &mut self,
                 process: ProcessId,
@@ -115,7 +114,7 @@ macro_rules! ladder {
                 }
             }
 
-            /// Restart a process: it forgets everything, as after a crash.
+            /// Restart a process: its state is lost, as after a crash.
             pub fn restart(&mut self, process: ProcessId) {
                 match process { $( ProcessId::$id => self.$field = $id::default(), )+ }
             }
@@ -128,7 +127,7 @@ macro_rules! ladder {
                 LadderState { $( $field: of(&self.$field), )+ buttons: self.buttons }
             }
 
-            /// Go on from a remembered state.
+            /// Continue from a stored state.
             pub fn restore(&mut self, state: &LadderState) {
                 fn to<P: Process<TaskData<'static>>>(process: &mut P, state: P::State) {
                     process.restore(state);
@@ -141,8 +140,8 @@ macro_rules! ladder {
 }
 for_each_process!(ladder);
 
-/// A process that is not stepped in this tick: dormant (II.2.3), held by its switch on the joystick box, on a
-/// board that is stopped (IV.2.6), or suspended while a recorded pose is looked at (III.3.3).
+/// True if a process is not stepped in this tick: it is dormant (II.2.3), held by its switch on the joystick box,
+/// on a stopped board (IV.2.6), or suspended after a pose was recorded (III.3.3).
 fn is_suspended(process: ProcessId, before: &CommonMemory, external: &ExternalInputs, pressed: u8) -> bool {
     let (joystick, operator) = (&external.devices.joystick, &external.operator);
     let recording = before.prim.status.recording && !joystick.resume;
@@ -165,8 +164,8 @@ fn is_suspended(process: ProcessId, before: &CommonMemory, external: &ExternalIn
     dormant || (held || stopped) && !operator.executes(process)
 }
 
-/// Publish the last outputs of a process that is not stepped again, so that its readers do not take it for
-/// lost (docs/design/handshake.md "Stamp"). The frame of a tick goes out once.
+/// Publish the last outputs of a suspended process again, so that its readers do not take it for lost
+/// (docs/design/handshake.md "Stamp"). The frame of a tick is sent once.
 const fn republish(process: ProcessId, tick: Tick, memory: &mut CommonMemory) {
     if matches!(process, ProcessId::T3i) {
         memory.t3i.link_tx = LinkBytes::ZERO;
@@ -176,9 +175,9 @@ const fn republish(process: ProcessId, tick: Tick, memory: &mut CommonMemory) {
     header.republished = true;
 }
 
-/// A process of the pedestal that runs in another system: take over what it has sent, as if it had run here
-/// in this tick. Of one that does not answer everything stays, the old stamp too, so that its readers know it
-/// for lost (docs/design/handshake.md "Outside").
+/// Copy the outputs of a pedestal process in another system, as if it had run here in this tick. If it does not
+/// answer, its outputs and their old stamp stay, so that its readers detect the loss (docs/design/handshake.md
+/// "Outside").
 const fn adopt(process: ProcessId, sent: &OutsidePedestal, tick: Tick, memory: &mut CommonMemory) {
     if !sent.answers {
         return;
@@ -210,8 +209,8 @@ impl Ladder {
         self.step_in_order(ProcessId::ALL, tick, before, external, data, after);
     }
 
-    /// One tick with the processes in another order, or of some of them: those of a board. What `after` holds
-    /// of a process that is not named is what `before` held.
+    /// One tick with the processes in another order, or of some of them: those of a board. The outputs of other
+    /// processes in `after` are those of `before`.
     pub fn step_in_order(
         &mut self,
         order: &[ProcessId],
@@ -224,8 +223,8 @@ impl Ladder {
         self.step_observed(order, tick, before, external, data, after, &mut |_| {});
     }
 
-    /// The same; `observe` is called after each stage: with `None` once the buffers are carried over from the
-    /// tick before, then with each process. It can measure times, which the levels cannot.
+    /// The same; `observe` is called with `None` once the buffers are copied from the previous tick, then with each
+    /// process. It can measure times, which the levels cannot.
     #[expect(clippy::too_many_arguments, reason = "a tick's inputs and outputs, and the observer")]
     pub fn step_observed(
         &mut self,
@@ -266,7 +265,7 @@ impl Ladder {
 mod tests {
     use super::*;
 
-    /// Tables that are larger, by process and name (docs/design/tables.md "Large tables").
+    /// Larger tables, by process and name (docs/design/tables.md "Large tables").
     const LARGE: &[(&str, &str)] = &[];
 
     #[test]

@@ -1,9 +1,10 @@
-//! The control processes of RCS-II/T3 (chapters V and VI): a folder each.
+//! The control processes of RCS-II/T3 (chapters V and VI), one folder each.
 //!
-//! Every process is a pure state machine ([`interfaces::process::Process`]) in the manual's three phases: *preprocess*
-//! reads input buffers and sets state variables, a *decision table* of the current command selects one row,
-//! *postprocess* fills the output buffers. Processes read the buffers of the tick before, so their order within a tick
-//! does not matter.
+//! Every process is a pure state machine ([`interfaces::process::Process`]) in the manual's three phases:
+//! *preprocess* reads input buffers and sets state variables, a *decision table* of the current command selects one
+//! row, *postprocess* fills the output buffers. Processes read the buffers of the previous tick, so their order
+//! within a tick does not matter. Each folder has the same files: `state`, `preprocess`, `tables` with one file per
+//! command, `goals` and `postprocess`.
 //!
 //! ```text
 //!        HWSC                    Data System
@@ -37,7 +38,7 @@
     )
 )]
 
-/// The tests name the package as those in `tests` do, with which they share the environment.
+/// The unit tests use the package's external name, like those in `tests`, and share the environment with them.
 #[cfg(test)]
 extern crate self as levels;
 

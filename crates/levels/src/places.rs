@@ -1,4 +1,4 @@
-//! Conversion of places of task data to records of the interfaces, and back.
+//! Conversion of places between task data and records of the interfaces.
 
 use geometry::{frame::Frame, pose::Pose};
 use interfaces::{
@@ -9,7 +9,7 @@ use interfaces::{
 use rcs_core::{Plain, name::Name10};
 use taskdata::files::{Location, LocptId, LookupError, PoseId, Reference, TaskData};
 
-/// Locations that the processes name themselves, because no command of the workstation controller does.
+/// Locations that the processes name themselves; no command of the workstation controller names them.
 pub mod named {
     /// Where the Active Pedestal takes an object (V.3.1 FIX-GRIP).
     pub const PEDESTAL: &str = "PEDESTAL";
@@ -19,9 +19,9 @@ pub mod named {
     pub const TOOL_TRNS: &str = "TOOL-TRNS";
     /// The location near the tool drum from which tools are inserted (V.4.1 INSERT-TOOL).
     pub const TOOL_SAFE: &str = "TOOL-SAFE";
-    /// Owner of the fixtures in which a part stays by its weight (VII.5).
+    /// Owner of the fixtures in which a part rests by its weight (VII.5).
     pub const NESTS: &str = "VFIXTURE";
-    /// Owner of the locations that the data base keeps account of, the MBD: UNIT_1 and UNIT_2 (VII.5).
+    /// Owner of the locations that the database tracks, the MBD: UNIT_1 and UNIT_2 (VII.5).
     pub const MBD: &str = "UNIT";
 }
 
@@ -48,16 +48,16 @@ pub fn is_in_mbd(point: LocptId, data: &TaskData<'_>) -> bool {
     owner.is_some_and(|owner| data.is_member(owner, Reference::location_point(point)))
 }
 
-/// What a look-up of task data did not find: a state variable of the tables ACCEPT.
+/// The first entry missing in the task data: a state variable of the tables ACCEPT.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Missing {
     /// Nothing: all was found.
     Nothing,
-    /// The location, or it is only an owner of others.
+    /// The location is missing, or only an owner of others.
     Location,
     /// The object.
     Object,
-    /// The name of an object, which the location needs.
+    /// The name of an object, which the location requires.
     ObjectName,
     /// An array of the object at the location.
     Array,

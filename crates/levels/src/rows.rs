@@ -1,5 +1,5 @@
-//! The rows in the header of a process, with the ticks in which they fired, and the values with which their tables were
-//! consulted.
+//! The rows in the header of a process, with the ticks in which they fired, and the state variables of their
+//! tables.
 
 use interfaces::{Basis, Consulted, Decided, Header};
 use rcs_core::{Plain, header::BESIDE, name::Name16, table::Choice, tick::Tick};
@@ -9,21 +9,21 @@ use rcs_core::{Plain, header::BESIDE, name::Name16, table::Choice, tick::Tick};
 pub struct Rows {
     /// The tick in which the process was stepped last.
     pub tick: Tick,
-    /// The row that decided last, if any has.
+    /// The row that decided last.
     pub decided: Option<Decided>,
-    /// When it did, and what its table was consulted with.
+    /// The tick in which it decided, and the state variables of its table.
     pub basis: Option<Basis>,
-    /// Rows of other tables of that tick.
+    /// Rows of other tables in that tick.
     pub beside: [Option<Consulted>; BESIDE],
 }
 
 impl Rows {
-    /// A tick begins: what stood beside belongs to an earlier one.
+    /// Start a tick: rows of other tables belong to an earlier one.
     pub fn begin(&mut self, tick: Tick) {
         (self.tick, self.beside) = (tick, [None; BESIDE]);
     }
 
-    /// A row has decided about the command. What has decided before in the same tick goes beside.
+    /// Record a row that has decided about the command. An earlier one of the same tick moves to the other rows.
     pub fn decide<Action, Step>(&mut self, choice: &Choice<Action, Step>) {
         let &Choice { table, row, values, .. } = choice;
         if let (Some(decided), Some(basis)) = (self.decided, self.basis)
@@ -35,13 +35,13 @@ impl Rows {
         self.basis = Some(Basis { tick: self.tick, values });
     }
 
-    /// A row of a table that says nothing about the outcome of the command.
+    /// Record a row of a table that does not decide about the command.
     pub fn beside<Action, Step>(&mut self, choice: &Choice<Action, Step>) {
         let decided = Decided { table: choice.table, row: choice.row };
         self.add(Consulted { decided, values: choice.values });
     }
 
-    /// The row of a table beside, if it was consulted in the last tick.
+    /// The row of another table, if it was consulted in the last tick.
     #[must_use]
     pub fn row_of(&self, table: u8) -> Option<u8> {
         let mut rows = self.beside.iter().flatten().map(|consulted| consulted.decided);
@@ -82,7 +82,7 @@ mod tests {
     }
 
     #[test]
-    fn a_row_keeps_its_tick_and_what_stands_beside_does_not() {
+    fn deciding_row_keeps_its_tick_and_other_rows_are_cleared() {
         let mut rows = Rows::default();
         rows.begin(Tick(4));
         rows.beside(&choice(7, 2, 9));
@@ -101,7 +101,7 @@ mod tests {
     }
 
     #[test]
-    fn the_last_row_of_a_tick_is_the_one_that_decided() {
+    fn last_row_of_a_tick_is_the_deciding_one() {
         let mut rows = Rows::default();
         rows.begin(Tick(4));
         rows.decide(&choice(3, 5, 1));
@@ -118,7 +118,7 @@ mod tests {
     }
 
     #[test]
-    fn there_is_room_for_the_tables_of_prim() {
+    fn header_has_room_for_the_tables_of_prim() {
         let mut rows = Rows::default();
         rows.begin(Tick(1));
         for table in 1..=4 {

@@ -1,26 +1,26 @@
-//! State variables that several processes have in common.
+//! State variables that several processes share.
 
 use rcs_core::Plain;
 
-/// Is the gripper of the process on the robot?
+/// Whether the gripper of the process is on the robot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Attachment {
-    /// It is mated and the quick change is locked.
+    /// It is attached and the quick change is locked.
     Attached,
     /// It is not.
     Detached,
 }
 
-/// The gripper for which a command is meant.
+/// The gripper for which a command is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Addressee {
-    /// That of this process, or the commander did not say.
+    /// That of this process, or the command names none.
     This,
     /// Another one.
     Other,
 }
 
-/// The time of a command, or of a motion that it waits for.
+/// The time of a command, or of a motion for which it waits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Clock {
     /// Within its limit.

@@ -1,5 +1,5 @@
-//! Variables of the interfaces (chapters V and VI) that are carried along: no scenario depends on them,
-//! people and programs that look on do.
+//! Variables of the interfaces (chapters V and VI) that no process uses, only people and programs that observe the
+//! run.
 
 use interfaces::{
     CommonMemory, EmoveOutputs, ExternalInputs, GripOutputs, JawsOutputs, PedestalOutputs, T3iOutputs,
@@ -19,7 +19,7 @@ use rcs_core::{Plain, tick::Tick};
 use taskdata::files::TaskData;
 
 #[test]
-fn t3i_gives_its_cycle_count_and_echoes_that_of_the_command() {
+fn t3i_publishes_its_own_and_the_command_cycle_count() {
     let (mut process, mut memory, mut outputs) =
         (T3i::default(), CommonMemory::default(), T3iOutputs::default());
     let (external, data) = (ExternalInputs::default(), TaskData::default());
@@ -38,7 +38,7 @@ fn t3i_gives_its_cycle_count_and_echoes_that_of_the_command() {
 }
 
 #[test]
-fn e_move_passes_the_feedback_pose_up_and_the_gripper_down() {
+fn e_move_passes_the_pose_up_and_the_gripper_down() {
     let (mut process, mut memory, mut outputs) =
         (Emove::default(), CommonMemory::default(), EmoveOutputs::default());
     let (external, data) = (ExternalInputs::default(), TaskData::default());

@@ -1,5 +1,4 @@
-//! Routes of E-move over the linkbar's data: the points of Figures VIII.22 to VIII.28 in their order, and
-//! what is refused.
+//! Routes of E-move over the linkbar's data: the points of Figures VIII.22 to VIII.28 in their order, and refusals.
 
 use std::{path::Path, sync::OnceLock};
 
@@ -49,8 +48,8 @@ fn gripped(object: &str, grip: i32) -> ObjectGrip {
     ObjectGrip { object: Name16::new(object).unwrap(), grip }
 }
 
-/// The whole route as text: `departure A/D-8`, `UNIT-V1`, `goal A/D-10`, `goal`, each with the velocity of
-/// its segment.
+/// The whole route as text: `departure A/D-8`, `UNIT-V1`, `goal A/D-10`, `goal`, each with the velocity of its
+/// segment.
 fn legs(mut route: Route) -> Vec<(String, i32)> {
     let data = data();
     (route.departure, route.goal) = (1_000_001, 1_000_002);
@@ -89,7 +88,7 @@ fn texts(expected: &[(&str, i32)]) -> Vec<(String, i32)> {
 }
 
 #[test]
-fn the_blank_goes_from_the_tray_into_the_vise() {
+fn blank_moves_from_the_tray_into_the_vise() {
     let tray = location("UNIT_1", 4, "LINKBAR1_BH");
     let vise = location("PFIXTURE", 0, "");
     let held = data().grip_frame(&Name16::new("LINKBAR1_BH").unwrap(), 2, &tray).unwrap();
@@ -112,7 +111,7 @@ fn the_blank_goes_from_the_tray_into_the_vise() {
 }
 
 #[test]
-fn what_was_brought_is_taken_out_as_it_came_in() {
+fn departure_reverses_the_approach() {
     let (nest, home) = (location("V-VFIXTURE", 0, ""), location("HOME", 0, ""));
     let shaft = gripped("SHAFT_BH", 1);
     let held = data().grip_frame(&shaft.object, shaft.grip, &nest).unwrap();
@@ -136,12 +135,12 @@ fn hold_then_seat_needs_no_trajectory_and_no_depart() {
         planned(EmoveVerb::MovToObj, "S-LINKBAR1_BH", 1, &vise, Some(&from)).unwrap(),
         texts(&[("goal", 5)])
     );
-    // Where the robot is already, nothing is left to do.
+    // A robot at its goal has no route.
     assert_eq!(legs(Route::here(&from, &from, None)), []);
 }
 
 #[test]
-fn the_view_at_unit_1_is_approached_from_above() {
+fn view_at_unit_1_is_approached_from_above() {
     let (home, tray) = (location("HOME", 0, ""), location("UNIT_1", 4, "LINKBAR1_BH"));
     let from = robot_at(GoneTo::Location, &home, &home.frame);
     let route = planned(EmoveVerb::MovToVu, "LINKBAR1_BH", 2, &tray, Some(&from)).unwrap();
@@ -155,7 +154,7 @@ fn the_view_at_unit_1_is_approached_from_above() {
 }
 
 #[test]
-fn what_is_missing_has_a_reason() {
+fn missing_data_have_a_reason() {
     let (home, vise) = (location("HOME", 0, ""), location("PFIXTURE", 0, ""));
     let tray = location("UNIT_1", 4, "LINKBAR1_BH");
     let known = robot_at(GoneTo::Location, &home, &home.frame);

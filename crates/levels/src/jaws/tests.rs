@@ -166,7 +166,7 @@ fn open_fingers_with_closing_air_are_not_empty() {
     assert_eq!(bench.wait(20).status.felt, Felt::Nothing);
     bench.world.speed = 0.0;
     assert_eq!(bench.execute(order(JawsVerb::Grasp, 0.0)).0, JawsReport::Opened);
-    assert_eq!(bench.wait(20).status.felt, Felt::NotKnown, "there is no air");
+    assert_eq!(bench.wait(20).status.felt, Felt::NotKnown, "the air is off");
     (bench.world.speed, bench.world.object) = (3.0, Some(2.0));
     assert_eq!(bench.wait(100).status.felt, Felt::Something, "the air is back");
 }

@@ -1,4 +1,4 @@
-//! The fingers of a gripper that is servoed by air: what the valves do to opening, force and counts.
+//! The fingers of a gripper with an air servo: effects of the valves on opening, force and counts.
 
 use interfaces::device::{ADC_FULL_SCALE, GripSensors, valve};
 use rcs_core::tick::TICK_S;
@@ -12,16 +12,16 @@ const FLOWS: [(u8, f64); 6] = [
     (valve::CLOSE_MEDIUM, -1.0),
     (valve::CLOSE_COARSE, -4.0),
 ];
-/// Force of a blocked finger for each inch that the air would have moved it, lb/in.
+/// Force of a blocked finger per inch that the air would have moved it, lb/in.
 const COMPRESSIBILITY: f64 = 100.0;
-/// What the first finger feels while it pushes the object towards the second, lb.
+/// Reading of the first finger while it pushes the object towards the second, lb.
 const PUSH: f64 = 4.0;
 
 #[derive(Clone, Copy, Debug)]
 pub struct Object {
     /// Opening at which both fingers touch, in.
     pub size: f64,
-    /// How much earlier one finger touches than the other, in.
+    /// Distance by which one finger touches earlier than the other, in.
     pub off_centre: f64,
 }
 
@@ -33,15 +33,15 @@ pub struct Gripper {
     pub object: Option<Object>,
     /// Greatest noise, counts.
     pub noise: u16,
-    /// Counts at 0 and counts an inch of the potentiometer.
+    /// Counts at 0 and counts per inch of the potentiometer.
     pub potentiometer: (f64, f64),
-    /// Counts at 0 and counts a pound of the strain gages.
+    /// Counts at 0 and counts per pound of the strain gages.
     pub strain: [(f64, f64); 2],
     /// Valves act one tick late.
     pub late: bool,
-    /// There is no air: nothing moves, whatever the valves do.
+    /// Without air the valves have no effect.
     pub without_air: bool,
-    /// Patterns of the valves in the order in which they came, without repetitions.
+    /// Valve patterns in order, without repetitions.
     pub patterns: Vec<u8>,
     pending: u8,
     random: u64,
@@ -75,7 +75,7 @@ impl Gripper {
         }
         let bits = if self.late { core::mem::replace(&mut self.pending, bits) } else { bits };
         let stop = self.object.map_or(0.10, |object| object.size.max(0.10));
-        // Trapped air drives the fingers on when what they held is gone.
+        // Trapped air moves the fingers on when their object is removed.
         let gap = (self.opening - stop).max(0.0).min(self.force / COMPRESSIBILITY);
         self.opening -= gap;
         self.force -= gap * COMPRESSIBILITY;

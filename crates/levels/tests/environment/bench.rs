@@ -1,4 +1,4 @@
-//! A process with what is around it, tick by tick. The test is its commander.
+//! A process and its environment, tick by tick. The test is its commander.
 
 use std::fmt::Debug;
 
@@ -16,9 +16,9 @@ pub trait Buffers {
 
     fn outputs(memory: &mut CommonMemory) -> &mut Self::Outputs;
     fn header(outputs: &mut Self::Outputs) -> &mut Header;
-    /// The number of the command that its status echoes.
+    /// The command number that its status echoes.
     fn echo(outputs: &Self::Outputs) -> u32;
-    /// The number of the last command of its commander; 0 of Task, whose commander is no process.
+    /// The number of the last command of its commander; 0 for Task, whose commander is not a process.
     fn number(memory: &mut CommonMemory) -> u32;
 }
 
@@ -63,30 +63,31 @@ for_each_process!(buffers);
 pub trait Tested<Data>: Buffers + Process<Data, Outputs = <Self as Buffers>::Outputs> + Default {
     type Order: Copy;
     type End: Copy + Debug + PartialEq;
-    /// Ticks in which every command ends.
+    /// Time limit of every command, ticks.
     const LONGEST: u64;
 
-    /// The command of its commander with a number.
+    /// Write a command of its commander with a number.
     fn order(memory: &mut CommonMemory, order: Self::Order, number: u32);
     /// The number of the last command, if no process commands this one.
     fn number_outside(_external: &ExternalInputs) -> u32 {
         0
     }
-    /// How the command that is echoed has ended.
+    /// The end of the echoed command.
     fn end(outputs: &<Self as Buffers>::Outputs) -> Option<Self::End>;
-    /// The process has suspended itself until a person goes on.
+    /// True while the process has suspended itself until a person continues.
     fn is_suspended(_outputs: &<Self as Buffers>::Outputs, _external: &ExternalInputs) -> bool {
         false
     }
-    /// What must hold after each tick: of what was written in it, by what was read.
+    /// Assertions after each tick, about the outputs and the inputs from which they follow.
     fn check(_outputs: &<Self as Buffers>::Outputs, _memory: &CommonMemory, _external: &ExternalInputs) {}
 }
 
-/// What is around a process: devices, and neighbours.
+/// The environment of a process: devices and neighbours.
 pub trait World<P: Buffers> {
-    /// What devices say in this tick, and neighbours have written in the tick before.
+    /// Write the device words of this tick, and the neighbours' outputs of the previous tick.
     fn sense(&mut self, _tick: Tick, _memory: &mut CommonMemory, _external: &mut ExternalInputs) {}
-    /// Neighbours read what was written `before`, and write in this tick; devices do what the process has written in it.
+    /// Neighbours read the outputs `before` and write their own; devices react to the process's outputs of this
+    /// tick.
     fn act(
         &mut self,
         _tick: Tick,
@@ -97,7 +98,7 @@ pub trait World<P: Buffers> {
     }
 }
 
-/// Process, buffers, and what is around it.
+/// A process, its buffers and its environment.
 #[derive(Clone)]
 pub struct Bench<P, W, Data = ()> {
     pub process: P,
@@ -131,13 +132,13 @@ impl<P: Tested<Data>, W: World<P>, Data> Bench<P, W, Data> {
         }
     }
 
-    /// The command that follows the last one.
+    /// Send the next command.
     pub fn send(&mut self, order: P::Order) {
         let number = P::number(&mut self.memory) + 1;
         P::order(&mut self.memory, order, number);
     }
 
-    /// What the process has written last.
+    /// The last outputs of the process.
     pub fn outputs(&mut self) -> <P as Buffers>::Outputs {
         *P::outputs(&mut self.memory)
     }
@@ -161,7 +162,7 @@ impl<P: Tested<Data>, W: World<P>, Data> Bench<P, W, Data> {
         outputs
     }
 
-    /// Ticks; what was written in the last one.
+    /// Step some ticks; returns the last outputs.
     pub fn wait(&mut self, ticks: u32) -> <P as Buffers>::Outputs {
         (0..ticks).for_each(|_| {
             self.step();
@@ -169,7 +170,7 @@ impl<P: Tested<Data>, W: World<P>, Data> Bench<P, W, Data> {
         self.outputs()
     }
 
-    /// Ticks until the command has ended, and how.
+    /// Step until the command has ended; returns its end.
     pub fn finish(&mut self) -> P::End {
         for _ in 0..P::LONGEST {
             let outputs = self.step();
@@ -182,7 +183,7 @@ impl<P: Tested<Data>, W: World<P>, Data> Bench<P, W, Data> {
         panic!("no end at tick {}", self.tick);
     }
 
-    /// Step until something holds.
+    /// Step until a condition is true.
     pub fn until(&mut self, holds: impl Fn(&Self) -> bool) {
         let began = self.tick;
         while !holds(self) {
@@ -191,7 +192,7 @@ impl<P: Tested<Data>, W: World<P>, Data> Bench<P, W, Data> {
         }
     }
 
-    /// A copy of the bench in each tick in which the command that was sent executes.
+    /// A copy of the bench in each tick in which the command is executed.
     pub fn at_every_tick(mut self) -> impl Iterator<Item = Self>
     where
         Self: Clone,
@@ -202,8 +203,8 @@ impl<P: Tested<Data>, W: World<P>, Data> Bench<P, W, Data> {
         })
     }
 
-    /// Interrupt a command at every tick, in each of some ways, and send it again: `judge` finishes it. What it had
-    /// begun must not matter.
+    /// Interrupt a command at every tick, in each of some ways, and send it again: `judge` finishes it. The result
+    /// must not depend on the interrupted part.
     pub fn sent_again(
         &self,
         send: impl Fn(&mut Self),
@@ -226,13 +227,13 @@ impl<P: Tested<Data>, W: World<P>, Data> Bench<P, W, Data> {
         }
     }
 
-    /// A command from its beginning to its end.
+    /// Execute a command to its end.
     pub fn execute(&mut self, order: P::Order) -> P::End {
         self.send(order);
         self.finish()
     }
 
-    /// Ticks in which the process is not stepped.
+    /// Do not step the process for some ticks.
     pub fn sleep(&mut self, ticks: u32) {
         self.held = true;
         self.wait(ticks);
@@ -243,7 +244,7 @@ impl<P: Tested<Data>, W: World<P>, Data> Bench<P, W, Data> {
         self.process = P::default();
     }
 
-    /// The process continues from its state as a new one.
+    /// Restore the process from the bytes of its state.
     pub fn restore(&mut self)
     where
         P::State: Copy,

@@ -1,4 +1,4 @@
-//! E-move as Subtask sees it: what its orders do to its status.
+//! E-move as Subtask sees it: the effects of its orders on its status.
 
 use interfaces::{
     StatusReport,
@@ -7,7 +7,7 @@ use interfaces::{
     },
 };
 
-/// Does the robot leave its place for an order?
+/// True if the robot moves away for an order.
 pub const fn moves(verb: EmoveVerb) -> bool {
     matches!(
         verb,
@@ -19,12 +19,12 @@ pub const fn moves(verb: EmoveVerb) -> bool {
     )
 }
 
-/// A new order is taken.
+/// Take a new order.
 pub const fn take(status: &mut EmoveStatus, number: u32) {
     (status.echo, status.report) = (number, StatusReport::Executing);
 }
 
-/// The effect of an order that is done.
+/// The effect of a completed order.
 pub fn effect(status: &mut EmoveStatus, order: &EmoveCommand) {
     let EmoveCommand { object, grip, site, .. } = *order;
     match order.command {
@@ -49,12 +49,12 @@ pub fn effect(status: &mut EmoveStatus, order: &EmoveCommand) {
     }
 }
 
-/// The fingers have grasped an object.
+/// The fingers grasp an object.
 pub const fn grasp(status: &mut EmoveStatus, object: ObjectGrip) {
     (status.held, status.placed, status.located) = (Holding::Object(object), None, None);
 }
 
-/// The fingers have released what they held, where the robot is.
+/// The fingers release their object at the robot's place.
 pub fn release(status: &mut EmoveStatus) {
     if let Holding::Object(ObjectGrip { object, grip }) = status.held {
         let site = status.at.unwrap_or_default().site;

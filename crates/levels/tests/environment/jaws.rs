@@ -4,14 +4,14 @@ use interfaces::device::JawValves;
 use levels::jaws::{JawsKind, POTENTIOMETER_OFFSET, POTENTIOMETER_SCALE};
 use rcs_core::tick::TICK_S;
 
-/// Fingers that air moves at one speed, and a potentiometer.
+/// Fingers that air moves at one speed, with a potentiometer.
 #[derive(Clone, Debug)]
 pub struct Fingers {
     pub opening: f64,
     pub ends: (f64, f64),
     /// in/s.
     pub speed: f64,
-    /// Something that keeps the fingers from closing further, in.
+    /// An object that limits the closing of the fingers, in.
     pub object: Option<f64>,
     /// Greatest noise of the potentiometer, counts.
     pub noise: u16,

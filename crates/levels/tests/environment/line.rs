@@ -1,4 +1,4 @@
-//! The DEPC line, the robot controller at its other end, and a robot that is where it was sent.
+//! The DEPC line, the robot controller at its other end, and a robot at its commanded position.
 
 use std::collections::VecDeque;
 
@@ -28,13 +28,13 @@ impl Robot for Exact {
     }
 }
 
-/// What happens to an answer of the controller on its way.
+/// Disturbance of an answer of the controller.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Answer {
     Comes,
     IsLost,
     IsDamaged,
-    /// With all that follow, by so many ticks, until the line is empty.
+    /// This answer and all following ones are late by some ticks, until the line is empty.
     IsLate(usize),
 }
 
@@ -45,13 +45,13 @@ pub struct Line {
     /// The line carries bytes.
     pub connected: bool,
     pub hold: bool,
-    /// The controller's program runs; else its DTR is off.
+    /// The controller's program runs; otherwise its DTR is off.
     pub on: bool,
     pub answer: Answer,
     late: VecDeque<LinkBytes>,
 }
 
-/// What the resolvers say of joints.
+/// The resolver counts of joints.
 pub fn counts(joints: &Joints) -> [u32; 6] {
     joints.map(|angle| {
         let turns = (angle / (2.0 * std::f64::consts::PI)).rem_euclid(1.0);
@@ -60,7 +60,7 @@ pub fn counts(joints: &Joints) -> [u32; 6] {
 }
 
 impl Line {
-    /// A robot at HOME, whose controller's program is started in this tick.
+    /// A robot at HOME, whose controller starts its program in this tick.
     pub fn new(devices: &mut DeviceInputs) -> Self {
         let at = Plate::from_tool(&T3.forward(&HOME_JOINTS), &T3, &Plate::default()).unwrap();
         let mut line = Self {
@@ -77,7 +77,7 @@ impl Line {
         line
     }
 
-    /// The controller's part of a tick: it gets what T3 Interface sends, and what it answers is there in the next one.
+    /// The controller's part of a tick: it receives the frame of T3 Interface; its answer arrives in the next tick.
     pub fn step(&mut self, tx: &LinkBytes, devices: &mut DeviceInputs) {
         self.tick(tx, false, devices);
     }

@@ -1,5 +1,5 @@
-//! What is around the processes in the tests of this package: each device and each neighbour once, as an automaton.
-//! Unit tests script what it does, and the searches of `pairs` try everything that it may do.
+//! The environment of the processes in the tests of this package: each device and each neighbour once, as an
+//! automaton. Unit tests script its behaviour, and the searches of `pairs` try every possible one.
 
 pub mod air;
 pub mod emove;

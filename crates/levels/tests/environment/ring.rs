@@ -2,17 +2,17 @@
 
 use interfaces::device::{QuickChangeSensors, QuickChangeValves};
 
-/// A ring that turns with the valves, a tick at a time.
+/// A ring that turns with the valves, tick by tick.
 #[derive(Clone, Copy, Debug)]
 pub struct Ring {
     /// 0 unlocked, 1 locked.
     pub place: f64,
-    /// Share of its way in a tick.
+    /// Share of its travel per tick.
     pub speed: f64,
-    /// Where it jams, if it does.
+    /// Where it jams.
     pub jam: Option<f64>,
     pub id: u8,
-    /// What the sensors say instead of the truth.
+    /// Sensor readings that replace the true ones.
     pub claim: Option<QuickChangeSensors>,
 }
 
@@ -38,7 +38,7 @@ impl Ring {
     }
 }
 
-/// What the sensors of a ring say that is locked on a gripper, or open without one.
+/// The sensor readings of a ring that is locked on a gripper, or open without one.
 pub const fn mated(is_locked: bool, id: u8) -> QuickChangeSensors {
     let end_effector_id = if is_locked { id } else { 0 };
     QuickChangeSensors { locked: is_locked, unlocked: !is_locked, end_effector_id }

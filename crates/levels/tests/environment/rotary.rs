@@ -8,22 +8,22 @@ pub struct Rotary {
     /// Steps; 0 where the calibrated counter is 0.
     pub position: i32,
     pub goal: i32,
-    /// What the counter shows where the position is 0.
+    /// Reading of the counter at position 0.
     pub offset: i32,
     pub echo: u32,
-    /// Steps a tick.
+    /// Steps per tick.
     pub speed: i32,
-    /// Ticks that an order needs on the line.
+    /// Ticks that an order takes on the line.
     pub delay: u8,
     /// The last order, and ticks until it arrives.
     pub waiting: (MotorCommand, u8),
-    /// Steps lost in each tick of a turn.
+    /// Steps lost per tick of a turn.
     pub slip: i32,
     pub blocked: bool,
     pub off: bool,
-    /// The motor does not stop, whatever it is told.
+    /// The motor does not stop on any order.
     pub runs_on: bool,
-    /// Counts that the potentiometer is wrong by.
+    /// Error of the potentiometer, counts.
     pub wrong: f64,
 }
 
@@ -74,7 +74,7 @@ impl Rotary {
             self.offset += self.slip;
             self.goal -= self.slip;
         }
-        // A switch stops the motor a few steps late, and lets it run away from it.
+        // A switch stops the motor a few steps late; the motor can run away from it.
         if way > 0 && self.at_plus() {
             self.position = AT_LIMIT * TABLE_STEPS_PER_TENTH + 2;
             self.goal = self.position;
@@ -96,7 +96,7 @@ impl Rotary {
         f64::from(self.position) / f64::from(10 * TABLE_STEPS_PER_TENTH)
     }
 
-    /// Words of table and motor; those of the hand stay.
+    /// Write the words of table and motor; those of the hand stay.
     pub fn sense(&self, sensors: &mut PedestalSensors) {
         let counts = 3950.0 + self.angle() * 10.0 * 180.0 / 183.5 + self.wrong;
         sensors.table_potentiometer = counts.round().clamp(0.0, 4095.0) as u16;

@@ -1,4 +1,4 @@
-//! T3 Interface as Prim sees it: a model that stalls, fails and watches the order of points.
+//! T3 Interface as Prim sees it: a model that stalls, fails and checks the order of points.
 
 use std::collections::VecDeque;
 
@@ -15,7 +15,7 @@ use rcs_core::{
 /// Points that T3I can queue.
 const QUEUE: usize = 4;
 
-/// T3I and everything below it, as far as Prim can see.
+/// T3I and everything below it, as Prim sees them.
 #[derive(Clone, Default)]
 pub struct ModelT3i {
     pub receiver: Receiver,
@@ -26,26 +26,26 @@ pub struct ModelT3i {
     pub starting: Option<u32>,
     pub running: bool,
     pub fault: LinkFault,
-    /// How each start of the link ends; the link runs then if nothing is wrong.
+    /// The fault of each start of the link; without a fault the link runs.
     pub broken: LinkFault,
-    /// Faults that come by themselves as soon as the link runs again.
+    /// Faults that occur by themselves once the link runs again.
     pub more_faults: u32,
     pub dtr_off: bool,
-    /// The robot is not where it was sent.
+    /// The robot is not at its commanded position.
     pub elsewhere: bool,
-    /// Every frame that went to the robot, without the repetitions.
+    /// Every frame that was sent to the robot, without repetitions.
     pub path: Vec<WireFrame>,
-    /// The resolvers see this many 0.01 in beside the output.
+    /// Offset of the resolvers from the output, 0.01 in.
     pub off: i32,
-    /// No tick passes for it; its last outputs stand as they are.
+    /// It is not stepped; its last outputs stay.
     pub dead: bool,
     /// It is held; its last outputs are republished.
     pub held: bool,
-    /// It reads no command, and goes on with the last one.
+    /// It reads no command, and continues with the last one.
     pub deaf: bool,
     /// The robot has left its path.
     pub left: bool,
-    /// It is off its path again after each RESTART.
+    /// The robot is off its path again after each RESTART.
     pub astray: bool,
 }
 

@@ -1,18 +1,18 @@
-//! How every double executes its commands: it takes a new one, and works on it for some ticks.
+//! Execution of commands by every double: it takes a new command and works on it for some ticks.
 
 use rcs_core::handshake::{Arrival, Receiver};
 
-/// What a double does in a tick.
+/// The activity of a double in a tick.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Turn {
     Takes,
     /// The command ends in this tick.
     Ends,
-    /// It works, or has nothing to do.
+    /// It works, or has no command.
     Waits,
 }
 
-/// The last command that a double has taken, and how long it still works on it.
+/// The last command of a double, and the remaining ticks of work.
 #[derive(Clone, Debug, Default)]
 pub struct Worker {
     receiver: Receiver,
@@ -20,7 +20,7 @@ pub struct Worker {
 }
 
 impl Worker {
-    /// A tick in which a command with a number is in the buffer. It takes so many ticks.
+    /// A tick with a command number in the buffer; the command takes `ticks`.
     pub fn turn(&mut self, number: u32, ticks: u32) -> Turn {
         if self.receiver.observe(number) == Arrival::New {
             self.left = ticks;

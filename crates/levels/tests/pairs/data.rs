@@ -15,7 +15,7 @@ use taskdata::{
     load::{Step, Store, job::own_command},
 };
 
-/// Grip of the objects of commands of Subtask.
+/// Grip of the objects in commands of Subtask.
 const GRIP: i32 = 2;
 
 fn store() -> &'static Store {
@@ -30,7 +30,7 @@ pub fn data() -> TaskData<'static> {
     store().view()
 }
 
-/// Commands by their lines in a job, without `==`.
+/// Commands from their lines in a job, without `==`.
 pub fn commands(lines: &[&str]) -> Vec<HwsCommand> {
     let read = |line: &&str| match own_command(line, store()).map(|line| line.step) {
         Ok(Step::Command(command)) => command,
@@ -39,7 +39,7 @@ pub fn commands(lines: &[&str]) -> Vec<HwsCommand> {
     lines.iter().map(read).collect()
 }
 
-/// A command of Subtask about an object at a location.
+/// A command of Subtask for an object at a location.
 pub fn emove_command(verb: EmoveVerb, object: &str, grip: i32, location: &str) -> EmoveCommand {
     let (object, at) = (Name16::new(object).expect("a name"), place(location));
     EmoveCommand {
@@ -67,7 +67,7 @@ pub fn place(name: &str) -> Location {
     data().resolve_location(&name, None, None::<&Name16>).expect("the data have the location")
 }
 
-/// A command of Subtask with its pose: about an object, its grip 2 and the parts gripper, or about a location alone.
+/// A command of Subtask with its pose: for an object, its grip 2 and the parts gripper, or for a location alone.
 /// `nth` is the number of the pose.
 pub fn subtask_command(
     verb: SubtaskVerb,

@@ -1,5 +1,5 @@
-//! E-move and the process of a gripper. Around them: Subtask, the fingers with a part or without, Prim, Quick Change.
-//! The robot stands at an object first. It goes to another location and back, if a search has such commands.
+//! E-move and the process of a gripper. Around them: Subtask, the fingers with or without a part, Prim, Quick
+//! Change. The robot is at an object first. It moves to another location and back, if a search has such commands.
 
 mod judge;
 mod states;
@@ -28,19 +28,19 @@ use crate::{
     search::Wrong,
 };
 
-/// A command of Subtask, and the location to which it goes if that is not the object's.
+/// A command of Subtask, and its location if it differs from the object's.
 pub type Line = (EmoveVerb, Option<&'static str>);
 
 /// The process of a gripper, its outputs, and its fingers.
 pub trait Fingered: Stepped {
     const GRIPPER: EmoveGripper;
-    /// The object, its grip, and where the robot stands.
+    /// The object, its grip, and the location of the robot.
     const OBJECT: (&'static str, i32, &'static str);
-    /// The greatest age that is within the time limit of a command, ticks.
+    /// The greatest age within the time limit of a command, ticks.
     const LIMIT: u64;
-    /// Fields that count up to a greatest value.
+    /// Counter fields and their greatest values.
     const COUNTERS: &'static [(&'static str, u8)];
-    /// Ticks for which E-move need not know that the part has gone.
+    /// Ticks until E-move must know that the part is gone.
     const LATE: u8;
 
     type Fingers: Copy + Debug + PartialEq;
@@ -48,14 +48,14 @@ pub trait Fingered: Stepped {
 
     /// A process that waits for a command, with open fingers.
     fn first() -> Self;
-    /// Where the fingers can be in the next tick, and whether that is prompt.
+    /// Possible states of the fingers in the next tick, and whether they are prompt.
     fn next(&self, fingers: Self::Fingers) -> Vec<(Self::Fingers, bool)>;
-    /// May a long time have passed, if they are there in the next tick?
+    /// True if a long time may have passed when the fingers reach this state.
     fn may_be_long(&self, fingers: Self::Fingers, next: (Self::Fingers, bool)) -> bool;
     fn sensors(&self, fingers: Self::Fingers) -> GripSensors;
     fn are_around(fingers: Self::Fingers) -> bool;
     fn hold(fingers: Self::Fingers) -> bool;
-    /// They touch the part, or hold it.
+    /// True if the fingers touch or hold the part.
     fn touch(fingers: Self::Fingers) -> bool;
     fn are_open(fingers: Self::Fingers) -> bool;
 
@@ -63,32 +63,32 @@ pub trait Fingered: Stepped {
     fn execution(&mut self) -> &mut Execution;
     fn reports_executing(&self) -> bool;
     fn rests(&self) -> bool;
-    /// What the fingers are around is pressed.
+    /// True if the fingers press their object.
     fn presses(&self) -> bool;
     fn echo(&self) -> u32;
 
     fn number(outputs: &mut EmoveOutputs) -> &mut u32;
     fn renumber(&mut self, commander: &mut Commander, number: &mut u32);
     fn commander(state: &mut emove::State) -> &mut Commander;
-    /// Take away what no row asks for any more.
+    /// Clear the values that no row tests.
     fn forget(&mut self, tick: Tick);
-    /// Take away the text of an order that has been taken.
+    /// Clear the text of an order that has been taken.
     fn forget_order(outputs: &mut EmoveOutputs);
     fn add_to(&self, outputs: &EmoveOutputs, image: &mut Image);
 }
 
-/// Has E-move reported a command done?
+/// True if E-move has reported a command done.
 pub fn is_done(outputs: &EmoveOutputs, number: u32) -> bool {
     outputs.status.echo == number && outputs.status.report == StatusReport::Done
 }
 
-/// The fingers with a part or without, Prim with the robot, and Quick Change.
+/// The fingers with or without a part, Prim with the robot, and Quick Change.
 #[derive(Clone)]
 pub struct Around<G: Fingered> {
-    /// Where the robot is at the object.
+    /// Pose of the robot at the object.
     object_at: Pose,
     fingers: G::Fingers,
-    /// Ticks for which nothing has been between them.
+    /// Ticks for which the fingers have been empty.
     apart: u8,
     robot: Robot,
     quick_change: u32,
@@ -96,9 +96,8 @@ pub struct Around<G: Fingered> {
 
 pub type Pair<G> = frame::Pair<Around<G>>;
 
-/// The first tick of a system that is booted, with a gripper that is calibrated and open around the object. These
-/// commands can come, `early` of them before the last one has ended (any number if none is given), and so many
-/// `restarts`.
+/// The first tick of a started system, with a calibrated gripper that is open around the object. These commands can
+/// arrive, `early` of them before the last one has ended (any number for `None`), and this many `restarts`.
 pub fn first<G: Fingered>(commands: &[Line], early: Option<u8>, restarts: u8) -> Pair<G> {
     let (object, grip, location) = G::OBJECT;
     let at = place(location);
@@ -159,7 +158,7 @@ impl<G: Fingered> Scene for Around<G> {
         *verb != pair.command.command
     }
 
-    /// RELEASE comes only where E-move says that the robot is at a place.
+    /// RELEASE arrives only where E-move reports that the robot is at a place.
     fn may(pair: &Pair<G>, (verb, _): &Line) -> bool {
         *verb != EmoveVerb::Release || pair.upper.out.status.at.is_some()
     }
@@ -234,12 +233,12 @@ impl<G: Fingered> Scene for Around<G> {
 }
 
 impl<G: Fingered> Pair<G> {
-    /// The robot stands at the object.
+    /// True if the robot is at the object.
     fn is_at_object(&self) -> bool {
         is_at(&self.scene.object_at, &self.scene.robot.at)
     }
 
-    /// Where the fingers can be in the next tick. A part is only at the object's place, or between them.
+    /// Possible states of the fingers in the next tick. A part is only at the object's place, or between them.
     fn next(&self) -> Vec<(G::Fingers, bool)> {
         let mut next = self.lower.next(self.scene.fingers);
         if !self.is_at_object() && !G::touch(self.scene.fingers) {

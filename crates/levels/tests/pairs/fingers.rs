@@ -1,6 +1,5 @@
-//! The fingers of a gripper that is servoed by air, with a part between them or without, for the processes of Grip.
-//!
-//! They are at one of a few places, and go from one to the next in a tick.
+//! The fingers of a gripper with an air servo, with or without a part, for the processes of Grip. They are at one
+//! of a few places, and move from one to the next in a tick.
 
 use interfaces::{
     device::{GripSensors, valve},
@@ -17,9 +16,9 @@ pub enum Fingers {
     Touching,
     /// They hold the part with the commanded force.
     Holding,
-    /// They stand as wide, and the part is gone.
+    /// They are as wide, and the part is gone.
     Emptied,
-    /// They have passed the grasp size, and nothing is between them.
+    /// They are below the grasp size, and empty.
     Passed,
 }
 
@@ -31,11 +30,11 @@ pub struct Sizes {
     pub force: u16,
 }
 
-/// Counts of the potentiometer at 0 and a hundredth of an inch; of a strain gage at 0 and a pound.
+/// Counts of the potentiometer at 0 and per hundredth of an inch; of a strain gage at 0 and per pound.
 const POTENTIOMETER: (u16, u16) = (200, 7);
 const STRAIN: (u16, u16) = (300, 40);
 
-/// What a calibration finds of the sensors.
+/// The calibration of the sensors.
 pub fn calibration() -> Calibration {
     let scale =
         |(zero, counts): (u16, u16), unit: f64| Scale { zero: zero.into(), gain: unit / f64::from(counts) };
@@ -43,7 +42,7 @@ pub fn calibration() -> Calibration {
     Calibration { potentiometer: scale(POTENTIOMETER, 0.01), left: strain, right: strain }
 }
 
-/// Does air open the fingers, and does it close them?
+/// Whether air opens the fingers, and whether it closes them.
 pub const fn flow(bits: u8) -> (bool, bool) {
     let opens = valve::OPEN_FINE | valve::OPEN_MEDIUM | valve::OPEN_COARSE;
     let closes = valve::CLOSE_FINE | valve::CLOSE_MEDIUM | valve::CLOSE_COARSE;
@@ -51,7 +50,7 @@ pub const fn flow(bits: u8) -> (bool, bool) {
 }
 
 impl Fingers {
-    /// Where the fingers can be in the next tick, and whether that is prompt: fingers that air moves arrive.
+    /// Possible states of the fingers in the next tick, and whether they are prompt: moving fingers arrive.
     pub fn next(self, bits: u8) -> Vec<(Self, bool)> {
         match (flow(bits), self) {
             ((true, _), now) => vec![(now, false), (Self::Open, true)],

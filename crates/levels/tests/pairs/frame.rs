@@ -1,4 +1,4 @@
-//! What all pairs have in common: two processes, the commands that come, mishaps, and how a tick goes.
+//! Common parts of all pairs: two processes, the commands and mishaps, and the sequence of a tick.
 
 use std::{fmt::Debug, sync::Arc};
 
@@ -19,11 +19,11 @@ pub type Data = TaskData<'static>;
 /// A process between two ticks.
 pub trait Stepped: Clone {
     fn step(&mut self, inputs: &Inputs<'_, Data>);
-    /// Begin again, with the outputs of before.
+    /// Restart with the previous outputs.
     fn restart(&mut self);
 }
 
-/// The state of a process, and what it has written.
+/// The state of a process, and its outputs.
 pub struct Half<P: Process<Data>> {
     pub state: P::State,
     pub out: P::Outputs,
@@ -56,56 +56,56 @@ impl<P: Process<Data, State: Copy + Default, Outputs: Copy> + Default> Stepped f
     }
 }
 
-/// What is around the two processes of a pair, and what must hold of them.
+/// The environment of the two processes of a pair, and its conditions.
 pub trait Scene: Clone {
     type Upper: Stepped;
     type Lower: Stepped;
     type Line: Clone;
     /// The command in the buffer of the commander.
     type Command: Copy;
-    /// What is around them does in a tick.
+    /// Behaviour of the environment in a tick.
     type Does: Copy + Debug;
 
     const LONG: u64;
     /// What can happen to the processes.
     const MISHAPS: &'static [Mishap] = Mishap::RESTARTS;
-    /// A command can come in the tick of a mishap.
+    /// A command can arrive in the tick of a mishap.
     const COMMANDS_IN_MISHAPS: bool = false;
 
-    /// What can happen around them in the next tick.
+    /// Possible behaviours of the environment in the next tick.
     fn choices(pair: &Pair<Self>) -> Vec<Choice<Self::Does>>;
     /// The last command has ended.
     fn has_ended(pair: &Pair<Self>) -> bool;
-    /// A command can come although the last one has not ended.
+    /// A command can arrive although the last one has not ended.
     fn is_other(pair: &Pair<Self>, line: &Self::Line) -> bool;
-    /// A command can come when the last one has ended.
+    /// A command can arrive after the last one has ended.
     fn may(_pair: &Pair<Self>, _line: &Self::Line) -> bool {
         true
     }
     fn command(pair: &mut Pair<Self>, nth: usize);
-    /// What else an event changes before the tick.
+    /// Other changes of an event before the tick.
     fn begin(_pair: &mut Pair<Self>, _event: &Event<Self::Does>) {}
     fn inputs(pair: &Pair<Self>) -> (CommonMemory, ExternalInputs);
-    /// What is around them reads what was written in the tick before, and does something.
+    /// The environment reads the outputs of the previous tick, and reacts.
     ///
     /// # Errors
-    /// What is wrong with what it was commanded.
+    /// The fault in its orders.
     fn act(pair: &mut Pair<Self>, event: &Event<Self::Does>, memory: &CommonMemory) -> Result<(), Wrong>;
-    /// Note what `judge` asks for in later ticks.
+    /// Record values that `judge` needs in later ticks.
     fn note(_pair: &mut Pair<Self>, _before: &Pair<Self>) {}
-    /// What must hold in each tick. `before` is the pair as it was when the processes read it.
+    /// Check the conditions of each tick. `before` is the pair as the processes read it.
     ///
     /// # Errors
-    /// What does not hold.
+    /// The violated condition.
     fn judge(pair: &Pair<Self>, before: &Pair<Self>, event: &Event<Self::Does>) -> Result<(), Wrong>;
-    /// What must hold when nothing changes any more.
+    /// Check the conditions of a steady state.
     ///
     /// # Errors
-    /// What does not hold.
+    /// The violated condition.
     fn judge_rest(_pair: &Pair<Self>, _before: &Pair<Self>, _event: &Event<Self::Does>) -> Result<(), Wrong> {
         Ok(())
     }
-    /// What does not count any more begins again.
+    /// Restart numbers and times that no longer matter.
     fn renumber(pair: &mut Pair<Self>);
     /// As [`World::image`].
     fn image(pair: &Pair<Self>) -> Vec<u8>;
@@ -115,16 +115,16 @@ pub trait Scene: Clone {
     fn pauses(pair: &Pair<Self>) -> bool;
 }
 
-/// Something that can happen around the processes.
+/// A possible behaviour of the environment.
 #[derive(Clone, Copy, Debug)]
 pub struct Choice<Does> {
     pub does: Does,
-    /// Whatever was ordered ends in this tick.
+    /// Every order ends in this tick.
     pub prompt: bool,
     pub mishaps: u8,
     /// It can happen in a tick like any other.
     pub short: bool,
-    /// It can be that a long time has passed in which nothing else happened.
+    /// It can follow a long time without other events.
     pub long: bool,
     /// It happens only without a command or a mishap.
     pub quiet: bool,
@@ -138,13 +138,13 @@ impl<Does> Choice<Does> {
 
 #[derive(Clone, Copy, Debug)]
 pub struct Event<Does> {
-    /// A command that comes, from 0 in the list of commands.
+    /// Index of an arriving command in the list of commands.
     pub told: Option<usize>,
     pub does: Does,
     pub mishap: Mishap,
-    /// Mishaps that are left are fewer by so many.
+    /// Number of mishaps in this event.
     pub mishaps: u8,
-    /// A long time has passed in which nothing else happened.
+    /// A long time without other events has passed.
     pub long: bool,
 }
 
@@ -152,7 +152,7 @@ pub struct Event<Does> {
 pub struct Pair<S: Scene> {
     pub tick: Tick,
     pub lines: Arc<[S::Line]>,
-    /// Commands that may still come before the last one has ended; any number if none is given.
+    /// Commands that may still arrive before the last one has ended; any number for `None`.
     pub early: Option<u8>,
     pub mishaps: u8,
     pub command: S::Command,
@@ -162,7 +162,7 @@ pub struct Pair<S: Scene> {
 }
 
 impl<S: Scene<Upper: Default, Command: Default>> Pair<S> {
-    /// A pair before its first tick: these commands can come, so many of them `early`, and so many mishaps.
+    /// A pair before its first tick: these commands can arrive, this many of them `early`, and this many mishaps.
     pub fn new(
         lines: impl Into<Arc<[S::Line]>>,
         (early, mishaps): (Option<u8>, u8),
@@ -183,7 +183,7 @@ impl<S: Scene<Upper: Default, Command: Default>> Pair<S> {
 }
 
 impl<S: Scene> Pair<S> {
-    /// No command, or one of those that can come.
+    /// No command, or one that can arrive.
     fn told(&self) -> impl Iterator<Item = Option<usize>> + use<S> {
         let (ended, early) = (S::has_ended(self), self.early != Some(0));
         let may = |line| (ended || (early && S::is_other(self, line))) && S::may(self, line);

@@ -20,15 +20,15 @@ use crate::{
     image::{Image, rebase},
 };
 
-/// Depart size of the object, a little more than its grasp size, and its force.
+/// Depart size of the object, slightly more than its grasp size, and its force.
 const SIZES: Sizes = Sizes { open: 350, part: 66, force: 30 };
 
 #[derive(Clone)]
 pub struct Grip {
     half: Half<grip::Grip>,
-    /// Fingers that stand open do so at the last opening for which air has opened them.
+    /// Open fingers are at the last opening to which air has moved them.
     sizes: Sizes,
-    /// Air brings them to an opening that is wider than the part.
+    /// Air moves them to an opening wider than the part.
     positions: bool,
 }
 
@@ -78,7 +78,7 @@ impl Fingered for Grip {
         }
     }
 
-    /// Fingers that let go may stop while one of them touches the part.
+    /// Fingers that release may stop while one of them touches the part.
     fn next(&self, fingers: Fingers) -> Vec<(Fingers, bool)> {
         if self.positions {
             return vec![(fingers, false), (Fingers::Open, true)];
@@ -91,7 +91,7 @@ impl Fingered for Grip {
         next
     }
 
-    /// They have stood for so long that their process has noted it.
+    /// The fingers have been at rest long enough for their process.
     fn may_be_long(&self, fingers: Fingers, (next, arrive): (Fingers, bool)) -> bool {
         let it = &self.half.state;
         let read = it.sensed.map(|sensed| sensed.last) == Some(self.sensors(fingers));
@@ -136,7 +136,7 @@ impl Fingered for Grip {
             && flow(self.half.out.valves.bits) == (false, false)
     }
 
-    /// They hold it without air, too.
+    /// They also hold it without air.
     fn presses(&self) -> bool {
         true
     }

@@ -1,4 +1,4 @@
-//! The pedestal process and its hand's. Around them: Subtask, the fingers with a part or without, the rotary table.
+//! The pedestal process and its hand's. Around them: Subtask, the fingers with or without a part, the rotary table.
 
 use crate::{
     fingers::{Fingers, Sizes, calibration, flow},
@@ -20,20 +20,20 @@ use levels::{
     pedestal::{Hand, Pedestal},
 };
 
-/// The greatest age that is within the time limit of the hand's commands, ticks.
+/// The greatest age within the time limit of the hand's commands, ticks.
 const LIMIT: u64 = 150;
 /// The opening of PRE-GRIP and RELEASE and the grasp size of a GRIP, 0.01 in.
 const OPEN: i32 = 450;
 const SIZE: i32 = 250;
 const SIZES: Sizes = Sizes { open: 450, part: 256, force: 50 };
-/// The angle of PRE-GRIP, and where FLIP leads from anywhere, 0.1 degree.
+/// The angle of PRE-GRIP, and the goal of every FLIP, 0.1 degree.
 const RECEIVE: i32 = -1200;
 const TURNED: i32 = -2200;
 
-/// What the rotary table does with its order.
+/// Reaction of the rotary table to its order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TableDoes {
-    /// Nothing new; an order that has just come is taken.
+    /// Nothing new; a new order is taken.
     Goes,
     Ends,
     Fails,
@@ -48,8 +48,8 @@ pub struct Around {
 
 pub type Pair = frame::Pair<Around>;
 
-/// The first tick of a system that is booted, with a hand that is calibrated and open, and a table that is calibrated;
-/// so many mishaps can happen, and these commands can come.
+/// The first tick of a started system, with a calibrated and open hand, and a calibrated table. This many mishaps
+/// can happen, and these commands can arrive.
 pub fn first(mishaps: u8, commands: &[PedestalVerb]) -> Pair {
     let calibration = Some(calibration());
     let mut hand = Half::<Hand> {
@@ -146,7 +146,7 @@ impl Scene for Around {
         Ok(())
     }
 
-    /// What is reported done is done.
+    /// Each command that is reported done has had its effect.
     fn judge(pair: &Pair, before: &Pair, _: &Event<Self::Does>) -> Result<(), Wrong> {
         let ended = |it: &Pair| {
             let status = &it.upper.out.status;
@@ -164,7 +164,7 @@ impl Scene for Around {
                 Err("done, and the table is elsewhere")
             }
             PedestalVerb::Grip if !matches!(before.scene.fingers, Fingers::Holding | Fingers::Emptied) => {
-                Err("done, and nothing is between the fingers")
+                Err("done, and the fingers are empty")
             }
             PedestalVerb::Pause if before.lower.out.status.report == GripReport::Executing => {
                 Err("done, and the hand moves")
@@ -177,7 +177,7 @@ impl Scene for Around {
         }
     }
 
-    /// What does not count any more begins again.
+    /// Restart numbers and times that no longer matter.
     fn renumber(pair: &mut Pair) {
         let (pedestal, out) = (&mut pair.upper.state, &mut pair.upper.out);
         let echo = &mut pedestal.execution.receiver.echo;
@@ -187,8 +187,8 @@ impl Scene for Around {
         rebase(&mut pedestal.table, &mut [&mut out.table.number, &mut pair.scene.table.echo]);
     }
 
-    /// Without what no row asks for any more: reasons; the step, the command, the goal and the times of a process
-    /// that executes nothing; the text of an order that has been taken.
+    /// Without values that no row tests: reasons; the step, the command, the goal and the times of a process that
+    /// executes no command; the text of an order that has been taken.
     fn image(pair: &Pair) -> Vec<u8> {
         let counters = &[("settled", 6), ("missed", 3), ("touch_ticks", 5), ("still_ticks", 5)];
         let mut image = Image::new(pair.tick, LIMIT, counters);
@@ -264,7 +264,7 @@ impl Pair {
             || self.scene.table.report == PedestalReport::Executing
     }
 
-    /// The fingers have stood for so long that their process has noted it.
+    /// The fingers have been at rest long enough for their process.
     fn is_still(&self) -> bool {
         let read = self.lower.state.sensed.map(|sensed| sensed.last);
         read == Some(self.scene.fingers.sensors(&SIZES))

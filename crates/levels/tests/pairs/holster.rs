@@ -1,5 +1,5 @@
-//! The right holster with the parts gripper: where the robot is in it, the commands of Subtask there, and what must
-//! hold of them.
+//! The right holster with the parts gripper: places of the robot in it, the commands of Subtask there, and their
+//! conditions.
 
 use geometry::frame::Frame;
 use interfaces::{
@@ -15,13 +15,13 @@ use crate::{
     search::Wrong,
 };
 
-/// The gripper, what it is called in its holster, and the holster.
+/// The gripper, its name in the holster, and the holster.
 pub const GRIPPER: (u8, &str, &str) = (1, "GRIPPER-1", "HOLSTER-R");
-/// Where the gripper is seated: in the axes of the holster, in.
+/// Place of the seated gripper in the axes of the holster, in.
 pub const SEAT: f64 = 1.5;
-/// The robot is clear of the holster if it is as far above it, in the axes of the holster, in.
+/// The robot is clear of the holster above this, in the axes of the holster, in.
 const CLEAR: f64 = -2.9;
-/// So far aside it is not in the holster, but stands elsewhere, in.
+/// A robot this far aside is not in the holster but elsewhere, in.
 const BESIDE: f64 = 0.25;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -51,7 +51,7 @@ pub fn within(robot: &Frame) -> (f64, f64) {
     (at.x, at.z)
 }
 
-/// A command of Subtask at the holster; PAUSE names none. With grip 2 it is the bare robot that goes there.
+/// A command of Subtask at the holster; PAUSE names none. With grip 2 the bare robot moves there.
 pub fn command(number: u32, verb: EmoveVerb) -> EmoveCommand {
     let (id, object, location) = GRIPPER;
     let grip = if verb == EmoveVerb::QcDetach { 1 } else { 2 };
@@ -66,8 +66,8 @@ pub fn command(number: u32, verb: EmoveVerb) -> EmoveCommand {
     }
 }
 
-/// With a gripper on a ring that is not locked the robot moves only to the seat, or from there out of a gripper that is
-/// left. `order` is the new order to Prim for a command of Subtask.
+/// With a gripper on an unlocked ring the robot moves only to the seat, or from there out of a gripper that stays.
+/// `order` is the new order to Prim for a command of Subtask.
 pub fn judge_order(command: &EmoveCommand, order: &PrimCommand, ring: Ring) -> Result<(), Wrong> {
     if !robot::moves(order.command) {
         return Ok(());
@@ -84,7 +84,7 @@ pub fn judge_order(command: &EmoveCommand, order: &PrimCommand, ring: Ring) -> R
     }
 }
 
-/// What is reported done is done: a robot that stands there, with the gripper `mated` or not.
+/// Each command that is reported done has had its effect: the robot is there, with the gripper `mated` or not.
 pub fn judge_done(
     command: &EmoveCommand,
     out: &EmoveOutputs,

@@ -1,7 +1,8 @@
-//! The bytes by which states are told apart.
+//! The bytes that distinguish states.
 //!
-//! A time enters as whether it is over its limit; the time of a command as its age, while an echo may be due. A counter
-//! enters up to the value from which on it makes no difference. The row that fired is left out: no process reads it.
+//! A time is reduced to whether it is over its limit; the time of a command to its age, while an echo may be due. A
+//! counter is limited to the value above which it makes no difference. The row that fired is left out: no process
+//! reads it.
 
 use std::{any::TypeId, cell::RefCell, rc::Rc};
 
@@ -17,13 +18,13 @@ use rcs_core::{
     tick::Tick,
 };
 
-/// Ages that count exactly: one more than [`rcs_core::handshake::ECHO_LIMIT`].
+/// Ages that are kept exactly: one more than [`rcs_core::handshake::ECHO_LIMIT`].
 const EXACT: u64 = 4;
 
-/// Fields of one byte, by name, that count up to a greatest value.
+/// One-byte fields, by name, that count up to a greatest value.
 type Counters = &'static [(&'static str, u8)];
 
-/// What so many bytes of a value add to an image.
+/// The contribution of some bytes of a value to an image.
 enum Piece {
     Keep(usize),
     Skip(usize),
@@ -31,13 +32,13 @@ enum Piece {
     Age(Option<Clock>),
     /// A byte that counts up to a greatest value.
     Count(u8),
-    /// A flag, and the pieces of a value of so many bytes that is only there if the flag is set.
+    /// A flag, and the pieces of a value that is present only if the flag is set, with its size.
     Option(usize, Vec<Self>),
 }
 
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Clock {
-    /// When a command was sent: its age counts until it should have been echoed.
+    /// Send time of a command: its age counts until its echo is due.
     Sent,
     /// Only whether its age is over the limit counts.
     Other,
@@ -46,7 +47,7 @@ enum Clock {
 type Known = (TypeId, Counters, Rc<[Piece]>);
 
 thread_local! {
-    /// A few, so that to look for one takes no time.
+    /// A short list, so that a search takes no time.
     static PIECES: RefCell<Vec<Known>> = const { RefCell::new(Vec::new()) };
 }
 
@@ -104,7 +105,7 @@ impl Image {
         Self { bytes: Vec::with_capacity(1024), value: Vec::new(), now, limit, counters }
     }
 
-    /// Add a value without what does not count.
+    /// Add the relevant parts of a value.
     pub fn add<T: Plain + 'static>(&mut self, value: &T) {
         let pieces = PIECES.with_borrow_mut(|known| self.pieces_of::<T>(known));
         let mut bytes = std::mem::take(&mut self.value);
@@ -115,7 +116,7 @@ impl Image {
         self.value = bytes;
     }
 
-    /// The pieces of a type, among the known ones from now on.
+    /// The pieces of a type, cached in `known`.
     fn pieces_of<T: Plain + 'static>(&self, known: &mut Vec<Known>) -> Rc<[Piece]> {
         let of = TypeId::of::<T>();
         if let Some((.., pieces)) =
@@ -130,7 +131,7 @@ impl Image {
         pieces
     }
 
-    /// Add what counts of some bytes; how many they are.
+    /// Add the relevant parts of some bytes; returns their number.
     fn add_bytes(&mut self, pieces: &[Piece], bytes: &[u8]) -> usize {
         let mut at = 0;
         for piece in pieces {
@@ -168,8 +169,8 @@ impl Image {
     }
 }
 
-/// Numbers of an interface begin again at 1: only their differences count, and they would never come again. When
-/// a command was sent counts until it is echoed.
+/// Restart the numbers of an interface at 1: only their differences count, and otherwise they would never repeat.
+/// The send time of a command counts until its echo.
 pub fn rebase(commander: &mut Commander, numbers: &mut [&mut u32]) {
     let mut all = vec![&mut commander.number];
     all.extend(numbers.iter_mut().map(|number| &mut **number));
@@ -178,7 +179,7 @@ pub fn rebase(commander: &mut Commander, numbers: &mut [&mut u32]) {
     }
 }
 
-/// The same of an interface to a commander that is not one of the pair. Are they all the same?
+/// The same for an interface to a commander outside the pair. Returns whether all numbers are equal.
 pub fn rebase_echoes(numbers: &mut [&mut u32]) -> bool {
     let least = numbers.iter().map(|number| **number).filter(|number| *number != 0).min();
     let Some(before) = least.map(|least| least - 1) else { return false };
@@ -186,7 +187,7 @@ pub fn rebase_echoes(numbers: &mut [&mut u32]) -> bool {
     numbers.iter().all(|number| **number == 1)
 }
 
-/// Record numbers of E-move begin again: those of the records that stand, in their order, and one for all others.
+/// Restart the record numbers of E-move: those of the current records in their order, and one for all others.
 pub fn renumber_poses(emove: &mut emove::State, out: &mut EmoveOutputs) {
     let (first, others) = (pose_range::EMOVE | 1, pose_range::EMOVE | 9);
     let stand = out.poses.map(|record| record.number);
@@ -207,8 +208,8 @@ pub fn renumber_poses(emove: &mut emove::State, out: &mut EmoveOutputs) {
     *last = others;
 }
 
-/// Take away what no row of E-move asks for any more: the reason, the nearest places, and what it has of a command that
-/// it does not execute. Does it execute one?
+/// Clear the values that no row of E-move tests: the reason, the nearest places, and its command while it executes
+/// none. Returns whether it executes one.
 pub fn forget(emove: &mut emove::State) -> bool {
     emove.execution.reason = Reason::None;
     emove.localization.forget_surroundings();

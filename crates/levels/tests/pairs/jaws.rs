@@ -1,6 +1,5 @@
-//! V-Grip and Tool-Grip, the processes of the grippers that open and close, and their fingers.
-//!
-//! The fingers have no force sensor, and air presses them as long as no other command comes.
+//! V-Grip and Tool-Grip, the processes of the grippers that open and close, and their fingers. The fingers have no
+//! force sensor, and air presses them until another command arrives.
 
 use std::marker::PhantomData;
 
@@ -29,16 +28,16 @@ use crate::{
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Fingers {
-    /// At the open end of their way.
+    /// At the open end of travel.
     Open,
     /// Wider than the part by an inch.
     Wide,
     Holding,
-    /// At the closed end of their way.
+    /// At the closed end of travel.
     Closed,
 }
 
-/// What is different between the two.
+/// The differences between the two.
 pub trait Side: JawsKind + Clone + Default {
     const GRIPPER: EmoveGripper;
     const OBJECT: (&'static str, i32, &'static str);
@@ -120,7 +119,7 @@ impl<S: Side> Fingered for Jaws<S> {
     const LIMIT: u64 = 100;
     const COUNTERS: &'static [(&'static str, u8)] =
         &[("attached_ticks", 5), ("air_ticks", 6), ("gripping_ticks", 25)];
-    /// The process reads the fingers a tick later, and E-move its status another one.
+    /// The process reads the fingers one tick later, and E-move its status another tick later.
     const LATE: u8 = 2;
 
     type Fingers = Fingers;
@@ -135,7 +134,7 @@ impl<S: Side> Fingered for Jaws<S> {
         Self { half: Half { state, out }, side: PhantomData }
     }
 
-    /// Fingers that stand still have stopped for their process, wherever that is.
+    /// Fingers at rest have stopped for their process, at any place.
     fn next(&self, fingers: Fingers) -> Vec<(Fingers, bool)> {
         use Fingers::{Closed, Holding, Open, Wide};
         let valves = self.half.out.valves;
@@ -151,7 +150,7 @@ impl<S: Side> Fingered for Jaws<S> {
         [&[(fingers, true)], also].concat()
     }
 
-    /// They have not stood still, and do not until the time limit is over.
+    /// They moved, and will not rest before the time limit is over.
     fn may_be_long(&self, fingers: Fingers, (next, _): (Fingers, bool)) -> bool {
         let still =
             self.half.state.window.is_some_and(|window| window.iter().all(|counts| *counts == window[0]));

@@ -1,15 +1,15 @@
-//! Neighbouring processes in pairs, searched through: the real tables and the real handshake of both, breadth
-//! first over all states that they can reach while what is around them does whatever it may do.
+//! A search through neighbouring processes in pairs: the real tables and the real handshake of both, breadth first
+//! over all reachable states, with every possible behaviour of their environment.
 //!
 //! ```text
 //!   commander ── any command, in any tick ──► upper ──► lower ──► orders: any answer, any delay
 //! ```
 //!
-//! In every state what is reported done is done, by the orders of this command. From every state, as soon as
-//! nothing is commanded any more and whatever was ordered ends, well or ill, or goes over its time limit, the
-//! pair comes to rest within a bound: no cycle of tables goes round for ever. After PAUSE the bound is smaller.
+//! In every state, each command that is reported done has had its effect, by its own orders. From every state
+//! without further commands, the pair comes to rest within a bound (no livelock), if each order completes, fails,
+//! or exceeds its time limit. After PAUSE the bound is smaller.
 //!
-//! `RCS_PAIRS=full` searches with mishaps in every state: processes that restart, neighbours that are silent.
+//! `RCS_PAIRS=full` searches with mishaps in every state: restarting processes and silent neighbours.
 
 #![expect(clippy::print_stdout, reason = "the figures of a search are printed")]
 
@@ -38,12 +38,12 @@ use levels::jaws::{CylindricalPartGripper, ToolGripper};
 use search::{Found, World, search};
 use subtask::{BRING, GET, GOTO, GRIPPER, PAUSE, PLACE, POSITION, RELEASE};
 
-/// Everything, or what an ordinary run has time for.
+/// True for all searches, false for those of an ordinary run.
 fn is_full() -> bool {
     std::env::var("RCS_PAIRS").is_ok_and(|value| value == "full")
 }
 
-/// A number as the page has it, with commas.
+/// A number as on the page, with commas.
 fn grouped(number: impl ToString) -> String {
     let digits = number.to_string();
     let groups = digits.as_bytes().rchunks(3).rev();
@@ -58,7 +58,7 @@ fn is_sound<W: World>(name: &str, first: W, most: usize) -> Found<W::Event> {
     );
     assert!(found.wrong.is_none(), "{name}: {:#?}", found.wrong);
     if !is_full() {
-        // A role or an image that merges different states makes a search smaller, and lets it pass.
+        // A role or an image that merges different states makes a search smaller, without a failure.
         let row = format!("| {name} | {} | {} |", grouped(found.states), grouped(found.ticks));
         let page = include_str!("../../../../docs/evidence.md");
         assert!(page.contains(&row), "docs/evidence.md needs the row `{row}`");
@@ -109,7 +109,7 @@ const HANDLING: &[&str] = &[
 /// Commands that need the Data System.
 const TELLING: &[&str] = &["PAUSE", "STARTUP", "POSITION LINKBAR1 +2 PFIXTURE 0 +0 -- 0 -- 0", "SHUTDOWN"];
 
-/// Search Task and Subtask with these commands; a pair that rests takes `any` ticks at most.
+/// Search Task and Subtask with these commands; a resting pair takes `any` ticks at most.
 fn tasks(name: &str, mishaps: u8, lines: &[&str], any: u32) {
     let found = is_sound(name, task::first(mishaps, data::commands(lines)), 4_000_000);
     assert!(found.pause <= 14 && found.any <= any, "{} and {}", found.pause, found.any);
@@ -122,17 +122,17 @@ fn task_and_subtask_handle_an_object() {
 }
 
 #[test]
-fn task_and_subtask_tell_the_data_system() {
+fn task_and_subtask_update_the_data_system() {
     let some = if is_full() { 4 } else { 3 };
     tasks("Task and Subtask, the Data System", 0, &TELLING[..some], 23);
 }
 
-/// Ticks to the end of a TRANSFER that tells first where the command that it replaces has left an object, and then
-/// where it puts its own.
+/// Ticks to the end of a TRANSFER that first reports where the replaced command has left an object, and then the
+/// place of its own.
 const TELLING_TWICE: u32 = 32;
 
 #[test]
-fn task_and_subtask_let_an_object_go() {
+fn task_and_subtask_release_an_object() {
     let mut commands = data::commands(&[HANDLING[0], HANDLING[2], HANDLING[1]]);
     commands.truncate(if is_full() { 3 } else { 2 });
     let pair = task::first(0, commands.clone()).carrying(&commands[1]);
@@ -163,8 +163,8 @@ fn task_and_subtask_transfer_with_a_mishap() {
 const GRASPING: &[emove::Line] =
     &[(EmoveVerb::GraspObj, None), (EmoveVerb::Release, None), (EmoveVerb::Pause, None)];
 
-/// E-move and the process of a gripper: `early` commands come before the last one has ended (any number if none is
-/// given), and so many `restarts`; a pair that rests takes `pause` and `any` ticks at most.
+/// E-move and the process of a gripper: `early` commands arrive before the last one has ended (any number for
+/// `None`), and this many `restarts`. The pair comes to rest within `pause` and `any` ticks.
 fn grasping<G: emove::Fingered>(
     name: &str,
     commands: &'static [emove::Line],
@@ -212,7 +212,7 @@ fn emove_and_tool_grip_with_a_restart() {
     grasping::<ToolGrip>("E-move and Tool-Grip, a restart", commands, (Some(early), 1), (67, 76));
 }
 
-/// The robot goes elsewhere with what it holds, and back, with it or with open fingers.
+/// The robot moves elsewhere with its object, and back, with it or with open fingers.
 const AWAY: emove::Line = (EmoveVerb::MovToLoc, Some("SAFE"));
 const BRING_BACK: emove::Line = (EmoveVerb::MovObjTo, None);
 const BACK: emove::Line = (EmoveVerb::MovToObj, None);
@@ -246,7 +246,7 @@ fn emove_and_v_grip_go_back_to_an_object() {
 const THERE_AND_BACK: &[prim::Line] =
     &[(EmoveVerb::Pause, ""), (EmoveVerb::MovToLoc, "HOME"), (EmoveVerb::MovToLoc, "SAFE")];
 
-/// E-move and Prim: `motions` commands interrupt a motion, and as many `faults` come.
+/// E-move and Prim: `motions` commands interrupt a motion, and `faults` faults occur.
 fn moves(name: &str, motions: u8, faults: u8) {
     let found = is_sound(name, prim::Pair::first("HOME", THERE_AND_BACK, motions, faults), 1_000_000);
     assert!(found.pause <= 10 && found.any <= 30, "{} and {}", found.pause, found.any);
@@ -271,8 +271,8 @@ const CHANGING_TOOLS: &[prim::Line] = &[
     (EmoveVerb::Pause, ""),
 ];
 
-/// E-move and Prim at the drum, with guarded moves: so many things are unusual, so many commands interrupt a motion,
-/// and so many `faults` come. A pair that rests takes `any` ticks at most.
+/// E-move and Prim at the drum, with guarded moves: this many unusual events, commands that interrupt a motion, and
+/// `faults`. The pair comes to rest within `any` ticks.
 fn guards(name: &str, commands: usize, (unusual, motions, faults): (u8, u8, u8), any: u32) {
     let first = prim::Pair::at_drum(&CHANGING_TOOLS[..commands], unusual, motions, faults);
     let found = is_sound(name, first, 1_000_000);
@@ -325,14 +325,14 @@ fn emove_and_prim_change_grippers_with_a_fault() {
     exchanges("E-move and Prim, grippers, a fault", commands, (unusual, 0, 1), 44);
 }
 
-/// Subtask and E-move: `early` commands come before the last one has ended, and so many `mishaps`; a pair that rests
-/// takes `any` ticks at most.
+/// Subtask and E-move: `early` commands arrive before the last one has ended, and this many `mishaps`. The pair
+/// comes to rest within `any` ticks.
 fn fetches(name: &str, object: &str, lines: &[subtask::Line], (early, mishaps): (u8, u8), any: u32) {
     let found = is_sound(name, subtask::first(object, lines, early, mishaps), 4_000_000);
     assert!(found.pause <= 12 && found.any <= any, "{} and {}", found.pause, found.any);
 }
 
-/// An object whose place the data say, and one that vision looks for.
+/// An object with a place in the data, and one that vision must locate.
 const KNOWN: &str = "LINKBAR1";
 const LOOKED_FOR: &str = "LINKBAR1_BH";
 
@@ -370,7 +370,7 @@ fn subtask_and_emove_with_other_commands() {
     fetches("Subtask and E-move, other commands", KNOWN, lines, (0, 0), 28);
 }
 
-/// E-move and Quick Change: `early` commands come before the last one has ended, and so many `faults`.
+/// E-move and Quick Change: `early` commands arrive before the last one has ended, and this many `faults`.
 fn changes(name: &str, early: u8, faults: u8) {
     let found = is_sound(name, ring::first(early, faults), 1_000_000);
     assert!(found.pause <= 14 && found.any <= 43, "{} and {}", found.pause, found.any);

@@ -1,4 +1,4 @@
-//! Grip with its fingers, as E-move sees it: an order ends with its effect or fails, after any time.
+//! Grip with its fingers, as E-move sees it: an order completes or fails after any delay.
 
 use interfaces::{
     CommonMemory,
@@ -8,27 +8,27 @@ use rcs_core::tick::Tick;
 
 use crate::{image::Image, search::Wrong};
 
-/// Opening with the part between the fingers, 0.01 in; without it, if they have closed; half-way of an order to open.
+/// Opening with the part, 0.01 in; empty and closed; half-way of an order to open.
 const PART: i32 = 66;
 const PASSED: i32 = 54;
 const HALF: i32 = 80;
 /// Force on the part, lb.
 const FORCE: i32 = 30;
 
-/// What Grip does with its order.
+/// Reaction of Grip to its order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum GripDoes {
-    /// Nothing new; an order that has just come is taken.
+    /// Nothing new; a new order is taken.
     Goes,
-    /// It ends the order. Fingers that close have a part between them.
+    /// It ends the order. Closing fingers have a part between them.
     Ends,
-    /// It fails. What is between the fingers stays, and fingers that close have a part between them.
+    /// It fails. Fingers keep their object, and closing fingers have a part between them.
     Fails,
-    /// It fails, if it has an order. What is between the fingers is lost.
+    /// It fails, if it has an order. The fingers lose their object.
     Loses,
 }
 
-/// Do the fingers move for an order?
+/// True if the fingers move for an order.
 pub const fn moves(verb: GripVerb) -> bool {
     matches!(verb, GripVerb::Position | GripVerb::OpenGrip | GripVerb::CloseGrip)
 }
@@ -57,10 +57,10 @@ impl PartsGripper {
         self.is_busy(order) && moves(order.command)
     }
 
-    /// Grip takes what E-move has written in the tick before.
+    /// Grip takes E-move's outputs of the previous tick.
     ///
     /// # Errors
-    /// Fingers that are to stand at an opening let something fall.
+    /// Fingers that are to move to an opening drop an object.
     pub fn does(&mut self, does: GripDoes, order: &GripCommand) -> Result<(), Wrong> {
         let busy = self.is_busy(order);
         if order.number != self.echo && order.number != 0 {
@@ -95,7 +95,7 @@ impl PartsGripper {
         Ok(())
     }
 
-    /// Grip sleeps: it adopts the order that it finds.
+    /// Grip is dormant: it adopts the order in its buffer.
     pub fn sleep(&mut self, order: &GripCommand) {
         let report = if order.number == 0 { GripReport::Idle } else { GripReport::Serror };
         (self.echo, self.report) = (order.number, report);

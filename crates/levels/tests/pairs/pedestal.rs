@@ -19,39 +19,39 @@ use crate::{
     search::{Mishap, Wrong},
 };
 
-/// Ticks after which the table takes a motor for silent that does not take an order.
+/// Ticks until the table reports a motor silent that does not take an order.
 const SILENT: u8 = 25;
-/// The grasp size of a GRIP and the opening of what stands between the fingers, 0.01 in.
+/// The grasp size of a GRIP and the opening of the object between the fingers, 0.01 in.
 const SIZE: i32 = 250;
 const WIDE: i32 = 256;
-/// Where the commands lead the table, steps: to where it is parked, and on by -100 degrees each.
+/// Goals of the commands, steps: the parking place, then steps of -100 degrees.
 const GOALS: [i32; 4] = [-2000, -12_000, -22_000, -32_000];
-/// Where a table stands that has stopped elsewhere, steps.
+/// Place of a table that has stopped elsewhere, steps.
 const ELSEWHERE: i32 = -15_000;
 
-/// What the hand does with its command.
+/// Reaction of the hand to its command.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum HandDoes {
-    /// Nothing new; a command that has just come is taken.
+    /// Nothing new; a new command is taken.
     Goes,
     Ends(Felt),
     Fails,
-    /// What is between the fingers is gone.
+    /// The fingers lose their object.
     Loses,
     Silent,
 }
 
-/// What the motor does with its order.
+/// Reaction of the motor to its order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MotorDoes {
-    /// Nothing new: an order that it has not taken yet is not taken, one that it has taken goes on.
+    /// Nothing new: it takes no new order, and continues the one that it has taken.
     Goes,
     Takes,
     Arrives,
     StopsElsewhere,
 }
 
-/// Hand and motor, and what has come of their orders.
+/// Hand and motor, and the results of their orders.
 #[derive(Clone)]
 pub struct Around {
     hand: GripStatus,
@@ -60,7 +60,7 @@ pub struct Around {
     goal: i32,
     seeks: bool,
     slipped: bool,
-    /// The motor has turned without taking orders for longer than the table waits for that.
+    /// The motor has turned without taking orders for longer than the time limit of the table.
     was_off: bool,
     /// The hand's last end is that of an order of the current command.
     hand_ended: bool,
@@ -68,7 +68,7 @@ pub struct Around {
 
 pub type Pair = frame::Pair<Around>;
 
-/// The first tick of a system that is booted; so many mishaps can happen, and these commands can come.
+/// The first tick of a started system; this many mishaps can happen, and these commands can arrive.
 pub fn first(mishaps: u8, commands: &[PedestalVerb]) -> Pair {
     let around = Around {
         hand: GripStatus { felt: Felt::Nothing, ..GripStatus::default() },
@@ -123,7 +123,7 @@ impl Around {
                     MotorOrder::Turn => {
                         self.seeks = order.steps > 30_000;
                         let goal = motor.motor_counter.saturating_add(order.steps);
-                        // A turn from where it was not ordered leads anywhere else.
+                        // A turn from another place than ordered ends elsewhere.
                         self.goal = if GOALS.contains(&goal) { goal } else { ELSEWHERE };
                         (motor.motor_moving, motor.limit_plus) = (true, false);
                     }
@@ -143,7 +143,7 @@ impl Around {
                 (motor.motor_moving, motor.motor_counter) = (false, ELSEWHERE);
             }
         }
-        // The counter is set where the table has found its limit.
+        // The counter is set at the limit.
         let counter = if self.motor.limit_plus { 0 } else { self.motor.motor_counter };
         let counts = 3950 + counter / TABLE_STEPS_PER_TENTH - if self.slipped { 200 } else { 0 };
         self.motor.table_potentiometer = u16::try_from(counts).unwrap_or_default();
@@ -176,7 +176,7 @@ impl Scene for Around {
         }
         hand.push(HandDoes::Silent);
         let pending = pair.lower.out.motor.number != pair.scene.motor.motor_echo;
-        // One tick more or less does not matter to an order that is not taken, a long time does.
+        // For an order that is not taken, one tick does not matter; a long time does.
         let motor: &[MotorDoes] = match (pending, pair.scene.motor.motor_moving) {
             (true, _) => &[MotorDoes::Goes, MotorDoes::Takes],
             (false, true) => &[MotorDoes::Goes, MotorDoes::Arrives, MotorDoes::StopsElsewhere],
@@ -251,7 +251,7 @@ impl Scene for Around {
         Ok(())
     }
 
-    /// What is reported done is done, by the orders of this command.
+    /// Each command that is reported done has had its effect, by its own orders.
     fn judge(pair: &Pair, before: &Pair, _: &Event<Self::Does>) -> Result<(), Wrong> {
         let status = &pair.upper.out.status;
         let ends = status.echo == pair.command.number
@@ -273,14 +273,14 @@ impl Scene for Around {
                 Err("done, and the table turns")
             }
             PedestalVerb::Grip if before.scene.hand.felt != Felt::Something => {
-                Err("done, and nothing is held")
+                Err("done, and the hand is empty")
             }
             PedestalVerb::None => Err("an unknown command is done"),
             _ => Ok(()),
         }
     }
 
-    /// What does not count any more begins again.
+    /// Restart numbers and times that no longer matter.
     fn renumber(pair: &mut Pair) {
         let (pedestal, out, table) = (&mut pair.upper.state, &mut pair.upper.out, &mut pair.lower.state);
         let echo = &mut pedestal.execution.receiver.echo;
@@ -288,7 +288,7 @@ impl Scene for Around {
         rebase(&mut pedestal.hand, &mut [&mut out.hand.number, &mut pair.scene.hand.echo]);
         let echo = &mut table.execution.receiver.echo;
         rebase(&mut pedestal.table, &mut [&mut out.table.number, echo, &mut pair.lower.out.status.echo]);
-        // A motor takes the last order or none: by how many orders it is behind does not matter.
+        // A motor takes the last order or none: the number of missed orders does not matter.
         let taken = table.motor.number == pair.scene.motor.motor_echo;
         if table.order.number != 0 {
             let numbers =
@@ -308,9 +308,9 @@ impl Scene for Around {
         }
     }
 
-    /// Without what no row asks for any more: reasons; the step, the command and the time of a process that
-    /// executes nothing; the text of an order that has been taken; the opening of a hand that holds nothing. The
-    /// pedestal's status says what its state says.
+    /// Without values that no row tests: reasons; the step, the command and the time of a process that executes no
+    /// command; the text of an order that has been taken; the opening of an empty hand. The pedestal's status
+    /// repeats its state.
     fn image(pair: &Pair) -> Vec<u8> {
         let mut image =
             Image::new(pair.tick, Self::LONG - 500, &[("standing", 3), ("unanswered", SILENT + 2)]);
@@ -386,7 +386,7 @@ impl Pair {
             || (number == self.lower.out.status.echo && number == self.lower.state.execution.receiver.echo)
     }
 
-    /// The table process has a time limit for what it does.
+    /// The table process has a time limit for its current activity.
     fn is_timed(&self) -> bool {
         let phase = self.lower.state.phase;
         self.lower.state.execution.outcome == Outcome::Executing
@@ -401,7 +401,7 @@ impl Pair {
         self.lower.out.motor.number != self.scene.motor.motor_echo && self.scene.was_off
     }
 
-    /// The motor turns, and takes orders: one that does not is left alone (PAUSE of the rotary table).
+    /// The motor turns, and takes orders; without orders it is ignored (PAUSE of the rotary table).
     fn turns(&self) -> bool {
         self.scene.motor.motor_moving && !self.scene.was_off
     }

@@ -1,9 +1,10 @@
-//! E-move and Prim. Around them: Subtask, T3 Interface with the robot, Quick Change. The robot is bare, and goes from
-//! one known location to another, by their trajectory; or it goes by guarded moves: with the tool gripper, to take a
-//! tool out of the drum and to put it in, or to take the parts gripper from its holster and to leave it there.
+//! E-move and Prim. Around them: Subtask, T3 Interface with the robot, Quick Change. Either the robot is bare, and
+//! moves from one known location to another by their trajectory; or it moves by guarded moves: with the tool
+//! gripper, to take a tool out of the drum and put it in, or to take the parts gripper from its holster and leave
+//! it there.
 //!
-//! A motion is a single event: the ticks in which T3 Interface wants points, until a process says something new or half
-//! of the motion is over. While the robot is at rest T3 Interface may also want none.
+//! A motion is a single event: the ticks in which T3 Interface requests points, until a process reports something
+//! new or half of the motion is over. While the robot is at rest T3 Interface may also request none.
 
 mod change;
 mod judge;
@@ -35,37 +36,38 @@ use change::Change;
 pub use tool::DRUM;
 use tool::{GRIPPER, Happens, TOOL, Tool};
 
-/// Ticks in which any motion of these commands ends.
+/// Time limit of any motion of these commands, ticks.
 const LONG: u32 = 2_000;
-/// Ticks for which a process above need not know that the robot stands elsewhere.
+/// Ticks until a process above must know that the robot is elsewhere.
 const LATE: u8 = 4;
-/// How far a robot stands elsewhere, in.
+/// Distance of a displaced robot, in.
 const ASIDE: f64 = 1.0;
 
-/// A command of Subtask, and its location; none for PAUSE.
+/// A command of Subtask, and its location; PAUSE has none.
 pub type Line = (EmoveVerb, &'static str);
 
-/// The location of commands about the parts gripper in its holster.
+/// The location of commands for the parts gripper in its holster.
 pub const HOLSTER: &str = holster::GRIPPER.2;
 
 const PAUSE: Line = (EmoveVerb::Pause, "");
 
-/// What T3 Interface and the robot do.
+/// Behaviour of T3 Interface and the robot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Link {
-    /// It wants no point, or does not come up yet.
+    /// It requests no point, or does not start yet.
     Busy,
-    /// It wants points, or comes up after RESTART: until a process says something new.
+    /// It requests points, or starts after RESTART, until a process reports something new.
     Goes,
-    /// The same until half of the way to Prim's goal is left, and a quarter of a GO-UNTIL, where its condition comes.
+    /// The same until half of the way to Prim's goal is left, and a quarter for a GO-UNTIL, where its condition is
+    /// met.
     Half,
     /// It reports an error: of the link, of the line, of a command; or the controller's DTR goes off.
     Fails(LinkFault, bool),
     /// It does not write.
     Silent,
-    /// The robot stands beside the commanded pose: after RESTART T3 Interface sees it.
+    /// The robot is off the commanded pose: after RESTART T3 Interface detects it.
     Aside,
-    /// It wants no point, and E-move or Prim is restarted.
+    /// It requests no point, and E-move or Prim is restarted.
     Restart(Mishap),
 }
 
@@ -80,7 +82,7 @@ pub struct Event {
 pub struct Pair {
     tick: Tick,
     commands: &'static [Line],
-    /// Commands that may still interrupt a motion, and faults that may still come.
+    /// Commands that may still interrupt a motion, and faults that may still occur.
     left: (u8, u8),
     /// The way to Prim's goal has been halved.
     halved: bool,
@@ -89,44 +91,45 @@ pub struct Pair {
     emove_out: EmoveOutputs,
     prim: prim::state::State,
     prim_out: PrimOutputs,
-    /// What Quick Change has echoed, where it is not part of the scene.
+    /// The echo of Quick Change, where it is not part of the scene.
     quick_change: u32,
     t3i: T3iStatus,
     /// It has not written in the last tick.
     silent: bool,
-    /// Ticks for which the robot has stood beside its last point.
+    /// Ticks for which the robot has been off its last point.
     aside: u8,
-    /// Where it was sent last.
+    /// Its last commanded place.
     robot: Frame,
     /// The tool gripper at the drum.
     tool: Option<Tool>,
     /// The parts gripper and its holster. Without it and a tool gripper the robot is bare.
     change: Option<Change>,
-    /// What is unusual but no fault can still happen so often: fingers that stick, and the condition of a GO-UNTIL
-    /// that does not come where most of the move is over.
+    /// Number of unusual events, other than faults, that can still happen: fingers that stick, and a GO-UNTIL whose
+    /// condition is not met where most of the move is over.
     unusual: u8,
-    /// The condition of a guarded move has come since Prim took it, or since the robot rested.
+    /// The condition of a guarded move was met since Prim took it, or since the robot rested.
     contact: bool,
-    /// That, or its sensor could not tell.
+    /// The same, or its sensor was faulty.
     stops: bool,
-    /// Ticks for which the robot has moved since.
+    /// Ticks for which the robot has moved since then.
     brakes: u32,
-    /// The bias of the force sensor was taken at TOOL-SAFE, if there is one.
+    /// Whether the bias of the force sensor was taken at TOOL-SAFE; `None` without a bias.
     biased_at_safe: Option<bool>,
 }
 
-/// What makes time go on singly again: what the processes say, and whether the robot is commanded to move.
+/// Changes of these values end a motion event: the reports of the processes, and whether the robot is commanded to
+/// move.
 type Said = (u32, StatusReport, u32, PrimReport, u32, bool, bool);
 
 impl Pair {
-    /// A pair that is booted, with a bare robot at a location that E-move has not found yet. Of these commands so many
-    /// may interrupt a motion, and so many faults come.
+    /// A started pair, with a bare robot at a location that E-move has not found yet. This many of these commands
+    /// may interrupt a motion, and this many faults occur.
     pub fn first(location: &'static str, commands: &'static [Line], motions: u8, faults: u8) -> Self {
         Self { commands, left: (motions, faults), ..Self::at(location, None, None) }
     }
 
-    /// A pair whose robot stands before the drum, with open fingers. So many unusual things and faults may come, and
-    /// so many of these commands may interrupt a motion.
+    /// A pair whose robot is before the drum, with open fingers. This many unusual events and faults may occur, and
+    /// this many of these commands may interrupt a motion.
     pub fn at_drum(commands: &'static [Line], unusual: u8, motions: u8, faults: u8) -> Self {
         let mut pair = Self::at("SAFE", Some(Tool::new()), None);
         pair.runs(PAUSE);
@@ -134,8 +137,8 @@ impl Pair {
         Self { commands, left: (motions, faults), unusual, ..pair }
     }
 
-    /// A pair whose bare robot stands above the parts gripper in its holster, where it has just left it. So many
-    /// unusual things and faults may come, and so many of these commands may interrupt a motion.
+    /// A pair whose bare robot is above the parts gripper in its holster, where it has just left it. This many
+    /// unusual events and faults may occur, and this many of these commands may interrupt a motion.
     pub fn at_holster(commands: &'static [Line], unusual: u8, motions: u8, faults: u8) -> Self {
         let mut pair = Self::at("SAFE", None, Some(Change::new()));
         pair.runs(PAUSE);
@@ -169,17 +172,17 @@ impl Pair {
             brakes: 0,
             biased_at_safe: None,
         };
-        pair.tick(Link::Goes, Happens::Nothing).expect("nothing is wrong at the start");
+        pair.tick(Link::Goes, Happens::Nothing).expect("no fault at the start");
         pair
     }
 
-    /// Execute a command in which nothing goes wrong.
+    /// Execute a command without any fault.
     fn runs(&mut self, line: Line) {
         let mut told = Some(line);
         for _ in 0..LONG {
             let happens = if self.awaits_arrival() { Happens::Arrive } else { Happens::Nothing };
             let event = Event { told: told.take(), link: Link::Goes, happens };
-            self.step(event).expect("nothing is wrong at the start");
+            self.step(event).expect("no fault at the start");
             if self.rests() {
                 assert_eq!(self.emove_out.status.report, StatusReport::Done, "{line:?}");
                 return;
@@ -234,7 +237,7 @@ impl Pair {
         (memory, external)
     }
 
-    /// T3 Interface takes what Prim has written in the tick before.
+    /// T3 Interface takes Prim's outputs of the previous tick.
     fn t3i_does(&mut self, sent: &T3iCommand, link: Link) {
         self.silent = link == Link::Silent;
         if self.silent {
@@ -289,7 +292,7 @@ impl Pair {
         self.prim.motion.is_some_and(|motion| !motion.is_at_rest())
     }
 
-    /// Does a command interrupt a motion?
+    /// True if a command interrupts a motion.
     fn interrupts(&self) -> bool {
         let goes = self.emove.execution.outcome == Outcome::Executing || self.emove.execution.waiting;
         self.is_moving() || (goes && self.command.command != EmoveVerb::Pause)
@@ -430,7 +433,7 @@ impl World for Pair {
 }
 
 impl Pair {
-    /// The robot goes by guarded moves.
+    /// The robot moves by guarded moves.
     const fn is_guarded(&self) -> bool {
         self.tool.is_some() || self.change.is_some()
     }
@@ -440,7 +443,7 @@ impl Pair {
         self.tool.is_some_and(|tool| tool.moves()) || self.change.is_some_and(|change| change.turns())
     }
 
-    /// The condition of a GO-UNTIL is to come, that of a GO-WHILE is not.
+    /// The condition of a GO-UNTIL should be met, that of a GO-WHILE should not.
     fn is_fault(&self, happens: Happens) -> bool {
         match happens {
             Happens::Nothing | Happens::Arrive | Happens::Stick => false,
@@ -449,7 +452,7 @@ impl Pair {
         }
     }
 
-    /// The condition of a GO-UNTIL has not come yet.
+    /// The condition of a GO-UNTIL is not met yet.
     fn awaits(&self) -> bool {
         let executes = self.prim.execution.outcome == Outcome::Executing;
         executes && self.prim.target.verb == PrimVerb::GoUntil && !self.contact
@@ -467,7 +470,7 @@ impl Pair {
         }
     }
 
-    /// What can happen at the gripper, and whether that is prompt.
+    /// Possible events at the gripper, and whether they are prompt.
     fn happenings(&self) -> Vec<(Happens, bool)> {
         if self.awaits_arrival() {
             return vec![(Happens::Arrive, true), (Happens::Stick, true)];

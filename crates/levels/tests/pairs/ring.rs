@@ -1,9 +1,10 @@
 //! E-move and Quick Change. Around them: Subtask, the locking ring with its sensors and id pins, the gripper and its
 //! holster, Prim with the robot, Grip with its fingers.
 //!
-//! What is abstracted: a motion is one step, and half of it can be seen once. A guarded move ends where its sensor sees
-//! the gripper, or at its end without that. The ring obeys, stands still for any time, or stands half-way, and only
-//! moves with air and an open port. A gripper mates at its seat, and stays there if the robot rises from an open ring.
+//! Abstractions: a motion is one step, and half of it can be seen once. A guarded move ends where its sensor
+//! detects the gripper, or at its end without that. The ring obeys, does not move for any time, or stops half-way,
+//! and only moves with air and an open port. A gripper mates at its seat, and stays there if the robot rises from
+//! an open ring.
 
 mod judge;
 mod states;
@@ -26,12 +27,12 @@ use interfaces::{
 };
 use levels::{emove::Emove, execution::Outcome, places::robot_at, quick_change::QuickChange};
 
-/// Ticks for which a reading counts at most.
+/// Greatest count of equal readings, ticks.
 const STEADY: u8 = 12;
 /// Opening of the fingers at the start, 0.01 in.
 const OPENING: i32 = 300;
 
-/// What the sensors say instead of the truth.
+/// Sensor readings that replace the true ones.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Fault {
     None,
@@ -44,7 +45,7 @@ pub struct Does {
     pub prim: PrimDoes,
     pub grip: GripDoes,
     pub ring: Ring,
-    /// The sensors fail so from then on.
+    /// The sensors have this fault from now on.
     pub fault: Option<Fault>,
 }
 
@@ -57,16 +58,16 @@ pub struct Around {
     fault: Fault,
     robot: Robot,
     grip: PartsGripper,
-    /// The gripper is on the quick change; else it is in its holster.
+    /// The gripper is on the quick change; else in its holster.
     mated: bool,
 }
 
 pub type Pair = frame::Pair<Around>;
 
-/// A gripper is seated within this, in.
+/// A gripper is seated within this distance, in.
 const SEATED: f64 = 0.06;
 
-/// A bare robot above the gripper with an open ring. `early` commands may come before the last one has ended, and
+/// A bare robot above the gripper with an open ring. `early` commands may arrive before the last one has ended, and
 /// `faults` faults or restarts may happen; if any may, Prim, Grip and the ring do not fail.
 pub fn first(early: u8, faults: u8) -> Pair {
     let (_, object, location) = GRIPPER;
@@ -100,10 +101,10 @@ pub fn first(early: u8, faults: u8) -> Pair {
 
 impl Pair {
     fn stands(&self) -> Frame {
-        self.scene.robot.at.to_frame().expect("the robot stands at frames")
+        self.scene.robot.at.to_frame().expect("the robot is at a valid frame")
     }
 
-    /// Something mates at the seat, or stays there.
+    /// The gripper mates at the seat, or stays there.
     fn mate(&mut self) {
         let (x, z) = holster::within(&self.stands());
         let seated = (z - SEAT).abs() < SEATED;
@@ -114,7 +115,7 @@ impl Pair {
         }
     }
 
-    /// What the sensors of the holster see.
+    /// The readings of the holster's sensors.
     fn holster_sensors(&self) -> u8 {
         let (x, z) = holster::within(&self.stands());
         match self.scene.mated {
@@ -136,7 +137,7 @@ impl Pair {
         }
     }
 
-    /// Is the ring given air, so that it turns?
+    /// True if the ring has air and turns.
     fn is_driven(&self) -> bool {
         self.lower.out.valves.port
     }
@@ -150,7 +151,7 @@ impl Pair {
         self.upper.out.prim.number == 0 || self.upper.out.prim.number == self.scene.robot.echo
     }
 
-    /// What Prim may do: a motion ends when the robot has come to rest at its goal.
+    /// Possible reactions of Prim: a motion ends when the robot is at rest at its goal.
     fn prim_may(&self) -> Vec<PrimDoes> {
         let robot = &self.scene.robot;
         let mut may = vec![PrimDoes::Goes];
@@ -177,7 +178,7 @@ impl Scene for Around {
     type Line = EmoveVerb;
     type Command = EmoveCommand;
     type Does = Does;
-    /// Longer than the time in which the ring must arrive.
+    /// Longer than the time limit of the ring.
     const LONG: u64 = 50;
 
     fn choices(pair: &Pair) -> Vec<Choice<Does>> {
@@ -251,7 +252,7 @@ impl Scene for Around {
         let new = memory.emove.prim.number != pair.scene.robot.echo;
         pair.scene.robot.take(memory)?;
         if new && memory.emove.prim.command == PrimVerb::GoUntil {
-            // The sensors see the gripper where it stands before its seat, or at it.
+            // The sensors detect the gripper before its seat, or at it.
             let seats = memory.emove.prim.sensor.is_some_and(|sensor| sensor.as_str().ends_with("SEAT"));
             let seat = Frame { position: holster().position + holster().z() * SEAT, ..holster() };
             pair.scene.robot.goal = Some(Pose::from_frame(&if seats { seat } else { holster() }));

@@ -1,5 +1,4 @@
-//! Prim and the robot, as E-move sees them. A motion is one step: the robot stands where it was until it is at its
-//! goal.
+//! Prim and the robot, as E-move sees them. A motion is one step: the robot stays in place until it is at its goal.
 
 use geometry::pose::Pose;
 use interfaces::{
@@ -13,26 +12,26 @@ use rcs_core::tick::Tick;
 
 use crate::{data::data, image::Image, search::Wrong};
 
-/// What Prim does with its order.
+/// Reaction of Prim to its order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PrimDoes {
-    /// Nothing new; an order that has just come is taken.
+    /// Nothing new; a new order is taken.
     Goes,
     /// It ends the order: the robot is at its goal.
     Ends,
-    /// It fails. The robot stands where it was.
+    /// It fails. The robot stays in place.
     Fails,
-    /// It fails, since the link does. The robot stands where it was.
+    /// It fails, since the link does. The robot stays in place.
     LinkFails,
-    /// The robot has gone half of the way, if it has come from a goal, and goes on.
+    /// The robot has gone half of the way from a goal, and continues.
     Half,
-    /// The robot is at its goal, and Prim does not say so yet.
+    /// The robot is at its goal, and Prim does not report it yet.
     Arrives,
-    /// It ends a GO-UNTIL whose condition has not come.
+    /// It ends a GO-UNTIL whose condition is not met.
     Misses,
 }
 
-/// Does the robot leave its place for an order?
+/// True if the robot moves away for an order.
 pub const fn moves(verb: PrimVerb) -> bool {
     matches!(
         verb,
@@ -40,15 +39,15 @@ pub const fn moves(verb: PrimVerb) -> bool {
     )
 }
 
-/// Is a command of E-move a motion to a location?
+/// True if a command of E-move is a motion to a location.
 pub const fn goes(verb: EmoveVerb) -> bool {
     matches!(verb, EmoveVerb::MovToLoc | EmoveVerb::MovToObj | EmoveVerb::MovObjTo)
 }
 
-/// The robot is where it was sent within this, in.
+/// The robot is at its commanded place within this distance, in.
 pub const THERE: f64 = 0.021;
 
-/// Is a robot at this pose?
+/// True if a robot is at this pose.
 pub fn is_at(goal: &Pose, at: &Pose) -> bool {
     goal.to_frame().is_ok_and(|goal| at.to_frame().is_ok_and(|at| goal.distance(&at).inches <= THERE))
 }
@@ -69,9 +68,9 @@ pub struct Robot {
     pub report: PrimReport,
     pub link: bool,
     pub at: Pose,
-    /// The goal of a motion that Prim executes; where the condition of a GO-UNTIL comes.
+    /// The goal of a motion that Prim executes; for a GO-UNTIL, where its condition is met.
     pub goal: Option<Pose>,
-    /// Where it ends if the condition does not come.
+    /// Its end if the condition is not met.
     pub far: Pose,
     /// It has gone half of the way since it was at a goal.
     pub half: bool,
@@ -79,11 +78,11 @@ pub struct Robot {
     pub there: u8,
 }
 
-/// Ticks at the goal after which Prim can say so, where a search counts them: the robot comes to rest in them.
+/// Ticks at the goal until Prim can report it, where a search counts them: the robot comes to rest in them.
 pub const SETTLED: u8 = 2;
 
 impl Robot {
-    /// A robot that stands somewhere, and has been commanded nothing.
+    /// A robot at rest without an order.
     pub const fn new(at: Pose) -> Self {
         Self { echo: 0, report: PrimReport::Idle, link: true, at, goal: None, far: at, half: false, there: 0 }
     }
@@ -98,10 +97,10 @@ impl Robot {
         self.goal.is_some() || (order.number != self.echo && moves(order.command))
     }
 
-    /// Prim takes what E-move has written in the tick before.
+    /// Prim takes E-move's outputs of the previous tick.
     ///
     /// # Errors
-    /// It is sent to a record that does not exist.
+    /// The order names a record that does not exist.
     pub fn take(&mut self, memory: &CommonMemory) -> Result<(), Wrong> {
         let order = &memory.emove.prim;
         if order.number != self.echo && order.number != 0 {
@@ -145,7 +144,8 @@ impl Robot {
         (self.goal, self.far, self.there) = (None, self.at, 0);
     }
 
-    /// Take away the text of an order that Prim has taken, and the poses of E-move if `over`: no order leads to them.
+    /// Clear the text of an order that Prim has taken, and the poses of E-move if `over`, when no order leads to
+    /// them.
     pub fn forget_order(&self, out: &mut EmoveOutputs, over: bool) {
         let PrimCommand { number, command, .. } = out.prim;
         if self.echo == number || number == 0 {

@@ -1,5 +1,5 @@
-//! Breadth first over all states of a pair, with a set of visited ones; then the longest way from each state to
-//! one in which the pair rests.
+//! Breadth-first search over all states of a pair, with a set of visited ones; then the longest path from each
+//! state to one in which the pair rests.
 
 use std::{
     collections::{HashMap, VecDeque},
@@ -9,10 +9,10 @@ use std::{
 
 use interfaces::process::Process;
 
-/// What has shown to be wrong.
+/// The violated condition.
 pub type Wrong = &'static str;
 
-/// What goes wrong in a tick, in addition to orders that fail.
+/// Disturbance of a tick, in addition to failing orders.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Mishap {
     None,
@@ -21,14 +21,14 @@ pub enum Mishap {
     RestartLower,
     /// The lower process is not stepped, and writes nothing.
     SilentLower,
-    /// The potentiometer of the rotary table reads something else than before.
+    /// The potentiometer of the rotary table has another reading than before.
     Slip,
 }
 
 impl Mishap {
     pub const RESTARTS: &[Self] = &[Self::RestartUpper, Self::RestartLower];
 
-    /// None, and each of some if any is left.
+    /// No disturbance, and each of `some` if any is left.
     pub fn choices(left: u8, some: &[Self]) -> Vec<Self> {
         let some = if left > 0 { some } else { &[] };
         [&[Self::None], some].concat()
@@ -44,37 +44,37 @@ pub fn resumed<P: Process<Data> + Default, Data>(state: P::State, is_restarted: 
     process
 }
 
-/// A pair of neighbouring processes, and what is around them.
+/// A pair of neighbouring processes, and their environment.
 pub trait World: Clone {
-    /// What is around them does in a tick.
+    /// Behaviour of the environment in a tick.
     type Event: Copy + Debug;
 
-    /// All that can happen in the next tick, and whether it is *prompt*: nobody commands, nothing is lost, and
-    /// whatever was ordered ends in this tick or goes over its time limit.
+    /// All possible events of the next tick, and whether each is *prompt*: no command, no loss, and every order
+    /// ends in this tick or exceeds its time limit.
     fn events(&self) -> Vec<(Self::Event, bool)>;
 
-    /// A tick.
+    /// Step a tick.
     ///
     /// # Errors
-    /// What is wrong after it.
+    /// The violated condition.
     fn step(&mut self, event: Self::Event) -> Result<(), Wrong>;
 
-    /// What the future depends on, as bytes.
+    /// All values that affect the future, as bytes.
     fn image(&self) -> Vec<u8>;
 
-    /// The last command has ended, and nothing is under way.
+    /// The last command has ended, and the pair is at rest.
     fn rests(&self) -> bool;
 
     /// The last command is PAUSE.
     fn pauses(&self) -> bool;
 }
 
-/// What was searched, or the shortest way to something wrong.
+/// The result of a search, or the shortest path to a violated condition.
 #[derive(Debug)]
 pub struct Found<Event> {
     pub states: usize,
     pub ticks: u64,
-    /// Prompt ticks until the pair rests at most, from any state whose last command is PAUSE.
+    /// Greatest number of prompt ticks until the pair rests, from any state whose last command is PAUSE.
     pub pause: u32,
     pub any: u32,
     pub wrong: Option<(Vec<Event>, Wrong)>,
@@ -83,12 +83,12 @@ pub struct Found<Event> {
 const NONE: u32 = u32::MAX;
 
 struct Space<Event> {
-    /// By a fingerprint of 64 bits: of a million states two are alike with a chance of 1 in 37 million.
+    /// By a fingerprint of 64 bits: two of a million states are alike with a chance of 1 in 37 million.
     known: HashMap<u64, u32>,
     from: Vec<(u32, Option<Event>)>,
     rests: Vec<bool>,
     pauses: Vec<bool>,
-    /// Where prompt ticks lead from each state: a range of `onward`.
+    /// Prompt successors of each state: a range of `onward`.
     ranges: Vec<(usize, usize)>,
     onward: Vec<u32>,
     ticks: u64,
@@ -121,13 +121,13 @@ impl<Event: Copy> Space<Event> {
         way
     }
 
-    /// Of each state the most prompt ticks until the pair rests; or a state on a cycle.
+    /// For each state the greatest number of prompt ticks until the pair rests; or a state on a cycle.
     fn longest(&self) -> Result<Vec<u32>, u32> {
         const OPEN: u32 = u32::MAX;
         const UNKNOWN: u32 = u32::MAX - 1;
         let mut most: Vec<u32> = self.rests.iter().map(|rests| if *rests { 0 } else { UNKNOWN }).collect();
         for first in 0..most.len() {
-            // Depth first: a state, and which of its ways comes next.
+            // Depth first: a state, and the index of its next successor.
             let mut open = vec![(first, 0)];
             while let Some((state, nth)) = open.pop() {
                 if nth == 0 {
@@ -154,7 +154,7 @@ impl<Event: Copy> Space<Event> {
     }
 }
 
-/// Search all states, the nearest first: up to `most` of them.
+/// Search all states in order of distance, up to `most` of them.
 pub fn search<W: World>(first: W, most: usize) -> Found<W::Event> {
     let mut space = Space {
         known: HashMap::new(),

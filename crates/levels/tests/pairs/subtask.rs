@@ -1,9 +1,9 @@
 //! Subtask and E-move. Around them: Task, Prim with the robot, Grip with its fingers, vision. Quick Change is locked on
 //! the parts gripper.
 //!
-//! What is abstracted: a motion is one step, after which the robot is at its goal or, if it fails or is stopped, where
-//! it was. Fingers are open, around the part, or have closed on nothing; closing fingers find something anywhere.
-//! Vision sees the object where the data have it, sees nothing, or does not answer.
+//! Abstractions: a motion is one step, after which the robot is at its goal or, after a failure or stop, at its
+//! start. Fingers are open, around the part, or closed and empty; closing fingers find an object anywhere. Vision
+//! sees the object at its place in the data, sees none, or does not answer.
 
 mod judge;
 mod states;
@@ -30,14 +30,14 @@ use levels::{
     subtask::Subtask,
 };
 
-/// Ticks after which vision counts as silent.
+/// Ticks until vision is silent.
 const LIMIT: u64 = 100;
 /// Opening of the fingers at the start, 0.01 in.
 const OPENING: i32 = 300;
-/// Ticks for which Subtask need not know that the part has gone.
+/// Ticks until Subtask must know that the part is gone.
 const LATE: u8 = 3;
 
-/// A command: its object, which is named or not, location, sector, and the number of its pose.
+/// A command: whether it names an object, its location, sector, and the number of its pose.
 pub type Line = (SubtaskVerb, bool, &'static str, Option<i32>, u32);
 pub const PAUSE: Line = (SubtaskVerb::Pause, false, "SAFE", None, 3);
 pub const GET: Line = (SubtaskVerb::GetObject, true, "UNIT_2", Some(1), 1);
@@ -55,27 +55,27 @@ pub struct Does {
     pub vision: Option<VisionStatus>,
 }
 
-/// Prim with the robot, Grip with its fingers, vision, and what has come of the current command.
+/// Prim with the robot, Grip with its fingers, vision, and the results of the current command.
 #[derive(Clone)]
 pub struct Around {
     robot: Robot,
     grip: PartsGripper,
     quick_change: u32,
     vision: VisionResponse,
-    /// E-move has written nothing in the last tick.
+    /// E-move wrote nothing in the previous tick.
     silent: bool,
     /// Subtask has sent E-move an order of the current command.
     own: bool,
-    /// Ticks for which nothing has been between the fingers.
+    /// Ticks for which the fingers have been empty.
     apart: u8,
-    /// The fingers have let go of the part, or lost it, where it is to be placed.
+    /// The fingers have released the part, or lost it, at its destination.
     let_go: bool,
 }
 
 pub type Pair = frame::Pair<Around>;
 
-/// A robot at SAFE whose parts gripper is on and open. These commands can come, so many of them before the last one has
-/// ended, and so many mishaps.
+/// A robot at SAFE whose parts gripper is attached and open. These commands can arrive, this many of them before
+/// the last one has ended, and this many mishaps.
 pub fn first(object: &str, lines: &[Line], early: u8, mishaps: u8) -> Pair {
     let command = |&(verb, named, location, sector, nth): &Line| {
         subtask_command(verb, Some(object).filter(|_| named), location, sector, nth)
@@ -254,7 +254,7 @@ impl Scene for Around {
     }
 }
 
-/// The process has read the last command, and has neither to accept nor to execute one.
+/// The process has read the last command, and has none to accept or execute.
 fn is_over(execution: &Execution, number: u32) -> bool {
     (execution.receiver.echo == number || number == 0)
         && execution.outcome != Outcome::Executing

@@ -27,21 +27,21 @@ use crate::{
     search::{Mishap, Wrong},
 };
 
-/// Ticks for which E-move can go on with an order of a command that was replaced, at most.
+/// Greatest number of ticks for which E-move continues an order of a replaced command.
 const REPLACED: u8 = 6;
 
-/// What E-move does with its order.
+/// Reaction of E-move to its order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum EmoveDoes {
-    /// Nothing new; an order that has just come is taken.
+    /// Nothing new; a new order is taken.
     Goes,
     /// It ends the order: done, or given up if the operator has the robot.
     Ends,
-    /// The order fails. What is held stays, and a grasp has closed on something.
+    /// The order fails. A held object stays, and a grasp has closed on an object.
     Fails,
-    /// The order fails. What is held is lost, and a grasp has closed on nothing.
+    /// The order fails. A held object is lost, and a grasp has closed empty.
     Loses,
-    /// It ends a pause, and the fingers have finished a release that came before it.
+    /// It ends a pause, and the fingers have finished an earlier release.
     LetsGo,
     Silent,
 }
@@ -54,35 +54,35 @@ pub struct Does {
     pub switched: bool,
 }
 
-/// E-move with the joystick box, the Data System, and what has come of the current command.
+/// E-move with the joystick box, the Data System, and the results of the current command.
 #[derive(Clone)]
 pub struct Around {
     /// The fingers can finish a release in a pause.
     lets_go: bool,
-    /// E-move's status, but for the joystick box.
+    /// E-move's status, without the joystick box.
     emove: EmoveStatus,
-    /// E-move has written nothing in the last tick.
+    /// E-move wrote nothing in the previous tick.
     silent: bool,
     box_on: bool,
     data_base: DataBaseStatus,
-    /// The Data System takes everything at once.
+    /// The Data System accepts every request at once.
     prompt: bool,
-    /// Where the Data System has an object of which it is told.
+    /// Location of an object in the Data System.
     recorded: Option<Name10>,
-    /// The order that E-move has is one of the current command.
+    /// E-move's order belongs to the current command.
     own: bool,
-    /// The last order of the current command that E-move has done.
+    /// The last completed order of the current command.
     reached: EmoveVerb,
-    /// The last request of the current command that the Data System has done.
+    /// The last completed request of the current command.
     answered: DataBaseVerb,
-    /// Ticks for which E-move has gone on with an order of a command that was replaced.
+    /// Ticks for which E-move has continued an order of a replaced command.
     replaced: u8,
 }
 
 pub type Pair = frame::Pair<Around>;
 
-/// The first tick of a system that is booted, with the parts gripper on; so many mishaps can happen, and these commands
-/// can come.
+/// The first tick of a started system, with the parts gripper attached; this many mishaps can happen, and these
+/// commands can arrive.
 pub fn first(mishaps: u8, commands: Vec<HwsCommand>) -> Pair {
     let around = Around {
         lets_go: false,
@@ -101,7 +101,7 @@ pub fn first(mishaps: u8, commands: Vec<HwsCommand>) -> Pair {
 }
 
 impl Pair {
-    /// The robot stands at PFIXTURE and holds the object of a command there, and the Data System has been told so.
+    /// The robot is at PFIXTURE and holds the object of a command there; the Data System has this place.
     pub fn carrying(mut self, command: &HwsCommand) -> Self {
         let object = command.object.expect("a command about an object");
         let place = emove_command(EmoveVerb::Release, object.as_str(), command.source_grip, "PFIXTURE");
@@ -112,8 +112,8 @@ impl Pair {
         self.connected(IN_HAND)
     }
 
-    /// The Data System is connected, and has the object of the commands at a position; the fingers can finish a release
-    /// in a pause.
+    /// The Data System is connected, and has the object of the commands at a position; the fingers can finish a
+    /// release in a pause.
     pub fn connected(mut self, position: &str) -> Self {
         self.upper.out.updates.connected = true;
         self.upper.state.data_system.updates = self.upper.out.updates;
@@ -121,7 +121,7 @@ impl Pair {
         self
     }
 
-    /// The Data System takes everything at once, and never refuses.
+    /// The Data System accepts every request at once, and never refuses.
     pub const fn promptly(mut self, prompt: bool) -> Self {
         self.scene.prompt = prompt;
         self
@@ -168,7 +168,7 @@ impl Pair {
 }
 
 impl Around {
-    /// What E-move reports: *joystick-on* as long as the operator has the robot, whatever was done before.
+    /// The report of E-move: *joystick-on* while the operator has the robot, for any result before.
     fn emove_status(&self) -> EmoveStatus {
         let report = match self.emove.report {
             StatusReport::Done | StatusReport::JoystickOn if self.box_on => StatusReport::JoystickOn,
@@ -179,7 +179,7 @@ impl Around {
     }
 }
 
-/// The process has read the last command, and has neither to accept nor to execute one.
+/// The process has read the last command, and has none to accept or execute.
 fn is_over(execution: &Execution, number: u32) -> bool {
     execution.receiver.echo == number && execution.outcome != Outcome::Executing && !execution.waiting
 }
@@ -190,7 +190,7 @@ impl Scene for Around {
     type Line = HwsCommand;
     type Command = HwsCommand;
     type Does = Does;
-    /// Longer than the time in which the Data System is expected to answer.
+    /// Longer than the time limit of the Data System.
     const LONG: u64 = 300;
 
     fn choices(pair: &Pair) -> Vec<Choice<Does>> {
@@ -291,10 +291,10 @@ impl Scene for Around {
         Ok(())
     }
 
-    /// What is reported finished is done, by the orders of this command; and what a command has replaced stops.
+    /// Each command that is reported finished has had its effect, by its own orders; and a replaced command stops.
     fn judge(pair: &Pair, before: &Pair, _: &Event<Does>) -> Result<(), Wrong> {
         if pair.scene.replaced > REPLACED {
-            return Err("what a command replaced goes on");
+            return Err("a replaced command continues");
         }
         let ended = |it: &Pair| {
             it.upper.state.execution.outcome == Outcome::Done
@@ -324,7 +324,7 @@ impl Scene for Around {
             }
             Some(TaskVerb::Position) if emove.held.is_held() => Err("finished, and something is held"),
             Some(TaskVerb::Position | TaskVerb::Transfer) if pair.is_untold(before) => {
-                Err("finished, and the data base has an object elsewhere")
+                Err("finished, and the database has an object elsewhere")
             }
             Some(TaskVerb::Acquire) if emove.held.object() != pair.command.object => {
                 Err("finished, and the object is not held")
@@ -340,7 +340,7 @@ impl Scene for Around {
         }
     }
 
-    /// What does not count any more begins again.
+    /// Restart numbers and times that no longer matter.
     fn renumber(pair: &mut Pair) {
         let (task, out, subtask) = (&mut pair.upper.state, &mut pair.upper.out, &mut pair.lower.state);
         let echo = &mut task.execution.receiver.echo;
@@ -348,7 +348,7 @@ impl Scene for Around {
         let echo = &mut subtask.execution.receiver.echo;
         rebase(&mut task.subtask, &mut [&mut out.subtask.number, echo, &mut pair.lower.out.status.echo]);
         rebase(&mut subtask.emove, &mut [&mut pair.lower.out.emove.number, &mut pair.scene.emove.echo]);
-        // The Data System answers the last request: by how many it is behind does not matter.
+        // The Data System answers the last request: the number of missed ones does not matter.
         let asked = &mut task.data_system;
         if asked.commander.number != 0 {
             pair.scene.data_base.echo =
@@ -360,8 +360,8 @@ impl Scene for Around {
         }
     }
 
-    /// Without what no row asks for any more: reasons; numbers of poses; the command and the step of a process that
-    /// executes nothing; the text of a command that has ended.
+    /// Without values that no row tests: reasons; numbers of poses; the command and the step of a process that
+    /// executes no command; the text of a command that has ended.
     fn image(pair: &Pair) -> Vec<u8> {
         let mut image = Image::new(pair.tick, ANSWER_LIMIT, &[]);
         let mut it = pair.clone();
@@ -441,7 +441,7 @@ impl Pair {
             && self.lower.state.execution.receiver.echo == number
     }
 
-    /// Has the Data System an object elsewhere than where it was let go, if that is known?
+    /// True if the Data System has another location of an object than its known place of release.
     fn is_untold(&self, before: &Self) -> bool {
         let placed = before.scene.emove.placed.map(|placed| placed.site.location).filter(|at| !at.is_empty());
         self.upper.out.updates.connected
@@ -454,7 +454,7 @@ impl Pair {
             && self.upper.state.ordered == TaskRecipient::DataSystem
     }
 
-    /// While no command waits for the Data System, its last answer counts only if it takes an update that is owed.
+    /// While no command waits for the Data System, its last answer counts only if it accepts a pending update.
     fn forget_request(&mut self) {
         let asked = &mut self.upper.state.data_system;
         (asked.tries, asked.commander.sent) = (0, self.tick);
@@ -465,7 +465,7 @@ impl Pair {
         }
     }
 
-    /// Record numbers of poses count without end, and no row asks for them.
+    /// Record numbers of poses increase without limit, and no row tests them.
     fn without_poses(&mut self) {
         (self.upper.state.last_pose, self.lower.state.last_pose) = (0, 0);
         let Plan { source, destination, end_at, .. } = &mut self.upper.state.plan;

@@ -10,24 +10,24 @@
 //!            |                                         |
 //!            v                                         v
 //!      .-----------.  stops elsewhere, late        .-------.   still turns: stop, and
-//!      |  Seeking  |--------------> Failed         | Start |   wait until it stands
+//!      |  Seeking  |--------------> Failed         | Start |   wait for rest
 //!      '-----------'                               '-------'
-//!            | stands at the + limit                   | stands
+//!            | at the + limit, at rest                 | at rest
 //!            v                                         v
-//!      .-----------.  stops elsewhere, late        .---------.  stands elsewhere, late
+//!      .-----------.  stops elsewhere, late        .---------.  stops elsewhere, late
 //!      |  Setting  |--------------> Failed         | Turning |----------------> Error,
 //!      '-----------'                               '---------'              uncalibrated
-//!            | counter reads zero                      | stands at the angle
+//!            | counter reads zero                      | at the angle, at rest
 //!            v                                         v
 //!      .-----------.  stops elsewhere, late          Done
 //!      |  Parking  |--------------> Failed
 //!      '-----------'
-//!            | stands at -20.00
+//!            | at -20.00, at rest
 //!            v
 //!          Valid
 //!            ^
-//!            | stands; counter and potentiometer agree
-//!      .------------.  they do not, or it never stands
+//!            | at rest; counter and potentiometer agree
+//!      .------------.  they do not, or it never rests
 //!      |  Adopting  |--------------> Deferred
 //!      '------------'
 //!            ^ restarted in the middle of a job: a table that turns is stopped

@@ -1,4 +1,4 @@
-//! What must hold of E-move and the process of a gripper in each tick.
+//! Conditions for E-move and the process of a gripper in each tick.
 
 use geometry::pose::Pose;
 use interfaces::{
@@ -17,14 +17,12 @@ use crate::{
 };
 
 impl<G: Fingered> Pair<G> {
-    /// Something that counts as held has been let go, or half of it.
+    /// An object that is recorded as held has been released, or partly.
     const fn lets_go(&self) -> bool {
         self.upper.state.held.is_letting_go(true)
     }
 
-    /// What is reported done is done.
-    ///
-    /// `before` is the pair as it was when the processes read it.
+    /// Each command that is reported done has had its effect. `before` is the pair as the processes read it.
     pub(super) fn judge(
         &self,
         before: &Self,
@@ -32,7 +30,7 @@ impl<G: Fingered> Pair<G> {
     ) -> Result<(), Wrong> {
         let open = G::are_open(before.scene.fingers);
         if event.mishap == Mishap::RestartUpper && before.lets_go() && !self.lets_go() && !open {
-            return Err("a restarted E-move does not know that it lets go");
+            return Err("a restarted E-move does not know that it releases");
         }
         let status = &self.upper.out.status;
         let robot_moves = before.scene.robot.report == PrimReport::Executing;
@@ -47,9 +45,7 @@ impl<G: Fingered> Pair<G> {
             return Ok(());
         }
         match self.command.command {
-            EmoveVerb::GraspObj if before.scene.apart > G::LATE => {
-                Err("done, and nothing is between the fingers")
-            }
+            EmoveVerb::GraspObj if before.scene.apart > G::LATE => Err("done, and the fingers are empty"),
             EmoveVerb::GraspObj if status.held.object() != self.command.object => {
                 Err("done, and the object is not held")
             }
@@ -64,9 +60,9 @@ impl<G: Fingered> Pair<G> {
         }
     }
 
-    /// The robot does not leave the object before the fingers have let go, if they were told to, and MOV-TO-OBJ comes
-    /// to it with open fingers. It stands still while they close or let go. What they hold is not brought to an
-    /// opening.
+    /// If the fingers are commanded to release, the robot does not leave the object before they have, and
+    /// MOV-TO-OBJ arrives with open fingers. The robot rests while they close or release. A held object is not
+    /// moved to an opening.
     fn judge_motion(&self, before: &Self) -> Result<(), Wrong> {
         let (now, then) = (&self.upper.out, &before.upper.out);
         let sends = now.prim.number != then.prim.number && robot::moves(now.prim.command);
@@ -75,14 +71,14 @@ impl<G: Fingered> Pair<G> {
         let opens = G::are_open(before.scene.fingers);
         let grasps = matches!(order, FingerVerb::Grasp | FingerVerb::Release);
         if sends && grasps && before.lower.reports_executing() {
-            return Err("the robot is moved while the fingers close or let go");
+            return Err("the robot is moved while the fingers close or release");
         }
         if orders && self.upper.state.grippers.order() == FingerVerb::Stand && G::hold(before.scene.fingers) {
-            return Err("what is held is brought to an opening");
+            return Err("a held object is moved to an opening");
         }
         match (before.is_at_object(), self.is_at_object()) {
             (true, false) if before.lets_go() && G::touch(before.scene.fingers) => {
-                Err("the robot leaves while the fingers have not let go")
+                Err("the robot leaves before the fingers have released")
             }
             (false, true) if self.command.command == EmoveVerb::MovToObj && !opens => {
                 Err("the robot comes to the object with fingers that are not open")
@@ -91,13 +87,13 @@ impl<G: Fingered> Pair<G> {
         }
     }
 
-    /// A motion is done: the robot is there, and E-move knows that.
+    /// After a motion the robot is at its goal, and E-move knows it.
     fn judge_arrival(&self, before: &Self) -> Result<(), Wrong> {
         let named = place(self.command.site.location.as_str());
         let at_object = matches!(self.command.command, EmoveVerb::MovToObj | EmoveVerb::MovObjTo);
         let goal = if at_object { self.scene.object_at } else { Pose::from_frame(&named.frame) };
         let status = &self.upper.out.status;
-        // An object that is held is not gone to.
+        // The robot does not move to an object that it holds.
         if self.command.command == EmoveVerb::MovToObj && status.held.object() == self.command.object {
             return Ok(());
         }
@@ -112,22 +108,21 @@ impl<G: Fingered> Pair<G> {
                 Err("done, and the fingers are not open")
             }
             EmoveVerb::MovObjTo if before.scene.apart > G::LATE && !before.lets_go() => {
-                Err("done, and nothing is between the fingers")
+                Err("done, and the fingers are empty")
             }
             _ => Ok(()),
         }
     }
 
-    /// What E-move says of what is held is true, when nothing changes any more.
-    ///
-    /// `before` is the pair a tick before, in which nothing was commanded.
+    /// E-move's report of the held object is true in every steady state. `before` is the pair in the previous tick,
+    /// which had no command.
     pub(super) fn judge_held(&self, before: &Self) -> Result<(), Wrong> {
         let holds = G::hold(self.scene.fingers);
         let presses = holds && self.lower.presses();
         let wrong = match self.upper.out.status.held {
-            Holding::Nothing if holds => "at rest, and what is held counts as nothing",
+            Holding::Nothing if holds => "at rest, and a held object is not recorded",
             Holding::Object(_) if !presses && !self.lets_go() => {
-                "at rest, and something counts as held that is not, nor is being let go"
+                "at rest, and an object is recorded as held that is neither held nor being released"
             }
             _ => return Ok(()),
         };

@@ -1,4 +1,4 @@
-//! Which states of E-move and the process of a gripper are alike.
+//! Equivalent states of E-move and the process of a gripper.
 
 use interfaces::Reason;
 
@@ -6,13 +6,13 @@ use super::{Fingered, Pair};
 use crate::image::{Image, forget, rebase, rebase_echoes, renumber_poses};
 
 impl<G: Fingered> Pair<G> {
-    /// Without what no row asks for any more: reasons; what a process that executes nothing has of its command.
+    /// Clear the values that no row tests: reasons, and the commands of processes that execute none.
     pub(super) fn alike(&self) -> Vec<u8> {
         let mut image = Image::new(self.tick, G::LIMIT, G::COUNTERS);
         let mut it = self.clone();
         forget(&mut it.upper.state);
         it.lower.execution().reason = Reason::None;
-        // Rows that order something lead to later steps: none of them fires twice in a command.
+        // Rows that give an order lead to later steps: none of them fires twice in a command.
         it.upper.state.execution.last_order = None;
         it.upper.state.ordered_at = Default::default();
         it.upper.state.held.forget_places();
@@ -36,7 +36,7 @@ impl<G: Fingered> Pair<G> {
         image.bytes
     }
 
-    /// What does not count any more begins again.
+    /// Restart numbers and times that no longer matter.
     pub(super) fn renumber(&mut self) {
         let (emove, out) = (&mut self.upper.state, &mut self.upper.out);
         renumber_poses(emove, out);

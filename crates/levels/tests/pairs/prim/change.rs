@@ -1,9 +1,8 @@
-//! The quick change at the right holster: the ring as E-move sees it, the gripper on the robot or in the holster, and
-//! the sensors of the holster as Prim reads them.
+//! The quick change at the right holster: the ring as E-move sees it, the gripper on the robot or in the holster,
+//! and the sensors of the holster as Prim reads them.
 //!
-//! A gripper that the ring lets go rests on the holster, and is pushed along it by a robot whose pins reach it. One
-//! that lies together with the robot is caught when the ring locks. Its fingers stand as they are to go through the
-//! holster.
+//! A gripper that the ring releases rests on the holster, and a robot whose pins reach it pushes it along. If it is
+//! together with the robot, the ring catches it when it locks. Its fingers are set to pass through the holster.
 
 use geometry::frame::Frame;
 use interfaces::{
@@ -24,16 +23,16 @@ use crate::{
     search::Wrong,
 };
 
-/// The pins reach as far, and as far aside; the ring catches within this; in.
+/// Reach of the pins, also to the side; the ring catches within this; in.
 const REACH: f64 = 0.65;
 const PLAY: f64 = 0.15;
 const CAUGHT: f64 = 0.05;
-/// A gripper that is let go lands from as high, in.
+/// Height from which a released gripper lands, in.
 const LANDS: f64 = 0.6;
 /// The lips are over its ears from here on, and hold it down within this, in.
 const LIPS: f64 = 0.75;
 const HELD_DOWN: f64 = 0.15;
-/// Within this of the seat it is drawn to it, in.
+/// Within this distance the gripper is drawn to the seat, in.
 const DETENT: f64 = 0.1;
 /// Ranges of the large and the small sensors, in.
 const LARGE: f64 = 0.5;
@@ -45,7 +44,7 @@ pub struct Change {
     report: QuickChangeReport,
     ring: Ring,
     turns: Option<Ring>,
-    /// Where the gripper rests on the holster, to the seat, in; none if the ring has it.
+    /// Distance of a gripper on the holster from the seat, in; none if the ring has it.
     rests: Option<f64>,
     /// The sensors of the holster have no power.
     dark: bool,
@@ -94,8 +93,8 @@ impl Change {
         self.rests.is_none_or(|rests| (-REACH..=CAUGHT).contains(&x) && (z - rests).abs() <= PLAY)
     }
 
-    /// Quick Change takes what E-move has written in the tick before, and Grip. Prim and the robot are as they are
-    /// after this tick.
+    /// Quick Change and Grip take E-move's outputs of the previous tick. Prim and the robot are as they are after
+    /// this tick.
     ///
     /// # Errors
     /// The ring is turned while the robot moves, or the gripper falls or is torn off.
@@ -160,7 +159,7 @@ impl Change {
         Ok(())
     }
 
-    /// The gripper goes with the robot, or is pushed along the holster.
+    /// The gripper moves with the robot, or is pushed along the holster.
     fn carry(&mut self, robot: &Frame) -> Result<(), Wrong> {
         let (x, z) = holster::within(robot);
         let mated = self.is_mated(robot);
@@ -177,7 +176,7 @@ impl Change {
         Ok(())
     }
 
-    /// What the sensors of the holster see of the gripper: the large ones in the lower bits.
+    /// The sensors of the holster that detect the gripper: the large ones in the lower bits.
     fn sees(&self, robot: &Frame) -> u8 {
         let (x, z) = self.rests.map_or_else(|| holster::within(robot), |rests| (0.0, rests));
         let large = x.abs() <= LARGE && (-LARGE..=SEAT + LARGE).contains(&z);
@@ -189,7 +188,7 @@ impl Change {
         }
     }
 
-    /// Does the condition hold that Prim watches?
+    /// True if the condition holds that Prim watches.
     pub fn is_met(&self, robot: &Frame, prim: &State) -> bool {
         let sees = self.sees(robot);
         prim.target.sensor.is_some_and(|sensor| match sensor.source {
@@ -199,7 +198,7 @@ impl Change {
         })
     }
 
-    /// What E-move reads, and Prim.
+    /// Write the inputs of E-move and Prim.
     pub fn write(&self, robot: &Frame, memory: &mut CommonMemory, devices: &mut DeviceInputs, stamp: Tick) {
         let mated = self.is_mated(robot);
         let status = &mut memory.quick_change.status;

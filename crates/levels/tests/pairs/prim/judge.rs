@@ -1,4 +1,4 @@
-//! What must hold of E-move and Prim in each tick.
+//! Conditions for E-move and Prim in each tick.
 
 use geometry::frame::Frame;
 use interfaces::{
@@ -16,15 +16,15 @@ use crate::{
     search::Wrong,
 };
 
-/// The farthest that the commanded pose moves in a tick, in.
+/// Greatest motion of the commanded pose per tick, in.
 const STEP: f64 = 0.6;
-/// Ticks in which a guarded move is at rest after its condition has come.
+/// Ticks until a guarded move is at rest after its condition is met.
 const BRAKES: u32 = 12;
-/// ACQUIRE-TOOL takes the tool as far before or behind its place, in: ACQ-NEAR and ACQ-STRIKE.
+/// ACQUIRE-TOOL takes the tool within this distance of its place, in: ACQ-NEAR and ACQ-STRIKE.
 const DEEP: f64 = 0.3;
 
 impl Pair {
-    /// Note whether the condition of a guarded move comes, by what Prim has read in this tick.
+    /// Record whether the condition of a guarded move is met, by the inputs of Prim in this tick.
     pub(super) fn watch(&mut self, before: &Self) {
         if !before.is_guarded() {
             return;
@@ -51,7 +51,7 @@ impl Pair {
         self.brakes = if self.stops && self.is_moving() { self.brakes + 1 } else { 0 };
     }
 
-    /// No jump is commanded, and what is reported done is done.
+    /// The commanded pose does not jump, and each command that is reported done has had its effect.
     pub(super) fn judge(&self, before: &Self) -> Result<(), Wrong> {
         if let (Some(now), Some(then)) = (&self.prim.motion, &before.prim.motion)
             && now.frame().distance(&then.frame()).inches > STEP
@@ -59,7 +59,9 @@ impl Pair {
             return Err("a jump is commanded");
         }
         if self.brakes > BRAKES {
-            return Err("the robot goes on although the sensor of its guarded move says stop, or nothing");
+            return Err(
+                "the robot continues although the sensor of its guarded move reads stop, or is faulty",
+            );
         }
         if self.prim.calibration.samples > before.prim.calibration.samples && before.is_moving() {
             return Err("the force sensor is calibrated while the robot moves");
@@ -109,8 +111,8 @@ impl Pair {
         place("TOOL-SAFE").frame.distance(&self.stands()).inches <= ASIDE
     }
 
-    /// INSERT-TOOL takes the bias of the force sensor at TOOL-SAFE only, and nears the drum only with that bias. If the
-    /// sensor has been without power since, Prim moves nothing.
+    /// INSERT-TOOL takes the bias of the force sensor at TOOL-SAFE only, and approaches the drum only with that
+    /// bias. If the sensor has lost power since then, Prim moves nothing.
     fn judge_calibration(&self, before: &Self) -> Result<(), Wrong> {
         let order = &self.emove_out.prim;
         let is_new = order.number != before.emove_out.prim.number;
@@ -128,7 +130,7 @@ impl Pair {
         }
     }
 
-    /// What Prim reports done is done.
+    /// Each command that Prim reports done has had its effect.
     fn judge_prim(&self, before: &Self, stands: &Frame) -> Result<(), Wrong> {
         let done = |it: &Self| {
             let status = &it.prim_out.status;
@@ -143,7 +145,7 @@ impl Pair {
             PrimVerb::GotoPt | PrimVerb::GoWhile | PrimVerb::DeltaMove if !there => {
                 Err("Prim is done, and the robot is not at its goal")
             }
-            PrimVerb::GoWhile if self.contact => Err("GO-WHILE is done, and its condition has come"),
+            PrimVerb::GoWhile if self.contact => Err("GO-WHILE is done, and its condition was met"),
             PrimVerb::GoUntil if !self.contact => Err("GO-UNTIL is done, and its condition has not come"),
             PrimVerb::GoUntil | PrimVerb::CalSensor if before.is_moving() => {
                 Err("Prim is done, and the robot moves")
@@ -152,7 +154,7 @@ impl Pair {
         }
     }
 
-    /// What the commands at the drum report done is done.
+    /// Each command at the drum that is reported done has had its effect.
     fn judge_tool(&self, before: &Self, stands: &Frame) -> Result<(), Wrong> {
         let base = place(super::DRUM).frame;
         let moved = |from: &Frame, relative: Relative| {
@@ -160,7 +162,7 @@ impl Pair {
             data().moved(from, record.movetable)
         };
         let seat = moved(&base, Relative::InsIn);
-        // How far the robot is out of the drum, and how far a move leads out, in.
+        // Distance of the robot out of the drum, and length of the move out of it, in.
         let out = (moved(&seat, Relative::RemOut).position - seat.position).normalize();
         let is_out = (stands.position - seat.position).dot(&out);
         let leads = |relative| (moved(&seat, relative).position - seat.position).dot(&out);
@@ -181,7 +183,7 @@ impl Pair {
                 Err("done, and the tool is not held")
             }
             EmoveVerb::ReleaseTool if !tool.is_open() || status.held != Holding::Nothing => {
-                Err("done, and the tool is not let go")
+                Err("done, and the tool is not released")
             }
             EmoveVerb::ReleaseTool if is_out < leads(Relative::RelBack) - DEEP - THERE => {
                 Err("done, and the robot has not left the drum")

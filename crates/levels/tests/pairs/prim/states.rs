@@ -1,4 +1,4 @@
-//! Which states of E-move and Prim are alike.
+//! Equivalent states of E-move and Prim.
 
 use geometry::pose::WireFrame;
 use interfaces::{Reason, emove::EmoveVerb, pose_range};
@@ -7,12 +7,12 @@ use levels::{emove::gripper::EmoveGripper, execution::Outcome};
 use super::Pair;
 use crate::image::{Image, rebase, rebase_echoes, renumber_poses};
 
-/// Longer than any time that counts but for that of an echo, ticks.
+/// Longer than any relevant time except that of an echo, ticks.
 const LIMIT: u64 = 250;
 
 impl Pair {
-    /// Without what no row asks for any more: reasons; the nearest places; how long the robot has stood beyond what
-    /// counts; when a link was restarted, since so many faults cannot come.
+    /// Without values that no row tests: reasons; the nearest places; the time at rest above its limit; the times
+    /// of restarts of the link, since enough faults cannot occur.
     pub(super) fn alike(&self) -> Vec<u8> {
         let mut image = Image::new(self.tick, LIMIT, &[]);
         let mut it = self.clone();
@@ -72,7 +72,7 @@ impl Pair {
         image.bytes
     }
 
-    /// What does not count any more begins again.
+    /// Restart numbers and times that no longer matter.
     pub(super) fn renumber(&mut self) {
         renumber_poses(&mut self.emove, &mut self.emove_out);
         let (emove, out) = (&mut self.emove, &mut self.emove_out);

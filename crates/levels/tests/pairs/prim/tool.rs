@@ -1,8 +1,8 @@
-//! The tool gripper on the robot at the tool drum: its fingers as E-move sees them, and its force sensor as Prim reads
-//! it.
+//! The tool gripper on the robot at the tool drum: its fingers as E-move sees them, and its force sensor as Prim
+//! reads it.
 //!
-//! The condition of a guarded move comes at its start, where most of it is over, at its end, or not at all. The force
-//! is gone when the robot rests after it.
+//! The condition of a guarded move is met at its start, where most of it is over, at its end, or never. The force
+//! disappears when the robot rests after it.
 
 use geometry::{frame::Frame, pose::WireFrame};
 use interfaces::{
@@ -31,7 +31,7 @@ use crate::{
 pub const TOOL: (&str, i32, i32) = ("DRILL-2", 1, 175);
 pub const GRIPPER: u8 = 3;
 pub const DRUM: &str = "TOOL-TRNS";
-/// The fingers are around a tool within this, in.
+/// The fingers are around a tool within this distance, in.
 const AROUND: f64 = 0.5;
 
 const NEUTRAL: ForceSensor = ForceSensor { x: ZERO, y: ZERO, z: ZERO, moment: ZERO, valid: true };
@@ -40,10 +40,10 @@ const ZERO: u16 = FORCE_ZERO as u16;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Happens {
     Nothing,
-    /// Fingers that move arrive; if they close where the tool is, they have it between them.
+    /// Moving fingers arrive; if they close at the tool, they have it between them.
     Arrive,
     Stick,
-    /// The condition of the guarded move comes.
+    /// The condition of the guarded move is met.
     Contact,
     Free,
     /// The sensor has no power, for this tick.
@@ -56,9 +56,9 @@ pub struct Tool {
     report: JawsReport,
     /// Opening, 0.01 in.
     size: i32,
-    /// Air closes the fingers, or else opens them.
+    /// Air closes the fingers, else it opens them.
     closes: bool,
-    /// Where the robot is when its fingers are around the tool.
+    /// Pose of the robot when its fingers are around the tool.
     at: Frame,
     pub force: ForceSensor,
 }
@@ -102,7 +102,7 @@ impl Tool {
         (self.force.z, self.force.moment) != (ZERO, ZERO)
     }
 
-    /// Tool-Grip takes what E-move has written in the tick before. Prim and the robot are as they are after this tick.
+    /// Tool-Grip takes E-move's outputs of the previous tick. Prim and the robot are as they are after this tick.
     ///
     /// # Errors
     /// Fingers are moved while the robot moves.
@@ -147,7 +147,7 @@ impl Tool {
         Ok(())
     }
 
-    /// Counts of the axis that is watched, its bias in counts, and counts for a pound or an inch pound.
+    /// Counts of the watched axis, its bias in counts, and counts per pound or inch pound.
     fn axis(&mut self, sensor: &SensorPara, prim: &State) -> Option<(&mut u16, f64, i32)> {
         let bias = prim.calibration.bias?;
         match sensor.source {
@@ -157,7 +157,7 @@ impl Tool {
         }
     }
 
-    /// Bring the force to the least multiple of the threshold that is the condition of what Prim watches.
+    /// Set the force to the least multiple of the threshold that meets the condition of Prim.
     fn press(&mut self, prim: &State) {
         let Some(sensor) = prim.target.sensor else { return };
         for times in 1..5 {
@@ -170,7 +170,7 @@ impl Tool {
         }
     }
 
-    /// Does the condition hold that Prim watches?
+    /// True if the condition holds that Prim watches.
     pub fn is_pressed(&self, prim: &State) -> bool {
         let Some(sensor) = prim.target.sensor.filter(|_| self.force.valid) else { return false };
         let mut it = *self;
@@ -180,12 +180,12 @@ impl Tool {
         if threshold < 0.0 { value <= threshold } else { value >= threshold }
     }
 
-    /// Does Prim watch a sensor that cannot tell?
+    /// True if Prim watches a faulty sensor.
     pub fn is_blind(&self, prim: &State) -> bool {
         prim.target.sensor.is_some() && (!self.force.valid || prim.calibration.bias.is_none())
     }
 
-    /// What E-move reads, and Prim.
+    /// Write the inputs of E-move and Prim.
     pub fn write(&self, memory: &mut CommonMemory, devices: &mut DeviceInputs, stamp: Tick) {
         let outputs = &mut memory.tool_grip;
         (outputs.header.stamp, outputs.header.republished) = (stamp, memory.emove.dormant.tool_grip);

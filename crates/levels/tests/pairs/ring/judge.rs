@@ -1,10 +1,10 @@
-//! What must hold of E-move and Quick Change in each tick.
+//! Conditions for E-move and Quick Change in each tick.
 
 use super::Pair;
 use crate::{emove::is_done, holster, search::Wrong};
 
 impl Pair {
-    /// `before` is the pair as it was when the processes read it.
+    /// `before` is the pair as the processes read it.
     pub(super) fn judge(&self, before: &Self) -> Result<(), Wrong> {
         self.judge_motion(before)?;
         let number = self.command.number;
@@ -25,8 +25,8 @@ impl Pair {
         )
     }
 
-    /// The ring does not turn while the robot moves, nor the robot with a gripper on an open ring, as far as its pins
-    /// are read.
+    /// The ring does not turn while the robot moves, nor does the robot move with a gripper on an open ring, as far
+    /// as its pins are read.
     fn judge_motion(&self, before: &Self) -> Result<(), Wrong> {
         let (order, old) = (&self.upper.out.prim, &before.upper.out.prim);
         if before.is_driven() && before.scene.robot.goal.is_some() {

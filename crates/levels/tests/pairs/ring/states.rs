@@ -1,4 +1,4 @@
-//! Which states of E-move and Quick Change are alike.
+//! Equivalent states of E-move and Quick Change.
 
 use interfaces::{Reason, grip::GripCommand, prim::PrimCommand};
 use levels::{emove::gripper::EmoveGripper, execution::Outcome};
@@ -6,7 +6,7 @@ use levels::{emove::gripper::EmoveGripper, execution::Outcome};
 use super::{Fault, Pair, STEADY};
 use crate::image::{Image, forget, rebase, rebase_echoes, renumber_poses};
 
-/// Ticks in which the ring must arrive.
+/// Time limit of the ring, ticks.
 const LIMIT: u64 = 25;
 
 impl Pair {
@@ -59,8 +59,8 @@ impl Pair {
         image.bytes
     }
 
-    /// What no row asks for any more: reasons; what a process that executes nothing has of its command; the text of an
-    /// order that was taken; poses to which no order leads; the time of a ring that has arrived.
+    /// Clear values that no row tests: reasons; the commands of processes that execute none; the text of an order
+    /// that was taken; poses without an order; the time of a ring that has arrived.
     fn forget(&mut self) {
         let executes = forget(&mut self.upper.state);
         let ring = &mut self.lower.state;
@@ -81,7 +81,7 @@ impl Pair {
         }
     }
 
-    /// What does not count any more begins again.
+    /// Restart numbers and times that no longer matter.
     pub(super) fn renumber(&mut self) {
         renumber_poses(&mut self.upper.state, &mut self.upper.out);
         let (emove, out) = (&mut self.upper.state, &mut self.upper.out);

@@ -1,4 +1,4 @@
-//! What must hold of Subtask and E-move in each tick.
+//! Conditions for Subtask and E-move in each tick.
 
 use geometry::pose::Pose;
 use interfaces::{
@@ -17,7 +17,7 @@ use crate::{
 };
 
 impl Pair {
-    /// Is it where the robot is to stand for a command?
+    /// True if the robot is at the goal of a command.
     fn is_goal(&self, command: &SubtaskCommand, at: &Pose) -> bool {
         let Some((_, pose)) = self.lines.iter().find(|(_, pose)| pose.number == command.pose) else {
             return false;
@@ -35,7 +35,7 @@ impl Pair {
         places.any(|(command, _)| self.is_goal(command, at))
     }
 
-    /// Does E-move give an order that moves robot or fingers?
+    /// True if E-move gives an order that moves robot or fingers.
     fn orders_motion(&self, before: &Self) -> bool {
         let (now, then) = (&self.lower.out, &before.lower.out);
         (now.prim.number != then.prim.number && robot::moves(now.prim.command))
@@ -47,14 +47,14 @@ impl Pair {
         execution.outcome == Outcome::Done && execution.receiver.echo == number
     }
 
-    /// `before` is the pair as it was when the processes read it.
+    /// `before` is the pair as the processes read it.
     pub(super) fn judge(&self, before: &Self, event: &Event<Does>) -> Result<(), Wrong> {
         self.judge_orders(before, event)?;
         let number = self.command.number;
         if !self.is_done(number) {
             return Ok(());
         }
-        // What is placed already may be found so while a robot whose motion has failed comes to rest.
+        // An object that is already placed may be detected while a robot whose motion has failed comes to rest.
         let at_once = matches!(self.command.command, SubtaskVerb::PlaceObj | SubtaskVerb::GetEndeff);
         let out = &before.lower.out;
         let fingers = self.command.command == SubtaskVerb::Pause && before.scene.grip.is_moving(&out.grip);
@@ -65,8 +65,8 @@ impl Pair {
         if before.is_done(number) { Ok(()) } else { self.judge_end(before) }
     }
 
-    /// Nothing of a command that was replaced is ordered. The robot stands still while the fingers close or let go, and
-    /// at the object when they close.
+    /// A replaced command gives no order. The robot rests while the fingers close or release, and is at the object
+    /// when they close.
     fn judge_orders(&self, before: &Self, event: &Event<Does>) -> Result<(), Wrong> {
         let (now, then) = (&self.lower.out, &before.lower.out);
         let fresh = event.told.is_some() || event.mishap != Mishap::None;
@@ -76,10 +76,10 @@ impl Pair {
         let holds = matches!(then.grip.command, GripVerb::OpenGrip | GripVerb::CloseGrip);
         let sends = now.prim.number != then.prim.number && robot::moves(now.prim.command);
         if sends && holds && before.scene.grip.is_busy(&then.grip) {
-            return Err("the robot is moved while the fingers close or let go");
+            return Err("the robot is moved while the fingers close or release");
         }
         let (order, last) = (self.upper.out.emove.command, before.upper.out.emove.command);
-        // What is held has not been gone to.
+        // The robot does not move to a held object.
         let arrived = before.scene.own && order == EmoveVerb::GraspObj && last == EmoveVerb::MovToObj;
         let empty = !then.status.held.is_held();
         if arrived && empty && !self.is_goal(&self.command, &before.scene.robot.at) {
@@ -88,14 +88,12 @@ impl Pair {
         Ok(())
     }
 
-    /// What is reported done is done.
+    /// Each command that is reported done has had its effect.
     fn judge_end(&self, before: &Self) -> Result<(), Wrong> {
         let (status, held) = (&before.lower.out.status, before.lower.out.status.held.object());
         let there = self.is_goal(&self.command, &before.scene.robot.at);
         match self.command.command {
-            SubtaskVerb::GetObject if before.scene.apart > LATE => {
-                Err("done, and nothing is between the fingers")
-            }
+            SubtaskVerb::GetObject if before.scene.apart > LATE => Err("done, and the fingers are empty"),
             SubtaskVerb::GetObject | SubtaskVerb::MoveObjToDest if held != self.command.object => {
                 Err("done, and the object is not held")
             }

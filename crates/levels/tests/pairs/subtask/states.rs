@@ -1,4 +1,4 @@
-//! Which states of Subtask and E-move are alike.
+//! Equivalent states of Subtask and E-move.
 
 use interfaces::{
     Reason,
@@ -14,8 +14,8 @@ use super::{Pair, is_over};
 use crate::image::{forget, rebase, rebase_echoes, renumber_poses};
 
 impl Pair {
-    /// What no row asks for any more: reasons; what a process that executes nothing has of its command; the text of an
-    /// order that was taken; poses to which no order leads.
+    /// Clear values that no row tests: reasons; the commands of processes that execute none; the text of an order
+    /// that was taken; poses without an order.
     pub(super) fn forget(&mut self) {
         let (subtask, emove) = (&mut self.upper.state, &mut self.lower.state);
         subtask.execution.reason = Reason::None;
@@ -48,7 +48,7 @@ impl Pair {
         }
     }
 
-    /// What does not count any more begins again.
+    /// Restart numbers and times that no longer matter.
     pub(super) fn renumber(&mut self) {
         renumber_poses(&mut self.lower.state, &mut self.lower.out);
         let (subtask, out, emove, below) =
@@ -66,7 +66,7 @@ impl Pair {
             emove.exchange.commander(),
             &mut [&mut below.quick_change.number, &mut self.scene.quick_change],
         );
-        // Vision answers the last request: by how many it is behind does not matter.
+        // Vision answers the last request: the number of missed ones does not matter.
         let vision = emove.vision.commander();
         if vision.number != 0 {
             self.scene.vision.echo = if self.scene.vision.echo == vision.number { 2 } else { 1 };
