@@ -194,7 +194,6 @@ impl Execution {
         self.receiver = Receiver::default();
     }
 
-    /// Consult [`EXECUTE`].
     pub fn execute(&mut self, arrival: Arrival) -> Course {
         let decision = execute(self.outcome, &Buffer { arrival });
         self.outcome = decision.next;

@@ -127,7 +127,6 @@ macro_rules! ladder {
                 LadderState { $( $field: of(&self.$field), )+ buttons: self.buttons }
             }
 
-            /// Continue from a stored state.
             pub fn restore(&mut self, state: &LadderState) {
                 fn to<P: Process<TaskData<'static>>>(process: &mut P, state: P::State) {
                     process.restore(state);

@@ -107,7 +107,7 @@ mod tests {
         rows.decide(&choice(3, 5, 1));
         rows.begin(Tick(6));
         rows.decide(&choice(4, 1, 2));
-        assert_eq!(rows.beside, [None; BESIDE], "the row of an earlier tick is not one of this");
+        assert_eq!(rows.beside, [None; BESIDE], "rows of an earlier tick are not reported");
         rows.decide(&choice(9, 8, 3));
         let header = rows.header(Tick(6), "");
         assert_eq!(

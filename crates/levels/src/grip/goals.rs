@@ -1,9 +1,9 @@
-//! The goals of the commands. The rows that end a command ask for the reading itself, of the same tick.
+//! The goals of the commands. The rows that end a command test the readings of the same tick, without CONFIRM.
 
 use crate::goal::{Goal, Sensor};
 
 pub static REST: Goal = Goal {
-    holds: "the fingers stand, or have had their time; without the gripper the valves are off",
+    holds: "the fingers are at rest, or their time is over; without the gripper the valves are off",
     sensors: &[Sensor::Fingers],
     tolerance: "6 counts per tick for 5 ticks",
     age: 0,
@@ -21,7 +21,7 @@ pub static OPENING: Goal = Goal {
 pub static FORCE: Goal = Goal {
     holds: "both fingers have the commanded force, or they have passed the grasp size without force",
     sensors: &[Sensor::StrainGages, Sensor::Fingers],
-    tolerance: "2 lb; a finger touches from 1 lb on",
+    tolerance: "2 lb; contact above 1 lb",
     age: 0,
     unconfirmed: &[],
 };

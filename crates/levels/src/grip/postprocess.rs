@@ -53,7 +53,6 @@ impl State {
         };
     }
 
-    /// Command bits to the valves.
     fn bits(&self, action: Action) -> u8 {
         let limit = self.goal.greatest_flow();
         match action {

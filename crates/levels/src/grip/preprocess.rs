@@ -149,7 +149,6 @@ impl State {
         (arrival, asked)
     }
 
-    /// Take the readings of this tick.
     fn sample(&mut self, gripper: Attachment, now: &GripSensors) {
         self.sensed = match (gripper, self.sensed) {
             (Attachment::Detached, _) => {
@@ -216,7 +215,6 @@ impl State {
         }
     }
 
-    /// The readings during the calibration.
     fn readings(&self, tick: Tick) -> Calibrating {
         let plausible = || is_plausible(&self.closed, &self.open, &self.steady.mean());
         if tick.since(self.since) > CALIBRATION_LIMIT_TICKS {

@@ -1,5 +1,3 @@
-//! The state of Grip.
-
 use interfaces::{
     device::GripSensors,
     grip::{Calibration, Felt},

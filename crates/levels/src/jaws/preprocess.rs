@@ -94,7 +94,6 @@ impl State {
         }
     }
 
-    /// Take the reading of this tick.
     fn sample(&mut self, gripper: Attachment, counts: u16) -> [u16; WINDOW] {
         self.window = match (gripper, self.window) {
             (Attachment::Detached, _) => None,

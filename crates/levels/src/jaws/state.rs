@@ -1,5 +1,3 @@
-//! The state of V-Grip and Tool-Grip.
-
 use interfaces::{
     device::JawValves,
     jaws::{JawsReport, JawsVerb},

@@ -131,7 +131,7 @@ fn every_command_reports_where_its_fingers_stopped() {
         let mut bench = VBench::new(place);
         bench.world.speed = 0.0;
         assert_eq!(bench.execute(order(verb, size)), (expected, reason), "{verb} {size} at {place}");
-        assert_eq!(bench.wait(30).status.report, expected, "it stays until the next command");
+        assert_eq!(bench.wait(30).status.report, expected, "the report stays until the next command");
     }
 }
 
@@ -181,7 +181,7 @@ fn fingers_press_until_release() {
     assert_eq!(bench.execute(order(JawsVerb::Pause, 0.0)), (JawsReport::AtPosition, Reason::None));
     assert!(bench.wait(100).valves.close, "still pressed");
     bench.world.object = None;
-    assert_eq!(bench.wait(30).status.size, 50, "what slips out is seen in the size");
+    assert_eq!(bench.wait(30).status.size, 50, "the size shows that the object has slipped out");
     assert_eq!(bench.execute(order(JawsVerb::Release, 0.0)), OPENED);
     assert!(bench.outputs().valves.open && !bench.outputs().valves.close);
 }
@@ -258,7 +258,7 @@ fn missing_gripper_fails_commands_and_turns_the_air_off() {
     assert_eq!(bench.execute(order(JawsVerb::Grasp, 0.0)), (JawsReport::Stuck, Reason::WrongGripper));
     bench.attach(true);
     let other = JawsCommand { end_effector_id: Some(3), ..order(JawsVerb::Grasp, 0.0) };
-    assert_eq!(bench.execute(other), (JawsReport::Stuck, Reason::WrongGripper), "meant for another gripper");
+    assert_eq!(bench.execute(other), (JawsReport::Stuck, Reason::WrongGripper), "for another gripper");
 }
 
 /// The fingers press a part while the id pins have no contact, and while the process is restarted.

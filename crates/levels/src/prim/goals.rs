@@ -22,14 +22,14 @@ pub static REST: Goal = Goal {
     unconfirmed: &[],
 };
 pub static POSITIONED: Goal = Goal {
-    holds: "the link runs, and the robot controller has reported where the robot is",
+    holds: "the link runs, and the robot controller has reported the robot's position",
     sensors: &[Sensor::Link],
     tolerance: "",
     age: 1,
     unconfirmed: &[],
 };
 pub static PASSING: Goal = Goal {
-    holds: "the robot is within the break distance of the point, and so near as it follows its command",
+    holds: "the robot is within the break distance of the point and of its expected lag",
     sensors: &[Sensor::Resolvers],
     tolerance: "break distance, and the expected lag and 3 ticks at the velocity of the motion",
     age: 1,
@@ -46,7 +46,7 @@ pub static POINT: Goal = Goal {
 pub static CONTACT: Goal = Goal {
     holds: "the condition holds, and the robot rests",
     sensors: &[Sensor::Guard, Sensor::Resolvers],
-    tolerance: "that of the sensor; no motion above 0.02 in, 0.1 degree per tick for 3 ticks",
+    tolerance: "the sensor's threshold; no motion above 0.02 in, 0.1 degree per tick for 3 ticks",
     age: 1,
     unconfirmed: &[],
 };

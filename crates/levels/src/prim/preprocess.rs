@@ -186,7 +186,6 @@ impl State {
         (ended.rest(ended.settled), ended.rest(ended.still))
     }
 
-    /// The sensor of a guarded move.
     fn guard(&mut self, inputs: &Inputs<'_, TaskData<'_>>) -> Guard {
         let (devices, end_effector) = (&inputs.external.devices, self.target.end_effector_id);
         let read = |sensor: SensorPara| self.calibration.read(&sensor, devices, end_effector);
@@ -256,7 +255,6 @@ fn target(command: &PrimCommand, inputs: &Inputs<'_, TaskData<'_>>) -> Result<Pr
     Ok(PrimTarget { verb, goal, sensor, end_effector_id: command.end_effector_id })
 }
 
-/// Goal and limits of a motion.
 fn goal(command: &PrimCommand, inputs: &Inputs<'_, TaskData<'_>>) -> Result<PrimGoal, PrimMissing> {
     let pose = pose_of(command.pose, inputs.memory, inputs.data).ok_or(PrimMissing::Pose)?;
     let by = command.movetable;
@@ -295,7 +293,6 @@ const fn position(verb: PrimVerb) -> Position {
     }
 }
 
-/// Whether the operator moves the robot.
 fn operator(joystick: &JoystickBox) -> PrimOperator {
     let on = switches(joystick) != Switches::Off && joystick.velocity > 0;
     if on && is_moved(joystick) { PrimOperator::Moves } else { PrimOperator::Idle }

@@ -1,5 +1,3 @@
-//! The state of Prim.
-
 use geometry::pose::WireFrame;
 use interfaces::prim::PrimVerb;
 use rcs_core::{Plain, handshake::Commander, tick::Tick};

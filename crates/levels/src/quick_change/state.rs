@@ -1,5 +1,3 @@
-//! The state of Quick Change.
-
 use interfaces::quick_change::{QuickChangeVerb, RingPosition};
 use rcs_core::{Plain, tick::Tick};
 

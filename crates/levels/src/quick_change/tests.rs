@@ -68,7 +68,6 @@ impl Bench {
         self.read(locked, unlocked, id).status.report
     }
 
-    /// The status after some ticks.
     fn watch(&mut self, ticks: u8, locked: bool, unlocked: bool, id: u8) -> QuickChangeStatus {
         (0..ticks).map(|_| self.read(locked, unlocked, id).status).last().unwrap()
     }
@@ -111,7 +110,7 @@ fn port_is_enabled_only_while_the_ring_turns() {
         "locked already"
     );
     bench.world.id = 200;
-    assert_eq!(bench.execute(QuickChangeVerb::Unlock), UNLOCKED, "pins that part do not matter");
+    assert_eq!(bench.execute(QuickChangeVerb::Unlock), UNLOCKED, "separating pins do not matter");
     assert_eq!((bench.world.place, bench.valves()), (0.0, SHUT));
 }
 
@@ -133,7 +132,7 @@ fn ring_turns_only_while_its_device_answers() {
         assert!((bench.world.place - half).abs() < 0.2, "the ring stays half turned");
         bench.external.devices.field.quick_change = Connection::Fresh;
         bench.world.claim = None;
-        assert_eq!(bench.finish(), done, "the time of the ring has stood still");
+        assert_eq!(bench.finish(), done, "the time of the ring has not advanced");
         for (connection, reason) in
             [(Connection::Lost, Reason::DeviceSilent), (Connection::Tripped, Reason::DeviceTripped)]
         {
@@ -160,7 +159,11 @@ fn late_ring_is_stuck_until_the_next_command() {
             assert_eq!(bench.tick.since(began), TURN_TICKS + 2);
             for _ in 0..50 {
                 let report = bench.report(place >= 1.0, place <= 0.0, 1);
-                assert_eq!(report, QuickChangeReport::Stuck, "though the ring is seen where it was");
+                assert_eq!(
+                    report,
+                    QuickChangeReport::Stuck,
+                    "although the ring is detected at its old place"
+                );
                 assert_eq!(bench.valves(), SHUT);
             }
             (bench.world.jam, bench.world.claim) = (None, None);
@@ -299,7 +302,7 @@ fn malfunction_is_reported_after_a_while() {
         }
         let status = bench.read(locked, unlocked, id).status;
         assert_eq!(status.report, QuickChangeReport::SensorMalfunction);
-        assert_eq!(status.end_effector_id, Some(1), "an illegal id is not passed on");
+        assert_eq!(status.end_effector_id, Some(1), "an illegal id is not published");
     }
 }
 
@@ -307,7 +310,11 @@ fn malfunction_is_reported_after_a_while() {
 fn restart_and_unknown_command_are_reported_with_the_ring() {
     let mut bench = Bench::at(1.0);
     QuickChange::order(&mut bench.memory, QuickChangeVerb::Pause, 7);
-    assert_eq!(bench.finish(), (QuickChangeReport::Locked, Reason::Restarted), "it adopts the command");
+    assert_eq!(
+        bench.finish(),
+        (QuickChangeReport::Locked, Reason::Restarted),
+        "the restarted process adopts the command"
+    );
     assert_eq!(bench.execute(QuickChangeVerb::Pause), LOCKED);
     assert_eq!(bench.execute(QuickChangeVerb::None).1, Reason::UnknownCommand);
 }

@@ -1,4 +1,4 @@
-//! The goals of the commands. The rows that end a command ask for the reading itself, of the same tick.
+//! The goals of the commands. The rows that end a command test the readings of the same tick, without CONFIRM.
 
 use crate::goal::{Goal, Sensor};
 

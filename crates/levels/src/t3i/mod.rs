@@ -56,7 +56,6 @@ use self::tables::{
     report::report,
 };
 
-/// The T3 Interface process.
 #[derive(Clone, Debug)]
 pub struct T3i {
     state: State,

@@ -26,7 +26,6 @@ use super::{
 
 /// Counts per word by which a report may differ from the sent position: both ends round.
 const NEAR_COUNTS: i32 = 2;
-/// Length of a tick, ms.
 const TICK_MS: u16 = 40;
 
 impl State {

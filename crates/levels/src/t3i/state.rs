@@ -1,5 +1,3 @@
-//! The state of T3I.
-
 use depc::{
     Limits,
     host::{ANSWER_TICKS, Host},

@@ -65,7 +65,6 @@ impl Gripper {
         }
     }
 
-    /// One tick of air.
     pub fn advance(&mut self, bits: u8) {
         if self.patterns.last() != Some(&bits) {
             self.patterns.push(bits);

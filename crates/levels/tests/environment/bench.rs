@@ -112,7 +112,6 @@ pub struct Bench<P, W, Data = ()> {
 }
 
 impl<P: Tested<()>, W: World<P>> Bench<P, W> {
-    /// A bench before its first tick.
     pub fn before(world: W) -> Self {
         Self::with(world, ())
     }
@@ -132,18 +131,15 @@ impl<P: Tested<Data>, W: World<P>, Data> Bench<P, W, Data> {
         }
     }
 
-    /// Send the next command.
     pub fn send(&mut self, order: P::Order) {
         let number = P::number(&mut self.memory) + 1;
         P::order(&mut self.memory, order, number);
     }
 
-    /// The last outputs of the process.
     pub fn outputs(&mut self) -> <P as Buffers>::Outputs {
         *P::outputs(&mut self.memory)
     }
 
-    /// One tick.
     pub fn step(&mut self) -> <P as Buffers>::Outputs {
         self.tick = self.tick.next();
         self.world.sense(self.tick, &mut self.memory, &mut self.external);
@@ -183,11 +179,14 @@ impl<P: Tested<Data>, W: World<P>, Data> Bench<P, W, Data> {
         panic!("no end at tick {}", self.tick);
     }
 
-    /// Step until a condition is true.
     pub fn until(&mut self, holds: impl Fn(&Self) -> bool) {
         let began = self.tick;
         while !holds(self) {
-            assert!(self.tick.since(began) <= P::LONGEST, "it never holds, up to tick {}", self.tick);
+            assert!(
+                self.tick.since(began) <= P::LONGEST,
+                "the condition is still false at tick {}",
+                self.tick
+            );
             self.step();
         }
     }
@@ -227,7 +226,6 @@ impl<P: Tested<Data>, W: World<P>, Data> Bench<P, W, Data> {
         }
     }
 
-    /// Execute a command to its end.
     pub fn execute(&mut self, order: P::Order) -> P::End {
         self.send(order);
         self.finish()
@@ -254,7 +252,6 @@ impl<P: Tested<Data>, W: World<P>, Data> Bench<P, W, Data> {
         self.process.restore(state);
     }
 
-    /// The bytes of its outputs.
     pub fn image(&mut self) -> Vec<u8> {
         let mut bytes = vec![0; <<P as Buffers>::Outputs as Plain>::SIZE];
         P::outputs(&mut self.memory).encode(&mut Writer::new(&mut bytes));

@@ -19,12 +19,10 @@ pub const fn moves(verb: EmoveVerb) -> bool {
     )
 }
 
-/// Take a new order.
 pub const fn take(status: &mut EmoveStatus, number: u32) {
     (status.echo, status.report) = (number, StatusReport::Executing);
 }
 
-/// The effect of a completed order.
 pub fn effect(status: &mut EmoveStatus, order: &EmoveCommand) {
     let EmoveCommand { object, grip, site, .. } = *order;
     match order.command {
@@ -49,7 +47,6 @@ pub fn effect(status: &mut EmoveStatus, order: &EmoveCommand) {
     }
 }
 
-/// The fingers grasp an object.
 pub const fn grasp(status: &mut EmoveStatus, object: ObjectGrip) {
     (status.held, status.placed, status.located) = (Holding::Object(object), None, None);
 }

@@ -47,7 +47,6 @@ impl Rotary {
         }
     }
 
-    /// One tick.
     pub fn advance(&mut self, command: &MotorCommand) {
         if command.number != self.waiting.0.number {
             self.waiting = (*command, self.delay);

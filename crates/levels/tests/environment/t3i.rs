@@ -12,7 +12,6 @@ use rcs_core::{
     tick::Tick,
 };
 
-/// Points that T3I can queue.
 const QUEUE: usize = 4;
 
 /// T3I and everything below it, as Prim sees them.
@@ -81,7 +80,7 @@ impl ModelT3i {
                         self.fault = LinkFault::None;
                     }
                 }
-                T3iVerb::None => panic!("a command without a word"),
+                T3iVerb::None => panic!("an unknown command"),
             }
         }
         if self.starting.is_some_and(|left| left == 0) {

@@ -38,7 +38,6 @@ pub trait Fingered: Stepped {
     const OBJECT: (&'static str, i32, &'static str);
     /// The greatest age within the time limit of a command, ticks.
     const LIMIT: u64;
-    /// Counter fields and their greatest values.
     const COUNTERS: &'static [(&'static str, u8)];
     /// Ticks until E-move must know that the part is gone.
     const LATE: u8;

@@ -34,7 +34,6 @@ pub struct Sizes {
 const POTENTIOMETER: (u16, u16) = (200, 7);
 const STRAIN: (u16, u16) = (300, 40);
 
-/// The calibration of the sensors.
 pub fn calibration() -> Calibration {
     let scale =
         |(zero, counts): (u16, u16), unit: f64| Scale { zero: zero.into(), gain: unit / f64::from(counts) };

@@ -19,7 +19,6 @@ pub type Data = TaskData<'static>;
 /// A process between two ticks.
 pub trait Stepped: Clone {
     fn step(&mut self, inputs: &Inputs<'_, Data>);
-    /// Restart with the previous outputs.
     fn restart(&mut self);
 }
 

@@ -51,7 +51,6 @@ thread_local! {
     static PIECES: RefCell<Vec<Known>> = const { RefCell::new(Vec::new()) };
 }
 
-/// Add the pieces of a field.
 fn add_pieces(schema: &Schema, name: &str, counters: Counters, pieces: &mut Vec<Piece>) {
     match schema {
         Schema::Struct(record) if matches!(record.name, "Rows" | "Header") => {
@@ -90,7 +89,6 @@ fn keep(size: usize, pieces: &mut Vec<Piece>) {
     }
 }
 
-/// A state as bytes.
 pub struct Image {
     pub bytes: Vec<u8>,
     value: Vec<u8>,

@@ -66,7 +66,7 @@ impl PartsGripper {
         if order.number != self.echo && order.number != 0 {
             (self.echo, self.report) = (order.number, GripReport::Executing);
             if self.full && order.command == GripVerb::Position {
-                return Err("the fingers are brought to an opening with something between them");
+                return Err("the fingers move to an opening with an object between them");
             }
         }
         let closes = order.command == GripVerb::CloseGrip;

@@ -266,7 +266,7 @@ impl Scene for Around {
             PedestalVerb::PreGrip | PedestalVerb::Grip | PedestalVerb::Release
                 if !before.scene.hand_ended =>
             {
-                Err("done, and the hand has not ended what this command ordered")
+                Err("done, and the hand has not ended the order of this command")
             }
             PedestalVerb::PreGrip if turned != Some(-1200) => Err("done, and the table is elsewhere"),
             PedestalVerb::PreGrip | PedestalVerb::Flip | PedestalVerb::Pause if before.turns() => {

@@ -304,7 +304,6 @@ impl Pair {
         (emove.status.echo, emove.status.report, prim.echo, prim.report, emove.prim.number, moves, runs)
     }
 
-    /// One tick of both.
     fn tick(&mut self, link: Link, happens: Happens) -> Result<(), Wrong> {
         self.tick = self.tick.next();
         let mut upper: Emove = resumed(self.emove, link == Link::Restart(Mishap::RestartUpper));

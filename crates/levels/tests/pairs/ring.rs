@@ -58,7 +58,7 @@ pub struct Around {
     fault: Fault,
     robot: Robot,
     grip: PartsGripper,
-    /// The gripper is on the quick change; else in its holster.
+    /// The gripper is on the quick change; otherwise in its holster.
     mated: bool,
 }
 
@@ -115,7 +115,6 @@ impl Pair {
         }
     }
 
-    /// The readings of the holster's sensors.
     fn holster_sensors(&self) -> u8 {
         let (x, z) = holster::within(&self.stands());
         match self.scene.mated {

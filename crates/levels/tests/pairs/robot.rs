@@ -107,7 +107,7 @@ impl Robot {
             (self.echo, self.report) = (order.number, PrimReport::Executing);
             (self.goal, self.far, self.there) = (None, self.at, 0);
             if moves(order.command) {
-                let base = pose_of(order.pose, memory, &data()).ok_or("Prim is sent to no record")?;
+                let base = pose_of(order.pose, memory, &data()).ok_or("the order to Prim names no record")?;
                 let goal = data().moved(&base, order.movetable);
                 self.far = Pose::from_frame(&goal);
                 self.goal = Some(self.far);

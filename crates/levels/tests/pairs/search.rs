@@ -65,7 +65,6 @@ pub trait World: Clone {
     /// The last command has ended, and the pair is at rest.
     fn rests(&self) -> bool;
 
-    /// The last command is PAUSE.
     fn pauses(&self) -> bool;
 }
 
@@ -98,7 +97,7 @@ impl<Event: Copy> Space<Event> {
     fn number(&mut self, world: &impl World, from: (u32, Option<Event>)) -> (u32, bool) {
         let mut hasher = DefaultHasher::new();
         hasher.write(&world.image());
-        let next = u32::try_from(self.from.len()).expect("so many states fit into no memory");
+        let next = u32::try_from(self.from.len()).expect("too many states");
         let number = *self.known.entry(hasher.finish()).or_insert(next);
         if number == next {
             self.from.push(from);

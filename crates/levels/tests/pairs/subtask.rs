@@ -269,7 +269,6 @@ impl Pair {
         (1..=3).filter_map(move |nth| pose(nth).map(|(_, pose)| (nth, *pose)))
     }
 
-    /// E-move waits for a picture.
     fn awaits_vision(&self) -> bool {
         self.lower.state.execution.outcome == Outcome::Executing
             && self.lower.state.ordered == EmoveRecipient::Vision

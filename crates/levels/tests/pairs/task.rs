@@ -333,7 +333,7 @@ impl Scene for Around {
                 Err("finished, and E-move has not paused")
             }
             Some(TaskVerb::Startup) if before.scene.answered == DataBaseVerb::None => {
-                Err("finished, and the Data System has done nothing")
+                Err("finished, and the Data System has not acknowledged")
             }
             None | Some(TaskVerb::None) => Err("an unknown command is finished"),
             _ => Ok(()),
@@ -448,7 +448,6 @@ impl Pair {
             && placed.zip(before.scene.recorded).is_some_and(|(at, recorded)| at != recorded)
     }
 
-    /// Task waits for the Data System.
     fn awaits_data_base(&self) -> bool {
         self.upper.state.execution.outcome == Outcome::Executing
             && self.upper.state.ordered == TaskRecipient::DataSystem

@@ -304,7 +304,6 @@ pub enum Action {
 }
 
 commands! {
-    /// Consult the table of a command.
     pub fn of_command(GripVerb, Step, Situation) -> Action {
         others: EXECUTE, accept::ACCEPT, up_init::UP_INIT, up_init::CALIBRATION, command::COMMAND,
             command::START, presence::TOUCH, presence::PRESENCE;

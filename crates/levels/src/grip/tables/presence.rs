@@ -24,7 +24,7 @@ pub enum ClosedEnd {
     Above,
 }
 
-/// The potentiometer, compared with the tick before.
+/// The potentiometer, compared with the previous tick.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Stillness {
     /// It reads the same within its noise.

@@ -25,7 +25,6 @@ use crate::{
     environment::air::{Gripper, Object},
 };
 
-/// A bench with a calibrated gripper.
 fn calibrated(seed: u64) -> Bench {
     let mut bench = Bench::new(Gripper::new(1.0, seed));
     bench.done(GripVerb::UpInit, 0.0, 0);
@@ -242,7 +241,11 @@ fn gripper_attached_later_is_calibrated_once_by_command() {
     bench.done(GripVerb::Pause, 0.0, 0);
     bench.attach(true);
     let status = bench.wait(200).status;
-    assert_eq!((status.initialized, bench.world.opening), (false, 2.0), "it is in its holster still");
+    assert_eq!(
+        (status.initialized, bench.world.opening),
+        (false, 2.0),
+        "the gripper is still in its holster"
+    );
     assert!(bench.done(GripVerb::UpInit, 0.0, 0).1.status.initialized);
     bench.attach(false);
     let status = bench.wait(50).status;
@@ -266,7 +269,7 @@ fn waking_process_adopts_the_command_and_moves_nothing() {
         assert_eq!((status.report, status.reason), (GripReport::Serror, Reason::Restarted));
         assert_eq!(status.echo, bench.memory.emove.grip.number, "adopted");
         assert_eq!((bench.wait(100).valves.bits, bench.world.opening), (0, opening));
-        assert!(bench.memory.grip.status.initialized, "the calibration outlasts the sleep");
+        assert!(bench.memory.grip.status.initialized, "the calibration outlasts the dormancy");
         bench.done(GripVerb::Position, 1.0, 0);
     }
 }
@@ -286,7 +289,7 @@ fn uncalibrated_waking_process_waits_for_up_init() {
 fn dormancy_restarts_a_calibration_unless_the_gripper_left() {
     let mut bench = Bench::new(Gripper::new(2.0, 21));
     bench.sleep(1);
-    assert!(bench.wait(200).status.initialized, "booted before E-move knew which gripper is on");
+    assert!(bench.wait(200).status.initialized, "started before E-move knew the gripper");
     let mut bench = Bench::new(Gripper::new(2.0, 21));
     bench.wait(5);
     assert!(bench.process.state.is_calibrating());
@@ -308,7 +311,7 @@ fn command_waits_for_the_calibration() {
     let mut bench = Bench::new(Gripper::new(2.0, 10));
     bench.wait(5);
     bench.command(GripVerb::Pause, 0.0, 0);
-    assert_eq!(bench.step().status.report, GripReport::Executing, "PAUSE waits as well");
+    assert_eq!(bench.step().status.report, GripReport::Executing, "PAUSE waits, too");
     bench.finish();
     assert_eq!((bench.memory.grip.status.initialized, bench.world.opening), (true, 5.0));
 }
@@ -362,11 +365,11 @@ fn missing_gripper_fails_commands_and_turns_the_valves_off() {
     bench.command(GripVerb::UpInit, 0.0, 0);
     bench.wait(5);
     bench.attach(false);
-    assert_eq!(reason(&mut bench), Reason::WrongGripper, "taken off while it is calibrated");
+    assert_eq!(reason(&mut bench), Reason::WrongGripper, "removed during its calibration");
     bench.attach(true);
     bench.external.devices.quick_change.unlocked = true;
     bench.command(GripVerb::Position, 0.5, 0);
-    assert_eq!(reason(&mut bench), Reason::WrongGripper, "a ring seen in both places is not locked");
+    assert_eq!(reason(&mut bench), Reason::WrongGripper, "a ring detected at both ends is not locked");
 }
 
 #[test]
@@ -464,7 +467,11 @@ fn unfinished_command_fails_after_its_time_limit() {
     bench.world.object = Some(Object { size: 2.0, off_centre: 3.0 });
     bench.world.strain[1].1 = 0.0;
     bench.command(GripVerb::CloseGrip, 1.0, 30);
-    assert_eq!(reason(&mut bench), Reason::GripTimeout, "a dead strain gage: the second finger never comes");
+    assert_eq!(
+        reason(&mut bench),
+        Reason::GripTimeout,
+        "a dead strain gage: the second finger never touches"
+    );
 }
 
 #[test]
@@ -485,7 +492,7 @@ fn implausible_sensors_are_not_calibrated() {
         assert_eq!(bench.process.state.phase, GripPhase::Failed);
         bench.world = Gripper::new(1.0, 16);
         bench.command(GripVerb::Position, 0.6, 0);
-        assert_eq!(reason(&mut bench), Reason::GripNotCalibrated, "it is not tried again by itself");
+        assert_eq!(reason(&mut bench), Reason::GripNotCalibrated, "no second attempt without a command");
         bench.done(GripVerb::UpInit, 0.0, 0);
         bench.done(GripVerb::Position, 0.6, 0);
     }
@@ -500,7 +507,7 @@ fn part_presence_is_reported_for_every_command() {
         bench.world.object = Some(Object { size, off_centre: 0.0 });
         assert_eq!(bench.done(GripVerb::OpenGrip, 3.0, 0).1.status.felt, Felt::Nothing);
         assert_eq!(bench.done(GripVerb::CloseGrip, 0.10, 5).1.status.felt, felt, "{size} in");
-        assert_eq!(bench.done(GripVerb::Pause, 0.0, 0).1.status.felt, felt, "the report does not count");
+        assert_eq!(bench.done(GripVerb::Pause, 0.0, 0).1.status.felt, felt, "after PAUSE");
     }
     // Shut on each other with force.
     bench.world.object = None;

@@ -129,7 +129,6 @@ pub enum Action {
 }
 
 commands! {
-    /// Consult the table of a command.
     pub fn of_command(JawsVerb, Step, Situation) -> Action {
         others: EXECUTE, accept::ACCEPT, presence::PRESENCE, valves::VALVES;
         before: EXECUTE, ACCEPT(request);

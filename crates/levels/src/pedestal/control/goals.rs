@@ -17,7 +17,7 @@ const OPEN_WITHIN: i32 = 10;
 const AT_ANGLE: u32 = 10;
 
 pub static REST: Goal = Goal {
-    holds: "the hand has done its last command, and the table stops",
+    holds: "the hand has finished its last command, and the table has stopped",
     sensors: &[Sensor::Below],
     tolerance: "",
     age: 1,

@@ -1,5 +1,3 @@
-//! The state of the pedestal process.
-
 use interfaces::pedestal::PedestalCommand;
 use rcs_core::{Plain, handshake::Commander, tick::Tick};
 

@@ -21,7 +21,6 @@ use crate::{
     pedestal::{Hand, Table},
 };
 
-/// The pedestal process with scripted neighbours.
 type Bench = bench::Bench<Pedestal, ByHand>;
 /// All three processes with a simulated hand and a simulated table.
 type Cell = bench::Bench<Pedestal, Real>;
@@ -111,14 +110,12 @@ impl Bench {
         self
     }
 
-    /// The report of the next tick.
     fn end(&mut self) -> (PedestalReport, Reason) {
         let status = self.step().status;
         (status.report, status.reason)
     }
 }
 
-/// Hand and table, and their devices.
 #[derive(Clone)]
 struct Real {
     hand: Hand,
@@ -202,7 +199,7 @@ fn command_is_not_done_before_hand_and_table_arrive() {
             bench.table_elsewhere(PedestalReport::Done);
         }
         if end != DONE {
-            assert_eq!(bench.end(), EXECUTING, "a newer reading is awaited");
+            assert_eq!(bench.end(), EXECUTING, "waits for a newer reading");
         }
         assert_eq!(bench.end(), end, "hand at {hand}, table there: {table}");
     }
@@ -431,7 +428,7 @@ fn silent_neighbour_is_lost() {
         let mut bench = Bench::new();
         bench.send((verb, 250, 50, angle));
         let first = bench.end();
-        assert!((0..3).all(|_| bench.end() == first), "it has some time");
+        assert!((0..3).all(|_| bench.end() == first), "before its time limit");
         assert_eq!(bench.end(), (PedestalReport::Error, Reason::NeighbourLost), "{verb}");
     }
 }
@@ -463,7 +460,7 @@ fn restarted_process_adopts_the_command_and_stops_the_table() {
     let PedestalOutputs { hand, table, .. } = bench.memory.pedestal;
     assert_eq!((hand, table.command), (before.hand, TableVerb::Pause), "no command to the hand");
     assert_eq!(bench.end(), EXECUTING, "the table stops");
-    assert_eq!(bench.memory.pedestal.table, table, "it is stopped once");
+    assert_eq!(bench.memory.pedestal.table, table, "one stop command");
     assert_eq!(bench.table(PedestalReport::Done).end(), (PedestalReport::Error, Reason::Restarted));
     bench.send((PedestalVerb::Flip, 0, 0, 100));
     bench.step();
@@ -597,7 +594,7 @@ fn object_not_released_by_the_hand_is_gripped() {
         assert_eq!(cell.execute((PedestalVerb::Release, 450, 50, 0)), DONE, "restarted after {later} ticks");
         assert!(!cell.memory.pedestal.status.gripped);
     }
-    assert!(kept > 0, "the first of them come before the fingers move");
+    assert!(kept > 0, "the first restarts are before the fingers move");
 }
 
 proptest! {

@@ -1,9 +1,9 @@
-//! The goals of the commands. The rows that end a command ask for the reading itself, of the same tick.
+//! The goals of the commands. The rows that end a command test the readings of the same tick, without CONFIRM.
 
 use crate::goal::{Goal, Sensor};
 
 pub static REST: Goal = Goal {
-    holds: "the motor stands, or does not answer",
+    holds: "the motor is at rest, or does not answer",
     sensors: &[Sensor::Table],
     tolerance: "no step in 3 ticks",
     age: 0,

@@ -1,5 +1,3 @@
-//! The state of the table process.
-
 use interfaces::{device::MotorCommand, pedestal::TableCommand};
 use rcs_core::{Plain, handshake::Commander, tick::Tick};
 

@@ -54,7 +54,6 @@ impl Bench {
         bench
     }
 
-    /// A bench with a calibrated table.
     fn calibrated() -> Self {
         let mut bench = Self::new(Rotary::new(-1200));
         assert_eq!(bench.execute((TableVerb::Calibrate, 0)), DONE);
@@ -86,7 +85,7 @@ fn calibrate_command_calibrates_again() {
     let mut bench = Bench::calibrated();
     bench.execute((TableVerb::Turn, -1000));
     assert_eq!(bench.execute((TableVerb::Calibrate, 0)), DONE);
-    assert_eq!(bench.memory.table.status.position, Some(LIMIT_PLUS), "where it is parked");
+    assert_eq!(bench.memory.table.status.position, Some(LIMIT_PLUS), "at its parking place");
 }
 
 #[test]
@@ -137,7 +136,7 @@ fn pause_stops_a_turning_table() {
     assert!(stopped > -30_000 && stopped < LIMIT_PLUS * TABLE_STEPS_PER_TENTH);
     bench.send((TableVerb::Turn, -3000));
     bench.wait(20);
-    assert_eq!(bench.execute((TableVerb::Turn, -300)), DONE, "back, out of the middle of a turn");
+    assert_eq!(bench.execute((TableVerb::Turn, -300)), DONE, "back, during a turn");
     assert!((bench.world.angle() + 30.0).abs() < 0.06);
 }
 
@@ -236,7 +235,7 @@ fn restarted_process_stops_the_table_and_adopts_its_calibration() {
     let status = bench.wait(20).status;
     assert_eq!((status.report, status.reason), (PedestalReport::Error, Reason::Restarted));
     assert_eq!((bench.world.position, status.calibrated, status.position), (before, true, Some(-1000)));
-    assert_eq!(bench.memory.table.motor, order, "a table that stands is not stopped");
+    assert_eq!(bench.memory.table.motor, order, "a table at rest is not stopped");
     assert_eq!(bench.execute((TableVerb::Turn, -2135)), DONE);
     // During a turn: the table stops, and the same command continues.
     bench.execute((TableVerb::Turn, -1500));

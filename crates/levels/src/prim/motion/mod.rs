@@ -54,7 +54,7 @@ pub struct PrimMotion {
     pub residual: Option<Segment>,
     /// The segment under way.
     pub current: Option<Segment>,
-    /// What comes after it.
+    /// The next order.
     pub next: Option<SegmentOrder>,
     /// The motion comes to rest before the next segment starts.
     pub halting: bool,
@@ -67,7 +67,6 @@ impl PrimMotion {
         Self { at, goal: at, ..Self::default() }
     }
 
-    /// The commanded frame.
     #[must_use]
     pub fn frame(&self) -> Frame {
         self.at.frame()

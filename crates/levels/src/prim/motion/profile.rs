@@ -67,7 +67,6 @@ impl SegmentState {
         }
     }
 
-    /// The state after all phases.
     #[must_use]
     fn after_all(&self, phases: &[JerkPhase; 3]) -> Self {
         phases.iter().fold(*self, |state, phase| state.after(phase.duration, phase.jerk))
@@ -181,7 +180,6 @@ impl Profile {
         duration(&self.change) + self.cruise + duration(&self.stop) - self.clock
     }
 
-    /// The state at the present clock.
     #[must_use]
     pub fn now(&self) -> SegmentState {
         let cruise = JerkPhase { duration: self.cruise, jerk: 0.0 };

@@ -251,7 +251,7 @@ fn rest(motion: &mut PrimMotion, watch: &mut Watch, knob: u16) -> Result<(), Str
     let mut left = (slowest / TICK_S) as u32 + 2;
     while !motion.is_at_rest() {
         watch.step(motion, knob)?;
-        left = left.checked_sub(1).ok_or_else(|| format!("does not come to rest: {motion:#?}"))?;
+        left = left.checked_sub(1).ok_or_else(|| format!("no rest: {motion:#?}"))?;
     }
     let frame = motion.frame();
     for _ in 0..5 {

@@ -353,7 +353,6 @@ impl Ending for Action {
 }
 
 commands! {
-    /// Consult the tables of a command.
     pub fn of_command(PrimVerb, enum Step, Situation) -> Action {
         others: EXECUTE, accept::ACCEPT, attend::ATTEND, path_clock::PATH_CLOCK, record_pose::RECORD_POSE,
             field::FIELD, link::LINK, CONFIRM;

@@ -73,7 +73,7 @@ fn go_until_ramps_down_and_publishes_where_it_tripped() {
         let seen = rig.pose(rig.memory.prim.status.sensor_pose).copied();
         let status = rig.memory.prim.status;
         assert_eq!(rig.pose(status.detected_pose).copied(), seen);
-        assert_eq!(status.report, PrimReport::Executing, "done when it stands, not before");
+        assert_eq!(status.report, PrimReport::Executing, "done only at rest");
         assert_eq!(rig.finish(), PrimReport::Done);
         assert!(rig.at_rest());
         assert_eq!(rig.world.t3i.output, WireFrame::from_frame(&rig.commanded()));

@@ -235,11 +235,15 @@ fn stick_stops_every_motion_and_is_reported() {
         );
         rig.wait(80);
         assert!(rig.at_rest());
-        assert_eq!(rig.leds(), 0, "the box moves nothing before PAUSE");
+        assert_eq!(rig.leds(), 0, "the box moves the robot only during PAUSE");
         let held = rig.commanded();
         rig.frame_switch(0);
         rig.wait(20);
-        assert_eq!((rig.report(), rig.commanded()), (PrimReport::JoystickOn, held), "it is not resumed");
+        assert_eq!(
+            (rig.report(), rig.commanded()),
+            (PrimReport::JoystickOn, held),
+            "the motion is not resumed"
+        );
         rig.check_path(&start());
         rig.command(PrimVerb::Pause, 0);
         assert_eq!(rig.finish(), PrimReport::Done);
@@ -264,7 +268,7 @@ fn stick_is_reported_after_a_motion_is_done() {
     let flying = rig.commanded();
     rig.frame_switch(joystick_frame::TOOL);
     rig.step();
-    assert_eq!(rig.report(), PrimReport::Done, "the switch alone is nothing");
+    assert_eq!(rig.report(), PrimReport::Done, "the switch alone has no effect");
     rig.external.devices.joystick.up = true;
     rig.step();
     assert_eq!(rig.report(), PrimReport::JoystickOn);
@@ -375,7 +379,7 @@ fn held_prim_resumes_from_rest_to_its_goal() {
         assert_eq!(rig.finish(), PrimReport::Done);
         rig.check_path(&held.to_frame().unwrap());
         if verb == PrimVerb::Pause {
-            assert_eq!(rig.world.t3i.output, held, "what ramped down stands already");
+            assert_eq!(rig.world.t3i.output, held, "the motion has already ramped down");
         } else {
             rig.wait(100);
             assert_eq!(rig.world.t3i.output, WireFrame::from_frame(&shifted(40.0, 3.0)));
@@ -399,7 +403,7 @@ fn single_step_is_one_trajectory_point() {
         let [.., a, b] = rig.world.t3i.path.as_slice() else { panic!("no path") };
         assert_eq!(rig.world.t3i.path.len(), before + 1);
         let step = a.to_frame().unwrap().distance(&b.to_frame().unwrap()).inches;
-        assert!((step - 0.4).abs() < 0.02, "{step} in: the points lie where they would");
+        assert!((step - 0.4).abs() < 0.02, "{step} in: the points are unchanged");
     }
     // Released in the tick after a step: also from rest.
     let held = rig.world.t3i.output;

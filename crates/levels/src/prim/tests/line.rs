@@ -27,7 +27,6 @@ pub(super) const SCENARIOS: &[fn()] = &[lagging_robot_is_stopped_and_pause_takes
 
 type Bench = bench::Bench<Prim, Whole, TaskData<'static>>;
 
-/// T3I, the line and the robot.
 struct Whole {
     t3i: T3i,
     line: Line,
@@ -105,7 +104,7 @@ impl Bench {
         for two in self.world.track.windows(2) {
             let step = norm(&(two[1] - two[0]));
             // The end plate is rounded to words; the tool point is 20 in from it.
-            assert!(step < 10.0 * 0.04 + 0.03, "{step} in in a tick");
+            assert!(step < 10.0 * 0.04 + 0.03, "{step} in per tick");
         }
     }
 

@@ -177,7 +177,6 @@ impl Rig {
         self.memory.prim.status.report
     }
 
-    /// A command that watches a sensor.
     fn guard(&mut self, verb: PrimVerb, pose: u32, sensor: &str) {
         self.command(verb, pose);
         let command = &mut self.memory.emove.prim;
@@ -209,7 +208,7 @@ impl Rig {
         let rounding = 0.009;
         for three in points.windows(3) {
             let (a, b) = (three[1] - three[0], three[2] - three[1]);
-            assert!(norm(&b) <= 10.0 * 0.04 + 2.0 * rounding, "{b:?} in a tick");
+            assert!(norm(&b) <= 10.0 * 0.04 + 2.0 * rounding, "{b:?} per tick");
             assert!(norm(&(b - a)) <= 10.0 * 0.0016 + 4.0 * rounding, "{a:?}, then {b:?}");
         }
     }
@@ -261,7 +260,7 @@ fn stalled_trajectory_ends_exactly() {
 fn through_point_is_not_passed_while_the_resolvers_are_far_from_it() {
     let mut rig = Rig::initialized();
     rig.world.t3i.off = 300;
-    assert_eq!(rig.run(PrimVerb::GoThru, 1), PrimReport::Done, "a robot that moves follows its command");
+    assert_eq!(rig.run(PrimVerb::GoThru, 1), PrimReport::Done, "a moving robot follows its command");
     let mut rig = Rig::initialized();
     rig.world.t3i.off = 1000;
     assert_eq!(rig.run(PrimVerb::GoThru, 1), PrimReport::Error);
@@ -576,7 +575,7 @@ fn lost_or_tripped_device_stops_the_robot() {
         rig.external.devices.field.any = Connection::Stale;
         rig.external.devices.joystick.velocity = 0;
         rig.wait(60);
-        assert_eq!(rig.report(), PrimReport::Executing, "a late device is waited for");
+        assert_eq!(rig.report(), PrimReport::Executing, "Prim waits for a late device");
         rig.external.devices.field.any = connection;
         assert_eq!((rig.finish(), rig.memory.prim.status.reason), (PrimReport::Error, reason));
         rig.wait(60);

@@ -190,6 +190,6 @@ fn random_operator_keeps_the_limits() {
     assert_eq!(
         missing.collect::<Vec<_>>(),
         expected,
-        "they need a link that fails, a Prim without a position, or a robot that never rests"
+        "these rows need a link that fails, a Prim without a position, or a robot that never rests"
     );
 }

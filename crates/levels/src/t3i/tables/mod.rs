@@ -258,7 +258,6 @@ pub enum Action {
 }
 
 commands! {
-    /// Consult the tables of a command.
     pub fn of_command(T3iVerb, enum Step, Situation) -> Action {
         others: receive::RECEIVE, report::REPORT, follow::FOLLOW, trouble::TROUBLE;
         None | Pause: goals::REST   => trouble::trouble then pause::pause;

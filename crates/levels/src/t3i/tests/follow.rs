@@ -75,7 +75,7 @@ fn robot_within_the_expected_lag_follows_at_every_speed() {
     for inches in [0.01, 0.1, 0.2, 0.4, 0.55] {
         for ticks in 0..=5 {
             let mut robot = Lagging::by(ticks);
-            assert!(robot.goes(50, inches), "{ticks} ticks, {inches} in a tick: {:?}", robot.left());
+            assert!(robot.goes(50, inches), "{ticks} ticks, {inches} in per tick: {:?}", robot.left());
             assert_eq!(robot.bench.memory.t3i.status.left, None);
         }
     }
@@ -86,7 +86,7 @@ fn robot_beyond_the_expected_lag_stops_within_half_an_inch() {
     for inches in [0.1, 0.2, 0.4, 0.55] {
         for ticks in [13, 25, 75] {
             let mut robot = Lagging::by(ticks);
-            assert!(!robot.goes(75, inches), "{ticks} ticks, {inches} in a tick");
+            assert!(!robot.goes(75, inches), "{ticks} ticks, {inches} in per tick");
             let least = 0.5 + 6.0 * inches;
             assert!((least - 0.05..least + inches).contains(&robot.apart()), "{}", robot.apart());
         }

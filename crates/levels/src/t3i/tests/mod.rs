@@ -427,7 +427,7 @@ fn unsent_bytes_are_reported_as_not_transmitted() {
 fn singly_stepped_prim_sends_one_point_per_step() {
     let mut bench = Bench::running();
     for n in 1..=6 {
-        // Its answer to the report of the tick before; then it stands again.
+        // Its answer to the report of the previous tick; then Prim is held again.
         assert!(matches!(bench.report(), T3iReport::Ready | T3iReport::Finished));
         bench.memory.prim.header.republished = false;
         bench.point(&beside(0.4 * f64::from(n)));
@@ -459,7 +459,6 @@ fn unanswered_restart_fails_after_the_time_limit() {
     }
 }
 
-/// The check of a report.
 fn check(bench: &Bench) -> ReportCheck {
     bench.memory.t3i.status.check
 }

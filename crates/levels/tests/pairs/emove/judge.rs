@@ -37,7 +37,7 @@ impl<G: Fingered> Pair<G> {
         let fingers_move = before.lower.reports_executing();
         let refused = self.upper.state.execution.receiver.adopted && status.report == StatusReport::Error;
         if refused && (fingers_move || robot_moves) {
-            return Err("restarted is reported before what was ordered is at rest");
+            return Err("restarted is reported before the previous order is at rest");
         }
         self.judge_motion(before)?;
         let number = self.command.number;
@@ -49,7 +49,7 @@ impl<G: Fingered> Pair<G> {
             EmoveVerb::GraspObj if status.held.object() != self.command.object => {
                 Err("done, and the object is not held")
             }
-            EmoveVerb::GraspObj if !before.lower.presses() => Err("done, and nothing presses the object"),
+            EmoveVerb::GraspObj if !before.lower.presses() => Err("done, and the object is not pressed"),
             EmoveVerb::Release if !open => Err("done, and the fingers are not open"),
             EmoveVerb::Release if status.held != Holding::Nothing => Err("done, and something is held"),
             EmoveVerb::Pause if fingers_move => Err("done, and the fingers move"),
@@ -81,7 +81,7 @@ impl<G: Fingered> Pair<G> {
                 Err("the robot leaves before the fingers have released")
             }
             (false, true) if self.command.command == EmoveVerb::MovToObj && !opens => {
-                Err("the robot comes to the object with fingers that are not open")
+                Err("the robot moves to the object with fingers that are not open")
             }
             _ => Ok(()),
         }

@@ -122,7 +122,7 @@ impl Pair {
         let safe = before.is_at_safe();
         let near = Relative::InsNear.record(&self.command.site, &data()).map(|near| near.sensor);
         match order.command {
-            PrimVerb::CalSensor if !safe => Err("INSERT-TOOL calibrates where it may touch something"),
+            PrimVerb::CalSensor if !safe => Err("INSERT-TOOL calibrates at a place with possible contact"),
             PrimVerb::GoWhile if order.sensor == near && before.biased_at_safe == Some(false) => {
                 Err("INSERT-TOOL nears the drum with a bias that was taken at the drum")
             }
@@ -146,7 +146,7 @@ impl Pair {
                 Err("Prim is done, and the robot is not at its goal")
             }
             PrimVerb::GoWhile if self.contact => Err("GO-WHILE is done, and its condition was met"),
-            PrimVerb::GoUntil if !self.contact => Err("GO-UNTIL is done, and its condition has not come"),
+            PrimVerb::GoUntil if !self.contact => Err("GO-UNTIL is done, and its condition was not met"),
             PrimVerb::GoUntil | PrimVerb::CalSensor if before.is_moving() => {
                 Err("Prim is done, and the robot moves")
             }

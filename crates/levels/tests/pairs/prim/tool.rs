@@ -56,7 +56,7 @@ pub struct Tool {
     report: JawsReport,
     /// Opening, 0.01 in.
     size: i32,
-    /// Air closes the fingers, else it opens them.
+    /// Air closes the fingers; otherwise it opens them.
     closes: bool,
     /// Pose of the robot when its fingers are around the tool.
     at: Frame,

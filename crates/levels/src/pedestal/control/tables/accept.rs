@@ -1,5 +1,3 @@
-//! Preconditions of a command before anything moves.
-
 use rcs_core::decision_table;
 
 decision_table! {

@@ -188,7 +188,6 @@ impl Stopping for Action {
 }
 
 commands! {
-    /// Consult the table of a command.
     pub fn of_command(PedestalVerb, enum Step, Situation) -> Action {
         others: EXECUTE, accept::ACCEPT, HALT, ordered::ORDERED, CONFIRM;
         before: EXECUTE, HALT, ACCEPT(request), ORDERED(subordinates);

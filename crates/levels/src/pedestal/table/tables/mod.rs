@@ -192,7 +192,6 @@ pub enum Action {
 }
 
 commands! {
-    /// Consult the table of a command.
     pub fn of_command(TableVerb, Step, Situation) -> Action {
         others: EXECUTE, accept::ACCEPT, calibrate::CALIBRATE;
         Turn: goals::TURNED             => rest::rest then turn::turn;
