@@ -11,7 +11,7 @@ pub enum Attachment {
     Detached,
 }
 
-/// The gripper for which a command is.
+/// The gripper that a command addresses.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Addressee {
     /// That of this process, or the command names none.

@@ -28,7 +28,7 @@ use super::{
 use crate::execution::Outcome;
 
 impl State {
-    /// Begin an accepted command; the detected pose of the last GO-UNTIL stays.
+    /// Begin an accepted command. Only a new GO-UNTIL clears the detected pose.
     pub(super) fn begin(&self, outputs: &mut PrimOutputs) {
         if self.target.verb == PrimVerb::GoUntil {
             let [_, _, detected, _] = &mut outputs.poses;

@@ -199,7 +199,7 @@ impl State {
         let DeviceInputs { force, field, .. } = &inputs.external.devices;
         self.calibration.watch_power(force);
         if field.force.is_old() {
-            // The bias stays: the sensor was not without power.
+            // The sensor kept its power, so the bias stays valid.
             return Samples::Faulty;
         }
         if rest != PrimRest::Arrived {
@@ -215,7 +215,7 @@ impl State {
 }
 
 impl Standstill {
-    /// Whether the robot has rested for so many `ticks`.
+    /// Whether the robot has rested for this many `ticks`.
     const fn rest(&self, ticks: u32) -> PrimRest {
         if ticks >= SETTLED {
             PrimRest::Arrived

@@ -187,7 +187,7 @@ pub struct Request {
     pub asked: Asked,
     /// The command.
     pub verb: GripVerb,
-    /// The gripper for which the command is.
+    /// The gripper that the command addresses.
     pub addressee: Addressee,
     /// Whether the gripper is attached.
     pub gripper: Attachment,

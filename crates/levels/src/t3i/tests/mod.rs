@@ -513,7 +513,7 @@ fn robot_near_the_last_words_is_at_its_commanded_position() {
     }
 }
 
-/// A robot between the last words and the previous ones; further positions start where it is.
+/// A robot between the last words and the previous ones; the next check uses that position.
 #[test]
 fn next_report_is_compared_with_the_reported_position() {
     for (words, expected) in
