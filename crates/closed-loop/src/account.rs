@@ -1,11 +1,11 @@
-//! What went wrong first in a run, and what followed: the one account that all programs give.
+//! The account of a run: its first failure and the failures that followed, in one form for all programs.
 //!
-//! A failed run often has several failures: the robot runs into the tray, the part slides in the fingers, and
-//! 5,000 ticks later a process reports that it holds nothing. [`Account`] puts them in order. The first one is
-//! the cause in the world; the others followed.
+//! A failed run often has several failures: the robot collides with the tray, the part slips in the fingers, and
+//! 5,000 ticks later a process reports an empty gripper. [`Account`] orders them. The first one is the cause in the
+//! world; the others followed.
 //!
-//! The run makes its account when it ends, and writes it into the log. Where nobody has made one, in a live view or in
-//! the log of a killed run, [`Alarms`] collects the same failures from what can be seen.
+//! The run makes its account at its end and writes it into the log. A live view, or the log of a killed run, has no
+//! account: there [`Alarms`] collects the same failures from the visible events.
 
 use std::{collections::BTreeMap, fmt, iter};
 
@@ -15,31 +15,31 @@ use serde::{Deserialize, Serialize};
 
 use crate::failure::Failure;
 
-/// Kinds of failures. In the same tick, the earlier kind is the cause of the later one.
+/// Kinds of failures. Within a tick, an earlier kind is the cause of a later one.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Kind {
     EmergencyStop,
     /// The robot has lost hydraulic pressure or power.
     Power,
-    /// The robot, or what it carries, has run into something.
+    /// The robot, or the part that it carries, has collided.
     Collision,
     /// A part or a gripper was dropped, lost or torn off.
     Lost,
     /// A device of the cell has failed.
     Device,
-    /// The robot controller shows a warning, or refuses what it is sent.
+    /// The robot controller shows a warning or refuses a position.
     RobotController,
     /// The link to the robot controller is lost.
     Link,
-    /// The robot is not where it was sent.
+    /// The robot is not at its commanded position.
     OffPath,
     Process,
-    /// A command was reported as finished, but its goal is not reached.
+    /// A command was reported as finished, but its goal was not reached.
     FalseReport,
     /// A part is not at the place where the job should have left it.
     Misplaced,
-    /// The job could not go on: its own check failed, or an operator did not come.
+    /// The job could not continue: its own check failed, or the operator was missing.
     Job,
     /// The program, a board or the clock failed.
     Program,
@@ -66,7 +66,7 @@ impl Kind {
         }
     }
 
-    /// The kind of the event with this code of `/log`; `None` if the event is no failure.
+    /// The kind of the event with this code in `/log`; `None` if the event is not a failure.
     #[must_use]
     pub fn of_code(code: &str) -> Option<Self> {
         Some(match code {
@@ -83,7 +83,7 @@ impl Kind {
         })
     }
 
-    /// True if it happens in the cell. The cell shows what happened in a tick with the next tick.
+    /// True if it happens in the cell. The next tick shows events in the cell.
     #[must_use]
     pub const fn is_in_cell(self) -> bool {
         matches!(
@@ -98,14 +98,14 @@ impl Kind {
         )
     }
 
-    /// True if work can go on afterwards, so that it does not explain what goes wrong later.
+    /// True if work can continue afterwards, so that it does not explain a later failure.
     const fn passes(self) -> bool {
         !matches!(self, Self::Collision | Self::Lost | Self::FalseReport | Self::Misplaced)
     }
 }
 
 impl Failure {
-    /// The tick in which a log or a live view shows it.
+    /// The tick in which it appears in a log or a live view.
     #[must_use]
     pub const fn shown_at(&self) -> u64 {
         if self.kind.is_in_cell() { self.tick.0 + 1 } else { self.tick.0 }
@@ -115,26 +115,26 @@ impl Failure {
 /// Key of the account in the metadata at the end of a log.
 const FACT: &str = "account";
 
-/// What went wrong first, and what followed.
+/// The first failure of a run, and those that followed.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Account {
-    /// What went wrong first in the world.
+    /// The cause in the world.
     #[serde(flatten)]
     pub first: Failure,
-    /// What followed, in order.
+    /// The later failures, in order.
     #[serde(default)]
     pub followed: Vec<Failure>,
 }
 
 impl Account {
-    /// Decides which of these failures was first, and puts the others behind it; `None` if there is none.
+    /// Order these failures, the first one in front; `None` without a failure.
     #[must_use]
     pub fn of(failures: impl IntoIterator<Item = Failure>) -> Option<Self> {
         let mut failures: Vec<Failure> = failures.into_iter().collect();
         failures.sort_by_key(|failure| (failure.tick, failure.kind));
         let mut ordered = Vec::with_capacity(failures.len());
         for failure in failures {
-            // Who observes a failure often repeats its words: `HWSC: the jaw of the vise does not move`.
+            // An observer of a failure often repeats its words: `HWSC: the jaw of the vise does not move`.
             if ordered.iter().all(|known: &Failure| !failure.text.ends_with(&known.text)) {
                 ordered.push(failure);
             }
@@ -149,13 +149,13 @@ impl Account {
         Self::of(all).unwrap_or(self)
     }
 
-    /// The other metadata at the end of a log.
+    /// The metadata at the end of a log without the account.
     pub fn without_account(facts: &BTreeMap<String, String>) -> impl Iterator<Item = (&String, &String)> {
         facts.iter().filter(|(key, _)| *key != FACT)
     }
 
-    /// The account in the metadata at the end of a log: `Some(None)` for a run that finished, `None` if the metadata do
-    /// not say what went wrong.
+    /// The account in the metadata at the end of a log: `Some(None)` for a successful run, `None` if the metadata
+    /// contain neither account nor success.
     #[must_use]
     pub fn of_facts(facts: &BTreeMap<String, String>) -> Option<Option<Self>> {
         match facts.get(FACT) {
@@ -167,22 +167,21 @@ impl Account {
     /// The account as a fact for the metadata at the end of a log.
     #[must_use]
     pub fn fact(&self) -> (&'static str, String) {
-        // An account is text and numbers, which JSON can hold.
+        // An account contains only text and numbers, which JSON can represent.
         (FACT, serde_json::to_string(self).unwrap_or_default())
     }
 
-    /// All failures in order.
     pub fn failures(&self) -> impl Iterator<Item = &Failure> {
         iter::once(&self.first).chain(&self.followed)
     }
 
-    /// The first failure that a process reports: its rows explain it.
+    /// The first failure that a process reports, and that its rows can explain.
     #[must_use]
     pub fn of_process(&self) -> Option<&Failure> {
         self.failures().find(|failure| failure.table.is_some())
     }
 
-    /// The link to the robot is lost, or the robot was stopped: not a failure of the job.
+    /// True if the link to the robot is lost or the robot was stopped, which is not a failure of the job.
     #[must_use]
     pub fn is_stopped(&self) -> bool {
         self.failures().any(|failure| failure.stopped)
@@ -190,7 +189,7 @@ impl Account {
 }
 
 impl Account {
-    /// A sentence for each failure: `First, at tick 332 (13.28 s), a collision: ...`, `Then, at tick ...`.
+    /// One sentence per failure: `First, at tick 332 (13.28 s), a collision: ...`, `Then, at tick ...`.
     pub fn sentences(&self) -> impl Iterator<Item = String> {
         let words = iter::once("First").chain(iter::repeat("Then"));
         self.failures().zip(words).map(|(Failure { tick, kind, text, .. }, word)| {
@@ -199,7 +198,7 @@ impl Account {
     }
 }
 
-/// The first failure, then each that followed with its tick.
+/// The first failure, then each later one with its tick.
 impl fmt::Display for Account {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(&self.first.text)?;
@@ -216,7 +215,7 @@ pub fn has_worked(before: &HwsStatus, now: &HwsStatus) -> bool {
     finished(now) && (!finished(before) || before.echo != now.echo) && now.command.as_str() != "PAUSE"
 }
 
-/// Collects failures from what can be seen of a run: lines of `/log`, and what Task reports, in any order.
+/// Collects failures from the visible events of a run: lines of `/log` and reports of Task, in any order.
 #[derive(Clone, Debug, Default)]
 pub struct Alarms {
     failures: Vec<Failure>,
@@ -225,7 +224,7 @@ pub struct Alarms {
 }
 
 impl Alarms {
-    /// Note a line of `/log` with its tick and its code. Lines without a failure are ignored.
+    /// Note a line of `/log` with its tick and code. A line without a failure is ignored.
     pub fn line(&mut self, tick: Tick, source: &str, code: &str, text: &str) {
         if let Some(kind) = Kind::of_code(code) {
             let tick = Tick(tick.0.saturating_sub(u64::from(kind.is_in_cell())));
@@ -233,7 +232,6 @@ impl Alarms {
         }
     }
 
-    /// Note a failure that Task reports.
     pub fn failed(&mut self, failure: Failure) {
         self.failures.push(failure);
     }
@@ -243,12 +241,12 @@ impl Alarms {
         self.worked = self.worked.max(tick);
     }
 
-    /// The failures in the order in which they were noted, without stops after which a command has finished.
+    /// The noted failures in order, without stops that preceded a finished command.
     pub fn failures(&self) -> impl Iterator<Item = &Failure> {
         self.failures.iter().filter(|failure| failure.tick > self.worked || !failure.kind.passes())
     }
 
-    /// The account of these failures; `None` if there are none.
+    /// The account of these failures; `None` without a failure.
     #[must_use]
     pub fn account(&self) -> Option<Account> {
         Account::of(self.failures().cloned())

@@ -1,12 +1,12 @@
-//! Checks the contacts of the robot. The cell reports contacts, common memory the command in progress, and a list in
-//! the cell description the contacts that are permitted during each command.
+//! Checks the contacts of the robot. The cell reports contacts; common memory contains the present command. A list in
+//! the cell description gives the contacts permitted during each command.
 //!
-//! A contact that is not permitted does not end the run at once: no sensor of the cell detects it, and the log must
-//! show what the controller does next. But the job has failed. The run ends only when the arm is deeper than
-//! [`DEEPEST`] in an obstacle: a real arm would have stalled before, so the simulation has no meaning from there on.
+//! A forbidden contact does not end the run at once: no sensor of the cell detects it, and the log must show the
+//! further actions of the controller. The job has failed, however. The run ends when the arm is deeper than
+//! [`DEEPEST`] in an obstacle: a real arm would have stalled before, so the simulation is meaningless from there on.
 //!
-//! A permitted contact stays permitted as long as it gets no deeper: the next command begins where the last one has
-//! ended, and moves away from there.
+//! A permitted contact remains permitted until it gets deeper: the next command begins where the last one ended, and
+//! moves away.
 
 use std::{collections::BTreeMap, fmt};
 
@@ -18,21 +18,21 @@ use plant::{clearance::Contact, description::Permits};
 use rcs_core::tick::Tick;
 use serde::Serialize;
 
-/// Depth of arm, gripper or fingers in something that ends the run, in.
+/// Depth of arm, gripper or fingers in an obstacle that ends the run, in.
 pub const DEEPEST: f64 = 1.0;
-/// Distances greater than this are no near miss in an ordinary run, in.
+/// Greater distances are not near misses in an ordinary run, in.
 const MARGIN: f64 = 2.0;
-/// A permitted contact has ended at this distance, in.
+/// A permitted contact ends at this distance, in.
 const FREE: f64 = 0.05;
-/// Least increase of depth that counts as deeper, in.
+/// Smallest increase of depth that is treated as deeper, in.
 const DEEPER: f64 = 0.001;
 
 /// The commands that E-move and Subtask execute.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Commands {
-    /// E-move's command; empty for none.
+    /// Empty for none.
     pub emove: &'static str,
-    /// Subtask's command; empty for none.
+    /// Empty for none.
     pub subtask: &'static str,
 }
 
@@ -45,8 +45,8 @@ impl From<&CommonMemory> for Commands {
 }
 
 impl Commands {
-    /// The commands after another tick. A command that E-move has not accepted yet, or that has failed, moves nothing:
-    /// the command before it counts.
+    /// The commands after another tick. A command that E-move has not accepted yet, or that has failed, moves
+    /// nothing: then the previous command applies.
     fn after(self, memory: &CommonMemory) -> Self {
         let (told, status) = (&memory.subtask.emove, &memory.emove.status);
         let taken = status.echo == told.number && status.report != StatusReport::Error;
@@ -64,7 +64,7 @@ impl fmt::Display for Commands {
     }
 }
 
-/// A contact that was not permitted. The names of the fields are those of the JSON object.
+/// A forbidden contact. The field names are those of the JSON object.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Collision {
     /// Link of the robot, or the carried part.
@@ -75,12 +75,12 @@ pub struct Collision {
     pub position_in: [f64; 3],
     /// First tick of the contact.
     pub tick: u64,
-    /// Number of ticks of the contact.
+    /// Duration of the contact.
     pub ticks: u64,
-    /// Commands in progress when the contact began.
+    /// Commands at the beginning of the contact.
     #[serde(rename = "command")]
     pub commands: Commands,
-    /// True if the robot itself is in contact, false for a carried part.
+    /// False for a carried part.
     #[serde(skip)]
     is_robot: bool,
 }
@@ -107,7 +107,7 @@ impl fmt::Display for Collision {
 /// The beginning or the end of a collision.
 #[derive(Clone, Debug)]
 pub enum ContactEvent {
-    /// Two objects touch that must not.
+    /// A forbidden contact begins.
     Begins(Collision),
     Ends(Collision),
 }
@@ -127,7 +127,7 @@ impl fmt::Display for ContactEvent {
     }
 }
 
-/// The least distance to an object that must not be touched.
+/// The smallest distance to an object that must not be touched.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct NearMiss {
     /// Link of the robot, or the carried part.
@@ -136,9 +136,9 @@ pub struct NearMiss {
     pub distance_in: f64,
     /// Position, world coordinates, in.
     pub position_in: [f64; 3],
-    /// Tick of the least distance.
+    /// Tick of the smallest distance.
     pub tick: u64,
-    /// Commands in progress in that tick.
+    /// Commands in that tick.
     #[serde(rename = "command")]
     pub commands: Commands,
 }
@@ -155,7 +155,7 @@ impl fmt::Display for NearMiss {
 struct Allowance {
     /// Greatest depth while the contact was permitted, in.
     depth: f64,
-    /// True if the objects have separated since.
+    /// True if the objects have separated since then.
     free: bool,
 }
 
@@ -164,18 +164,17 @@ struct Allowance {
 pub struct ContactCheck {
     permits: Permits,
     allowed: BTreeMap<(String, String), Allowance>,
-    /// Collisions that have not ended: index in `collisions`.
+    /// Collisions in progress: index in `collisions`.
     open: BTreeMap<(String, String), usize>,
     collisions: Vec<Collision>,
     nearest: Option<NearMiss>,
-    /// Distances greater than this are no near miss, in.
+    /// Greater distances are not near misses, in.
     farthest: f64,
-    /// The commands that move the robot, or have moved it last.
+    /// The commands that move the robot or moved it last.
     commands: Commands,
 }
 
 impl ContactCheck {
-    /// A check with a list of permitted contacts.
     #[must_use]
     pub fn new(permits: Permits) -> Self {
         Self {
@@ -205,19 +204,19 @@ impl ContactCheck {
         (&self.allowed, &self.open, &self.commands)
     }
 
-    /// Distance within which the cell must report pairs, in: that of the nearest miss so far, and enough to detect the
-    /// end of a contact.
+    /// Distance within which the cell must report pairs, in: that of the nearest miss so far, and enough to detect
+    /// the end of a contact.
     #[must_use]
     pub fn margin(&self) -> f64 {
         self.least().max(FREE)
     }
 
-    /// A distance below this is the new nearest miss, in.
+    /// A smaller distance is the new nearest miss, in.
     fn least(&self) -> f64 {
         self.nearest.as_ref().map_or(self.farthest, |nearest| nearest.distance_in)
     }
 
-    /// Check the contacts and distances after a tick. Returns the collisions that have begun or ended.
+    /// Check contacts and distances after a tick. Returns the collisions that have begun or ended.
     pub fn look(&mut self, tick: Tick, contacts: &[Contact], commands: Commands) -> Vec<ContactEvent> {
         let mut events = Vec::new();
         for contact in contacts {
@@ -242,7 +241,7 @@ impl ContactCheck {
         events
     }
 
-    /// True if the two objects are in a collision that has not ended.
+    /// True if a collision of the two objects is in progress.
     #[must_use]
     pub fn is_collision(&self, contact: &Contact) -> bool {
         self.open.contains_key(&contact.pair())
@@ -258,7 +257,7 @@ impl ContactCheck {
         self.nearest.as_ref()
     }
 
-    /// True if a collision is so deep that the simulation has no meaning any more.
+    /// True if a collision is so deep that the simulation is meaningless.
     #[must_use]
     pub fn is_stuck(&self) -> bool {
         self.open
@@ -266,8 +265,8 @@ impl ContactCheck {
             .any(|at| self.collisions.get(*at).is_some_and(|one| one.is_robot && one.depth_in > DEEPEST))
     }
 
-    /// The reason why a finished job counts as failed: the first collision, since later ones may follow from it; `None`
-    /// without a collision.
+    /// The failure of a finished job: the first collision, as later ones may follow from it; `None` without a
+    /// collision.
     #[must_use]
     pub fn verdict(&self) -> Option<Failure> {
         let (first, rest) = self.collisions.split_first()?;
@@ -286,7 +285,7 @@ impl ContactCheck {
         Some(Failure::outside(Tick(*tick), Kind::Collision, "cell", text))
     }
 
-    /// Process the contact of two objects. Returns the collision if one begins.
+    /// Process the contact of two objects. Returns a collision that begins.
     fn touch(&mut self, tick: Tick, contact: &Contact, commands: Commands) -> Option<Collision> {
         let pair = contact.pair();
         let limit =
@@ -325,7 +324,6 @@ impl ContactCheck {
         Some(collision)
     }
 
-    /// Process the distance of two objects.
     fn near(&mut self, tick: Tick, contact: &Contact, commands: Commands) {
         let distance = (-contact.depth).max(0.0);
         if let Some(known) = self.allowed.get_mut(&contact.pair()) {
@@ -382,7 +380,7 @@ mod tests {
         [contact("left_finger", Kind::Finger, depth)]
     }
 
-    /// Run the check with a finger at these depths, tick by tick. Returns the lines of the log.
+    /// Run the check with a finger at these depths, one per tick. Returns the lines of the log.
     fn play(check: &mut ContactCheck, ticks: &[(f64, Commands)]) -> Vec<String> {
         let ticks = (1..).zip(ticks);
         ticks

@@ -1,11 +1,11 @@
 //! The ticks of a ladder, with common memory, digest and first failure.
 //!
-//! Common memory is doubled by tick parity: the processes read one half and write the other, so that their order within
-//! a tick has no effect. After every tick the buffers are added to the digest, and the statuses are checked for the
-//! first sign of a failure.
+//! Common memory has two halves, selected by tick parity: the processes read one and write the other, so their order
+//! within a tick has no effect. After every tick the course adds the buffers to the digest and checks the statuses
+//! for the first sign of a failure.
 //!
-//! A [`Course`] reads no clock and does not allocate after its creation. It can be cloned: the copy continues from the
-//! same tick. The `Runner` of the crate `executive` times a course and publishes it; `rcs-run campaign` forks it.
+//! A [`Course`] reads no clock and does not allocate after its creation. A clone continues from the same tick. The
+//! `Runner` of the crate `executive` times a course and publishes it; `rcs-run campaign` forks it.
 
 use interfaces::{CommonMemory, ExternalInputs};
 use levels::ladder::ProcessId;
@@ -13,17 +13,16 @@ use rcs_core::{Plain, digest::Digest, tick::Tick};
 
 use crate::failure::Watch;
 
-/// A ladder of control processes that can be stepped: [`Present`](crate::Present), those of several boards, or one of a
-/// test.
+/// A ladder of control processes: [`Present`](crate::Present), one over several boards, or one of a test.
 pub trait Levels<Data: ?Sized> {
-    /// Error of a tick that could not be finished.
     type Error;
 
-    /// One tick of all processes: read `before` and `external`, and write all of `after`; call `observe` after each
-    /// stage, as [`Ladder::step_observed`](levels::ladder::Ladder::step_observed) does. Time outside of the stages counts as the executive's.
+    /// One tick of all processes: read `before` and `external`, write all of `after`, and call `observe` after each
+    /// stage like [`Ladder::step_observed`](levels::ladder::Ladder::step_observed). Time outside the stages is
+    /// attributed to the executive.
     ///
     /// # Errors
-    /// If processes that run elsewhere did not take part. The caller must then run no further tick.
+    /// If external processes did not take part. The caller must then stop.
     fn step(
         &mut self,
         tick: Tick,
@@ -34,7 +33,7 @@ pub trait Levels<Data: ?Sized> {
         observe: &mut dyn FnMut(Option<ProcessId>),
     ) -> Result<(), Self::Error>;
 
-    /// A copy with which a tick can be warmed up; `None` if a warm-up has no effect.
+    /// A copy for warming up a tick; `None` if a warm-up has no effect.
     fn shadow(&self) -> Option<Box<Self>>
     where
         Self: Sized,
@@ -42,14 +41,14 @@ pub trait Levels<Data: ?Sized> {
         None
     }
 
-    /// Copy the present state to the shadow. Does not allocate.
+    /// Copy the present state to the shadow, without allocation.
     fn copy_to(&self, _shadow: &mut Self)
     where
         Self: Sized,
     {
     }
 
-    /// Heap allocations in ticks by processes that run elsewhere.
+    /// Heap allocations by processes that run elsewhere.
     fn allocations(&self) -> u64 {
         0
     }
@@ -67,7 +66,6 @@ pub struct Course<L> {
 }
 
 impl<L> Course<L> {
-    /// A course before its first tick.
     #[must_use]
     pub fn new(levels: L) -> Self {
         Self {
@@ -80,11 +78,11 @@ impl<L> Course<L> {
         }
     }
 
-    /// Run the next tick on its external inputs, and call `observe` after each stage. The caller then calls
+    /// Run the next tick on its external inputs, and call `observe` after each stage. The caller must then call
     /// [`sum_up`](Self::sum_up).
     ///
     /// # Errors
-    /// Errors of the levels. The tick does not count then, and common memory stays as after the previous tick.
+    /// Errors of the levels. The tick is then void, and common memory is that of the previous tick.
     pub fn step<Data: ?Sized>(
         &mut self,
         external: &ExternalInputs,
@@ -101,10 +99,10 @@ impl<L> Course<L> {
         Ok(())
     }
 
-    /// Run the next tick, and sum it up.
+    /// Run the next tick and sum it up.
     ///
     /// # Errors
-    /// As [`step`](Self::step).
+    /// Those of [`step`](Self::step).
     pub fn advance<Data: ?Sized>(&mut self, external: &ExternalInputs, data: &Data) -> Result<(), L::Error>
     where
         L: Levels<Data>,
@@ -128,9 +126,9 @@ impl<L> Course<L> {
     {
         self.levels.copy_to(shadow);
         let tick = self.tick.next();
-        // The half that the tick will overwrite completely.
+        // The tick will overwrite this half completely.
         let (before, after) = of_tick(&mut self.halves, tick);
-        // The result does not matter: the tick itself follows.
+        // The result is discarded: the tick itself follows.
         let _ = shadow.step(tick, before, external, data, after, &mut |_| {});
     }
 
@@ -139,38 +137,34 @@ impl<L> Course<L> {
         &self.levels
     }
 
-    /// The ladder, between two ticks.
     pub const fn levels_mut(&mut self) -> &mut L {
         &mut self.levels
     }
 
-    /// The tick that was run last.
     #[must_use]
     pub const fn tick(&self) -> Tick {
         self.tick
     }
 
-    /// Common memory after the last tick.
     #[must_use]
     pub const fn memory(&self) -> &CommonMemory {
         let [even, odd] = &self.halves;
         if self.tick.0.is_multiple_of(2) { even } else { odd }
     }
 
-    /// Fingerprint of all output buffers of all ticks so far.
+    /// The digest of all output buffers of all ticks so far.
     #[must_use]
     pub const fn digest(&self) -> Digest {
         self.digest
     }
 
-    /// The record of the first failure.
     #[must_use]
     pub const fn watch(&self) -> &Watch {
         &self.watch
     }
 }
 
-/// The half that a tick reads, and the half that it writes.
+/// The halves that a tick reads and writes.
 const fn of_tick(halves: &mut [CommonMemory; 2], tick: Tick) -> (&CommonMemory, &mut CommonMemory) {
     let [even, odd] = halves;
     if tick.0.is_multiple_of(2) { (odd, even) } else { (even, odd) }

@@ -1,10 +1,10 @@
 //! Explains a failure in one sentence: process, decision table and row.
 //!
-//! A reason travels up the ladder unchanged, one level a tick, so its origin is the lowest process that reports the
-//! reason which arrived at Task. When it arrives there, the lower processes may be doing something else. Therefore
-//! [`Watch`] keeps, for each process, common memory as it was in the tick when the process began to report its reason.
+//! A reason travels up the ladder unchanged, one level per tick, so its origin is the lowest process that reports the
+//! reason Task received. By then the lower processes may be doing something else. Therefore [`Watch`] stores, per
+//! process, common memory of the tick in which the present report began.
 //!
-//! What a process reports is often not what went wrong first. [`Account`](crate::account::Account) orders it with
+//! The report of a process is often not the first failure. [`Account`](crate::account::Account) orders it with
 //! collisions, lost parts and emergency stops.
 
 use interfaces::{CommonMemory, Detail, ExternalInputs, Fault, Header, HwsCommand, Reason};
@@ -14,37 +14,34 @@ use serde::{Deserialize, Serialize};
 
 use crate::account::Kind;
 
-/// Number of processes of [`CommonMemory`], in its order.
 pub const PROCESSES: usize = PROCESS_COUNT;
 
-/// Something that went wrong in a run. The names of the fields are those of the JSON object.
+/// A failure of a run. The field names are those of the JSON object.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Failure {
     #[serde(with = "number")]
     pub tick: Tick,
-    /// What kind of failure it is.
     pub kind: Kind,
-    /// The process that reports the reason, with the manual's name; `cell` and `T3` for what happens in the cell.
+    /// The manual's name of the process that reports the reason; `cell` and `T3` for events in the cell.
     pub process: String,
-    /// Its decision table, if one was used.
+    /// Its decision table, if one decided.
     pub table: Option<String>,
     /// The row that fired, from 1.
     pub row: Option<u8>,
     pub text: String,
-    /// The link to the robot is lost, or the robot was stopped: not a failure of the job.
+    /// True if the link to the robot is lost or the robot was stopped, which is not a failure of the job.
     #[serde(skip)]
     pub stopped: bool,
 }
 
 impl Failure {
-    /// A failure that comes from no decision table.
+    /// A failure without a decision table.
     #[must_use]
     pub fn outside(tick: Tick, kind: Kind, process: &str, text: String) -> Self {
         Self { tick, kind, process: process.to_owned(), table: None, row: None, text, stopped: false }
     }
 }
 
-/// A tick as a number.
 mod number {
     use super::{Deserialize, Tick};
 
@@ -58,7 +55,7 @@ mod number {
     }
 }
 
-/// The beginning of a report that is still present.
+/// The first tick of a report that is still present.
 #[derive(Clone, Copy)]
 struct Cause {
     tick: Tick,
@@ -69,8 +66,8 @@ struct Cause {
     detail: Detail,
 }
 
-/// Observes every tick and keeps, for each process, the tick in which its present report began and common memory of
-/// that tick.
+/// Observes every tick. It stores, per process, the tick in which the present report began and common memory of that
+/// tick.
 #[derive(Clone)]
 pub struct Watch {
     last: [Fault; PROCESSES],
@@ -108,8 +105,7 @@ impl Watch {
         self.last = now;
     }
 
-    /// The failure that Task reports; `None` if it reports none. `processes` are the names and tables in the order of
-    /// [`CommonMemory`].
+    /// The failure that Task reports, if any. `processes` are the names and tables in the order of [`CommonMemory`].
     #[must_use]
     pub fn failure(&self, processes: &[ProcessInfo; PROCESSES]) -> Option<Failure> {
         let cause_of = |process: ProcessId| self.causes[process.position()].as_ref();
@@ -169,8 +165,7 @@ pub fn command(process: ProcessId, hws: &HwsCommand, memory: &CommonMemory) -> S
     memory.show_command(process, |command| command.to_string()).unwrap_or_else(|| hws.to_string())
 }
 
-/// The present commands of all levels, from Task down, for a failure that no process reports: a command that takes too
-/// long.
+/// The present commands of all levels from Task down, for a failure without a report: a command that takes too long.
 #[must_use]
 pub fn present_commands(
     processes: &[ProcessInfo; PROCESSES],
@@ -187,7 +182,7 @@ pub fn present_commands(
     lines.collect::<Vec<_>>().join("; ")
 }
 
-/// The commands that processes have not finished, as text: `Grip executed CLOSE-GRIP (...)`; empty for none.
+/// The unfinished commands of the processes as text: `Grip executed CLOSE-GRIP (...)`; empty for none.
 #[must_use]
 pub fn unfinished_commands(
     of: impl Iterator<Item = ProcessId>,
@@ -241,7 +236,7 @@ mod tests {
             any {
                 1: fingers: Apart  => Close              -> Wait;
             }
-            /// Nothing done yet.
+            /// The command has not started.
             Start {
                 2: fingers: Shut   => Close              -> Wait;
             }
@@ -272,7 +267,7 @@ mod tests {
         names.map(|name| ProcessInfo { name, tables: if name == "Grip" { TABLES } else { &[] }, goals: &[] })
     }
 
-    /// Plays ticks: each closure changes common memory, and the watch observes it.
+    /// Plays ticks: each closure changes common memory before the watch observes it.
     fn watched(changes: &[fn(&mut CommonMemory)]) -> Watch {
         let (mut watch, mut memory) = (Watch::default(), CommonMemory::default());
         for (tick, change) in (1..).zip(changes) {

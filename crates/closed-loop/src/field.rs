@@ -5,9 +5,9 @@
 //!            inputs  ◄── session ◄─32 ms── coupler ◄── sensors of the cell
 //! ```
 //!
-//! All words of mapped groups pass through mapping, session and an emulated coupler with its watchdog; the rest goes
-//! straight. The exchanges are those of a real device, 1 ms after and 8 ms before a slot, so nothing is later than
-//! without couplers. A fault `field-cut` of the cell cuts the connection of a device.
+//! All words of mapped groups pass through mapping, session and an emulated coupler with its watchdog; other words
+//! bypass them. The exchanges take place 1 ms after and 8 ms before a slot, as with a real device, so the couplers
+//! add no delay. A fault `field-cut` of the cell cuts the connection of a device.
 
 use std::{fmt, sync::Arc};
 
@@ -21,11 +21,11 @@ use rcs_core::{
     tick::{TICK_MS, Tick},
 };
 
-/// Simulated time before the first tick, in which the devices are set up, ms.
+/// Simulated time before the first tick, for the set-up of the devices, ms.
 const SET_UP_MS: u64 = 2000;
 /// Times of the two exchanges after a slot, ms.
 const EXCHANGES_MS: [u64; 2] = [1, TICK_MS - 8];
-/// Time for an answer, ms: a connection that is cut costs as much.
+/// Answer timeout, ms; also the duration of an exchange over a cut connection.
 const TIMEOUT_MS: u16 = 6;
 /// Registers of an emulated coupler in each direction.
 const WORDS: usize = 256;
@@ -35,40 +35,38 @@ const OUTPUTS: usize = 0x0800;
 /// A device that cannot be simulated.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum FieldError {
-    /// The mapping does not make a plan.
+    /// The mapping is invalid for this device.
     #[error("{device}: {source}")]
     Plan { device: String, source: PlanError },
     /// Only couplers with process data are emulated.
     #[error("{device}: only devices of the kind bk9000 with registers can be simulated")]
     NotEmulated { device: String },
-    /// The emulated device is not ready.
     #[error("{device} is not ready after its set-up")]
     NotReady { device: String },
 }
 
-/// Something that has happened to a device.
+/// An event of a device.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FieldEvent {
     pub device: String,
     pub what: Happened,
 }
 
-/// What has happened to a device.
+/// The kind of an event.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Happened {
-    /// It has not answered for so many ms.
+    /// The device has not answered for this time, ms.
     Stale(u32),
-    /// It answers again after so many ms, and continues.
+    /// The device answers again after this time, ms, and continues.
     Back(u32),
-    /// Its outputs are safe until an operator releases it.
+    /// The outputs of the device are safe until an operator releases it.
     Tripped(Trip),
     Released,
-    /// Its release was refused: an output is asked for that may not be on at rest, or it does not answer.
+    /// The release was refused: an output that must be off at rest is commanded, or the device does not answer.
     Refused,
 }
 
 impl FieldEvent {
-    /// Stable short name of the kind.
     #[must_use]
     pub const fn code(&self) -> &'static str {
         match self.what {
@@ -107,7 +105,7 @@ impl fmt::Display for FieldEvent {
     }
 }
 
-/// Why a device is tripped, as the end of a sentence.
+/// The reason of a trip, as the end of a sentence.
 const fn cause(trip: Trip) -> &'static str {
     match trip {
         Trip::Gap(_) => "it was not written in time",
@@ -121,15 +119,15 @@ const fn cause(trip: Trip) -> &'static str {
     }
 }
 
-/// A device with the orders to it.
+/// A device and its orders.
 #[derive(Clone, Debug)]
 struct Device {
     simulated: Simulated,
     orders: Orders,
-    /// The state of its session after the last tick.
+    /// State of its session after the last tick.
     state: State,
     refused: u32,
-    /// Since when its inputs are old, ns.
+    /// Time since which its inputs are old, ns.
     read_at: u64,
 }
 
@@ -143,7 +141,7 @@ pub struct SimulatedField {
 }
 
 impl SimulatedField {
-    /// Sets up the devices of a mapping whose sensors show these inputs.
+    /// Set up the devices of a mapping whose sensors show these inputs.
     ///
     /// # Errors
     /// [`FieldError`] if a device cannot be simulated.
@@ -173,7 +171,7 @@ impl SimulatedField {
         &self.mapping
     }
 
-    /// The outputs of a tick, as they arrive at the valves. `is_cut` tells which devices have no connection.
+    /// The outputs of a tick as they arrive at the valves. `is_cut` is true for devices without a connection.
     pub fn write(
         &mut self,
         tick: Tick,
@@ -195,7 +193,7 @@ impl SimulatedField {
         arriving
     }
 
-    /// The inputs of the next tick, from those that the sensors show after `tick`.
+    /// The inputs of the next tick, from the sensors after `tick`.
     pub fn read(&mut self, tick: Tick, inputs: &DeviceInputs) -> DeviceInputs {
         let slot = SET_UP_MS + tick.0.saturating_mul(TICK_MS);
         self.sense(inputs);
@@ -205,7 +203,7 @@ impl SimulatedField {
         self.inputs(inputs)
     }
 
-    /// The inputs of the next tick: the words of the devices, and what no device has from the sensors.
+    /// The inputs of the next tick: the words of the devices, and unmapped words directly from the sensors.
     #[must_use]
     pub fn inputs(&self, inputs: &DeviceInputs) -> DeviceInputs {
         let seen: Vec<Seen<'_>> = self.devices.iter().map(|device| device.seen(self.now)).collect();
@@ -214,25 +212,25 @@ impl SimulatedField {
         arrived
     }
 
-    /// Releases a tripped device. Returns false if there is no such device.
+    /// Release a tripped device. Returns false for an unknown name.
     pub fn release(&mut self, name: &str) -> bool {
         let index = self.mapping.device(name);
         let device = index.and_then(|index| self.devices.get_mut(index));
         device.map(|device| device.orders.go = device.orders.go.wrapping_add(1)).is_some()
     }
 
-    /// What has happened since the last call.
+    /// The events since the last call.
     pub fn take_events(&mut self) -> Vec<FieldEvent> {
         std::mem::take(&mut self.events)
     }
 
-    /// What has been counted of each device.
+    /// The counters of each device.
     pub fn counters(&self) -> impl Iterator<Item = (&str, Counters)> {
         let counted = self.devices.iter().map(|device| device.simulated.report().counters);
         self.mapping.devices.iter().map(|planned| planned.name.as_str()).zip(counted)
     }
 
-    /// State and age of the inputs of each device, for the status: `arm 8 ms, fixture STALE 0.4 s`.
+    /// State and input age of each device for the status: `arm 8 ms, fixture STALE 0.4 s`.
     #[must_use]
     pub fn status(&self) -> String {
         let states = self.devices.iter().zip(&self.mapping.devices).map(|(device, planned)| {
@@ -250,7 +248,7 @@ impl SimulatedField {
         states.collect::<Vec<_>>().join(", ")
     }
 
-    /// Puts the sensors into the registers of the couplers.
+    /// Copy the sensors into the registers of the couplers.
     fn sense(&mut self, inputs: &DeviceInputs) {
         let mut images = vec![InWords::ZERO; self.devices.len()];
         self.mapping.sample(inputs, &mut images);

@@ -1,56 +1,51 @@
-//! Generations of the task data: blocks that are loaded while the robot runs
-//! (docs/design/ownership.md "Reload").
+//! Generations of the task data: blocks that are loaded while the robot runs (docs/design/ownership.md "Reload").
 //!
-//! A reload is built and checked outside the tick. It becomes visible as a whole between two ticks, and only while no
-//! command is being executed: a command in progress keeps the records with which it began. Names that existed keep
-//! their record numbers from one generation to the next, so that the states that processes keep between commands (the
-//! position of the robot, the object that it holds) stay valid.
+//! A reload is built and checked outside the tick. It takes effect as a whole between two ticks and only between
+//! commands, so a command keeps its records. Existing names keep their record numbers in the next generation.
+//! Therefore the states that processes keep between commands (the robot's position, the held object) remain valid.
 
 use std::{collections::VecDeque, sync::Arc};
 
 use interfaces::{CommonMemory, StatusReport, hws::HwsReport};
 use taskdata::load::{Store, job::Reload};
 
-/// The task data in use, those after each reload of the run, and the queue of reloads. A copy shares the data.
+/// The task data in use, those of each reload, and the queue of reloads. A copy shares the data.
 #[derive(Clone)]
 pub struct Generations {
-    /// Generation 0.
     first: Arc<Store>,
-    /// Generation 1 and the later ones, each based on the one before.
+    /// Generation 1 and later ones, each based on its predecessor.
     reloads: Arc<Vec<Reload>>,
     number: u32,
-    /// Number of generations that no line of the job has made.
+    /// Number of generations that do not originate in a line of the job.
     inserted: u32,
-    /// Numbers of the generations that wait for the end of a command.
+    /// Generations that wait for the end of a command.
     waiting: VecDeque<u32>,
 }
 
 impl Generations {
-    /// The task data loaded before the first tick, and the reloads of the job in the order of its lines.
+    /// The task data before the first tick, and the reloads of the job in the order of its lines.
     #[must_use]
     pub const fn new(first: Arc<Store>, reloads: Arc<Vec<Reload>>) -> Self {
         Self { first, reloads, number: 0, inserted: 0, waiting: VecDeque::new() }
     }
 
-    /// The task data of a generation; those of generation 0 if there is no such reload.
+    /// The task data of a generation; those of generation 0 without such a reload.
     fn store(&self, number: u32) -> &Store {
         self.reload(number).map_or(&self.first, |reload| &reload.store)
     }
 
-    /// The reload that makes a generation.
     #[must_use]
     pub fn reload(&self, number: u32) -> Option<&Reload> {
         self.reloads.get(usize::try_from(number).ok()?.checked_sub(1)?)
     }
 
-    /// The task data of the next tick.
     #[must_use]
     pub fn current(&self) -> &Store {
         self.store(self.number)
     }
 
-    /// The task data of the next tick, if the job requests nothing but its reload number `load` before it: what
-    /// [`Generations::advance`] puts into effect after the tick whose buffers are `memory`.
+    /// The task data of the next tick if the job requests only its reload number `load` before it: those that
+    /// [`Generations::advance`] puts into effect after the tick with the buffers `memory`.
     #[must_use]
     pub fn next(&self, memory: &CommonMemory, load: Option<u32>) -> &Store {
         if is_busy(memory) {
@@ -61,13 +56,12 @@ impl Generations {
         next.map_or_else(|| self.current(), |number| self.store(number))
     }
 
-    /// Number of the generation in use.
     #[must_use]
     pub const fn number(&self) -> u32 {
         self.number
     }
 
-    /// All reloads of the run: those in effect, and those of later lines of the job.
+    /// All reloads of the run: those in effect and those of later lines of the job.
     #[must_use]
     pub fn reloads(&self) -> &[Reload] {
         &self.reloads
@@ -84,8 +78,8 @@ impl Generations {
         (self.number, self.inserted, &self.waiting)
     }
 
-    /// Queue a reload of the job, by its number from 1 on, until the command in progress has ended. Several queued ones
-    /// become visible one after the other, one a tick. A number without a reload has no effect.
+    /// Queue a reload of the job, by its number from 1, until the present command has ended. Several queued reloads
+    /// take effect one per tick. An unknown number has no effect.
     pub fn propose(&mut self, load: u32) {
         let number = load.saturating_add(self.inserted);
         if self.reload(number).is_some() {
@@ -93,9 +87,9 @@ impl Generations {
         }
     }
 
-    /// Use other task data from the next tick on, even while a command is executed. `reloads` are all reloads of the
-    /// run, with the new one after those in effect; the records of the command in progress must still exist. Returns
-    /// false, without a change, if there is no new one, or a reload of the job is queued.
+    /// Use other task data from the next tick on, even during a command. `reloads` are all reloads of the run, with
+    /// the new one after those in effect; the records of the present command must still exist. Returns false, without
+    /// a change, if there is no new reload or one of the job is queued.
     pub fn insert(&mut self, reloads: Vec<Reload>) -> bool {
         if !self.waiting.is_empty() || reloads.len() <= self.done() {
             return false;
@@ -106,8 +100,8 @@ impl Generations {
         true
     }
 
-    /// Between two ticks: use the queued task data if no command is being executed according to `memory`. Returns true
-    /// if the generation has changed.
+    /// Between two ticks: put queued task data into effect if no command is being executed according to `memory`.
+    /// Returns true if the generation has changed.
     pub fn advance(&mut self, memory: &CommonMemory) -> bool {
         if is_busy(memory) {
             return false;
@@ -132,7 +126,6 @@ mod tests {
 
     use super::*;
 
-    /// Generations with this number of reloads of the job.
     fn new_generations(reloads: usize) -> Generations {
         Generations::new(Arc::default(), Arc::new(empty(reloads)))
     }

@@ -1,24 +1,24 @@
-//! What comes from outside before a tick.
+//! External inputs of a run.
 
 use interfaces::{
     DataBaseStatus, OperatorInputs, OutsidePedestal,
     device::{JoystickBox, KNOB_FULL, LinkBytes, Resolvers},
 };
 
-/// What comes from outside before a tick. The default is a run without operators, robot and neighbours elsewhere.
+/// External inputs before a tick. The default is a run without operators, external robot and external neighbours.
 #[derive(Clone, Copy, Debug)]
 pub struct Given {
-    /// What a robot elsewhere has sent; `None` for the simulated one.
+    /// Inputs from an external robot; `None` for the simulated one.
     pub robot: Option<RobotInputs>,
-    /// Ticks for which the host waits for an answer; `None` for the manual's.
+    /// Answer timeout of the host, ticks; `None` for the manual's.
     pub patience: Option<u16>,
-    /// Expected lag of the robot behind the positions sent, ms; `None` for that of the T3.
+    /// Expected lag of the robot behind the sent positions, ms; `None` for that of the T3.
     pub lag: Option<u16>,
-    /// The operators' joystick box. It is combined with that of the cell.
+    /// The operators' joystick box, which is combined with that of the cell.
     pub joystick: JoystickBox,
     /// Entries at the terminals of the boards.
     pub terminals: OperatorInputs,
-    /// Status of a Data System elsewhere; it counts only for a loop that keeps no books itself.
+    /// Status of an external Data System; ignored if the loop has its own.
     pub data_base: DataBaseStatus,
     /// Statuses of a pedestal in another process.
     pub pedestal: OutsidePedestal,
@@ -38,20 +38,19 @@ impl Default for Given {
     }
 }
 
-/// What a robot elsewhere has sent before a tick.
+/// Inputs from an external robot before a tick.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct RobotInputs {
-    /// The bytes that have arrived.
     pub rx: LinkBytes,
     pub ready: bool,
-    /// True if bytes of an earlier tick have not left.
+    /// True if bytes of an earlier tick are still unsent.
     pub unsent: bool,
-    /// Readings of its resolvers, if it reports its position; otherwise they are those of the cell, which follows it.
+    /// Readings of its resolvers, if it reports its position; otherwise those of the cell, which follows it.
     pub resolvers: Option<Resolvers>,
 }
 
-/// Two joystick boxes, combined. The lower velocity counts; a moved stick and an enabled frame of `own` take
-/// precedence; switches and buttons are combined by OR.
+/// Two joystick boxes combined: the lower velocity applies, a moved stick and an enabled frame of `own` take
+/// precedence, and switches and buttons are combined by OR.
 pub(crate) fn combined(own: &JoystickBox, other: JoystickBox) -> JoystickBox {
     let stick = if (own.x, own.y) == (0, 0) { (other.x, other.y) } else { (own.x, own.y) };
     JoystickBox {

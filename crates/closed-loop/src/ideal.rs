@@ -1,4 +1,4 @@
-//! The workstation with the ideal cell: what the control processes do there if everything goes as planned.
+//! The workstation with the ideal cell, in which every action succeeds.
 
 use interfaces::DeviceInputs;
 use neighbours::workstation::player::Workstation;
@@ -7,7 +7,7 @@ use taskdata::load::job::Workstation as Action;
 
 use crate::{Turn, World, workstation::orders};
 
-/// The ideal cell with the other equipment of the workstation. Nothing in it is judged.
+/// The ideal cell with the other equipment of the workstation, without judges.
 #[derive(Clone, Debug)]
 pub struct IdealWorkstation {
     pub cell: Ideal,

@@ -1,8 +1,9 @@
-//! A run as a value: control processes, cell, line, mailboxes and Data System, without clock, thread, file and network.
+//! A run as a value: control processes, cell, line, mailboxes and Data System, without clock, thread, file or
+//! network.
 //!
-//! A [`ClosedLoop`] can be cloned; both copies continue bit for bit alike, each in its own thread if need be. A program
-//! around it waits for the next tick, brings what comes from outside ([`Given`]), and takes away what goes outside. The
-//! order within a tick is the loop's:
+//! A [`ClosedLoop`] can be cloned; both copies continue bit for bit alike, even in different threads. A program
+//! around it waits for the next tick, supplies the external inputs ([`Given`]), and sends the outputs. The loop
+//! defines the order within a tick:
 //!
 //! ```text
 //!   decide(given) ──► the processes run on the inputs       bytes leave for the robot when it returns
@@ -12,10 +13,10 @@
 //!   reload()      ──► task data that the job has loaded      unless a command is executed
 //! ```
 //!
-//! The cell is that of the simulation, whose contacts, places and confirmations are judged, or the ideal one
-//! ([`ideal`]): a [`World`].
+//! The cell is a [`World`]: the simulated one, whose contacts, places and confirmations are judged, or the ideal one
+//! ([`ideal`]).
 //!
-//! `rcs-run run` puts clock, log, boards, robots and neighbours around it; `rcs-run campaign` forks it.
+//! `rcs-run run` adds clock, log, boards, robots and neighbours; `rcs-run campaign` forks the loop.
 
 pub mod account;
 pub mod contacts;
@@ -73,22 +74,22 @@ pub struct ClosedLoop<L = Present, W: World = SimulatedWorkstation> {
     /// Device words of the next tick.
     inputs: DeviceInputs,
     gate: Gate,
-    /// The Data System; `None` if it is elsewhere.
+    /// The Data System; `None` for an external one.
     books: Option<DataSystem<InMemory>>,
-    /// The line to the robot, and the judges of what happens in the cell.
+    /// The line to the robot and the judges of the cell.
     checks: W::Checks,
     /// The cell and the other equipment of the workstation.
     pub workstation: W,
 }
 
-/// What a source of commands, or an operator, sees and changes after a tick.
+/// View of a command source, or an operator, after a tick.
 pub struct Desk<'a, W = SimulatedWorkstation> {
     pub tick: Tick,
     /// Common memory after the tick.
     pub memory: &'a CommonMemory,
     /// Device words of the next tick.
     pub inputs: &'a DeviceInputs,
-    /// Task's end of the mailboxes; its status box has the status of this tick.
+    /// Task's end of the mailboxes; its status box contains the status of this tick.
     pub gate: &'a mut Gate,
     /// The cell and the other equipment of the workstation.
     pub workstation: &'a mut W,
@@ -111,13 +112,12 @@ impl<L, W: World> ClosedLoop<L, W> {
         }
     }
 
-    /// Keep no books: the Data System is elsewhere, and its status is given.
+    /// Use an external Data System, whose status is given.
     #[must_use]
     pub fn with_data_system_elsewhere(self) -> Self {
         Self { books: None, ..self }
     }
 
-    /// The external inputs of the next tick.
     #[must_use]
     pub fn external_with(&self, given: &Given) -> ExternalInputs {
         let mut devices = self.inputs;
@@ -138,10 +138,10 @@ impl<L, W: World> ClosedLoop<L, W> {
         }
     }
 
-    /// The first part of a tick: run the control processes. Does not allocate.
+    /// First part of a tick: run the control processes. Does not allocate.
     ///
     /// # Errors
-    /// Errors of the levels. The tick does not count then.
+    /// Errors of the levels. The tick is then void.
     pub fn decide<E>(&mut self, given: &Given) -> Result<(), E>
     where
         L: for<'a> Levels<TaskData<'a>, Error = E>,
@@ -152,10 +152,10 @@ impl<L, W: World> ClosedLoop<L, W> {
         })
     }
 
-    /// Like [`decide`](Self::decide), with a function that runs the course by a tick and sums it up.
+    /// Like [`decide`](Self::decide), with a function that advances the course by a tick and sums it up.
     ///
     /// # Errors
-    /// Errors of that function. The tick does not count then, and can be decided again.
+    /// Errors of that function. The tick is then void and can be decided again.
     pub fn decide_with<E>(
         &mut self,
         given: &Given,
@@ -165,13 +165,13 @@ impl<L, W: World> ClosedLoop<L, W> {
         run(&mut self.course, &self.external, &self.generations.current().view())
     }
 
-    /// Call a function with the course and the task data of the next tick, as to warm it up.
+    /// Call a function with the course and the task data of the next tick, for example to warm it up.
     pub fn with_data<T>(&mut self, act: impl FnOnce(&mut Course<L>, &TaskData<'_>) -> T) -> T {
         act(&mut self.course, &self.generations.current().view())
     }
 
-    /// The device outputs of the last tick. The last frame of a lost T3 Interface goes out only once. All
-    /// outputs are zero while no process runs: the controller has no power.
+    /// The device outputs of the last tick. A lost T3 Interface sends its last frame only once. All outputs are zero
+    /// while no process runs, as in a controller without power.
     #[must_use]
     pub fn outputs(&self) -> DeviceOutputs {
         let memory = self.course.memory();
@@ -187,9 +187,8 @@ impl<L, W: World> ClosedLoop<L, W> {
         }
     }
 
-    /// The second part of a tick: advance the cell, and judge what has happened in it. With a robot elsewhere the cell
-    /// follows its position `moved`, as far as that is known, and confirmations are not judged: the cell is only a
-    /// model of what is there.
+    /// Second part of a tick: advance the cell and judge it. With an external robot the cell follows its position
+    /// `moved`, as far as known, and confirmations are not judged: the cell is only a model of the real one.
     pub fn settle(&mut self, moved: Option<&Plate>) -> W::Settled {
         let outputs = self.outputs();
         let Self { course, external, generations, workstation, checks, .. } = self;
@@ -201,8 +200,8 @@ impl<L, W: World> ClosedLoop<L, W> {
         settled
     }
 
-    /// The third part of a tick: the Data System and the source of commands read the outputs of the tick. `command` is
-    /// the source: it reads its status from the gate, and has the gate read its command. The next tick sees the result.
+    /// Third part of a tick: Data System and command source read the outputs of the tick. The source is `command`: it
+    /// reads its status from the gate and lets the gate read its command. The next tick uses the results.
     pub fn exchange<T>(&mut self, command: impl FnOnce(Desk<'_, W>) -> T) -> T {
         let (tick, memory) = (self.course.tick(), self.course.memory());
         if let Some(books) = &mut self.books {
@@ -210,12 +209,12 @@ impl<L, W: World> ClosedLoop<L, W> {
         }
         self.gate.write(memory, task_state(&memory.task.header, tick));
         let result = command(self.desk());
-        // Vision elsewhere has answered meanwhile.
+        // An external vision system may have answered meanwhile.
         self.inputs.vision = self.workstation.inputs().vision;
         result
     }
 
-    /// What a source of commands, or an operator, sees and changes between two ticks.
+    /// View of a command source, or an operator, between two ticks.
     pub const fn desk(&mut self) -> Desk<'_, W> {
         Desk {
             tick: self.course.tick(),
@@ -227,8 +226,8 @@ impl<L, W: World> ClosedLoop<L, W> {
         }
     }
 
-    /// The end of a tick: put the task data into effect that the job has loaded, if no command is executed. Returns
-    /// true if the generation has changed.
+    /// End of a tick: put loaded task data into effect if no command is being executed. Returns true if the
+    /// generation has changed.
     pub fn reload(&mut self) -> bool {
         for number in self.workstation.loads() {
             self.generations.propose(number);
@@ -236,48 +235,44 @@ impl<L, W: World> ClosedLoop<L, W> {
         self.generations.advance(self.course.memory())
     }
 
-    /// The last tick.
     #[must_use]
     pub const fn tick(&self) -> Tick {
         self.course.tick()
     }
 
-    /// Common memory after the last tick.
     #[must_use]
     pub const fn memory(&self) -> &CommonMemory {
         self.course.memory()
     }
 
-    /// The control processes with the results of their ticks.
+    /// The control processes and the results of their ticks.
     #[must_use]
     pub const fn course(&self) -> &Course<L> {
         &self.course
     }
 
-    /// The same, to change the control processes between two ticks or to warm up the next tick.
+    /// For changes of the control processes between two ticks, and for a warm-up.
     pub const fn course_mut(&mut self) -> &mut Course<L> {
         &mut self.course
     }
 
-    /// Fingerprint of all buffers of all ticks so far.
+    /// The digest of all buffers of all ticks so far.
     #[must_use]
     pub const fn digest(&self) -> Digest {
         self.course.digest()
     }
 
-    /// The external inputs of the last tick.
     #[must_use]
     pub const fn external(&self) -> &ExternalInputs {
         &self.external
     }
 
-    /// The device words of the next tick.
     #[must_use]
     pub const fn inputs(&self) -> &DeviceInputs {
         &self.inputs
     }
 
-    /// The command that Task reads in the next tick.
+    /// The command of Task's next tick.
     #[must_use]
     pub const fn command(&self) -> &HwsCommand {
         self.gate.command()
@@ -293,24 +288,23 @@ impl<L, W: World> ClosedLoop<L, W> {
         &self.generations
     }
 
-    /// The same, to insert a reload.
+    /// For the insertion of a reload.
     pub const fn generations_mut(&mut self) -> &mut Generations {
         &mut self.generations
     }
 
-    /// The Data System, unless it is elsewhere.
+    /// The Data System, unless it is external.
     #[must_use]
     pub const fn books(&self) -> Option<&DataSystem<InMemory>> {
         self.books.as_ref()
     }
 
-    /// The same, to take its refusals or to list its items.
+    /// For its refusals and the list of its items.
     pub const fn books_mut(&mut self) -> Option<&mut DataSystem<InMemory>> {
         self.books.as_mut()
     }
 }
 
-/// Whether Task has run in a tick.
 const fn task_state(header: &Header, tick: Tick) -> TaskState {
     if header.stamp.0 != tick.0 {
         TaskState::Lost

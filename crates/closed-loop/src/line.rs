@@ -5,20 +5,19 @@ use interfaces::{DeviceInputs, DeviceOutputs};
 use plant::Cell;
 use rcs_core::tick::Tick;
 
-/// Delay of a late answer, ticks: more than the three ticks for which the host waits.
+/// Delay of a late answer, ticks: longer than the host's answer timeout of three ticks.
 const LATE: u16 = 5;
 
-/// The line to the simulated robot controller.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct RobotLine {
     plan: Option<Injector>,
     armed: Option<FaultKind>,
-    /// Carries out the fault of the last answer that was hit.
+    /// Applies the fault to the last affected answer.
     answer: Option<Injector>,
 }
 
 impl RobotLine {
-    /// Give the line the faults of a plan from now on. Returns false, and changes nothing, if it has a plan already.
+    /// Start a fault plan now. Returns false, without a change, if the line already has a plan.
     pub fn suffer(&mut self, plan: &Plan) -> bool {
         let free = self.plan.is_none();
         if free {
@@ -27,17 +26,17 @@ impl RobotLine {
         free
     }
 
-    /// Give the line the faults of a plan from now on, instead of those that it has.
+    /// Replace the fault plan now.
     pub fn replace_plan(&mut self, plan: &Plan) {
         self.plan = Some(Injector::new(plan));
     }
 
-    /// Give the next answer of the robot controller a fault.
+    /// Apply a fault to the next answer of the robot controller.
     pub const fn spoil_answer(&mut self, kind: FaultKind) {
         self.armed = Some(kind);
     }
 
-    /// Cut the cable after tick `now`: no byte arrives any more, and the DTR of the other end is off.
+    /// Cut the cable after tick `now`: no byte arrives, and the DTR of the other end is off.
     pub fn cut(&mut self, now: Tick) {
         let mut plan = Plan::new(0);
         for kind in [FaultKind::Drop, FaultKind::CtsLow] {
@@ -47,13 +46,13 @@ impl RobotLine {
         self.replace_plan(&plan);
     }
 
-    /// Forget the faults that are over after tick `now`. Call it only if no others follow.
+    /// Discard the faults that are over after tick `now`. Call it only if no others follow.
     pub fn forget_past(&mut self, now: Tick) {
         self.plan.take_if(|injector| injector.is_over(now));
         self.answer.take_if(|injector| injector.is_over(now));
     }
 
-    /// Number of faults of the plan so far, both directions together; `None` without a plan.
+    /// Number of injected faults in both directions; `None` without a plan.
     #[must_use]
     pub fn faults(&self) -> Option<Counts> {
         self.plan.as_ref().map(Injector::total)
@@ -73,14 +72,14 @@ impl RobotLine {
         inputs
     }
 
-    /// If a fault is armed and bytes have come, the line has this fault in this tick.
+    /// Apply an armed fault in this tick if bytes have arrived.
     fn strike(&mut self, tick: Tick, inputs: &DeviceInputs) {
         let Some(kind) = self.armed.filter(|_| inputs.link_rx.length > 0) else { return };
         self.armed = None;
         let rule = Rule::new(kind).at(tick.0).only(Direction::ToHost);
         let rule = if kind == FaultKind::Delay { rule.ticks(LATE) } else { rule };
         let mut plan = Plan::new(tick.0);
-        // A plan with one rule accepts every rule for a single tick.
+        // A plan with a single rule accepts every rule for one tick.
         if plan.add(rule).is_ok() {
             self.answer = Some(Injector::new(&plan));
         }

@@ -4,7 +4,7 @@
 //!   Gate: status mailbox ──► Commander::step ──► command ──► CommandBox ──► Gate::read ──► Task
 //! ```
 //!
-//! Whoever commands in this process uses a [`CommandBox`]: the job of a run and an operator ([`JobPlayer`]), and the
+//! Every commander in this process uses a [`CommandBox`]: the job of a run and an operator ([`JobPlayer`]), and the
 //! operator of a campaign.
 
 use std::convert::Infallible;
@@ -24,9 +24,9 @@ use taskdata::files::TaskData;
 
 use crate::{ClosedLoop, Given, World, workstation::SimulatedWorkstation};
 
-/// Commands Task, and operates the workstation around the robot.
+/// Commands Task and operates the workstation around the robot.
 pub trait Commander<W = SimulatedWorkstation> {
-    /// Called once per tick: reads Task's status and returns the command to write into the mailbox, if any.
+    /// Called once per tick: read Task's status and return the command for the mailbox, if any.
     fn step(&mut self, tick: Tick, status: &Status<'_>, workstation: &mut W) -> Option<HwsCommand>;
 }
 
@@ -47,14 +47,13 @@ impl Default for CommandBox {
 }
 
 impl CommandBox {
-    /// The mailbox, for the gate to read.
     #[must_use]
     pub const fn mailbox(&self) -> &Mailbox {
         &self.0
     }
 
-    /// Called once per tick: the commander reads the status mailbox, and its command is written into the command
-    /// mailbox, if it has one. The caller then has the gate read the mailbox.
+    /// Call once per tick: the commander reads the status mailbox, and its command, if any, is written into the
+    /// command mailbox. The gate must then read the mailbox.
     ///
     /// # Errors
     /// [`JobFailure::Refused`] if the status cannot be decoded or the command does not fit into the mailbox.
@@ -84,11 +83,11 @@ impl<L, W: World> ClosedLoop<L, W>
 where
     L: for<'a> Levels<TaskData<'a>, Error = Infallible>,
 {
-    /// Run one tick, without anything from outside. The commands are not checked against the task data: they are those
-    /// of a job that was checked when it was loaded.
+    /// Run one tick without external inputs. The commands are not checked against the task data: they belong to a job
+    /// that was checked when it was loaded.
     ///
     /// # Errors
-    /// As [`CommandBox::write`]; the tick counts.
+    /// Those of [`CommandBox::write`]; the tick is valid.
     pub fn step(
         &mut self,
         command_box: &mut CommandBox,
@@ -106,7 +105,7 @@ where
     }
 }
 
-/// The emulator of the workstation controller with a job, and its command mailbox. A copy continues from the same line.
+/// The workstation controller's emulator with a job and its command mailbox. A copy continues from the same line.
 #[derive(Clone, Debug)]
 pub struct JobPlayer {
     pub hwsc: Hwsc,
@@ -114,27 +113,25 @@ pub struct JobPlayer {
 }
 
 impl JobPlayer {
-    /// The emulator plays a job that was checked with its task data.
     #[must_use]
     pub fn new(hwsc: Hwsc) -> Self {
         Self { hwsc, command_box: CommandBox::default() }
     }
 
-    /// The command mailbox, for the gate to read.
     #[must_use]
     pub const fn command_box(&self) -> &Mailbox {
         self.command_box.mailbox()
     }
 
-    /// Called once per tick: the emulator reads its status mailbox and writes its command mailbox. The caller then has
-    /// the gate read it; the emulator learns from its status which commands the gate refuses.
+    /// Call once per tick: the emulator reads its status mailbox and writes its command mailbox. The gate must then
+    /// read it; the status shows the emulator which commands the gate refuses.
     pub fn write<W: World>(&mut self, tick: Tick, gate: &Gate, workstation: &mut W) -> Progress {
         let written = self.command_box.write(tick, gate, workstation, &mut self.hwsc);
         self.progress(written)
     }
 
-    /// Return the command to the job, and write its next command: the mailboxes are initialized, as they are whenever a
-    /// neighbour connects (IX.1). The caller then has the gate read the command mailbox.
+    /// Return control to the job and write its next command. The mailboxes are initialized, as at every connection of
+    /// a neighbour (IX.1). The gate must then read the command mailbox.
     pub fn take_back(&mut self, tick: Tick, gate: &mut Gate, commands: Vec<BegunStep>) -> Progress {
         self.command_box.0.initialize();
         gate.initialize();
@@ -146,7 +143,7 @@ impl JobPlayer {
         }
     }
 
-    /// Run one tick of a loop that this player commands, without anything from outside.
+    /// Run one tick of a loop that this player commands, without external inputs.
     pub fn step<L, W: World>(&mut self, closed: &mut ClosedLoop<L, W>) -> Progress
     where
         L: for<'a> Levels<TaskData<'a>, Error = Infallible>,

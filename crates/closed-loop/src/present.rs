@@ -1,4 +1,4 @@
-//! A ladder of which processes can be lost.
+//! A ladder whose processes can be lost.
 
 use std::convert::Infallible;
 
@@ -8,7 +8,7 @@ use levels::ladder::{Ladder, ProcessId};
 use rcs_core::tick::Tick;
 use taskdata::files::TaskData;
 
-/// The control processes on one board. A lost process does not run: it writes nothing, so that its stamp stands still.
+/// The control processes on one board. A lost process writes nothing, so its stamp does not advance.
 #[derive(Clone)]
 pub struct Present {
     ladder: Ladder,
@@ -27,13 +27,12 @@ impl Present {
         &self.ladder
     }
 
-    /// The processes that are not lost.
     #[must_use]
     pub fn processes(&self) -> &[ProcessId] {
         &self.processes
     }
 
-    /// Restart a process: it loses its state.
+    /// Restart a process, which loses its state.
     pub fn restart(&mut self, process: ProcessId) {
         self.ladder.restart(process);
     }
@@ -43,8 +42,8 @@ impl Present {
         self.processes.clear();
     }
 
-    /// Switch the controller on: all processes start without state. They adopt the buffers in common memory, as a
-    /// journal that has lost no record would restore them.
+    /// Switch the controller on: all processes start without state and adopt the buffers in common memory, as
+    /// restored from a complete journal.
     pub fn switch_on(&mut self) {
         self.processes = ProcessId::ALL.to_vec();
         for process in ProcessId::ALL.iter().copied() {
@@ -52,7 +51,7 @@ impl Present {
         }
     }
 
-    /// Lose a process: it writes nothing from now on.
+    /// Lose a process: it writes no outputs from now on.
     pub fn lose(&mut self, process: ProcessId) {
         self.processes.retain(|present| *present != process);
     }

@@ -1,11 +1,11 @@
-//! Detects that the commanded frame is at rest, so that every stream of points ends at rest, however the run ends.
+//! Detects that the commanded frame is at rest, so that every run ends its stream of points at rest.
 
 use geometry::pose::WireFrame;
 use interfaces::CommonMemory;
 
-/// The robot is at rest when the commanded frame has not changed for this many ticks.
+/// Ticks without a change of the commanded frame after which the robot is at rest.
 pub const AT_REST: u32 = 5;
-/// It also counts as at rest after this many ticks, 3 s, with the velocity knob at zero: no ramp takes longer.
+/// Ticks with the velocity knob at zero after which it is also treated as at rest: 3 s, longer than any ramp.
 pub const AT_LAST: u32 = 75;
 
 /// Observes the commanded frame after each tick.
@@ -16,14 +16,12 @@ pub struct RestWatch {
 }
 
 impl RestWatch {
-    /// Observe a tick.
     pub fn observe(&mut self, memory: &CommonMemory) {
         let commanded = memory.prim.t3i.frame;
         self.unchanged = if commanded == self.commanded { self.unchanged.saturating_add(1) } else { 0 };
         self.commanded = commanded;
     }
 
-    /// True if the commanded frame is at rest.
     #[must_use]
     pub const fn is_at_rest(&self) -> bool {
         self.unchanged >= AT_REST

@@ -16,20 +16,19 @@ use crate::{
     workstation::SimulatedWorkstation,
 };
 
-/// What has happened in the cell in a tick.
+/// Events in the cell in a tick.
 #[derive(Debug, Default)]
 pub struct Settled {
-    /// Events of the cell. Its contacts are in `contacts`, if they must not be.
+    /// Events of the cell, without permitted contacts; forbidden ones are in `contacts`.
     pub events: Vec<CellEvent>,
     /// Collisions that have begun or ended.
     pub contacts: Vec<ContactEvent>,
-    /// Confirmations that are not true.
+    /// False confirmations.
     pub untrue: Vec<Confirmation>,
-    /// What has happened to the couplers between controller and cell.
+    /// Events of the couplers between controller and cell.
     pub field: Vec<FieldEvent>,
 }
 
-/// The line to the simulated robot controller, and the judges of the cell.
 #[derive(Clone)]
 pub struct Checks {
     line: RobotLine,
@@ -106,13 +105,11 @@ fn advance(
 }
 
 impl<L> ClosedLoop<L> {
-    /// A run in the simulated cell before its first tick.
     #[must_use]
     pub fn new(levels: L, store: Arc<Store>, reloads: Arc<Vec<Reload>>, cell: Cell) -> Self {
         Self::in_world(levels, store, reloads, SimulatedWorkstation::new(cell))
     }
 
-    /// Put couplers between the controller and the cell.
     #[must_use]
     pub fn with_field(mut self, field: SimulatedField) -> Self {
         self.workstation.field = Some(Box::new(field));
@@ -120,7 +117,7 @@ impl<L> ClosedLoop<L> {
         self
     }
 
-    /// Ignore distances of the robot to things that it does not touch, which saves time.
+    /// Skip the distances to objects that the robot does not touch, which saves time.
     #[must_use]
     pub fn without_near_misses(mut self) -> Self {
         self.checks.contacts = self.checks.contacts.without_near_misses();
@@ -137,35 +134,31 @@ impl<L> ClosedLoop<L> {
         settled
     }
 
-    /// Note that a person has changed these parts after the last tick.
+    /// Note that an operator has changed these parts after the last tick.
     pub fn note_changed(&mut self, parts: Vec<u32>) {
         self.checks.truth.note_changed(self.course.tick().next(), parts);
     }
 
-    /// The line to the simulated robot controller.
     #[must_use]
     pub const fn line(&self) -> &RobotLine {
         &self.checks.line
     }
 
-    /// The same, to give it faults.
+    /// For the injection of faults.
     pub const fn line_mut(&mut self) -> &mut RobotLine {
         &mut self.checks.line
     }
 
-    /// The check of the robot's contacts.
     #[must_use]
     pub const fn contacts(&self) -> &ContactCheck {
         &self.checks.contacts
     }
 
-    /// The check of the parts' places.
     #[must_use]
     pub const fn placement(&self) -> &PlacementCheck {
         &self.checks.placement
     }
 
-    /// The judge of the confirmations of the control processes.
     #[must_use]
     pub const fn truth(&self) -> &TruthCheck {
         &self.checks.truth

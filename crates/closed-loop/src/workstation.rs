@@ -1,4 +1,4 @@
-//! The workstation of the simulated cell, in the interface of the workstation controller's emulator.
+//! The workstation of the simulated cell, behind the interface of the workstation controller's emulator.
 
 use interfaces::station::{Key, ViseOpening};
 use neighbours::workstation::player::Workstation;
@@ -14,14 +14,14 @@ use crate::field::SimulatedField;
 /// 40 s; an arm that slides off an obstacle takes twice as long.
 const SETTLING_LIMIT: u64 = 120_000 / TICK_MS;
 
-/// Refusal of a job with a hand-over in a run to which no workstation controller can connect.
+/// Refusal of a job with a hand-over in a run without access for a workstation controller.
 const NO_HAND_OVER: &str = "no workstation controller can connect to this run; \
                             --network ADDRESS --outside workstation --stand-alone lets one";
 
 /// An emergency that has stopped the robot.
 #[derive(Clone, Debug)]
 pub struct Emergency {
-    /// Tick in which the pressure was lost.
+    /// Tick of the loss of pressure.
     pub tick: Tick,
     /// Cause, position, and the state of the arm.
     pub droop: Droop,
@@ -31,7 +31,7 @@ pub struct Emergency {
 #[derive(Clone)]
 pub struct SimulatedWorkstation {
     pub cell: Cell,
-    /// The couplers between the controller and the cell, if there are any.
+    /// The couplers between controller and cell, if any.
     pub field: Option<Box<SimulatedField>>,
     state: WorkstationState,
 }
@@ -40,16 +40,16 @@ pub struct SimulatedWorkstation {
 #[derive(Clone, Debug, Default)]
 pub struct WorkstationState {
     fault: Option<String>,
-    /// True if the robot is not the simulated one: its panel is out of reach.
+    /// True with an external robot, whose panel is out of reach.
     robot_elsewhere: bool,
-    /// True if a workstation controller can connect, and the job can hand over to it.
+    /// True if a workstation controller can connect, so that the job can hand over to it.
     hands_over: bool,
     emergency: Option<Emergency>,
     /// True if the arm had no pressure after the last tick.
     stopped: bool,
-    /// Numbers of the reloads requested since the last call of `loads`.
+    /// Reloads requested since the last call of `loads`.
     loads: Vec<u32>,
-    /// Numbers of the parts that an action has put into the cell since the last call of `delivered`.
+    /// Parts that an action has put into the cell since the last call of `delivered`.
     delivered: Vec<u32>,
 }
 
@@ -58,12 +58,11 @@ impl SimulatedWorkstation {
         Self { cell, field: None, state: WorkstationState::default() }
     }
 
-    /// Its state in addition to the cell.
     pub const fn state(&self) -> &WorkstationState {
         &self.state
     }
 
-    /// Note that the cell follows a robot elsewhere, whose controller no line of a job can reach.
+    /// Note that the cell follows an external robot, whose controller is out of reach for lines of a job.
     pub const fn note_robot_elsewhere(&mut self) {
         self.state.robot_elsewhere = true;
     }
@@ -73,14 +72,12 @@ impl SimulatedWorkstation {
         self.state.hands_over = true;
     }
 
-    /// True if the robot is not the simulated one.
     #[must_use]
     pub const fn is_robot_elsewhere(&self) -> bool {
         self.state.robot_elsewhere
     }
 
-    /// Events of the cell in `tick`, which has ended. A failed simulation or a failed vise is a fault of the
-    /// workstation.
+    /// Events of the cell in the finished `tick`. A failed simulation or vise is a fault of the workstation.
     pub fn events(&mut self, tick: Tick) -> Vec<CellEvent> {
         let events = self.cell.events();
         if let Some(droop) = self.cell.droop().filter(|droop| droop.cause.is_emergency()) {
@@ -98,13 +95,13 @@ impl SimulatedWorkstation {
         events
     }
 
-    /// The last emergency, also if the robot has been restarted since.
+    /// The last emergency, even after a restart of the robot.
     #[must_use]
     pub const fn last_emergency(&self) -> Option<&Emergency> {
         self.state.emergency.as_ref()
     }
 
-    /// True if the arm has lost its pressure in an emergency and has not come to rest: it can still touch something.
+    /// True if the arm has lost its pressure in an emergency and has not come to rest: it can still cause contacts.
     #[must_use]
     pub fn is_settling(&self, tick: Tick) -> bool {
         let sinks =
@@ -119,12 +116,12 @@ impl SimulatedWorkstation {
         self.state.loads.first().copied()
     }
 
-    /// Numbers of the reloads of task data that the job has requested since the last call.
+    /// Reloads of task data that the job has requested since the last call.
     pub(crate) fn take_loads(&mut self) -> Vec<u32> {
         std::mem::take(&mut self.state.loads)
     }
 
-    /// Numbers of the parts that an action has put into the cell since the last call.
+    /// Parts that an action has put into the cell since the last call.
     pub fn delivered(&mut self) -> Vec<u32> {
         std::mem::take(&mut self.state.delivered)
     }
@@ -132,12 +129,11 @@ impl SimulatedWorkstation {
     /// Begin an action of an operator; `line` is its text.
     ///
     /// # Errors
-    /// A message if the workstation cannot carry it out.
+    /// A message if the workstation cannot execute it.
     pub fn begin_line(&mut self, action: &Action, line: &str) -> Result<(), String> {
         self.begin(action, line)
     }
 
-    /// The actions of the cell for an action of a job, in order.
     fn translate(&self, action: &Action) -> Result<Vec<WorkstationAction>, String> {
         let at_the_robot = matches!(action, Action::Press(_) | Action::Release(_) | Action::Panel(_));
         if at_the_robot && self.state.robot_elsewhere {
@@ -238,7 +234,7 @@ mod tests {
     use std::path::Path;
     use taskdata::load::{Job, Source, Step, Store};
 
-    /// A workstation with the shipped cell, and the task data for its jobs.
+    /// A workstation with the shipped cell and its task data.
     struct Bench {
         workstation: SimulatedWorkstation,
         store: Store,

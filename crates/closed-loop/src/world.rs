@@ -1,4 +1,4 @@
-//! What stands at the other end of the controller's wires.
+//! The interface of a cell to the controller.
 
 use depc::Plate;
 use interfaces::{CommonMemory, DeviceInputs, DeviceOutputs, HwsCommand};
@@ -6,23 +6,23 @@ use neighbours::workstation::player::Workstation;
 use rcs_core::tick::Tick;
 use taskdata::files::TaskData;
 
-/// A cell with the other equipment of its workstation, and the judges of what happens there.
+/// A cell with the other equipment of its workstation, and its judges.
 pub trait World: Workstation {
     /// The line to the robot, and the judges.
     type Checks: Clone;
-    /// What has happened in a tick.
+    /// The events of a tick.
     type Settled;
 
-    /// Judges that have seen nothing yet.
+    /// Judges without history.
     fn checks(&self) -> Self::Checks;
 
     /// The device words of the next tick.
     fn inputs(&self) -> DeviceInputs;
 
-    /// Advance by a tick, and judge what has happened. Returns the device words of the next tick, too.
+    /// Advance by a tick and judge it. Also returns the device words of the next tick.
     fn settle(&mut self, checks: &mut Self::Checks, turn: &Turn<'_>) -> (DeviceInputs, Self::Settled);
 
-    /// Numbers of the reloads of task data that the job has requested since the last call.
+    /// Reloads of task data that the job has requested since the last call.
     fn loads(&mut self) -> Vec<u32>;
 }
 
@@ -38,6 +38,6 @@ pub struct Turn<'a> {
     pub data: &'a TaskData<'a>,
     /// Outputs of the controller to its devices.
     pub outputs: &'a DeviceOutputs,
-    /// Position of a robot elsewhere, as far as it is known.
+    /// Position of an external robot, as far as known.
     pub moved: Option<&'a Plate>,
 }

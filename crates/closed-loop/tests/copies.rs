@@ -39,7 +39,7 @@ impl Run {
         }
     }
 
-    /// Everything that the ticks have computed: digest of the buffers, and of the bodies in the cell.
+    /// All results of the ticks: digests of the buffers and of the bodies in the cell.
     fn bits(&self) -> (String, u64) {
         (self.closed.digest().to_string(), self.closed.workstation.cell.digest())
     }

@@ -1,9 +1,9 @@
-//! A closed loop has no I/O below it: no package on which it depends opens sockets, ports, databases or shared memory,
-//! or runs a clock.
+//! A closed loop does no I/O: it depends on no package that opens sockets, ports, databases or shared memory, or that
+//! runs a clock.
 
 use std::{collections::BTreeSet, env, process::Command};
 
-/// Packages that do I/O or keep time, and those of this workspace that use them.
+/// Packages that do I/O or measure time, and their users in this workspace.
 const WITH_IO: [&str; 15] = [
     "executive",
     "getrandom",
@@ -22,7 +22,7 @@ const WITH_IO: [&str; 15] = [
     "zenoh",
 ];
 
-/// All packages below a package, without those of tests.
+/// All direct and indirect dependencies of a package, without those of tests.
 fn below(package: &str) -> BTreeSet<String> {
     let cargo = env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
     let arguments = ["tree", "--offline", "--edges", "normal", "--prefix", "none", "--package", package];

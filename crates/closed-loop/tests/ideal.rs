@@ -1,4 +1,4 @@
-//! In the ideal cell the shipped jobs run to their ends, over the same points as in the simulated cell without noise.
+//! In the ideal cell the shipped jobs finish, over the same points as in the simulated cell without noise.
 
 use std::{path::Path, sync::Arc, thread};
 
@@ -17,10 +17,10 @@ use taskdata::load::{Job, Store};
 
 /// Longest job, ticks.
 const LONGEST: Tick = Tick(60_000);
-/// Greatest difference of a joint at the end of a point, rad. Paths and pictures are the same to 1e-8.
+/// Greatest difference of a joint at the end of a point, rad. Paths and pictures agree to 1e-8.
 const EXACT: f64 = 1e-6;
-/// The same for a job with guarded moves: they stop where the force sensor feels the drum, and the ideal cell has no
-/// friction there.
+/// The same for a job with guarded moves: they stop where the force sensor detects the drum, and the ideal cell has
+/// no friction there.
 const GUARDED: f64 = 1e-3;
 
 /// The end of an order of E-move to Prim.
@@ -42,7 +42,7 @@ fn data() -> &'static Path {
     Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../data"))
 }
 
-/// Play a job in a world, and note the points that end.
+/// Play a job in a world, and note the reached points.
 fn play<W: World>(store: &Store, job: &Job, world: W, t3: impl Fn(&W) -> &T3Controller) -> Played {
     let (store, reloads) = (Arc::new(store.clone()), Arc::new(job.reloads.clone()));
     let mut closed = ClosedLoop::in_world(Present::default(), store, reloads, world);

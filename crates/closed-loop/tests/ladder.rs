@@ -1,5 +1,5 @@
-//! The ladder in the ideal cell: MOV-TO-LOC from the workstation's command to the joints and back, in any order of the
-//! processes, with processes that are late or restarted.
+//! The ladder in the ideal cell: MOV-TO-LOC from the workstation's command to the joints and back, in any order of
+//! the processes, with late and restarted processes.
 
 mod rig;
 
@@ -47,7 +47,7 @@ fn a_command_that_is_done_already_is_done_at_once() {
     let mut rig = Rig::new();
     rig.command("PAUSE", "");
     assert_eq!(rig.finish(ProcessId::ALL, 2000), FINISHED);
-    // The arrows of the arm are not quite where the pose was taught: a short distance (IV.3.3 step 19).
+    // The arrows of the arm differ slightly from the taught pose (IV.3.3 step 19).
     rig.command("MOVE", "HOME");
     assert_eq!(rig.finish(ProcessId::ALL, 200), FINISHED);
     assert!(rig.at("HOME"));
@@ -69,7 +69,7 @@ fn a_bad_command_is_refused_without_motion() {
         ("MOVE", "", Reason::NoDestination),
         ("MOVE", "UNIT", Reason::UnknownLocation),
         ("TRANSFER", "SAFE", Reason::NoObjectNamed),
-        // No trajectory leads from HOME to the pedestal's neighbour as written.
+        // No trajectory leads from HOME directly to the pedestal's neighbour.
         ("MOVE", "UNIT-SAFE", Reason::NoTrajectory),
     ] {
         rig.command(verb, location);
@@ -78,7 +78,7 @@ fn a_bad_command_is_refused_without_motion() {
     assert_eq!(rig.command_of_servos(), joints);
 }
 
-/// docs/design/motion.md "Flying on": the goal after a through point takes a hop up and a hop down.
+/// docs/design/motion.md "Flying on": after a through point the goal takes one hop up and one hop down.
 #[test]
 fn prim_flies_on_for_two_ticks_after_a_through_point() {
     let mut rig = Rig::new();
@@ -109,7 +109,7 @@ fn prim_flies_on_for_two_ticks_after_a_through_point() {
 
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(12))]
-    /// docs/design/tick.md "Order": the order of processes within a tick cannot change a bit of the result.
+    /// docs/design/tick.md "Order": the order of processes within a tick does not change any bit of the result.
     #[test]
     fn order_does_not_matter(
         seed in prop::collection::vec(Just(ProcessId::ALL.to_vec()).prop_shuffle(), 1..20),
@@ -129,7 +129,7 @@ proptest! {
     }
 }
 
-/// Take what a process wrote over into another common memory.
+/// Copy the outputs of a process into another common memory.
 fn take_outputs(process: ProcessId, from: &CommonMemory, into: &mut CommonMemory) {
     match process {
         ProcessId::Task => into.task = from.task,
@@ -147,7 +147,7 @@ fn take_outputs(process: ProcessId, from: &CommonMemory, into: &mut CommonMemory
     }
 }
 
-/// Where each process runs (at the place of its code), and the order in which it comes up there.
+/// Ladder of each process (by its code), and the order of the processes within it.
 fn partition() -> impl Strategy<Value = (Vec<usize>, Vec<ProcessId>)> {
     let boards = prop::collection::vec(0..PROCESS_COUNT, PROCESS_COUNT);
     (boards, Just(ProcessId::ALL.to_vec()).prop_shuffle())
@@ -155,9 +155,8 @@ fn partition() -> impl Strategy<Value = (Vec<usize>, Vec<ProcessId>)> {
 
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(24))]
-    /// docs/design/tick.md "Order": nor can their distribution over boards, each with a ladder of its own
-    /// that steps some of the processes and is
-    /// given what the others wrote; with suspended processes and single steps on the way.
+    /// docs/design/tick.md "Order": nor does their distribution over boards, each with a ladder that steps some of
+    /// the processes and receives the outputs of the others; with suspended processes and single steps.
     #[test]
     fn distribution_does_not_matter(
         (board_of, order) in partition(),
@@ -190,7 +189,7 @@ proptest! {
     }
 }
 
-/// What goes wrong in a tick.
+/// A fault in a tick.
 #[derive(Clone, Debug)]
 enum Mishap {
     /// A process is not stepped for some ticks.
@@ -208,8 +207,8 @@ fn mishap() -> impl Strategy<Value = Mishap> {
 
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(1000))]
-    /// Whatever is late or restarted: the robot is never asked to jump, a command that is reported finished
-    /// is finished, no command is left without an end, and a PAUSE leads back to work.
+    /// With any late or restarted processes: the robot is never commanded to jump, a command reported as finished is
+    /// finished, every command ends, and a PAUSE leads back to work.
     #[test]
     fn mishaps_end_in_a_stop_and_a_report(
         mishaps in prop::collection::vec((0_u16..500, mishap()), 1..5),
@@ -261,7 +260,6 @@ const HELD: [(ProcessId, u8); 4] = [
 ];
 
 impl Rig {
-    /// The header of a process's outputs in the last tick.
     fn header(&self, process: ProcessId) -> Header {
         let memory = &self.before;
         match process {
@@ -313,7 +311,7 @@ fn a_held_process_is_stepped_once_a_press() {
         rig.external.devices.joystick.hold = switch;
         let mut executed = 0;
         for tick in 0..40 {
-            // Pressed for three ticks, let go for five; the button of another process counts for nothing.
+            // Pressed for three ticks, released for five; the button of another process has no effect.
             let pressed = tick % 8 < 3;
             rig.external.devices.joystick.single_step = if pressed { switch } else { !switch & 0x0F };
             rig.step(ProcessId::ALL);
@@ -352,7 +350,7 @@ fn a_stopped_board_pauses_and_resumes() {
         }
         rig.external.operator.stopped = 0;
         if board == 0 || board == 4 {
-            // The robot controller has missed the link, and warns of it: the link begins again.
+            // The robot controller missed the link and shows a warning: the link is initialized again.
             assert_ne!(rig.finish(ProcessId::ALL, 5000).0, HwsReport::Executing);
             rig.command("PAUSE", "");
             assert_eq!(rig.finish(ProcessId::ALL, 2000), FINISHED, "board {board}");
@@ -365,7 +363,7 @@ fn a_stopped_board_pauses_and_resumes() {
     }
 }
 
-/// `PRIM-LEVEL` and the like: a pass of one process of a board that is stopped.
+/// `PRIM-LEVEL` and the like: one pass of one process on a stopped board.
 #[test]
 fn a_process_of_a_stopped_board_is_executed_once() {
     let mut rig = Rig::new();
@@ -383,7 +381,7 @@ fn a_process_of_a_stopped_board_is_executed_once() {
     }
 }
 
-/// A ladder in which every variable that may be written has a value.
+/// A ladder in which every writable variable has a value.
 fn believing() -> Rig {
     let mut rig = Rig::new();
     rig.command("PAUSE", "");
@@ -405,7 +403,6 @@ fn believing() -> Rig {
     rig
 }
 
-/// The variables that have a value.
 fn believed(memory: &CommonMemory) -> Vec<Variable> {
     let estimates = &memory.emove.estimates;
     let has = |variable: &Variable| match variable {
@@ -424,7 +421,7 @@ const fn forget(variable: Variable) -> Option<Write> {
     Some(Write { variable, object: None, grip: 0 })
 }
 
-/// `<=` (IV.2.6): a value is written while the process stands, and nothing else changes.
+/// `<=` (IV.2.6): a value is written into a suspended process, and nothing else changes.
 #[test]
 fn a_value_is_written_into_a_stopped_process() {
     let upward: Vec<_> = ProcessId::ALL.iter().rev().copied().collect();
@@ -447,7 +444,7 @@ fn a_value_is_written_into_a_stopped_process() {
     }
 }
 
-/// Nothing is written into a process that runs: the bits are those of a run without.
+/// A running process ignores a written value: all bits are those of a run without it.
 #[test]
 fn a_running_process_refuses_a_written_value() {
     for &variable in Variable::ALL {
@@ -461,7 +458,7 @@ fn a_running_process_refuses_a_written_value() {
     }
 }
 
-/// The buffers that differ, by their process.
+/// The buffers that differ, by process.
 fn changes(one: &CommonMemory, other: &CommonMemory) -> Vec<&'static str> {
     let images = [one, other].map(|memory| {
         let mut image = vec![0; CommonMemory::SIZE];
@@ -480,7 +477,7 @@ fn changes(one: &CommonMemory, other: &CommonMemory) -> Vec<&'static str> {
     changed
 }
 
-/// A value that is written in the tick in which the board runs again is written first.
+/// A value written in the tick in which the board resumes takes effect before the step.
 #[test]
 fn a_process_is_written_before_it_is_stepped() {
     let mut rig = Rig::new();
@@ -502,7 +499,7 @@ fn a_process_is_written_before_it_is_stepped() {
     );
 }
 
-/// `.R` on board 2 (IV.3.3 step 2): E-move, which pauses, gives Prim ROBOT-INIT, and pauses again.
+/// `.R` on board 2 (IV.3.3 step 2): E-move, while pausing, sends Prim ROBOT-INIT and pauses again.
 #[test]
 fn the_link_is_initialized_when_a_person_asks_for_it() {
     let mut rig = Rig::new();
@@ -554,7 +551,7 @@ fn only_the_process_of_the_attached_gripper_is_stepped() {
     assert!(rig.before.grip.status.initialized, "the calibration outlasts the sleep");
 }
 
-/// What the joystick box and the quick change do for some ticks.
+/// The state of joystick box and quick change for some ticks.
 #[derive(Clone, Copy, Debug)]
 struct Interval {
     hold: u8,
@@ -570,8 +567,8 @@ fn interval() -> impl Strategy<Value = Interval> {
 
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(40))]
-    /// Dormancy, holding and single step are decided before any process is stepped: the order cannot change a
-    /// bit, the robot is never asked to jump, and once everything runs again a PAUSE leads back to work.
+    /// Dormancy, holding and single step are decided before any process is stepped: the order changes no bit, the
+    /// robot is never commanded to jump, and once everything runs again a PAUSE leads back to work.
     #[test]
     fn suspensions_do_not_depend_on_the_order(
         intervals in prop::collection::vec(interval(), 1..12),
@@ -644,8 +641,8 @@ fn a_lost_process_below_is_an_error() {
     assert_eq!(rig.finish(&without_emove, 100), (HwsReport::Error, Reason::NeighbourLost));
 }
 
-/// Its processes are those of another ladder, in lock step: the outputs are bit for bit the same as with the
-/// pedestal inside.
+/// Its processes run in another ladder in lock step: the outputs are bit-identical to those with an internal
+/// pedestal.
 #[test]
 fn a_pedestal_of_another_system_is_adopted_and_lost_when_it_does_not_answer() {
     let pedestal = [ProcessId::Pedestal, ProcessId::Hand, ProcessId::RotaryTable];
@@ -667,7 +664,7 @@ fn a_pedestal_of_another_system_is_adopted_and_lost_when_it_does_not_answer() {
         rig.external.pedestal = OutsidePedestal { elsewhere: true, answers, pedestal, hand, table };
         rig.step(ProcessId::ALL);
     };
-    // The first tick of both was without it.
+    // The first tick of both ran without it.
     inside.ladder.restart(ProcessId::Pedestal);
     inside.ladder.restart(ProcessId::Hand);
     inside.ladder.restart(ProcessId::RotaryTable);

@@ -1,4 +1,4 @@
-//! Speed of the link: writing a frame, reading one, and a whole exchange of both ends over a line with and without
+//! Speed of the link: writing and reading a frame, and a whole exchange of both ends over a line with and without
 //! faults.
 
 use std::hint::black_box;

@@ -1,9 +1,9 @@
 //! The controller's end of the link: the DEPC function of the T3 controller (A 2.3, A 2.4).
 //!
-//! The function begins in auto mode, reports the position of the robot, and then takes one command a period: it
+//! The function starts in auto mode, reports the robot's position, and then accepts one command per period: it
 //! acknowledges, checks, and moves. If it cannot execute a command, the controller's screen shows a warning; the
-//! operator answers ENTER (begin again) or CANCEL (end the function). A warning is not sent over the line: the host
-//! only gets no answer.
+//! operator answers ENTER (restart) or CANCEL (end the function). A warning is not sent over the line: the host only
+//! gets no answer.
 //!
 //! The state machine is independent of the robot; it moves any implementation of [`Robot`]: the simulated T3, or a
 //! robot with another link.
@@ -24,8 +24,8 @@ use crate::{
 /// Positions are words of the line. A robot with a higher resolution gets the unrounded frames from
 /// [`crate::exact::ExactFrames`].
 pub trait Robot {
-    /// Present position of the robot, or the end of its present motion: commanding it moves nothing. The next point
-    /// starts from there.
+    /// Present position of the robot, or the end of its present motion. Commanding it moves nothing, and the next
+    /// point starts from there.
     fn present(&mut self) -> Plate;
 
     /// Set `goal` as the set point to reach within the coming period.
@@ -34,14 +34,14 @@ pub trait Robot {
     /// [`Refusal`] if the robot cannot reach it; the set point is unchanged, and the screen shows the warning.
     fn accept(&mut self, goal: &Plate) -> Result<(), Refusal>;
 
-    /// A warning of the robot itself. While there is one, the controller accepts no command, and the function does not
-    /// begin.
+    /// A warning of the robot itself. During a warning the controller accepts no command, and the function does not
+    /// start.
     fn warning(&self) -> Option<Warning> {
         None
     }
 
-    /// Stop: no further point follows, because the function has ended or waits for an answer to a warning, or because
-    /// the host has found the robot off its path. From then on [`Self::present`] gives the place where it comes to rest.
+    /// Stop: no further point follows. The function has ended or waits for an answer to a warning, or the host found
+    /// the robot off its path. From then on [`Self::present`] returns the place at which the robot comes to rest.
     fn stop(&mut self) {}
 }
 
@@ -65,7 +65,7 @@ pub enum ControllerState {
     Warning,
     /// Error P-IG: the function has ended (A 2.4).
     PreManual,
-    /// Cancelled by the host; the program goes on to its next point.
+    /// Cancelled by the host; the program continues with its next point.
     Ended,
 }
 
@@ -82,7 +82,7 @@ pub struct ControllerInputs {
     pub transmitter_fault: bool,
     /// The program reaches the DEPC function.
     pub start: bool,
-    /// Hold: while it is on, the output in progress is completed, then no command is accepted.
+    /// Hold: the output in progress is completed; then no command is accepted.
     pub hold: bool,
     /// Interrupt pushbutton.
     pub interrupt: bool,
@@ -99,7 +99,7 @@ pub struct ControllerOutputs {
     pub tx: LinkBytes,
     /// DTR, the host's CTS (A.2).
     pub dtr: bool,
-    /// A command was executed in this tick: the robot moves to [`Controller::commanded`].
+    /// A command was executed in this tick, and the robot moves to [`Controller::commanded`].
     pub moving: bool,
     /// Function to run now: that of the command whose position was reached in the previous tick.
     pub function: [u8; 2],
@@ -141,7 +141,7 @@ impl Controller {
         self.warning
     }
 
-    /// The position last commanded or reported, from which the next command is checked.
+    /// The last commanded or reported position, from which the next command is checked.
     #[must_use]
     pub const fn commanded(&self) -> Plate {
         self.commanded
@@ -184,7 +184,7 @@ impl Controller {
         out
     }
 
-    /// Begin the function, or begin it again: the checks in their order, then the report.
+    /// Start or restart the function: the checks in their order, then the report.
     fn begin(
         &mut self,
         inputs: &ControllerInputs,
@@ -236,7 +236,7 @@ impl Controller {
         }
     }
 
-    /// ACK means that the command is understood; whether it can be executed is checked after that (A 2.3).
+    /// ACK means that the command is understood; the check whether it can be executed follows (A 2.3).
     fn execute(
         &mut self,
         inputs: &ControllerInputs,
@@ -389,7 +389,7 @@ mod tests {
                 (controller.state(), controller.warning(), robot.at),
                 (ControllerState::Warning, warning, HOME)
             );
-            // No answer until the operator answers; then the report.
+            // No answer before the operator's; then the report.
             let out = controller.step(&line(&[0x05]), &mut robot);
             assert!(out.tx.as_slice().is_empty() && out.dtr);
             let out = controller.step(&ControllerInputs { enter: true, ..well() }, &mut robot);
@@ -536,7 +536,7 @@ mod tests {
         assert_eq!((out.tx.length, out.dtr, controller.state()), (16, true, ControllerState::Running));
     }
 
-    /// A robot with warnings of its own.
+    /// A robot with its own warnings.
     struct Complaining {
         complaint: Option<Warning>,
         stopped: u32,
@@ -574,7 +574,7 @@ mod tests {
         }
         robot.complaint = None;
         assert_eq!(controller.step(&line(&[0x05]), &mut robot).tx.length, 16);
-        // A refusal by the robot is a warning as well.
+        // A refusal by the robot is also a warning.
         let out = controller.step(&to([10, -6293, -636, -9000, 13500, 0], NO_FUNCTION), &mut robot);
         assert_eq!((out.tx.as_slice(), out.moving), (&[0x06][..], false));
         assert_eq!((controller.warning(), robot.stopped), (Warning::Translation, 2));

@@ -1,11 +1,11 @@
-//! Errors of positions and frames: small `Copy` values with what was expected and what was found.
+//! Errors of positions and frames: small `Copy` values with the expected and the actual value.
 
 use core::fmt;
 
 /// Errors of positions to send and of received bytes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Error {
-    /// A coordinate that does not fit into sixteen bits: the caller must not send it.
+    /// A coordinate that exceeds sixteen bits: the caller must not send it.
     OutOfRange {
         /// Axis: 0, 1, 2 for X, Y, Z.
         axis: usize,
@@ -21,19 +21,19 @@ pub enum Error {
     },
     /// Too few or too many bytes for the frame.
     BadLength {
-        /// Number of bytes of the frame.
+        /// Length of the frame.
         expected: usize,
         /// Number of bytes given.
         found: usize,
     },
     /// The frame begins with a wrong byte.
     BadHead {
-        /// The first byte of such a frame.
+        /// The first byte of a valid frame.
         expected: u8,
         /// The byte found.
         found: u8,
     },
-    /// The checksum is wrong: a byte was changed on the line.
+    /// The checksum is wrong: the line has changed a byte.
     BadChecksum {
         /// The checksum of the bytes received.
         expected: u8,

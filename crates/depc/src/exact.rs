@@ -1,9 +1,9 @@
 //! The unrounded frames: Prim's commands before rounding to 0.01 in and 0.01 degree.
 //!
-//! The line carries words, which command the robot. For a robot with a higher resolution this module finds the frame
-//! from which a position was rounded: it keeps Prim's last frames, each with the buffer that T3I got for it, and
-//! searches for the one whose buffer gives the words on the line. If there is none (a point that was scaled back, or a
-//! position from a report), the words alone give the frame.
+//! The words on the line command the robot. For a robot with a higher resolution this module finds the frame from
+//! which a position was rounded. It keeps Prim's last frames, each with the buffer that T3I received, and searches
+//! for the one whose buffer gives the words on the line. Without a match (a point that was scaled back, or a reported
+//! position), the words determine the frame.
 
 use geometry::{
     frame::{Frame, Vector},
@@ -13,7 +13,7 @@ use geometry::{
 
 use crate::Plate;
 
-/// Number of frames kept: the queue of T3I, one frame on its way to it, and one on the line.
+/// Number of stored frames: the queue of T3I, one frame in transit to it, and one on the line.
 const MOST_FRAMES: usize = 8;
 
 /// A frame of Prim.
@@ -23,7 +23,7 @@ struct Kept {
     wire: WireFrame,
     /// Unrounded, from Prim.
     exact: Frame,
-    /// True if it was already returned.
+    /// True if it was returned before.
     used: bool,
 }
 
@@ -41,8 +41,8 @@ impl Default for ExactFrames {
 }
 
 impl ExactFrames {
-    /// Keep a frame: Prim has commanded the tool frame `exact` (inches, world), which T3I got as `wire`. It is ignored
-    /// if `wire` is not rounded from `exact`.
+    /// Store a frame: Prim commanded the tool frame `exact` (inches, world), and T3I received it as `wire`. It is
+    /// ignored if `wire` is not rounded from `exact`.
     pub fn offer(&mut self, wire: &WireFrame, exact: &Frame) {
         let newest = self.frames.iter().flatten().next();
         let known = newest.is_some_and(|newest| newest.wire == *wire && newest.exact == *exact);
@@ -54,9 +54,9 @@ impl ExactFrames {
         }
     }
 
-    /// The unrounded end-plate frame (inches, world) of a position; the frame of the words if none is kept. Positions
-    /// must come in the order of the frames: frames older than the one found are dropped, and a repeated position gives
-    /// the next frame if that has the same words.
+    /// The unrounded end-plate frame (inches, world) of a position; the frame of the words if none is stored.
+    /// Positions must arrive in the order of the frames: older frames than the found one are dropped. A repeated
+    /// position gives the next frame if it has the same words.
     pub fn plate_frame(&mut self, words: &Plate, arm: &Arm) -> Frame {
         let gives = |wire: &WireFrame| {
             let tool = wire.to_frame().ok();

@@ -1,18 +1,17 @@
 //! The host's end of the link, with which the T3 Interface process talks to the robot controller (A 2.3, VI.1).
 //!
 //! Each tick has two halves: [`Host::receive`] processes the received bytes and changes the state, [`Host::transmit`]
-//! sends at most one frame. Only one frame is outstanding at a time. An answer has no number, so the host never repeats
-//! a frame without an answer: the controller may have executed it. The host then sends a restart, discards everything
-//! until a report with a correct checksum comes, and continues from there. Only after a NAK, which means that nothing
-//! was executed, it sends the same bytes again.
+//! sends at most one frame. Only one frame is outstanding at a time. An answer has no number, so the host never
+//! repeats a frame without an answer: the controller may have executed it. Instead it sends a restart, discards all
+//! bytes until a report with a correct checksum arrives, and continues from there. Only a NAK proves that the command
+//! was not executed; the host then sends the same bytes again.
 //!
-//! A controller whose DTR is on and that does not answer may be in Hold, show a warning D1 to D6, have a dead receiver,
-//! or the wire may be cut: the host cannot distinguish these. It sends a restart once a second, and after the time of
+//! A controller with DTR on and without answers may be in Hold, show a warning D1 to D6, have a dead receiver, or the
+//! wire may be cut: the host cannot distinguish these. It sends a restart once per second, and after the time of
 //! [`Host::set_patience`] it reports the link as failed.
 //!
-//! A report has no number either. On a slow line several may be on their way, and the robot may have moved since the
-//! first: if more than one was requested, the last one is valid, and only when no other has followed for longer than
-//! the time for an answer.
+//! A report has no number either. On a slow line several may be in transit, and the robot may have moved since the
+//! first. If more than one was requested, only the last is valid, and only after an answer time without another one.
 
 mod start;
 
@@ -25,19 +24,18 @@ use crate::{
     wire::{Control, DataCommand, FRAME_BYTES, Response},
 };
 
-/// Ticks without an answer after which a frame counts as lost (docs/design/link.md "Time-out"). Hold on the
-/// controller's panel only delays the answer, and looks the same.
+/// Ticks without an answer after which a frame is treated as lost (docs/design/link.md "Time-out"). Hold on the
+/// controller's panel looks the same, although it only delays the answer.
 pub const ANSWER_TICKS: u16 = 3;
-/// Greatest number of bytes in a tick in which an answer is valid; more bytes may be noise.
+/// Maximum number of bytes in a tick with a valid answer; more bytes may be noise.
 const ANSWER_BYTES: usize = 4;
-/// Repetitions of one data command after NAKs, after which the host restarts the link.
+/// Maximum repetitions of a data command after NAKs; then the host restarts the link.
 pub const MOST_RETRIES: u8 = 3;
 /// Ticks between two unanswered restarts: 1 s (docs/design/link.md "Silence").
 pub const RESTART_TICKS: u16 = 25;
-/// Default number of ticks without a report, with DTR on, after which the link counts as failed: 60 s.
+/// Default number of ticks with DTR on and without a report after which the link is treated as failed: 60 s.
 pub const PATIENCE_TICKS: u16 = 60 * RESTART_TICKS;
-/// Number of attempts without DTR, each as long as the time for an answer, after which the link counts as not
-/// responding.
+/// Number of attempts without DTR, each lasting an answer time, after which the link is treated as not responding.
 pub const START_ATTEMPTS: u8 = 3;
 
 /// State of the host's end.
@@ -63,22 +61,22 @@ pub enum HostState {
     Waiting,
     /// A cancel is outstanding.
     Cancelling,
-    /// The function was cancelled. A report, when the program comes to the function again, begins again; so does a
-    /// restart, when DTR is on for as long as an answer may take and no report comes.
+    /// The function was cancelled. A report restarts the link when the program reaches the function again. A
+    /// restart command, after an answer time with DTR on and without a report.
     Ended,
 }
 
-/// Event since the last tick that the user of the link must know.
+/// Event of a tick that the user of the link must know.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Plain)]
 pub enum HostEvent {
-    /// Nothing.
+    /// No event.
     #[text = "nothing"]
     None,
     /// The outstanding data command is acknowledged.
     Acknowledged,
-    /// A report has come; the robot holds [`Host::position`].
+    /// A report has arrived; the robot is at [`Host::position`].
     Started,
-    /// The link was lost while it ran: what was sent last may or may not have been executed.
+    /// The running link was lost: the last command may or may not have been executed.
     Lost,
 }
 
@@ -100,30 +98,30 @@ pub enum Intent {
 pub struct Host {
     state: HostState,
     receiver: ReplyReceiver,
-    /// The position last reported or acknowledged.
+    /// The last reported or acknowledged position.
     position: Plate,
     /// The outstanding data command, to be repeated after a NAK.
     frame: [u8; FRAME_BYTES],
     restart_due: bool,
     resend_due: bool,
-    /// Ticks since the last frame was sent, or since the wait began.
+    /// Ticks since the last frame, or since the start of the wait.
     waited: u16,
     answer_ticks: u16,
-    /// Greatest number of ticks of a start or a cancel with DTR on.
+    /// Time limit of a start or a cancel with DTR on, ticks.
     patience: u16,
     /// Ticks with DTR on in the present start or cancel.
     starting: u16,
-    /// No report has come for [`RESTART_TICKS`] with DTR on. Only a report ends this, not [`Host::forgive`].
+    /// True after [`RESTART_TICKS`] with DTR on and without a report. Only a report resets it, not [`Host::forgive`].
     silent: bool,
-    /// A restart was sent, and its report has not come yet.
+    /// A restart was sent, and its report has not arrived yet.
     restarted: bool,
-    /// Fault of the last attempt of this start; none if nothing was received.
+    /// Fault of the last attempt of this start; none if no byte was received.
     attempt: LinkFault,
     retries: u8,
     attempts: u8,
-    /// Number of reports that may be on their way: restarts sent since the last start, and an unrequested report.
+    /// Number of reports in transit: restarts sent since the last start, and an unrequested report.
     asked: u8,
-    /// A report that may not be the last one, because more than one was requested.
+    /// A report that may not be the last one, as more than one was requested.
     candidate: Plate,
     has_candidate: bool,
     fault: LinkFault,
@@ -136,13 +134,13 @@ fn count(counter: &mut u32) {
 }
 
 impl Host {
-    /// A host that waits `answer_ticks` ticks (at least 1) for the answer to a frame; usually [`ANSWER_TICKS`].
+    /// A host with an answer time of `answer_ticks` ticks (at least 1); usually [`ANSWER_TICKS`].
     #[must_use]
     pub fn new(answer_ticks: u16) -> Self {
         Self { answer_ticks: answer_ticks.max(1), patience: PATIENCE_TICKS, ..Self::default() }
     }
 
-    /// Forget the counters, and the report that is no candidate any more. It goes on as before.
+    /// Reset the counters and discard an outdated candidate report. The behaviour does not change.
     pub fn forget_past(&mut self) {
         self.counters = LinkCounters::default();
         if !self.has_candidate {
@@ -150,8 +148,8 @@ impl Host {
         }
     }
 
-    /// Set the number of ticks with DTR on to wait for a report, or for the answer to a cancel, before the link counts
-    /// as failed; initially [`PATIENCE_TICKS`].
+    /// Set the time limit, in ticks with DTR on, for a report or for the answer to a cancel. Afterwards the link is
+    /// treated as failed. Initially [`PATIENCE_TICKS`].
     pub const fn set_patience(&mut self, ticks: u16) {
         self.patience = ticks;
     }
@@ -162,7 +160,7 @@ impl Host {
         !matches!(self.state, HostState::Down)
     }
 
-    /// True if DTR is on and no report has come for [`RESTART_TICKS`] or longer.
+    /// True if DTR is on and no report has arrived for [`RESTART_TICKS`] or longer.
     #[must_use]
     pub const fn is_silent(&self) -> bool {
         matches!(self.state, HostState::Starting) && self.silent
@@ -174,7 +172,7 @@ impl Host {
         self.state
     }
 
-    /// The position last reported or acknowledged. Meaningless before the first report.
+    /// The last reported or acknowledged position. Meaningless before the first report.
     #[must_use]
     pub const fn position(&self) -> Plate {
         self.position
@@ -204,8 +202,8 @@ impl Host {
         (self.attempts, self.starting, self.attempt) = (0, 0, LinkFault::None);
     }
 
-    /// Function bytes of the last data command with a function that was lost: the function may or may not have run, and
-    /// the command is not repeated. [`crate::wire::NO_FUNCTION`] if there was none.
+    /// Function bytes of the last lost data command with a function: the function may or may not have run, and the
+    /// command is not repeated. [`crate::wire::NO_FUNCTION`] if there was none.
     #[must_use]
     pub const fn lost_function(&self) -> [u8; 2] {
         self.lost_function
@@ -223,13 +221,13 @@ impl Host {
     }
 
     /// Call before the first half of a tick if the port has not sent all bytes of the last one (`status-arg-out` 4,
-    /// VI.1.2). The frame on the line was cut, so it counts as lost; the port may have been blocked for longer than the
-    /// controller waits.
+    /// VI.1.2). The frame on the line is incomplete and treated as lost: the port may have been blocked for longer
+    /// than the controller waits.
     pub fn unsent(&mut self) -> HostEvent {
         match self.state {
             HostState::Waiting => self.lost(LinkFault::NotTransmitted),
             HostState::Starting => {
-                // The restart itself was cut: no report will answer it.
+                // The restart itself was cut off, so no report will answer it.
                 self.asked = self.asked.saturating_sub(1);
                 self.restart_due = true;
                 self.attempt = LinkFault::NotTransmitted;
@@ -243,7 +241,7 @@ impl Host {
         }
     }
 
-    /// First half of a tick: the bytes that arrived, and the controller's DTR (`ready`).
+    /// First half of a tick: the received bytes, and the controller's DTR (`ready`).
     pub fn receive(&mut self, rx: &LinkBytes, ready: bool) -> HostEvent {
         self.waited = self.waited.saturating_add(1);
         if !ready {
@@ -252,7 +250,7 @@ impl Host {
         if self.state == HostState::Down {
             self.begin_start();
             self.waited = 0;
-            // The controller sends a report without a request when its function begins.
+            // The controller sends an unrequested report when its function starts.
             self.asked = 1;
         }
         let bytes = rx.as_slice();
@@ -274,7 +272,7 @@ impl Host {
         if self.waited >= self.answer_ticks { event.max(self.without_answer()) } else { event }
     }
 
-    /// Second half of a tick: send a frame that is due, or `intent`. Returns true if `intent` was sent.
+    /// Second half of a tick: send a due frame or `intent`. Returns true if `intent` was sent.
     pub fn transmit(&mut self, intent: &Intent, tx: &mut LinkBytes) -> bool {
         match intent {
             // The report that answers the previous restart answers this one too.
@@ -334,11 +332,11 @@ impl Host {
         sent
     }
 
-    /// Process one reply in the present state. A reply without meaning is noise and is ignored: if it has replaced an
-    /// answer, no answer comes.
+    /// Process one reply in the present state. A reply without meaning is ignored as noise: if it has replaced an
+    /// answer, no answer arrives.
     ///
-    /// A report is valid only if it is the `last` reply of its tick: nothing is sent after it, and the checksum cannot
-    /// distinguish a report that has lost an FF from one that is completed by the first FF of the next. An answer is
+    /// A report is valid only as the `last` reply of its tick: the controller sends nothing after it, and the
+    /// checksum cannot detect a report that lost an FF and was completed by the first FF of the next. An answer is
     /// valid only in a tick with few bytes: it has no checksum, and may be a byte of a damaged report.
     fn take(&mut self, reply: Reply, last: bool) -> HostEvent {
         if reply == Reply::BadChecksum {
@@ -377,15 +375,15 @@ impl Host {
                 self.resend_due = true;
                 HostEvent::None
             }
-            // It was not requested: the controller has stopped with a warning and begun again (A 2.4). Or the line is
-            // slow, and more reports follow.
+            // An unrequested report: the controller has stopped with a warning and restarted (A 2.4), or the line is
+            // slow and more reports follow.
             (HostState::Ready | HostState::Waiting, Reply::Report(_)) => {
                 self.asked = 1;
                 self.lost(LinkFault::DepcError)
             }
             (HostState::Ready | HostState::Waiting, Reply::BadChecksum) => self.lost(LinkFault::Checksum),
             (HostState::Starting, Reply::BadChecksum) => {
-                // This was one of the reports on their way.
+                // This was one of the reports in transit.
                 self.asked = self.asked.saturating_sub(1);
                 self.restart_due = true;
                 self.has_candidate = false;

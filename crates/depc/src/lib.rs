@@ -1,8 +1,8 @@
 //! The DEPC link: "Dynamic External Path Control", the serial line over which an external computer controls a
 //! Cincinnati Milacron T3 (NBSIR 88-3692, appendix A; version 1.1, 7 Jul 82).
 //!
-//! Both ends are state machines without I/O and without a clock. Each is stepped once a tick: it takes the bytes that
-//! arrived and returns the bytes to send ([`link::LinkBytes`]):
+//! Both ends are state machines without I/O or clock. Each is stepped once per tick: it takes the received bytes and
+//! returns the bytes to send ([`link::LinkBytes`]):
 //!
 //! ```text
 //!   host (T3 Interface)                         controller (Acramatic)
@@ -11,16 +11,16 @@
 //! ```
 //!
 //! * [`link`]: the bytes of a tick, faults and counters;
-//! * [`plate`]: the six words of a position; their coding is defined only there;
+//! * [`plate`]: the six words of a position and their coding;
 //! * [`wire`]: the frames, one file each, byte by byte;
 //! * [`receive`]: byte-by-byte receivers of both ends;
 //! * [`limit`], [`step`]: the velocity limits, and steps that respect them;
 //! * [`host`], [`controller`]: the two ends; [`warning`]: the warnings of the controller;
-//! * [`track`]: the path that was sent last, and the distance of a robot from it;
+//! * [`track`]: the last positions sent, as a path, and the distance of a robot from it;
 //! * [`exact`]: the unrounded frames, for a robot with a finer resolution than 0.01 in;
 //! * [`fault`]: faults on the line between the ends, from a plan and a seed.
 //!
-//! Whatever the appendix leaves open is marked ASSUMED where it is decided.
+//! Decisions that the appendix leaves open are marked ASSUMED.
 
 #![cfg_attr(not(test), no_std)]
 #![forbid(unsafe_code)]

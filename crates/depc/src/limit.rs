@@ -1,9 +1,9 @@
 //! The velocity limits of the controller (A 2.3): 14 in/s and 1.0 rad/s.
 //!
-//! The controller gets only the words on the line, so the limits apply to a step from one set of words to the next: the
-//! distance that the end plate moves, and each of D, E and R separately (ASSUMED; the appendix says "the commanded
-//! change in translation or orientation"). Both ends use the same integers, so that one end accepts every step that the
-//! other permits.
+//! The controller receives only the words on the line, so the limits apply to a step from one set of words to the
+//! next: the distance of the end plate, and each of D, E and R separately (ASSUMED; the appendix says "the commanded
+//! change in translation or orientation"). Both ends use the same integers, so each accepts exactly the steps that
+//! the other permits.
 
 use core::fmt;
 
@@ -11,11 +11,11 @@ use rcs_core::Plain;
 
 use crate::{Error, Plate, plate::angle_between};
 
-/// Translation limit: 14 in/s = 0.0014 counts of 0.01 in a microsecond, here in ten-thousandths of a count.
+/// Translation limit: 14 in/s = 0.0014 counts of 0.01 in per microsecond, here in ten-thousandths of a count.
 const TRANSLATION_PER_US: u64 = 14;
 /// Ten-thousandths of a count, squared.
 const TRANSLATION_UNIT_SQUARED: u64 = 10_000 * 10_000;
-/// Orientation limit: 1 rad/s = 0.00572957795 counts of 0.01 degree a microsecond, here in 1e-11 of a count.
+/// Orientation limit: 1 rad/s = 0.00572957795 counts of 0.01 degree per microsecond, here in 1e-11 of a count.
 const ORIENTATION_PER_US: u64 = 572_957_795;
 /// 1e11.
 const ORIENTATION_UNIT: u64 = 100_000_000_000;
@@ -23,7 +23,7 @@ const ORIENTATION_UNIT: u64 = 100_000_000_000;
 /// The limits for one period of the link.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct Limits {
-    /// Time in which a data command must be reached, microseconds.
+    /// Time within which a data command must be reached, microseconds.
     period_us: u32,
 }
 
@@ -76,14 +76,14 @@ impl Limits {
         u16::try_from(self.period_us.div_ceil(1000)).unwrap_or(u16::MAX)
     }
 
-    /// The longest step of the end plate in a period, squared, in (0.01 in)².
+    /// The longest step of the end plate per period, squared, in (0.01 in)².
     #[must_use]
     pub fn translation_squared(&self) -> u64 {
         let way = TRANSLATION_PER_US.saturating_mul(u64::from(self.period_us));
         way.saturating_mul(way).checked_div(TRANSLATION_UNIT_SQUARED).unwrap_or_default()
     }
 
-    /// The largest change of D, E or R in a period, 0.01 degree.
+    /// The largest change of D, E or R per period, 0.01 degree.
     #[must_use]
     pub fn orientation(&self) -> i32 {
         let scaled = ORIENTATION_PER_US.saturating_mul(u64::from(self.period_us));
@@ -93,7 +93,7 @@ impl Limits {
     /// Check that the controller accepts a step between two positions.
     ///
     /// # Errors
-    /// The limit that it exceeds, translation first.
+    /// The exceeded limit, translation first.
     pub fn check(&self, from: &Plate, to: &Plate) -> Result<(), Exceeded> {
         let ([x, y, z, d, e, r], [to_x, to_y, to_z, to_d, to_e, to_r]) = (from.words, to.words);
         let squared: u64 = [(x, to_x), (y, to_y), (z, to_z)]

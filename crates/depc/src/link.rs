@@ -2,8 +2,8 @@
 
 use rcs_core::Plain;
 
-/// Greatest number of bytes on the DEPC line in one direction in a tick: 9600 baud gives 38, rounded up with room for
-/// bytes that have queued in a receiver.
+/// Maximum number of bytes on the DEPC line per direction and tick: 9600 baud give 38, and queued bytes in a receiver
+/// need room.
 pub const LINK_BYTES: usize = 64;
 
 /// Bytes of one tick on a serial line.
@@ -22,7 +22,7 @@ impl LinkBytes {
         self.bytes.get(..usize::from(self.length)).unwrap_or(&self.bytes)
     }
 
-    /// Append a byte; false if there is no room.
+    /// Append a byte; false if it does not fit.
     pub fn push(&mut self, byte: u8) -> bool {
         match self.bytes.get_mut(usize::from(self.length)) {
             Some(slot) => {
@@ -34,7 +34,7 @@ impl LinkBytes {
         }
     }
 
-    /// Append as many of `bytes` as fit; returns their number.
+    /// Append as many of `bytes` as fit. Returns their number.
     pub fn extend(&mut self, bytes: &[u8]) -> usize {
         bytes.iter().take_while(|&&byte| self.push(byte)).count()
     }

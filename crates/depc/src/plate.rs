@@ -1,7 +1,7 @@
 //! The coding of a position on the line.
 //!
 //! Appendix A says only "12 bytes of world coordinates"; VI.1 says that they are those of the end plate, in Cartesian
-//! and Euler form. ASSUMED (SPECNOTES): six signed words X, Y, Z in 0.01 in and D, E, R in 0.01 degree, where
+//! and Euler form. ASSUMED (SPECNOTES): six signed words, X, Y, Z in 0.01 in and D, E, R in 0.01 degree, with
 //!
 //! ```text
 //! rotation = Rz(D) Ry(E - 90) Rx(R)      D: azimuth of the gripper axis about world +Z
@@ -9,11 +9,11 @@
 //!                                        R: roll about the gripper axis
 //! ```
 //!
-//! so that a vertical gripper is the pole of the angles, about which the manual warns.
+//! Thus a vertical gripper is the pole of the angles, about which the manual warns.
 //!
-//! E is within 0 to 180 degrees. D and R continue from one position to the next without jumps of 360 degrees; before a
-//! word overflows it changes by 360, and both ends compare modulo 360. At the pole D has no meaning, and keeps its
-//! value.
+//! E is between 0 and 180 degrees. D and R continue from one position to the next without jumps of 360 degrees.
+//! Before a word overflows it changes by 360, and both ends compare modulo 360. At the pole D has no meaning and
+//! keeps its value.
 
 use core::f64::consts::PI;
 
@@ -50,7 +50,7 @@ fn shortest(difference: i32) -> i32 {
     difference.saturating_add(HALF_TURN).rem_euclid(TURN).saturating_sub(HALF_TURN)
 }
 
-/// The word of `angle` (0.01 degree) that is nearest to `near`; if that is out of range, the word a full turn from it.
+/// The word of `angle` (0.01 degree) nearest to `near`; if it is out of range, the word one full turn away.
 #[must_use]
 pub fn angle_word(angle: i32, near: i16) -> i16 {
     let near = i32::from(near);
@@ -71,8 +71,8 @@ impl Plate {
     /// The words of an end-plate frame (inches, world), with D and R near those of `near`.
     ///
     /// # Errors
-    /// [`Error::OutOfRange`] if X, Y or Z is out of range of a word, [`Error::NotFinite`] if a number is not finite. No
-    /// value wraps around.
+    /// [`Error::OutOfRange`] if X, Y or Z exceeds a word, [`Error::NotFinite`] if a number is not finite. No value
+    /// wraps around.
     pub fn from_frame(plate: &Frame, near: &Self) -> Result<Self, Error> {
         if !plate.is_finite() {
             return Err(Error::NotFinite);
@@ -89,8 +89,8 @@ impl Plate {
         } else {
             angle_word(hundredths_of_degree(libm::atan2(axis.y, axis.x)), near_d)
         };
-        // The roll is the remaining rotation after the rounded D and E, so that near the pole their rounding errors do
-        // not add up.
+        // The roll is the remaining rotation after the rounded D and E, so their rounding errors do not accumulate
+        // near the pole.
         let rolled_y = (pointing(i32::from(d), e).inverse() * plate.rotation) * Vector::y();
         let r = angle_word(hundredths_of_degree(libm::atan2(rolled_y.z, rolled_y.y)), near_r);
         let (x, y, z) = (word(0, plate.position.x)?, word(1, plate.position.y)?, word(2, plate.position.z)?);
@@ -100,7 +100,7 @@ impl Plate {
     /// The words of a tool frame: the end plate of `arm` is one tool length behind the tool point.
     ///
     /// # Errors
-    /// As [`Plate::from_frame`].
+    /// Those of [`Plate::from_frame`].
     pub fn from_tool(tool: &Frame, arm: &Arm, near: &Self) -> Result<Self, Error> {
         Self::from_frame(&tool.shifted(Vector::new(-arm.plate_to_tool, 0.0, 0.0)), near)
     }
@@ -136,8 +136,7 @@ impl Plate {
             && [(d, od), (e, oe), (r, or)].iter().all(|(a, b)| angle_between(*a, *b) == 0)
     }
 
-    /// True if each word is between those of `before` and `last`, with a tolerance of `counts`; angles modulo 360
-    /// degrees.
+    /// True if each word is between those of `before` and `last`, within `counts`; angles modulo 360 degrees.
     #[must_use]
     pub fn is_between(&self, before: &Self, last: &Self, counts: i32) -> bool {
         let within = |way: i32, here: i32| {
@@ -161,7 +160,7 @@ impl Plate {
         bytes
     }
 
-    /// The position of twelve bytes; every twelve bytes are a valid position.
+    /// The position of twelve bytes; any twelve bytes are valid.
     #[must_use]
     pub fn from_bytes(bytes: &[u8; 12]) -> Self {
         let mut words = [0; 6];

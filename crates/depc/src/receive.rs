@@ -1,8 +1,8 @@
 //! The receivers of both ends, which find frames in the received bytes.
 //!
-//! A byte may be changed, lost, duplicated or late. Each receiver holds a bounded number of bytes, finds the next frame
-//! after any garbage, and never waits for the end of an incomplete frame: a tick without bytes ends it (a frame takes
-//! 17 ms, a tick 40 ms).
+//! A byte may be changed, lost, duplicated or late. Each receiver holds a bounded number of bytes and finds the next
+//! frame after any garbage. It never waits for the end of an incomplete frame: a tick without bytes ends it (a frame
+//! takes 17 ms, a tick 40 ms).
 
 use rcs_core::Plain;
 
@@ -16,8 +16,7 @@ use crate::{
 pub const BOARD_BYTES: usize = 64;
 /// Ticks after which garbage gets a NAK even if the line is not quiet.
 const GARBLED_TICKS: u8 = 3;
-/// Greatest number of ticks over which the bytes of one frame are spread; later bytes may be another command in place
-/// of a lost byte.
+/// Maximum number of ticks for the bytes of one frame; later bytes may be another command in place of a lost byte.
 const FRAME_TICKS: u8 = 2;
 
 /// A command received by the controller.
@@ -33,22 +32,23 @@ pub enum Command {
 
 /// The receiver of the controller, with its buffer (A 2.3 "the buffer on the RS232 board").
 ///
-/// Bytes after a bad byte must not be read as commands: a data frame without its first byte may contain a cancel. So
-/// the receiver discards everything until the line is quiet, and only then the NAK follows.
+/// Bytes after a bad byte must not be read as commands: a data frame without its first byte may contain a cancel.
+/// Therefore the receiver discards all bytes until the line is quiet; the NAK follows then.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct CommandReceiver {
     bytes: [u8; BOARD_BYTES],
     length: u8,
-    /// True if nothing arrived in this tick.
+    /// True if no byte arrived in this tick.
     quiet: bool,
     /// Ticks since a bad byte; 0 for none.
     garbled: u8,
-    /// Number of ticks in which the frame at the front was incomplete.
+    /// Number of ticks with an incomplete frame at the front.
     begun: u8,
 }
 
 impl CommandReceiver {
-    /// Add the bytes of a tick; call it once a tick, also without bytes. Bytes that do not fit count as garbage.
+    /// Add the bytes of a tick. Call it once per tick, also without bytes. Bytes that do not fit are treated as
+    /// garbage.
     pub fn accept(&mut self, rx: &LinkBytes) {
         let bytes = rx.as_slice();
         self.quiet = bytes.is_empty();
@@ -63,7 +63,7 @@ impl CommandReceiver {
         }
     }
 
-    /// The next command, if one is complete.
+    /// The next command, if complete.
     pub fn take(&mut self) -> Option<Command> {
         if self.garbled > 0 {
             self.clear();
@@ -79,8 +79,8 @@ impl CommandReceiver {
         if first == START {
             return self.data();
         }
-        // Several restarts in a row count as one: the host has only repeated it. Nothing else may follow, because the
-        // host waits for an answer; the late end of a frame may begin with the byte of a cancel.
+        // Several restarts in a row are one: the host has only repeated it. Other bytes must not follow, as the host
+        // waits for an answer; the late end of a frame may begin with the byte of a cancel.
         let same = held.iter().take_while(|byte| **byte == first).count();
         match Control::from_byte(first) {
             Some(control) if same == held.len() => {
@@ -114,8 +114,8 @@ impl CommandReceiver {
             }
             return None;
         };
-        // Only restarts may follow, because the host waits for an answer. Also, the checksum does not distinguish a
-        // frame from one that begins with the late end of its own first copy, since both have the same exclusive or.
+        // Only restarts may follow, as the host waits for an answer. Also, the checksum does not distinguish a frame
+        // from one that begins with the late end of its own first copy: both have the same exclusive or.
         let behind = held.get(FRAME_BYTES..).unwrap_or_default();
         let alone = behind.iter().all(|byte| *byte == Control::Restart.byte());
         match DataCommand::parse(frame) {
@@ -179,7 +179,7 @@ impl ReplyReceiver {
             self.length = self.length.saturating_add(1);
         }
         if !self.may_begin(0) {
-            // A third FF keeps the last two; any other byte ends the search, and may be an answer after noise.
+            // A third FF keeps the last two; any other byte ends the search and may be an answer after noise.
             self.resynchronise();
             let answer = Response::from_byte(byte).filter(|_| self.length == 0);
             return Some(answer.map_or(Reply::Garbage, Reply::Response));
@@ -222,7 +222,7 @@ impl ReplyReceiver {
         held.zip(Report::HEAD).all(|(byte, head)| *byte == head)
     }
 
-    /// Drop the first byte, and all bytes up to the next one that can begin a report.
+    /// Drop the first byte and all others before the next one that can begin a report.
     fn resynchronise(&mut self) {
         let length = usize::from(self.length);
         let place = (1..length).find(|place| self.may_begin(*place)).unwrap_or(length);
@@ -344,7 +344,7 @@ mod tests {
 
     #[test]
     fn the_late_end_of_a_frame_before_its_copy_is_not_a_command() {
-        // 3 bytes of the first copy, then the second: the first 16 of these 19 have a right checksum.
+        // 3 bytes of the first copy, then the second: the first 16 of these 19 have a correct checksum.
         let mut frame = [0; 16];
         DataCommand { function: NO_FUNCTION, plate: Plate { words: [-400, -6000, -800, 0, 9000, 0x03C7] } }
             .emit(&mut frame);

@@ -1,9 +1,9 @@
-//! The positions that were sent last, as a path, and the distance of a robot from it.
+//! The last positions sent, as a path, and the distance of a robot from it.
 //!
-//! A robot lags behind its commands, so its distance from the newest position says nothing: at 10 in/s and a lag of
-//! 0.2 s a healthy robot is 2 in behind. It is however on the path that it was sent along a moment ago. The distance
-//! from the path of the expected lag is near zero for a healthy robot at any speed, and grows for one that falls
-//! farther behind, takes a short cut, or is moved by something else.
+//! A robot lags behind its commands, so its distance from the newest position is no criterion: at 10 in/s and a lag
+//! of 0.2 s a sound robot is 2 in behind. However, it is on the path that was sent a moment ago. The distance from
+//! the path within the expected lag is near zero for a sound robot at any speed. It grows if the robot falls farther
+//! behind, takes a short cut, or is moved by an external force.
 
 use core::f64::consts::FRAC_1_SQRT_2;
 
@@ -15,20 +15,20 @@ use rcs_core::Plain;
 
 use crate::Plate;
 
-/// Positions that a track keeps, one a period.
+/// Positions in a track, one per period.
 pub const TRACK_POINTS: usize = 32;
-/// Greatest distance of a robot that follows from its path, in; for a rotation 2 degrees (docs/design/link.md
+/// Greatest distance of a following robot from its path, in; for a rotation 2 degrees (docs/design/link.md
 /// "Following").
 pub const LIMIT_INCHES: f64 = 0.5;
-/// Expected lag of a robot that states none, ms: two and a half times the 80 ms of the T3's servos.
+/// Default lag of a robot, ms: two and a half times the 80 ms of the T3's servos.
 pub const LAG_MS: u16 = 200;
-/// Greatest lag that can be stated, ms: a track of periods of 40 ms covers it.
+/// Greatest permitted lag, ms: a track of periods of 40 ms covers it.
 pub const MOST_LAG_MS: u16 = 1000;
-/// Periods between a position that is sent and the first reading that can show it.
+/// Periods between a sent position and the first reading that can show it.
 const READING_PERIODS: usize = 1;
 
-/// A frame as a point with twelve coordinates, in: the position and the tool axes. A rotation by a small angle counts
-/// as [`INCHES_PER_RADIAN`] times the angle, as in [`geometry::frame::Distance::path`].
+/// A frame as a point with twelve coordinates, in: the position and the tool axes. A rotation by a small angle equals
+/// [`INCHES_PER_RADIAN`] times the angle, as in [`geometry::frame::Distance::path`].
 type Coordinates = [f64; 12];
 
 /// The positions sent in the last periods, the newest first.
@@ -40,13 +40,13 @@ pub struct Track {
 }
 
 impl Track {
-    /// The path begins at `plate`: the robot has reported that position.
+    /// Start the path at `plate`, a position that the robot has reported.
     pub fn begin(&mut self, plate: Plate) {
         *self = Self::default();
         self.push(plate);
     }
 
-    /// The position of a period: the one sent, or the one before again.
+    /// Add the position of a period: the one sent, or the previous one again.
     pub fn push(&mut self, plate: Plate) {
         self.points.rotate_right(1);
         if let Some(newest) = self.points.first_mut() {
@@ -56,15 +56,15 @@ impl Track {
         self.count = self.count.saturating_add(1).min(most);
     }
 
-    /// The position sent last; `None` before the first.
+    /// The last position sent; `None` before the first.
     #[must_use]
     pub fn newest(&self) -> Option<&Plate> {
         self.points.iter().take(usize::from(self.count)).next()
     }
 
-    /// Distance of the tool frame `here` (inches, world) from the path of the time of the expected lag, inches; a
-    /// radian counts as [`INCHES_PER_RADIAN`]. `lag_ms` is this time, `period_ms` the time between two positions;
-    /// `here` is a reading of the period after the newest position. `None` before the first position.
+    /// Distance of the tool frame `here` (inches, world) from the path within the expected lag, inches; one radian
+    /// equals [`INCHES_PER_RADIAN`]. `lag_ms` is the lag, `period_ms` the time between two positions; `here` is a
+    /// reading of the period after the newest position. `None` before the first position.
     #[must_use]
     pub fn distance(&self, here: &Frame, lag_ms: u16, period_ms: u16, arm: &Arm) -> Option<f64> {
         let here = coordinates(here);
@@ -74,7 +74,7 @@ impl Track {
         let mut later: Option<(Plate, Coordinates)> = None;
         let mut least: Option<f64> = None;
         for plate in sent {
-            // A robot that rests gets the same position again.
+            // A robot at rest gets the same position again.
             if later.is_some_and(|(later, _)| later == *plate) {
                 continue;
             }
@@ -126,7 +126,7 @@ mod tests {
         Plate::from_tool(frame, &T3, &Plate::default()).unwrap()
     }
 
-    /// Sent along X at 0.4 in a period.
+    /// A path along X at 0.4 in per period.
     fn track(periods: u32) -> Track {
         let mut track = Track::default();
         track.begin(words(&at(0.0, 0.0)));

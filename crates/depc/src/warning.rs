@@ -5,7 +5,7 @@ use rcs_core::Plain;
 
 use crate::{Plate, limit::Exceeded};
 
-/// Reasons for which the joints cannot reach a position within the velocity limits.
+/// Reasons why the joints cannot reach a position within the velocity limits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub enum JointProblem {
@@ -19,7 +19,7 @@ pub enum JointProblem {
     WristSingularity,
 }
 
-/// Reasons for which a robot refuses a position.
+/// Reasons why a robot refuses a position.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Refusal {
     /// The joints cannot reach it.
@@ -37,7 +37,7 @@ impl From<JointProblem> for Refusal {
 /// The joint angles (radians) for a position of the end plate, within the limits of `arm`.
 ///
 /// # Errors
-/// [`JointProblem`], with the problem that the controller would show.
+/// [`JointProblem`] that the controller would show.
 pub fn joints_for(arm: &Arm, goal: &Plate, near: &Joints) -> Result<Joints, JointProblem> {
     let joints = arm.inverse(&goal.to_tool(arm), near).map_err(|error| match error {
         ReachError::WristSingularity => JointProblem::WristSingularity,
@@ -95,14 +95,14 @@ pub enum Warning {
     /// DEPC link terminated (unrecoverable).
     #[text = "PIG"]
     Terminated,
-    /// The robot behind the function has left its path and comes to rest (extension: no T3 shows it).
+    /// The robot has left its path and comes to rest (extension: no T3 shows it).
     #[text = "OFF-PATH"]
     OffPath,
 }
 
 impl Warning {
     /// True if a restart command of the host clears it. The appendix recommends this for D6, and the other joint
-    /// problems are similar; warnings caused by an operator, the wiring or an exceeded velocity limit need an ENTER
+    /// problems are similar. Warnings due to an operator, the wiring or an exceeded velocity limit need an ENTER
     /// (ASSUMED).
     #[must_use]
     pub const fn host_can_restart(self) -> bool {

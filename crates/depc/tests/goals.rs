@@ -12,7 +12,7 @@ use geometry::{
 };
 use proptest::prelude::*;
 
-/// A robot whose joints reach everything, so that only the velocity limits can refuse.
+/// A robot whose joints reach every position, so only the velocity limits can refuse one.
 struct Anywhere(Plate);
 
 impl Robot for Anywhere {

@@ -1,14 +1,13 @@
 //! Ten thousand seeded fault plans, of all kinds and with any number of faults in a frame.
 //!
-//! These always hold: the robot never moves farther in a period than the limits permit; the host reports a controller
-//! that has stopped; and once the line is repaired and the operator has answered, the link works again and the goal is
-//! reached.
+//! Always: the robot moves no farther in a period than the limits permit; the host reports a stopped controller; and
+//! once the line is repaired and the operator has answered, the link works again and the goal is reached.
 //!
-//! These hold unless the line deceives one of the ends: no command is executed twice or lost without notice, every
-//! report is true, and the velocity limits give no warning. A checksum by exclusive or does not detect two changes of
-//! the same bit, and ACK, NAK, cancel and restart have no checksum at all (A 2.3); a line that stalls for longer than
-//! the host waits delivers commands that the host has given up. The run counts how often that happens. In all other
-//! sessions the invariants are strict.
+//! Unless the line deceives one of the ends: no command is executed twice or lost silently, every report is true, and
+//! the velocity limits give no warning. A checksum by exclusive or does not detect two changes of the same bit, and
+//! ACK, NAK, cancel and restart have no checksum at all (A 2.3). A line that stalls for longer than the host waits
+//! delivers commands that the host has given up. The run counts these cases; in all other sessions the invariants are
+//! strict.
 //!
 //! `DEPC_SCHEDULES` sets the number of plans.
 
@@ -26,7 +25,7 @@ use session::{Session, Truth};
 const SCHEDULES: u64 = 10_000;
 /// Ticks in which a plan has faults.
 const FAULTY_TICKS: u64 = 120;
-/// Ticks within which the link must recover: two answers of the operator, a stalled line, and the motion to the goal.
+/// Ticks for the link to recover: two answers of the operator, a stalled line, and the motion to the goal.
 const MENDED_TICKS: u32 = 300;
 
 /// A random rule; it may be an invalid one.

@@ -1,6 +1,6 @@
-//! Neither the ends nor the line with its faults allocates: checked over a whole session of good and bad ticks.
+//! Neither the ends nor the line with its faults allocates, over a session of good and bad ticks.
 //!
-//! This file has only one test, because everything in it runs on the counting allocator.
+//! This file has only one test, as every test in it would use the counting allocator.
 
 use depc::link::LinkBytes;
 use depc::{

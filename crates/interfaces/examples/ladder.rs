@@ -1,5 +1,5 @@
-//! The control processes from below with the board on which each runs, the size of its buffers, and what it reads from
-//! outside: `cargo run --release -p interfaces --example ladder`.
+//! The control processes from the lowest to the highest: board, buffer size and external inputs.
+//! `cargo run --release -p interfaces --example ladder`.
 
 #![expect(clippy::print_stdout, reason = "an example prints what it does")]
 

@@ -6,98 +6,98 @@ use rcs_core::{
     name::{Name10, Name16},
 };
 
-/// What Task asks of the Data System.
+/// Requests of Task to the Data System.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 #[text(upper)]
 pub enum DataBaseVerb {
-    /// Nothing yet.
+    /// No command yet.
     #[text = ""]
     None,
-    /// End whatever transaction is open (reconfiguration command).
+    /// End any open transaction (reconfiguration command).
     Abort,
-    /// Make this client known (reconfiguration command).
+    /// Register this client (reconfiguration command).
     Initiate,
-    /// Begin to take commands (reconfiguration command).
+    /// Start accepting commands (reconfiguration command).
     Startup,
-    /// UPDATE EQUIP_ITEM_ACTION: where an item now is.
+    /// UPDATE EQUIP_ITEM_ACTION: the present place of an item.
     Update,
 }
 
-/// Command from Task to the Data System: the fields of the DML string that Task stuffs (IX.2).
+/// Command from Task to the Data System: the fields that Task puts into the DML string (IX.2).
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct DataBaseCommand {
     /// Command number.
     pub number: u32,
-    /// What to do.
+    /// The verb.
     pub command: DataBaseVerb,
-    /// `ITEM-NAME`: the object.
+    /// `ITEM-NAME`.
     pub item: Name16,
-    /// `ITEM#`: its serial number.
+    /// `ITEM#`: serial number of the item.
     pub serial: Name16,
-    /// `STORAGE-POS`: the location where the item now is; `H_ROBOT` while the robot has it.
+    /// `STORAGE-POS`: present location of the item; `H_ROBOT` while the robot holds it.
     pub position: Name10,
-    /// `SECTOR#`: sector there, if it has one.
+    /// `SECTOR#`: sector of the location, if it has one.
     pub sector: Option<i32>,
 }
 
-/// What the Data System makes of the last command: server status and summary status (IX.2), read together.
+/// Answer of the Data System to the last command: its server status and summary status combined (IX.2).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum DataBaseReport {
-    /// Nothing was asked yet (extension).
+    /// No command yet (extension).
     Idle,
     /// The command is executing.
     Executing,
-    /// It is done.
+    /// The command is complete.
     Done,
-    /// It was refused.
+    /// The command was refused.
     Refused,
 }
 
-/// Does the Data System receive updates (IV.4.2)?
+/// State of the connection on which the Data System receives updates (IV.4.2).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Connection {
-    /// No: there was no STARTUP, or a SHUTDOWN.
+    /// Closed: no STARTUP since the start, or since the last SHUTDOWN.
     Closed,
-    /// Not yet: STARTUP is executing.
+    /// STARTUP is executing.
     Opening,
-    /// Yes.
+    /// Updates can be sent.
     Open,
-    /// No: STARTUP was interrupted.
+    /// Closed: STARTUP was interrupted.
     Interrupted,
 }
 
-/// Updates that Task keeps until they are accepted: one about an object that is taken, and one about its release.
+/// Updates that Task keeps until they are accepted: the acquisition of an object and its release.
 pub const KEPT_UPDATES: usize = 2;
 
-/// An item that the robot holds or is to take: the content of the update when it is released.
+/// An item that the robot holds or is about to take: the content of the update at its release.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct Carried {
     /// The object.
     pub item: Name16,
     /// Its serial number.
     pub serial: Name16,
-    /// Where it was taken, or to where it was brought.
+    /// Its source location, or its destination.
     pub location: Name10,
-    /// Sector there, if it has one.
+    /// Sector of the location, if it has one.
     pub sector: Option<i32>,
-    /// An update follows wherever it is released, and not only in the MBD.
+    /// Its release is reported at every location, not only in the MBD.
     pub followed: bool,
 }
 
-/// The connection to the Data System, the pending updates and the carried object. They are an output, so that a
-/// restarted Task has them (docs/design/recovery.md "Data base"; extension).
+/// The connection to the Data System, the pending updates and the carried object. As an output it survives a restart
+/// of Task (docs/design/recovery.md "Data base"; extension).
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct DataBaseUpdates {
-    /// A STARTUP has succeeded, and no SHUTDOWN came since.
+    /// STARTUP has succeeded, without a later SHUTDOWN.
     pub connected: bool,
-    /// A STARTUP has begun, and neither succeeded nor was followed by a SHUTDOWN.
+    /// STARTUP has begun and has not succeeded, without a later SHUTDOWN.
     pub connecting: bool,
-    /// The updates that have not been accepted, the oldest first.
+    /// Pending updates, the oldest first.
     pub pending: [Option<DataBaseCommand>; KEPT_UPDATES],
-    /// The object that the command in the ledger takes, until it is held; none if no update follows at its release.
+    /// The object that the command in the ledger takes, until it is held. None if its release needs no update.
     pub taking: Option<Carried>,
-    /// The object that the robot held last: by a command with an update, or after a MOVE or an ACQUIRE. It stays if the
-    /// part is lost, until another one of that name is taken.
+    /// The object held last, taken by a command with an update or by MOVE or ACQUIRE. It is kept after a loss, until
+    /// an object of this name is taken again.
     pub carried: Option<Carried>,
 }
 
@@ -116,8 +116,8 @@ impl DataBaseReport {
 /// Status from the Data System to Task.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct DataBaseStatus {
-    /// Number of the command that is answered.
+    /// Number of the answered command.
     pub echo: u32,
-    /// What became of it.
+    /// State of that command.
     pub report: DataBaseReport,
 }

@@ -1,4 +1,4 @@
-//! Details of a failure beside its reason: names and distances (docs/design/failures.md "Detail").
+//! Details of a failure in addition to its reason: names and distances (docs/design/failures.md "Detail").
 
 use core::fmt;
 
@@ -9,27 +9,27 @@ use crate::{
     CommonMemory, Fault, HwsCommand, ProcessId, Reason, StatusReport, emove::NearPlace, t3i::PathLeft,
 };
 
-/// Distance along an axis that is shown, inches: as exactly as a pose is written (VII.1).
+/// Smallest distance along an axis that is shown, inches: the resolution of a written pose (VII.1).
 const LEAST_SHOWN: f64 = 0.005;
 
 /// Details of a reason.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Detail {
-    /// Nothing.
+    /// No detail.
     None,
-    /// No trajectory leads from the one to the other.
+    /// The ends of the missing trajectory.
     Pair(Name10, Name16),
-    /// The known places that are nearest to the robot.
+    /// The known places nearest to the robot.
     Near([Option<NearPlace>; 2]),
-    /// The place off which the robot has been moved.
+    /// The place from which the robot was moved away.
     Off(NearPlace),
     /// The commanded and the fed-back pose of a robot that left its path.
     Left(PathLeft),
 }
 
 impl Detail {
-    /// Details of the fault that a process reports. `memory` is common memory after the tick in which it began to
-    /// report it, `hws` the command of the workstation controller.
+    /// Details of the fault that a process reports. `memory` is common memory after the first tick with that report;
+    /// `hws` is the command of the workstation controller.
     #[must_use]
     pub fn of(process: ProcessId, fault: Fault, hws: &HwsCommand, memory: &CommonMemory) -> Self {
         match (process, fault) {
@@ -50,11 +50,11 @@ impl Detail {
                 off_place(memory).map_or(Self::None, Self::Off)
             }
             (_, Fault::Reason(Reason::OffPath)) => memory.t3i.status.left.map_or(Self::None, Self::Left),
-            // RELEASE-TOOL and REMOVE-TOOL of Task end at the drum, and go to the end-at location from there.
+            // RELEASE-TOOL and REMOVE-TOOL of Task end at the drum and move from there to the end-at location.
             (ProcessId::Task, Fault::Reason(Reason::NoTrajectory)) if leaves_drum(hws) => {
                 hws.end_at.map_or(Self::None, |to| Self::Pair(Name10::clipped(DRUM), to))
             }
-            // The POSITION of Task refuses by itself: V.4.1.
+            // Task refuses POSITION itself (V.4.1).
             (ProcessId::Task, Fault::Reason(Reason::NoTrajectory)) => {
                 let ends = memory.subtask.status.at.zip(hws.source.or(hws.destination));
                 ends.map_or(Self::None, |(at, to)| Self::Pair(at.site.location, to))
@@ -63,8 +63,8 @@ impl Detail {
         }
     }
 
-    /// Details of the reason of Task's status, which may come from a process below it. `memory` is common memory after
-    /// the tick, `hws` the command of the workstation controller.
+    /// Details of the reason of Task's status, which may originate in a lower process. `memory` is common memory
+    /// after the tick; `hws` is the command of the workstation controller.
     #[must_use]
     pub fn of_command(reason: Reason, hws: &HwsCommand, memory: &CommonMemory) -> Self {
         let emove = &memory.emove.status;
@@ -74,7 +74,7 @@ impl Detail {
     }
 }
 
-/// The place of E-move, seen from where the resolvers say that the robot is.
+/// The place of E-move, as an offset from the present resolver pose.
 fn off_place(memory: &CommonMemory) -> Option<NearPlace> {
     let place = memory.emove.estimates.place?;
     let present = memory.changing_pose(memory.prim.status.sensor_pose?)?.to_frame().ok()?;
@@ -84,13 +84,13 @@ fn off_place(memory: &CommonMemory) -> Option<NearPlace> {
 /// Location of the tool drum (V.4.1).
 const DRUM: &str = "TOOL-TRNS";
 
-/// True for a command that ends with the way from the drum to its end-at location.
+/// True for a command that ends with the motion from the drum to its end-at location.
 fn leaves_drum(hws: &HwsCommand) -> bool {
     let word = Name10::clipped(hws.command.as_str());
     ["RELEASE-TOOL", "REMOVE-TOOL"].iter().any(|command| Name10::clipped(command) == word)
 }
 
-/// `: none leads from BENCH to VISE (...)`, to be written behind the reason; without the remedy in `{:#}`.
+/// `: none leads from BENCH to VISE (...)`, a suffix of the reason; `{:#}` omits the remedy.
 impl fmt::Display for Detail {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
@@ -124,8 +124,8 @@ impl fmt::Display for Detail {
     }
 }
 
-/// `HOME is 4.41 in (-X 4.40 in, +Z 0.30 in) and 0.5 degrees away`: the way there along the world's axes, those of the
-/// joystick box in its frame `WORLD` (III.3.3).
+/// `HOME is 4.41 in (-X 4.40 in, +Z 0.30 in) and 0.5 degrees away`: the motion to the place along the world axes,
+/// which are those of the joystick box in its frame `WORLD` (III.3.3).
 impl fmt::Display for NearPlace {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { location, inches, degrees, offset } = self;

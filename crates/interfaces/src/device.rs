@@ -7,11 +7,11 @@ use rcs_core::{Plain, name::Name10};
 pub use super::vision::{Picture, VisionRequest, VisionResponse, VisionStatus};
 pub use depc::link::{LINK_BYTES, LinkBytes};
 
-/// Steps of a resolver turn: 17 bits (III.3.2).
+/// Resolver counts per turn: 17 bits (III.3.2).
 pub const RESOLVER_COUNTS: u32 = 1 << 17;
 
-/// The joint resolvers (III.3.2): 17-bit integers, joints 0 to 5 from the base; one turn a joint, count 0 at
-/// angle 0 (ASSUMED).
+/// The joint resolvers (III.3.2): 17-bit integers, joints 0 to 5 from the base; one turn per joint, count 0 at angle
+/// 0 (ASSUMED).
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct Resolvers {
     /// Counts, 0 to 131071.
@@ -20,11 +20,10 @@ pub struct Resolvers {
     pub valid: bool,
 }
 
-/// Air valves of the parts gripper: bits of [`GripValves::bits`] (III.3.6: eight valves; the assignment is
-/// ASSUMED).
+/// Air valves of the parts gripper: bits of [`GripValves::bits`] (III.3.6: eight valves; the assignment is ASSUMED).
 ///
-/// Opening speed with the supply on is the sum of the open flows less the sum of the close flows. With all
-/// flows off the trapped air holds fingers and force.
+/// With the supply on, the opening speed is the sum of the open flows minus the sum of the close flows. Without flow
+/// the trapped air keeps finger position and force.
 pub mod valve {
     /// Open, fine: 0.25 in/s.
     pub const OPEN_FINE: u8 = 0x01;
@@ -40,14 +39,14 @@ pub mod valve {
     pub const CLOSE_COARSE: u8 = 0x20;
     /// Vent both sides: no force, fingers loose.
     pub const VENT: u8 = 0x40;
-    /// Air supply on; without it no flow.
+    /// Air supply; without it there is no flow.
     pub const SUPPLY: u8 = 0x80;
 }
 
 /// Command bits to the eight air valves of the parts gripper (VI.3.2 `grip`); see [`valve`].
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct GripValves {
-    /// One bit a valve.
+    /// One bit per valve.
     pub bits: u8,
 }
 
@@ -57,10 +56,10 @@ pub const ADC_FULL_SCALE: u16 = 4095;
 /// Sensors of the attached gripper (III.3.6 to III.3.8): 12-bit converters and beam breaks.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct GripSensors {
-    /// Finger potentiometer, 0 to 4095 counts; grows with the opening; UP-INIT finds offset and scale of the
-    /// parts gripper's.
+    /// Finger potentiometer, 0 to 4095 counts; increases with the opening. UP-INIT finds offset and scale for the
+    /// parts gripper.
     pub potentiometer: u16,
-    /// Strain gage of the left finger, counts; grows with the force that closes on a part.
+    /// Strain gage of the left finger, counts; increases with the closing force on a part.
     pub strain_left: u16,
     /// Strain gage of the right finger, counts.
     pub strain_right: u16,
@@ -71,11 +70,11 @@ pub struct GripSensors {
 /// Sensors of the quick change (VI.2): two reflectance sensors on the locking ring, and the id pins.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct QuickChangeSensors {
-    /// The ring is seen in the locked position.
+    /// A sensor sees the ring in the locked position.
     pub locked: bool,
-    /// The ring is seen in the unlocked position.
+    /// A sensor sees the ring in the unlocked position.
     pub unlocked: bool,
-    /// What the id pins read, `endeff-id#`: 0 where none is mated, 1 parts, 2 v, 3 tool, else a bad contact.
+    /// Reading of the id pins, `endeff-id#`: 0 not mated, 1 parts, 2 v, 3 tool; other values indicate a bad contact.
     pub end_effector_id: u8,
 }
 
@@ -90,8 +89,8 @@ pub struct QuickChangeValves {
     pub port: bool,
 }
 
-/// Holster proximity sensors (V.1.2): right, left, centre. Bits 0, 1: large rear sensors see the ears; bits
-/// 2, 3: small front sensors see the ears at the seat.
+/// Holster proximity sensors (V.1.2): right, left, centre. Bits 0 and 1: the large rear sensors detect the ears. Bits
+/// 2 and 3: the small front sensors detect the ears at the seat.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct HolsterSensors {
     /// `hol-R-status`.
@@ -102,8 +101,8 @@ pub struct HolsterSensors {
     pub centre: u8,
 }
 
-/// Air to a gripper that only opens and closes: v-gripper and tool gripper (VI.4, VI.5). With neither bit the
-/// air is trapped.
+/// Air to a gripper that only opens and closes: v-gripper and tool gripper (VI.4, VI.5). With neither bit set the air
+/// is trapped.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct JawValves {
     /// Air to the side that opens.
@@ -114,16 +113,15 @@ pub struct JawValves {
 
 /// Counts of a force axis without load (ASSUMED: middle of the converter's range).
 pub const FORCE_ZERO: i32 = 2048;
-/// Counts for a pound of force (ASSUMED).
+/// Counts per pound of force (ASSUMED).
 pub const FORCE_COUNTS_PER_LB: i32 = 16;
-/// Counts for an inch pound of moment (ASSUMED).
+/// Counts per inch pound of moment (ASSUMED).
 pub const MOMENT_COUNTS_PER_IN_LB: i32 = 4;
 
-/// Force sensor of the tool gripper, the four axes that are connected (III.3.8), in the axes of the sensor:
-/// 12-bit converters, [`FORCE_ZERO`] without load. Tool X, Y, Z are sensor Z, -Y, X. 0 and [`ADC_FULL_SCALE`]
-/// mean overload.
+/// Force sensor of the tool gripper: the four connected axes (III.3.8), in the axes of the sensor. 12-bit converters,
+/// [`FORCE_ZERO`] without load; 0 and [`ADC_FULL_SCALE`] mean overload. Tool X, Y, Z are sensor Z, -Y, X.
 ///
-/// Positive is what pushes the fingers along the positive sensor axis.
+/// A force that pushes the fingers along the positive sensor axis is positive.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct ForceSensor {
     /// Force along sensor X.
@@ -138,7 +136,7 @@ pub struct ForceSensor {
     pub valid: bool,
 }
 
-/// Full speed of the velocity knob, and full deflection of the joystick.
+/// Velocity knob at full speed, and joystick at full deflection.
 pub const KNOB_FULL: u16 = 1000;
 
 /// Bits of [`JoystickBox::frame`]: the four coordinate switches.
@@ -165,10 +163,10 @@ pub mod single_step {
     pub const PRIM: u8 = 0x08;
 }
 
-/// The joystick box (III.3.3). Its emergency stop is in the T3's circuit and does not come to the controller.
+/// The joystick box (III.3.3). Its emergency stop is in the circuit of the T3 and is not wired to the controller.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct JoystickBox {
-    /// Potentiometer C, the velocity knob, 0 to [`KNOB_FULL`]: whatever commands the motion.
+    /// Potentiometer C, the velocity knob, 0 to [`KNOB_FULL`]. It applies to every motion.
     pub velocity: u16,
     /// Stick L: X, or pitch; -1000 to 1000.
     pub x: i16,
@@ -184,14 +182,13 @@ pub struct JoystickBox {
     pub roll_minus: bool,
     /// Push-button F: open the gripper.
     pub open: bool,
-    /// Push-button H: close it.
+    /// Push-button H: close the gripper.
     pub close: bool,
-    /// Coordinate switches, bits of [`joystick_frame`]; one at most may be on. The box is active while one
-    /// is.
+    /// Coordinate switches, bits of [`joystick_frame`]; at most one may be on. The box is active while one is on.
     pub frame: u8,
     /// Push-button X: record the pose.
     pub record: bool,
-    /// Carriage return at the terminal of the Prim board: go on after a recorded pose.
+    /// Carriage return at the terminal of the Prim board: continue after a recorded pose.
     pub resume: bool,
     /// Switches N, P, R, S: processes that are suspended, bits of [`single_step`].
     pub hold: u8,
@@ -208,32 +205,32 @@ pub struct PedestalSensors {
     pub strain_left: u16,
     /// Strain gage of the right finger, counts.
     pub strain_right: u16,
-    /// Potentiometer in the base of the table, counts: grows with the angle.
+    /// Potentiometer in the base of the table, counts; increases with the angle.
     pub table_potentiometer: u16,
     /// The table is at its + limit.
     pub limit_plus: bool,
     /// The table is at its - limit.
     pub limit_minus: bool,
-    /// Number of the last order that the rotary table controller has taken.
+    /// Number of the last order that the rotary table controller has accepted.
     pub motor_echo: u32,
     /// Its motor turns.
     pub motor_moving: bool,
-    /// Its step counter: steps from where it was set to a value.
+    /// Its step counter: steps since the counter was set.
     pub motor_counter: i32,
 }
 
-/// Steps of the rotary table's motor for a tenth of a degree (ASSUMED).
+/// Motor steps of the rotary table per tenth of a degree (ASSUMED).
 pub const TABLE_STEPS_PER_TENTH: i32 = 10;
 
-/// What the rotary table controller is told over its serial link (III.10; the words are ASSUMED).
+/// Orders to the rotary table controller over its serial link (III.10; the words are ASSUMED).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum MotorOrder {
-    /// Nothing.
+    /// No order.
     #[text = ""]
     None,
-    /// Turn by a number of steps; a limit switch stops it.
+    /// Turn by a number of steps; a limit switch stops the table.
     Turn,
-    /// Give the step counter a value.
+    /// Set the step counter to a value.
     SetCounter,
     /// Stop.
     Stop,
@@ -244,34 +241,34 @@ pub enum MotorOrder {
 pub struct MotorCommand {
     /// Changes with each order; 0 means none.
     pub number: u32,
-    /// What to do.
+    /// The order.
     pub order: MotorOrder,
-    /// Steps to turn, or value of the counter.
+    /// Steps to turn, or the new value of the counter.
     pub steps: i32,
 }
 
-/// How the controller is connected with devices behind field I/O, from best to worst (extension).
+/// Connection of the controller with devices behind field I/O, from best to worst (extension).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Plain)]
 pub enum Connection {
-    /// Their words are new, or they are not behind field I/O.
+    /// Current words, or no field I/O.
     Fresh,
-    /// Their words are new. Their outputs are safe until an operator releases them.
+    /// Current words; the outputs are safe until an operator releases them.
     Tripped,
-    /// Their words are old, and keep their values.
+    /// Old words, held at their last values.
     Stale,
-    /// Their words are older than a second.
+    /// Words older than a second.
     Lost,
 }
 
 impl Connection {
-    /// The words are older than they may be.
+    /// True if the words are older than permitted.
     #[must_use]
     pub const fn is_old(self) -> bool {
         matches!(self, Self::Stale | Self::Lost)
     }
 }
 
-/// How old the words of the devices are, by groups (extension, docs/design/field.md "Stale").
+/// Age of the device words, by group (extension, docs/design/field.md "Stale").
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct FieldHealth {
     /// Parts gripper, and the potentiometer of all grippers.
@@ -294,25 +291,25 @@ pub struct FieldHealth {
     pub any: Connection,
 }
 
-/// Everything that the controller reads from its devices in a tick.
+/// All words that the controller reads from its devices in a tick.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct DeviceInputs {
-    /// From the DEPC line.
+    /// Bytes from the DEPC line.
     pub link_rx: LinkBytes,
     /// The line's clear-to-send (the robot's DTR, A.2).
     pub link_ready: bool,
-    /// The port has not taken all bytes of the last tick: they are not on the line.
+    /// The port has not accepted all bytes of the last tick, so some are not on the line.
     pub link_unsent: bool,
-    /// Ticks that the host waits for an answer while the robot's DTR is on; the 60 s of `depc::host` if
-    /// nothing is set (`--robot`).
+    /// Answer timeout of the host while the robot's DTR is on, ticks. None means the 60 s of `depc::host`
+    /// (`--robot`).
     pub link_patience: Option<u16>,
-    /// Time by which the robot is expected to lag behind the positions sent, ms; 200 ms if nothing is set
-    /// (`--robot`, docs/design/link.md "Following").
+    /// Expected lag of the robot behind the commanded positions, ms. None means 200 ms (`--robot`,
+    /// docs/design/link.md "Following").
     pub robot_lag: Option<u16>,
     /// Joint resolvers.
     pub resolvers: Resolvers,
-    /// The attached gripper. All three have their potentiometer on the same connections (III.3.7, III.3.8);
-    /// strain gages and beam breaks are the parts gripper's, zeros with another one.
+    /// The attached gripper. The three grippers share the connections of the potentiometer (III.3.7, III.3.8). Strain
+    /// gages and beam breaks belong to the parts gripper and read zero with another one.
     pub grip: GripSensors,
     /// Force sensor of the tool gripper; invalid with another one.
     pub force: ForceSensor,
@@ -326,20 +323,19 @@ pub struct DeviceInputs {
     pub vision: VisionResponse,
     /// Active Pedestal.
     pub pedestal: PedestalSensors,
-    /// Location of the vise whose jaws have closed on a part, as the vise reports it (extension); none if it reports
-    /// nothing.
+    /// Location of the vise that reports its jaws closed on a part (extension). None without such a report.
     pub clamping: Option<Name10>,
     /// Age of the words from devices behind field I/O.
     pub field: FieldHealth,
 }
 
-/// Everything that the controller writes to its devices in a tick.
+/// All words that the controller writes to its devices in a tick.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct DeviceOutputs {
-    /// To the DEPC line.
+    /// Bytes to the DEPC line.
     pub link_tx: LinkBytes,
-    /// The robot is to stop by its own means, and to stay where it is: T3I has found it off its path. The T3 has no
-    /// such input; a robot with EGM and one of the caller of the library have (extension).
+    /// The robot must stop by its own means and stay: T3I found it off its path. The T3 has no such input; a robot
+    /// with EGM and a caller of the library have one (extension).
     pub robot_stop: bool,
     /// Parts gripper.
     pub grip: GripValves,
@@ -353,7 +349,7 @@ pub struct DeviceOutputs {
     pub tool_grip: JawValves,
     /// LEDs b, c, d, e of the joystick box, bits of [`joystick_frame`].
     pub joystick_leds: u8,
-    /// Fingers of the pedestal's hand: eight valves as those of the parts gripper (III.9.2).
+    /// Fingers of the pedestal's hand: eight valves like those of the parts gripper (III.9.2).
     pub pedestal_hand: GripValves,
     /// Rotary table of the pedestal.
     pub pedestal_table: MotorCommand,

@@ -25,7 +25,7 @@ use crate::{
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 #[text(upper)]
 pub enum EmoveVerb {
-    /// None yet.
+    /// No command yet.
     #[text = ""]
     None,
     /// Do nothing.
@@ -37,7 +37,7 @@ pub enum EmoveVerb {
     MovToObj,
     /// Move the held object to a location.
     MovObjTo,
-    /// Move to where pictures are taken.
+    /// Move to the place from which pictures are taken.
     MovToVu,
     /// Find the object with the vision system.
     LocateObj,
@@ -55,7 +55,7 @@ pub enum EmoveVerb {
     Withdraw,
     /// Insert a tool into the tool drum.
     InsertTool,
-    /// Let go of a tool in the drum.
+    /// Release a tool in the drum.
     ReleaseTool,
     /// Move to a tool in the drum and grasp it.
     AcquireTool,
@@ -72,7 +72,7 @@ pub struct EmoveCommand {
     pub command: EmoveVerb,
     /// `"obj"`, if one is named.
     pub object: Option<Name16>,
-    /// Grip number of the object (extension: the manual has it only in the records that `obj-para-^` names).
+    /// Grip number of the object (extension: in the manual only the records of `obj-para-^` contain it).
     pub grip: i32,
     /// `obj-para-^`: record of END-EFF-PARA, if the object has that grip.
     pub object_parameters: EndEffId,
@@ -84,11 +84,11 @@ pub struct EmoveCommand {
     pub site: Site,
     /// `pose-^-in`: the goal pose, if a location is named.
     pub pose: Option<u32>,
-    /// `endeff-id#-in`; none if any gripper will do.
+    /// `endeff-id#-in`; none if any gripper is suitable.
     pub end_effector_id: Option<u8>,
 }
 
-/// An object and how it is gripped: approach and depart points belong to both.
+/// An object and its grip, which together select the approach and depart points.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct ObjectGrip {
     /// The object.
@@ -97,16 +97,16 @@ pub struct ObjectGrip {
     pub grip: i32,
 }
 
-/// The content of the attached gripper, by its sensors (docs/design/recovery.md "Held"; extension).
+/// Content of the attached gripper by its sensors (docs/design/recovery.md "Held"; extension).
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub enum Holding {
-    /// Nothing.
+    /// The gripper is empty.
     Nothing,
-    /// Something is felt, and the last grasp that named an object was made here.
+    /// A sensed object whose name is known from the last grasp.
     Object(ObjectGrip),
-    /// Something is felt, and nothing says what it is.
+    /// A sensed object without a known name.
     Something,
-    /// The gripper is not calibrated or not at rest: counts as held.
+    /// The gripper is not calibrated or not at rest; treated as held.
     NotKnown,
 }
 
@@ -127,7 +127,7 @@ impl Holding {
     }
 }
 
-/// An object that has been let go at its place (extension).
+/// An object that was released at its place (extension).
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct PlacedObject {
     /// The object.
@@ -141,51 +141,50 @@ pub struct PlacedObject {
 /// An object that vision has found (extension).
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct LocatedObject {
-    /// The object.
+    /// The name.
     pub object: Name16,
-    /// Where it is.
+    /// Its location.
     pub site: Site,
 }
 
-/// Where the robot stands: the end of its last completed move (extension).
+/// The robot's place: the end of its last completed move (extension).
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct Standing {
     /// The location.
     pub site: Site,
-    /// Grip of the object that was gone to, for MOV-TO-OBJ, MOV-OBJ-TO and MOV-TO-HOL.
+    /// Grip of the object at the place, after MOV-TO-OBJ, MOV-OBJ-TO and MOV-TO-HOL.
     pub grip: Option<i32>,
 }
 
-/// How far the robot is from the place at which it stands, by the resolvers (extension; docs/design/motion.md "Where
-/// the robot is").
+/// Distance of the robot from its place, by the resolvers (extension; docs/design/motion.md "Where the robot is").
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Offset {
-    /// Within 0.02 in and 0.1 degree, or it stands at no known place.
+    /// Within 0.02 in and 0.1 degree, or the robot's place is unknown.
     None,
-    /// Within 0.05 in and 0.25 degree: as far as the arm settles while its status is passed up the ladder.
+    /// Within 0.05 in and 0.25 degree: the arm settles this far while its status passes up the ladder.
     Slight,
-    /// More: the robot was moved, or the arm has sunk.
+    /// Farther away: the robot was moved, or the arm has sunk.
     Off,
     /// The resolvers give no position.
     NotSensed,
 }
 
-/// Where a part is along the fingers, which no sensor measures (extension; docs/design/recovery.md "Held").
+/// Position of the part along the fingers, which no sensor measures (extension; docs/design/recovery.md "Held").
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Seat {
-    /// Where it was grasped, or the fingers have not closed on anything.
+    /// The position at which it was grasped, or there is no grasped part.
     Kept,
-    /// Not known: with the part between the fingers the robot was moved by a person, or the arm had no pressure.
+    /// Not known: with a grasped part an operator moved the robot, or the arm had no pressure.
     NotKnown,
 }
 
-/// The id pins of the quick change, compared with the gripper that the robot had when the ring was locked (extension;
+/// The id pins of the quick change, compared with the gripper that was mated when the ring was locked (extension;
 /// docs/design/recovery.md "Held").
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Pins {
-    /// They name it, or the ring has been open since.
+    /// The pins name the same gripper, or the ring has been open since.
     Agree,
-    /// They name another one, or none: a bad contact, or the gripper has been torn off.
+    /// The pins name another gripper or none: a bad contact, or the gripper was torn off.
     Differ,
 }
 
@@ -200,70 +199,69 @@ pub struct EmoveStatus {
     pub reason: Reason,
     /// Part of the goal that no sensor confirms, with `done` (extension).
     pub unconfirmed: Unconfirmed,
-    /// `ref-pose-^`: the feedback pose, if the resolvers can be believed.
+    /// `ref-pose-^`: the feedback pose, if the resolvers are valid.
     pub reference_pose: Option<u32>,
-    /// `obj-held-status-out`: what is held (more than yes or no is an extension).
+    /// `obj-held-status-out`: the held object (more than yes or no is an extension).
     pub held: Holding,
-    /// Where it is along the fingers, or was when it was let go (extension).
+    /// Position of the object along the fingers, or at its release (extension).
     pub seat: Seat,
-    /// The object that the last RELEASE has let go; none as soon as anything is grasped or held (extension).
+    /// The object of the last RELEASE; none after the next grasp or while an object is held (extension).
     pub placed: Option<PlacedObject>,
-    /// What vision has found and nothing has made invalid since (extension).
+    /// The object that vision found, until it becomes invalid (extension).
     pub located: Option<LocatedObject>,
-    /// `pres-endeff-id#-out`, if a gripper is on; while the pins differ, the gripper that was on.
+    /// `pres-endeff-id#-out`, if a gripper is attached. While the pins differ, the gripper attached before.
     pub end_effector_id: Option<u8>,
-    /// Do the id pins confirm it (extension)?
+    /// Confirmation of the gripper by the id pins (extension).
     pub pins: Pins,
-    /// Where the robot stands, if that is known (extension).
+    /// The robot's place, if known (extension).
     pub at: Option<Standing>,
-    /// How far the robot is from there (extension).
+    /// Distance of the robot from its place (extension).
     pub offset: Offset,
-    /// Number of the gripper in whose holster the robot stands in the middle of an exchange: between the
-    /// first and the last point of QC-ATTACH or QC-DETACH; or of the one that hangs on a ring that is not
-    /// locked (extension).
+    /// Gripper whose holster the robot occupies in the middle of an exchange: between the first and the last point of
+    /// QC-ATTACH or QC-DETACH. Also a gripper that hangs on an unlocked ring (extension).
     pub exchange: Option<u8>,
-    /// The fingers are around a tool in the tool drum (extension).
+    /// The fingers surround a tool in the tool drum (extension).
     pub drum: bool,
 }
 
-/// What a move goes to. It decides which data lead there, and away from there.
+/// Kind of a move's goal. It selects the data for the approach and the departure.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub enum GoneTo {
     /// A location as such.
     Location,
-    /// An object at a location, or a held object's destination.
+    /// An object at a location, or the destination of a held object.
     Object(ObjectGrip),
     /// The place from which pictures of an object are taken.
     View(ObjectGrip),
-    /// The tool drum, with the fingers around a tool in it: only the tool commands lead away from there.
+    /// The tool drum, with the fingers around a tool in it; only tool commands lead away.
     Drum,
-    /// The destination of an object, where it has been brought and is held still.
+    /// The destination of an object that has arrived and is still held.
     Brought(ObjectGrip),
 }
 
-/// A place of the robot: where a move ended, or where one leads.
+/// A place of the robot: the end of a move.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct RobotPlace {
-    /// What is gone to.
+    /// The kind of goal.
     pub gone_to: GoneTo,
     /// The location.
     pub site: Site,
-    /// Where the tool is there.
+    /// Pose of the tool at this place.
     pub pose: Pose,
 }
 
-/// Part of a way.
+/// Part of a motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Leg {
     /// The depart points of the place left.
     Depart,
     /// The points of the intermediate trajectory.
     Trajectory,
-    /// The approach points of the goal, and the goal.
+    /// The approach points of the goal and the goal itself.
     Approach,
 }
 
-/// Which way the robot goes.
+/// Direction of travel along a path.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Direction {
     /// To the goal.
@@ -272,30 +270,30 @@ pub enum Direction {
     Back,
 }
 
-/// The path that the robot is on: published so that an interrupted move can go on (docs/design/recovery.md).
+/// The path of the robot, published so that an interrupted move can continue (docs/design/recovery.md).
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct Way {
     /// The place left.
     pub from: RobotPlace,
     /// The goal.
     pub to: RobotPlace,
-    /// The next point in the direction of the goal, from 0, through all legs; the goal is the last.
+    /// Index of the next point toward the goal, from 0 over all legs; the goal is the last.
     pub next: u16,
-    /// The leg of that point.
+    /// Leg of the next point.
     pub leg: Leg,
-    /// It leads straight from one pose to the other, without points, as that of the camera over a part.
+    /// The path is a straight line between two poses without points, such as that of the camera over a part.
     pub straight: bool,
-    /// Which way the robot went last.
+    /// Last direction of travel.
     pub direction: Direction,
     /// The last commanded pose of the robot.
     pub rest: Pose,
-    /// The joystick box has moved the robot since.
+    /// The joystick box has moved the robot since the interruption.
     pub by_hand: bool,
-    /// The link has failed since: the robot has stopped before its commanded position.
+    /// The link has failed since the interruption: the robot stopped before its commanded position.
     pub cut_off: bool,
 }
 
-/// What the gripper holds, or has tried to grasp.
+/// The object that the gripper holds or has tried to grasp.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct Grasped {
     /// The object and its grip.
@@ -306,18 +304,18 @@ pub struct Grasped {
     pub gripper: Option<u8>,
     /// Grasp size of the object, 0.01 in.
     pub grasp_size: i32,
-    /// Opening when it was grasped, 0.01 in.
+    /// Opening at the grasp, 0.01 in.
     pub opening: i32,
-    /// Where the robot stood.
+    /// Pose of the robot at the grasp.
     pub pose: Pose,
 }
 
-/// An object that vision has located and that nothing has moved since.
+/// An object that vision has located and that has not moved since.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct Located {
     /// The object.
     pub object: Name16,
-    /// Where it is.
+    /// Its location.
     pub site: Site,
     /// Its part frame.
     pub pose: Pose,
@@ -332,51 +330,50 @@ pub struct Exchange {
     pub place: RobotPlace,
 }
 
-/// State of the world that E-move cannot read from a sensor alone. It is an output, so that E-move has it again after a
-/// restart; each estimate counts only as long as no sensor contradicts it.
+/// Facts that E-move cannot read from a sensor alone. As an output they survive a restart of E-move. Each estimate is
+/// valid as long as no sensor contradicts it.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct Estimates {
-    /// Where the robot stands.
+    /// The robot's place.
     pub place: Option<RobotPlace>,
-    /// The path that it is on.
+    /// The robot's path.
     pub way: Option<Way>,
-    /// What the gripper holds.
+    /// The held object.
     pub held: Option<Grasped>,
-    /// The object that it was last commanded to grasp. None beside something that counts as held: it has been
-    /// half let go, and the release was cut off.
+    /// The object of the last grasp command. None while a part is held means that its release was interrupted.
     pub grasping: Option<Grasped>,
-    /// The fingers were empty, and have not been told to close since.
+    /// The fingers were empty and have not been commanded to close since.
     pub empty: bool,
-    /// Where along the fingers the object is that they have closed on last.
+    /// Position of the last grasped object along the fingers.
     pub seat: Seat,
-    /// The last place where an object may not be where the data say: a person has led the robot past it, the arm has
-    /// sunk past it, or it was let go there after it had slid in the fingers.
+    /// The last place whose object may have moved: the operator moved the robot past it, the arm sank past it, or an
+    /// object that had slipped in the fingers was released there.
     pub disturbed: Option<RobotPlace>,
-    /// The object that the gripper has let go, and where.
+    /// The released object and its place.
     pub placed: Option<PlacedObject>,
-    /// What vision has located.
+    /// The object located by vision.
     pub located: Option<Located>,
     /// The holster in which the robot changes a gripper.
     pub exchange: Option<Exchange>,
-    /// The tool drum at which the robot is half way, between the first and the last point of a tool command.
-    /// Its pose is that of the location.
+    /// The tool drum at which the robot is between the first and the last point of a tool command; the pose of the
+    /// location.
     pub drum: Option<RobotPlace>,
-    /// The path from the last known place or way.
+    /// The path since the last known place or way.
     pub track: Track,
-    /// Where the robot was when the force sensor was last ordered to be calibrated.
+    /// The robot's place at the last calibration of the force sensor.
     pub calibrated: CalibratedAt,
 }
 
-/// Where the force sensor was calibrated (V.1.1 CAL-SENSOR; extension).
+/// Place of the calibration of the force sensor (V.1.1 CAL-SENSOR; extension).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum CalibratedAt {
     /// At the drum, where the fingers or a held tool may touch something.
     Drum,
-    /// At TOOL-SAFE, where nothing is touched.
+    /// At TOOL-SAFE, where nothing touches the tool.
     Safe,
 }
 
-/// A known place, and how far the robot is from it (extension).
+/// A known place and the robot's distance from it (extension).
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct NearPlace {
     /// Name of the location.
@@ -385,7 +382,7 @@ pub struct NearPlace {
     pub inches: f64,
     /// Angle between the orientations, degrees.
     pub degrees: f64,
-    /// The place seen from the robot, inches along world X, Y and Z.
+    /// Offset of the place from the robot, inches along world X, Y and Z.
     pub offset: [f64; 3],
 }
 
@@ -414,7 +411,7 @@ pub struct Dormancy {
     pub tool_grip: bool,
 }
 
-/// Changing poses of E-move: the pose departed from, the goal, a point between, and the located object.
+/// Changing poses of E-move: departure, goal, intermediate point, located object.
 pub const EMOVE_POSES: usize = 4;
 
 /// Output buffers of E-move.
@@ -434,20 +431,19 @@ pub struct EmoveOutputs {
     pub v_grip: JawsCommand,
     /// To Tool-Grip.
     pub tool_grip: JawsCommand,
-    /// Which gripper processes are dormant (II.2.3): all but that of the attached gripper.
+    /// Dormant gripper processes (II.2.3): all except that of the attached gripper.
     pub dormant: Dormancy,
     /// To the vision system.
     pub vision: VisionRequest,
-    /// Facts that E-move cannot sense again after a restart (extension).
+    /// Facts that E-move cannot sense after a restart (extension).
     pub estimates: Estimates,
-    /// The known places that are nearest, the nearest first, while it is not known where the robot is
-    /// (extension).
+    /// The nearest known places, the nearest first, while the robot's place is unknown (extension).
     pub nearest: [Option<NearPlace>; 2],
-    /// Departure, goal, point between, located object.
+    /// Departure, goal, intermediate point, located object.
     pub poses: [ChangingPose; EMOVE_POSES],
 }
 
-/// `MOV-TO-OBJ LINKBAR1 at TRAY`, `MOV-TO-LOC at SAFE`: the verb with the fields that it uses.
+/// `MOV-TO-OBJ LINKBAR1 at TRAY`, `MOV-TO-LOC at SAFE`: the verb with its fields.
 impl fmt::Display for EmoveCommand {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(self.command.text())?;
@@ -455,7 +451,7 @@ impl fmt::Display for EmoveCommand {
         match self.command {
             EmoveVerb::None | EmoveVerb::Pause => Ok(()),
             EmoveVerb::MovToLoc | EmoveVerb::Withdraw => location(f, "at", at, None),
-            // The fingers open where the robot is.
+            // The fingers open at the robot's present place.
             EmoveVerb::Release => name(f, object),
             EmoveVerb::MovToObj
             | EmoveVerb::MovObjTo

@@ -11,14 +11,14 @@ use crate::{Header, Reason, device::GripValves};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 #[text(upper)]
 pub enum GripVerb {
-    /// None yet.
+    /// No command yet.
     #[text = ""]
     None,
     /// Leave the valves as they are.
     Pause,
     /// Open or close to an opening.
     Position,
-    /// The same, where "open" says better what is meant.
+    /// Synonym of POSITION, for an opening motion.
     OpenGrip,
     /// Close with a commanded force.
     CloseGrip,
@@ -39,22 +39,22 @@ pub struct GripCommand {
     pub position: i32,
     /// `svelocity`: 0.01 in/s; 0 means full speed.
     pub velocity: i32,
-    /// `send-effector`; none if any gripper is meant.
+    /// `send-effector`; none if any gripper is suitable.
     pub end_effector_id: Option<u8>,
 }
 
 /// `status` of Grip.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum GripReport {
-    /// Nothing was commanded yet (extension).
+    /// No command yet (extension).
     Idle,
     /// The command is executing.
     Executing,
-    /// The command is finished: desired force or position attained.
+    /// The desired force or position is attained.
     Done,
-    /// Waiting for both fingers to touch.
+    /// The gripper waits for both fingers to touch.
     Paused,
-    /// An unattainable command has been sent.
+    /// The command is unattainable.
     Serror,
 }
 
@@ -70,18 +70,17 @@ impl GripReport {
     }
 }
 
-/// What a gripper has between its fingers, by its sensors, independent of the command (docs/design/ownership.md "Felt";
-/// extension).
+/// Content of a gripper by its sensors, independent of the command (docs/design/ownership.md "Felt"; extension).
 ///
-/// While a process is dormant it stays what it was, and the header says that the outputs were republished: it
-/// counts only for the gripper that is on the robot.
+/// A dormant process keeps the last value, and its header marks the outputs as republished. The value is valid only
+/// for the attached gripper.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain, Actions)]
 pub enum Felt {
-    /// The sensors cannot tell: they are not calibrated, implausible, or have not settled. Counts as held.
+    /// The sensors are not calibrated, implausible, or have not settled; treated as held.
     NotKnown,
-    /// Nothing.
+    /// The gripper is empty.
     Nothing,
-    /// Something: a part, or whatever else keeps the fingers apart.
+    /// A part, or another object that keeps the fingers apart.
     Something,
 }
 
@@ -92,7 +91,7 @@ pub struct GripStatus {
     pub echo: u32,
     /// `status`.
     pub report: GripReport,
-    /// Why it failed (extension).
+    /// Reason of a failure (extension).
     pub reason: Reason,
     /// `initialized-?`.
     pub initialized: bool,
@@ -106,18 +105,18 @@ pub struct GripStatus {
     pub velocity: i32,
     /// `finger-hgt`: 0.01 in.
     pub finger_height: i32,
-    /// What is between the fingers, by strain gages and potentiometer (extension).
+    /// Content of the gripper by strain gages and potentiometer (extension).
     pub felt: Felt,
     /// `grip`: command bits to the air valves.
     pub valves: u8,
 }
 
-/// A sensor that is linear: `value = (counts - zero) * gain`.
+/// A linear sensor: `value = (counts - zero) * gain`.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct Scale {
     /// Counts at value 0.
     pub zero: f64,
-    /// Inches or pounds a count.
+    /// Inches or pounds per count.
     pub gain: f64,
 }
 
@@ -139,13 +138,13 @@ pub struct GripOutputs {
     pub header: Header,
     /// To E-move.
     pub status: GripStatus,
-    /// What UP-INIT has found: a process that is restarted adopts it if the sensors agree (extension).
+    /// Result of UP-INIT. A restarted process adopts it if the sensors agree (extension).
     pub calibration: Option<Calibration>,
     /// To the valves.
     pub valves: GripValves,
 }
 
-/// `CLOSE-GRIP (opening 1.20 in, force 30 lb)`, `POSITION (opening 1.20 in)`: the verb with the fields that it uses.
+/// `CLOSE-GRIP (opening 1.20 in, force 30 lb)`, `POSITION (opening 1.20 in)`: the verb with its fields.
 impl fmt::Display for GripCommand {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self.command {

@@ -13,7 +13,7 @@ use crate::{
     subtask::{SubtaskCommand, SubtaskVerb},
 };
 
-/// Command from the HWSC to Task. Words are text, because they come from outside; Task checks them.
+/// Command from the HWSC to Task. The words arrive as text, and Task checks them.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct HwsCommand {
     /// `command-#-in`; 0 before the first command.
@@ -49,7 +49,7 @@ pub struct HwsCommand {
 pub enum Checked {
     /// The command passes, or was not checked.
     Passes,
-    /// It does not pass: Task refuses it.
+    /// The command fails the check: Task refuses it.
     Fails,
 }
 
@@ -57,7 +57,7 @@ pub enum Checked {
 /// (docs/design/failures.md "Task").
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum HwsReport {
-    /// Nothing was commanded yet (extension).
+    /// No command yet (extension).
     Idle,
     /// The command is executing.
     Executing,
@@ -65,7 +65,7 @@ pub enum HwsReport {
     Finished,
     /// The command failed (extension).
     Error,
-    /// The operator has the robot (extension).
+    /// The operator controls the robot (extension).
     JoystickOn,
 }
 
@@ -78,31 +78,31 @@ pub struct HwsStatus {
     pub command: Name16,
     /// `"status"`.
     pub report: HwsReport,
-    /// Why it failed (extension).
+    /// Reason of a failure (extension).
     pub reason: Reason,
     /// Part of the goal that no sensor confirms, with `finished` (extension).
     pub unconfirmed: Unconfirmed,
 }
 
-/// The last command about an object or a tool that Task has accepted and not finished. It is an output, so
-/// that a Task that is restarted knows it (docs/design/recovery.md "Ledger"; extension).
+/// The last accepted and unfinished command of Task about an object or a tool. As an output it survives a restart of
+/// Task (docs/design/recovery.md "Ledger"; extension).
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct Ledger {
     /// The command, without its number.
     pub command: HwsCommand,
     /// Its last command to Subtask, except PAUSE.
     pub last: SubtaskVerb,
-    /// The Data System has got the update for its move, or needs none; until its object is taken again.
+    /// The Data System has accepted the update for the move, or needs none. Reset when the object is taken again.
     pub reported: bool,
 }
 
-/// A person has confirmed that what the gripper holds will not fall when it opens. The statement counts as long as the
-/// robot stands where it stood then, and holds something. It is an output, so that a Task that is restarted knows it.
+/// An operator's statement that the held object will not fall when the gripper opens. It is valid while the robot
+/// stays at its place and holds an object. As an output it survives a restart of Task.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct Confirmed {
-    /// What keeps the object from falling.
+    /// The support of the object.
     pub by: Support,
-    /// Where the robot stands.
+    /// The robot's place.
     pub at: Option<Standing>,
 }
 
@@ -120,15 +120,15 @@ pub struct TaskOutputs {
     pub subtask: SubtaskCommand,
     /// To the Data System.
     pub data_base: DataBaseCommand,
-    /// Is the Data System told of moves (extension)?
+    /// State of the connection for updates (extension).
     pub connection: Connection,
     /// Connection to the Data System, and updates (extension).
     pub updates: DataBaseUpdates,
-    /// The last command about an object or a tool that is not finished (extension).
+    /// The last unfinished command about an object or a tool (extension).
     pub ledger: Option<Ledger>,
-    /// A person's statement about what the gripper holds, as long as it counts (extension).
+    /// The operator's valid statement about the held object (extension).
     pub confirmed: Option<Confirmed>,
-    /// T-POSE-1 …: poses that the commands name.
+    /// T-POSE-1 …: poses named by the commands.
     pub poses: [ChangingPose; TASK_POSES],
 }
 
@@ -166,7 +166,7 @@ impl fmt::Display for HwsCommand {
 }
 
 impl HwsReport {
-    /// The report as a state variable of a process above.
+    /// The report as a state variable of the superior.
     #[must_use]
     pub const fn lower(self) -> Lower {
         match self {

@@ -1,6 +1,6 @@
-//! E-move and the grippers that open and close: V-Grip and Tool-Grip (VI.4.2, VI.5).
+//! E-move and the grippers that only open and close: V-Grip and Tool-Grip (VI.4.2, VI.5).
 //!
-//! TG-LEVEL is VG-LEVEL with other parameters and "TG" for "VG", so that both have the same buffers.
+//! TG-LEVEL is VG-LEVEL with other parameters and the prefix TG, so both have the same buffers.
 
 use core::fmt;
 
@@ -13,7 +13,7 @@ use crate::{Header, Reason, device::JawValves, grip::Felt};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 #[text(upper)]
 pub enum JawsVerb {
-    /// None yet.
+    /// No command yet.
     #[text = ""]
     None,
     /// VG-PAUSE, TG-PAUSE: leave the valves as they are and read the potentiometer.
@@ -33,33 +33,33 @@ pub struct JawsCommand {
     pub number: u32,
     /// `"command"`.
     pub command: JawsVerb,
-    /// `commanded-force`: lb; not used by the device.
+    /// `commanded-force`: lb; the device ignores it.
     pub force: i32,
     /// `commanded-size`: opening, 0.01 in (SPECNOTES.md, contradiction 27).
     pub size: i32,
-    /// `commanded-vel`: 0.01 in/s; not used by the device.
+    /// `commanded-vel`: 0.01 in/s; the device ignores it.
     pub velocity: i32,
-    /// `endeff-id`; none if any gripper is meant.
+    /// `endeff-id`; none if any gripper is suitable.
     pub end_effector_id: Option<u8>,
 }
 
 /// `status-report` of V-Grip (VI.4.2), and of Tool-Grip, which has the same buffers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum JawsReport {
-    /// Nothing was commanded yet (extension).
+    /// No command yet (extension).
     Idle,
     /// The fingers are moving.
     Executing,
-    /// They stand open, or where a RELEASE wanted them.
+    /// Stopped at the open limit, or at the size of a RELEASE.
     #[text = "vgrip-opened"]
     Opened,
-    /// They stand closed, or where a GRASP wanted them.
+    /// Stopped at the closed limit, or at the size of a GRASP.
     #[text = "vgrip-closed"]
     Closed,
-    /// They stand where nothing wanted them.
+    /// Stopped at neither a limit nor the commanded size.
     #[text = "jaws-stuck"]
     Stuck,
-    /// They stand at the commanded position (PAUSE only).
+    /// Stopped at the commanded position (PAUSE only).
     AtPosition,
 }
 
@@ -86,13 +86,13 @@ pub struct JawsStatus {
     pub reason: Reason,
     /// `vgrip-size`: opening, 0.01 in.
     pub size: i32,
-    /// `vgrip-left-force`: there is no sensor, always 0.
+    /// `vgrip-left-force`: always 0, as there is no sensor.
     pub left_force: i32,
-    /// `vgrip-right-force`: there is no sensor, always 0.
+    /// `vgrip-right-force`: always 0, as there is no sensor.
     pub right_force: i32,
     /// `vgrip-vel`: 0.01 in/s, positive opening.
     pub velocity: i32,
-    /// What is between the fingers, by the potentiometer alone (extension).
+    /// Content of the gripper by the potentiometer alone (extension).
     pub felt: Felt,
 }
 

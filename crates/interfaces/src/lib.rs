@@ -1,9 +1,9 @@
 //! The buffers between processes, and between the controller and its devices: chapters V and VI.
 //!
-//! Each process owns one record of output buffers; together they are [`CommonMemory`]. Every buffer record starts with
-//! a [`Header`] and is written only by its owner. Variables have the manual's names in Rust's spelling: `command-#-in`
-//! is `number`, its echo is `echo`, `^-pose` is `pose` and holds a record number. Variables that the manual does not
-//! have are marked *extension*.
+//! Each process owns one record of output buffers; together they are [`CommonMemory`]. Every record starts with a
+//! [`Header`], and only its owner writes it. Variables have the manual's names in Rust spelling: `command-#-in` is
+//! `number`, its echo is `echo`, `^-pose` is `pose` and holds a record number. Variables that are not in the manual
+//! are marked *extension*.
 
 #![cfg_attr(not(test), no_std)]
 #![forbid(unsafe_code)]
@@ -70,7 +70,7 @@ pub use rcs_core::header::{Basis, Consulted, Decided, Header};
 /// `status-report` of Subtask and E-move (V.2.2, V.3.2).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum StatusReport {
-    /// Nothing was commanded yet (extension).
+    /// No command yet (extension).
     Idle,
     /// The current command is executing.
     Executing,
@@ -294,7 +294,7 @@ pub enum Reason {
     DeviceTripped,
 }
 
-/// Which process a changing pose record belongs to: part of its record number.
+/// Writers of changing pose records, as part of the record numbers.
 pub mod pose_range {
     /// Record numbers from here on are changing records.
     pub const CHANGING: u32 = 0x8000_0000;
@@ -304,12 +304,12 @@ pub mod pose_range {
     pub const EMOVE: u32 = 0x8200_0000;
     /// Records of Prim: present, sensor and detected poses.
     pub const PRIM: u32 = 0x8300_0000;
-    /// Records of Subtask: locations that it names itself.
+    /// Records of Subtask: locations that no Task command names.
     pub const SUBTASK: u32 = 0x8400_0000;
-    /// Bits of a record number that name the writer.
+    /// Bits of a record number that identify the writer.
     pub const WRITER: u32 = 0xFF00_0000;
 
-    /// The record number after `number` in the same range; generations start again after 2^24.
+    /// The record number after `number` in the same range; generations wrap around after 2^24.
     #[must_use]
     pub const fn next(writer: u32, number: u32) -> u32 {
         let generation = (number & !WRITER).wrapping_add(1) & !WRITER;
@@ -317,7 +317,7 @@ pub mod pose_range {
     }
 }
 
-/// A pose record that changes while running (T-POSE-1 …, VII.1): it has a new number whenever it changes.
+/// A pose record that changes at run time (T-POSE-1 …, VII.1). Each change gives it a new number.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct ChangingPose {
     /// Record number; `None` while empty.
@@ -327,7 +327,7 @@ pub struct ChangingPose {
 }
 
 impl CommonMemory {
-    /// A changing pose by its record number, from whichever process owns it.
+    /// A changing pose by its record number, of any process.
     #[must_use]
     pub fn changing_pose(&self, number: u32) -> Option<&Pose> {
         let records: &[ChangingPose] = match number & pose_range::WRITER {
@@ -340,7 +340,7 @@ impl CommonMemory {
         records.iter().find(|record| record.number == Some(number)).map(|record| &record.pose)
     }
 
-    /// The outputs of the controller to its devices, collected from the processes that own them.
+    /// The outputs of the controller to its devices, collected from their owners.
     #[must_use]
     pub fn device_outputs(&self) -> DeviceOutputs {
         DeviceOutputs {
@@ -358,7 +358,7 @@ impl CommonMemory {
     }
 }
 
-/// Everything that comes from outside in a tick: the only inputs that a replay needs.
+/// All external inputs of a tick: a replay needs no others.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct ExternalInputs {
     /// From the workstation controller.
@@ -367,11 +367,10 @@ pub struct ExternalInputs {
     pub devices: DeviceInputs,
     /// From the Data System.
     pub data_base: DataBaseStatus,
-    /// Generation of the task data that the tick uses: 0 as loaded before the first tick, one more after each
-    /// reload.
+    /// Generation of the task data in this tick: 0 before the first reload, then one more per reload.
     pub generation: u32,
-    /// From an Active Pedestal that is a separate system.
+    /// From an Active Pedestal on a separate system.
     pub pedestal: OutsidePedestal,
-    /// From the terminals of the boards.
+    /// From the operators' terminals.
     pub operator: OperatorInputs,
 }

@@ -1,10 +1,10 @@
-//! Locations as the buffers name them, and as task data are looked up by them (VII.3 to VII.5).
+//! Locations in buffers, and as keys of the task data (VII.3 to VII.5).
 
 use rcs_core::{Plain, name::Name10};
 
 use crate::record_number::{ArrayId, LocptId};
 
-/// `locpt-type`: what a location is (VII.3 to VII.5; SPECNOTES.md, contradiction 26).
+/// `locpt-type`: kind of a location (VII.3 to VII.5; SPECNOTES.md, contradiction 26).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum LocationKind {
     /// No location.
@@ -21,9 +21,9 @@ pub enum LocationKind {
     Owner,
 }
 
-/// A location of a command or of the robot: its name, and the records that identify it.
+/// A location of a command or of the robot: its name and the records that identify it.
 ///
-/// Type and name follow from the records, so equal sites are the same location, or the same sector of an array. The
+/// The records determine type and name, so equal sites are the same location or the same sector of an array. The
 /// default names no location.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct Site {
@@ -52,7 +52,7 @@ impl Site {
         Some(&self.location).filter(|name| !name.is_empty())
     }
 
-    /// The key of look-ups in the task data.
+    /// The key for the task data.
     #[must_use]
     pub const fn place(&self) -> Place {
         Place { kind: self.kind, locpt: self.record, array: self.array }
@@ -83,7 +83,7 @@ impl Place {
         Self { kind: LocationKind::Point, locpt, array: ArrayId::NULL }
     }
 
-    /// True if both are the same location: no intermediate trajectory leads from one to the other.
+    /// True if both are the same location: no intermediate trajectory connects them.
     #[must_use]
     pub fn has_location_of(&self, other: &Self) -> bool {
         self.locpt == other.locpt && (!self.locpt.is_null() || self.array == other.array)

@@ -1,46 +1,46 @@
-//! Inputs of a person at the terminals of the boards (IV.2.6, IV.3.2, IV.3.3) that come from no device: boards are
-//! stopped and started, a level is executed once, the link is initialized.
+//! Inputs of operators at the terminals of the boards (IV.2.6, IV.3.2, IV.3.3) that belong to no device: stop and
+//! start of boards, execution of one level, initialization of the link.
 //!
 //! | at a terminal | here |
 //! |---|---|
 //! | `^C` on board 2, 4, 6 or 8; `GO` | the bit of the board in `stopped`; its processes are not stepped |
 //! | `^C` on board 0; `SSGO` | bit 0 of `stopped`: there is no pulse, and no process is stepped |
-//! | `PRIM-LEVEL` and the like on a board that is stopped | the bit of the process in `executed`, for a tick |
+//! | `PRIM-LEVEL` and the like on a stopped board | the bit of the process in `executed`, for one tick |
 //! | `.R` on board 2 | `robot_init` changes: E-move gives Prim ROBOT-INIT (SPECNOTES.md, contradiction 13) |
 //! | DB-DONE in block 903 | `db_done` |
-//! | `<= VALUE` of a variable of a process that is not stepped | an entry of `writes`, for a tick |
+//! | `<= VALUE` of a variable of a suspended process | an entry of `writes`, for one tick |
 //!
-//! Two inputs have no word in the manual (SPECNOTES.md): `pedestal` is an order to the Active Pedestal, and `confirmed`
-//! is a person's statement that what the gripper holds will not fall. Both are present for a tick.
+//! Two inputs have no word in the manual (SPECNOTES.md): `pedestal` is an order to the Active Pedestal, and
+//! `confirmed` is an operator's statement that the held object will not fall. Both are present for one tick.
 
 use rcs_core::{Plain, name::Name16};
 
 use crate::{CommonMemory, ProcessId, pedestal::PedestalVerb};
 
-/// Numbers of the boards on which something runs (IV.2.2), in the order of their bits.
+/// Numbers of the boards in use (IV.2.2), in the order of their bits.
 pub const BOARDS: [u8; 5] = [0, 2, 4, 6, 8];
 
-/// Inputs of a person at the terminals of the boards.
+/// Inputs of operators at the terminals of the boards.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct OperatorInputs {
-    /// Stopped boards: one bit each, in the order of [`BOARDS`].
+    /// Stopped boards, one bit per board in the order of [`BOARDS`].
     pub stopped: u8,
-    /// Processes that are stepped in this tick although their board is stopped or their switch holds them: a
-    /// bit each, in the order of [`ProcessId::ALL`].
+    /// Processes to step once in this tick although their board is stopped or their switch suspends them: one bit per
+    /// process in the order of [`ProcessId::ALL`].
     pub executed: u16,
     /// Changes with each `.R`; 0 before the first.
     pub robot_init: u32,
-    /// DB-DONE (Figure IV.1): Task reads each command to the Data System as done.
+    /// DB-DONE (Figure IV.1): Task treats each command to the Data System as done.
     pub db_done: bool,
-    /// Values that are written in this tick, in this order.
+    /// Values to write in this tick, in this order.
     pub writes: [Option<Write>; WRITES],
-    /// Order to the Active Pedestal, in the tick in which Subtask is to send it.
+    /// Order to the Active Pedestal, for Subtask to send in this tick.
     pub pedestal: Option<HandOrder>,
-    /// Statement about what the gripper holds, in the tick in which Task is to note it.
+    /// Statement about the held object, for Task to store in this tick.
     pub confirmed: Option<Support>,
 }
 
-/// An order of a person to the Active Pedestal, which Subtask sends if nothing speaks against it.
+/// An operator's order to the Active Pedestal, which Subtask sends unless an interlock forbids it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub struct HandOrder {
     /// The command.
@@ -49,48 +49,48 @@ pub struct HandOrder {
     pub object: Option<Name16>,
     /// FLIP: relative angle, 0.1 degree.
     pub table_angle: i32,
-    /// RELEASE: the person holds the part by hand.
+    /// RELEASE: the operator holds the part by hand.
     pub by_hand: bool,
 }
 
-/// What keeps the object from falling when the gripper opens, as a person has confirmed it.
+/// Support of the object when the gripper opens, as confirmed by an operator.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Support {
     /// The vise at which the robot stands clamps it.
     #[text = "clamped"]
     Clamped,
-    /// The person holds it, or has taken it out.
+    /// The operator holds it, or has taken it out.
     #[text = "by hand"]
     ByHand,
 }
 
-/// Most values that are written in a tick.
+/// Maximum number of values written in a tick.
 pub const WRITES: usize = 4;
 
-/// The variables that a person may write (IV.2.6; SPECNOTES.md): facts that no sensor measures. None of them moves
-/// the robot, fingers or air by itself, and each counts only as long as no sensor contradicts it. The text is the
-/// variable's path in common memory.
+/// The variables that an operator may write (IV.2.6; SPECNOTES.md): facts that no sensor measures. A write does not
+/// move robot, fingers or air, and is valid as long as no sensor contradicts it. The text is the variable's path in
+/// common memory.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Variable {
-    /// Task: the command that is not finished. Without it the same command begins from the start.
+    /// Task: the unfinished command. Without it the same command starts from the beginning.
     #[text = "task.ledger"]
     Ledger,
-    /// Task: the updates that the Data System has not taken. Without them it is not told of those moves.
+    /// Task: updates that the Data System has not accepted. Without them it does not learn of those moves.
     #[text = "task.updates.pending"]
     Pending,
     /// Subtask: the part in the pedestal's hand.
     #[text = "subtask.regrip"]
     Regrip,
-    /// E-move: what the gripper holds. Without it what is felt has no name.
+    /// E-move: the held object. Without it a sensed object has no name.
     #[text = "emove.estimates.held"]
     Held,
-    /// E-move: the object that was let go last, and where. Without it an interrupted command places it again.
+    /// E-move: the last released object and its place. Without it an interrupted command places the object again.
     #[text = "emove.estimates.placed"]
     Placed,
-    /// E-move: what vision has located. Without it a new picture is taken.
+    /// E-move: the object located by vision. Without it a new picture is taken.
     #[text = "emove.estimates.located"]
     Located,
-    /// Grip: scale and offset of the sensors. Without them the next motion that needs an opening calibrates.
+    /// Grip: scale and offset of the sensors. Without them the next motion to an opening calibrates first.
     #[text = "grip.calibration"]
     Calibration,
 }
@@ -121,7 +121,7 @@ impl Variable {
         }
     }
 
-    /// The values that it takes.
+    /// The permitted values.
     #[must_use]
     pub const fn form(self) -> Form {
         match self {
@@ -132,19 +132,19 @@ impl Variable {
     }
 }
 
-/// A value that a person writes into a variable.
+/// A value that an operator writes into a variable.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub struct Write {
     /// The variable.
     pub variable: Variable,
     /// The object; `None` writes NONE.
     pub object: Option<Name16>,
-    /// Grip number of the object, where one belongs to the value.
+    /// Grip number of the object, for values that contain one.
     pub grip: i32,
 }
 
-/// True if the variables of a process may be written in the tick after `before`: it was not stepped (held by its
-/// switch, on a stopped board, dormant, or suspended while a recorded pose is looked at).
+/// True if the variables of a process may be written in the tick after `before`, in which it was not stepped: held by
+/// its switch, on a stopped board, dormant, or suspended for the inspection of a recorded pose.
 #[must_use]
 pub const fn may_be_written(process: ProcessId, before: &CommonMemory) -> bool {
     before.header(process).republished
@@ -170,19 +170,19 @@ pub fn process_bit(process: ProcessId) -> u16 {
 }
 
 impl OperatorInputs {
-    /// A board is stopped, or there is no pulse.
+    /// True if the board is stopped or there is no pulse.
     #[must_use]
     pub const fn is_stopped(&self, board: u8) -> bool {
         self.stopped & (board_bit(board) | board_bit(0)) != 0
     }
 
-    /// A process is to be stepped in this tick whatever stops it.
+    /// True if the process must be stepped in this tick despite a stop.
     #[must_use]
     pub fn executes(&self, process: ProcessId) -> bool {
         self.executed & process_bit(process) != 0
     }
 
-    /// The values that are written into the variables of a process in this tick.
+    /// The values to write into the variables of a process in this tick.
     pub fn writes_to(&self, process: ProcessId) -> impl Iterator<Item = &Write> {
         self.writes.iter().flatten().filter(move |write| write.variable.owner() == process)
     }

@@ -1,7 +1,8 @@
 //! Subtask and the Active Pedestal (VI.7.2), and the pedestal's own hand and table processes.
 //!
-//! The Active Pedestal is a small RCS itself. The manual gives the interface of its upper process; those of hand and
-//! table are of this project. The hand is nearly identical to the parts gripper (III.9.2) and has the buffers of Grip.
+//! The Active Pedestal is itself a small RCS. The manual gives the interface of its upper process; this project
+//! defines those of hand and table. The hand is nearly identical to the parts gripper (III.9.2) and has the buffers
+//! of Grip.
 
 use core::fmt;
 
@@ -18,7 +19,7 @@ use crate::{
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 #[text(upper)]
 pub enum PedestalVerb {
-    /// None yet.
+    /// No command yet.
     #[text = ""]
     None,
     /// Do nothing.
@@ -29,7 +30,7 @@ pub enum PedestalVerb {
     Grip,
     /// Turn the table by a relative angle.
     Flip,
-    /// Open the hand and let the object go.
+    /// Open the hand to release the object.
     Release,
 }
 
@@ -53,13 +54,13 @@ pub struct PedestalCommand {
 /// `status` of the Active Pedestal and of its table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum PedestalReport {
-    /// Nothing was commanded yet (extension).
+    /// No command yet (extension).
     Idle,
     /// Hand, table or both are moving.
     Executing,
-    /// Hand and table have reached what was commanded.
+    /// Hand and table have reached the commanded state.
     Done,
-    /// A command that cannot be executed.
+    /// The command cannot be executed.
     #[text = "can't-do"]
     CannotDo,
     /// An error that prevents the command from finishing.
@@ -93,12 +94,12 @@ pub struct PedestalStatus {
     pub grip_size: i32,
     /// `grip-force`: lb.
     pub grip_force: i32,
-    /// `table-position`: absolute angle, 0.1 degree, if it is known: the counter was set at the + limit, and
-    /// the potentiometer agrees with it while the table stands.
+    /// `table-position`: absolute angle, 0.1 degree, if known: the counter was set at the + limit and agrees with the
+    /// potentiometer of the stationary table.
     pub table_position: Option<i32>,
-    /// What the hand has between its fingers, by its strain gages and its potentiometer (extension).
+    /// Content of the hand by strain gages and potentiometer (extension).
     pub felt: Felt,
-    /// GRIP was ordered, and no opening since: what the hand feels is the object (extension).
+    /// GRIP was ordered, and no opening since: a sensed part is the object (extension).
     pub gripped: bool,
 }
 
@@ -106,7 +107,7 @@ pub struct PedestalStatus {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 #[text(upper)]
 pub enum TableVerb {
-    /// None yet.
+    /// No command yet.
     #[text = ""]
     None,
     /// Do nothing; a turning table stops.
@@ -137,10 +138,10 @@ pub struct TableStatus {
     pub report: PedestalReport,
     /// Why it failed.
     pub reason: Reason,
-    /// The counter has been set at the limit: angles are absolute.
+    /// The counter was set at the limit, so angles are absolute.
     pub calibrated: bool,
-    /// Absolute angle, 0.1 degree, if it is known: calibrated, and the potentiometer agrees with the counter
-    /// while the table stands.
+    /// Absolute angle, 0.1 degree, if known: calibrated, and the counter agrees with the potentiometer of the
+    /// stationary table.
     pub position: Option<i32>,
 }
 
@@ -164,27 +165,26 @@ pub struct TableOutputs {
     pub header: Header,
     /// To the pedestal process.
     pub status: TableStatus,
-    /// Potentiometer at the + limit, counts, while the table is calibrated: a process that is restarted
-    /// adopts it if counter and potentiometer agree.
+    /// Potentiometer reading at the + limit, counts, while the table is calibrated. A restarted process adopts it if
+    /// counter and potentiometer agree.
     pub at_limit: Option<u16>,
     /// To the rotary table controller.
     pub motor: MotorCommand,
 }
 
-/// Data from an Active Pedestal that is a separate system, received over the network (II.2, IX.3). Its three processes
-/// run there, and their outputs are copied into common memory here.
+/// Data from an Active Pedestal on a separate system, received over the network (II.2, IX.3). Its three processes run
+/// there, and their outputs are copied into common memory here.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct OutsidePedestal {
-    /// It is another system: the processes of the pedestal are not stepped here.
+    /// The pedestal is a separate system, and its processes are not stepped here.
     pub elsewhere: bool,
-    /// It answers. While it does not, its buffers keep their last values and the stamp of that tick, by which readers
-    /// treat it as lost.
+    /// The system answers. Otherwise its buffers keep their last values and stamp, so readers treat it as lost.
     pub answers: bool,
-    /// Output buffers of its pedestal process; the stamp does not count.
+    /// Output buffers of its pedestal process; the stamp is ignored.
     pub pedestal: PedestalOutputs,
-    /// Output buffers of its hand process; the stamp does not count.
+    /// Output buffers of its hand process; the stamp is ignored.
     pub hand: GripOutputs,
-    /// Output buffers of its table process; the stamp does not count.
+    /// Output buffers of its table process; the stamp is ignored.
     pub table: TableOutputs,
 }
 

@@ -15,24 +15,24 @@ use crate::{
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 #[text(upper)]
 pub enum PrimVerb {
-    /// None yet.
+    /// No command yet.
     #[text = ""]
     None,
     /// Do nothing: hold position.
     Pause,
     /// Initialize the DEPC link.
     RobotInit,
-    /// Move near a point on the way to the next.
+    /// Move near a point, on the way to the next.
     GoThru,
     /// Move to a point and stop.
     GotoPt,
-    /// Guarded move: move until a sensor condition comes.
+    /// Guarded move: move until a sensor condition occurs.
     GoUntil,
-    /// Move unless a sensor condition comes.
+    /// Move unless a sensor condition occurs.
     GoWhile,
     /// Move relative to a pose.
     DeltaMove,
-    /// Take the force sensor's reading as no force.
+    /// Take the present reading of the force sensor as zero force.
     CalSensor,
 }
 
@@ -51,14 +51,14 @@ pub struct PrimCommand {
     pub movetable: MovtabId,
     /// `^-traj-para`: record of TRAJ-PARA.
     pub trajectory_parameters: TrajParaId,
-    /// `endeff-id#-in`, if a gripper is on.
+    /// `endeff-id#-in`, if a gripper is attached.
     pub end_effector_id: Option<u8>,
 }
 
 /// `status-report` of Prim.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum PrimReport {
-    /// Nothing was commanded yet (extension).
+    /// No command yet (extension).
     Idle,
     /// The current command is executing.
     Executing,
@@ -79,7 +79,7 @@ pub enum PrimReport {
     T3BadCommand,
     /// A sensor overload or malfunction has been identified.
     SensorError,
-    /// The condition of a GO-WHILE was detected on the way.
+    /// The condition of a GO-WHILE was detected before the goal.
     DetectedErr,
     /// The command names records that do not exist, or the robot does not come to rest (extension).
     Error,
@@ -109,9 +109,9 @@ impl PrimReport {
 pub enum JoystickGrip {
     /// Neither button is pressed.
     None,
-    /// Open.
+    /// The open button is pressed.
     Open,
-    /// Close.
+    /// The close button is pressed.
     Close,
 }
 
@@ -122,20 +122,20 @@ pub struct PrimStatus {
     pub echo: u32,
     /// `status-report`.
     pub report: PrimReport,
-    /// Why it failed (extension).
+    /// Reason of a failure (extension).
     pub reason: Reason,
     /// `restart-status`: a RESTART is being sent to T3I.
     pub restarting: bool,
     /// The DEPC link runs and Prim commands the robot (extension).
     pub link_running: bool,
-    /// The controller's DTR is off, as T3I reports it: the arm may have no pressure (extension).
+    /// The controller's DTR is off, as T3I reports: the arm may be without pressure (extension).
     pub controller_off: bool,
     /// `pres-pose-^-out`: the position commanded to T3I, if Prim commands the robot.
     pub present_pose: Option<u32>,
-    /// `sensor-pose-^-out`: where the resolvers say that the robot is, if they can be believed; the command
-    /// from T3I to DEPC is `frame-feedback` of T3I.
+    /// `sensor-pose-^-out`: pose by the resolvers, if they are valid. The command from T3I to DEPC is
+    /// `frame-feedback` of T3I.
     pub sensor_pose: Option<u32>,
-    /// `detected-pose-^-out`: where the condition of the last GO-UNTIL was detected, if it was.
+    /// `detected-pose-^-out`: pose at which the condition of the last GO-UNTIL was detected.
     pub detected_pose: Option<u32>,
     /// `hol-R-status`.
     pub holster_right: u8,
@@ -145,13 +145,11 @@ pub struct PrimStatus {
     pub holster_centre: u8,
     /// `joy-grip-status`.
     pub joystick_grip: JoystickGrip,
-    /// `pres-pose-^-out` when the record button of the joystick box was pressed last, if it ever was
-    /// (extension).
+    /// `pres-pose-^-out` at the last press of the joystick box's record button (extension).
     pub recorded_pose: Option<u32>,
-    /// A pose has been recorded: Prim and E-move are suspended until the operator goes on (III.3.3;
-    /// extension).
+    /// A pose was recorded: Prim and E-move are suspended until the operator continues (III.3.3; extension).
     pub recording: bool,
-    /// What the sensor of the guarded move reads: lb, in lb, or 1 while a switch is on (extension).
+    /// Reading of the guarded move's sensor: lb, in lb, or 1 while a switch is on (extension).
     pub sensed: i32,
     /// Distance to the goal, 0.01 in of path (extension).
     pub distance: i32,
@@ -160,8 +158,7 @@ pub struct PrimStatus {
 /// Changing poses of Prim: present, sensor, detected, recorded.
 pub const PRIM_POSES: usize = 4;
 
-/// Axes of the force sensor that are connected: forces along tool X, Y, Z, and the moment about tool Y
-/// (III.3.8).
+/// Connected axes of the force sensor: forces along tool X, Y, Z and the moment about tool Y (III.3.8).
 pub const FORCE_AXES: usize = 4;
 
 /// Output buffers of Prim.
@@ -177,12 +174,12 @@ pub struct PrimOutputs {
     pub joystick_leds: u8,
     /// Present, sensor, detected and recorded pose.
     pub poses: [ChangingPose; PRIM_POSES],
-    /// What the force sensor reads without a force of interest, if that was taken: counts off the middle of
-    /// the converters as tool Fx, Fy, Fz, My (III.3.8; extension).
+    /// Calibrated zero of the force sensor: counts from the middle of the converters as tool Fx, Fy, Fz, My (III.3.8;
+    /// extension).
     pub bias: Option<[f64; FORCE_AXES]>,
 }
 
-/// `GO-UNTIL SEAT-F`: only guarded moves name a sensor.
+/// `GO-UNTIL SEAT-F`: the sensor appears only with guarded moves.
 impl fmt::Display for PrimCommand {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(self.command.text())?;

@@ -1,16 +1,16 @@
-//! A control process (II.2.2): once a tick it reads common memory of the tick before, decides, and writes its own
+//! A control process (II.2.2): once per tick it reads common memory of the previous tick, decides, and writes its own
 //! output buffers.
 
 use rcs_core::{Plain, table::Table, tick::Tick};
 
 use crate::{CommonMemory, ExternalInputs, operator::Write};
 
-/// Inputs of a process in a tick. `Data` is the task data, on which this crate does not depend.
+/// Inputs of a process in a tick. `Data` is the task data; this crate does not depend on its type.
 #[derive(Debug)]
 pub struct Inputs<'a, Data: ?Sized> {
-    /// This tick.
+    /// The present tick.
     pub tick: Tick,
-    /// All output buffers as written in the tick before.
+    /// All output buffers of the previous tick.
     pub memory: &'a CommonMemory,
     /// External inputs of this tick.
     pub external: &'a ExternalInputs,
@@ -21,27 +21,27 @@ pub struct Inputs<'a, Data: ?Sized> {
 /// A control process: a pure state machine without clock, I/O or heap.
 ///
 /// [`Process::step`] is the generic process of II.2.2. *preprocess* reads the inputs and sets the state variables,
-/// *decide* looks them up in decision tables, *postprocess* fills the outputs. The same state and inputs give the same
-/// outputs, bit for bit.
+/// *decide* evaluates the decision tables, *postprocess* fills the outputs. Equal state and inputs give bit-identical
+/// outputs.
 pub trait Process<Data: ?Sized> {
-    /// The whole state of the process: plain data, logged, restorable.
+    /// The complete state of the process: plain data that is logged and can be restored.
     type State: Plain;
     /// Output buffers.
     type Outputs: Plain;
-    /// The state variables of a tick, and other results of preprocess.
+    /// The state variables of a tick and other results of preprocess.
     type StateVariables;
     /// Actions of the tables.
     type Action;
 
     /// The manual's name.
     const NAME: &'static str;
-    /// Its decision tables; the header of its outputs names one by position from 1.
+    /// Its decision tables; the header of its outputs identifies one by position from 1.
     const TABLES: &'static [&'static Table];
 
-    /// Read the inputs and set the state variables. `outputs` holds what was written in the tick before.
+    /// Read the inputs and set the state variables. `outputs` contains the previous outputs.
     fn preprocess(&mut self, inputs: &Inputs<'_, Data>, outputs: &Self::Outputs) -> Self::StateVariables;
 
-    /// Look the state variables up in the decision tables.
+    /// Evaluate the decision tables for the state variables.
     fn decide(&mut self, seen: &Self::StateVariables) -> Self::Action;
 
     /// Carry out the action of the row that fired, and fill the output buffers.
@@ -53,17 +53,17 @@ pub trait Process<Data: ?Sized> {
         outputs: &mut Self::Outputs,
     );
 
-    /// Take over a value that a person writes while the process is not stepped (IV.2.6). `outputs` holds what was
-    /// written in the tick before.
+    /// Accept a value that an operator writes while the process is not stepped (IV.2.6). `outputs` contains the
+    /// previous outputs.
     fn write(&mut self, _: &Write, _: &Inputs<'_, Data>, _: &mut Self::Outputs) {}
 
     /// State of the process.
     fn state(&self) -> &Self::State;
 
-    /// The same, to go on from another state.
+    /// Mutable state, to continue from another one.
     fn state_mut(&mut self) -> &mut Self::State;
 
-    /// One execution cycle. `outputs` holds what was written in the tick before and is overwritten.
+    /// One execution cycle. It overwrites `outputs`, which contains the previous outputs.
     #[inline]
     fn step(&mut self, inputs: &Inputs<'_, Data>, outputs: &mut Self::Outputs) {
         let seen = self.preprocess(inputs, outputs);

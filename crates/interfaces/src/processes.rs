@@ -1,8 +1,8 @@
 //! The control processes, each registered once.
 //!
-//! [`for_each_process!`](crate::for_each_process!) is the one list. From it follow [`ProcessId`], [`CommonMemory`] and
-//! the order of the digest, the ladder, the boards and their data exchange, shared memory, and the chains that explain
-//! a failure.
+//! [`for_each_process!`](crate::for_each_process!) is the only list. It generates [`ProcessId`] and [`CommonMemory`],
+//! and determines the order of the digest, the ladder, the boards and their data exchange, shared memory, and the
+//! chains that explain a failure.
 
 use rcs_core::{
     Plain,
@@ -11,14 +11,14 @@ use rcs_core::{
 
 use crate::{Header, Reason, Unconfirmed, t3i::LinkFault};
 
-/// Give the list of processes to a macro. An entry is:
+/// Pass the list of processes to a macro. An entry contains:
 ///
 /// * the identifier, which is also the name of its type in `levels::processes`, and the manual's name;
 /// * `buffers`: its field of common memory, and the type of its output buffers;
-/// * `failure`: the field of its status that says why it failed;
+/// * `failure`: the status field with the reason of a failure;
 /// * `board`: the number of the board on which it runs (IV.2.2);
-/// * `commander`: the process above it and the buffer with its command, nothing for Task;
-/// * `reads`: the external inputs that it reads, by the beginnings of their names in `ExternalInputs`.
+/// * `commander`: its superior and the buffer with the superior's command; empty for Task;
+/// * `reads`: prefixes of the external inputs that it reads, as named in `ExternalInputs`.
 #[macro_export]
 macro_rules! for_each_process {
     ($with:ident) => {
@@ -147,7 +147,7 @@ macro_rules! register {
             reads: $reads:expr;
         }
     )+) => {
-        /// The control processes in the order of [`CommonMemory`], which is the order of the digest.
+        /// The control processes in the order of [`CommonMemory`] and the digest.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Plain)]
         pub enum ProcessId { $( #[doc = $doc] #[text = $text] $id, )+ }
 
@@ -158,7 +158,7 @@ macro_rules! register {
                 match self { $( Self::$id => $board, )+ }
             }
 
-            /// The process that commands it; none for Task, which the workstation controller commands.
+            /// Its superior; none for Task, which the workstation controller commands.
             #[must_use]
             pub const fn commander(self) -> Option<Self> {
                 const fn only<const N: usize>(commander: [ProcessId; N]) -> Option<ProcessId> {
@@ -170,7 +170,7 @@ macro_rules! register {
                 match self { $( Self::$id => only([$( Self::$commander )?]), )+ }
             }
 
-            /// External inputs that it reads: beginnings of their names in `ExternalInputs`.
+            /// Prefixes of the external inputs that it reads, as named in `ExternalInputs`.
             #[must_use]
             pub const fn reads(self) -> &'static [&'static str] {
                 match self { $( Self::$id => &$reads, )+ }
@@ -208,13 +208,13 @@ macro_rules! register {
                 } )+ }
             }
 
-            /// Number of the command that a process has from the one above it; none for Task.
+            /// Number of the superior's command to a process; none for Task.
             #[must_use]
             pub fn command_number(&self, process: ProcessId) -> Option<u32> {
                 match process { $( ProcessId::$id => [ $( self.$above.$command.number )? ].first().copied(), )+ }
             }
 
-            /// Pass the command of a process, as text, to `show`; not for Task.
+            /// Pass the command of a process as text to `show`; not for Task.
             pub fn show_command<T>(
                 &self,
                 process: ProcessId,
@@ -228,7 +228,7 @@ macro_rules! register {
                 } )+ }
             }
 
-            /// The header of a process's outputs, to change it.
+            /// The mutable header of a process's outputs.
             #[must_use]
             pub const fn header_mut(&mut self, process: ProcessId) -> &mut Header {
                 match process { $( ProcessId::$id => &mut self.$field.header, )+ }
@@ -239,7 +239,7 @@ macro_rules! register {
 for_each_process!(register);
 
 impl CommonMemory {
-    /// Part of the goal that no sensor confirms, as the status of a process reports it.
+    /// Part of the goal that no sensor confirms, from the status of a process.
     const fn unconfirmed(&self, process: ProcessId) -> Unconfirmed {
         match process {
             ProcessId::Task => self.task.status.unconfirmed,
@@ -289,11 +289,11 @@ answers!(
 /// The status of a process, independent of its type.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Said {
-    /// The word of its report.
+    /// The report as text.
     pub report: &'static str,
-    /// The report as a state variable of the process above.
+    /// The report as a state variable of the superior.
     pub lower: Lower,
-    /// Why it failed.
+    /// Reason of a failure.
     pub fault: Fault,
     /// Part of the goal that no sensor confirms.
     pub unconfirmed: Unconfirmed,
@@ -309,13 +309,13 @@ pub enum Fault {
 }
 
 impl Fault {
-    /// It did not fail.
+    /// True if the process did not fail.
     #[must_use]
     pub const fn is_none(self) -> bool {
         matches!(self, Self::Reason(Reason::None) | Self::Link(LinkFault::None))
     }
 
-    /// The sentence.
+    /// The fault as text.
     #[must_use]
     pub const fn text(self) -> &'static str {
         match self {
@@ -337,7 +337,7 @@ impl From<LinkFault> for Fault {
     }
 }
 
-/// How many processes there are.
+/// Number of processes.
 pub const PROCESS_COUNT: usize = ProcessId::ALL.len();
 
 impl ProcessId {
@@ -347,18 +347,18 @@ impl ProcessId {
         usize::from(self.code())
     }
 
-    /// How many processes are above it.
+    /// Number of processes above it.
     #[must_use]
     pub fn depth(self) -> usize {
         core::iter::successors(self.commander(), |process| process.commander()).count()
     }
 
-    /// The processes that it commands.
+    /// Its subordinates.
     pub fn below(self) -> impl Iterator<Item = Self> {
         Self::ALL.iter().copied().filter(move |process| process.commander() == Some(self))
     }
 
-    /// All processes, the lowest first: each before the one that commands it.
+    /// All processes from the lowest up: each precedes its superior.
     pub fn upward() -> impl Iterator<Item = Self> {
         let at = |depth| Self::ALL.iter().copied().filter(move |process| process.depth() == depth);
         (0..PROCESS_COUNT).rev().flat_map(at)

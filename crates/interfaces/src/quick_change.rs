@@ -9,10 +9,10 @@ use crate::{Header, Reason, device::QuickChangeValves};
 /// Commands of Quick Change (VI.2.1).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum QuickChangeVerb {
-    /// None yet.
+    /// No command yet.
     #[text = ""]
     None,
-    /// Do nothing; sensors and id are read.
+    /// Do nothing; sensors and id are still read.
     #[text = "QC-PAUSE"]
     Pause,
     /// Lock, check, disable the port.
@@ -35,14 +35,14 @@ pub struct QuickChangeCommand {
 /// `status-report` of Quick Change.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum QuickChangeReport {
-    /// Nothing was read yet (extension).
+    /// No reading yet (extension).
     Idle,
     /// The command is executing.
     Executing,
-    /// Locked; there may or may not be an end effector.
+    /// Locked, with or without an end effector.
     #[text = "qc-locked"]
     Locked,
-    /// Unlocked; there may or may not be an end effector.
+    /// Unlocked, with or without an end effector.
     #[text = "qc-unlocked"]
     Unlocked,
     /// The sensors contradict each other.
@@ -65,7 +65,7 @@ impl QuickChangeReport {
     }
 }
 
-/// Where the locking ring is, as its two sensors say together (extension).
+/// Position of the locking ring by its two sensors (extension).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum RingPosition {
     /// Not read yet.
@@ -74,9 +74,9 @@ pub enum RingPosition {
     Locked,
     /// Unlocked.
     Unlocked,
-    /// Seen by neither sensor: on its way, or stuck half open.
+    /// Seen by neither sensor: in motion or stuck half open.
     Between,
-    /// Seen by both sensors, which cannot be.
+    /// Seen by both sensors, which is impossible.
     Implausible,
 }
 
@@ -89,9 +89,9 @@ pub struct QuickChangeStatus {
     pub report: QuickChangeReport,
     /// `status-para-out`.
     pub reason: Reason,
-    /// `endeff-id#`: gripper mated, locked or not, if there is one.
+    /// `endeff-id#`: the mated gripper, locked or not.
     pub end_effector_id: Option<u8>,
-    /// What the sensors of the ring say in this tick, whatever became of the last command (extension).
+    /// Position of the ring in this tick, independent of the last command (extension).
     pub ring: RingPosition,
 }
 

@@ -1,13 +1,12 @@
-//! The remedy of a failure: the same command again after a PAUSE, or an action of a person first (docs/reasons.md).
+//! The remedy of a failure: repeat the command after a PAUSE, or act at the cell first (docs/reasons.md).
 
 use super::Reason;
 
 impl Reason {
-    /// What a person has to do before the same command can succeed; `None` if PAUSE and the same command may
-    /// be enough.
+    /// The operator's action before the same command can succeed; `None` if PAUSE and the same command may be enough.
     ///
-    /// A person is needed where the job or the task data are wrong, where something is at a place that the controller
-    /// does not know, and where a device or a program has to be switched on (extension: the manual has no reasons).
+    /// An operator is needed if the job or the task data are wrong, if an object or the robot is at an unknown place,
+    /// or if a device or program must be switched on (extension: the manual has no reasons).
     #[must_use]
     pub const fn remedy(self) -> Option<&'static str> {
         Some(match self {

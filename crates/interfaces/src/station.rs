@@ -1,8 +1,8 @@
-//! The words of the station: keys, switches and emergency stops as a person names them.
+//! The operator's words for keys, switches and emergency stops of the station.
 //!
-//! Jobs, requests of operators and completion read the same words ([`following`]). The actions that they stand for are
-//! here, too, so that the job and the simulated cell share them. All of it is an extension: the manual describes the
-//! controls (III.3.3, III.6, IV.1, IV.3.3) and has no lines for them.
+//! Jobs, operator requests and completion read the same words ([`following`]). The job and the simulated cell share
+//! the corresponding actions. All of it is an extension: the manual describes the controls (III.3.3, III.6, IV.1,
+//! IV.3.3) and has no lines for them.
 
 mod action;
 
@@ -15,7 +15,7 @@ use crate::{
     processes::ProcessId,
 };
 
-/// The first word of a line for the station.
+/// The first word of a station line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum LineVerb {
     /// A part is delivered into a sector of a tray.
@@ -24,34 +24,34 @@ pub enum LineVerb {
     Vise,
     /// A blank becomes a part.
     Machine,
-    /// The tool drum.
+    /// An action at the tool drum.
     Drum,
-    /// The joystick box.
+    /// An action at the joystick box.
     Joystick,
     /// An emergency stop is pressed.
     #[text = "estop"]
     EStop,
-    /// An emergency stop is pulled out again.
+    /// An emergency stop is pulled out.
     Release,
-    /// The panel of the robot controller.
+    /// An action at the panel of the robot controller.
     Panel,
-    /// The panel of the rotary table's controller.
+    /// An action at the panel of the rotary table's controller.
     Table,
-    /// The resolver electronics.
+    /// An action at the resolver electronics.
     Resolvers,
     /// The job waits.
     Wait,
     /// Blocks are loaded.
     Load,
-    /// Another line, some ticks after the next command.
+    /// Another line is executed some ticks after the next command.
     After,
-    /// The job hands the command over to the workstation controller.
+    /// The job passes the command to the workstation controller.
     #[text = "workstation"]
     HandOver,
 }
 
 impl LineVerb {
-    /// True if the line uses the job's ticks, its files or its next command.
+    /// True if the line uses the job's ticks, files or next command.
     #[must_use]
     pub const fn is_of_job(self) -> bool {
         matches!(self, Self::Wait | Self::Load | Self::After | Self::HandOver)
@@ -72,20 +72,20 @@ pub enum ViseOpening {
 /// Actions of the tool drum.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum DrumVerb {
-    /// Its fingers close.
+    /// The drum's fingers close.
     Grip,
-    /// Its fingers open.
+    /// The drum's fingers open.
     Release,
-    /// A tool is put into it.
+    /// A tool is put into the drum.
     Tool,
 }
 
-/// The emergency stops (III.6): one circuit with five buttons, each of which stays in until it is pulled out.
+/// The emergency stops (III.6): one circuit with five buttons. A pressed button stays in until it is pulled out.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum EStop {
     /// On the front panel of the robot controller.
     ControlPanel,
-    /// On its teach pendant.
+    /// On the teach pendant.
     TeachPendant,
     /// Near the terminals of RCS-II/T3.
     Terminals,
@@ -96,7 +96,7 @@ pub enum EStop {
 }
 
 impl EStop {
-    /// Its place, as a clause: *on the control panel*.
+    /// Its place as a clause: *on the control panel*.
     #[must_use]
     pub const fn place(self) -> &'static str {
         match self {
@@ -118,9 +118,9 @@ pub enum BoxControl {
     Stick,
     /// The velocity knob.
     Velocity,
-    /// A switch that suspends a process, on.
+    /// Switch on the suspension of a process.
     Hold,
-    /// The same, off.
+    /// Switch off the suspension of a process.
     Free,
     /// A single-step button.
     Step,
@@ -130,7 +130,7 @@ pub enum BoxControl {
     Resume,
 }
 
-/// The push-buttons of the joystick box that are held down while the robot moves (III.3.3).
+/// The push-buttons of the joystick box that an operator holds down to move the robot (III.3.3).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum BoxButton {
     /// D: along +Z.
@@ -145,7 +145,7 @@ pub enum BoxButton {
     RollMinus,
     /// F: open the gripper.
     Open,
-    /// H: close it.
+    /// H: close the gripper.
     Close,
 }
 
@@ -161,7 +161,7 @@ pub enum BoxFrame {
     ToolOrigin,
     /// Pitch and yaw about the wrist point.
     WristOrigin,
-    /// No switch is on: the box is not active.
+    /// All switches are off: the box is not active.
     Off,
 }
 
@@ -321,21 +321,21 @@ pub enum Switch {
 pub enum Keyswitch {
     /// The hydraulics may start.
     Enable,
-    /// They may not.
+    /// The hydraulics may not start.
     Disable,
 }
 
 /// Positions of the mode switch of the rotary table's controller.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum TableMode {
-    /// The keys count.
+    /// The keys are effective.
     Manual,
-    /// The serial line counts.
+    /// The serial line is effective.
     Prog,
 }
 
-/// The words that can follow the first words of a line, as lists of the variants of enums; `None` if a name or a number
-/// follows, or nothing.
+/// The words that can follow the first words of a line, as lists of enum variants. `None` if a name, a number or
+/// nothing follows.
 #[must_use]
 pub fn following(words: &[&str]) -> Option<&'static [&'static EnumSchema]> {
     let [verb, rest @ ..] = words else { return Some(&[LineVerb::ENUM]) };

@@ -17,13 +17,13 @@ use crate::{
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 #[text(upper)]
 pub enum SubtaskVerb {
-    /// None yet.
+    /// No command yet.
     #[text = ""]
     None,
     /// Do nothing.
     #[text = "S-PAUSE"]
     Pause,
-    /// Connect the proper gripper.
+    /// Attach the gripper for the object.
     GetEndeff,
     /// Move to an object and grasp it.
     GetObject,
@@ -45,7 +45,7 @@ pub enum SubtaskVerb {
     FixGrip,
     /// Insert a tool into the tool drum.
     InsertTool,
-    /// Let go of a tool in the drum.
+    /// Release a tool in the drum.
     ReleaseTool,
     /// Move to a tool in the drum and grasp it.
     AcquireTool,
@@ -62,7 +62,7 @@ pub struct SubtaskCommand {
     pub command: SubtaskVerb,
     /// `"obj"`, if one is named.
     pub object: Option<Name16>,
-    /// `obj-endeff-id#`; none if any gripper will do.
+    /// `obj-endeff-id#`; none if any gripper is suitable.
     pub end_effector_id: Option<u8>,
     /// `src-grip-#-in`.
     pub source_grip: i32,
@@ -89,35 +89,35 @@ pub struct SubtaskStatus {
     pub unconfirmed: Unconfirmed,
     /// `ref-pose-^-out`: the feedback pose, as E-move reports it.
     pub reference_pose: Option<u32>,
-    /// `obj-held-status-out`: what is held, as E-move reports it (more than yes or no is an extension).
+    /// `obj-held-status-out`: the held object, as E-move reports it (more than yes or no is an extension).
     pub held: Holding,
-    /// Where it is along the fingers, or was when it was let go, as E-move reports it (extension).
+    /// Position of the object along the fingers, or at its release, as E-move reports it (extension).
     pub seat: Seat,
-    /// The object that the last RELEASE has let go, as E-move reports it (extension).
+    /// The object of the last RELEASE, as E-move reports it (extension).
     pub placed: Option<PlacedObject>,
-    /// `pres-endeff-id#-out`, if a gripper is on.
+    /// `pres-endeff-id#-out`, if a gripper is attached.
     pub end_effector_id: Option<u8>,
-    /// Do the id pins confirm it, as E-move reports it (extension)?
+    /// Confirmation of the gripper by the id pins, as E-move reports it (extension).
     pub pins: Pins,
-    /// Where the robot stands, if E-move knows it (extension).
+    /// The robot's place, if E-move knows it (extension).
     pub at: Option<Standing>,
-    /// How far the robot is from there, as E-move reports it (extension).
+    /// Distance of the robot from its place, as E-move reports it (extension).
     pub offset: Offset,
-    /// The fingers are around a tool in the tool drum, as E-move reports it (extension).
+    /// The fingers surround a tool in the tool drum, as E-move reports it (extension).
     pub drum: bool,
-    /// The part is in the pedestal's hand, alone or together with the robot (extension).
+    /// The part is in the pedestal's hand, possibly also in the robot's gripper (extension).
     pub pedestal_part: bool,
 }
 
-/// The part that Subtask has given to the pedestal's hand. It is an output, so that a Subtask that is
-/// restarted knows it (docs/design/recovery.md "Estimates"); it counts as long as the hand feels something.
+/// The part that Subtask passed to the pedestal's hand. As an output it survives a restart of Subtask
+/// (docs/design/recovery.md "Estimates"). It is valid as long as the hand senses a part.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct Regrip {
     /// The object.
     pub object: Name16,
 }
 
-/// Changing poses of Subtask: the location that it names itself (holster, pedestal), one after the other.
+/// Changing poses of Subtask for locations that no Task command names (holster, pedestal), used alternately.
 pub const SUBTASK_POSES: usize = 2;
 
 /// Output buffers of Subtask.
@@ -137,7 +137,7 @@ pub struct SubtaskOutputs {
     pub poses: [ChangingPose; SUBTASK_POSES],
 }
 
-/// `GET-OBJECT LINKBAR1 at TRAY`, `GET-ENDEFF gripper 1`: the verb with the fields that it uses.
+/// `GET-OBJECT LINKBAR1 at TRAY`, `GET-ENDEFF gripper 1`: the verb with its fields.
 impl fmt::Display for SubtaskCommand {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(self.command.text())?;

@@ -17,7 +17,7 @@ use crate::{Header, device::LinkBytes};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 #[text(upper)]
 pub enum T3iVerb {
-    /// None yet.
+    /// No command yet.
     #[text = ""]
     None,
     /// Clear errors and initialize the link.
@@ -46,7 +46,7 @@ pub struct T3iCommand {
 pub enum T3iReport {
     /// 0: finished, output position equals input position.
     Finished,
-    /// 1: executing; no new point is wanted.
+    /// 1: executing; no new point is accepted.
     Executing,
     /// 2: an error has occurred.
     Error,
@@ -54,45 +54,46 @@ pub enum T3iReport {
     Ready,
 }
 
-/// Is the robot where it was sent? What T3I makes of a report of the robot controller (extension).
+/// Comparison of the robot controller's report with the sent positions (extension).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum ReportCheck {
-    /// No report has come since the link was lost, or since the last RESTART.
+    /// No report since the loss of the link or the last RESTART.
     #[text = "no report"]
     NoReport,
-    /// The robot is where it was sent, within 2 counts a word, or on the way there from where it was sent
-    /// before. Or nothing has been sent yet.
+    /// The robot is at the sent position within 2 counts per word, or between it and the one before. Also before the
+    /// first position is sent.
     #[text = "as sent"]
     AsSent,
-    /// It is elsewhere, or the controller's DTR was off meanwhile. Stays until the next point is sent.
+    /// The robot is elsewhere, or the controller's DTR was off meanwhile. The state lasts until the next point is
+    /// sent.
     Elsewhere,
 }
 
-/// Is the robot on the path that it is sent along? What T3I makes of the resolvers while the link runs (extension).
+/// Comparison of the resolvers with the commanded path while the link runs (extension).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Following {
-    /// The link begins, and the resolvers have not been near the reported position yet.
+    /// The link is starting, and the resolvers have not been near the reported position yet.
     Joining,
-    /// It is, or the resolvers are not valid.
+    /// The robot is on its path, or the resolvers are invalid.
     #[text = "on path"]
     OnPath,
-    /// It was not, and was stopped: nothing is sent until RESTART.
+    /// The robot left its path and was stopped: T3I sends no position until RESTART.
     #[text = "off path"]
     OffPath,
 }
 
-/// Where a robot that left its path was found (extension).
+/// Place of a robot that left its path (extension).
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct PathLeft {
-    /// Tool frame of the position sent last.
+    /// Tool frame of the last sent position.
     pub commanded: WireFrame,
     /// Tool frame of the resolvers.
     pub fed_back: WireFrame,
-    /// Distance of the resolvers from the path of the expected lag, 0.01 in; a radian counts as 14 in.
+    /// Distance of the resolvers from the path within the expected lag, 0.01 in; one radian equals 14 in.
     pub deviation: i32,
 }
 
-/// The last two positions sent, in words of the line: X, Y, Z in 0.01 in, D, E, R in 0.01 degree (extension).
+/// The last two sent positions in words of the line: X, Y, Z in 0.01 in, D, E, R in 0.01 degree (extension).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub struct SentWords {
     /// The last one.
@@ -116,32 +117,31 @@ pub struct T3iStatus {
     pub report: T3iReport,
     /// `status-arg-out`.
     pub fault: LinkFault,
-    /// `frame-feedback`: resolver frame until the link runs, commanded frame afterwards
-    /// (SPECNOTES.md, contradiction 14).
+    /// `frame-feedback`: resolver frame until the link runs, then the commanded frame (SPECNOTES.md, contradiction
+    /// 14).
     pub frame_feedback: WireFrame,
     /// `scale-factor-out`: resolver scale, counts per turn.
     pub scale_factor: i32,
-    /// `joint-limit-dummy`: always 0. VI.1.2 has it for joint limits and does not use it; the line does not
-    /// tell of them (A 2.3).
+    /// `joint-limit-dummy`: always 0. VI.1.2 reserves it for joint limits, which the line does not report (A 2.3).
     pub joint_limit: i32,
-    /// Tool frame from the resolvers, if they can be believed (extension).
+    /// Tool frame from the resolvers, if they are valid (extension).
     pub resolver_frame: Option<WireFrame>,
     /// The link runs: the last report was received and commands are acknowledged (extension).
     pub link_running: bool,
     /// The controller's DTR is on (extension).
     pub controller_ready: bool,
-    /// DTR is on, and for a second or longer the controller has not answered (extension).
+    /// DTR is on, and the controller has not answered for a second or longer (extension).
     pub silent: bool,
-    /// Is the robot where it was sent (extension)?
+    /// Comparison of the reported with the sent position (extension).
     pub check: ReportCheck,
-    /// The last two positions sent, for a T3I that is restarted (extension).
+    /// The last two sent positions, for a restarted T3I (extension).
     pub sent: Option<SentWords>,
-    /// Is the robot on its path (extension)?
+    /// Comparison of the resolvers with the path (extension).
     pub following: Following,
-    /// Distance of the resolvers from the path of the expected lag, 0.01 in; 0 without a link or valid resolvers
+    /// Distance of the resolvers from the path within the expected lag, 0.01 in; 0 without a link or valid resolvers
     /// (extension).
     pub deviation: i32,
-    /// Where the robot left its path, until RESTART (extension).
+    /// Place at which the robot left its path, until RESTART (extension).
     pub left: Option<PathLeft>,
     /// Counters (extension).
     pub counters: LinkCounters,
@@ -171,7 +171,7 @@ impl fmt::Display for PathLeft {
 }
 
 impl T3iStatus {
-    /// Possible causes of a line without answers, as text; `None` if there is no trouble.
+    /// Possible causes of a line without answers, as text; `None` if the line is sound.
     #[must_use]
     pub const fn trouble(&self) -> Option<&'static str> {
         if self.silent {

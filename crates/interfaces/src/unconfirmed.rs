@@ -1,11 +1,10 @@
-//! The part of a goal that no sensor confirms, reported together with `done` and `finished` (docs/design/tables.md
-//! "Goals").
+//! The part of a goal that no sensor confirms, reported with `done` and `finished` (docs/design/tables.md "Goals").
 
 use core::fmt;
 
 use rcs_core::Plain;
 
-/// What no sensor confirms about a command that has finished: the machine has no sensor for it (extension).
+/// Part of a completed command's goal for which the machine has no sensor (extension).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 #[text(doc)]
 pub enum Unconfirmed {
@@ -29,8 +28,7 @@ impl Unconfirmed {
         matches!(self, Self::None)
     }
 
-    /// The text to be written after the report: `, unconfirmed: the tool in the drum (the drum has no sensor)`, or
-    /// nothing.
+    /// The suffix of the report: `, unconfirmed: the tool in the drum (the drum has no sensor)`, or empty.
     #[must_use]
     pub const fn suffix(self) -> Suffix {
         Suffix(self)

@@ -2,10 +2,10 @@
 
 use rcs_core::Plain;
 
-/// What the vision system is asked for (V.2.1 LOCATE-OBJ).
+/// Picture requested from the vision system (V.2.1 LOCATE-OBJ).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Picture {
-    /// Nothing.
+    /// No picture.
     None,
     /// Fast flood: approximate centroid.
     FastFlood,
@@ -35,31 +35,31 @@ pub struct VisionRequest {
 pub enum VisionStatus {
     /// No request yet.
     Idle,
-    /// Working on it.
+    /// The request is executing.
     Busy,
-    /// Done: the values are valid.
+    /// Done; the values are valid.
     Done,
-    /// No object in the picture.
+    /// The picture contains no object.
     NothingSeen,
-    /// An object, but not the one asked for.
+    /// The picture contains an object other than the requested one.
     NotRecognised,
 }
 
-/// Answer of the vision system, in the axes of the place that the camera looks at (as if the view movetable
-/// were undone): X along the optical axis away from the camera, Y the tool's Y, Z = X x Y.
+/// Answer of the vision system, in the axes of the place under the camera (as if the view movetable were undone): X
+/// along the optical axis away from the camera, Y the tool's Y, Z = X x Y.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct VisionResponse {
-    /// Number of the request that is answered.
+    /// Number of the answered request.
     pub echo: u32,
-    /// How it went.
+    /// Result of the request.
     pub status: VisionStatus,
     /// Centroid from the optical axis along Y, 0.01 in.
     pub y: i32,
     /// Centroid from the optical axis along Z, 0.01 in.
     pub z: i32,
-    /// Right-hand roll about X, 0.01 degree, -9000 < angle <= 9000, that brings the tool's Y onto the
-    /// dimension to grip across.
+    /// Right-hand roll about X, 0.01 degree, -9000 < angle <= 9000, that aligns the tool's Y with the dimension to
+    /// grip across.
     pub angle: i32,
-    /// Vision id of what was recognised, if anything was.
+    /// Vision id of the recognised object, if any.
     pub recognised: Option<u16>,
 }

@@ -5,12 +5,12 @@ use core::fmt;
 use geometry::units::Length;
 use rcs_core::name::Name;
 
-/// The object or the sensor of a command after its verb, if it has one.
+/// The object or sensor of a command, if it has one.
 pub(super) fn name<const N: usize>(f: &mut fmt::Formatter<'_>, name: Option<&Name<N>>) -> fmt::Result {
     name.map_or(Ok(()), |name| write!(f, " {name}"))
 }
 
-/// A location of a command with the word before it and its sector, if the command has them.
+/// A location of a command with its preposition and sector, if it has them.
 pub(super) fn location<const N: usize>(
     f: &mut fmt::Formatter<'_>,
     word: &str,

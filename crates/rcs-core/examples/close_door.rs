@@ -1,4 +1,4 @@
-//! Two processes and their buffers: a commander sends CLOSE-DOOR, and the process below decides by its table.
+//! Two processes and their buffers: a commander sends CLOSE-DOOR, and its subordinate decides by its table.
 //! `cargo run -p rcs-core --example close_door`.
 
 #![expect(clippy::print_stdout, reason = "an example prints what it does")]
@@ -11,7 +11,7 @@ use rcs_core::{
 };
 
 mod door {
-    //! The process below.
+    //! The subordinate.
 
     use rcs_core::{
         Actions, Plain, Variables, decision_table,
@@ -20,12 +20,12 @@ mod door {
         tick::Tick,
     };
 
-    /// Where the door is.
+    /// Position of the door.
     #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
     pub enum Door {
-        /// Nothing is in the way.
+        /// The doorway is free.
         Open,
-        /// Its switch sees it.
+        /// The door's switch detects it.
         Shut,
     }
 
@@ -36,10 +36,10 @@ mod door {
         pub door: Door,
     }
 
-    /// What a row can ask for.
+    /// Actions of the rows.
     #[derive(Clone, Copy, Debug, PartialEq, Eq, Actions)]
     pub enum Action {
-        /// Nothing new.
+        /// No new output.
         Wait,
         /// Drive the door.
         Close,
@@ -53,7 +53,7 @@ mod door {
             any {
                 1: door: Shut  => Finish;
             }
-            /// Nothing done yet.
+            /// The command has not started.
             Start {
                 2: door: Open  => Close  -> Closing;
             }
@@ -67,24 +67,24 @@ mod door {
     /// Status of the command.
     #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
     pub enum Report {
-        /// It goes on.
+        /// The command is executing.
         Executing,
-        /// It is done.
+        /// The command is complete.
         Done,
     }
 
     /// The output buffer.
     #[derive(Clone, Copy, Debug, PartialEq, Plain)]
     pub struct Outputs {
-        /// Stamp, and the row that fired.
+        /// Stamp and the row that fired.
         pub header: Header,
-        /// Number of the command that the report is about.
+        /// Number of the command to which the report belongs.
         pub echo: u32,
         /// Status of that command.
         pub report: Report,
     }
 
-    /// What the process remembers.
+    /// The state of the process.
     pub struct Process {
         receiver: Receiver,
         step: CloseDoorStep,
@@ -96,7 +96,7 @@ mod door {
             Self { receiver: Receiver::ZERO, step: CloseDoorStep::Start }
         }
 
-        /// One tick: read the command's number, consult the table, write the outputs.
+        /// One tick: read the command number, evaluate the table, write the outputs.
         pub fn step(&mut self, tick: Tick, number: u32, door: Door, outputs: &mut Outputs) -> Action {
             match self.receiver.observe(number) {
                 Arrival::New => self.step = CloseDoorStep::Start,
@@ -119,7 +119,7 @@ mod door {
 
 fn main() {
     let (mut commander, mut process) = (Commander::ZERO, door::Process::new());
-    // What the tick before has written: both read it, so that their order within a tick does not matter.
+    // Buffers of the previous tick. Both processes read only these, so their order within a tick does not matter.
     let (mut command, mut outputs) = (0, Outputs::ZERO);
     let mut closes_at = None;
     for tick in (1..=12).map(Tick) {

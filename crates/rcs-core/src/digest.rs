@@ -1,21 +1,21 @@
-//! The fingerprint of a run: 64 bits over the byte images of all output buffers of all ticks in process
-//! order.
+//! The digest of a run: 64 bits over the byte images of all output buffers of all ticks in process order.
 //!
-//! Eight bytes are mixed in one step, as a little-endian word: exclusive or, multiplication, and the upper half folded
-//! into the lower. Each step is a bijection of the hash, so that no later step can hide a difference, and the fold lets
-//! the upper bytes of a word reach the lower ones, which a multiplication alone does not. It detects accidental
+//! Each step mixes eight bytes as a little-endian word: exclusive or, multiplication, and folding of the upper half
+//! into the lower. A step is a bijection of the hash, so no later step can hide a difference. The fold carries the
+//! upper bytes of a word into the lower ones, which a multiplication alone does not. The digest detects accidental
 //! differences; it does not protect against manipulation.
 //!
-//! An image is hashed by itself, its words in turn in four lanes, since a processor computes four chains of
-//! multiplications in the time of one. The lanes and the length make the hash of the image, and the run's fingerprint is
-//! a chain of those: the images can be hashed by several processors.
+//! Each image is hashed separately, with its words distributed over four lanes: a processor computes four independent
+//! multiplications in the time of one. Lanes and length form the hash of the image. The digest chains these hashes,
+//! so several processors can hash the images.
 //!
-//! It does not depend on computing time or on the distribution of processes over boards, so equal runs have equal
+//! It is independent of computing time and of the distribution of processes over boards: equal runs have equal
+//! digests on every machine.
 //! digests on every machine.
 
 use crate::{Plain, plain::Writer};
 
-/// Chains in which the words of an image are mixed.
+/// Parallel chains per image.
 const LANES: usize = 4;
 
 /// A running hash.
@@ -24,17 +24,17 @@ pub struct Digest(u64);
 
 impl Digest {
     const START: u64 = 0xCBF2_9CE4_8422_2325;
-    /// Odd, and without a pattern in its bits: 2^64 divided by the golden ratio.
+    /// Odd and without a bit pattern: 2^64 divided by the golden ratio.
     const FACTOR: u64 = 0x9E37_79B9_7F4A_7C15;
 
-    /// The digest of nothing.
+    /// The digest of an empty run.
     #[must_use]
     #[inline]
     pub const fn new() -> Self {
         Self(Self::START)
     }
 
-    /// Add bytes, and how many they are.
+    /// Add bytes and their number.
     #[inline]
     pub fn add(&mut self, bytes: &[u8]) {
         self.add_hash(hash(bytes));
@@ -62,7 +62,7 @@ impl Digest {
     }
 }
 
-/// The hash of bytes and of how many they are.
+/// The hash of bytes and their number.
 #[must_use]
 #[inline]
 pub fn hash(bytes: &[u8]) -> u64 {
@@ -80,7 +80,7 @@ pub fn hash(bytes: &[u8]) -> u64 {
     lanes.into_iter().fold(mix(Digest::START, length), mix)
 }
 
-/// One step: a bijection of the hash, and of the word.
+/// One step: a bijection of both hash and word.
 #[inline]
 const fn mix(hash: u64, word: u64) -> u64 {
     let product = (hash ^ word).wrapping_mul(Digest::FACTOR);
@@ -133,7 +133,7 @@ mod tests {
     #[test]
     fn is_the_same_on_every_machine() {
         assert_eq!(Digest::new().to_string(), "cbf29ce484222325");
-        // Worked out by hand from the head comment, in another language.
+        // Computed from the module comment in another language.
         assert_eq!(of(b"the quick brown fox"), 0x34E8_6243_F9A9_069E);
         let all: Vec<u8> = (0..100).collect();
         assert_eq!(of(&all), 0xC062_4FA6_2055_D507);

@@ -1,8 +1,8 @@
 //! Command numbers and echoes between two processes (docs/design/handshake.md).
 //!
-//! A commander counts its commands; a receiver echoes the number with the status of *that* command. So a status counts
-//! only if it answers the last command, a repeated text is a new command only if its number is new, and a process that
-//! is restarted during a run neither executes an old command nor uses an old status.
+//! A commander numbers its commands; a receiver echoes the number with the status of *that* command. Therefore a
+//! status is valid only if it answers the last command, and a repeated text is a new command only with a new number.
+//! A process restarted during a run neither executes an old command nor uses an old status.
 //!
 //! | tick | commander                     | receiver                                  |
 //! |------|-------------------------------|-------------------------------------------|
@@ -12,14 +12,14 @@
 
 use crate::{Plain, header::Header, tick::Tick};
 
-/// Ticks after which a command that is not echoed counts as lost.
+/// Ticks after which a command without an echo is treated as lost.
 pub const ECHO_LIMIT: u64 = 3;
 
-/// How far the first number of a starting commander is from the last that it finds: more than can be under
-/// way, since a number written in tick k is echoed in the buffer that tick k+2 reads.
+/// Distance of a starting commander's first number from the last number that it finds: more than the commands in
+/// transit, as the buffer of tick k+2 echoes a number written in tick k.
 pub const FIRST_STEP: u32 = 4;
 
-/// The command number after `number`: they run on past the end without 0, which means none.
+/// The command number after `number`. Numbers wrap around and skip 0, which means none.
 #[must_use]
 pub const fn successor(number: u32) -> u32 {
     match number.checked_add(1) {
@@ -28,10 +28,10 @@ pub const fn successor(number: u32) -> u32 {
     }
 }
 
-/// The status of the process below, as its commander reads it.
+/// The status of a subordinate, as its commander reads it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Lower {
-    /// The last command is not echoed yet: neither done nor an error.
+    /// The last command is not echoed yet, so it is neither done nor failed.
     Pending,
     /// The last command is being executed.
     Executing,
@@ -39,10 +39,10 @@ pub enum Lower {
     Done,
     /// The last command failed.
     Error,
-    /// The operator has the robot.
+    /// The operator controls the robot.
     #[text = "joystick-on"]
     Joystick,
-    /// The process below does not answer: its stamp is old, or it does not echo.
+    /// The subordinate does not answer: its stamp is old, or it does not echo.
     Lost,
 }
 
@@ -51,10 +51,10 @@ pub trait Answer {
     /// Stamp and row.
     fn header(&self) -> &Header;
 
-    /// Number of the command that the status is about.
+    /// Number of the command to which the status belongs.
     fn echo(&self) -> u32;
 
-    /// The report of the status as a state variable of the process above.
+    /// The report as a state variable of the superior.
     fn report(&self) -> Lower;
 }
 
@@ -63,24 +63,24 @@ pub trait Answer {
 pub struct Commander {
     /// Number of the last command; 0 before the first.
     pub number: u32,
-    /// When it was written.
+    /// Tick in which it was written.
     pub sent: Tick,
     /// A command has been sent since the start.
     pub started: bool,
 }
 
 impl Commander {
-    /// Before anything else in a tick: a commander that has sent nothing yet follows the echo of what is
-    /// below. This is for commanders of devices and of other systems.
+    /// Call first in a tick. A commander that has sent no command adopts the echo of its subordinate. This is for
+    /// commanders of devices and of other systems.
     pub fn start(&mut self, echo: u32) {
         if !self.started {
             self.number = echo;
         }
     }
 
-    /// As [`Self::start`], for a commander of a process. Its output buffer is still there after a restart,
-    /// and with it the number of a command that may be under way without being echoed yet: it goes on from
-    /// that, `written`. An echo alone is not settled before the second tick.
+    /// Like [`Self::start`], for a commander of a process. Its output buffer survives a restart, and with it the
+    /// number `written` of a command that may not be echoed yet: the commander continues from that number. In the
+    /// first tick the echo may be stale.
     pub fn start_from(&mut self, tick: Tick, written: u32, echo: u32) {
         self.start(if written == 0 { echo } else { written });
         if !self.started {
@@ -90,8 +90,8 @@ impl Commander {
 
     /// Number of a new command written in this tick.
     ///
-    /// The first one after a start stands off from the echo: commands of the time before may still be under
-    /// way, and a number that has been used is not new.
+    /// The first number after a start keeps a distance from the echo: earlier commands may still be in transit, and a
+    /// used number is not new.
     pub fn send(&mut self, tick: Tick) -> u32 {
         let steps = if self.started { 1 } else { FIRST_STEP };
         for _ in 0..steps {
@@ -102,13 +102,13 @@ impl Commander {
         self.number
     }
 
-    /// Status of the process below: its report counts only if its echo is the last number sent.
+    /// Status of the subordinate: its report is valid only if its echo is the last number sent.
     #[must_use]
     pub fn status_of(&self, tick: Tick, below: &impl Answer) -> Lower {
         self.read(tick, below.header(), below.echo(), below.report())
     }
 
-    /// Read the status of the process below: `report` counts only if `echo` is the last number sent.
+    /// Read the status of the subordinate: `report` is valid only if `echo` is the last number sent.
     #[must_use]
     pub fn read(&self, tick: Tick, below: &Header, echo: u32, report: Lower) -> Lower {
         if below.stamp != tick.previous() {
@@ -123,23 +123,23 @@ impl Commander {
     }
 }
 
-/// What the command buffer of a process holds now.
+/// The present content of a process's command buffer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Arrival {
-    /// Nothing was ever commanded.
+    /// No command was ever sent.
     Nothing,
-    /// A command that has not been seen before.
+    /// A new command.
     New,
     /// The command that is being executed.
     Same,
-    /// The command that stood there when this process started: never executed by it.
+    /// A command that was already there when this process started. This process has not executed it.
     Restarted,
 }
 
 /// The receiver's side of one interface.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct Receiver {
-    /// Number of the last command seen, echoed.
+    /// Number of the last command read, echoed.
     pub echo: u32,
     /// The process has read its command buffer at least once.
     pub started: bool,
@@ -148,7 +148,7 @@ pub struct Receiver {
 }
 
 impl Receiver {
-    /// Read the number in the command buffer.
+    /// Read the command number in the buffer.
     pub fn observe(&mut self, number: u32) -> Arrival {
         if !self.started {
             *self = Self { echo: number, started: true, adopted: number != 0 };
@@ -225,8 +225,7 @@ mod tests {
         let mut commander = Commander::default();
         commander.start_from(Tick(10), 0, 41);
         let under_way = commander.send(Tick(10));
-        // It forgets everything in the next tick, when the echo is still the old one. Its output buffer
-        // stays.
+        // Its state is lost while the echo is still the old one. Its output buffer remains.
         let mut restarted = Commander::default();
         restarted.start_from(Tick(11), under_way, 41);
         assert_eq!(restarted.read(Tick(11), &header(10), 41, Lower::Done), Lower::Pending, "that is another");
@@ -245,8 +244,7 @@ mod tests {
         assert_eq!(commander.read(Tick(101), &header(100), 45, Lower::Executing), Lower::Executing);
     }
 
-    /// A command as the buffer holds it: its number, and what distinguishes it from every other command ever
-    /// sent.
+    /// A command in the buffer: its number, and an identity that distinguishes it from all other commands.
     #[derive(Clone, Copy, Debug, Default, PartialEq)]
     struct Content {
         number: u32,
@@ -254,19 +252,18 @@ mod tests {
     }
 
     proptest! {
-        /// Whatever is restarted whenever, no command is executed twice, and no status is believed but that
-        /// of the command that was sent last: by its content, not by its number.
+        /// With any restarts at any time, no command is executed twice, and a status is valid only for the last
+        /// command sent. Commands are identified by content, not by number.
         #[test]
         fn each_command_is_executed_at_most_once(events in prop::collection::vec(0_u8..12, 1..300)) {
             let mut commander = Commander::default();
             let mut receiver = Receiver::default();
-            // Tick-parity buffers: what was written in the tick before stays until it is written again. They
-            // survive a restart.
+            // Tick-parity buffers: values of the previous tick, kept until overwritten. They survive a restart.
             let (mut written, mut echo) = (Content::default(), (0_u32, Lower::Done));
-            // What the receiver has executed or adopted last: what its status is about.
+            // The command that the receiver executed or adopted last, to which its status belongs.
             let mut current = Content::default();
             let mut executed = std::collections::HashSet::new();
-            // The status that stands in the buffer, and what it is about.
+            // The status in the buffer and the command to which it belongs.
             let mut about = current;
             for (k, event) in events.into_iter().enumerate() {
                 let tick = Tick(k as u64 + 1);

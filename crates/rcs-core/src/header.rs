@@ -2,25 +2,24 @@
 
 use crate::{Plain, name::Name16, table::Values, tick::Tick};
 
-/// Most tables that a process consults beside the one that decides about its command: those of Prim.
+/// Maximum number of tables that a process consults in addition to the one that decides: those of Prim.
 pub const BESIDE: usize = 3;
 
-/// What every set of output buffers starts with.
+/// The first part of every set of output buffers.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct Header {
-    /// Tick that wrote the buffers. A stamp other than the last tick means that the process is lost.
+    /// Tick that wrote the buffers. If it is not the last tick, the process is lost.
     pub stamp: Tick,
-    /// The process was not stepped in that tick (dormant or held); its last outputs were republished for it.
+    /// The process was not stepped in that tick (dormant or held), and its last outputs were republished.
     pub republished: bool,
-    /// The row that decided last, if any has.
+    /// The row that decided last.
     pub decided: Option<Decided>,
-    /// When that row fired, and the values with which its table was consulted. None for a row of another system, whose
-    /// mailbox does not say it.
+    /// Tick of that decision and the values of its table. None for a row of another system, whose mailbox omits them.
     pub basis: Option<Basis>,
-    /// Rows of other tables that fired when the process was stepped last: in the tick of the stamp, unless the
-    /// outputs are republished.
+    /// Rows of other tables that fired at the last step of the process: in the tick of the stamp, unless the outputs
+    /// are republished.
     pub beside: [Option<Consulted>; BESIDE],
-    /// Step of the current command after that row: its reference action (V.1.1).
+    /// Step of the current command after the decision: its reference action (V.1.1).
     pub step: Option<Name16>,
 }
 
@@ -33,7 +32,7 @@ pub struct Decided {
     pub row: u8,
 }
 
-/// When a row fired, and the values with which its table was consulted.
+/// Tick of a decision and the values of its table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub struct Basis {
     /// The tick.
@@ -42,7 +41,7 @@ pub struct Basis {
     pub values: Values,
 }
 
-/// A row that fired, and the values with which its table was consulted.
+/// A row that fired and the values of its table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub struct Consulted {
     /// The row.
@@ -52,20 +51,20 @@ pub struct Consulted {
 }
 
 impl Header {
-    /// Ticks between the row that decided last and the stamp: 0 if it fired in the tick of the stamp. None if
-    /// no row has decided yet, or if another system does not say when.
+    /// Ticks between the last decision and the stamp; 0 if both are in the same tick. None without a decision, or if
+    /// another system omits the tick.
     #[must_use]
     pub fn age(&self) -> Option<u64> {
         self.basis.map(|basis| self.stamp.since(basis.tick))
     }
 
-    /// The row that decided, if it fired in the tick of the stamp.
+    /// The row that decided in the tick of the stamp.
     #[must_use]
     pub fn fired(&self) -> Option<Decided> {
         self.decided.filter(|_| self.age() == Some(0))
     }
 
-    /// The row that decided last, with what its table was consulted with.
+    /// The row that decided last and the values of its table.
     #[must_use]
     pub fn consulted(&self) -> Option<Consulted> {
         Some(Consulted { decided: self.decided?, values: self.basis?.values })

@@ -1,17 +1,16 @@
 //! The framework of the RCS-II/T3 controller (NBSIR 88-3692).
 //!
-//! This crate does not depend on robot or cell, and does no I/O. It defines tick, name, record, handshake and decision
-//! table, so that all processes use the same bits:
+//! This crate does no I/O and is independent of robot and cell. It defines tick, name, record, handshake and decision
+//! table for all processes:
 //!
 //! * [`tick`], [`name`]: time and names;
-//! * [`plain`]: one definition of a record gives its structure, its byte image and its description;
+//! * [`plain`]: one definition of a record gives its structure, byte image and schema;
 //! * [`reflect`]: the fields of a byte image by path, with their values as text;
-//! * [`header`], [`handshake`]: what every set of output buffers starts with; command numbers, echoes and time
-//!   stamps between two processes;
+//! * [`header`], [`handshake`]: the head of output buffers; command numbers, echoes and time stamps of two processes;
 //! * [`table`]: decision tables, exhaustive by compilation;
-//! * [`digest`]: the fingerprint of a run.
+//! * [`digest`]: the digest of a run.
 //!
-//! Nothing here allocates, panics on input, or depends on the platform's mathematics library.
+//! No function allocates, panics on input, or depends on the platform's mathematics library.
 
 #![cfg_attr(not(test), no_std)]
 #![forbid(unsafe_code)]

@@ -7,30 +7,30 @@ use crate::{
     plain::{DecodeError, Reader, Schema, Writer},
 };
 
-/// A name of at most `N` printable ASCII characters without blanks, zero-filled so that equal names are equal
+/// A name of at most `N` printable ASCII characters without blanks. It is zero-filled, so equal names have equal
 /// bytes.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[repr(transparent)]
 pub struct Name<const N: usize>([u8; N]);
 
-/// Names of task data: ten characters or less (VII).
+/// Names of task data: at most ten characters (VII).
 pub type Name10 = Name<10>;
-/// Object names and the fields of a Task command: sixteen characters (VII, V.4.2).
+/// Object names and the fields of a Task command: at most sixteen characters (VII, V.4.2).
 pub type Name16 = Name<16>;
 
-/// Why a text is not a [`Name`].
+/// Reason why a text is not a [`Name`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum NameError {
-    /// More characters than the name may have.
+    /// Too many characters.
     TooLong {
         /// Characters allowed.
         allowed: usize,
         /// Characters found.
         found: usize,
     },
-    /// A character that is not printable ASCII, or a blank.
+    /// A blank, or a character that is not printable ASCII.
     BadCharacter {
-        /// Position of the character in bytes from 0.
+        /// Byte position of the character, from 0.
         position: usize,
     },
 }
@@ -62,8 +62,7 @@ impl<const N: usize> Name<N> {
     /// A name from text.
     ///
     /// # Errors
-    /// [`NameError`] if the text is longer than `N` or holds a blank or a character that is not printable
-    /// ASCII.
+    /// [`NameError`] if the text is longer than `N` or contains a blank or a character that is not printable ASCII.
     #[inline]
     pub const fn new(text: &str) -> Result<Self, NameError> {
         let from = text.as_bytes();
@@ -84,8 +83,8 @@ impl<const N: usize> Name<N> {
         Ok(Self(bytes))
     }
 
-    /// The first `N` characters of a text; what the manual does when a twelve-character command meets a
-    /// ten-character field (SPECNOTES.md, contradiction 22). Characters that a name cannot have become `?`.
+    /// The first `N` characters of a text, as the manual does with a twelve-character command in a ten-character
+    /// field (SPECNOTES.md, contradiction 22). Characters that a name cannot have become `?`.
     #[must_use]
     #[inline]
     pub fn clipped(text: &str) -> Self {

@@ -1,9 +1,8 @@
-//! Plain data: the fixed-size values that processes exchange and remember, with one definition for all their uses.
+//! Plain data: the fixed-size values that processes exchange and store.
 //!
-//! A type is written once, with `#[derive(Plain)]`, and the same definition gives the Rust type, its byte
-//! image (field by field, little-endian, without padding), the checked way back from bytes, and a [`Schema`]
-//! that recorders, viewers and the digest walk. Equal values are equal bytes, and a byte image from outside
-//! becomes a value only if every name, flag and enum in it is legal.
+//! `#[derive(Plain)]` on a type generates its byte image (field by field, little-endian, without padding), the
+//! checked conversion from bytes, and a [`Schema`] for recorders, viewers and the digest. Equal values have equal
+//! bytes. External bytes become a value only if every name, flag and enum in them is valid.
 //!
 //! ```
 //! use rcs_core::{Plain, plain::to_bytes};
@@ -22,7 +21,7 @@
 
 use core::fmt;
 
-/// What a byte image holds, as a tree of constants.
+/// The content of a byte image, as a tree of constants.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Schema {
     /// Unsigned, one byte.
@@ -41,17 +40,17 @@ pub enum Schema {
     F64,
     /// One byte, 0 or 1.
     Bool,
-    /// A name of so many bytes, zero-filled.
+    /// A name of this many bytes, zero-filled.
     Text(usize),
     /// One byte; the code of a variant.
     Enum(&'static EnumSchema),
-    /// So many of the same.
+    /// This many elements of the same schema.
     Array(&'static Schema, usize),
     /// A struct.
     Struct(&'static StructSchema),
     /// One byte, 0 for none or 1, then the value, zero for none.
     Option(&'static Schema),
-    /// One byte, the code of a variant, then what it carries, then zeros to the size of the largest variant.
+    /// One byte for the code of a variant, then its payload, then zeros up to the size of the largest variant.
     Union(&'static UnionSchema),
 }
 
@@ -71,9 +70,9 @@ pub struct VariantSchema {
     pub code: u8,
     /// Rust name.
     pub name: &'static str,
-    /// Text in logs and on screens: the manual's word where it has one.
+    /// Text in logs and on screens: the manual's word if there is one.
     pub text: &'static str,
-    /// What it means: the doc comment.
+    /// Meaning: the doc comment.
     pub doc: &'static str,
 }
 
@@ -94,9 +93,9 @@ pub struct UnionVariant {
     pub code: u8,
     /// Text in logs and on screens.
     pub text: &'static str,
-    /// Name of what it carries, in paths and messages: the text as an identifier.
+    /// Name of the payload in paths and messages: the text as an identifier.
     pub name: &'static str,
-    /// What it carries.
+    /// Schema of the payload.
     pub payload: Option<Schema>,
 }
 
@@ -115,7 +114,7 @@ pub struct StructSchema {
 pub struct FieldSchema {
     /// Rust name of the field.
     pub name: &'static str,
-    /// What it holds.
+    /// Schema of the field.
     pub schema: Schema,
 }
 
@@ -139,7 +138,7 @@ impl Schema {
 }
 
 impl EnumSchema {
-    /// The variant with a Rust name.
+    /// The variant of a Rust name.
     #[must_use]
     #[inline]
     pub fn named(&self, name: &str) -> Option<&'static VariantSchema> {
@@ -164,7 +163,7 @@ impl UnionSchema {
         Self { name, variants, payload_size }
     }
 
-    /// Bytes of the largest value that a variant carries.
+    /// Size of the largest payload, bytes.
     #[must_use]
     #[inline]
     pub const fn payload_size(&self) -> usize {
@@ -193,18 +192,18 @@ impl StructSchema {
     }
 }
 
-/// Why bytes are not a record.
+/// Reason why bytes are not a record.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum DecodeError {
-    /// Fewer bytes than the record has.
+    /// The record has more bytes.
     TooShort,
     /// A name with blanks, control characters or bytes after its end.
     BadName,
     /// A flag that is neither 0 nor 1.
     BadFlag(u8),
-    /// A byte that carries nothing and is not 0.
+    /// An unused byte that is not 0.
     BadFill(u8),
-    /// A code that no variant of the enum has.
+    /// A code without a variant.
     BadCode {
         /// Name of the enum.
         of: &'static str,
@@ -228,7 +227,7 @@ impl fmt::Display for DecodeError {
 
 impl core::error::Error for DecodeError {}
 
-/// Puts fields into a byte image. Bytes that do not fit are counted, not written.
+/// Writes fields into a byte image. Bytes that do not fit are counted and not written.
 pub struct Writer<'a> {
     rest: &'a mut [u8],
     missing: usize,
@@ -254,7 +253,7 @@ impl<'a> Writer<'a> {
         }
     }
 
-    /// The next `N` bytes, to be written; `None` if they do not fit, which counts them.
+    /// The next `N` bytes to write. `None` if they do not fit; they are then counted.
     #[inline]
     pub fn chunk<const N: usize>(&mut self) -> Option<&'a mut [u8; N]> {
         match core::mem::take(&mut self.rest).split_first_chunk_mut::<N>() {
@@ -269,7 +268,7 @@ impl<'a> Writer<'a> {
         }
     }
 
-    /// Append so many zeros.
+    /// Append this many zeros.
     #[inline]
     pub fn zeros(&mut self, count: usize) {
         let fitting = count.min(self.rest.len());
@@ -287,7 +286,7 @@ impl<'a> Writer<'a> {
     }
 }
 
-/// Takes fields out of a byte image.
+/// Reads fields from a byte image.
 pub struct Reader<'a> {
     rest: &'a [u8],
 }
@@ -303,16 +302,16 @@ impl<'a> Reader<'a> {
     /// The next `N` bytes.
     ///
     /// # Errors
-    /// [`DecodeError::TooShort`] if fewer are left.
+    /// [`DecodeError::TooShort`] if fewer remain.
     #[inline]
     pub fn take<const N: usize>(&mut self) -> Result<[u8; N], DecodeError> {
         self.chunk().copied()
     }
 
-    /// The next `N` bytes, where they are.
+    /// The next `N` bytes in place.
     ///
     /// # Errors
-    /// [`DecodeError::TooShort`] if fewer are left.
+    /// [`DecodeError::TooShort`] if fewer remain.
     #[inline]
     pub fn chunk<const N: usize>(&mut self) -> Result<&'a [u8; N], DecodeError> {
         let (here, rest) = self.rest.split_first_chunk::<N>().ok_or(DecodeError::TooShort)?;
@@ -320,10 +319,10 @@ impl<'a> Reader<'a> {
         Ok(here)
     }
 
-    /// Skip so many zeros.
+    /// Skip this many zeros.
     ///
     /// # Errors
-    /// [`DecodeError::BadFill`] if one of them is not zero, [`DecodeError::TooShort`] if fewer are left.
+    /// [`DecodeError::BadFill`] if a byte is not zero, [`DecodeError::TooShort`] if fewer remain.
     #[inline]
     pub fn zeros(&mut self, count: usize) -> Result<(), DecodeError> {
         let (here, rest) = self.rest.split_at(count.min(self.rest.len()));
@@ -335,22 +334,22 @@ impl<'a> Reader<'a> {
     }
 }
 
-/// Plain data: a number, a name, an enum, an array, an option, a struct of such.
+/// Plain data: a number, a name, an enum, or an array, option or struct of plain data.
 pub trait Plain: Copy + PartialEq {
-    /// What its byte image holds.
+    /// Schema of its byte image.
     const SCHEMA: Schema;
     /// Bytes of the image.
     const SIZE: usize = Self::SCHEMA.size();
-    /// The value before anything was written.
+    /// The value of an unwritten buffer.
     const ZERO: Self;
 
     /// Append the image.
     fn encode(&self, w: &mut Writer<'_>);
 
-    /// Take it back.
+    /// Read it from a byte image.
     ///
     /// # Errors
-    /// [`DecodeError`] if the bytes are not the image of a legal value.
+    /// [`DecodeError`] if the bytes are not the image of a valid value.
     fn decode(r: &mut Reader<'_>) -> Result<Self, DecodeError>;
 }
 
@@ -453,7 +452,7 @@ pub fn to_bytes<const N: usize, T: Plain>(record: &T) -> [u8; N] {
 /// A record from its byte image.
 ///
 /// # Errors
-/// [`DecodeError`] if the bytes are not the image of a legal record.
+/// [`DecodeError`] if the bytes are not the image of a valid record.
 #[inline]
 pub fn from_bytes<T: Plain>(bytes: &[u8]) -> Result<T, DecodeError> {
     T::decode(&mut Reader::new(bytes))

@@ -1,7 +1,7 @@
 //! Reflection: the fields of a byte image, each with its path, its bytes and its value as text.
 //!
-//! Everything here walks the [`Schema`] that `#[derive(Plain)]` makes, so that a new field of a buffer is shown,
-//! compared and versioned without further code.
+//! All functions traverse the [`Schema`] of `#[derive(Plain)]`, so a new field is shown, compared and versioned
+//! without further code.
 //!
 //! | in the schema                              | leaves                                | as text           |
 //! |--------------------------------------------|---------------------------------------|-------------------|
@@ -12,7 +12,7 @@
 //! | union whose variants carry at most a leaf  | one                                   | `"candle" 7`      |
 //! | other union                                | `x` for the variant, `x.variant` ...  | `"candle"`        |
 //!
-//! A leaf of a value that an image does not hold is `none` there.
+//! A leaf of a value that is absent from an image is `none`.
 //!
 //! ```
 //! use rcs_core::{Plain, plain::to_bytes, reflect::{Value, leaves}};
@@ -41,34 +41,34 @@ use crate::plain::{FieldSchema, Schema, UnionVariant};
 /// Text of an absent value.
 pub const NONE: &str = "none";
 
-/// A field that is not made of other fields: its position in the image and its schema.
+/// A field without subfields: its position in the image and its schema.
 #[derive(Clone, Copy, Debug)]
 pub struct Leaf<'a> {
-    /// Names from the outermost record inwards: `prim.poses[2].pose.tool[0]`. An option adds nothing, a union the name
-    /// of the variant.
+    /// Names from the outermost record inwards: `prim.poses[2].pose.tool[0]`. An option adds no name, a union the
+    /// name of the variant.
     pub path: fmt::Arguments<'a>,
     /// First byte in the image.
     pub offset: usize,
-    /// Bytes in the image. Only the first one of an option or a union that has other leaves.
+    /// Bytes in the image. For an option or a union with further leaves, only its first byte.
     pub size: usize,
     /// Schema of its value.
     pub schema: &'static Schema,
-    /// The innermost option or union to which it belongs.
+    /// The innermost enclosing option or union.
     pub within: Option<&'a Within<'a>>,
 }
 
-/// An option or union in which a value is carried.
+/// An option or union that encloses a value.
 #[derive(Clone, Copy, Debug)]
 pub struct Within<'a> {
     /// Byte in the image: flag of the option, code of the variant.
     at: usize,
-    /// Its value in each image that holds the value.
+    /// Its value in images that contain the enclosed value.
     code: u8,
     outer: Option<&'a Self>,
 }
 
 impl Leaf<'_> {
-    /// Bytes with their value in each image that holds the field: flags of options, codes of variants.
+    /// Bytes and their values in images that contain the field: flags of options, codes of variants.
     pub fn given(&self) -> impl Iterator<Item = (usize, u8)> {
         core::iter::successors(self.within, |within| within.outer).map(|within| (within.at, within.code))
     }
@@ -128,7 +128,7 @@ fn walk(
     }
 }
 
-/// Visit all enums and unions in consecutive fields, outer ones first, as often as they occur.
+/// Visit all enums and unions in consecutive fields, outer ones first, once per occurrence.
 pub fn definitions(fields: &'static [FieldSchema], visit: &mut dyn FnMut(Definition)) {
     fields.iter().for_each(|field| define(&field.schema, visit));
 }
@@ -147,7 +147,7 @@ fn define(schema: &'static Schema, visit: &mut dyn FnMut(Definition)) {
     }
 }
 
-/// An enum or union as text: its codes, their texts, and what they carry.
+/// An enum or union as text: its codes, their texts and payloads.
 #[derive(Clone, Copy, Debug)]
 pub struct Definition(&'static Schema);
 
@@ -172,7 +172,7 @@ impl fmt::Display for Definition {
     }
 }
 
-/// The kind of a value in a word: `u16`, `option text 10`, the name of an enum.
+/// The kind of a value as one word: `u16`, `option text 10`, the name of an enum.
 impl fmt::Display for Schema {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
@@ -200,7 +200,7 @@ impl Schema {
     pub fn is_leaf(&self) -> bool {
         match self {
             Self::Struct(_) => false,
-            // Bytes are read as one word: a frame on the line, not 64 numbers.
+            // Bytes are shown as one word: a frame on the line, not 64 numbers.
             Self::Array(of, _) => **of == Self::U8,
             Self::Option(of) => of.is_leaf(),
             Self::Union(of) => {
@@ -271,7 +271,7 @@ pub fn signed(bytes: &[u8]) -> i64 {
     bytes.iter().take(8).rev().fold(fill, |value, byte| value << 8 | u64::from(*byte)).cast_signed()
 }
 
-/// The text of a zero-filled name; empty if it is no name.
+/// The text of a zero-filled name; empty if it is invalid.
 #[must_use]
 pub fn text(bytes: &[u8]) -> &str {
     let name = bytes.split(|byte| *byte == 0).next().unwrap_or_default();

@@ -1,14 +1,13 @@
-//! Decision tables (II.2.2.2): the step and the state variables select one row, the row names one action and
-//! the next step.
+//! Decision tables (II.2.2.2): the step and the state variables select one row, and the row names one action and the
+//! next step.
 //!
-//! [`decision_table!`](crate::decision_table!) turns a table into one exhaustive `match`. The compiler proves
-//! that no case is missing and that no row is dead, and underlines what is wrong in the row itself. The same
-//! source gives the table as text, for logs, for `rcs-run tables` and for the documentation.
+//! [`decision_table!`](crate::decision_table!) turns a table into one exhaustive `match`. The compiler proves that no
+//! case is missing and that no row is dead, and it underlines an error in the row itself. The same source gives the
+//! table as text for logs, `rcs-run tables` and the documentation.
 //!
-//! Rows are read from the top: the first one that fits decides. A row names only the variables that it asks
-//! for, or `otherwise`, and the next step only where it changes. A group of rows belongs to one step, to several, or to
-//! `any`. A group with a doc comment declares its step; the first step that is declared is the one in which a
-//! command begins.
+//! The first matching row from the top decides. A row names only the variables that it tests, or `otherwise`, and the
+//! next step only where it changes. A group of rows belongs to one step, to several, or to `any`. A group with a doc
+//! comment declares its step; a command begins in the first declared step.
 //!
 //! ```
 //! # mod cell {
@@ -17,11 +16,11 @@
 //! /// The door of the cell.
 //! #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 //! pub enum Door {
-//!     /// Nothing is in the way.
+//!     /// The doorway is free.
 //!     Open,
-//!     /// Both switches see it.
+//!     /// Both switches detect the door.
 //!     Shut,
-//!     /// It stands between its switches.
+//!     /// The door is between its switches.
 //!     Stuck,
 //! }
 //!
@@ -39,10 +38,10 @@
 //!     DoorStuck,
 //! }
 //!
-//! /// What a row can ask for.
+//! /// Actions of the rows.
 //! #[derive(Clone, Copy, Debug, PartialEq, Eq, Actions)]
 //! pub enum Action {
-//!     /// Nothing new.
+//!     /// No new output.
 //!     Wait,
 //!     /// Drive the door.
 //!     Close,
@@ -58,7 +57,7 @@
 //!         any {
 //!             1: door: Shut          => Finish;
 //!         }
-//!         /// Nothing done yet.
+//!         /// The command has not started.
 //!         Start {
 //!             2: door: Open | Stuck  => Close  -> Closing;
 //!         }
@@ -80,17 +79,17 @@
 //!
 //! # Tables above
 //!
-//! Common rows of several tables are in a table of their own, which is consulted first. Its head says `-> Action or
-//! Type`. A row with `consult(Value)` does not decide: it passes a value of that type to the table below. The type is
-//! narrower than the variable that was asked for, so that the table below needs no rows for what was decided above. `->
-//! Action or ()` and `consult` pass nothing.
+//! Several tables can share common rows in a table of their own, which is consulted first. Its head says
+//! `-> Action or Type`. A row with `consult(Value)` does not decide: it passes a value of that type to the next
+//! table. The type is narrower than the tested variable, so the next table needs no rows for cases that are already
+//! decided. `-> Action or ()` and `consult` pass no value.
 //!
 //! # State variables of a table
 //!
 //! A process with many state variables senses each of them with a method of one type, in an `impl` block with
-//! `#[state_variables]`. A table whose head says `struct of super::Senses` declares a struct with those variables that
-//! its rows name: GRASP-OBJ declares `GraspObjSituation`. `commands!` with `enum Situation of Senses` makes an enum with
-//! a variant for each entry, and senses only what the tables of the command test.
+//! `#[state_variables]`. A table whose head says `struct of super::Senses` declares a struct with the variables that
+//! its rows name: GRASP-OBJ declares `GraspObjSituation`. `commands!` with `enum Situation of Senses` makes an enum
+//! with a variant per entry, and senses only the variables that the tables of the command test.
 //!
 //! ```
 //! # mod cell {
@@ -105,10 +104,10 @@
 //!     On,
 //! }
 //!
-//! /// What a row can ask for.
+//! /// Actions of the rows.
 //! #[derive(Clone, Copy, Debug, PartialEq, Eq, Actions)]
 //! pub enum Action {
-//!     /// Nothing new.
+//!     /// No new output.
 //!     Wait,
 //!     /// Report done.
 //!     Finish,
@@ -159,19 +158,19 @@
 //!
 //! # Looking back
 //!
-//! A decision says with which [`Values`] the table was consulted. From them the table names its variables and
-//! their values again, and says which row each other value would have fired: [`Table::near_misses`].
+//! A decision contains the [`Values`] with which the table was consulted. From them the table reports its variables
+//! and their values, and the row that each other value would have fired: [`Table::near_misses`].
 //!
 //! # Commands
 //!
-//! [`commands!`](crate::commands!) lists the tables of a process once. It gives the enum of all steps, the
-//! list of all tables, the numbers of those that no command selects, and the function that consults the table
-//! of a command. An entry is `Verb: GOAL => table;`: a command without a goal does not compile. `a then b::c` consults
-//! two tables in turn.
+//! [`commands!`](crate::commands!) lists the tables of a process once. It generates the enum of all steps, the list
+//! of all tables, the numbers of tables that no command selects, and the function that consults the table of a
+//! command. An entry is `Verb: GOAL => table;`: a command without a goal does not compile. `a then b::c` consults two
+//! tables in turn.
 //!
-//! `others` lists the tables that no command selects, in the order of their numbers. `before` and `after` say in which
-//! order they are consulted, before the table of the command and about the row that fired. From this follows the
-//! function `decide`, and the order in its documentation.
+//! `others` lists the tables that no command selects, in the order of their numbers. `before` and `after` give the
+//! order of consultation: before the table of the command, and about the row that fired. They generate the function
+//! `decide` and the order in its documentation.
 //!
 //! ```text
 //! others: EXECUTE, accept::ACCEPT, HALT, EFFECT, ordered::ORDERED, CONFIRM;
@@ -188,7 +187,7 @@
 //! | `ORDERED(subordinates -> situation.work)` | what it passes on becomes `seen.situation.work` |
 //! | `ORDERED(subordinates -> situation)` | the same for each table with a `struct of` state variables |
 //!
-//! `after` may say `EFFECT(advance)`: `seen.advance` tells whether the command has advanced since its last order.
+//! `after` may say `EFFECT(advance)`: `seen.advance` is true if the command has advanced since its last order.
 
 mod values;
 
@@ -201,11 +200,11 @@ pub use values::{Fired, NearMiss, Values};
 /// A decision table as text, for logs, `rcs-run tables` and failure reports.
 #[derive(Debug)]
 pub struct Table {
-    /// The command that it serves, as the manual writes it: `GET-OBJECT`.
+    /// The command that it serves, in the manual's spelling: `GET-OBJECT`.
     pub name: &'static str,
     /// Lines of the doc comment.
     pub doc: &'static [&'static str],
-    /// The state variables that a row may ask for.
+    /// The state variables that a row may test.
     pub variables: &'static [Variable],
     /// The actions that a row may name.
     pub actions: &'static [ActionText],
@@ -215,7 +214,7 @@ pub struct Table {
     pub rows: &'static [Row],
     /// Source file.
     pub file: &'static str,
-    /// Line of the table in it.
+    /// Line of the table in the file.
     pub line: u32,
 }
 
@@ -224,7 +223,7 @@ pub struct Table {
 pub struct Variable {
     /// Its name.
     pub name: &'static str,
-    /// What it tells: the doc comment of the field.
+    /// Meaning: the doc comment of the field.
     pub doc: &'static str,
     /// Its values.
     pub values: &'static EnumSchema,
@@ -235,15 +234,15 @@ pub struct Variable {
 pub struct ActionText {
     /// Its name in the rows.
     pub name: &'static str,
-    /// What it does: the doc comment.
+    /// Effect: the doc comment.
     pub doc: &'static str,
-    /// What it carries.
+    /// Values of the argument.
     pub argument: Option<&'static EnumSchema>,
 }
 
 /// The state variables of a table.
 pub trait Variables {
-    /// The values of all variables as one number, a digit a variable: equal numbers are equal situations. The
+    /// The values of all variables as one number with a digit per variable: equal numbers are equal situations. The
     /// last variable is the lowest digit, and its base is the number of its values.
     fn code(&self) -> u64;
 }
@@ -253,84 +252,84 @@ pub trait Variables {
 pub struct Row {
     /// Number in the source, from 1.
     pub number: u8,
-    /// The steps in which it is looked at; empty for any.
+    /// The steps in which it applies; empty for any.
     pub steps: &'static [&'static str],
-    /// The variables that it asks for; all conditions must hold.
+    /// The conditions; all of them must hold.
     pub when: &'static [Condition],
-    /// The action; `consult` if the table below decides.
+    /// The action; `consult` if the next table decides.
     pub action: &'static str,
-    /// What the action carries.
+    /// The argument of the action.
     pub argument: Option<&'static str>,
-    /// The step after it, if it changes.
+    /// The next step, if it changes.
     pub next: Option<&'static str>,
 }
 
-/// The condition of a row on a variable.
+/// The condition of a row for a variable.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Condition {
     /// The variable.
     pub variable: &'static str,
-    /// The values that fit.
+    /// The matching values.
     pub values: &'static [&'static str],
 }
 
-/// What a table decided.
+/// The decision of a table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Decision<Action, Step> {
     /// Number of the row that fired.
     pub row: u8,
-    /// What to do: sets outputs, computes nothing.
+    /// The action: it sets outputs and computes nothing.
     pub action: Action,
-    /// The reference action from now on.
+    /// The next step, which is the new reference action.
     pub next: Step,
     /// The values with which the table was consulted.
     pub values: Values,
 }
 
-/// What a table above others decided, or what it passes to the table below.
+/// The decision of a table above others, or the value that it passes to the next table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Verdict<Action, Step, Passed> {
     /// A row has decided.
     Decided(Decision<Action, Step>),
-    /// The table below decides.
+    /// The next table decides.
     Passed(Passed),
 }
 
-/// What the tables of a process decided.
+/// The decision of a process's tables.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Choice<Action, Step> {
     /// Number of the table in its process, from 1.
     pub table: u8,
     /// Number of the row that fired.
     pub row: u8,
-    /// What to do.
+    /// The action.
     pub action: Action,
-    /// The step from now on.
+    /// The next step.
     pub next: Step,
     /// The values with which the table was consulted.
     pub values: Values,
 }
 
 impl<Action, Step> Decision<Action, Step> {
-    /// The decision as one of the table with this number.
+    /// The same decision with the number of its table.
     pub fn of(self, table: u8) -> Choice<Action, Step> {
         Choice { table, row: self.row, action: self.action, next: self.next, values: self.values }
     }
 
-    /// The decision of a table with steps of its own, with the step of the command instead.
+    /// The decision of a table with its own steps, with the step of the command instead.
     pub fn in_step<Other>(self, step: Other) -> Decision<Action, Other> {
         Decision { row: self.row, action: self.action, next: step, values: self.values }
     }
 }
 
 impl Table {
-    /// The row with a number.
+    /// The row of a number.
     #[must_use]
     pub fn row(&self, number: u8) -> Option<&'static Row> {
         self.rows.iter().find(|row| row.number == number)
     }
 
-    /// The variables that at least one row asks for.
+    /// The variables that at least one row tests.
     pub fn asked(&self) -> impl Iterator<Item = &'static Variable> {
         let asks = |name: &str| {
             self.rows.iter().flat_map(|row| row.when).any(|condition| condition.variable == name)
@@ -345,7 +344,7 @@ impl Row {
         fmt::from_fn(move |f| conditions(f, self.steps, self.when.iter().copied()))
     }
 
-    /// The action with what it carries: `Fail(DoorStuck)`.
+    /// The action with its argument: `Fail(DoorStuck)`.
     pub fn call(&self) -> impl fmt::Display {
         fmt::from_fn(move |f| match self.argument {
             Some(argument) => write!(f, "{}({argument})", self.action),
@@ -353,7 +352,7 @@ impl Row {
         })
     }
 
-    /// The action with what it carries, and the next step: `Close -> Closing`.
+    /// The action with its argument and the next step: `Close -> Closing`.
     fn effect(&self) -> impl fmt::Display {
         fmt::from_fn(move |f| match self.next {
             Some(next) => write!(f, "{} -> {next}", self.call()),
@@ -362,7 +361,6 @@ impl Row {
     }
 }
 
-/// Steps and conditions as text.
 fn conditions(
     f: &mut fmt::Formatter<'_>,
     steps: &[&str],
@@ -378,7 +376,7 @@ fn conditions(
     if is_first { f.write_str("otherwise") } else { Ok(()) }
 }
 
-/// Names with a word between them.
+/// Names separated by a word.
 fn join(f: &mut fmt::Formatter<'_>, names: &[&str], word: &str) -> fmt::Result {
     for (position, name) in names.iter().enumerate() {
         if position > 0 {

@@ -12,13 +12,13 @@ pub const TICK_MS: u64 = 40;
 /// Length of one tick in seconds.
 pub const TICK_S: f64 = 0.040;
 
-/// Number of a 40 ms cycle since the start of the run. Tick 0 means "before the first cycle".
+/// Number of a 40 ms cycle since the start of the run. Tick 0 is the state before the first cycle.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[repr(transparent)]
 pub struct Tick(pub u64);
 
 impl Tick {
-    /// The cycle before the first one: what a buffer that was never written carries.
+    /// The tick before the first cycle, which is the stamp of unwritten buffers.
     pub const BEFORE_START: Self = Self(0);
 
     /// The next cycle.

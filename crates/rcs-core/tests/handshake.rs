@@ -1,12 +1,12 @@
-//! The handshake, searched through: breadth first over all states that commander and receiver can reach.
+//! Exhaustive search of the handshake: breadth first over all reachable states of commander and receiver.
 //!
-//! The code under test is [`Commander`] and [`Receiver`] as the processes use them; the model around it is two buffers with
-//! one writer each. In every tick the commander may restart and may send a command, up to five; the receiver may step,
-//! restart, be held or be silent, and may finish what it executes; either may read what was written one tick or two ticks
-//! ago. A restart forgets the process and leaves its output buffer, as on the boards.
+//! The code under test is [`Commander`] and [`Receiver`] as the processes use them. The model around it consists of
+//! two buffers with one writer each. In every tick the commander may restart and may send a command, up to five. The
+//! receiver may step, restart, be held or be silent, and may finish its command. Either may read values that are one
+//! or two ticks old. A restart loses the state of the process and keeps its output buffer, as on the boards.
 //!
-//! Commands are told apart by their *content*, which the code does not see. Ages stand in place of ticks, up to the one
-//! beyond which the code does not tell them apart, so that the search comes to an end.
+//! The search distinguishes commands by their *content*, which the code does not see. Ages replace ticks, up to the
+//! largest age that the code distinguishes, so the search is finite.
 
 use std::collections::{HashMap, VecDeque};
 
@@ -16,30 +16,30 @@ use rcs_core::{
     tick::Tick,
 };
 
-/// Commands that are sent in all.
+/// Total number of commands.
 const COMMANDS: u8 = 5;
-/// Ages above the limit are alike.
+/// All ages above the limit are equivalent.
 const OLD: u8 = 5;
 /// The present tick.
 const NOW: Tick = Tick(1000);
 
-/// What a commander goes on from when it starts.
+/// The number from which a starting commander continues.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Start {
     /// Its own output buffer: commanders of processes.
     Buffer,
-    /// The echo of what is below: commanders of devices and of other systems.
+    /// The echo of its subordinate: commanders of devices and of other systems.
     Echo,
 }
 
-/// The command buffer: number, and the content, from 1; 0 for none.
+/// The command buffer: number, and the content from 1, or 0 for none.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 struct Written {
     number: u32,
     content: u8,
 }
 
-/// How far a command has come.
+/// Progress of a command.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 enum Report {
     #[default]
@@ -58,10 +58,10 @@ impl Report {
     }
 }
 
-/// The status buffer, with the content that it is about.
+/// The status buffer, with the content to which it belongs.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 struct Answered {
-    /// Ticks since it was stamped, beyond the one that every reading takes.
+    /// Ticks since its stamp, without the one tick of every reading.
     age: u8,
     republished: bool,
     echo: u32,
@@ -71,26 +71,26 @@ struct Answered {
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 struct State {
-    /// Of the commander: number, ticks since it was sent, whether it has started.
+    /// State of the commander: number, ticks since it was sent, started.
     commander: (u32, u8, bool),
-    /// Of the receiver: echo, whether it has started, whether it has adopted.
+    /// State of the receiver: echo, started, adopted.
     receiver: (u32, bool, bool),
-    /// What the receiver's report is about.
+    /// Content to which the receiver's report belongs.
     current: u8,
-    /// The buffers: as written in the last tick, and in the one before.
+    /// The buffers as written in the last tick and in the one before.
     written: [Written; 2],
     answered: [Answered; 2],
-    /// Commands so far, and those that were executed, a bit each.
+    /// Number of commands sent, and a bit per executed command.
     sent: u8,
     executed: u8,
 }
 
-/// What one side does in a tick.
+/// Action of the commander in a tick.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Commanding {
     restarts: bool,
     sends: bool,
-    /// It reads what was written this tick and one more ago.
+    /// It reads values that are one tick older.
     late: bool,
 }
 
@@ -101,7 +101,7 @@ enum Receiving {
         late: bool,
         finishes: bool,
     },
-    /// Held by a switch: its last outputs are published again.
+    /// Suspended by a switch: its last outputs are republished.
     Held,
     Silent,
 }
@@ -112,11 +112,11 @@ type Event = (Commanding, Receiving);
 const QUIET: Commanding = Commanding { restarts: false, sends: false, late: false };
 const STEP: Receiving = Receiving::Steps { restarts: false, late: false, finishes: false };
 
-/// What a tick has shown to be wrong.
+/// An error that a tick has shown.
 type Wrong = &'static str;
 
 impl State {
-    /// Run a tick. The commander's reading comes with it.
+    /// Run a tick. Returns the state and the commander's reading.
     fn tick(&mut self, (commanding, receiving): Event, start: Start) -> Result<Lower, Wrong> {
         let before = *self;
         let reading = self.command(&before, commanding, start)?;
@@ -142,7 +142,7 @@ impl State {
         };
         let reading = commander.read(NOW, &header, status.echo, status.report.lower());
         let believed = matches!(reading, Lower::Done | Lower::Executing | Lower::Error);
-        // A commander that has sent nothing since it started acts on no status.
+        // A commander that has not sent a command since its start acts on no status.
         if believed && commander.started && status.about != before.written[0].content {
             return Err("a status is believed that is about another command");
         }
@@ -197,7 +197,7 @@ impl State {
         Ok(())
     }
 
-    /// From here on nothing goes wrong: is the last command answered? And if the receiver has gone: is it lost?
+    /// True if, without further faults, the last command is answered, or a vanished receiver is detected as lost.
     fn is_answered(mut self, start: Start) -> Result<(), Wrong> {
         let mut gone = self;
         let (mut reading, mut lost) = (Lower::Pending, Lower::Pending);
@@ -219,7 +219,7 @@ impl State {
     }
 }
 
-/// All that can happen in a tick.
+/// All possible events of a tick.
 fn events(state: &State) -> Vec<Event> {
     let three = || (0_u8..8).map(|bits| (bits & 1 != 0, bits & 2 != 0, bits & 4 != 0));
     let steps = three().map(|(restarts, late, finishes)| Receiving::Steps { restarts, late, finishes });
@@ -229,14 +229,14 @@ fn events(state: &State) -> Vec<Event> {
     possible.flat_map(|commanding| receiving.iter().map(move |receiving| (commanding, *receiving))).collect()
 }
 
-/// What was searched, or the shortest way to something wrong.
+/// The size of the search, or the shortest path to an error.
 struct Found {
     states: usize,
     ticks: u64,
     wrong: Option<(Vec<Event>, Wrong)>,
 }
 
-/// The states that are known, each with the one before it and the tick between them.
+/// The known states, each with its predecessor and the tick between them.
 type Known = HashMap<State, Option<(State, Event)>>;
 
 /// The ticks that lead to a state.
@@ -250,7 +250,7 @@ fn way(known: &Known, mut state: State, last: Option<Event>) -> Vec<Event> {
     events
 }
 
-/// Search all states, the nearest first.
+/// Search all states, breadth first.
 fn search(start: Start) -> Found {
     let mut known: Known = HashMap::from([(State::default(), None)]);
     let mut open = VecDeque::from([State::default()]);
@@ -282,8 +282,9 @@ fn between_processes_each_content_is_executed_once_and_each_status_is_about_its_
     assert_eq!((found.states, found.ticks), (292_636, 15_443_840), "the size that docs/evidence.md states");
 }
 
-/// A known limit: a commander that follows the echo alone gives a number twice if it restarts before its first command is
-/// echoed. The second command is then taken for seen, and the status of the first for its own. This is the shortest way.
+/// A known limit: a commander that follows only the echo sends a number twice if it restarts before its first command
+/// is echoed. The receiver then ignores the second command, and the commander reads the status of the first. This is
+/// the shortest path.
 #[test]
 fn a_commander_that_follows_the_echo_gives_a_number_twice_after_a_restart_before_the_echo() {
     let sends = Commanding { sends: true, ..QUIET };

@@ -28,7 +28,7 @@ pub fn camel(name: &str) -> String {
     name.split('_').map(upper).collect()
 }
 
-/// A text as an identifier. Beside it stands a field `kind`, so that this word gets the code as a suffix.
+/// A text as an identifier. The word `kind` gets the code as a suffix, because there is a field of this name.
 pub fn identifier(text: &str, code: &impl Display) -> String {
     let name = text.replace(|letter: char| !letter.is_ascii_alphanumeric(), "_");
     match name.trim_matches('_') {
@@ -49,7 +49,7 @@ pub fn text(attributes: &[Attribute]) -> Option<String> {
     attributes.iter().find_map(|attribute| text_of(attribute, "text"))
 }
 
-/// How the texts of an enum follow from its variants: the word in `#[text(doc)]` or `#[text(upper)]`; empty for none.
+/// The style of an enum's texts: the word in `#[text(doc)]` or `#[text(upper)]`; empty for none.
 pub fn text_style(attributes: &[Attribute]) -> String {
     let style = attributes.iter().find_map(|attribute| match &attribute.meta {
         Meta::List(list) if list.path.is_ident("text") => Some(list.tokens.to_string()),
@@ -64,7 +64,6 @@ pub fn clause(doc: &str) -> String {
     letters.next().map(|first| first.to_lowercase().chain(letters).collect()).unwrap_or_default()
 }
 
-/// The lines of the doc comment.
 pub fn doc(attributes: &[Attribute]) -> Vec<String> {
     attributes
         .iter()

@@ -72,12 +72,11 @@ fn of_struct(name: &Ident, data: &DataStruct) -> Result<TokenStream> {
     })
 }
 
-/// The text of a variant: what its attribute says, else its name.
+/// The text of a variant: its attribute, or its name.
 fn text_of(variant: &Variant) -> String {
     names::text(&variant.attrs).unwrap_or_else(|| names::words(&variant.ident.to_string(), '-'))
 }
 
-/// The texts of an enum without data.
 fn texts_of(input: &DeriveInput, data: &DataEnum) -> Result<Vec<String>> {
     let style = names::text_style(&input.attrs);
     let styled = |variant: &Variant| match style.as_str() {
@@ -168,7 +167,7 @@ fn of_enum(input: &DeriveInput, data: &DataEnum) -> Result<TokenStream> {
     })
 }
 
-/// The one field of a variant, if it has one.
+/// The field of a variant, if it has one.
 fn payload(variant: &Variant) -> Result<Option<&Field>> {
     match &variant.fields {
         Fields::Unit => Ok(None),

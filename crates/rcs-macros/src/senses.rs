@@ -17,7 +17,7 @@ fn value(method: &ImplItemFn) -> Result<&Type> {
     }
 }
 
-/// The methods as they are, and beside them type, text and setter of each variable, in a hidden module `__Name`.
+/// The unchanged methods, and type, text and setter of each variable in a hidden module `__Name`.
 pub fn expand(mut block: ItemImpl) -> Result<TokenStream> {
     let Type::Path(of) = &*block.self_ty else {
         return Err(Error::new_spanned(&block.self_ty, "state variables are methods of a struct"));

@@ -1,4 +1,4 @@
-//! Couplers in simulated time, without a cell: the sensors and valves are those of the test.
+//! Couplers in simulated time, with sensors and valves of the test instead of a cell.
 
 use diagnostics::Source;
 use interfaces::device::{Connection, KNOB_FULL, valve};
@@ -37,7 +37,7 @@ impl Bench {
         Self { field: station(), tick: 0 }
     }
 
-    /// A tick: what arrives at the valves, and what the controller reads.
+    /// Run a tick. Returns the outputs at the valves and the inputs of the controller.
     fn step(&mut self, outputs: &DeviceOutputs, cut: &str) -> (DeviceOutputs, DeviceInputs) {
         self.tick += 1;
         let valves = self.field.write(Tick(self.tick), outputs, |device| device == cut);

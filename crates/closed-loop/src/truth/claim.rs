@@ -1,4 +1,4 @@
-//! The statements about the cell of which the goals of commands are made, and their check.
+//! Claims about the cell, of which the goals of commands consist, and their check.
 
 use geometry::frame::Frame;
 use interfaces::{Unconfirmed, pose_range};
@@ -15,7 +15,7 @@ use super::{
     untruth::{Untruth, expect},
 };
 
-/// A statement about the cell. Frames are world frames, in.
+/// A claim about the cell. Frames are world frames, in.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Claim {
     /// The tool frame of the robot is at a frame.
@@ -23,7 +23,7 @@ pub enum Claim {
         goal: Frame,
         name: String,
     },
-    /// The tool frame of the robot is at a part that the camera has found, moved by a movetable.
+    /// The tool frame of the robot is at a part found by the camera, moved by a movetable.
     AtPart {
         object: String,
         near: Frame,
@@ -33,26 +33,26 @@ pub enum Claim {
     /// The robot has passed a frame, or is at most this far from it, in.
     Near {
         goal: Frame,
-        /// The distance at which the next motion may begin, in.
+        /// Distance at which the next motion may begin, in.
         inches: f64,
     },
     /// The fingers are at least this far open, in.
     Open(f64),
-    /// The robot holds a part in the place of a grip.
+    /// The robot holds a part as a grip requires.
     Holds {
         object: Name16,
         /// Frame of the part in the tool frame, if task data and cell give it.
         place: Vec<Frame>,
-        /// True if no picture is taken of the part where it is fetched.
+        /// True if no picture of the part is taken at its source.
         unseen: bool,
     },
     /// The robot alone holds it: the pedestal has released it.
     HoldsAlone,
     HoldsNothing,
-    /// A part is where the robot has released it, with the tool at this frame.
+    /// A part is where the robot released it, with the tool at this frame.
     Placed {
         object: Name16,
-        /// Tool frame in which the command releases it.
+        /// Tool frame at the release.
         goal: Frame,
     },
     /// A part lies at a location of the cell.
@@ -61,22 +61,20 @@ pub enum Claim {
         /// Location and sector, 0 for none.
         place: (String, u16),
     },
-    /// A part lies where the report of E-move has it.
+    /// A part is at the place that E-move reports.
     Located {
         object: Name16,
         near: Frame,
     },
-    /// A gripper is on the robot, and the ring is locked.
+    /// A gripper is attached, and the ring is locked.
     Wears(u8),
-    /// No gripper is on the robot, the ring is open, and the gripper is in the seat of a holster.
+    /// No gripper is attached, the ring is open, and the gripper is in the seat of a holster.
     WearsNone(Option<u8>),
-    /// A tool is in its place in the drum.
     InDrum(Name16),
-    /// A tool is out of the drum.
     OutOfDrum(Name16),
-    /// The robot or what it holds touches something.
+    /// The robot or its part is in contact.
     Touches,
-    /// The commanded point of the robot stands, and the arm is behind it by the lag of its servos at most.
+    /// The commanded point is at rest, and the arm is behind it at most by the lag of its servos.
     RobotStops,
     /// The fingers of the robot are at rest.
     FingersStill,
@@ -99,14 +97,14 @@ pub fn at(goal: Option<Frame>, name: impl ToString) -> Option<Claim> {
     goal.map(|goal| Claim::At { goal, name: name.to_string() })
 }
 
-/// The claim that the robot holds an object with a grip; `from` is where it is fetched.
+/// The claim that the robot holds an object with a grip; `from` is its source.
 pub fn holds(object: Option<Name16>, grip: i32, from: Option<&Place>, scene: &Scene<'_>) -> Option<Claim> {
     let object = object?;
     let seen = from.and_then(|place| scene.data.view(&object, place)).is_some_and(|(_, view)| view.enabled);
     Some(Claim::Holds { object, place: in_grip(&object, grip, scene), unseen: !seen })
 }
 
-/// Frames of a part in the tool frame, for a grip: of each nest and tray that both cell and task data have for it.
+/// Frames of a part in the tool frame for a grip: one for each nest and tray that both cell and task data have.
 fn in_grip(object: &Name16, grip: i32, scene: &Scene<'_>) -> Vec<Frame> {
     let (cell, data) = (scene.cell.description(), scene.data);
     let Some(kind) = cell.part(object.as_str()) else { return Vec::new() };
@@ -121,9 +119,9 @@ fn in_grip(object: &Name16, grip: i32, scene: &Scene<'_>) -> Vec<Frame> {
 }
 
 impl Claim {
-    /// True if a status that names this part of its goal as unconfirmed leaves the claim open. `holds` is true if the
-    /// robot holds something: jaws without a force sensor do not show whether they press, but without their word the
-    /// part is in its place between them.
+    /// True if a status with this unconfirmed part of the goal leaves the claim open. `holds` is true if the robot
+    /// holds something: jaws without a force sensor do not show whether they press, but the place of the part between
+    /// them is still claimed.
     pub const fn is_covered(&self, by: Unconfirmed, holds: bool) -> bool {
         match by {
             Unconfirmed::None => false,
@@ -143,12 +141,12 @@ impl Claim {
         }
     }
 
-    /// True if the claim is that a part is in its place in the fingers.
+    /// True if the claim is about a part's place in the fingers.
     pub fn is_of_grasp(&self) -> bool {
         matches!(self, Self::Holds { place, .. } if !place.is_empty())
     }
 
-    /// True if the claim is about the place of a part that the robot holds or has released.
+    /// True if the claim is about the place of a held or released part.
     pub const fn is_of_part(&self) -> bool {
         matches!(self, Self::Holds { .. } | Self::Placed { .. } | Self::LiesAt { .. } | Self::InDrum(_))
     }
@@ -156,7 +154,7 @@ impl Claim {
     /// Compare the claim with the cell.
     ///
     /// # Errors
-    /// What is true instead.
+    /// The actual state.
     pub fn check(&self, scene: &Scene<'_>, history: &History) -> Result<(), Untruth> {
         let cell = scene.cell;
         match self {
@@ -187,7 +185,7 @@ impl Claim {
     }
 }
 
-/// The frame of a location for an object and grip: where the tool is with the object there.
+/// The tool frame at a location for an object and grip.
 pub fn grip_goal(
     data: &TaskData<'_>,
     base: Option<Frame>,

@@ -8,7 +8,7 @@ use super::{
     seen::Movement,
 };
 
-/// What must be true when a command is finished.
+/// The claims of a finished command.
 pub fn claims(command: &EmoveCommand, scene: &Scene<'_>) -> Vec<Claim> {
     let data = scene.data;
     let (place, object) = (command.site.place(), command.object);
@@ -24,7 +24,7 @@ pub fn claims(command: &EmoveCommand, scene: &Scene<'_>) -> Vec<Claim> {
         Some(Claim::Open(f64::from(sizes.appr_size) / 100.0))
     };
     let found = match command.command {
-        // WITHDRAW is sent by nobody (V.2.1 "not currently used").
+        // No process sends WITHDRAW (V.2.1 "not currently used").
         EmoveVerb::None | EmoveVerb::Withdraw => vec![],
         EmoveVerb::Pause => vec![Some(Claim::RobotStops), Some(Claim::FingersStill)],
         EmoveVerb::MovToLoc => vec![at(base, command.site.location)],

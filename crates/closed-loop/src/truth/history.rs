@@ -1,4 +1,4 @@
-//! What the judge remembers of earlier ticks: who has changed a part, and what the robot has released.
+//! The judge's record of earlier ticks: changes of parts by the operator, and releases by the robot.
 
 use std::collections::BTreeMap;
 
@@ -9,39 +9,37 @@ use rcs_core::tick::Tick;
 
 use super::{Level, NotSensed, Scene};
 
-/// A part that the robot has released.
 #[derive(Clone, Copy, Debug)]
 pub struct Released {
     pub id: u32,
     /// Tick in which the fingers opened.
     pub tick: Tick,
-    /// The tool frame of the robot in the last tick of the hold, world, in.
+    /// Tool frame in the last tick of the hold, world, in.
     pub tool: Frame,
-    /// The part's frame then, world, in.
+    /// Frame of the part in that tick, world, in.
     pub part: Frame,
 }
 
-/// The earlier ticks.
 #[derive(Clone, Debug, Default)]
 pub struct History {
-    /// Last tick in which a person has changed a part, by its number.
+    /// Last tick in which an operator changed a part, by its number.
     changed: BTreeMap<u32, Tick>,
-    /// Tick in which the workstation has delivered a part, by its number.
+    /// Tick in which the workstation delivered a part, by its number.
     delivered: BTreeMap<u32, Tick>,
-    /// The part that the robot held after the last tick, with tool frame and part frame.
+    /// The part held after the last tick, with tool frame and part frame.
     held: Option<(u32, Frame, Frame)>,
     pub(super) released: Option<Released>,
-    /// Tick in which the robot has taken the part that it holds.
+    /// Tick of the grasp of the held part.
     taken: Tick,
-    /// Tick in which the camera has looked last, and the part's name.
+    /// Tick of the camera's last look, and the name of the part.
     pub(super) looked: Option<(Tick, String)>,
-    /// Number of the picture of that look.
+    /// Number of that picture.
     look: u32,
-    /// Parts that are off their places for a reason that no sensor shows, by their numbers.
+    /// Parts off their places for a reason that no sensor shows, by number.
     displaced: BTreeMap<u32, NotSensed>,
     /// Last tick in which the arm had pressure and the robot controller executed the DEPC function.
     pub(super) up: Tick,
-    /// They did so after the last tick.
+    /// True if that tick is the last one.
     pub(super) is_up: bool,
 }
 
@@ -81,26 +79,26 @@ impl History {
         }
     }
 
-    /// Note that the part that the robot holds, or has released last, is off its place for a reason that no sensor shows.
+    /// Note that the held or last released part is off its place for a reason that no sensor shows.
     pub fn note_displaced(&mut self, cell: &Cell, why: NotSensed) {
         if let Some(id) = cell.held().or_else(|| self.released().map(|released| released.id)) {
             self.displaced.insert(id, why);
         }
     }
 
-    /// Note that the part that the robot holds is in its place in the fingers.
+    /// Note that the held part is in its place in the fingers.
     pub fn note_in_place(&mut self, cell: &Cell) {
         if let Some(id) = cell.held() {
             self.displaced.remove(&id);
         }
     }
 
-    /// The reason for which a part has been off its place since.
+    /// The reason of a part's displacement.
     pub fn displaced(&self, id: u32) -> Option<NotSensed> {
         self.displaced.get(&id).copied()
     }
 
-    /// The reason for which no sensor shows what meets a part: a person has put another one in its way.
+    /// The reason why no sensor shows an obstacle of a part: an operator has put another part in its way.
     pub fn occupied(&self, cell: &Cell, id: u32) -> Option<NotSensed> {
         let half_diagonal = |id: u32| Some(Vector::from(cell.part_kind(id)?.size).norm() / 2.0);
         let middle = |id: u32| Some((cell.part_frame(id)?.position, half_diagonal(id)?));
@@ -110,34 +108,34 @@ impl History {
         self.changed.keys().filter(|other| **other != id).any(meets).then_some(NotSensed::Occupied)
     }
 
-    /// True if the arm has lost its pressure, or the robot controller has failed, so few ticks ago that the process cannot
-    /// have read it yet.
+    /// True if the arm lost its pressure, or the robot controller failed, too recently for the process to have read
+    /// it.
     pub const fn has_just_failed(&self, tick: Tick, level: Level) -> bool {
         !self.is_up && tick.since(self.up) <= level.hops()
     }
 
-    /// The last part that the robot has released, unless it holds it again.
+    /// The last released part, unless the robot holds it again.
     pub fn released(&self) -> Option<&Released> {
         self.released.as_ref().filter(|released| self.held.is_none_or(|(id, ..)| id != released.id))
     }
 
-    /// True if a person has changed the part since this tick.
+    /// True if an operator has changed the part since this tick.
     pub fn is_changed_since(&self, id: u32, tick: Tick) -> bool {
         self.changed.get(&id).is_some_and(|changed| *changed >= tick)
     }
 
-    /// True if a person has changed the part since the robot has released it last.
+    /// True if an operator has changed the part since its last release.
     pub fn is_changed(&self, id: u32) -> bool {
         let released = self.released.as_ref().filter(|released| released.id == id);
         self.is_changed_since(id, released.map_or(Tick(0), |released| released.tick))
     }
 
-    /// True if a person has changed any part since the robot has taken the one that it holds.
+    /// True if an operator has changed any part since the grasp of the held one.
     pub fn is_any_changed_since_grasp(&self) -> bool {
         self.changed.values().any(|changed| *changed >= self.taken)
     }
 
-    /// True if a person has changed any part, or one was delivered, since the camera has looked for an object of this name.
+    /// True if an operator has changed any part, or one was delivered, since the camera's last look for this object.
     pub fn is_any_changed_since_look(&self, object: &str) -> bool {
         self.looked.as_ref().filter(|(_, name)| name == object).is_some_and(|(tick, _)| {
             self.changed.values().chain(self.delivered.values()).any(|changed| changed >= tick)

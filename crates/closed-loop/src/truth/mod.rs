@@ -1,18 +1,18 @@
-//! The judge of confirmations: whether a command that is reported as finished has its effect in the simulated cell.
+//! The judge of confirmations: checks that a command reported as finished has its effect in the simulated cell.
 //!
-//! Task, Subtask, E-move and Prim report each command as finished. What must be true then follows from the command and
-//! the task data alone: its [`Claim`]s ([`task`], [`subtask`], [`emove`], [`prim`]). They are looked up when the
-//! command appears, and compared with the bodies of the cell in the tick in which the status becomes *finished*. No
-//! sensor, no status and no belief of the controller is asked.
+//! Task, Subtask, E-move and Prim report each command as finished. The command and the task data alone determine the
+//! required state: the [`Claim`]s of the command ([`task`], [`subtask`], [`emove`], [`prim`]). The judge collects
+//! them when the command appears. It compares them with the bodies of the cell in the tick in which the status
+//! becomes *finished*, without regard to sensors, statuses or estimates of the controller.
 //!
 //! ```text
 //!   command of a level ──► its claims                          when its number appears
 //!   status becomes finished ──► claims ──compare──► the cell   true, false, or not sensed
 //! ```
 //!
-//! A claim that is untrue is *not sensed* only for the reasons of [`NotSensed`], a closed list. Everything else that is
-//! untrue is *false*, and the run has failed. An error is never false here: whether its remedy leads to a finished job
-//! is shown by playing on (`rcs-run campaign --truth`).
+//! An untrue claim is *not sensed* only for the reasons of [`NotSensed`], a closed list. Every other untrue claim is
+//! *false*, and the run has failed. The judge never rejects an error: `rcs-run campaign --truth` continues after it
+//! to show that its remedy leads to a finished job.
 
 mod claim;
 mod emove;
@@ -56,7 +56,7 @@ pub enum Level {
 }
 
 impl Level {
-    /// Ticks that a reading of the resolvers takes to the process: the hops of the ladder, and one for the line.
+    /// Ticks from the resolvers to the process: the hops of the ladder, and one for the line.
     const fn hops(self) -> u64 {
         match self {
             Self::Prim => 2,
@@ -80,25 +80,25 @@ impl fmt::Display for Level {
     }
 }
 
-/// Why no sensor of the robot can contradict an untrue confirmation. The list is closed: a new entry needs a reason why
-/// the machine of the manual has no sensor for it.
+/// Reason why no sensor of the robot can contradict an untrue confirmation. The list is closed: a new entry must say
+/// why the machine of the manual has no sensor for it.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum NotSensed {
-    /// Another part is in the fingers, and it has the size of the commanded one between them; no picture is taken of it,
-    /// or it looks the same. The fingers measure one width, the camera recognises an outline.
+    /// Another part of the same width is between the fingers, and no picture of it is taken, or it looks the same.
+    /// The fingers measure one width; the camera recognises an outline.
     EqualPart,
-    /// A person has moved, added or taken away the part after the goal's last look at it: the picture of a part that is
-    /// fetched, the opening of the fingers for one that is put down. Or the arm has lost its pressure, or the robot
-    /// controller has failed, fewer ticks ago than a reading takes to the process.
+    /// An operator moved, added or removed the part after the last look: the picture of a part to fetch, or the
+    /// opening of the fingers for a part to put down. Or arm pressure or robot controller failed too recently for the
+    /// process to have read it.
     ChangedAfterLook,
-    /// A person has moved the part in a place without pictures: a nest, the vise, the drum. The fingers centre it
-    /// between them and measure its width; nothing measures where along the fingers it is.
+    /// An operator moved the part at a place without pictures: a nest, the vise, the drum. The fingers centre the
+    /// part and measure its width; nothing measures its position along the fingers.
     NoPicture,
-    /// A person has put a part where another one is put down, or in its way. No picture is taken of a destination: the
-    /// part in the fingers hides it from the camera, and a nest has no view.
+    /// An operator put a part at the destination of another one, or in its way. No picture of a destination is taken:
+    /// the part in the fingers hides it from the camera, and a nest has no view.
     Occupied,
-    /// The status itself names this part of the goal as unconfirmed, because the machine has no sensor for it.
+    /// The status names this part of the goal as unconfirmed, as the machine has no sensor for it.
     Unconfirmed,
 }
 
@@ -119,12 +119,12 @@ impl NotSensed {
 #[serde(rename_all = "kebab-case")]
 pub enum Verdict {
     True,
-    /// A claim is untrue, and no sensor could show it.
+    /// An untrue claim that no sensor could show.
     NotSensed(NotSensed),
     False,
 }
 
-/// A judged confirmation. The names of the fields are those of the JSON object.
+/// A judged confirmation. The field names are those of the JSON object.
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 pub struct Confirmation {
     /// Tick in which the status became *finished*.
@@ -132,13 +132,12 @@ pub struct Confirmation {
     pub level: Level,
     pub command: String,
     pub verdict: Verdict,
-    /// What is true instead, as a sentence; empty if the confirmation is true.
+    /// The actual state as a sentence; empty if the confirmation is true.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub truth: String,
 }
 
 impl Confirmation {
-    /// True if the confirmation is false.
     #[must_use]
     pub const fn is_false(&self) -> bool {
         matches!(self.verdict, Verdict::False)
@@ -161,7 +160,6 @@ impl fmt::Display for Confirmation {
 /// Inputs of the judge after a tick.
 #[derive(Clone, Copy)]
 pub struct Scene<'a> {
-    /// The tick that has ended.
     pub tick: Tick,
     /// Task's command in this tick.
     pub hws: &'a HwsCommand,
@@ -173,7 +171,7 @@ pub struct Scene<'a> {
     pub cell: &'a Cell,
 }
 
-/// A command, and what must be true when it is finished.
+/// A command and its claims.
 #[derive(Clone, Debug, Default)]
 struct Order {
     number: u32,
@@ -184,19 +182,19 @@ struct Order {
 /// The commands and the status of a level.
 #[derive(Clone, Debug, Default)]
 struct Watched {
-    /// The present command and the one before it: a status in the tick of a new command is that of the old one.
+    /// The present command and its predecessor: a status in the tick of a new command belongs to the old one.
     orders: [Order; 2],
-    /// Number of the command that is reported as finished, if one is.
+    /// Number of the command that is reported as finished, if any.
     finished: Option<u32>,
 }
 
-/// Counts of a judge. The names of the fields are those of the JSON object.
+/// Counts of a judge. The field names are those of the JSON object.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct TruthResult {
     pub judged: u64,
     #[serde(rename = "false")]
     pub lies: Vec<Confirmation>,
-    /// Confirmations that are untrue and that no sensor could contradict.
+    /// Untrue confirmations that no sensor could contradict.
     pub not_sensed: Vec<Confirmation>,
 }
 
@@ -209,7 +207,7 @@ pub struct TruthCheck {
 }
 
 impl TruthCheck {
-    /// Note that a person has added, moved or taken away these parts before the next tick.
+    /// Note that an operator added, moved or removed these parts before the next tick.
     pub fn note_changed(&mut self, tick: Tick, parts: impl IntoIterator<Item = u32>) {
         self.history.note_changed(tick, parts);
     }
@@ -219,7 +217,7 @@ impl TruthCheck {
         self.history.note_delivered(tick, parts);
     }
 
-    /// Judge a finished tick. Returns the confirmations that are not true.
+    /// Judge a finished tick. Returns the untrue confirmations.
     pub fn look(&mut self, scene: &Scene<'_>) -> Vec<Confirmation> {
         self.history.look(scene);
         let mut untrue = Vec::new();
@@ -272,7 +270,7 @@ impl TruthCheck {
         &self.result
     }
 
-    /// The reason why a finished job counts as failed: the first false confirmation; `None` without one.
+    /// The failure of a finished job: the first false confirmation, if any.
     #[must_use]
     pub fn verdict(&self) -> Option<Failure> {
         let (first, rest) = self.result.lies.split_first()?;
@@ -282,7 +280,6 @@ impl TruthCheck {
     }
 }
 
-/// Number of the present command of a level.
 const fn number(level: Level, scene: &Scene<'_>) -> u32 {
     let Scene { hws, memory, .. } = scene;
     match level {
@@ -293,7 +290,6 @@ const fn number(level: Level, scene: &Scene<'_>) -> u32 {
     }
 }
 
-/// The present command of a level, with its claims.
 fn order(level: Level, scene: &Scene<'_>) -> Order {
     let Scene { hws, memory, .. } = scene;
     let (text, claims) = match level {
@@ -319,7 +315,7 @@ fn finished(level: Level, scene: &Scene<'_>) -> Option<u32> {
     (is_finished && echo != 0).then_some(echo)
 }
 
-/// The part of its goal that a level reports as unconfirmed.
+/// The unconfirmed part of a level's goal.
 const fn unconfirmed(level: Level, scene: &Scene<'_>) -> Unconfirmed {
     match level {
         Level::Task => scene.memory.task.status.unconfirmed,

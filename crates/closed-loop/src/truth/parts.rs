@@ -16,7 +16,7 @@ pub fn named<'p>(parts: &'p [PartState], object: &'p str) -> impl Iterator<Item 
     parts.iter().filter(move |part| part.name == object)
 }
 
-/// True if two kinds have the same outline from above within a tolerance, in: the camera does not measure heights.
+/// True if two kinds have the same outline from above within a tolerance, in. The camera does not measure heights.
 pub fn is_alike(one: &PartType, other: &PartType, tolerance: f64) -> bool {
     let outlines = one.size.iter().zip(other.size).skip(1);
     one.shape == other.shape && outlines.into_iter().all(|(a, b)| (a - b).abs() <= tolerance)
@@ -51,7 +51,7 @@ pub fn is_held(
     }
     let Some(meant) = place.first() else { return Ok(()) };
     let is = cell.t3().arm().tool().inverse().compose(&frame).position;
-    // Across the fingers (tool Y) they centre the part. Along the axis of a long part its grips differ by the grip.
+    // The fingers centre the part along tool Y. Along the axis of a long part its grips differ.
     let off = (is.x - meant.position.x).hypot(is.z - meant.position.z);
     if off <= GRIP_INCHES {
         return Ok(());
@@ -60,7 +60,7 @@ pub fn is_held(
     let not_sensed = if unseen && history.is_changed(id) {
         Some(NotSensed::NoPicture)
     } else if history.is_any_changed_since_look(object.as_str()) || history.is_any_changed_since_grasp() {
-        // What a person has put into the way pushes the part along the fingers.
+        // An obstacle put down by an operator pushes the part along the fingers.
         Some(NotSensed::ChangedAfterLook)
     } else {
         history.displaced(id).or_else(|| history.occupied(cell, id))
@@ -68,7 +68,7 @@ pub fn is_held(
     Err(Untruth { text, not_sensed })
 }
 
-/// True if the fingers cannot tell two kinds by their width: some width of one is one of the other.
+/// True if the fingers cannot distinguish two kinds: they have a width in common.
 pub fn same_width(one: &PartType, other: &PartType) -> bool {
     one.size.iter().any(|a| other.size.iter().any(|b| (a - b).abs() <= WIDTH_INCHES))
 }
@@ -86,7 +86,7 @@ pub fn holds_nothing(cell: &Cell) -> Result<(), Untruth> {
 }
 
 pub fn is_placed(cell: &Cell, history: &History, object: &Name16, goal: &Frame) -> Result<(), Untruth> {
-    // Without a release since the start of the judge the location of the part decides, in Task's claim.
+    // Without a release since the start of the judge, Task's claim about the location decides.
     let Some(released) = history.released() else { return Ok(()) };
     let parts = cell.parts();
     let changed = history.is_changed_since(released.id, released.tick);
@@ -98,7 +98,7 @@ pub fn is_placed(cell: &Cell, history: &History, object: &Name16, goal: &Frame) 
         return Err(Untruth { text: format!("{object} is not in the cell"), not_sensed });
     };
     if part.name != object.as_str() {
-        // Whether the robot held the right part is a claim of the grasp.
+        // The grasp's claim covers the identity of the held part.
         return Ok(());
     }
     let tolerance = cell.description().placing_tolerance;
@@ -156,7 +156,7 @@ pub fn lies_at(
     Err(Untruth { text, not_sensed })
 }
 
-/// Distance of a part of a name from its place in the drum, in: along the axis and beside it; the nearest one.
+/// Distance of the nearest part of a name from its place in the drum, in: along the axis, and across it.
 pub fn from_drum(cell: &Cell, object: &Name16) -> Option<(u32, f64, f64)> {
     let parts = cell.parts();
     let of = |part: &PartState| {

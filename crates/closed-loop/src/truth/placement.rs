@@ -1,13 +1,13 @@
 //! Checks the positions of the parts: each must be where the last command that moved it should have left it.
 //!
-//! A command moves a part if the gripper holds the part while the command is executed. When the command finishes, its
-//! verb determines where the part must be (V.4.1): TRANSFER puts it down at the destination, RELEASE-TOOL leaves it in
-//! the drum, POSITION releases it where the robot stands or keeps it, all others keep it. A failed command determines
-//! nothing; if it is sent again, it continues.
+//! A command moves a part if the gripper holds the part during the command. At its end its verb determines the
+//! required place (V.4.1): TRANSFER puts the part down at the destination, RELEASE-TOOL leaves it in the drum,
+//! POSITION releases it at the robot's place or keeps it, and all others keep it. A failed command determines no
+//! place; sent again, it continues.
 //!
-//! From then on the part is checked in each tick until another command moves it. So the tick of an error is known: the
-//! one in which the hand released the part, or the one in which the part left its place. The position at the end of the
-//! run decides, because a tilted part may be pushed to its place later.
+//! From then on the part is checked in each tick until another command moves it. This gives the tick of an error: the
+//! release of the part, or the tick in which the part left its place. The position at the end of the run decides, as
+//! a tilted part may be pushed to its place later.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -23,11 +23,11 @@ use rcs_core::{name::Name16, tick::Tick};
 /// A location and its sector, 0 for none.
 type Place = (String, u16);
 
-/// The place where a command must leave a part.
+/// The place at which a command must leave a part.
 #[derive(Clone, Debug, PartialEq)]
 enum Goal {
     Gripper,
-    /// At a place; `None` if the robot's place at the release is not known.
+    /// At a place; `None` if the robot's place at the release is unknown.
     At(Option<Place>),
 }
 
@@ -38,16 +38,16 @@ struct Moved {
     command: String,
     /// Last position in the hand, world coordinates, in.
     let_go: [f64; 3],
-    /// Tick since which the part is not at its place; `None` if it is there.
+    /// First tick off its place; `None` while at its place.
     astray: Option<Tick>,
 }
 
-/// A part that the hand holds or has held.
+/// A part that the hand holds or held.
 #[derive(Clone, Copy, Debug)]
 struct InHand {
     /// Its position, world coordinates, in.
     at: [f64; 3],
-    /// Last tick in which the hand held it.
+    /// Last tick in the hand.
     last: Tick,
 }
 
@@ -55,7 +55,7 @@ struct InHand {
 #[derive(Clone, Debug, Default)]
 struct Attempt {
     command: HwsCommand,
-    /// Numbers of the parts that the gripper has held since the command was sent first.
+    /// Numbers of the parts that the gripper has held since the command was first sent.
     moved: BTreeSet<u32>,
     is_over: bool,
 }
@@ -63,15 +63,14 @@ struct Attempt {
 /// The check of the parts' positions in a run.
 #[derive(Clone, Debug)]
 pub struct PlacementCheck {
-    /// Greatest distance of a part that counts as at its place, in.
+    /// Greatest distance of a part from the middle of its place, in.
     tolerance: f64,
     number: u32,
     attempt: Attempt,
-    /// The last goal of the robot.
     stands_at: Option<Place>,
     moved: BTreeMap<u32, Moved>,
     in_hand: BTreeMap<u32, InHand>,
-    /// The first command that has finished without its object.
+    /// The first command that finished without its object.
     empty: Option<(Tick, String)>,
 }
 
@@ -89,7 +88,7 @@ impl PlacementCheck {
         }
     }
 
-    /// Check a finished tick: Task's command, its status, and the positions of the parts.
+    /// Check a finished tick: Task's command and status, and the positions of the parts.
     pub fn look(
         &mut self,
         tick: Tick,
@@ -124,7 +123,7 @@ impl PlacementCheck {
         }
     }
 
-    /// Begin a command. PAUSE and the like move nothing, and a command that is sent again continues.
+    /// Begin a command. PAUSE and similar commands move no part, and a repeated command continues.
     fn begin(&mut self, hws: &HwsCommand) {
         if matches!(hws.command.as_str(), "PAUSE" | "STARTUP" | "SHUTDOWN") {
             return;
@@ -141,7 +140,7 @@ impl PlacementCheck {
         self.attempt = Attempt { command: *hws, ..Attempt::default() };
     }
 
-    /// The command has finished: set the required places of the parts that it has moved.
+    /// End of a command: set the required places of the parts that it moved.
     fn conclude(&mut self, tick: Tick, cell: &CellDescription, parts: &[PartState]) {
         let attempt = std::mem::take(&mut self.attempt);
         let command = attempt.command.in_words().to_string();
@@ -169,7 +168,7 @@ impl PlacementCheck {
         }
         let source = place(attempt.command.source, attempt.command.source_sector);
         if attempt.command.command.as_str() == "POSITION" {
-            // A command may push the parts that lie there, on purpose.
+            // A command may push other parts there intentionally.
             for (id, moved) in
                 self.moved.iter_mut().filter(|(_, moved)| moved.goal == Goal::At(source.clone()))
             {
@@ -181,7 +180,7 @@ impl PlacementCheck {
         self.attempt.is_over = true;
     }
 
-    /// The reason why a finished job counts as failed: the first part that is not at its place; `None` if all are.
+    /// The failure of a finished job: the first part off its place, if any.
     #[must_use]
     pub fn verdict(&self, parts: &[PartState]) -> Option<Failure> {
         let astray = parts.iter().filter_map(|part| {
@@ -206,13 +205,12 @@ impl PlacementCheck {
     }
 }
 
-/// True if the gripper must hold the command's object.
 fn takes_object(command: &HwsCommand) -> bool {
     command.object.is_some() && !matches!(command.command.as_str(), "POSITION" | "RELEASE-TOOL")
 }
 
-/// True for a TRANSFER that was interrupted after it had put its object down and is sent again: the object is at the
-/// destination, none is at the source, and nothing has to be moved.
+/// True for a repeated TRANSFER that was interrupted after it had put its object down: the object is at the
+/// destination, none is at the source, and there is nothing to move.
 fn was_done_before(command: &HwsCommand, destination: Option<&Place>, parts: &[PartState]) -> bool {
     let source = place(command.source, command.source_sector);
     let lies_at = |place: Option<&Place>| {
@@ -232,9 +230,8 @@ fn place(location: Option<Name16>, sector: Option<i32>) -> Option<Place> {
     Some((location?.to_string(), sector))
 }
 
-/// True if a part is where it must be. At a place of the cell description it must be near the middle of the place;
-/// elsewhere, and in trays, it must not have moved since the hand released it. Vise and machining check how it sits in
-/// the vise.
+/// True if a part is at its place. At a place of the cell description it must be near the middle; elsewhere, and in
+/// trays, it must not have moved since its release. Vise and machining check its seat in the vise.
 fn is_there(goal: &Goal, let_go: [f64; 3], tolerance: f64, cell: &CellDescription, part: &PartState) -> bool {
     let place = match goal {
         Goal::Gripper => return part.held,

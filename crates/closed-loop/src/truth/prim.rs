@@ -7,7 +7,7 @@ use super::{
     claim::{Claim, at, pose},
 };
 
-/// What must be true when a command is finished.
+/// The claims of a finished command.
 pub fn claims(command: &PrimCommand, scene: &Scene<'_>) -> Vec<Claim> {
     let data = scene.data;
     let goal = || {

@@ -1,4 +1,4 @@
-//! Checks of claims about parts that the camera looks for.
+//! Checks of claims about parts that the camera searches for.
 
 use geometry::frame::{Frame, Vector, rotation_by};
 use plant::{Cell, PartState};
@@ -18,10 +18,10 @@ use super::{
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Movement(pub MovtabId);
 
-/// A part belongs to a sector if it is no farther than this from its centre, in: half the distance of two sectors.
+/// Greatest distance of a part from the centre of its sector, in: half the distance of two sectors.
 const SECTOR_INCHES: f64 = 5.25;
 
-/// The part of a name that is nearest to a point, within half a sector.
+/// The nearest part of a name within half a sector of a point.
 pub fn nearest(cell: &Cell, object: &str, near: &Vector) -> Option<PartState> {
     let beside = |part: &PartState| {
         let [x, y, _] = part.position;
@@ -32,8 +32,8 @@ pub fn nearest(cell: &Cell, object: &str, near: &Vector) -> Option<PartState> {
     (beside(&nearest) <= SECTOR_INCHES).then_some(nearest)
 }
 
-/// The part of a name that a command means: the nearest one within half a sector, or the one that the camera has found
-/// where E-move reports it, as a part that an arm without pressure has pushed out of its sector.
+/// The part that a command means: the nearest one of its name within half a sector, or the one at the camera position
+/// that E-move reports, such as a part that an arm without pressure has pushed out of its sector.
 fn meant(scene: &Scene<'_>, object: &str, near: &Vector, reported: Option<&Frame>) -> Option<PartState> {
     let is_reported = |part: &PartState| {
         reported.is_some_and(|reported| {
@@ -44,12 +44,12 @@ fn meant(scene: &Scene<'_>, object: &str, near: &Vector, reported: Option<&Frame
     nearest(scene.cell, object, near).or_else(|| scene.cell.parts().into_iter().find(there))
 }
 
-/// Where E-move reports a part that the camera has found.
+/// The frame of a part found by the camera, as E-move reports it.
 fn report(scene: &Scene<'_>) -> Option<Frame> {
     scene.memory.emove.estimates.located.and_then(|located| located.pose.to_frame().ok())
 }
 
-/// The frames that the camera may find for a part that lies in a tray: the part may be turned by half a turn.
+/// Frames that the camera may report for a part in a tray: the part may be turned by half a turn.
 pub fn seen(cell: &Cell, part: &PartState) -> Vec<Frame> {
     let (Some(frame), Some(kind)) = (cell.part_frame(part.id), cell.part_kind(part.id)) else {
         return Vec::new();
@@ -120,7 +120,8 @@ pub fn is_located(
     })
 }
 
-/// A part at a place, within some inches, that looks like another one to the camera: the same outline within its tolerance.
+/// A part near a place, within some inches, that looks like another one to the camera: the same outline within its
+/// tolerance.
 pub fn looks_like(scene: &Scene<'_>, object: &str, at: &Frame, within: f64) -> Option<String> {
     let description = scene.cell.description();
     let asked = description.part(object)?;

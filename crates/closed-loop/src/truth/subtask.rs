@@ -7,7 +7,7 @@ use super::{
     claim::{Claim, at, grip_goal, holds, pose},
 };
 
-/// What must be true when a command is finished.
+/// The claims of a finished command.
 pub fn claims(command: &SubtaskCommand, scene: &Scene<'_>) -> Vec<Claim> {
     let data = scene.data;
     let place = command.site.place();
@@ -39,8 +39,8 @@ pub fn claims(command: &SubtaskCommand, scene: &Scene<'_>) -> Vec<Claim> {
     found.into_iter().flatten().collect()
 }
 
-/// What must be true when PAUSE or S-PAUSE is finished. Before its first command the pedestal calibrates itself,
-/// whatever is commanded (VI.5).
+/// The claims of a finished PAUSE or S-PAUSE. Before its first command the pedestal calibrates itself, independent of
+/// the command (VI.5).
 pub fn pause(scene: &Scene<'_>) -> Vec<Option<Claim>> {
     let pedestal = (scene.memory.subtask.pedestal.number != 0).then_some(Claim::PedestalStill);
     vec![Some(Claim::RobotStops), Some(Claim::FingersStill), pedestal]

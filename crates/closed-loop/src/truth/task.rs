@@ -11,7 +11,7 @@ use super::{
     claim::{Claim, at, grip_goal, holds},
 };
 
-/// What must be true when a command is finished.
+/// The claims of a finished command.
 pub fn claims(command: &HwsCommand, scene: &Scene<'_>) -> Vec<Claim> {
     let object = command.object;
     let resolve = |name: Option<Name16>, sector: Option<i32>, object: Option<&Name16>| {
@@ -54,13 +54,13 @@ pub fn claims(command: &HwsCommand, scene: &Scene<'_>) -> Vec<Claim> {
         "ACQUIRE-TOOL" => vec![held(command.source_grip), object.map(Claim::InDrum)],
         "RELEASE-TOOL" => vec![Some(Claim::HoldsNothing), object.map(Claim::InDrum), at_end()],
         "REMOVE-TOOL" => vec![held(to), object.map(Claim::OutOfDrum), at_end()],
-        // STARTUP and SHUTDOWN are about the Data System, not about the cell.
+        // STARTUP and SHUTDOWN concern the Data System, not the cell.
         _ => vec![],
     };
     found.into_iter().flatten().collect()
 }
 
-/// The claim that the object lies at the destination, if the cell has such a place.
+/// The claim that the object is at the destination, if the cell has such a place.
 fn lies_at(command: &HwsCommand, cell: &CellDescription) -> Option<Claim> {
     let (object, location) = (command.object?, command.destination?.to_string());
     let sector = command.destination_sector.and_then(|sector| u16::try_from(sector).ok()).unwrap_or(0);

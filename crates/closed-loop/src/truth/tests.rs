@@ -1,4 +1,4 @@
-//! Each verdict, with a cell that was made for it.
+//! Each verdict, with a cell made for it.
 
 use std::path::Path;
 
@@ -22,7 +22,7 @@ use super::{
 const DATA: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../data");
 const TICK: Tick = Tick(100);
 
-/// A cell, and the task data about it.
+/// A cell and its task data.
 struct Bench {
     store: Store,
     cell: Cell,
@@ -63,7 +63,7 @@ impl Bench {
         id
     }
 
-    /// The robot has released a part with the tool where it is now.
+    /// Release a part with the tool at its present frame.
     fn release(&mut self, id: u32) {
         let part = self.cell.part_frame(id).expect("the part is in the cell");
         self.history.released = Some(Released { id, tick: TICK, tool: self.tool(), part });
@@ -75,7 +75,7 @@ impl Bench {
         claim.check(&scene, &self.history)
     }
 
-    /// The reason why a claim that is untrue counts as not sensed; `None` if it is false.
+    /// The reason why an untrue claim is not sensed; `None` if it is false.
     fn not_sensed(&self, claim: &Claim) -> Option<NotSensed> {
         self.check(claim).expect_err("it is untrue").not_sensed
     }
@@ -177,7 +177,7 @@ fn a_part_next_to_one_that_a_person_has_put_down_is_not_sensed() {
     let goal = Frame { position: tool.position + Vector::new(0.3, 0.0, 0.0), ..tool };
     let placed = Claim::Placed { object: name("LINKBAR1_BH"), goal };
     assert_eq!(bench.not_sensed(&placed), None, "the robot was not at its goal");
-    // The part has moved since.
+    // The part has moved since the release.
     let placed = Claim::Placed { object: name("LINKBAR1_BH"), goal: tool };
     bench.history.released.as_mut().expect("it was released").part.position.x += 1.0;
     assert_eq!(bench.not_sensed(&placed), None, "nobody has put anything there");
@@ -203,7 +203,7 @@ fn a_part_that_was_grasped_off_its_place_for_an_unsensed_reason_is_placed_so() {
     assert_eq!(bench.not_sensed(&placed), None);
     bench.history.note_displaced(&bench.cell, NotSensed::NoPicture);
     assert_eq!(bench.not_sensed(&placed), Some(NotSensed::NoPicture));
-    // A picture shows where the part is.
+    // A picture shows the place of the part.
     bench.memory.subtask.emove.command = EmoveVerb::LocateObj;
     bench.memory.subtask.emove.object = Some(name("LINKBAR1_BH"));
     bench.memory.emove.vision.number = 1;
@@ -244,7 +244,7 @@ fn an_unconfirmed_place_in_the_fingers_covers_its_consequences() {
     }
 }
 
-/// Jaws without a force sensor do not show whether they press. Where the part is between them they do not excuse.
+/// Jaws without a force sensor do not show whether they press. That does not excuse a misplaced part between them.
 #[test]
 fn unconfirmed_grasp_force_covers_a_lost_part_and_no_misplaced_one() {
     let held = Claim::Holds { object: name("SHAFT"), place: Vec::new(), unseen: true };
@@ -291,7 +291,7 @@ fn a_part_that_moves_before_its_picture_is_false_and_after_it_not_sensed() {
     bench.history.looked = Some((TICK, "LINKBAR1_BH".into()));
     bench.history.note_changed(TICK, [9]);
     assert!(bench.check(&away).is_err());
-    // Nothing lies where it was seen.
+    // There is no part at the reported place.
     let nowhere = Frame::identity();
     bench.memory.emove.estimates.located = Some(interfaces::emove::Located {
         object: name("LINKBAR1"),
@@ -346,7 +346,7 @@ fn a_false_confirmation_fails_the_run_with_its_level_and_command() {
     let mut bench = going_to("SAFE", 5);
     let mut check = TruthCheck::default();
     bench.look(&mut check, 1);
-    // The next command comes in the same tick: the status is that of the command before it.
+    // The next command arrives in the same tick: the status belongs to the previous command.
     let command = &mut bench.memory.subtask.emove;
     (command.number, command.command) = (6, EmoveVerb::Release);
     (bench.memory.emove.status.echo, bench.memory.emove.status.report) = (5, StatusReport::Done);

@@ -6,7 +6,7 @@ use super::NotSensed;
 pub struct Untruth {
     /// The actual state, as a sentence without a full stop.
     pub text: String,
-    /// Why no sensor could show it; `None` if the confirmation is false.
+    /// The reason why no sensor could show it; `None` if the confirmation is false.
     pub not_sensed: Option<NotSensed>,
 }
 

@@ -1,4 +1,4 @@
-//! The ladder in the ideal cell, a tick at a time, with its processes in any order.
+//! The ladder in the ideal cell, stepped one tick at a time with its processes in any order.
 
 use std::{path::Path, sync::OnceLock};
 
@@ -59,12 +59,12 @@ impl Rig {
             cell,
         };
         rig.sense(rig.cell.inputs());
-        // A process that starts adopts the command it finds; the workstation speaks once Task listens.
+        // A starting process adopts the command that it finds; the workstation sends commands once Task listens.
         rig.step(ProcessId::ALL);
         rig
     }
 
-    /// Device words for the next tick. The test is at the joystick box.
+    /// Set the device words of the next tick, with the joystick box of the test.
     fn sense(&mut self, inputs: DeviceInputs) {
         let devices = &mut self.external.devices;
         let joystick = JoystickBox { velocity: inputs.joystick.velocity, ..devices.joystick };
@@ -90,7 +90,7 @@ impl Rig {
         }
     }
 
-    /// Joints to which the servos are told to go.
+    /// Joints commanded to the servos.
     pub fn command_of_servos(&self) -> Joints {
         self.cell.t3().arm().command()
     }

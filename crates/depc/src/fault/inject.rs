@@ -1,15 +1,15 @@
 //! The injector: applies the faults of a plan to the transmitted bytes.
 //!
-//! Each direction has its own random numbers and its own line, so that faults in one do not depend on the traffic in
-//! the other. A line holds bytes with the tick in which they are due; they leave it in order, at most as many a tick as
-//! [`LinkBytes`] holds.
+//! Each direction has its own random numbers and its own line, so faults in one are independent of the traffic in the
+//! other. A line holds bytes with their due ticks. They leave it in order, at most as many per tick as [`LinkBytes`]
+//! holds.
 
 use rcs_core::{Plain, tick::Tick};
 
 use super::{ALWAYS, Direction, FaultKind, KINDS, Numbers, Plan, Rule};
 use crate::link::LinkBytes;
 
-/// Number of bytes that a delayed or stalled line holds; further ones are lost.
+/// Capacity of a delayed or stalled line, bytes; further bytes are lost.
 pub const LINE_BYTES: usize = 256;
 
 /// Counts of one direction, or the sum of both.
@@ -26,7 +26,7 @@ pub struct Counts {
 
 impl Counts {
     /// Number of faults of a kind: bytes dropped, flipped, duplicated, inserted, delayed; ticks truncated; stalls;
-    /// losses of the signal. If a stall or a loss of the signal is extended before it ends, each beginning counts.
+    /// losses of the signal. An extension of a stall or a loss is a new fault.
     #[must_use]
     pub fn of(&self, kind: FaultKind) -> u64 {
         self.by_kind.get(usize::from(kind.code())).copied().unwrap_or_default()
@@ -64,14 +64,14 @@ struct OneWay {
     bytes: [u8; LINE_BYTES],
     due: [u64; LINE_BYTES],
     held: u16,
-    /// Nothing arrives before this tick.
+    /// No byte arrives before this tick.
     stalled_until: u64,
     /// The signal is off before this tick.
     low_until: u64,
     counts: Counts,
 }
 
-/// The line between the two ends, with the faults of a plan. Call [`Injector::carry`] once a tick and direction.
+/// The line between the two ends, with the faults of a plan. Call [`Injector::carry`] once per tick and direction.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct Injector {
     plan: Plan,
@@ -90,7 +90,8 @@ impl Injector {
         Self { plan: *plan, to_controller: line(Direction::ToController), to_host: line(Direction::ToHost) }
     }
 
-    /// Carry the bytes that one end sends in `tick`, and the level of its DTR; returns what the other end receives.
+    /// Carry the bytes that one end sends in `tick` and the level of its DTR. Returns the bytes and level at the
+    /// other end.
     pub fn carry(
         &mut self,
         direction: Direction,
@@ -108,8 +109,7 @@ impl Injector {
         (work.arrive(), ready && !work.is_low())
     }
 
-    /// True if the line carries everything as it is sent from now on, after `tick`: no rule acts any more, and nothing
-    /// is held.
+    /// True if the line is fault-free after `tick`: all rules are past, and it holds no bytes.
     #[must_use]
     pub fn is_over(&self, tick: Tick) -> bool {
         let past = |rule: &Rule| rule.until != 0 && rule.until <= tick.0.saturating_add(1);
@@ -140,14 +140,14 @@ struct Work<'a> {
     direction: Direction,
     tick: u64,
     line: &'a mut OneWay,
-    /// Greatest number of faults in the tick.
+    /// Maximum number of faults in the tick.
     most: u8,
     /// Number of faults in this tick so far.
     struck: u8,
 }
 
 impl Work<'_> {
-    /// The rule of a kind that acts now, if any. Every rule draws its own number, whether others act or not.
+    /// The active rule of a kind, if any. Every rule draws its own number, independent of others.
     fn strike(&mut self, kind: FaultKind) -> Option<Rule> {
         let mut struck = None;
         for rule in self.rules {
@@ -297,7 +297,7 @@ mod tests {
         Injector::new(&plan)
     }
 
-    /// The bytes and the signal that arrive at the host in ticks 0 to 9 if `sent` is sent in each of them.
+    /// The bytes and the signal at the host in ticks 0 to 9 if `sent` is sent in each of them.
     fn ten(injector: &mut Injector, sent: &[u8]) -> Vec<(Vec<u8>, bool)> {
         (0..10)
             .map(|tick| {
@@ -380,7 +380,7 @@ mod tests {
         let lengths: Vec<_> = got.iter().map(|(bytes, _)| bytes.len()).collect();
         assert_eq!(lengths, [8, 8, 0, 0, 0, 0, 40, 8, 8, 8]);
         assert_eq!(got[6].0, ABC.repeat(5));
-        // A stall of a given length begins in one tick; bytes that do not fit into a tick come in the next.
+        // A stall of a given length begins in one tick; bytes that exceed the capacity of a tick arrive in the next.
         let lengths: Vec<_> =
             arrived(Rule::new(FaultKind::Stall).at(1).ticks(8), &[b'Z'; 16]).iter().map(Vec::len).collect();
         assert_eq!(lengths, [16, 0, 0, 0, 0, 0, 0, 0, 0, 64]);

@@ -1,8 +1,7 @@
-//! Faults on the line between the two ends. They are part of the product, so that a host can be tested on a bad line.
+//! Faults on the line between the two ends. They are part of the product: users can test a host on a bad line.
 //!
-//! A [`Plan`] is a seed and some [`Rule`]s; an [`Injector`] applies it, tick by tick and direction by direction, to the
-//! transmitted bytes and the modem signal. It is plain data without a clock: the same plan and the same traffic give
-//! the same faults.
+//! A [`Plan`] is a seed and some [`Rule`]s. An [`Injector`] applies it, by tick and direction, to the transmitted
+//! bytes and the modem signal. It is plain data without a clock: the same plan and traffic give the same faults.
 //!
 //! | kind | acts on | effect | `ticks` |
 //! |---|---|---|---|
@@ -10,14 +9,14 @@
 //! | `flip` | each byte | one bit of it is inverted | |
 //! | `duplicate` | each byte | the byte arrives twice | |
 //! | `delay` | each byte | the byte, and all bytes after it, are late | the delay |
-//! | `insert` | each tick | a byte arrives that was not sent, a given one or a random one | |
+//! | `insert` | each tick | an additional byte arrives, a given one or a random one | |
 //! | `truncate` | each tick with bytes | the last bytes of the tick are lost, at least one | |
-//! | `stall` | each tick | nothing arrives; the bytes come afterwards, in order | the duration |
+//! | `stall` | each tick | no byte arrives; the bytes follow later, in order | the duration |
 //! | `cts-low` | each tick | the receiving end sees the other's DTR off | the duration |
 //!
-//! A rule acts with a *rate*, the probability for each byte or tick; in a *window* of ticks; or both. In a window
-//! without a rate it acts on every byte or tick. A serial line does not reorder bytes, and neither does the injector.
-//! In one tick the order is: truncate, then for each byte drop, flip, delay, duplicate, then insert, then stall.
+//! A rule acts with a *rate*, the probability per byte or tick; in a *window* of ticks; or both. In a window without
+//! a rate it acts on every byte or tick. Like a serial line, the injector does not reorder bytes. The order within a
+//! tick is: truncate; for each byte drop, flip, delay, duplicate; insert; stall.
 
 mod inject;
 mod numbers;
@@ -29,11 +28,11 @@ use rcs_core::Plain;
 pub use inject::{Counts, Injector, LINE_BYTES};
 pub use numbers::Numbers;
 
-/// Greatest number of rules in a plan.
+/// Maximum number of rules in a plan.
 pub const RULES: usize = 16;
 /// Number of kinds of faults.
 pub const KINDS: usize = FaultKind::ALL.len();
-/// Rate of a fault that always happens; rates are in millionths.
+/// Rate of a certain fault; rates are in millionths.
 pub const ALWAYS: u32 = 1_000_000;
 /// The longest delay, stall or loss of the signal that one event causes, ticks.
 pub const MOST_TICKS: u16 = 1000;
@@ -49,11 +48,11 @@ pub enum FaultKind {
     Duplicate,
     /// A byte and all bytes after it arrive later.
     Delay,
-    /// A byte arrives that was not sent.
+    /// An additional byte arrives.
     Insert,
-    /// The end of what was sent in a tick is lost.
+    /// The last bytes of a tick are lost.
     Truncate,
-    /// Nothing arrives for some ticks.
+    /// No byte arrives for some ticks.
     Stall,
     /// The modem signal is off for some ticks.
     CtsLow,
@@ -69,7 +68,7 @@ pub enum Direction {
 }
 
 impl FaultKind {
-    /// True if the rate is the probability for each byte; otherwise for each tick.
+    /// True if the rate is the probability per byte, false if per tick.
     #[must_use]
     pub const fn is_per_byte(self) -> bool {
         matches!(self, Self::Drop | Self::Flip | Self::Duplicate | Self::Delay)
@@ -87,7 +86,7 @@ impl FaultKind {
     }
 }
 
-/// One kind of fault, with direction, time and rate. Zero means not given.
+/// One kind of fault, with direction, time and rate. Zero means unspecified.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct Rule {
     /// The kind.
@@ -96,13 +95,13 @@ pub struct Rule {
     pub to_controller: bool,
     /// True if it acts on bytes of the controller.
     pub to_host: bool,
-    /// Probability for each byte or tick, millionths; 0: not given.
+    /// Probability per byte or tick, millionths; 0: unspecified.
     pub rate: u32,
     /// First tick of the window.
     pub from: u64,
-    /// First tick after the window; 0: not given, no window.
+    /// First tick after the window; 0: unspecified, no window.
     pub until: u64,
-    /// Duration of a delay, a stall or a loss of the signal, ticks; 0: not given, one tick.
+    /// Duration of a delay, a stall or a loss of the signal, ticks; 0: unspecified, one tick.
     pub ticks: u16,
     /// `insert`: true to insert `byte`, false for a random byte.
     pub fixed: bool,
@@ -180,7 +179,7 @@ impl Rule {
         if self.rate == 0 { ALWAYS } else { self.rate }
     }
 
-    /// The duration, or its default, ticks.
+    /// The duration or its default, ticks.
     fn length(&self) -> u64 {
         u64::from(self.ticks.max(1))
     }
@@ -197,7 +196,7 @@ impl Rule {
             && ticks
     }
 
-    /// Check the rule by itself, without the others.
+    /// Check the rule alone, independent of the others.
     fn check(&self) -> Result<(), Refusal> {
         let kind = self.kind;
         if !self.to_controller && !self.to_host {
@@ -233,7 +232,7 @@ impl Rule {
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct Plan {
     seed: u64,
-    /// Greatest number of faults in a tick and direction; 0: no limit.
+    /// Maximum number of faults per tick and direction; 0: no limit.
     most_per_tick: u8,
     rules: [Rule; RULES],
     count: u8,
@@ -246,8 +245,8 @@ impl Plan {
         Self { seed, ..Self::default() }
     }
 
-    /// The plan with at most `most` faults in a tick and direction (at least 1). With one, no frame has two faults in a
-    /// tick, and the checksum detects every fault.
+    /// The plan with at most `most` faults per tick and direction (at least 1). With one, no frame has two faults in
+    /// a tick, and the checksum detects every fault.
     #[must_use]
     pub const fn most_per_tick(mut self, most: u8) -> Self {
         self.most_per_tick = if most == 0 { 1 } else { most };
@@ -269,7 +268,7 @@ impl Plan {
     /// Append a rule.
     ///
     /// # Errors
-    /// [`Refusal`] if the rule is invalid by itself or with those before it; the plan is unchanged.
+    /// [`Refusal`] if the rule is invalid alone or together with earlier ones; the plan is unchanged.
     pub fn add(&mut self, rule: Rule) -> Result<(), Refusal> {
         rule.check()?;
         for (number, other) in (1_u8..).zip(self.rules()) {
@@ -321,21 +320,21 @@ pub enum Refusal {
         /// The duration found, ticks.
         found: u16,
     },
-    /// A byte is given for a fault that inserts none.
+    /// A byte is given for a fault that does not insert one.
     NoByte {
         /// The fault.
         kind: FaultKind,
     },
     /// An earlier rule drops every byte on which this one could act.
     Hidden {
-        /// The fault that would never happen.
+        /// The fault that can never occur.
         kind: FaultKind,
         /// Number of the rule that drops.
         by: u8,
     },
     /// This rule drops every byte on which an earlier one could act.
     Hides {
-        /// The fault that would never happen.
+        /// The fault that can never occur.
         kind: FaultKind,
         /// Number of its rule.
         number: u8,

@@ -16,8 +16,8 @@ impl Host {
         HostEvent::Started
     }
 
-    /// Process a NAK. If it comes later than in the next tick, it may be the answer to noise after a command whose ACK
-    /// was lost: then a position may be repeated, but not a function.
+    /// Process a NAK. If it arrives later than in the next tick, it may answer noise after a command whose ACK was
+    /// lost: then a position may be repeated, but not a function.
     pub(super) fn refused(&mut self) -> HostEvent {
         let ambiguous = self.waited > 1 && self.function() != NO_FUNCTION;
         if self.retries >= MOST_RETRIES || ambiguous {
@@ -35,7 +35,7 @@ impl Host {
                 count(&mut self.counters.timeouts);
                 self.lost(LinkFault::NotResponding)
             }
-            // On a slow line the reports to all restarts come one by one, and the first is out of date when the last
+            // On a slow line the reports to all restarts arrive one by one, and the first is outdated when the last
             // arrives: a report is valid only if no other follows for longer than the time between two restarts.
             HostState::Starting if self.has_candidate => {
                 if self.waited > self.answer_ticks {
@@ -55,7 +55,7 @@ impl Host {
                 self.resend_due = true;
                 HostEvent::None
             }
-            // DTR is on again, and the report of the beginning function has not come.
+            // DTR is on again, and the report of the starting function has not arrived.
             HostState::Ended => {
                 self.begin_start();
                 (self.starting, self.attempt) = (0, LinkFault::None);
@@ -68,7 +68,7 @@ impl Host {
 
     pub(super) fn without_dtr(&mut self) -> HostEvent {
         if matches!(self.state, HostState::Cancelling | HostState::Ended) {
-            // The cancel was requested; do not wait for the ACK that comes with the loss of DTR.
+            // The cancel was requested; do not wait for the ACK that accompanies the loss of DTR.
             self.receiver.clear();
             self.state = HostState::Ended;
             (self.resend_due, self.waited) = (false, 0);
@@ -99,7 +99,7 @@ impl Host {
         HostEvent::Lost
     }
 
-    /// Drop the outstanding frame; a restart is sent in this tick.
+    /// Drop the outstanding frame and send a restart in this tick.
     pub(super) fn restart(&mut self) {
         self.note_lost_function();
         self.resend_due = false;
@@ -122,7 +122,7 @@ impl Host {
         self.restarted = false;
     }
 
-    /// Count a tick with DTR on in a start, or in a cancel without an answer.
+    /// Count a tick with DTR on in a start, or in an unanswered cancel.
     pub(super) fn be_patient(&mut self) {
         if !matches!(self.state, HostState::Starting | HostState::Cancelling) {
             return;

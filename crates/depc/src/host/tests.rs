@@ -1,4 +1,4 @@
-//! The host's end with hand-written inputs from the line.
+//! The host's end with explicit inputs from the line.
 
 use super::*;
 use crate::wire::{NO_FUNCTION, Report};
@@ -71,7 +71,7 @@ fn unsent_bytes_of_the_port_are_lost_and_reported() {
     tick(&mut host, &[], &position([7, 9]));
     assert_eq!(host.unsent(), HostEvent::Lost);
     assert_eq!((host.fault(), host.lost_function()), (LinkFault::NotTransmitted, [7, 9]));
-    // An answer that still comes is not the answer to this.
+    // A later answer does not belong to this command.
     assert_eq!(tick(&mut host, &[0x06], &position(NO_FUNCTION)), (HostEvent::None, vec![0x05]));
     assert_eq!(tick(&mut host, &report(), &Intent::Idle).0, HostEvent::Started);
     host.forgive();
@@ -84,7 +84,7 @@ fn unsent_bytes_of_the_port_are_lost_and_reported() {
         assert_eq!(tick(&mut host, &[], &Intent::Idle).1, [0x05]);
     }
     assert_eq!(host.fault(), LinkFault::NotTransmitted);
-    // One report answers the one restart that was sent.
+    // One report answers the only restart that was sent.
     assert_eq!(tick(&mut host, &report(), &Intent::Idle).0, HostEvent::Started);
     tick(&mut host, &[], &Intent::Cancel);
     assert_eq!(host.unsent(), HostEvent::None);
@@ -99,7 +99,7 @@ fn without_an_answer_the_link_restarts_and_no_command_is_repeated() {
     assert_eq!(tick(&mut host, &[], &position(NO_FUNCTION)), (HostEvent::None, vec![]));
     assert_eq!(tick(&mut host, &[], &position(NO_FUNCTION)), (HostEvent::Lost, vec![0x05]));
     assert_eq!((host.fault(), host.lost_function()), (LinkFault::NotResponding, [7, 9]));
-    // Late answers are discarded, but not the report.
+    // Late answers are discarded, but late reports are not.
     assert_eq!(tick(&mut host, &[0x06, 0x15, 0x41], &position(NO_FUNCTION)).1, []);
     assert_eq!(host.state(), HostState::Starting);
     assert_eq!(tick(&mut host, &report(), &Intent::Idle).0, HostEvent::Started);
@@ -120,11 +120,11 @@ fn a_start_without_answer_is_tried_once_a_second_and_blamed_at_the_end_of_patien
     }
     assert_eq!(sent[..4], [4, 29, 54, 79]);
     assert_eq!((host.fault(), host.counters().restarts), (LinkFault::NotResponding, 60));
-    // RESTART restarts the time limit, but the silence continues; the answer to the previous 05 is sufficient.
+    // RESTART resets the time limit, but the silence continues; the answer to the previous 05 is sufficient.
     host.forgive();
     assert_eq!(tick(&mut host, &[], &Intent::Restart).1, []);
     assert_eq!((host.fault(), host.is_silent()), (LinkFault::None, true));
-    // A report comes as if Hold had ended: one for all restarts.
+    // A report arrives as after the end of Hold: one for all restarts.
     tick(&mut host, &report(), &Intent::Idle);
     for _ in 0..ANSWER_TICKS {
         tick(&mut host, &[], &Intent::Idle);
@@ -393,7 +393,7 @@ fn a_late_report_at_the_start_is_used_only_if_it_is_the_last() {
         restarts += tick(&mut host, &[], &Intent::Idle).1.len();
     }
     assert_eq!(restarts, 1);
-    // The report of the start; the answer to the restart follows it.
+    // The report of the start; the answer to the restart follows.
     assert_eq!(tick(&mut host, &report(), &Intent::Idle), (HostEvent::None, vec![]));
     tick(&mut host, &[], &Intent::Idle);
     assert_eq!(tick(&mut host, &report(), &Intent::Idle), (HostEvent::None, vec![]));
@@ -443,7 +443,7 @@ fn a_function_that_begins_again_after_a_cancel_is_asked_for_its_report() {
     for _ in 0..20 {
         host.receive(&LinkBytes::default(), false);
     }
-    // DTR is on again, and the report of the beginning function is lost.
+    // DTR is on again, and the report of the starting function is lost.
     for waited in 1..ANSWER_TICKS {
         assert_eq!(
             (tick(&mut host, &[], &Intent::Idle).1, host.state()),

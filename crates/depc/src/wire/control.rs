@@ -1,11 +1,11 @@
-//! The frames of one byte: the host's commands without data, and the controller's responses (A 2.3).
+//! The one-byte frames: the host's commands without data, and the controller's responses (A 2.3).
 
-/// A command of the host that has no data and no checksum.
+/// A command of the host without data and checksum.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Control {
-    /// End the DEPC function and go on to the next programmed point.
+    /// End the DEPC function and continue with the next programmed point.
     Cancel,
-    /// Report the position again, and wait for a command.
+    /// Report the position again and wait for a command.
     Restart,
 }
 
@@ -19,7 +19,7 @@ impl Control {
         }
     }
 
-    /// The command of a byte; `None` if there is none.
+    /// The command of a byte, if it is one.
     #[must_use]
     pub const fn from_byte(byte: u8) -> Option<Self> {
         match byte {
@@ -49,7 +49,7 @@ impl Response {
         }
     }
 
-    /// The response of a byte; `None` if there is none.
+    /// The response of a byte, if it is one.
     #[must_use]
     pub const fn from_byte(byte: u8) -> Option<Self> {
         match byte {

@@ -14,9 +14,9 @@ pub const NO_FUNCTION: [u8; 2] = [0, 0];
 /// The host's command for the next period.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DataCommand {
-    /// Function to run when the position is reached; [`NO_FUNCTION`] for none.
+    /// Function to run at the position; [`NO_FUNCTION`] for none.
     pub function: [u8; 2],
-    /// The position to move to.
+    /// The commanded position.
     pub plate: Plate,
 }
 

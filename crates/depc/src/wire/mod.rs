@@ -1,4 +1,4 @@
-//! The frames of appendix A 2.3, one file each; all numbers in them are hexadecimal.
+//! The frames of appendix A 2.3, one per file; all numbers in them are hexadecimal.
 //!
 //! | from | frame | bytes |
 //! |---|---|---|
@@ -23,7 +23,7 @@ pub const START: u8 = 0x03;
 /// First two bytes of a report (A 2.3).
 pub const FILL: u8 = 0xFF;
 
-/// The checksum: exclusive or of all bytes, beginning with zero (A 2.3). For a frame with its checksum it is zero.
+/// The checksum: exclusive or of all bytes, starting with zero (A 2.3). Over a frame with its checksum it is zero.
 #[must_use]
 pub fn checksum(bytes: &[u8]) -> u8 {
     bytes.iter().fold(0, |sum, byte| sum ^ byte)

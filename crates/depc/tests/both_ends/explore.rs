@@ -1,4 +1,4 @@
-//! Breadth-first search over all states with a set of visited states; then the time of each state to a good end.
+//! Breadth-first search over all states, then the time from each state to its good end.
 
 use std::collections::{HashMap, VecDeque};
 
@@ -9,13 +9,13 @@ const NONE: u32 = u32::MAX;
 /// The next state without further faults, and whether that tick is good.
 type Onward = (u32, bool);
 
-/// The result of a search, or the shortest sequence of ticks to an error.
+/// The result of a search, or the shortest path to an error.
 #[derive(Debug)]
 pub struct Found {
     pub states: usize,
     pub ticks: u64,
-    /// Ticks from any state to the next acknowledged command, or to a reported stop: without the operator, and with one
-    /// who answers everything at once.
+    /// Ticks from any state to the next acknowledged command, or to a reported stop: without the operator, and with
+    /// an operator who answers at once.
     pub alone: u32,
     pub helped: u32,
     pub wrong: Option<(Vec<Event>, Wrong)>,
@@ -25,7 +25,7 @@ pub struct Found {
 struct Space {
     known: HashMap<u64, u32>,
     from: Vec<(u32, Event)>,
-    /// For each state: the next state without the operator, and with help.
+    /// The next state of each state: without the operator, and with help.
     onward: Vec<[Onward; 2]>,
     ticks: u64,
 }
@@ -41,7 +41,7 @@ impl Space {
         (number, number == next)
     }
 
-    /// The ticks that lead to a state, with an optional last one.
+    /// The ticks to a state, and an optional last one.
     fn way(&self, mut state: u32, last: Option<Event>) -> Vec<Event> {
         let mut way = Vec::from_iter(last);
         while let Some((before, event)) = self.from.get(state as usize).filter(|(before, _)| *before != NONE)
@@ -53,7 +53,7 @@ impl Space {
         way
     }
 
-    /// The greatest number of ticks from a state to its good end; or a state without one.
+    /// The maximum number of ticks from a state to its good end; or a state without one.
     fn longest(&self, which: usize) -> Result<u32, u32> {
         const OPEN: u32 = u32::MAX;
         let mut ticks = vec![0_u32; self.onward.len()];

@@ -1,7 +1,7 @@
 //! The byte image that distinguishes states.
 //!
-//! Counters are left out. A time is limited to the value beyond which the host makes no difference, and so is the
-//! number of requested reports: otherwise no state would ever repeat.
+//! Counters are omitted. Times and the number of requested reports are limited to the values beyond which the host
+//! makes no difference: otherwise no state would ever repeat.
 
 use depc::host::{Host, HostState, RESTART_TICKS, START_ATTEMPTS};
 use rcs_core::{Plain, plain::Writer, reflect};
@@ -15,7 +15,7 @@ use std::{
 #[derive(Default)]
 pub struct Image(Vec<u8>);
 
-/// The fields of the host that are changed.
+/// The modified fields of the host.
 const NAMES: [&str; 9] = [
     "counters",
     "lost_function",
@@ -28,7 +28,7 @@ const NAMES: [&str; 9] = [
     "starting",
 ];
 
-/// The bytes of each of them in the image of the host.
+/// Their bytes in the image of the host.
 static FIELDS: LazyLock<[Range<usize>; 9]> = LazyLock::new(|| NAMES.map(field));
 
 fn field(name: &str) -> Range<usize> {
@@ -53,7 +53,7 @@ impl Image {
         value.encode(&mut Writer::new(&mut self.0[from..]));
     }
 
-    /// Add the host; `faults` is the number of faults that can still happen.
+    /// Add the host; `faults` is the number of remaining faults.
     pub fn add_host(&mut self, host: &Host, faults: u8) {
         let from = self.0.len();
         self.add_plain(host);
@@ -61,7 +61,7 @@ impl Image {
         let [counters, lost_function, frame, candidate, has_candidate, waited, asked, attempts, starting] =
             FIELDS.clone();
         image[counters].fill(0);
-        // It is only reported to the user; nothing depends on it.
+        // It is only reported to the user, and does not affect the behaviour.
         image[lost_function].fill(0);
         if host.state() != HostState::Waiting {
             image[frame].fill(0);
@@ -75,7 +75,7 @@ impl Image {
         }
         let attempts = &mut image[attempts.start];
         *attempts = (*attempts).min(START_ATTEMPTS);
-        // Each damaged report reduces the number of awaited ones by one; all numbers beyond that are equivalent.
+        // Each damaged report reduces the number of awaited ones by one; larger numbers are equivalent.
         let asked = &mut image[asked.start];
         *asked = (*asked).min(faults + 4);
     }

@@ -1,6 +1,5 @@
-//! Exhaustive search of the real [`depc::host::Host`] against the real [`depc::controller::Controller`]: breadth first
-//! over all states that both ends, the line, the panel and the user of the host can reach with a bounded number of
-//! faults.
+//! Exhaustive search of the real [`depc::host::Host`] against the real [`depc::controller::Controller`]: breadth
+//! first over all states of both ends, line, panel and user that a bounded number of faults can reach.
 //!
 //! ```text
 //!   user ── next point, restart, cancel ──► Host ── frame: as sent, lost, damaged, doubled, late ──► Controller ──► robot
@@ -9,12 +8,12 @@
 //! ```
 //!
 //! In every state: no point is executed twice (without functions: the robot never moves backwards), none is skipped,
-//! one command is outstanding, and the host's knowledge is true. From every state, without further faults, the next
-//! command is acknowledged or a stop is reported within a bound, whatever the operator does; and with an operator who
+//! one command is outstanding, and the host's state is true. From every state, without further faults, the next
+//! command is acknowledged or a stop is reported within a bound, for any action of the operator. With an operator who
 //! answers at once the next command is acknowledged.
 //!
 //! `DEPC_FAULTS=3` searches three faults instead of two, without Hold; `DEPC_ALL_BITS=1` damages every bit and every
-//! byte, not only one of each part of a frame.
+//! byte instead of one per part of a frame.
 
 #![expect(clippy::print_stdout, reason = "the figures of a search are printed")]
 
@@ -25,12 +24,12 @@ mod model;
 use explore::{Found, search};
 use model::{Carried, Event, KINDS, Kind, Panel, QUIET, Setting, Wrong};
 
-/// Ticks within which a stop is reported or the next command is acknowledged: a second of silence, and the ticks before
-/// it.
+/// Ticks within which a stop is reported or the next command is acknowledged: a second of silence, and the ticks
+/// before it.
 const BOUND: u32 = RESTART + 11;
 const RESTART: u32 = depc::host::RESTART_TICKS as u32;
 
-/// A serial line does not duplicate frames. One that does can deceive this protocol together with another fault.
+/// A serial line does not duplicate frames. A line that does can deceive this protocol together with another fault.
 const fn is_doubling(kind: Kind) -> bool {
     matches!(kind, Kind::CommandDoubled | Kind::AnswerDoubled)
 }
@@ -51,8 +50,8 @@ fn is_sound(setting: &Setting) -> Found {
     found
 }
 
-/// The page states the size of the search exactly: an image that merges different states makes the search smaller, and
-/// lets it pass.
+/// The page states the exact size of the search: an image that merges different states makes the search smaller, and
+/// could hide an error.
 fn is_stated(found: &Found) {
     let size = format!("| {} | {} |", found.states, found.ticks);
     let page = include_str!("../../../../docs/evidence.md").replace(',', "");
@@ -88,14 +87,14 @@ fn two_faults_deceive_neither_end_of_a_line_of_functions() {
     several_faults(true);
 }
 
-/// The shortest sequence of ticks in which these faults deceive the protocol, and the error.
+/// The shortest path to an error under these faults, and the error.
 fn shortest(functions: bool, kinds: [Kind; 2]) -> Option<(Vec<Event>, Wrong)> {
     search(&Setting { functions, faults: 2, kinds: kinds.to_vec(), all_bits: false }).wrong
 }
 
 const START: Event = Event { panel: Panel::Start, ..QUIET };
 
-/// An answer has no number: the host takes the answer to one command for that to the next, which is lost.
+/// An answer has no number: the host assigns the answer of one command to the next, which is lost.
 #[test]
 fn an_answer_that_arrives_twice_hides_a_command_that_is_lost() {
     let twice = Event { answer: Carried::Doubled(1), ..QUIET };
@@ -105,7 +104,7 @@ fn an_answer_that_arrives_twice_hides_a_command_that_is_lost() {
     assert_eq!(found, Some((vec![START, twice, lost, QUIET], wrong)));
 }
 
-/// A command has no number either: the controller executes the copy if no other command comes in between.
+/// A command has no number either: the controller executes the copy if no other command arrives in between.
 #[test]
 fn a_command_that_arrives_twice_is_executed_twice_if_its_answer_is_lost() {
     let twice = Event { command: Carried::Doubled(1), answer: Carried::Lost, ..QUIET };

@@ -1,7 +1,7 @@
 //! The model around the two ends: a line in each direction, the user of the host, the panel, and the true state.
 //!
-//! The robot moves around a ring of four points, a count apart, so that a skipped or repeated point or a step back
-//! differs from the next point, and the search ends.
+//! The robot moves around a ring of four points, one count apart. A skipped or repeated point or a step back differs
+//! from the next point, and the search is finite.
 
 use depc::{
     Limits, Plate,
@@ -22,10 +22,10 @@ const PATIENCE: u16 = RESTART_TICKS + 5;
 /// Delays of a late frame, ticks.
 const LATE: [u8; 3] = [1, 2, 3];
 
-/// Text of an error that was found.
+/// Text of an error.
 pub type Wrong = &'static str;
 
-/// Kinds of disturbances; each one counts as a fault.
+/// Kinds of disturbances; each is one fault.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
     CommandLost,
@@ -67,16 +67,16 @@ pub const KINDS: [Kind; 14] = [
 
 #[derive(Clone, Debug)]
 pub struct Setting {
-    /// True if commands have a function.
+    /// True if commands contain a function.
     pub functions: bool,
-    /// Greatest number of faults in a run.
+    /// Maximum number of faults in a run.
     pub faults: u8,
     pub kinds: Vec<Kind>,
-    /// True to damage each bit and each byte of a frame, not only one of each part.
+    /// True to damage every bit and byte of a frame, false for one per part.
     pub all_bits: bool,
 }
 
-/// Fate of the frame that one end sends in a tick.
+/// Fate of a frame on the line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Carried {
     AsSent,
@@ -91,7 +91,7 @@ pub enum Carried {
     Late(u8),
 }
 
-/// An action at the panel of the controller before a tick.
+/// An action at the controller's panel before a tick.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Panel {
     Nothing,
@@ -106,13 +106,13 @@ pub enum Panel {
 /// The request of the user of the host in a tick.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Wanted {
-    /// The next point, as soon as it can be sent.
+    /// The next point, as soon as the host can send it.
     Next,
     Restart,
     Cancel,
 }
 
-/// Everything that happens in a tick.
+/// All events of a tick.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Event {
     pub wanted: Wanted,
@@ -123,7 +123,7 @@ pub struct Event {
     pub answer: Carried,
 }
 
-/// A tick without a fault and without an action.
+/// A tick without fault or action.
 pub const QUIET: Event = Event {
     wanted: Wanted::Next,
     dtr_low: false,
@@ -182,7 +182,7 @@ impl Line {
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct OnRing {
     at: i16,
-    /// True if the point where the robot is may be commanded again.
+    /// True if the robot's present point may be commanded again.
     may_repeat: bool,
     wrong: Option<Wrong>,
 }
@@ -223,9 +223,9 @@ pub struct State {
     to_host: Line,
     dtr: bool,
     hold: bool,
-    /// True if a data command was sent and is neither answered nor given up.
+    /// True if a data command was sent, and is neither answered nor given up.
     outstanding: bool,
-    /// Number of faults that can still happen.
+    /// Number of remaining faults.
     faults: u8,
 }
 
@@ -247,7 +247,7 @@ impl State {
         }
     }
 
-    /// The image that distinguishes this state from others: everything on which the next ticks depend.
+    /// The image of everything that affects later ticks.
     pub fn image(&self) -> Image {
         let mut image = Image::default();
         image.add_host(&self.host, self.faults);
@@ -298,7 +298,7 @@ impl State {
         Ok((tx, event == HostEvent::Acknowledged))
     }
 
-    /// The controller's half of a tick: the bytes that it sends.
+    /// The controller's half of a tick. Returns the bytes that it sends.
     fn controller_half(&mut self, cts_low: bool, panel: Panel) -> Result<LinkBytes, Wrong> {
         self.hold = match panel {
             Panel::Hold => true,
@@ -321,8 +321,8 @@ impl State {
         self.robot.wrong.map_or(Ok(out.tx), Err)
     }
 
-    /// Calls `visit` for each possible next tick: its event, and the state after it or the error that it shows. `good`
-    /// means that a command was acknowledged, or that a stop is reported.
+    /// Call `visit` for each possible next tick with its event, and the following state or an error. `good` means
+    /// that a command was acknowledged or that a stop is reported.
     pub fn each_next(
         &self,
         setting: &Setting,
@@ -376,7 +376,7 @@ impl State {
         stopped && (says || host.state() == HostState::Ended)
     }
 
-    /// The action of an operator who answers everything at once.
+    /// The action of an operator who answers at once.
     pub fn help(&self) -> Panel {
         match self.controller.state() {
             _ if self.hold => Panel::Release,
@@ -433,7 +433,7 @@ fn carried(frame: &[u8], faults: u8, setting: &Setting, command: bool) -> Vec<Ca
         all.extend((0..8 * bytes).map(Carried::Flipped));
         all.extend((0..bytes).skip(1).map(Carried::Short));
     } else if damaged {
-        // The first byte, the last one of the head of a report, a word, the checksum.
+        // The first byte, the last byte of a report's head, a word, the checksum.
         all.extend([0, 16, 64, 120].map(Carried::Flipped));
         all.extend([0, 8, 15].map(Carried::Short));
     }

@@ -1,4 +1,4 @@
-//! Both ends of the link, the line between them, a robot that checks its moves, and the truth about every command.
+//! Both ends of the link, the line between them, a robot that checks its moves, and the true state of every command.
 
 #![allow(dead_code, unreachable_pub, reason = "each test uses a part of it")]
 
@@ -17,10 +17,9 @@ use geometry::{
 };
 use rcs_core::tick::Tick;
 
-/// Ticks after which the operator answers a warning, or starts the program again.
+/// Ticks after which the operator answers a warning or restarts the program.
 const OPERATOR_TICKS: u32 = 50;
-/// Ticks within which the host must report a controller that has stopped: the time for an answer, then a second of
-/// silence.
+/// Ticks within which the host must report a stopped controller: the answer time, then a second of silence.
 const REPORT_TICKS: u32 = 32;
 
 /// A robot that reaches every commanded position exactly, and checks every step.
@@ -50,18 +49,18 @@ impl Robot for Watched {
     }
 }
 
-/// Counts of wrong conclusions. All except `started` stay zero as long as the checksums detect every fault and no noise
-/// looks like a command or answer without a checksum.
+/// Counts of wrong conclusions. All except `started` are zero as long as the checksums detect every fault and no
+/// noise looks like a command or answer without a checksum.
 #[derive(Clone, Copy, Default, Debug, PartialEq)]
 pub struct Truth {
     pub started: u64,
-    /// Accepted reports that were never true or no longer true.
+    /// Accepted reports that were never true or are outdated.
     pub false_reports: u64,
-    /// Commands executed, or refused with a warning, that the host had not sent in this form.
+    /// Commands that were executed, or refused with a warning, and that the host had not sent in this form.
     pub false_commands: u64,
     /// Acknowledgements accepted for a command that was neither executed nor refused with a warning.
     pub false_acks: u64,
-    /// Commands executed after the host had given them up and restarted, because the line delayed them so long.
+    /// Delayed commands that were executed after the host had given them up and restarted.
     pub late_commands: u64,
     /// Commands executed a second time, including their function.
     pub repeated: u64,
@@ -72,7 +71,7 @@ pub struct Truth {
 }
 
 impl Truth {
-    /// Number of wrong conclusions that the line has caused.
+    /// Number of wrong conclusions caused by the line.
     pub fn deceptions(&self) -> u64 {
         self.false_reports
             + self.false_commands
@@ -95,7 +94,7 @@ impl Truth {
     }
 }
 
-/// A session: it uses the host as T3I does, with a number in the function bytes of each command.
+/// A session: it uses the host like T3I, with a number in the function bytes of each command.
 pub struct Session {
     pub host: Host,
     pub controller: Controller,
@@ -112,7 +111,7 @@ pub struct Session {
     numbers: Numbers,
     /// Commands sent; number 1 is the first.
     sent: Vec<Position>,
-    /// The last command on the line, and the bytes that arrived at the controller in the last tick and in this one.
+    /// The last command on the line, and the bytes at the controller in the last tick and in this one.
     frame: LinkBytes,
     arrived: [LinkBytes; 2],
     /// Position of the command that the controller executed in the last tick.
@@ -121,7 +120,7 @@ pub struct Session {
     late: bool,
     /// Number of the command that was last refused with a warning.
     refused: Option<u16>,
-    /// Ticks since the host last accepted something; on a slow line data of a stopped controller still arrive.
+    /// Ticks since the host last accepted bytes; on a slow line data of a stopped controller still arrive.
     silent: u32,
     stopped: u32,
     answers: u32,
@@ -172,7 +171,7 @@ impl Session {
         self.robot.at.same(&Plate::from_tool(&self.goal, &T3, &self.robot.at).unwrap())
     }
 
-    /// One tick of host, line and controller; true if the host knows that the goal is reached.
+    /// One tick of host, line and controller. Returns true if the host knows that the goal is reached.
     pub fn tick(&mut self) -> bool {
         let acknowledged = self.receive();
         let next = step(&self.position, &self.goal, &T3, &Limits::NBS).unwrap();
@@ -194,7 +193,7 @@ impl Session {
         reached
     }
 
-    /// The host's first half; returns the number of the command that is acknowledged.
+    /// The host's first half. Returns the number of an acknowledged command.
     fn receive(&mut self) -> Option<u16> {
         self.silent += 1;
         match self.host.receive(&self.to_host, self.dtr) {

@@ -15,10 +15,10 @@ use crate::device::{ADC_FULL_SCALE, DeviceInputs, KNOB_FULL, RESOLVER_COUNTS, jo
 #[derive(Clone, Copy, Debug)]
 pub struct Input(&'static Row);
 
-/// What makes the word.
+/// Origin of a word.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
-    /// Resolver of a joint: wraps around.
+    /// Resolver of a joint; wraps around.
     Resolver,
     /// Potentiometer or strain gage on a 12-bit converter.
     Converter,
@@ -34,9 +34,9 @@ pub enum Kind {
     Number,
     /// Power of several sensors.
     Supply,
-    /// Several sensors at one cable: a name for faults, not a point of its own.
+    /// Cable of several sensors: a name for faults, not a point of its own.
     Cable,
-    /// The vision system, which answers in messages and not in a word: it can only be off.
+    /// The vision system: it answers in messages, so it can only be switched off.
     Camera,
 }
 
@@ -150,7 +150,7 @@ static INPUTS: [Row; 76] = [
 ];
 
 impl Input {
-    /// The input with a name.
+    /// The input of a name.
     #[must_use]
     pub fn named(name: &str) -> Option<Self> {
         Self::all().find(|input| input.name() == name)
@@ -167,13 +167,13 @@ impl Input {
         self.0.0
     }
 
-    /// The devices to which it belongs.
+    /// The group of its devices.
     #[must_use]
     pub const fn group(self) -> Group {
         self.0.1
     }
 
-    /// What makes it.
+    /// Its origin.
     #[must_use]
     pub const fn kind(self) -> Kind {
         self.0.2
@@ -185,7 +185,7 @@ impl Input {
         matches!(self.kind(), Camera)
     }
 
-    /// Its values.
+    /// Permitted values.
     #[must_use]
     pub const fn range(self) -> RangeInclusive<i64> {
         RangeInclusive::new(*self.0.3.start(), *self.0.3.end())
@@ -198,7 +198,7 @@ impl Input {
         (self.0.4)(&mut copy).read()
     }
 
-    /// Set it to the nearest possible value. A resolver wraps around.
+    /// Set it to the nearest permitted value. A resolver wraps around.
     pub fn write(self, inputs: &mut DeviceInputs, value: i64) {
         let range = self.range();
         let value = match self.kind() {

@@ -1,11 +1,11 @@
 //! Points: the words of the devices by name, each as a number.
 //!
-//! One list serves faults of the simulated cell, the mapping of real devices, screens and logs. An [`Input`] is a word
-//! of [`DeviceInputs`](super::DeviceInputs), an [`Output`] one of [`DeviceOutputs`](super::DeviceOutputs), and a
-//! [`Station`] one of the workstation's devices, which stand outside the controller's records.
+//! One list serves faults of the simulated cell, the mapping of real devices, screens and logs. An [`Input`] is a
+//! word of [`DeviceInputs`](super::DeviceInputs), an [`Output`] one of [`DeviceOutputs`](super::DeviceOutputs). A
+//! [`Station`] is a word of the workstation's devices, which are not in the controller's records.
 //!
-//! A name stands for a *connection* at the controller's boards (chapter III): the three grippers have their
-//! potentiometer on the same one (III.3.7), so `grip.potentiometer` is that of the attached gripper.
+//! A name denotes a *connection* at the controller's boards (chapter III). The three grippers share the connection of
+//! the potentiometer (III.3.7), so `grip.potentiometer` is that of the attached gripper.
 
 mod inputs;
 mod outputs;
@@ -21,7 +21,7 @@ pub use self::{
 };
 use word::Word;
 
-/// The devices that are simulated, or connected, together.
+/// Devices that are simulated, or connected, together.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Group {
     /// Parts gripper, and the potentiometer that all grippers share.
@@ -98,7 +98,7 @@ impl Group {
         }
     }
 
-    /// The group with a name.
+    /// The group of a name.
     #[must_use]
     pub fn named(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|group| group.name() == name)
@@ -117,21 +117,21 @@ pub enum Point<'n> {
 }
 
 impl<'n> Point<'n> {
-    /// The point with a name that the controller, or the workstation, reads.
+    /// The point of a name that the controller, or the workstation, reads.
     #[must_use]
     pub fn read(name: &'n str) -> Option<Self> {
         let station = || Station::read(name).map(Self::Station);
         Input::named(name).map(Self::Input).or_else(station)
     }
 
-    /// The point with a name that the controller, or the workstation, writes.
+    /// The point of a name that the controller, or the workstation, writes.
     #[must_use]
     pub fn written(name: &'n str) -> Option<Self> {
         let station = || Station::written(name).map(Self::Station);
         Output::named(name).map(Self::Output).or_else(station)
     }
 
-    /// The devices to which it belongs.
+    /// The group of its devices.
     #[must_use]
     pub const fn group(&self) -> Group {
         match self {
@@ -141,7 +141,7 @@ impl<'n> Point<'n> {
         }
     }
 
-    /// Its values.
+    /// Permitted values.
     #[must_use]
     pub const fn range(&self) -> RangeInclusive<i64> {
         match self {
@@ -151,7 +151,7 @@ impl<'n> Point<'n> {
         }
     }
 
-    /// True if its values are 0 and 1.
+    /// True if the permitted values are 0 and 1.
     #[must_use]
     pub const fn is_bit(&self) -> bool {
         let range = self.range();

@@ -59,7 +59,7 @@ static OUTPUTS: [Row; 30] = [
 ];
 
 impl Output {
-    /// The output with a name.
+    /// The output of a name.
     #[must_use]
     pub fn named(name: &str) -> Option<Self> {
         Self::all().find(|output| output.name() == name)
@@ -81,13 +81,13 @@ impl Output {
         self.0.0
     }
 
-    /// The devices to which it belongs.
+    /// The group of its devices.
     #[must_use]
     pub const fn group(self) -> Group {
         self.0.1
     }
 
-    /// Its values.
+    /// Permitted values.
     #[must_use]
     pub const fn range(self) -> RangeInclusive<i64> {
         RangeInclusive::new(*self.0.2.start(), *self.0.2.end())
@@ -100,7 +100,7 @@ impl Output {
         (self.0.3)(&mut copy).read()
     }
 
-    /// Set it to the nearest possible value.
+    /// Set it to the nearest permitted value.
     pub fn write(self, outputs: &mut DeviceOutputs, value: i64) {
         let range = self.range();
         (self.0.3)(outputs).write(value.clamp(*range.start(), *range.end()));

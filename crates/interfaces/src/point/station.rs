@@ -1,4 +1,4 @@
-//! The words of the workstation's devices, which the controller's records do not have.
+//! The words of the workstation's devices, which are not in the controller's records.
 
 use core::ops::RangeInclusive;
 
@@ -8,17 +8,17 @@ use super::Group;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Station<'n> {
     row: &'static Row,
-    /// The location of the device, or the unit and sector of a tray; empty for a device that is there once.
+    /// The location of the device, or the unit and sector of a tray; empty for a device that exists once.
     pub place: &'n str,
 }
 
-/// What a name begins with, what it ends with, group, and greatest value.
+/// Beginning and end of a name, group, and maximum value.
 type Row = (&'static str, &'static str, Group, i64);
 
 /// A number of a program or a tool: one register.
 const NUMBER: i64 = 0xFFFF;
 
-/// Words that the workstation reads. Between the two ends of the name stands the place.
+/// Words that the workstation reads. The place is between the two parts of the name.
 static READ: [Row; 14] = [
     ("vise.", ".opened", Group::Vise, 1),
     ("vise.", ".partial", Group::Vise, 1),
@@ -52,7 +52,7 @@ static WRITTEN: [Row; 9] = [
 static TRAY: Row = ("tray.", "", Group::Trays, 1);
 
 impl<'n> Station<'n> {
-    /// The word with a name that the workstation reads.
+    /// The word of a name that the workstation reads.
     #[must_use]
     pub fn read(name: &'n str) -> Option<Self> {
         READ.iter().find_map(|row| Self::of(row, name)).or_else(|| {
@@ -63,7 +63,7 @@ impl<'n> Station<'n> {
         })
     }
 
-    /// The word with a name that the workstation writes.
+    /// The word of a name that the workstation writes.
     #[must_use]
     pub fn written(name: &'n str) -> Option<Self> {
         WRITTEN.iter().find_map(|row| Self::of(row, name))
@@ -75,21 +75,21 @@ impl<'n> Station<'n> {
         fits.then_some(Self { row, place })
     }
 
-    /// The words that a device of a group has when it has one: what their names begin and end with. Presence sensors of
-    /// trays, air and safety circuit are there one by one.
+    /// The words that a device of a group must have, as beginning and end of their names. Presence sensors of trays,
+    /// air and safety circuit are optional one by one.
     pub fn needed(group: Group, written: bool) -> impl Iterator<Item = (&'static str, &'static str)> {
         let rows: &[Row] = if written { &WRITTEN } else { &READ };
         let of_group = move |row: &&Row| row.2 == group && !matches!(group, Group::Supply | Group::Trays);
         rows.iter().filter(of_group).map(|row| (row.0, row.1))
     }
 
-    /// The devices to which it belongs.
+    /// The group of its devices.
     #[must_use]
     pub const fn group(&self) -> Group {
         self.row.2
     }
 
-    /// Its values.
+    /// Permitted values.
     #[must_use]
     pub const fn range(&self) -> RangeInclusive<i64> {
         RangeInclusive::new(0, self.row.3)

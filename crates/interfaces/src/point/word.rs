@@ -8,13 +8,13 @@ pub enum Word<'a> {
     Flag(&'a mut bool),
     /// The bits of a byte under a mask.
     Bits(&'a mut u8, u8),
-    /// A number of two bytes.
+    /// An unsigned number of two bytes.
     Short(&'a mut u16),
-    /// A number of two bytes with a sign.
+    /// A signed number of two bytes.
     Signed(&'a mut i16),
-    /// A number of four bytes.
+    /// An unsigned number of four bytes.
     Long(&'a mut u32),
-    /// A number of four bytes with a sign.
+    /// A signed number of four bytes.
     Count(&'a mut i32),
     /// An order to the rotary table: 0 none, 1 turn, 2 set the counter, 3 stop.
     Order(&'a mut MotorOrder),
@@ -22,7 +22,7 @@ pub enum Word<'a> {
     Answer(&'a mut VisionResponse),
 }
 
-/// The orders to the rotary table by their numbers.
+/// The orders to the rotary table by number.
 const ORDERS: [MotorOrder; 4] =
     [MotorOrder::None, MotorOrder::Turn, MotorOrder::SetCounter, MotorOrder::Stop];
 
@@ -44,7 +44,7 @@ impl Word<'_> {
         }
     }
 
-    /// Set it to the nearest value that its type has.
+    /// Set it to the nearest value of its type.
     pub fn write(self, value: i64) {
         match self {
             Self::Flag(on) => *on = value != 0,

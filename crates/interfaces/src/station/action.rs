@@ -10,7 +10,8 @@ pub enum BoxAction {
     /// Set the coordinate switches: bits of [`joystick_frame`](crate::device::joystick_frame). 0 also releases the
     /// stick and the buttons.
     Frame(u8),
-    /// Deflect the stick for a number of ticks: -1000 to 1000. This replaces its deflection; 0 0 releases it.
+    /// Deflect the stick for a number of ticks: -1000 to 1000. It replaces the present deflection; 0 0 releases the
+    /// stick.
     Stick {
         /// Along X, or pitch.
         x: i16,
@@ -19,7 +20,7 @@ pub enum BoxAction {
         /// Duration, ticks.
         ticks: u32,
     },
-    /// Hold a button down for a number of ticks, counted from now.
+    /// Hold a button down for a number of ticks from now.
     Press(BoxButton, u32),
     /// Turn the velocity knob: 0 to 1000.
     Velocity(u16),
@@ -31,7 +32,7 @@ pub enum BoxAction {
     Hold(u8),
     /// Reset the switches that suspend processes: the same bits.
     Free(u8),
-    /// Press the single-step buttons of these bits, with the number of presses.
+    /// Press the single-step buttons of these bits a number of times.
     Step(u8, u32),
 }
 
@@ -69,18 +70,18 @@ pub enum Key {
     Hold(bool),
     /// Press an E-stop (III.6).
     Press(EStop),
-    /// Pull an E-stop out again.
+    /// Pull an E-stop out.
     Release(EStop),
-    /// Put the RS232 board in, or take it out (A 2.3, D0).
+    /// Insert or remove the RS232 board (A 2.3, D0).
     Board(bool),
-    /// Repair the transmitter of the RS232 board, or break it (A 2.3, D5).
+    /// Repair or break the transmitter of the RS232 board (A 2.3, D5).
     Transmitter(bool),
     /// Power of the Prim Interface Box on or off (IV.1 steps 2 and 5).
     PrimBox(bool),
 }
 
 impl fmt::Display for Key {
-    /// The action in the words of the controller's console.
+    /// The action in the terms of the controller's console.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let switch = |on| if on { Switch::On } else { Switch::Off };
         match *self {

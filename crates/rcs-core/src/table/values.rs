@@ -1,16 +1,15 @@
 //! The values with which a table was consulted, for logs, screens and explanations.
 //!
-//! The values of all state variables are one number ([`Variables::code`](super::Variables::code)), so that a
-//! process can note them in its header. Here the number becomes names again, and the rows are read a second
-//! time, from the table as text. Both come from the same source as the `match` that decides; a test of the
-//! levels compares them.
+//! [`Variables::code`](super::Variables::code) packs the values of all state variables into one number, so a process
+//! can store them in its header. Here the number becomes names again, and the text form of the rows is evaluated a
+//! second time. Text and `match` have the same source; a test of the levels compares them.
 
 use core::{fmt, slice};
 
 use super::{Condition, Row, Table, Variable, conditions};
 use crate::{Plain, plain::VariantSchema};
 
-/// What a table was consulted with.
+/// The step and the values with which a table was consulted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub struct Values {
     /// Code of the step; 0 in a table without steps.
@@ -19,18 +18,18 @@ pub struct Values {
     pub variables: u64,
 }
 
-/// A row that would have fired if one state variable had had another value.
+/// A row that would have fired with another value of one state variable.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NearMiss {
     /// The variable.
     pub variable: &'static Variable,
-    /// The value that it would have had.
+    /// The other value.
     pub value: &'static VariantSchema,
-    /// The row that would have fired then.
+    /// The row that this value would have fired.
     pub row: &'static Row,
 }
 
-/// A row that has fired. Its text has the values that the table found, where the row fires for several:
+/// A row that has fired. If it fires for several values of a variable, its text contains the actual one:
 /// `CLOSE-DOOR row 2: Start, door Stuck, lamp Dark => Close -> Closing`.
 #[derive(Clone, Copy, Debug)]
 pub struct Fired {
@@ -38,7 +37,7 @@ pub struct Fired {
     pub table: &'static Table,
     /// The row.
     pub row: &'static Row,
-    /// The values; `None` if another system has consulted the table. Then the text is that of the row.
+    /// The values; `None` if another system consulted the table. The text then shows the row unchanged.
     pub values: Option<Values>,
 }
 
@@ -50,7 +49,7 @@ impl Fired {
         narrowed(self.row.steps, step.map(|step| step.name))
     }
 
-    /// The conditions of the row, each with the value that the variable had.
+    /// The conditions of the row with the actual values.
     pub fn conditions(&self) -> impl Iterator<Item = Condition> {
         let Self { table, row, values } = *self;
         row.when.iter().map(move |condition| {
@@ -74,13 +73,13 @@ impl fmt::Display for Fired {
     }
 }
 
-/// The one of several names that is known to hold; all, if none of them is.
+/// The known name if it is among several; otherwise all of them.
 fn narrowed(names: &'static [&'static str], known: Option<&str>) -> &'static [&'static str] {
     names.iter().find(|name| Some(**name) == known).map_or(names, slice::from_ref)
 }
 
 impl Variable {
-    /// How many combinations of values the variables have; `None` if it does not fit a `u64`.
+    /// Number of combinations of the variables' values; `None` if it exceeds a `u64`.
     #[must_use]
     pub const fn combinations(mut variables: &[Self]) -> Option<u64> {
         let mut product = 1_u64;
@@ -94,7 +93,7 @@ impl Variable {
         Some(product)
     }
 
-    /// How many values it has: an enum has at most 256 variants.
+    /// Number of its values, at most 256.
     #[expect(clippy::as_conversions, reason = "a constant function cannot convert otherwise")]
     const fn base(&self) -> u64 {
         self.values.variants.len() as u64
@@ -108,8 +107,8 @@ impl Table {
         self.steps?.variants.iter().find(|step| step.code == values.step)
     }
 
-    /// The state variables with their values, in the order of the table. Numbers that are not values of this table give
-    /// an empty result.
+    /// The state variables with their values, in the order of the table. Empty for numbers that are not values of
+    /// this table.
     pub fn values(
         &self,
         values: Values,
@@ -135,8 +134,8 @@ impl Table {
         self.rows.iter().find(fits)
     }
 
-    /// The rows that nearly fired: for each state variable and each other value that it can have, the row that
-    /// would have fired with it, where that is another row. The step stays: it is the memory of the table.
+    /// The rows that nearly fired: for each other value of each state variable, the row that it would have fired, if
+    /// different. The step is not varied, as it is the memory of the table.
     pub fn near_misses(&self, values: Values) -> impl Iterator<Item = NearMiss> {
         let fired = self.consult(values);
         let others = self.values(values).enumerate().flat_map(move |(at, (variable, now))| {
@@ -149,13 +148,13 @@ impl Table {
         others.filter(move |miss| fired.is_some_and(|fired| fired.number != miss.row.number))
     }
 
-    /// The numbers are a step and values of this table.
+    /// True if the numbers are a step and values of this table.
     fn is_known(&self, values: Values) -> bool {
         let step = self.steps.is_none_or(|steps| steps.variants.iter().any(|step| step.code == values.step));
         step && Variable::combinations(self.variables).is_some_and(|all| values.variables < all)
     }
 
-    /// Weight of the digit of a variable in the number: the combinations of the variables after it.
+    /// Weight of a variable's digit in the number: the number of combinations of the variables after it.
     fn weight(&self, at: usize) -> Option<u64> {
         Variable::combinations(self.variables.get(at.checked_add(1)?..)?)
     }
@@ -167,7 +166,7 @@ impl Table {
         variable.values.variants.iter().find(|value| u64::from(value.code) == digit)
     }
 
-    /// The same values, but for one variable.
+    /// The same values, with one variable changed.
     fn with(&self, at: usize, value: &VariantSchema, values: Values) -> Option<Values> {
         let weight = self.weight(at)?;
         let part = |value: &VariantSchema| u64::from(value.code).checked_mul(weight);
@@ -180,7 +179,7 @@ impl Table {
         value.is_some_and(|value| condition.values.contains(&value.name))
     }
 
-    /// The value of the variable with a name.
+    /// The value of the variable of a name.
     fn value_of(&self, name: &str, values: Values) -> Option<&'static VariantSchema> {
         self.value(self.variables.iter().position(|variable| variable.name == name)?, values)
     }
@@ -193,11 +192,11 @@ mod tests {
 
     #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
     pub enum Door {
-        /// Nothing is in the way.
+        /// The doorway is free.
         Open,
-        /// Both switches see it.
+        /// Both switches detect the door.
         Shut,
-        /// It stands between its switches.
+        /// The door is between its switches.
         #[text = "half way"]
         Stuck,
     }
@@ -218,7 +217,7 @@ mod tests {
 
     #[derive(Clone, Copy, Debug, PartialEq, Eq, Actions)]
     pub enum Action {
-        /// Nothing new.
+        /// No new output.
         Wait,
         /// Drive the door.
         Close,
@@ -232,12 +231,12 @@ mod tests {
             any {
                 1: lamp: Lit                       => consult;
             }
-            /// Nothing done yet.
+            /// The command has not started.
             Start {
                 2: door: Open | Stuck, lamp: Dark  => Close  -> Closing;
                 3: door: Shut,         lamp: Dark  => Finish;
             }
-            /// The door is driven.
+            /// The door is being driven.
             Closing {
                 4: door: Shut,  lamp: Dark         => Finish;
                 5: door: Open,  lamp: Dark         => Wait;
@@ -288,7 +287,7 @@ mod tests {
         let row = CLOSE_DOOR.consult(values).unwrap();
         let fired = |values| Fired { table: &CLOSE_DOOR, row, values }.to_string();
         assert_eq!(fired(Some(values)), "CLOSE-DOOR row 2: Start, door Stuck, lamp Dark => Close -> Closing");
-        // Another system does not say them.
+        // Another system omits the values.
         assert_eq!(fired(None), "CLOSE-DOOR row 2: Start, door Open or Stuck, lamp Dark => Close -> Closing");
     }
 
@@ -299,7 +298,7 @@ mod tests {
             let misses = CLOSE_DOOR.near_misses(values);
             misses.map(|miss| (miss.variable.name, miss.value.name, miss.row.number)).collect::<Vec<_>>()
         };
-        // Stuck fires row 2 as Open does: no near miss.
+        // Stuck fires row 2 like Open: not a near miss.
         assert_eq!(
             misses(CloseDoorStep::Start, Door::Open, Lamp::Dark),
             [("door", "Shut", 3), ("lamp", "Lit", 1)]

@@ -21,22 +21,22 @@ pub struct Commands {
     attributes: Vec<Attribute>,
     vis: Visibility,
     decide: Ident,
-    /// The steps of all commands are a new enum with a variant for each table.
+    /// True if the steps of all commands form a new enum with a variant per table.
     declared: bool,
     step: Ident,
     verb: Path,
     situation: Path,
-    /// The situation is a new enum with a variant for each entry, whose variables this type senses.
+    /// The type that senses the variables, if the situation is a new enum with a variant per entry.
     senses: Option<Path>,
     action: Path,
     /// Tables that no command selects, in the order of their numbers.
     others: Vec<Path>,
-    /// When they are consulted.
+    /// Their order of consultation.
     order: Option<Order>,
     entries: Vec<Entry>,
 }
 
-/// Commands, their goal, and the tables that are consulted one after the other until one decides.
+/// Commands, their goal, and the tables to consult in turn until one decides.
 struct Entry {
     verbs: Vec<Ident>,
     goal: Path,
@@ -126,7 +126,7 @@ impl Parse for Entry {
 }
 
 impl Entry {
-    /// The table at the end of the chain: its steps are those of the command.
+    /// The last table of the chain: its steps are those of the command.
     fn last(&self) -> &Path {
         self.chain.last().unwrap_or_else(|| unreachable!("a chain is not empty"))
     }
@@ -146,7 +146,6 @@ fn beside(path: &Path, name: impl FnOnce(&str) -> String) -> Path {
     path
 }
 
-/// The name of the function in upper camel case.
 fn camel(table: &Path) -> Ident {
     let last = table.segments.last();
     last.map_or_else(
@@ -155,12 +154,10 @@ fn camel(table: &Path) -> Ident {
     )
 }
 
-/// The static of a table, by the name of its function.
 fn static_of(table: &Path) -> Path {
     beside(table, str::to_uppercase)
 }
 
-/// The steps of a table, by the name of its function.
 fn step_of(table: &Path) -> Path {
     beside(table, |name| format!("{}Step", names::camel(name)))
 }
@@ -169,12 +166,11 @@ fn same(a: &Path, b: &Path) -> bool {
     quote!(#a).to_string() == quote!(#b).to_string()
 }
 
-/// The state variables of a table, by the name of its function.
 fn situation_of(table: &Path) -> Path {
     beside(table, |name| format!("{}Situation", names::camel(name)))
 }
 
-/// Each path once, in the order of the first.
+/// The paths without duplicates, in the order of their first occurrence.
 fn once(paths: impl Iterator<Item = Path>) -> Vec<Path> {
     let mut all = Vec::new();
     for path in paths {
@@ -192,7 +188,7 @@ impl Commands {
         once(self.others.iter().cloned().chain(tables))
     }
 
-    /// The path of a table that no command selects, by its name.
+    /// The path of a table that no command selects.
     fn other(&self, name: &Ident) -> Result<&Path> {
         let is_it = |path: &&Path| path.segments.last().is_some_and(|last| last.ident == *name);
         self.others
@@ -201,7 +197,6 @@ impl Commands {
             .ok_or_else(|| Error::new(name.span(), format!("{name} is not in the list `others`")))
     }
 
-    /// The enum of all steps.
     fn steps(&self) -> TokenStream {
         if !self.declared {
             return TokenStream::new();
@@ -241,7 +236,7 @@ impl Commands {
         }
     }
 
-    /// The enum of the situations of all commands: what the tables of each command test, and nothing else.
+    /// The enum of the situations of all commands, with only the variables that the tables of each command test.
     fn situations(&self) -> TokenStream {
         let Some(senses) = &self.senses else { return TokenStream::new() };
         let (vis, name, verb) = (&self.vis, &self.situation, &self.verb);
@@ -278,7 +273,6 @@ impl Commands {
         }
     }
 
-    /// The function that consults the tables of a command.
     fn of_command(&self, tables: &[Path]) -> TokenStream {
         let Self { attributes, vis, decide, step, verb, situation, action, .. } = self;
         let (selector, parameters) = if self.senses.is_some() {
@@ -296,7 +290,6 @@ impl Commands {
         }
     }
 
-    /// The goals of the commands: by the command, and as a list.
     fn goals(&self) -> TokenStream {
         let (vis, verb) = (&self.vis, &self.verb);
         let arms =
@@ -318,7 +311,7 @@ impl Commands {
         }
     }
 
-    /// The arm of a command: its tables in turn.
+    /// The match arm of a command: its tables in turn.
     fn arm(&self, entry: &Entry, tables: &[Path]) -> TokenStream {
         let (verb, all) = (&self.verb, &self.step);
         let last = entry.last();
@@ -377,8 +370,8 @@ impl Commands {
     }
 }
 
-/// The enum of all steps, the goals of the commands, the list of all tables, their numbers, the function that consults
-/// the table of a command, and the one that consults all tables in the declared order.
+/// Generate the enum of all steps, the goals of the commands, the list of all tables, their numbers, the function
+/// that consults the table of a command, and the function that consults all tables in the declared order.
 pub fn expand(input: TokenStream) -> Result<TokenStream> {
     let commands: Commands = parse2(input)?;
     let Commands { vis, others, .. } = &commands;

@@ -1,4 +1,4 @@
-//! The declared order of the tables of a process, and the function that consults them in this order.
+//! The declared order of the tables of a process, and the function that consults them.
 
 use proc_macro2::TokenStream;
 use quote::{quote, quote_spanned};
@@ -18,13 +18,12 @@ mod word {
 
 /// `before: EXECUTE, HALT, ACCEPT(request), ORDERED(subordinates -> situation.work); after: EFFECT, CONFIRM;`
 pub struct Order {
-    /// Tables before that of the command.
+    /// Tables to consult before that of the command.
     before: Vec<Before>,
     /// Tables about the row that fired.
     after: Vec<After>,
 }
 
-/// A table that is consulted before that of the command.
 struct Before {
     table: Ident,
     how: How,
@@ -33,30 +32,31 @@ struct Before {
 /// A table about the row that fired: `CONFIRM`, `EFFECT`, or `EFFECT(advance)`.
 struct After {
     table: Ident,
-    /// The field of `StateVariables` that says whether the command has advanced since its last order.
+    /// The field of `StateVariables` that is true if the command has advanced since its last order.
     advance: Option<Ident>,
 }
 
-/// How it is consulted.
+/// The way in which it is consulted.
 enum How {
-    /// A table of all processes, by `Execution`.
+    /// A table of all processes, consulted by `Execution`.
     Common,
-    /// `JOYSTICK by joystick`: by this method of the state of the process.
+    /// `JOYSTICK by joystick`: consulted by this method of the process's state.
     By(Ident),
-    /// `ORDERED(subordinates -> situation.work)`: a row decides with the variables of this field, or passes on.
+    /// `ORDERED(subordinates -> situation.work)`: a row decides with the variables of this field, or passes a value
+    /// on.
     Row(Row),
 }
 
 struct Row {
     /// The field of `StateVariables` with its variables.
     variables: Ident,
-    /// `in link`: the field of the state that is its step.
+    /// `in link`: the field of the state with its step.
     step: Option<Ident>,
-    /// The field of `StateVariables` that gets what it passes on.
+    /// The field of `StateVariables` that receives the passed value.
     passes: Option<Passes>,
 }
 
-/// `-> situation.work`, or `-> situation` if each table has a struct of its own.
+/// `-> situation.work`, or `-> situation` if each table has its own struct.
 struct Passes {
     of: Ident,
     field: Option<Ident>,
@@ -123,7 +123,7 @@ impl Order {
         Ok(Some(order))
     }
 
-    /// EXECUTE comes first; what can keep the tables from being consulted comes before the tables.
+    /// EXECUTE must be first. Tables that can withhold the command precede the others.
     fn check(&self) -> Result<()> {
         let mut rows = false;
         for (position, Before { table, how }) in self.before.iter().enumerate() {
@@ -153,7 +153,7 @@ impl Order {
         }
     }
 
-    /// The lines of the documentation that say what is consulted when.
+    /// The lines of the documentation with the order of consultation.
     fn documentation(&self, commands: &Commands) -> Result<Vec<String>> {
         let mut lines = vec![
             String::from("Consult the tables in the declared order until a row decides:"),
@@ -191,7 +191,6 @@ impl Order {
         Ok(lines)
     }
 
-    /// The function `decide`.
     pub fn expand(&self, commands: &Commands) -> Result<TokenStream> {
         let Commands { vis, decide: of_command, step, action, .. } = commands;
         let documentation = self.documentation(commands)?;
@@ -260,7 +259,7 @@ impl Order {
 }
 
 impl Row {
-    /// Leave with what a row decides, or note what it passes on.
+    /// Return the decision of a row, or store the value that it passes on.
     fn consult(&self, table: &Ident, path: &Path) -> TokenStream {
         let (function, variables) = (beside(path, str::to_lowercase), &self.variables);
         let (step, decided) = match &self.step {
@@ -308,12 +307,12 @@ mod tests {
         crate::commands::expand(list.parse()?).map(|tokens| tokens.to_string())
     }
 
-    /// What an order is refused with.
+    /// The error message for an order.
     fn error(order: &str) -> String {
         expand(order).expect_err(order).to_string()
     }
 
-    /// Each text stands in the code, in this order.
+    /// Assert that the texts occur in the code in this order.
     fn assert_in_order(code: &str, texts: &[&str]) {
         let mut rest = code;
         for text in texts {

@@ -1,4 +1,4 @@
-//! The form of a decision table, and what is wrong with one as it was written.
+//! The form of a decision table, and the errors in it.
 
 use syn::{
     Attribute, Error, Ident, LitInt, Path, Result, Token, Visibility, braced, parenthesized,
@@ -10,7 +10,6 @@ use syn::{
 
 use crate::names;
 
-/// A table as written.
 pub struct Table {
     pub attributes: Vec<Attribute>,
     pub vis: Visibility,
@@ -18,10 +17,10 @@ pub struct Table {
     pub decide: Ident,
     pub step: Option<Step>,
     pub situation: Path,
-    /// The struct of the state variables is a new one, of those that the rows name, which this type senses.
+    /// The type that senses the variables, if the table declares a struct of the variables that its rows name.
     pub senses: Option<Path>,
     pub action: Path,
-    /// What a row that does not decide passes on.
+    /// The value that a row passes on if it does not decide.
     pub passed: Option<Passed>,
     pub groups: Vec<StepGroup>,
 }
@@ -37,7 +36,7 @@ pub enum Passed {
     Value(Path),
 }
 
-/// Rows for some steps; for any if none is named.
+/// Rows for the named steps; for any step if none is named.
 pub struct StepGroup {
     pub attributes: Vec<Attribute>,
     pub steps: Vec<Ident>,
@@ -200,7 +199,7 @@ impl Parse for Row {
 }
 
 impl Row {
-    /// The row does not decide: the next table is consulted.
+    /// True if the row does not decide and the next table is consulted.
     pub fn is_passed(&self) -> bool {
         self.action == "consult"
     }
@@ -212,7 +211,7 @@ impl Table {
         self.groups.iter().flat_map(|group| group.rows.iter().map(move |row| (group, row)))
     }
 
-    /// What the compiler would not say well.
+    /// Errors for which the compiler's message would be unclear.
     fn check(&self) -> Result<()> {
         for ((_, row), expected) in self.rows().zip(1_u8..) {
             if row.number.base10_parse::<u8>()? != expected {
@@ -245,7 +244,6 @@ impl Table {
 mod tests {
     use super::*;
 
-    /// A table with one row.
     fn table(row: &str) -> Result<Table> {
         syn::parse_str(&format!("pub PAUSE: fn pause(Situation) -> Action {{ {row} }}"))
     }

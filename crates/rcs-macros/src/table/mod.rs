@@ -19,7 +19,8 @@ impl Table {
         }
     }
 
-    /// The pattern of a row. Its brackets bear the span of the row's number, so that a dead row is underlined there.
+    /// The pattern of a row. Its brackets have the span of the row's number, so the compiler underlines a dead row
+    /// there.
     fn pattern(&self, group: &StepGroup, row: &Row) -> TokenStream {
         let span = row.number.span();
         let situation = respan_path(&self.situation, span);
@@ -71,7 +72,7 @@ impl Table {
         quote!(#pattern => (#number, #action::#name #argument, #next),)
     }
 
-    /// The enum of the steps, if the table declares it: a variant for each step whose group has a doc comment.
+    /// The enum of the steps, if the table declares it: a variant per step whose group has a doc comment.
     fn steps(&self) -> TokenStream {
         let Some(Step::Declared(name)) = &self.step else { return TokenStream::new() };
         let declared = self.groups.iter().filter(|group| !group.attributes.is_empty());
@@ -85,7 +86,7 @@ impl Table {
         }
     }
 
-    /// The variables that the rows name, each once.
+    /// The variables that the rows name, without duplicates.
     fn asked(&self) -> Vec<&Ident> {
         let mut asked: Vec<&Ident> = Vec::new();
         for Condition { variable, .. } in self.rows().flat_map(|(_, row)| &row.conditions) {
@@ -139,12 +140,11 @@ impl Table {
         }
     }
 
-    /// The name as the manual would write it: `GET_OBJECT` is `GET-OBJECT`.
+    /// The name in the manual's spelling: `GET_OBJECT` is `GET-OBJECT`.
     fn title(&self) -> String {
         self.name.to_string().replace('_', "-")
     }
 
-    /// The rows as text.
     fn texts(&self) -> Vec<TokenStream> {
         let texts = self.rows().map(|(group, row)| {
             let steps = group.steps.iter().map(ToString::to_string);
@@ -192,7 +192,7 @@ impl Table {
     }
 }
 
-/// The same tokens at another place of the source.
+/// The same tokens at another position of the source.
 fn respan(tokens: TokenStream, span: Span) -> TokenStream {
     let moved = tokens.into_iter().map(|mut token| {
         token.set_span(span);
@@ -205,7 +205,7 @@ fn respan_path(path: &Path, span: Span) -> TokenStream {
     respan(quote!(#path), span)
 }
 
-/// The hidden module beside a type, in which each field or action is the name of its type.
+/// The hidden module of a type, in which the name of a field or action denotes its type.
 fn hidden(of: &Path, span: Span) -> TokenStream {
     let mut path = of.clone();
     if let Some(last) = path.segments.last_mut() {
@@ -214,7 +214,7 @@ fn hidden(of: &Path, span: Span) -> TokenStream {
     respan_path(&path, span)
 }
 
-/// The table as text, the enum of its steps, and the function that decides.
+/// Generate the table as text, the enum of its steps, and the function that decides.
 pub fn expand(input: TokenStream) -> Result<TokenStream> {
     let table: Table = parse2(input)?;
     let Table { attributes, vis, name, decide, situation, action, .. } = &table;
@@ -283,7 +283,7 @@ pub fn expand(input: TokenStream) -> Result<TokenStream> {
 mod tests {
     use super::*;
 
-    /// The block of code of a page that begins with a text.
+    /// The code block of a page that begins with a text.
     fn block(page: &str, begin: &str) -> TokenStream {
         let mut blocks = page.split("```rust\n").skip(1).filter_map(|rest| rest.split_once("```"));
         let (code, _) = blocks.find(|(code, _)| code.starts_with(begin)).expect("the page has the block");
@@ -298,7 +298,7 @@ mod tests {
         let Some(TokenTree::Group(table)) = call else { panic!("the table is between braces") };
         let expanded = expand(table.stream()).expect("the table is right").to_string();
         let shown = block(&page, "pub fn release(").to_string();
-        // A comma before the end makes no difference to the compiler.
+        // The compiler ignores a comma before the end.
         let plain = |code: &str| code.replace(", }", " }").replace(", )", " )");
         assert!(plain(&expanded).contains(&plain(&shown)), "{expanded}");
     }
