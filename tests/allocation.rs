@@ -1,18 +1,17 @@
-//! Nothing is allocated after the start, in as many ticks as are asked for: whole shifts with other seeds, jobs
-//! that fail, a line with faults.
+//! No allocation after the start, in any number of ticks: whole shifts with different seeds, failing jobs, a faulty
+//! line.
 //!
-//! `RCS_TICKS` sets how many (30,000 if it is not set; the figure that is promised is 1,000,000), `RCS_BOARDS` how the
-//! processes are spread (`one` if it is not set).
+//! `RCS_TICKS` sets the number of ticks (default 30,000; the promised figure is 1,000,000), `RCS_BOARDS` the
+//! distribution of the processes (default `one`).
 
 use std::{fs, process::Command};
 
 use serde_json::Value;
 use whole_system_tests::{Scratch, rcs_run, root};
 
-/// Ticks of an ordinary test run.
 const TICKS: u64 = 30_000;
 
-/// What a run is: a job, the exit status that it has, whether the line has faults.
+/// A run: job, expected exit status, and whether the line has faults.
 struct Kind {
     job: &'static str,
     status: i32,
@@ -23,7 +22,7 @@ const fn kind(job: &'static str, status: i32, faults: bool) -> Kind {
     Kind { job, status, faults }
 }
 
-/// In turn, until there are ticks enough.
+/// Repeated in turn until the number of ticks is reached.
 const KINDS: [Kind; 4] = [
     kind("no-part.job", 1, false),
     kind("linkbar", 0, true),
@@ -37,7 +36,7 @@ fn no_heap_is_allocated_after_the_start() {
         std::env::var("RCS_TICKS").map_or(TICKS, |text| text.parse().expect("RCS_TICKS is a number"));
     let boards = std::env::var("RCS_BOARDS").unwrap_or_else(|_| "one".to_owned());
     let scratch = Scratch::new("allocation");
-    // Two ways of errors: what is to be found is not there, and a place is unknown to the workstation.
+    // Two failures: the object is not there, and the workstation does not know a place.
     scratch.job_with("clevis.job", "** tray UNIT_1 3 LCLEVIS_BH", "%");
     fs::rename(scratch.file("clevis.job"), scratch.file("no-part.job")).expect("a job");
     scratch.job_with("tool-change.job", "** drum release", "%");

@@ -1,4 +1,4 @@
-//! What the survival tests and the robustness campaign share: runs that are watched from outside, and what they leave.
+//! Runs of the survival tests and the robustness campaign, observed from outside, and their remains.
 
 use std::{
     os::unix::process::ExitStatusExt as _,
@@ -14,10 +14,9 @@ use serde_json::Value;
 
 use crate::{rcs_run, root};
 
-/// How long something may take that takes milliseconds.
+/// Time limit for actions that take milliseconds.
 const PATIENCE: Duration = Duration::from_secs(120);
 
-/// `rcs-run` with arguments, in a directory.
 #[must_use]
 pub fn rcs(directory: &Path, arguments: &[&str]) -> Command {
     let mut command = Command::new(rcs_run());
@@ -25,7 +24,6 @@ pub fn rcs(directory: &Path, arguments: &[&str]) -> Command {
     command
 }
 
-/// The arguments of a run of a job of the data directory.
 #[must_use]
 pub fn job(name: &str) -> Vec<String> {
     let data = root().join("data").display().to_string();
@@ -33,13 +31,13 @@ pub fn job(name: &str) -> Vec<String> {
 }
 
 pub struct Running {
-    /// Its process: the controller, or board 0.
+    /// The controller, or board 0.
     pub child: Child,
     pub name: RunName,
 }
 
 impl Running {
-    /// Start a run, with more arguments.
+    /// Start a run with further arguments.
     ///
     /// # Panics
     /// If the program cannot be started.
@@ -56,7 +54,7 @@ impl Running {
         Self { child, name }
     }
 
-    /// A reader, as soon as there is something to read.
+    /// Attach a reader as soon as there are buffers to read.
     ///
     /// # Panics
     /// If the run ends before.
@@ -70,10 +68,10 @@ impl Running {
         reader.expect("it was there")
     }
 
-    /// Wait until a tick was run; the tick that was run by then.
+    /// Wait until a tick has been run. Returns the last tick.
     ///
     /// # Panics
-    /// If the run is over before.
+    /// If the run ends before.
     pub fn reach(&mut self, reader: &Attached, tick: u64) -> u64 {
         let mut reached = 0;
         wait_for("the run gets on", || {
@@ -98,7 +96,7 @@ impl Running {
     /// End it by SIGKILL.
     ///
     /// # Panics
-    /// If it cannot be sent the signal.
+    /// If the signal cannot be sent.
     pub fn kill(&mut self) {
         self.child.kill().expect("it can be killed");
         self.child.wait().expect("it is dead");
@@ -115,7 +113,7 @@ impl Running {
 }
 
 pub struct Ended {
-    /// Exit status; none if a signal ended it.
+    /// `None` if a signal ended it.
     pub status: Option<i32>,
     pub signal: Option<i32>,
     pub result: Value,
@@ -130,7 +128,7 @@ impl Ended {
         Self { status: output.status.code(), signal: output.status.signal(), result, said }
     }
 
-    /// Run to the end, with more arguments.
+    /// Run to the end with further arguments.
     ///
     /// # Panics
     /// If the program cannot be started.
@@ -157,10 +155,10 @@ impl Ended {
         self.result[field].as_u64().unwrap_or_else(|| panic!("no {field} in {}", self.result))
     }
 
-    /// It ended well, and its buffers were in shared memory.
+    /// Assert that it finished and that its buffers were in shared memory.
     ///
     /// # Panics
-    /// If not.
+    /// Otherwise.
     pub fn assert_shared(&self) {
         assert_eq!(self.status, Some(0), "{}", self.said);
         for complaint in ["shared memory is not available", "not mirrored"] {
@@ -168,15 +166,13 @@ impl Ended {
         }
     }
 
-    /// The last line on standard error.
     #[must_use]
     pub fn last_words(&self) -> &str {
         self.said.lines().last().unwrap_or_default()
     }
 }
 
-/// Run the linkbar in a mount namespace of its own, after some commands of the shell; `None` if this user can
-/// have none.
+/// Run the linkbar in its own mount namespace, after some shell commands. `None` if this user cannot make namespaces.
 #[must_use]
 pub fn apart(directory: &Path, shell: &str, more: &[&str]) -> Option<Ended> {
     let arguments = job("linkbar");
@@ -197,20 +193,20 @@ pub fn traces(run: &RunName) -> Vec<PathBuf> {
     memory::traces(run)
 }
 
-/// Nothing is left after `rcs-run clean`.
+/// Assert that `rcs-run clean` leaves nothing of the run.
 ///
 /// # Panics
-/// If something is.
+/// Otherwise.
 pub fn assert_cleaned(directory: &Path, run: &RunName) {
     let cleaned = rcs(directory, &["clean"]).output().expect("rcs-run can be started");
     assert_eq!(cleaned.status.code(), Some(0), "{}", String::from_utf8_lossy(&cleaned.stderr));
     assert_eq!(traces(run), Vec::<PathBuf>::new());
 }
 
-/// Wait for something that comes soon.
+/// Wait for a condition that will soon hold.
 ///
 /// # Panics
-/// If it does not come.
+/// If it does not hold in time.
 pub fn wait_for(what: &str, mut condition: impl FnMut() -> bool) {
     let started = Instant::now();
     while !condition() {

@@ -1,9 +1,8 @@
-//! `--boards split`: the same bits however the processes are spread; and what becomes of a run when boards
-//! are killed, stopped, started by hand or do not fit.
+//! `--boards split`: equal bits for any distribution of the processes, and the end of a run whose boards are killed,
+//! stopped, started manually or do not match.
 //!
-//! Two variables make a campaign of it: `RCS_KILLS` is how many boards are killed in a row (8 without it),
-//! `RCS_ALL_JOBS` lets every job of the data directory be held against one board (the three shortest without
-//! it).
+//! Two variables extend this to a campaign: `RCS_KILLS` is the number of boards killed in a row (default 8);
+//! `RCS_ALL_JOBS` compares every job of the data directory with one board (default: the three shortest).
 
 use std::{
     collections::BTreeMap,
@@ -30,13 +29,13 @@ use rustix::process::{Pid, Signal, kill_process};
 use serde_json::Value;
 use whole_system_tests::{Scratch, command, rcs_run, root};
 
-/// How long anything here may take before the test gives up.
+/// Time limit of each action.
 const PATIENCE: Duration = Duration::from_secs(120);
-/// How often a moment of a run is waited for. A machine that has other things to do may let it pass; the run
-/// goes on to its end then, and is started again.
+/// Attempts to observe a moment of a run. On a busy machine the moment may pass; the run then ends and is started
+/// again.
 const ATTEMPTS: u32 = 20;
 
-/// What a run said at its end.
+/// Output of a run.
 struct Ended {
     status: Option<i32>,
     result: Value,
@@ -60,10 +59,10 @@ impl Ended {
     }
 }
 
-/// What a run says while it goes on, in its directory.
+/// The output of a run, in its directory.
 const SAID: &str = "said.txt";
 
-/// A run with a name of its own.
+/// A run with its own name.
 struct Bench {
     scratch: Scratch,
     name: RunName,
@@ -90,7 +89,7 @@ impl Bench {
         Running { bench: self, child: child.expect("rcs-run can be started") }
     }
 
-    /// Nothing of the run may be left, and the next one of the same name works at once.
+    /// Assert that nothing of the run is left, and that the next one of the same name works at once.
     fn assert_clean(&self) {
         assert_eq!(memory::traces(&self.name), Vec::<PathBuf>::new());
         let next = self.run("linkbar", "split", &["--ticks", "20"]);
@@ -98,7 +97,7 @@ impl Bench {
         assert_eq!(memory::traces(&self.name), Vec::<PathBuf>::new());
     }
 
-    /// Common memory as the last tick in the log left it.
+    /// Common memory after the last tick of the log.
     fn last_memory(&self) -> CommonMemory {
         let log = Log::open(&self.scratch.file("run.mcap")).expect("the log can be read");
         let last = log.ticks().last().expect("there are ticks").expect("they can be read");
@@ -120,7 +119,7 @@ struct Running<'a> {
 }
 
 impl Running<'_> {
-    /// Attach to it; the boards are there when it can be read.
+    /// Attach to the run; its boards are present once it can be read.
     fn attach(&mut self) -> Attached {
         wait_for("the run can be read", || {
             assert_eq!(self.child.try_wait().expect("it is a child"), None, "it ended at once");
@@ -128,7 +127,7 @@ impl Running<'_> {
         })
     }
 
-    /// Wait for a moment; false if the run was over before it was seen.
+    /// Wait for a moment. False if the run ended before.
     fn wait_until(&mut self, what: &str, moment: impl Fn(&Attached) -> bool) -> bool {
         let reader = self.attach();
         wait_for(what, || {
@@ -152,12 +151,11 @@ impl Running<'_> {
             .collect()
     }
 
-    /// What it has said so far.
     fn said(&self) -> String {
         fs::read_to_string(self.bench.scratch.file(SAID)).expect("it says something")
     }
 
-    /// Wait until it has said something.
+    /// Wait until its output contains a text.
     fn hear(&self, what: &str) {
         wait_for(what, || self.said().contains(what).then_some(()));
     }
@@ -180,17 +178,16 @@ fn wait_for<T>(what: &str, mut found: impl FnMut() -> Option<T>) -> T {
     }
 }
 
-/// Common memory can be read and is as wanted.
+/// True if common memory can be read and meets a condition.
 fn shows(wanted: impl Fn(&CommonMemory) -> bool) -> impl Fn(&Attached) -> bool {
     move |reader| reader.memory().is_ok_and(|memory| wanted(&memory))
 }
 
-/// A tick was run.
 fn reached(tick: u64) -> impl Fn(&Attached) -> bool {
     move |reader| reader.pulse().is_ok_and(|pulse| pulse.tick.0 >= tick)
 }
 
-/// Start a job and send a board a signal at a moment; gives how the run ended, which has to be as wanted.
+/// Start a job, send a board a signal at a moment, and return how the run ended, which must meet a condition.
 fn strike(
     bench: &Bench,
     (board, signal): (u8, Signal),
@@ -200,7 +197,7 @@ fn strike(
     let mut said = String::new();
     for _ in 0..ATTEMPTS {
         let mut running = bench.start("linkbar", "split", &[]);
-        // Looked for before: the moment is short.
+        // Searched before, as the moment is short.
         drop(running.attach());
         let boards = running.boards();
         assert_eq!(boards.len(), 4, "{boards:?}");
@@ -227,7 +224,7 @@ fn strike(
     panic!("never caught in {ATTEMPTS} attempts; the last one said: {said}");
 }
 
-/// It has not ended: one that was not waited for yet, as under a first process that does not wait, has.
+/// True if the process runs. A zombie has ended: a first process that does not reap leaves some.
 fn is_alive(pid: Pid) -> bool {
     let stat = fs::read_to_string(format!("/proc/{}/stat", pid.as_raw_nonzero())).unwrap_or_default();
     stat.rsplit_once(") ").is_some_and(|(_, state)| !state.starts_with(['Z', 'X']))
@@ -282,7 +279,7 @@ struct Kill {
     board: u8,
     phase: &'static str,
     moment: fn(&CommonMemory) -> bool,
-    /// What must be said of it.
+    /// Required output.
     said: &'static str,
     held: bool,
 }
@@ -319,7 +316,7 @@ fn carries(memory: &CommonMemory) -> bool {
 fn a_killed_board_stops_the_robot_and_is_named() {
     for Kill { board, phase, moment, said, held } in KILLS {
         let bench = Bench::new("killed");
-        // The blow may have fallen later than it was meant to.
+        // The signal may have arrived after its moment.
         let in_the_phase = |_: &Ended| moment(&bench.last_memory());
         let ended = strike(&bench, (*board, Signal::KILL), shows(moment), in_the_phase);
         println!("{phase}: {}", ended.last_words());
@@ -351,7 +348,7 @@ fn boards_are_killed_many_times_in_a_row() {
 fn a_board_that_pauses_is_waited_for() {
     const TICKS: &[&str] = &["--ticks", "100"];
     let bench = Bench::new("pauses");
-    // In fast clock the run ends after the last tick; in real time the robot ramps down behind it.
+    // In fast clock the run ends after the last tick; in real time the robot ramps down after it.
     let one = bench.run("linkbar", "one", TICKS);
     for _ in 0..ATTEMPTS {
         let mut running = bench.start("linkbar", "split", &[&["--clock", "real"], TICKS].concat());
@@ -405,14 +402,13 @@ fn boards_do_not_outlive_a_killed_run() {
     bench.assert_clean();
 }
 
-/// A board that is started by hand.
 fn board(bench: &Bench, number: &str, data: &Path) -> Child {
     let mut command = Command::new(rcs_run());
     command.args(["board", number, "linkbar", "--run", bench.name.as_str(), "--data"]).arg(data);
     command.stderr(Stdio::piped()).spawn().expect("rcs-run can be started")
 }
 
-/// Start a board by hand, again and again until it has a place in the run.
+/// Start a board manually, again and again until it has a place in the run.
 fn seated(bench: &Bench, number: &str, data: &Path) -> Child {
     wait_for("a board finds its place free", || {
         let mut child = board(bench, number, data);
@@ -433,7 +429,7 @@ fn boards_are_started_by_hand_and_strangers_are_refused() {
     running.hear(&format!("rcs-run board 8 --run {}", bench.name));
     let data = root().join("data");
 
-    // A board with other task data names what differs, and leaves the place free.
+    // A board with other task data names the difference and leaves the place free.
     bench.scratch.data_with(
         "objects/clevis.blk",
         "ped-table-pos        <= -2135",
@@ -444,13 +440,13 @@ fn boards_are_started_by_hand_and_strangers_are_refused() {
     assert_eq!(stranger.status.code(), Some(2), "{reason}");
     assert!(reason.contains("board 4 cannot take part") && reason.contains("other task data"), "{reason}");
 
-    // One that is killed while the others are still missing leaves its place to the next.
+    // A board that is killed while others are missing leaves its place to the next.
     let mut first = seated(&bench, "2", &data);
     running.hear("board 2 is ready");
     first.kill().expect("it has not been waited for");
     first.wait().expect("it can be waited for");
     running.hear("board 2 has ended");
-    // What a console shows meanwhile.
+    // The state that a console shows meanwhile.
     let there = || {
         let boards = coming_up(&bench.name)?;
         Some(
@@ -493,7 +489,7 @@ fn a_board_that_was_started_by_hand_can_be_replaced_by_hand() {
     lost.wait().expect("it can be waited for");
     let successor = seated(&bench, "2", &data);
     let ended = running.finish();
-    // Its processes do not know how far their commands had come, say so, and the job ends in good order.
+    // Its processes do not know the progress of their commands and report it, and the job ends in order.
     assert_eq!(ended.status, Some(1), "{}", ended.said);
     assert!(ended.last_words().contains(Reason::Restarted.text()), "{}", ended.said);
     for child in boards.into_values().chain([successor]) {

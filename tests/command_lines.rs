@@ -1,4 +1,4 @@
-//! The programs as they are installed: they need no file beside them, and their pages come from their definitions.
+//! The installed programs: they need no other files, and their pages follow from their definitions.
 
 use std::{
     env, fs,
@@ -9,7 +9,7 @@ use std::{
 use serde_json::Value;
 use whole_system_tests::{Scratch, rcs_cell, rcs_console, rcs_log, rcs_neighbour, rcs_run, root};
 
-/// What stands before the pages of the programs.
+/// The head of the page.
 const TOP: &str = "# Command lines\n\n\
     This page is made from the definitions of the programs. Each program prints its own part with `--help`;\n\
     `PROGRAM --generate DIR` writes manual pages and shell completions ([install](install.md)).\n\n";
@@ -34,7 +34,7 @@ fn the_page_of_the_command_lines_matches_the_programs() {
             |file: String| fs::read_to_string(scratch.file("pages").join(file)).expect("the file is made");
         assert!(read(format!("man/{name}.1")).contains(".TH"), "{name} has a manual page");
         assert!(read(format!("completions/{name}.bash")).contains("COMPREPLY"), "{name} has completions");
-        // The page has one title; each program is a section of it.
+        // The page has one title; each program is a section.
         for line in read(format!("{name}.md")).lines() {
             page += &if line.starts_with('#') { format!("#{line}\n") } else { format!("{line}\n") };
         }
@@ -89,11 +89,11 @@ fn built_in_data_are_used_if_named_or_if_there_is_no_directory() {
         serde_json::from_slice::<Value>(&output.stdout).expect("a result")["data"].take()
     };
     assert_eq!(short(&[])["directory"], Value::Null);
-    // A directory that is named must exist, also the default one.
+    // A directory given as an option must exist, also the default one.
     let refused = run(&["--data", "data"]);
     assert_eq!(refused.status.code(), Some(2));
     assert!(text(&refused.stderr).contains("no task data directory data; built-in names"));
-    // A robot at a port stands in a cell of its own.
+    // A robot at a port is in its own cell.
     let at_port = ["--robot", "serial:/dev/null", "--clock", "real"];
     let refused = run(&at_port);
     assert_eq!(refused.status.code(), Some(2));
@@ -117,7 +117,7 @@ fn completions_know_jobs_faults_robots_and_interruptions() {
         let completions =
             fs::read_to_string(scratch.file("pages/completions").join(shell)).expect("the file is made");
         for name in ["turned-part", "lock-ring-stuck", "irb6700", "answer-late", "fault:lock-ring-stuck"] {
-            // The signs that a shell must not read are escaped.
+            // Special characters of the shell are escaped.
             assert!(completions.replace('\\', "").contains(name), "{name} in {shell}");
         }
     }

@@ -1,5 +1,4 @@
-//! What the robot runs into: a job with a collision has not finished, and says what touched what, how deep,
-//! where, and during which command.
+//! Collisions of the robot: a job with a collision fails, and reports objects, depth, place and command.
 
 use std::fs;
 
@@ -10,8 +9,8 @@ use whole_system_tests::{Outcome, Scratch, root, run, run_with};
 /// Errors in the data do not prevent a run.
 const UNCHECKED: &[&str] = &["--unchecked"];
 
-/// Run a job in which `prepare` has put something into the robot's way, or the robot into the way of something. The
-/// check of the data finds most of that beforehand.
+/// Run a job in which `prepare` has put an obstacle into the robot's path, or the robot into an obstacle's. The check
+/// of the data would find most of them before the run.
 fn run_into(job: &str, name: &str, prepare: impl FnOnce(&Scratch)) -> Outcome {
     let outcome = run_with(job, 1, name, UNCHECKED, prepare);
     assert_eq!(outcome.status, Some(1), "{}", outcome.last_words);
@@ -75,7 +74,7 @@ fn a_vise_taught_a_fifth_of_an_inch_off_is_a_collision() {
     );
     let marks = marks(&outcome);
     let red = marks.iter().find(|(_, text)| text.contains("LINKBAR1_BH in fixed_jaw"));
-    // What the cell does in a tick is seen in the next one.
+    // The next tick shows events in the cell.
     let begun = contact["tick"].as_u64().map(|tick| tick + 1);
     assert_eq!(red.map(|(tick, _)| *tick), begun, "the collision is marked when it begins");
     let last = marks.last().map(|(_, text)| text.as_str());
@@ -85,20 +84,20 @@ fn a_vise_taught_a_fifth_of_an_inch_off_is_a_collision() {
     );
 }
 
-/// The marks of contacts in the log: their ticks, and the texts in them.
+/// The contact events in the log: tick and text.
 fn marks(outcome: &Outcome) -> Vec<(u64, String)> {
     let log = Log::open(&outcome.log).expect("a run has a log");
     let text = |data: Vec<u8>| String::from_utf8_lossy(&data).into_owned();
     log.messages("/contacts").map(|(tick, data)| (tick.0, text(data))).collect()
 }
 
-/// An entry `[[contact]]` by its reason, a job that needs it, and what is different in the cell then.
+/// An entry `[[contact]]` by its reason, a job that needs it, and the change of the cell.
 type Need = (&'static str, &'static str, Option<[&'static str; 2]>);
 
-/// Without its entry a thing that lies against another is the nearest miss of the run, in.
+/// Distance of touching objects, in: without its entry, such a contact is the nearest miss of the run.
 const NO_MISS: f64 = 0.005;
 
-/// The end mill is brought to the drum, which holds the drill. The insertion feels for it and fails.
+/// The end mill is brought to the drum, which contains the drill. The guarded insertion fails.
 const DRUM_OCCUPIED: &str = "\
 ** drum tool DRILL-2
 ** tray UNIT_2 1 ENDMILL-1 0 0 0
@@ -167,8 +166,8 @@ fn the_nearest_miss_of_a_good_run_is_reported() {
     assert!(nearest["mover"].is_string() && nearest["command"]["emove"].is_string(), "{nearest}");
 }
 
-/// A sensor of the holster sees nothing. The guarded move then ends where the gripper rests on the holster, or at its
-/// seat, and presses it into nothing.
+/// A sensor of the holster does not respond. The guarded move then ends where the gripper rests on the holster or in
+/// its seat, without pressing.
 #[test]
 fn a_gripper_is_not_pressed_into_a_holster_that_does_not_see_it() {
     for sensor in ["large-1", "small-2"] {

@@ -1,5 +1,5 @@
-//! Tool commands at a drum that is occupied or empty: the failure is true, nothing is damaged, and the printed
-//! remedy leads to a finished job.
+//! Tool commands at an occupied or empty drum: the failure is true, nothing is damaged, and the printed remedy leads
+//! to a finished job.
 
 use std::fs;
 
@@ -15,10 +15,10 @@ const OCCUPIED: &str = "\
 const INSERT: &str = "== INSERT-TOOL ENDMILL-1 +1 -- 0 +1 TOOL-SAFE 0 -- 0";
 const ACQUIRE: &str = "== ACQUIRE-TOOL DRILL-2 +1 -- 0 +1 TOOL-SAFE 0 -- 0";
 const NOT_FREE: &str = "the tool meets something in front of the drum";
-/// What a finished INSERT-TOOL or RELEASE-TOOL reports.
+/// Suffix of a finished INSERT-TOOL or RELEASE-TOOL.
 const UNCONFIRMED: &str = "the tool in the drum (the drum has no sensor)";
 
-/// Run a job without the check of its paths, which finds the tool in the drum beforehand.
+/// Run a job without the check of its paths, which would find the tool in the drum before the run.
 fn job(name: &str, text: &str) -> Outcome {
     let file = format!("{name}.job");
     run_with(&file, 1, name, &["--unchecked"], |scratch: &Scratch| {
@@ -26,19 +26,18 @@ fn job(name: &str, text: &str) -> Outcome {
     })
 }
 
-/// The part with a name, as the cell has it at the end.
+/// The part of a name at the end, in the cell.
 fn part<'a>(outcome: &'a Outcome, name: &str) -> &'a Value {
     let parts = outcome.result["parts"].as_array().expect("a result has parts");
     parts.iter().find(|part| part["name"] == name).expect("the part is in the cell")
 }
 
-/// The statuses of the commands of a run.
 fn statuses(outcome: &Outcome) -> Vec<&str> {
     let commands = outcome.result["commands"].as_array().expect("a result has commands");
     commands.iter().filter_map(|command| command["status"].as_str()).collect()
 }
 
-/// Nothing has touched what it must not touch, and the tool in the drum is where it was.
+/// Assert that there was no forbidden contact and that the tool in the drum is at its place.
 fn assert_undamaged(outcome: &Outcome) {
     assert_eq!(outcome.result["contacts"], Value::Array(Vec::new()), "{}", outcome.last_words);
     let events = outcome.result["events"]["first"].as_array().expect("a result has events");
@@ -105,7 +104,7 @@ fn acquire_tool_from_an_empty_drum_fails_with_a_remedy_that_works() {
     assert_eq!(part(&outcome, "DRILL-2")["held"], true);
 }
 
-/// INSERT-TOOL that the joystick box interrupts after so many ticks, and PAUSE.
+/// INSERT-TOOL that the joystick box interrupts after some ticks, and PAUSE.
 fn interrupted(ticks: u32) -> String {
     format!(
         "** after {ticks} joystick frame WORLD\n\
@@ -119,7 +118,7 @@ fn interrupted(ticks: u32) -> String {
 
 #[test]
 fn an_interrupted_insertion_into_an_occupied_drum_never_finishes() {
-    // While the sensor is calibrated, on the way to the drum, before the contact, in contact.
+    // During the calibration of the sensor, on the way to the drum, before the contact, in contact.
     for ticks in [3, 12, 60, 130, 190, 214] {
         let text = format!("{OCCUPIED}{}{INSERT}\n", interrupted(ticks));
         let outcome = job(&format!("drum-interrupted-{ticks}"), &text);

@@ -1,11 +1,11 @@
-//! Jobs with a robot that is driven by EGM: emulated in simulated time, and a small one in Python over UDP.
+//! Jobs with a robot on EGM: emulated in simulated time, and a small Python robot over UDP.
 
 use std::{net::UdpSocket, process::Command};
 
 use serde_json::Value;
 use whole_system_tests::{rcs_log, rcs_run, root};
 
-/// Seconds after the start of the linkbar at which the robot stands at rest with the part found, and at which it moves.
+/// Seconds after the start of the linkbar at which the robot is at rest with the part found, and at which it moves.
 const STANDS: &str = "50";
 const MOVES: &str = "70";
 
@@ -57,8 +57,8 @@ fn a_bad_network_costs_accuracy_and_no_job() {
     }
 }
 
-/// Below 3 ticks nothing happens. Beyond them the robot is where it was sent if it stood: the link begins again by
-/// itself.
+/// A silence below 3 ticks has no effect. After a longer one a robot that was at rest is at its commanded position:
+/// the link restarts by itself.
 #[test]
 fn a_silence_is_survived_below_three_ticks_and_where_the_robot_stood() {
     for (at, silence, interrupted) in [(MOVES, "0.1", 0), (STANDS, "0.5", 1), (STANDS, "5", 1)] {
@@ -68,7 +68,7 @@ fn a_silence_is_survived_below_three_ticks_and_where_the_robot_stood() {
     }
 }
 
-/// In a motion the robot goes on with its last speed, and comes to rest elsewhere: a person decides.
+/// In a motion the robot continues at its last speed and stops elsewhere: the operator decides.
 #[test]
 fn a_silence_ends_the_motion_and_the_repeated_command_continues_it() {
     let line = "== MOVE LINKBAR1_BH +2 UNIT_1 4 +2 PFIXTURE 0 -- 0";
@@ -88,7 +88,8 @@ fn a_silence_ends_the_motion_and_the_repeated_command_continues_it() {
     assert!(most < 1.0, "the robot never was farther from its target than {most} mm");
 }
 
-/// Far behind its target in a motion, and stopped before that matters: in 4 s of the job instead of at its end.
+/// Far behind its target in a motion, the robot is stopped while that is harmless: after 4 s of the job, not at its
+/// end.
 #[test]
 fn a_robot_that_falls_behind_is_stopped_while_the_distance_is_small() {
     for (job, deviation) in [("turned-part", "6"), ("linkbar", "2"), ("tool-change", "9")] {
@@ -106,7 +107,7 @@ fn a_robot_that_falls_behind_is_stopped_while_the_distance_is_small() {
     }
 }
 
-/// PAUSE takes the position of the robot over, and the command goes on: this robot falls behind at full speed only.
+/// PAUSE adopts the robot's position, and the command continues: this robot falls behind only at full speed.
 #[test]
 fn pause_adopts_the_position_of_a_robot_that_fell_behind() {
     let line = "== MOVE LINKBAR1_BH +2 UNIT_1 4 +2 PFIXTURE 0 -- 0";
@@ -123,7 +124,7 @@ fn pause_adopts_the_position_of_a_robot_that_fell_behind() {
     assert_eq!(result["egm"]["interrupted"], 1);
 }
 
-/// Sends datagrams to a run that waits for a robot: what comes of them is on the terminal and in the result.
+/// Sends datagrams to a run that waits for a robot; terminal and result show the effect.
 #[test]
 fn refused_datagrams_are_counted_and_shown_before_the_first_message() {
     for (option, datagram, counter, reason) in [
@@ -148,7 +149,7 @@ fn refused_datagrams_are_counted_and_shown_before_the_first_message() {
             .spawn()
             .expect("rcs-run can be started");
         for _ in 0..600 {
-            // Before the run listens nobody receives it.
+            // Before the run listens, datagrams are lost.
             let _ = socket.send_to(datagram, ("127.0.0.1", port));
             std::thread::sleep(std::time::Duration::from_millis(10));
         }
@@ -167,7 +168,7 @@ fn refused_datagrams_are_counted_and_shown_before_the_first_message() {
     }
 }
 
-/// A robot whose program has ended meanwhile is lost, with its reason.
+/// A robot whose program has ended is lost, with its reason.
 #[test]
 fn a_robot_that_has_ended_egm_is_lost() {
     let robot = "egm:sim,silent-at=70,silent-for=2,timeout=1";
@@ -189,12 +190,12 @@ fn the_same_seed_is_the_same_run_and_its_log_replays_to_the_bit() {
     assert!(replay.status.success(), "{}", String::from_utf8_lossy(&replay.stdout));
 }
 
-/// How often a run in real time is begun if the link fails: a machine that has other things to do may hold up the peer
-/// for longer than the link bears.
+/// Starts of a run in real time if the link fails: a busy machine may delay the peer for longer than the link
+/// tolerates.
 const ATTEMPTS: u32 = 3;
 
 /// The first seconds of the linkbar with a peer that shares no code with the project: exit status and result of the
-/// run, and what the peer says.
+/// run, and the peer's output.
 fn drive_peer() -> (i32, Value, Value) {
     let port = UdpSocket::bind("127.0.0.1:0").and_then(|socket| socket.local_addr()).expect("a port").port();
     // The T3's end plate at HOME, mm, and its orientation.
@@ -222,7 +223,7 @@ fn a_robot_written_from_the_schema_alone_is_driven() {
         eprintln!("left out: python3 is not there");
         return;
     }
-    // It is built before the peer begins to send.
+    // Build before the peer begins to send.
     let _ = rcs_run();
     let driven =
         (1..ATTEMPTS).map(|_| drive_peer()).find(|(_, result, _)| result["failure"]["table"] != "LINK");

@@ -1,4 +1,4 @@
-//! How a run ends that its user stops: signals, a terminal that disappears, the background of a shell.
+//! Ends of a run by its user: signals, a lost terminal, the background of a shell.
 
 use std::{
     fs::File,
@@ -20,7 +20,7 @@ use rustix::{
 use tempfile::tempdir;
 use whole_system_tests::{rcs_console, rcs_run, root};
 
-/// Longest time for anything to happen.
+/// Time limit of each action.
 const PATIENCE: Duration = Duration::from_secs(60);
 /// Exit status of a run that its user has stopped.
 const STOPPED: Option<i32> = Some(3);
@@ -33,7 +33,7 @@ fn wait_for(mut condition: impl FnMut() -> bool) {
     }
 }
 
-/// A run of the linkbar in real time, whose first ticks are in its log.
+/// A run of the linkbar in real time, with its first ticks in the log.
 fn moving(log: &Path) -> Child {
     let child = Command::new(rcs_run())
         .args(["linkbar", "--clock", "real", "--json", "--log"])
@@ -77,7 +77,7 @@ fn two_signals_at_once_stop_a_run_in_order() {
     assert!(log.complete && log.end.is_some(), "the log has no end");
 }
 
-/// Both ends of a terminal, which this program does not pass on.
+/// Both ends of a terminal, without inheritance by child processes.
 fn terminal() -> (File, OwnedFd) {
     let flags = pty::OpenptFlags::RDWR | pty::OpenptFlags::NOCTTY | pty::OpenptFlags::CLOEXEC;
     let master = pty::openpt(flags).unwrap();
@@ -89,7 +89,7 @@ fn terminal() -> (File, OwnedFd) {
     (File::from(master), slave)
 }
 
-/// `tmux kill-session` with `rcs-run --console` in it. The run waits for its console, so that both have ended.
+/// `tmux kill-session` with `rcs-run --console` in it. The run waits for its console, so both have ended.
 #[test]
 fn a_terminal_that_disappears_ends_console_and_run() {
     assert!(rcs_console().is_file());
@@ -124,7 +124,7 @@ fn a_terminal_that_disappears_ends_console_and_run() {
     assert!(Log::open(&log).unwrap().complete);
 }
 
-/// The output of a command line in a shell with job control, on a terminal of its own.
+/// The output of a command line in a shell with job control, on its own terminal.
 fn in_a_shell(line: &str) -> String {
     let command = format!("bash -c 'set -m; {line}'");
     let output = Command::new("script")
@@ -139,7 +139,7 @@ fn in_a_shell(line: &str) -> String {
 #[test]
 fn a_run_in_the_background_draws_no_progress() {
     let run = format!("{} --ticks 50 --clock real --log none --shared-memory off", rcs_run().display());
-    // Text of the progress line only: the summary has other words.
+    // Text of the progress line only; the summary has other words.
     let progress = "Task: PAUSE";
     let foreground = in_a_shell(&run);
     assert!(foreground.contains(progress), "{foreground}");

@@ -1,5 +1,5 @@
-//! Emergency stops in the middle of a job: the arm sags, the run says what it has run into and ends with exit status 3; and a job that
-//! starts the robot again goes on.
+//! Emergency stops in the middle of a job: the arm sags, the run reports its collisions and ends with exit status 3.
+//! A job that restarts the robot continues.
 
 use std::fs;
 
@@ -10,7 +10,7 @@ use whole_system_tests::{Outcome, Scratch, run};
 /// Exit status of a run that an emergency stop has ended.
 const STOPPED: Option<i32> = Some(3);
 
-/// The first lines of the linkbar: the blank goes from the tray into the vise.
+/// The first lines of the linkbar: the blank moves from the tray to the vise.
 const BLANK_TO_VISE: &str = "** tray UNIT_1 4 LINKBAR1_BH\n\
      ** vise partial PFIXTURE\n\
      {stop}\
@@ -23,7 +23,7 @@ fn job(name: &str, text: &str) -> Outcome {
     })
 }
 
-/// What the sagging arm has run into: the names of the obstacles.
+/// The obstacles that the sagging arm has touched.
 fn touched(outcome: &Outcome) -> Vec<&str> {
     let touched = outcome.result["emergency_stop"]["touched"].as_array().expect("an emergency has a list");
     touched.iter().map(|contact| contact["obstacle"].as_str().expect("an obstacle has a name")).collect()
@@ -37,7 +37,7 @@ fn assert_replays(outcome: &Outcome) {
     assert!(report.is_same() && report.complete);
 }
 
-/// The run ended by the emergency, the arm has come to rest, and the log has it all.
+/// Assert that the emergency ended the run, that the arm has come to rest, and that the log is complete.
 fn assert_stopped(outcome: &Outcome, who: &str) {
     assert_eq!(outcome.status, STOPPED, "{}", outcome.last_words);
     let stop = &outcome.result["emergency_stop"];
@@ -55,7 +55,7 @@ fn assert_stopped(outcome: &Outcome, who: &str) {
     assert_replays(outcome);
 }
 
-/// The tick in which the move into the vise is over, less so many ticks.
+/// The tick some ticks before the end of the move into the vise.
 fn before_the_end_of_the_move(ticks: u64) -> u64 {
     let whole = job("whole", &BLANK_TO_VISE.replace("{stop}", ""));
     assert_eq!(whole.status, Some(0), "{}", whole.last_words);
@@ -65,7 +65,7 @@ fn before_the_end_of_the_move(ticks: u64) -> u64 {
 
 #[test]
 fn over_the_vise_the_arm_runs_into_it() {
-    // A second before the blank is in the vise.
+    // One second before the blank is in the vise.
     let stop = format!("** after {} estop joystick-box\n", before_the_end_of_the_move(25));
     let outcome = job("vise", &BLANK_TO_VISE.replace("{stop}", &stop));
     assert_stopped(&outcome, "the E-stop on the joystick box was pressed");
@@ -76,7 +76,7 @@ fn over_the_vise_the_arm_runs_into_it() {
 
 #[test]
 fn in_front_of_the_vise_the_arm_sinks_and_keeps_the_part() {
-    // Four seconds before: nothing but the fingers has the blank. Later the jaws catch it as well, and draw it out.
+    // Four seconds before, only the fingers hold the blank. Later the jaws catch it as well, and pull it out.
     let stop = format!("** after {} estop joystick-box\n", before_the_end_of_the_move(100));
     let outcome = job("kept", &BLANK_TO_VISE.replace("{stop}", &stop));
     assert_stopped(&outcome, "the E-stop on the joystick box was pressed");
@@ -87,7 +87,7 @@ fn in_front_of_the_vise_the_arm_sinks_and_keeps_the_part() {
 #[test]
 fn a_sagging_arm_at_home_and_safe_hits_no_body() {
     for place in ["HOME", "SAFE"] {
-        // The stop comes behind the last command, and ends the job none the less.
+        // The stop follows the last command, and still ends the job.
         let text = format!("== MOVE -- +0 -- 0 +0 {place} 0 -- 0\n** estop pedestal\n** wait 10\n");
         let outcome = job(place, &text);
         assert_stopped(&outcome, "the E-stop near the pedestal was pressed");
@@ -97,7 +97,7 @@ fn a_sagging_arm_at_home_and_safe_hits_no_body() {
     }
 }
 
-/// A stop in the middle of a move, and the start-up of IV.3.3 after it.
+/// A stop in the middle of a move, followed by the start-up of IV.3.3.
 const RESTART: &str = "** after 60 estop terminals\n\
      == MOVE -- +0 -- 0 +0 SAFE 0 -- 0\n\
      ** wait 100\n\
@@ -110,7 +110,7 @@ const RESTART: &str = "** after 60 estop terminals\n\
      ** panel cycle-start\n\
      ** wait 25\n";
 
-/// Restart the link, and find the place at which the robot stands.
+/// Restart the link, and find the robot's place.
 const PAUSE: &str = "== PAUSE -- +0 -- 0 +0 -- 0 -- 0\n";
 
 #[test]

@@ -1,8 +1,7 @@
-//! Faults in the cell: how each run ends. It may finish, or fail with a reason that a person understands;
-//! what it may not do is crash, hang, or say that it has finished when it has not.
+//! Faults in the cell and the ends of their runs. A run may finish, or fail with an understandable reason. It must
+//! not crash, hang, or falsely report that it has finished.
 //!
-//! `RCS_FAULT_RUNS` is the number of random schedules that are tried, a handful if it is not set;
-//! `RCS_FAULT_SEED` the first of their seeds.
+//! `RCS_FAULT_RUNS` is the number of random schedules (default: a few), `RCS_FAULT_SEED` the first of their seeds.
 
 use std::{env, fmt::Write as _, fs, process::Command};
 
@@ -11,19 +10,19 @@ use serde_json::{Value, json};
 use whole_system_tests::{Outcome, Scratch, rcs_log, run, run_with};
 
 enum Ends {
-    /// Finished, the part where it belongs.
+    /// The job finishes with its part in place.
     Well,
-    /// Exit status; kind, process and words of what went wrong first.
+    /// Exit status, and kind, process and words of the first failure.
     Failing(i32, &'static str, &'static str, &'static str),
 }
 use Ends::{Failing, Well};
 
-/// Run a job with a file of faults from the data directory.
+/// Run a job with a fault file of the data directory.
 fn with(job: &str, faults: &str) -> Outcome {
     run(job, 1, &format!("{job}-{faults}"), |scratch| scratch.faults_of(faults))
 }
 
-/// True if all parts that a finished job leaves in the cell are where it should have put them.
+/// True if all parts of a finished job are at their places.
 fn in_place(job: &str, result: &Value) -> bool {
     let expected: &[(&str, &str, u64, f64)] = match job {
         "linkbar" => &[("LINKBAR1", "UNIT_1", 1, 0.25)],
@@ -44,7 +43,7 @@ fn in_place(job: &str, result: &Value) -> bool {
     })
 }
 
-/// What holds for every run, whatever its faults.
+/// Properties of every run, with any faults.
 fn assert_sound(what: &str, outcome: &Outcome) {
     let said = &outcome.last_words;
     assert!(matches!(outcome.status, Some(0 | 1 | 3)), "{what}: {:?} {said}", outcome.status);
@@ -92,7 +91,8 @@ fn ask(outcome: &Outcome, arguments: &[&str]) -> String {
     String::from_utf8_lossy(&output.expect("rcs-log can be started").stdout).into_owned()
 }
 
-/// All programs say that the same went wrong first: the last line of the run, `info`, `why` and the console's `c`.
+/// Assert that all programs name the same first failure: the last line of the run, `info`, `why` and the console's
+/// `c`.
 pub fn assert_same_account(what: &str, outcome: &Outcome) {
     let answer = |arguments: &[&str]| -> Value {
         serde_json::from_str(&ask(outcome, arguments)).unwrap_or_else(|error| panic!("{what}: {error}"))
@@ -161,7 +161,7 @@ fn lagging_egm_robot_is_off_its_path_on_every_surface() {
     assert_same_account("a lagging EGM robot", &outcome);
 }
 
-/// IV.3.3 step 11: with the robot at HOME, the reset of the joint repairs its reading, and the job goes on.
+/// IV.3.3 step 11: with the robot at HOME, the reset of the joint corrects its reading, and the job continues.
 #[test]
 fn a_reset_at_home_repairs_an_offset_resolver() {
     const RESET: &str = "** resolvers manual\n** resolvers joint 2\n** resolvers auto\n";
@@ -184,7 +184,7 @@ fn a_reset_at_home_repairs_an_offset_resolver() {
     assert!(not.last_words.contains("the robot is at no known location"), "{}", not.last_words);
 }
 
-/// A linkbar on a line that has a fault at each of these ticks.
+/// A linkbar on a line with a fault at each of these ticks.
 fn linkbar_with(fault: &str, ticks: [u32; 4]) -> Outcome {
     let name = fault.split('"').nth(1).unwrap_or("fault");
     run("linkbar", 1, &format!("line-{name}"), |scratch| {
@@ -203,7 +203,7 @@ fn a_linkbar_survives_an_answer_that_is_lost_damaged_or_late_and_a_silence() {
             .map(|part| [part["name"].clone(), part["location"].clone(), part["sector"].clone()]);
         places.collect::<Vec<_>>()
     };
-    // Lost, damaged, late by 5 ticks, and nothing for 3 s.
+    // Lost, damaged, late by 5 ticks, and silent for 3 s.
     let faults = [
         "kind = \"drop\"\n",
         "kind = \"flip\"\n",
@@ -221,7 +221,7 @@ fn a_linkbar_survives_an_answer_that_is_lost_damaged_or_late_and_a_silence() {
     }
 }
 
-/// The id pins fail for 20 ticks while the fingers open, or close on the blank.
+/// The id pins fail for 20 ticks while the fingers open or close on the blank.
 #[test]
 fn a_command_that_failed_is_sent_again_if_that_was_asked_for() {
     for at in [800, 1305] {
@@ -249,7 +249,7 @@ fn a_command_that_failed_is_sent_again_if_that_was_asked_for() {
     }
 }
 
-/// The sensor of a holster fails for good. What a person has to do is said, and not tried.
+/// The sensor of a holster fails permanently. The run names the operator's action and does not retry.
 #[test]
 fn failures_for_a_person_are_reported_and_not_retried() {
     let faults = |scratch: &Scratch| scratch.faults_of("holster-eye-off");
@@ -264,7 +264,7 @@ fn failures_for_a_person_are_reported_and_not_retried() {
     assert_eq!(outcome.result["retries"].as_array().map(Vec::len), Some(0), "{}", outcome.result["retries"]);
 }
 
-/// A linkbar job whose blank throws back so much light.
+/// A linkbar job with a blank of this reflectance.
 fn with_reflectance(reflectance: f64) -> Outcome {
     run("linkbar", 1, &format!("reflectance-{reflectance}"), |scratch| {
         scratch.data_with(
@@ -290,7 +290,6 @@ fn a_dark_blank_and_a_shiny_one_are_found_with_another_exposure() {
 struct Numbers(u64);
 
 impl Numbers {
-    /// From 0 to `end` - 1.
     fn below(&mut self, end: u64) -> u64 {
         // splitmix64
         self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);

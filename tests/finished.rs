@@ -1,5 +1,5 @@
-//! `finished` means done: a run whose parts are elsewhere than its commands say has failed, and so has one in
-//! which a command came to nothing, whatever the statuses were.
+//! `finished` means done: a run with misplaced parts, or with a command without effect, has failed, independent of
+//! its statuses.
 
 use std::fs;
 
@@ -8,7 +8,7 @@ use whole_system_tests::{Outcome, Scratch, run};
 /// The last command of the linkbar.
 const PUT_BACK: &str = "== TRANSFER LINKBAR1 +2 PFIXTURE 0 +2 UNIT_1 1 SAFE 0";
 
-/// A run that has failed, with a last line that holds all of `said`.
+/// Assert that the run has failed with a last line that contains all of `said`.
 fn assert_fails(outcome: &Outcome, said: &[&str]) {
     assert_eq!(outcome.status, Some(1), "{}", outcome.last_words);
     for words in said {
@@ -25,7 +25,7 @@ fn job(name: &str, text: &str) -> Outcome {
 
 #[test]
 fn a_part_in_another_sector_than_the_command_said_has_not_arrived() {
-    // While the robot runs, the sectors of the tray are taught again, 5.2 in beside their places.
+    // During the run the sectors of the tray are taught again, 5.2 in off their places.
     let taught = fs::read_to_string(whole_system_tests::root().join("data/movetables.blk"))
         .expect("the movetables can be read");
     let block =
@@ -50,7 +50,7 @@ fn a_part_in_another_sector_than_the_command_said_has_not_arrived() {
 
 #[test]
 fn a_part_that_slid_in_the_fingers_lies_away_from_its_place() {
-    // Two pounds hold the part, and give way where it rubs.
+    // A grip force of two pounds yields when the part rubs.
     let outcome = run("linkbar", 1, "finished-force", |scratch| {
         let weak = "-obj-  LINKBAR1         2     0300   0060   2 ";
         scratch.data_with("objects/linkbar.blk", "-obj-  LINKBAR1         2     0300   0060   30", weak);
@@ -60,7 +60,7 @@ fn a_part_that_slid_in_the_fingers_lies_away_from_its_place() {
 
 #[test]
 fn tolerances_are_in_the_cell_description() {
-    // The linkbar lies 0.15 in off by its data.
+    // The data place the linkbar 0.15 in off.
     let outcome = run("linkbar", 1, "finished-near", |scratch| {
         scratch.data_with("cell.toml", "placing_tolerance = 0.25", "placing_tolerance = 0.10");
     });
@@ -69,7 +69,7 @@ fn tolerances_are_in_the_cell_description() {
 
 #[test]
 fn a_part_that_was_pushed_out_of_the_fingers_is_named_with_where_it_lies() {
-    // The jaws push it out of fingers that close with little force. Where it comes to lie depends on the seed.
+    // The jaws push it out of fingers that close with little force. Its final place depends on the seed.
     let job = "** tray UNIT_1 4 LINKBAR1_BH\n\
                ** vise partial PFIXTURE\n\
                == MOVE LINKBAR1_BH +2 UNIT_1 4 +2 PFIXTURE 0 -- 0\n\
@@ -85,7 +85,7 @@ fn a_part_that_was_pushed_out_of_the_fingers_is_named_with_where_it_lies() {
             &outcome,
             &["LINKBAR1_BH is ", " from PFIXTURE was to leave it at PFIXTURE, within 0.25 in"],
         );
-        // The part moved in the fingers, or met a jaw, before it fell.
+        // The part slipped in the fingers, or touched a jaw, before it fell.
         let failure = &outcome.result["failure"];
         let causes = ["a confirmation is false: E-move reports MOV-OBJ-TO", "the robot ran into movable_jaw"];
         let first = failure["text"].as_str().expect("a failure has a text");

@@ -1,4 +1,4 @@
-//! Living runs are found by other programs: from their start to their end, from outside a service and a container.
+//! Other programs find live runs from start to end, also outside a service or a container.
 
 use std::{
     path::Path,
@@ -11,10 +11,10 @@ use rustix::process::{Pid, Signal, geteuid, kill_process};
 use tempfile::{TempDir, tempdir};
 use whole_system_tests::{rcs_run, root};
 
-/// Longest time for anything to happen.
+/// Time limit of each action.
 const PATIENCE: Duration = Duration::from_secs(60);
 
-/// A directory of runs for one test, which cannot be in a directory for temporary files.
+/// A directory of runs for one test, outside the directories for temporary files.
 struct Runs(TempDir);
 
 impl Runs {
@@ -22,7 +22,7 @@ impl Runs {
         Self(TempDir::new_in("/dev/shm").unwrap())
     }
 
-    /// A program in this directory of runs.
+    /// A program with this directory of runs.
     fn program(&self, program: &Path, arguments: &[&str]) -> Command {
         let mut command = Command::new(program);
         command.args(arguments).env("RCS_RUNS", self.0.path()).current_dir(root()).stdin(Stdio::null());
@@ -56,7 +56,7 @@ fn text_of(bytes: &[u8]) -> String {
     String::from_utf8_lossy(bytes).into_owned()
 }
 
-/// A run, which is stopped at the end of the test.
+/// A run that is stopped at the end of the test.
 struct Running(Child);
 
 impl Running {
@@ -67,7 +67,7 @@ impl Running {
 
 impl Drop for Running {
     fn drop(&mut self) {
-        // A run that has ended needs no signal.
+        // An ended run needs no signal.
         let _ = kill_process(Pid::from_child(&self.0), Signal::TERM);
         let _ = self.0.wait();
     }
@@ -94,7 +94,7 @@ fn a_run_with_a_private_and_emptied_tmp_is_found() {
     let script = "mount -t tmpfs tmpfs /tmp && mount -t tmpfs tmpfs /var/tmp && exec \"$@\"";
     let mut command = runs.program(Path::new("unshare"), &["--mount", "sh", "-c", script, "sh"]);
     command.arg(rcs_run()).args(["linkbar", "--clock", "real", "--log", "none", "--run", "service"]);
-    // The usual directory of runs is what this test is about.
+    // This test is about the usual directory of runs.
     command.env_remove("RCS_RUNS");
     let running = Running::begin(command);
     let usual = |arguments: &[&str]| {

@@ -1,13 +1,12 @@
-//! Golden runs: what the controller did, in small files beside the source, so that a change shows what else it does.
+//! Golden runs: recorded behaviour of the controller in small files, so that a change shows all its effects.
 //!
-//! `goldens/scenarios.toml` lists the runs: a job, a seed, what goes wrong in it, and how it is to end. The
-//! program `goldens` makes the runs and writes two files for each: `NAME.golden` with the inputs and the
-//! digests of the outputs, and `NAME.txt`, which a person reads: commands with their durations, warnings and
-//! errors, which rows of which tables fired. The test `goldens` replays the inputs through today's
-//! controller, which takes no time, and compares both.
+//! `goldens/scenarios.toml` lists the runs: a job, a seed, its faults, and the expected end. The program `goldens`
+//! makes the runs and writes two files each: `NAME.golden` with the inputs and the digests of the outputs, and
+//! `NAME.txt` for readers, with commands, durations, warnings, errors, and the rows that fired. The test `goldens`
+//! replays the inputs through the present controller within moments and compares both.
 //!
-//! A golden cannot be replayed with other records. Before it is made again, [`crate::trace`] and
-//! [`crate::compare`] show that the new version behaves as the old one.
+//! A golden cannot be replayed with other records. Before it is made again, [`crate::trace`] and [`crate::compare`]
+//! show that the new version behaves like the old one.
 
 use std::{
     fs, io,
@@ -31,29 +30,29 @@ use crate::{
 /// The command that makes all goldens again.
 pub const COMMAND: &str = "cargo run --release -p whole-system-tests --bin goldens";
 
-/// A run and how it is to end.
+/// A run and its expected end.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Scenario {
     pub name: String,
-    /// What it shows, in a sentence.
+    /// Purpose, in one sentence.
     pub about: String,
-    /// The job, of the data directory.
+    /// A job of the data directory.
     pub job: String,
     #[serde(default = "one")]
     pub seed: u64,
-    /// The fault plan, of the directory `faults` of the data.
+    /// A fault plan of the data's directory `faults`.
     pub faults: Option<String>,
     /// Exit status of `rcs-run`.
     #[serde(default)]
     pub status: i32,
-    /// What its last words have to say; nothing for a job that finishes.
+    /// Required text of the last words; empty for a job that finishes.
     #[serde(default)]
     pub says: String,
-    /// Changes of files of the data directory, in this order.
+    /// Changes of files of the data directory, in order.
     #[serde(default)]
     pub change: Vec<Change>,
-    /// Files that are added to the data directory.
+    /// Files added to the data directory.
     #[serde(default)]
     pub file: Vec<NewFile>,
 }
@@ -62,7 +61,7 @@ const fn one() -> u64 {
     1
 }
 
-/// A piece of a file of the data directory, and what stands there instead.
+/// A piece of a file of the data directory, and its replacement.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Change {
@@ -71,7 +70,7 @@ pub struct Change {
     pub to: String,
 }
 
-/// A file that the data directory does not have.
+/// An additional file.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct NewFile {
@@ -86,7 +85,7 @@ struct Scenarios {
     golden: Vec<Scenario>,
 }
 
-/// Why a golden could not be made.
+/// Reason why a golden could not be made.
 #[derive(Debug, thiserror::Error)]
 pub enum Failed {
     #[error("{}: {source}", path.display())]
@@ -95,7 +94,7 @@ pub enum Failed {
     Change { file: String, from: String },
     #[error("rcs-run cannot be started: {0}")]
     Start(io::Error),
-    /// The run ended in another way than it should.
+    /// The run did not end as expected.
     #[error("exit status {expected} and {says:?} were expected, {} came with {last_words:?}", status(.found))]
     Ending {
         expected: i32,
@@ -104,13 +103,13 @@ pub enum Failed {
         /// The last line on standard error.
         last_words: String,
     },
-    /// The log is none that a golden can be made of.
+    /// The log is not suitable for a golden.
     #[error(transparent)]
     Log(#[from] record::ReadError),
     /// The golden cannot be made or replayed.
     #[error(transparent)]
     Golden(#[from] GoldenError),
-    /// The replay does something else than the run.
+    /// The replay differs from the run.
     #[error("the replay differs from the run that it was made of, from tick {0} to {1}")]
     Difference(u64, u64),
     #[error("the run has no log that can be read: {source}; its last line is {last_line:?}")]
@@ -162,29 +161,29 @@ impl Scenario {
         directory().join(&self.name).with_added_extension("txt")
     }
 
-    /// Run it and make the golden of the run; nothing is written.
+    /// Run it and make the golden, without writing it.
     ///
     /// # Errors
-    /// [`Failed`], among others if the run ends in another way than it should.
+    /// [`Failed`], for example if the run does not end as expected.
     pub fn make(&self) -> Result<Made, Failed> {
         self.made_of(&self.run()?)
     }
 
-    /// Run it and write the trace of the run; gives how it ended, and the number of ticks.
+    /// Run it and write its trace. Returns its end and the number of ticks.
     ///
     /// # Errors
-    /// [`Failed`]. To end in another way than it should is no error: the trace says how.
+    /// [`Failed`]. An unexpected end is not an error: it is part of the trace.
     pub fn trace(&self, directory: &Path) -> Result<(Ending, u64), Failed> {
         let run = self.run()?;
         let ticks = trace::write(&run.log()?, &run.ending, &trace::path(directory, &self.name))?;
         Ok((run.ending, ticks))
     }
 
-    /// Run it and compare the run with its trace in a directory; if nothing differs and `make` is set, also make
-    /// the golden.
+    /// Run it and compare the run with its trace in a directory. Without a difference and with `make`, also make the
+    /// golden.
     ///
     /// # Errors
-    /// [`Failed`]. A difference is no error: it is in the result.
+    /// [`Failed`]. A difference is part of the result, not an error.
     pub fn against(
         &self,
         directory: &Path,
@@ -235,7 +234,7 @@ impl Scenario {
         for new in &self.file {
             write(&scratch.file("data").join(&new.name), &new.text)?;
         }
-        // Nothing here depends on where the directory lies: equal runs make equal goldens.
+        // The directory has no effect: equal runs make equal goldens.
         let mut command = Command::new(rcs_run());
         command.args([
             "run",
@@ -257,10 +256,10 @@ impl Scenario {
         Ok(Run { ending: Ending { status: output.status.code(), last_line }, scratch })
     }
 
-    /// What stands above the summary: what the replay cannot know.
+    /// The text above the summary, which a replay cannot produce.
     #[must_use]
     pub fn heading(&self, last_words: &str) -> String {
-        // The last words of a job that finishes are no more than remarks on the data.
+        // The last words of a finished job are only remarks on the data.
         let said =
             if self.status == 0 || last_words.is_empty() { String::new() } else { format!(": {last_words}") };
         format!("# {}\n# exit status {}{said}\n\n", self.about, self.status)
@@ -281,7 +280,7 @@ impl Run {
 
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Ending {
-    /// Exit status; none after a signal.
+    /// `None` after a signal.
     pub status: Option<i32>,
     /// The last line on standard error.
     pub last_line: String,

@@ -1,4 +1,4 @@
-//! The golden runs, replayed: the same bits, and the same words for them.
+//! The golden runs, replayed: the same bits and the same summaries.
 
 use std::{
     fs,
@@ -10,7 +10,7 @@ use record::golden;
 use similar::TextDiff;
 use whole_system_tests::golden::{COMMAND, Scenario, directory, scenarios};
 
-/// What is not as it was; empty if all is.
+/// The differences; empty without any.
 fn replayed(scenario: &Scenario) -> String {
     let name = &scenario.name;
     let kept = match fs::read_to_string(scenario.text()) {

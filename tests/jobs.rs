@@ -1,5 +1,5 @@
-//! The jobs of the data directory: each ends with every part where it put it; and what is said when something
-//! goes wrong in the middle of one.
+//! The jobs of the data directory: each ends with every part at its place. Failures in the middle of a job are
+//! reported.
 
 use std::fs;
 
@@ -8,7 +8,7 @@ use rcs_core::plain::from_bytes;
 use record::{Log, replay};
 use whole_system_tests::{Outcome, Scratch, run};
 
-/// A part at the end of a job: name, location, sector, and how far from its place it may lie, inches.
+/// A part at the end of a job: name, location, sector, and greatest distance from its place, inches.
 type Placed = (&'static str, &'static str, u32, f64);
 
 const LINKBAR: &[Placed] = &[("LINKBAR1", "UNIT_1", 1, 0.2)];
@@ -79,7 +79,7 @@ fn a_shift_is_all_of_them_in_a_row() {
     assert_ends_well("shift", 1, &[LINKBAR, CLEVIS, TURNED_PART, TOOL_CHANGE]);
 }
 
-/// Run a job in which `prepare` has put something wrong: it fails, says why, and its log replays.
+/// Assert that a job that `prepare` has disturbed fails with this reason, and that its log replays.
 fn assert_fails_for(job: &str, name: &str, reason: Reason, prepare: impl FnOnce(&Scratch)) {
     let outcome = run(job, 1, name, prepare);
     let said = &outcome.last_words;
@@ -112,7 +112,7 @@ fn another_part_is_not_recognised() {
 #[test]
 fn a_part_that_slips_out_of_the_fingers_is_lost() {
     assert_fails_for("clevis", "slips", Reason::ObjectLost, |scratch| {
-        // Enough for its weight, which `check` asks for, and not for the way.
+        // Enough for its weight, which `check` requires, and not for the motion.
         scratch.data_with(
             "cell.toml",
             "friction = 0.30                  # pads on steel",
@@ -149,7 +149,7 @@ fn a_tool_is_not_forced_into_the_drum() {
     });
 }
 
-/// A location above HOME, and the ways to it and back, taught while the robot runs.
+/// A location above HOME and its trajectories, taught while the robot runs.
 const HIGH: &str = "BLOCK# 990 OFFSET 21000
    0 -5022 1136    0 -7145 -983
    3000 -7145 -983  -pose- ... HIGH-POS

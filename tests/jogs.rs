@@ -1,5 +1,5 @@
-//! A robot that the joystick box has moved, and the command that is sent next: the command ends at its goal, or it is
-//! refused with the distance (docs/design/recovery.md "Return").
+//! The first command after a motion by the joystick box: it ends at its goal, or is refused with the distance
+//! (docs/design/recovery.md "Return").
 
 use std::fs;
 
@@ -29,7 +29,7 @@ fn job(name: &str, text: &str) -> Outcome {
     })
 }
 
-/// Where the resolvers say that the hand is at the end of a run.
+/// Pose of the hand at the end of a run, by the resolvers.
 fn hand(outcome: &Outcome) -> Frame {
     let log = Log::open(&outcome.log).expect("the log can be read");
     let last = log.ticks().last().expect("a run has ticks").expect("a sound tick");
@@ -57,7 +57,7 @@ fn a_short_jog_is_undone_by_the_move_to_the_same_place() {
 fn a_long_jog_is_undone_by_the_move_to_the_same_place() {
     let moved = jog(&["frame WORLD", "stick 1000 0 50"]);
     assert_at_home(&job("long-jog", &(TO_HOME.to_owned() + &moved + TO_HOME)));
-    // Two, one after the other, in several frames, with rotations.
+    // Two jogs in several frames, with rotations.
     let first = jog(&["frame WORLD", "stick 0 700 40", "frame OFF", "frame TOOL", "stick -500 500 30"]);
     let second =
         jog(&["frame TOOL-ORIGIN", "stick 500 0 20", "frame OFF", "frame WRIST-ORIGIN", "stick 0 600 20"]);
@@ -96,7 +96,7 @@ fn a_jog_that_was_not_recorded_ends_straight_at_a_resting_place() {
     ]);
     let outcome = job("broken", &(TO_HOME.to_owned() + &hold + TO_HOME));
     assert_at_home(&outcome);
-    // From too far away it is refused, with the way there.
+    // From too far away the command is refused, with the way there.
     let far = jog(&["frame WORLD", "stick 500 0 20", "hold EMOVE", "stick 1000 0 150", "free EMOVE"]);
     let outcome = job("far", &(TO_HOME.to_owned() + &far + TO_HOME));
     let said = &outcome.last_words;
@@ -107,7 +107,7 @@ fn a_jog_that_was_not_recorded_ends_straight_at_a_resting_place() {
     );
 }
 
-/// A linkbar in the fingers over its new sector of the tray, where a jog has moved it up.
+/// A linkbar in the fingers above its new sector of the tray, after a jog upwards.
 #[test]
 fn a_part_moved_off_its_sector_is_released_in_it() {
     for moves in [&["frame WORLD", "up 12"][..], &["frame WORLD", "up 80"]] {
@@ -130,7 +130,7 @@ fn a_part_in_the_vise_is_released_only_at_its_destination() {
     let begin = "** tray UNIT_1 4 LINKBAR1_BH\n** vise partial PFIXTURE\n\
                  == MOVE LINKBAR1_BH +2 UNIT_1 4 +2 PFIXTURE 0 -- 0\n** vise close PFIXTURE\n";
     let away = jog(&["frame WORLD", "stick 0 100 40"]);
-    // The box has taken the robot over in the first five ticks of the way there.
+    // The box controls the robot in the first five ticks of the motion to it.
     let back = jog(&["frame WORLD", "stick 0 -100 35"]);
     let position = "== POSITION H-LINKBAR1_BH +1 PFIXTURE 0 +0 -- 0 -- 0\n";
     let again = position.replace('\n', " expect error\n");
@@ -144,7 +144,7 @@ fn a_part_in_the_vise_is_released_only_at_its_destination() {
 
 #[test]
 fn a_jog_in_a_holster_leaves_only_the_gripper_change() {
-    // The change of the gripper begins in the 700th tick or so.
+    // The gripper change begins at about the 700th tick.
     let text = format!(
         "** tray UNIT_2 7 SHAFT_BH 0 0 0\n\
          ** after 700 joystick velocity 500\n\

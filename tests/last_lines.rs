@@ -1,4 +1,5 @@
-//! The last lines of a run on a terminal: first where the parts are, then commands that can be pasted into a shell.
+//! The last lines of a run on a terminal: first the places of the parts, then commands that can be pasted into a
+//! shell.
 
 use std::{
     io::Read as _,
@@ -11,7 +12,7 @@ use std::{
 use rustix::process::{Pid, Signal, kill_process};
 use whole_system_tests::{Scratch, rcs_console, rcs_log, rcs_run};
 
-/// A command whose two outputs are one stream, as on a terminal, started by its path and not by cargo.
+/// A command with both outputs in one stream, as on a terminal, started by its path and not by cargo.
 fn on_terminal(scratch: &Scratch, line: &str) -> Command {
     let mut shell = Command::new("sh");
     shell.args(["-c", &format!("exec {line} 2>&1")]).current_dir(scratch.file("."));
@@ -19,7 +20,7 @@ fn on_terminal(scratch: &Scratch, line: &str) -> Command {
     shell
 }
 
-/// The output of a command, and whether it succeeded.
+/// The output of a command, and its success.
 fn shown(scratch: &Scratch, line: &str) -> (String, bool) {
     let output = on_terminal(scratch, line).output().expect("a shell can be started");
     (String::from_utf8_lossy(&output.stdout).into_owned(), output.status.success())
@@ -45,7 +46,7 @@ fn line_of(output: &str, start: &str) -> usize {
 
 #[test]
 fn finished_run_ends_with_the_place_of_the_part_and_the_next_commands() {
-    // The commands need the other programs beside rcs-run.
+    // The commands need the other programs next to rcs-run.
     let (_, _) = (rcs_log(), rcs_console());
     let scratch = Scratch::new("last-finished");
     let output = run(&scratch, "linkbar");
@@ -57,7 +58,7 @@ fn finished_run_ends_with_the_place_of_the_part_and_the_next_commands() {
     let (script, layout) = opened(open);
     assert!(script.ends_with("viewers/rerun.sh runs/linkbar.mcap"), "{output}");
     assert!(Path::new(layout).is_file(), "{output}");
-    // Nothing has to be on time in the fast clock.
+    // Fast clock has no timing.
     for timing in [" p50 ", "slowest", "punctual", "slots skipped"] {
         assert!(!output.contains(timing), "{timing} in\n{output}");
     }
@@ -77,14 +78,13 @@ fn opened(line: &str) -> (&str, &str) {
     (command.trim(), layout)
 }
 
-/// True if a command succeeds.
 fn succeeds(program: &str, arguments: &[&str]) -> bool {
     let status = Command::new(program).args(arguments).stdout(Stdio::null()).stderr(Stdio::null()).status();
     status.is_ok_and(|status| status.success())
 }
 
-/// Opens what a run prints, in a window without a screen: Rerun, and Lichtblick if `RCS_LICHTBLICK` is the directory of a
-/// web build. `viewers/check.py` finds the robot in the picture.
+/// Opens the printed commands in a window without a screen: Rerun, and Lichtblick if `RCS_LICHTBLICK` is the
+/// directory of a web build. `viewers/check.py` finds the robot in the picture.
 #[test]
 fn printed_commands_show_the_robot_in_the_viewers() {
     let packages = "import rerun, mcap, mcap_protobuf, PIL, websockets";
@@ -122,7 +122,7 @@ fn failed_run_ends_with_reason_then_part_then_commands() {
     let part = line_of(&output, "LINKBAR1_BH is clamped in PFIXTURE");
     let watch = line_of(&output, "watch ");
     assert!(reason < part && part < watch, "{output}");
-    // The file name has a blank and an apostrophe.
+    // The file name contains a blank and an apostrophe.
     let (why, is_answered) = shown(&scratch, command(&output, "ask why"));
     assert!(is_answered && why.contains("air"), "{why}");
     let watch = command(&output, "watch");
@@ -144,7 +144,7 @@ fn interrupted_run_in_real_time_has_its_times_and_the_last_lines() {
     let line = format!("{} --clock 20x", rcs_run().display());
     let mut run =
         on_terminal(&scratch, &line).stdout(Stdio::piped()).spawn().expect("a shell can be started");
-    // By then the blank has been delivered; the robot may already hold it.
+    // The blank has been delivered by then; the robot may already hold it.
     thread::sleep(Duration::from_millis(3700));
     kill_process(Pid::from_child(&run), Signal::INT).expect("the run goes on");
     let mut output = String::new();

@@ -1,7 +1,7 @@
-//! Runs the programs as their users do, and reads what they say: exit status, JSON, the last line on standard
-//! error, the log.
+//! Runs the programs like their users, and reads their outputs: exit status, JSON, the last line on standard error,
+//! the log.
 //!
-//! The tests of this package judge the whole: controller, link, cell, executive and log, built as for a
+//! The tests of this package check the whole system: controller, link, cell, executive and log, as built for a
 //! release.
 
 pub mod bench;
@@ -27,7 +27,7 @@ pub fn root() -> &'static Path {
     tests.parent().unwrap_or(tests)
 }
 
-/// The program `rcs-run`, brought up to date: a test of this package must never judge an older one.
+/// The program `rcs-run`, rebuilt first: a test of this package must never test an older one.
 ///
 /// # Panics
 /// If it does not build.
@@ -37,7 +37,7 @@ pub fn rcs_run() -> &'static Path {
     program("rcs-run", &PROGRAM)
 }
 
-/// The program `rcs-log`, brought up to date.
+/// The program `rcs-log`, rebuilt first.
 ///
 /// # Panics
 /// If it does not build.
@@ -47,7 +47,7 @@ pub fn rcs_log() -> &'static Path {
     program("rcs-log", &PROGRAM)
 }
 
-/// The program `rcs-neighbour`, brought up to date.
+/// The program `rcs-neighbour`, rebuilt first.
 ///
 /// # Panics
 /// If it does not build.
@@ -57,7 +57,7 @@ pub fn rcs_neighbour() -> &'static Path {
     program("rcs-neighbour", &PROGRAM)
 }
 
-/// The program `rcs-console`, brought up to date.
+/// The program `rcs-console`, rebuilt first.
 ///
 /// # Panics
 /// If it does not build.
@@ -67,7 +67,7 @@ pub fn rcs_console() -> &'static Path {
     program("rcs-console", &PROGRAM)
 }
 
-/// The program `rcs-cell`, brought up to date.
+/// The program `rcs-cell`, rebuilt first.
 ///
 /// # Panics
 /// If it does not build.
@@ -79,7 +79,7 @@ pub fn rcs_cell() -> &'static Path {
 
 fn program(name: &str, built: &'static OnceLock<PathBuf>) -> &'static Path {
     built.get_or_init(|| {
-        // Tests lie in <target>/release/deps, programs in <target>/release.
+        // Tests are in <target>/release/deps, programs in <target>/release.
         let own = env::current_exe().expect("a program has a path");
         let directory = own.parent().expect("a program lies in a directory");
         let profile = if directory.ends_with("deps") { directory.parent() } else { Some(directory) };
@@ -87,11 +87,12 @@ fn program(name: &str, built: &'static OnceLock<PathBuf>) -> &'static Path {
         let target = profile.parent().expect("a profile lies in the target directory");
         let cargo = env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
         let mut build = Command::new(cargo);
-        // As a part of the workspace a program has the features of the tests, and most of it is built already.
+        // As part of the workspace a program has the features of the tests, and most of it is already built.
         build
             .args(["build", "--quiet", "--release", "--workspace", "--bin", name, "--target-dir"])
             .arg(target);
-        // Cargo's variables about the package of a test: crates that read them would be built again, with all above.
+        // Cargo's variables about the package of a test would rebuild the crates that read them, and all their
+        // dependents.
         let told = env::vars_os().map(|(variable, _)| variable).filter(|variable| {
             let variable = variable.to_string_lossy();
             ["CARGO_PKG_", "CARGO_MANIFEST_", "CARGO_CRATE_"].iter().any(|front| variable.starts_with(front))
@@ -105,15 +106,14 @@ fn program(name: &str, built: &'static OnceLock<PathBuf>) -> &'static Path {
     })
 }
 
-/// A directory for the files of one run, removed with it. Two of one name are two directories: tests run
-/// beside each other.
+/// A directory for the files of one run, removed with it. The name need not be unique: tests run in parallel.
 pub struct Scratch(TempDir);
 
 impl Scratch {
     /// A new, empty directory.
     ///
     /// # Panics
-    /// If it cannot be made.
+    /// If it cannot be created.
     #[must_use]
     pub fn new(name: &str) -> Self {
         let directory = tempfile::Builder::new().prefix(&format!("rcs-{name}-")).tempdir();
@@ -130,14 +130,14 @@ impl Scratch {
     /// Write a job of the data directory with `from` in it replaced by `to`.
     ///
     /// # Panics
-    /// If the job does not hold `from`: then the test is about nothing.
+    /// If the job does not contain `from`: the test would then be void.
     pub fn job_with(&self, job: &str, from: &str, to: &str) {
         let text = fs::read_to_string(root().join("data/jobs").join(job)).expect("the job is there");
         assert!(text.contains(from), "{job} has no {from:?}");
         fs::write(self.file(job), text.replacen(from, to, 1)).expect("the job can be written");
     }
 
-    /// Let the run have the faults of a text.
+    /// Set the faults of the run.
     ///
     /// # Panics
     /// If they cannot be written.
@@ -145,7 +145,7 @@ impl Scratch {
         fs::write(self.file(FAULTS), text).expect("the faults can be written");
     }
 
-    /// Let the run have the faults of a file of the data directory.
+    /// Set the faults of the run from a file of the data directory.
     ///
     /// # Panics
     /// If there is no such file.
@@ -158,7 +158,7 @@ impl Scratch {
     /// Copy the task data, and replace `from` by `to` in one of their files.
     ///
     /// # Panics
-    /// If the file does not hold `from`.
+    /// If the file does not contain `from`.
     pub fn data_with(&self, file: &str, from: &str, to: &str) {
         self.copy_data();
         let path = self.file("data").join(file);
@@ -167,10 +167,10 @@ impl Scratch {
         fs::write(path, text.replacen(from, to, 1)).expect("the file can be written");
     }
 
-    /// Copy the task data, and let the via point over UNIT_1 be so low that the arm meets the pot of the tray.
+    /// Copy the task data and lower the via point over UNIT_1 so that the arm meets the pot of the tray.
     ///
     /// # Panics
-    /// If the via point is another one.
+    /// If the data contain another via point.
     pub fn with_a_low_via_point(&self) {
         self.data_with(
             "poses.blk",
@@ -192,10 +192,10 @@ impl Scratch {
     }
 }
 
-/// A user who owns nothing, on every system.
+/// A user without files, on every system.
 pub const NOBODY: u32 = 65_534;
 
-/// Whether this user may start programs as [`NOBODY`], in a directory.
+/// True if this user may start programs as [`NOBODY`] in a directory.
 #[must_use]
 pub fn may_become_nobody(directory: &Path) -> bool {
     let mut command = Command::new("true");
@@ -203,7 +203,7 @@ pub fn may_become_nobody(directory: &Path) -> bool {
     command.status().is_ok_and(|status| status.success())
 }
 
-/// Copy a directory with everything in it.
+/// Copy a directory recursively.
 ///
 /// # Panics
 /// If it cannot be read or written.
@@ -220,11 +220,11 @@ pub fn copy(from: &Path, to: &Path) {
     }
 }
 
-/// What a run said at its end.
+/// Output of a run.
 pub struct Outcome {
     pub status: Option<i32>,
     pub result: Value,
-    /// The last line on standard error; empty if there was none.
+    /// The last line on standard error; empty without one.
     pub last_words: String,
     pub log: PathBuf,
     _scratch: Scratch,
@@ -251,11 +251,11 @@ impl Outcome {
     }
 }
 
-/// Faults of a run, if its directory has such a file.
+/// The fault file in the directory of a run.
 const FAULTS: &str = "faults.toml";
 
-/// The command that runs a job in a directory: equal arguments, so that equal runs write equal logs. Task data of the
-/// directory's own come before those of the repository.
+/// The command that runs a job in a directory. Its arguments are constant, so that equal runs write equal logs. Task
+/// data in the directory take precedence over those of the repository.
 #[must_use]
 pub fn command(directory: &Scratch, job: &str, seed: u64) -> Command {
     let own = directory.file("data");
@@ -280,10 +280,10 @@ fn logged(directory: &Scratch, job: &str, seed: u64) -> Command {
     command
 }
 
-/// Run a job of the data directory, or one written by `prepare`, which gets the directory of the run.
+/// Run a job of the data directory, or one that `prepare` writes into the directory of the run.
 ///
 /// # Panics
-/// If the program cannot be started or says no JSON.
+/// If the program cannot be started or prints no JSON.
 #[must_use]
 pub fn run(job: &str, seed: u64, name: &str, prepare: impl FnOnce(&Scratch)) -> Outcome {
     run_with(job, seed, name, &[], prepare)
@@ -316,7 +316,7 @@ pub fn run_with(
     }
 }
 
-/// Start a job and leave it running.
+/// Start a job without waiting for its end.
 ///
 /// # Panics
 /// If the program cannot be started.

@@ -17,11 +17,11 @@ use record::{
 use whole_system_tests::{Outcome, Scratch, root, run, start};
 
 const SEED: u64 = 1;
-/// How far from the centre of its sector the finished bar may lie, inches. The figures of chapter VIII give
-/// 0.15: the blank drops so far onto the ledge of the vise and is then gripped where it was let go.
+/// Greatest distance of the finished bar from the centre of its sector, inches. The figures of chapter VIII give
+/// 0.15: the blank drops onto the ledge of the vise and is gripped there.
 const PLACED: f64 = 0.2;
 
-/// The run that most tests look at.
+/// The run of most tests.
 fn linkbar() -> &'static Outcome {
     static RUN: OnceLock<Outcome> = OnceLock::new();
     RUN.get_or_init(|| run("linkbar", SEED, "linkbar", |_| {}))
@@ -96,7 +96,7 @@ fn a_killed_run_leaves_a_log_that_replays() {
     let scratch = Scratch::new("killed");
     let mut program = start(&scratch, "linkbar", SEED);
     let log = scratch.file("run.mcap");
-    // Some seconds of the run are in the file, and it is not over.
+    // The file contains some seconds of the run, which has not ended.
     while fs::metadata(&log).map_or(0, |file| file.len()) < 1_000_000 {
         assert!(program.try_wait().unwrap().is_none(), "the run ended before it was killed");
         thread::sleep(Duration::from_millis(5));
@@ -150,7 +150,7 @@ fn orders() -> impl Strategy<Value = Vec<Vec<ProcessId>>> {
 proptest! {
     #![proptest_config(ProptestConfig { cases: 8, ..ProptestConfig::default() })]
 
-    /// Whatever the order of the processes, and though it changes from tick to tick, the run is the same.
+    /// The run is the same for any order of the processes, even if it changes from tick to tick.
     #[test]
     fn the_order_of_the_processes_does_not_matter(orders in orders()) {
         let Recorded { log, ticks } = recorded();

@@ -1,4 +1,4 @@
-//! The live view of a run: viewers get what the log gets, and change nothing.
+//! The live view of a run: viewers receive the contents of the log, and change nothing.
 
 use std::{
     collections::BTreeMap,
@@ -24,12 +24,12 @@ use tungstenite::{
 };
 use whole_system_tests::rcs_run;
 
-/// Longest time for anything to happen.
+/// Time limit of each action.
 const PATIENCE: Duration = Duration::from_secs(60);
 /// Topics that are sent once, at the start.
 const ONCE: [&str; 4] = ["/robot_description", "/tf_static", "/meshes", "/names"];
 
-/// What a run says to its person.
+/// Output of a run.
 #[derive(Clone, Default)]
 struct Said(Arc<Mutex<Vec<String>>>);
 
@@ -61,14 +61,14 @@ fn config(directory: &TempDir, ticks: u64) -> RunConfig {
     }
 }
 
-/// A viewer, with the topics of the channels that it is told of.
+/// A viewer, with the topics of its advertised channels.
 struct Viewer {
     socket: WebSocket<TcpStream>,
     info: Value,
     topics: BTreeMap<u64, String>,
 }
 
-/// What a viewer gets: messages with topic and time, or only the time.
+/// Messages to a viewer: with topic and time, or only the time.
 enum Got {
     Message(String, u64, Vec<u8>),
     Time(u64),
@@ -102,7 +102,7 @@ impl Viewer {
         }
     }
 
-    /// The next text about something that was asked for. The channel of operators begins with the first of them.
+    /// The next text in reply to a request. The operators' channel starts with the first one.
     fn answer(&mut self) -> Value {
         std::iter::repeat_with(|| self.text()).find(|text| text["op"] != "advertise").unwrap()
     }
@@ -115,7 +115,7 @@ impl Viewer {
         self.socket.send(Message::text(text)).unwrap();
     }
 
-    /// What comes, up to the end of the run.
+    /// All messages up to the end of the run.
     fn rest(&mut self) -> impl Iterator<Item = Got> {
         std::iter::from_fn(|| {
             loop {
@@ -247,7 +247,7 @@ impl Said {
     }
 }
 
-/// Call a service: the answer, or why it was refused.
+/// Call a service. Returns the answer, or the reason of its refusal.
 fn call(viewer: &mut Viewer, service: u32, payload: &Value) -> Result<Value, String> {
     let mut bytes = vec![2];
     [service, 77, 4].iter().for_each(|number| bytes.extend(number.to_le_bytes()));
@@ -273,7 +273,7 @@ fn call(viewer: &mut Viewer, service: u32, payload: &Value) -> Result<Value, Str
     }
 }
 
-/// Ask for what there is, with and without the token.
+/// Request all services, with and without the token.
 fn operate(mut viewer: Viewer, token: &str) {
     let services = viewer.answer();
     assert_eq!(services["op"], "advertiseServices");
@@ -348,7 +348,7 @@ fn a_viewer_with_the_token_operates_the_run() {
     assert_eq!(said, expected);
 }
 
-/// A run that a viewer operates, with the run's name and the token.
+/// A run that a viewer operates, with its name and token.
 struct Operated {
     viewer: Viewer,
     token: String,
@@ -360,11 +360,11 @@ impl Operated {
         call(&mut self.viewer, self.request, &json!({ "token": self.token, "line": line }))
     }
 
-    /// Reads what comes, and so answers pings, for a time.
+    /// Read messages for a time, which also answers pings.
     fn read_for(&mut self, time: Duration) {
         let end = Instant::now() + time;
         while Instant::now() < end {
-            // At least the pings come all along.
+            // Pings arrive all the time.
             self.viewer.socket.read().unwrap();
         }
     }
@@ -398,7 +398,7 @@ fn a_viewer_holds_a_stick_while_it_answers_and_a_delayed_request_is_refused() {
             (shown.x, shown.y)
         };
         let begun = Instant::now();
-        // On a machine that is busy the viewer may answer too late.
+        // On a busy machine the viewer may answer too late.
         loop {
             for line in ["joystick frame WORLD", "joystick velocity 10", "joystick stick 0 300 36000"] {
                 operated.ask(line).unwrap();
@@ -409,15 +409,15 @@ fn a_viewer_holds_a_stick_while_it_answers_and_a_delayed_request_is_refused() {
             }
             assert!(begun.elapsed() < PATIENCE, "a viewer that answers keeps the stick");
         }
-        // A viewer that hangs.
+        // The viewer hangs.
         let hangs = Instant::now();
         while stick() != (0, 0) {
             assert!(begun.elapsed() < PATIENCE, "a viewer that does not answer releases the stick");
             thread::sleep(Duration::from_millis(10));
         }
-        // What it has sent late is not carried out.
+        // Its late request is not executed.
         thread::sleep(Duration::from_secs(3).saturating_sub(hangs.elapsed()));
-        // On a busy machine the run may not have pinged the viewer that early: then the viewer hangs again.
+        // On a busy machine the run may not have pinged the viewer that early; then the viewer hangs again.
         let refused = loop {
             match operated.ask("joystick velocity 1000") {
                 Err(refused) => break refused,
@@ -470,7 +470,7 @@ fn a_view_needs_a_log_and_a_port() {
     assert!(!directory.path().join("log.mcap").exists(), "a run that cannot begin leaves no log");
 }
 
-/// Ctrl-Z, a debugger or a full disk: the run stands still for longer than a viewer may be silent.
+/// Ctrl-Z, a debugger or a full disk: the run is stopped for longer than a viewer may be silent.
 #[test]
 fn a_run_that_was_frozen_keeps_its_viewers() {
     let arguments =
@@ -493,7 +493,7 @@ fn a_run_that_was_frozen_keeps_its_viewers() {
     kill_process(pid, Signal::STOP).unwrap();
     thread::sleep(Duration::from_secs(7));
     kill_process(pid, Signal::CONT).unwrap();
-    // 100 ticks after the gap, four seconds long: a viewer is looked after in every one of them.
+    // 100 ticks after the gap of four seconds: the viewer is served in each of them.
     let got = viewer.rest().filter(|got| matches!(got, Got::Time(_))).take(100).count();
     kill_process(pid, Signal::TERM).unwrap();
     assert_eq!(got, 100);

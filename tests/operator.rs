@@ -1,5 +1,5 @@
-//! An operator works on a run that goes on: stops it, commands it, presses an emergency stop, starts it up again, and lets
-//! the job go on. The same inputs from the log give the same bits.
+//! An operator works on a live run: stops it, commands it, presses an emergency stop, restarts it, and lets the job
+//! continue. The same inputs from the log give the same bits.
 
 use std::{
     ffi::OsStr,
@@ -21,19 +21,18 @@ use sessions::operator::{Client, ClientError};
 use tempfile::TempDir;
 use whole_system_tests::{copy, rcs_run, root};
 
-/// Twenty ticks in the time of one: a tick takes 2 ms.
+/// Twenty times real time: a tick takes 2 ms.
 const SPEED: u8 = 20;
-/// Longest time for anything to happen.
+/// Time limit of each action.
 const PATIENCE: Duration = Duration::from_secs(60);
 
-/// A name for a run beside those of the other tests.
 fn unused_name() -> RunName {
     static COUNT: AtomicU64 = AtomicU64::new(0);
     let count = COUNT.fetch_add(1, Ordering::Relaxed);
     format!("operated-{}-{count}", std::process::id()).parse().unwrap()
 }
 
-/// A run that goes on in a thread, and its directory.
+/// A run in a thread, and its directory.
 struct Cell {
     directory: TempDir,
     name: RunName,
@@ -76,7 +75,7 @@ impl Cell {
     }
 }
 
-/// Asks for each line; all must be taken.
+/// Send each line; all must be accepted.
 fn ask(client: &mut Client, lines: &[&str]) {
     for line in lines {
         let answer = client.ask(line).unwrap();
@@ -84,7 +83,7 @@ fn ask(client: &mut Client, lines: &[&str]) {
     }
 }
 
-/// Wait until the status holds a text; the last status.
+/// Wait until the status contains a text. Returns the last status.
 fn wait_for(client: &mut Client, text: &str) -> String {
     let begun = Instant::now();
     loop {
@@ -97,7 +96,7 @@ fn wait_for(client: &mut Client, text: &str) -> String {
     }
 }
 
-/// Wait until so many ticks of the run are over.
+/// Wait for a number of ticks.
 fn wait_ticks(client: &mut Client, ticks: u64) {
     let tick = |client: &mut Client| {
         let status = client.ask("status").unwrap().unwrap();
@@ -110,7 +109,7 @@ fn wait_ticks(client: &mut Client, ticks: u64) {
     }
 }
 
-/// Try to let the job go on until the command that is executed has ended.
+/// Request the continuation of the job until the present command has ended.
 fn go_on(client: &mut Client) {
     let begun = Instant::now();
     while let Err(why) = client.ask("job go").unwrap() {
@@ -129,7 +128,7 @@ fn outcomes(outcome: &RunOutcome) -> Vec<(&str, &'static str)> {
     outcome.steps.iter().map(|step| (bare(&step.text), step.outcome.text())).collect()
 }
 
-/// The log's inputs, given again in fast clock, lead to the same bits.
+/// Assert that the inputs of the log, replayed in fast clock, lead to the same bits.
 fn assert_repeats(outcome: &RunOutcome, log: &PathBuf, directory: &TempDir) {
     assert_repeats_with(|config| config, outcome, log, directory);
 }
@@ -203,7 +202,7 @@ fn operator_restarts_the_robot_after_an_emergency_stop_and_the_job_continues() {
     ask(&mut client, &["release pedestal"]);
     for key in ["fault-reset", "hydraulics enable", "manual on", "align", "auto", "cycle-start"] {
         let begun = Instant::now();
-        // The controller takes a key when it has done what the one before has begun.
+        // The controller accepts a key after the effect of the previous one is complete.
         while let Err(why) = client.ask(&format!("panel {key}")).unwrap() {
             assert!(begun.elapsed() < PATIENCE, "{key}: {why}");
             thread::sleep(Duration::from_millis(20));
@@ -219,7 +218,7 @@ fn operator_restarts_the_robot_after_an_emergency_stop_and_the_job_continues() {
     assert_repeats(&outcome, &log, &directory);
 }
 
-/// Ask until it is taken.
+/// Repeat a request until it is accepted.
 fn ask_until(client: &mut Client, line: &str, meanwhile: &str) {
     let begun = Instant::now();
     while let Err(why) = client.ask(line).unwrap() {
@@ -253,14 +252,14 @@ fn boards_are_stopped_executed_and_started_again() {
     let (outcome, log, directory) = cell.end();
     assert!(outcome.is_finished(), "{:?}\n{:?}", outcome.result.failure, outcomes(&outcome));
     assert_repeats(&outcome, &log, &directory);
-    // Each board is a process of it.
+    // Each board is a process.
     let program = rcs_run().to_path_buf();
     let split = |config| RunConfig { boards: Boards::Split, program, ..config };
     assert_repeats_with(split, &outcome, &log, &directory);
 }
 
-/// `<=` and DB-DONE (IV.2.6, IV.3.2): values are written while their processes stand, the log has the old and the new
-/// one, and gives the same run, on one board and on five.
+/// `<=` and DB-DONE (IV.2.6, IV.3.2): values are written into suspended processes. The log contains the old and the
+/// new value, and gives the same run on one board and on five.
 #[test]
 fn values_are_written_while_their_processes_stand() {
     let cell = Cell::start(TO_SAFE_AND_HOME, |config| config);
@@ -304,13 +303,13 @@ fn values_are_written_while_their_processes_stand() {
     assert_repeats_with(split, &outcome, &log, &directory);
 }
 
-/// LOAD (IV.2.4): a block counts from the next command on, and the log has its text.
+/// LOAD (IV.2.4): a block takes effect with the next command, and the log contains its text.
 #[test]
 fn a_block_is_loaded_during_a_run() {
     load_during_a_run(Boards::One);
 }
 
-/// The block reaches every board before the generation counts.
+/// The block reaches every board before the generation takes effect.
 #[test]
 fn a_block_is_loaded_by_boards_of_other_processes() {
     load_during_a_run(Boards::Split);
@@ -347,7 +346,7 @@ fn load_during_a_run(boards: Boards) {
     drop(client);
     let (outcome, log, directory) = cell.end();
     assert!(outcome.is_finished(), "{:?}\n{:?}", outcome.result.failure, outcomes(&outcome));
-    // The data of the repetition have never had line 5.
+    // The data of the repetition have no line 5.
     assert_repeats(&outcome, &log, &directory);
     if boards == Boards::Split {
         let program = rcs_run().to_path_buf();
@@ -356,7 +355,7 @@ fn load_during_a_run(boards: Boards) {
     }
 }
 
-/// `run JOB`: a job of the data directory in the place of the rest of the one that waits; the log has its text.
+/// `run JOB`: a job of the data directory replaces the rest of the waiting one; the log contains its text.
 #[test]
 fn another_job_is_played_in_the_place_of_the_rest() {
     let place = tempfile::tempdir().unwrap();
@@ -397,7 +396,7 @@ fn another_job_is_played_in_the_place_of_the_rest() {
     assert_repeats_with(|config| RunConfig { stand_by: true, ..config }, &outcome, &log, &directory);
 }
 
-/// Ask until it is refused for this reason.
+/// Repeat a request until it is refused for this reason.
 fn ask_until_refused(client: &mut Client, line: &str, why: &str) {
     let begun = Instant::now();
     loop {
@@ -438,7 +437,7 @@ fn request_gets_the_verdict_of_a_job_line() {
     assert!(cell.end().0.result.failure.is_none());
 }
 
-/// Data with an error keep no run on stand-by from starting, and no command that does not use them.
+/// Data with an error do not prevent the start of a run on stand-by, nor commands that do not use them.
 #[test]
 fn stand_by_starts_with_wrong_data_and_refuses_only_their_commands() {
     let data = tempfile::tempdir().unwrap();
@@ -498,7 +497,7 @@ fn joystick(run: &Attached) -> (u8, (i16, i16), u16) {
     (shown.frame, (shown.x, shown.y), shown.velocity)
 }
 
-/// Wait until the box shows this; what it shows.
+/// Wait for a state of the box. Returns it.
 fn wait_for_box(run: &Attached, wanted: impl Fn((u8, (i16, i16), u16)) -> bool) {
     let begun = Instant::now();
     while !wanted(joystick(run)) {
@@ -509,7 +508,7 @@ fn wait_for_box(run: &Attached, wanted: impl Fn((u8, (i16, i16), u16)) -> bool) 
 
 const HELD: [&str; 3] = ["joystick velocity 0", "joystick frame WORLD", "joystick stick 0 300 36000"];
 
-/// However a session ends, the motion that it commands by hand ends with it; the log gives the same run.
+/// A motion by hand ends with its session, however that ends; the log gives the same run.
 #[test]
 fn motion_by_hand_ends_with_its_session() {
     let stand_by = |config| RunConfig { stand_by: true, ..config };
@@ -518,7 +517,7 @@ fn motion_by_hand_ends_with_its_session() {
     wait_for(&mut watcher, "the job waits");
     let run = Attached::open(&cell.name).unwrap();
     let is_free = |shown| shown == (0, (0, 0), 0);
-    // `leave`, while the session stays. On a machine that is busy the session may be silent for too long before.
+    // `leave`, while the session remains. On a busy machine the session may be silent for too long before.
     let mut anna = cell.client("anna");
     let begun = Instant::now();
     loop {
@@ -530,7 +529,7 @@ fn motion_by_hand_ends_with_its_session() {
         assert!(begun.elapsed() < PATIENCE, "{answer}");
     }
     wait_for_box(&run, is_free);
-    // Silence: the session stays, and so does its command.
+    // Silence: the session and its command remain.
     ask(&mut anna, &HELD);
     wait_for_box(&run, is_free);
     let status = wait_for(&mut watcher, "anna commands");
@@ -541,7 +540,7 @@ fn motion_by_hand_ends_with_its_session() {
     wait_for(&mut watcher, "nobody commands");
     wait_for_box(&run, is_free);
     ask(&mut watcher, &["joystick velocity 1000"]);
-    // Until all processes have seen that the box is off.
+    // Until all processes have read that the box is off.
     wait_ticks(&mut watcher, 50);
     go_on(&mut watcher);
     drop(watcher);
@@ -593,7 +592,7 @@ fn sessions_of_one_name_do_not_command_at_the_same_time() {
     assert_repeats(&outcome, &log, &directory);
 }
 
-/// A request without a limit, or after it, is carried out only if it can do nothing but stop.
+/// A request without a limit, or after its limit, is executed only if it is a stop.
 #[test]
 fn only_a_stop_is_carried_out_when_nobody_waits_for_it() {
     let cell = Cell::start(TO_SAFE_AND_HOME, |config| config);
@@ -623,7 +622,7 @@ fn only_a_stop_is_carried_out_when_nobody_waits_for_it() {
     assert_repeats(&outcome, &log, &directory);
 }
 
-/// `rcs-run send` gives up while the run is stopped by a signal; the run goes on and does not carry out its command.
+/// `rcs-run send` times out while a signal has stopped the run; the run continues and discards the command.
 #[test]
 fn a_command_to_a_stopped_run_is_discarded_on_resume() {
     let directory = tempfile::tempdir().unwrap();
@@ -680,7 +679,7 @@ fn an_emergency_stop_is_in_the_status_and_keeps_the_job_from_going_on() {
     assert!(status.contains(emergency), "{status}");
     let refused = client.ask("job go").unwrap().unwrap_err();
     assert!(refused.contains(&format!("nothing moves: EMERGENCY: {emergency}")), "{refused}");
-    // The job waits on when nobody is connected, and the next session is told the same.
+    // The job keeps waiting without a connection, and the next session gets the same answer.
     drop(client);
     let mut client = cell.client("bert");
     wait_for(&mut client, emergency);
@@ -747,7 +746,7 @@ fn a_run_may_take_no_operator() {
     }
 }
 
-/// A run in the fast clock, with a log and the inputs of another one.
+/// A run in the fast clock with a log and the inputs of another one.
 fn repeated(
     directory: &TempDir,
     change: impl FnOnce(RunConfig) -> RunConfig,

@@ -1,5 +1,5 @@
-//! What the programs print: JSON has each key once, text from files commands no terminal, and the units of a person
-//! change texts only.
+//! Output of the programs: JSON has each key once, text of files contains no terminal commands, and display units
+//! change only texts.
 
 use std::{
     collections::BTreeSet,
@@ -80,14 +80,14 @@ fn text(bytes: &[u8]) -> String {
     String::from_utf8_lossy(bytes).into_owned()
 }
 
-/// Standard output, of a program that has one whatever its exit status is.
+/// Standard output of a program, for any exit status.
 fn stdout(scratch: &Scratch, program: &Path, arguments: &[&str], units: &str) -> String {
     let output = run_in(scratch, program, arguments, units);
     assert!(!output.stdout.is_empty(), "{arguments:?}: {}", text(&output.stderr));
     text(&output.stdout)
 }
 
-/// A directory with the logs `a.mcap` of a run that fails and `b.mcap` of a short one.
+/// A directory with the logs `a.mcap` of a failing run and `b.mcap` of a short one.
 fn with_logs(name: &str) -> Scratch {
     let scratch = Scratch::new(name);
     let missing = root().join("data/faults/blank-missing.toml");
@@ -142,7 +142,7 @@ fn every_json_output_has_each_key_once() {
     }
 }
 
-/// The subcommands whose JSON the test above reads. Those of the others need a robot at a port or a run.
+/// The subcommands whose JSON the test above reads. Others need a robot at a port or a run.
 #[test]
 fn the_list_of_json_outputs_is_complete() {
     let page = fs::read_to_string(root().join("docs/cli.md")).expect("the page is there");
@@ -176,8 +176,8 @@ fn the_list_of_json_outputs_is_complete() {
     assert_eq!(with_json.into_iter().collect::<Vec<_>>(), known);
 }
 
-/// A terminal sequence that sets the title of the window, one that clears the screen in one byte of ISO 6429, and a mark
-/// that reverses the text after it.
+/// A terminal sequence that sets the window title, one that clears the screen in one byte of ISO 6429, and a mark
+/// that reverses the following text.
 const COMMANDS: &str = "\u{1b}]0;title\u{7}\u{9b}2J\u{202e}";
 
 fn assert_plain(arguments: &[&str], output: &Output) {
@@ -226,7 +226,7 @@ fn text_of_files_reaches_a_terminal_without_control_characters() {
     }
 }
 
-/// The quantities of a text with a unit, in their order: lengths with a decimal point.
+/// The quantities of a text with a unit, in order: lengths with a decimal point.
 fn quantities(text: &str, unit: &str) -> Vec<f64> {
     let words: Vec<&str> = text.split_whitespace().collect();
     let is_unit = |word: &str| word.trim_end_matches([',', ';', ')', '.', ':']) == unit;

@@ -1,7 +1,8 @@
-//! Every remedy works (docs/reasons.md): each scenario produces a failure in the simulated cell, does what the remedy of
-//! its reason says, with the means of an operator, and the job finishes.
+//! Every remedy works (docs/reasons.md): each scenario produces a failure in the simulated cell, follows the remedy
+//! of its reason with the means of an operator, and the job finishes.
 //!
-//! The scenarios run in the fast clock: a request is carried out after a tick and seen by the next one, as from a session.
+//! The scenarios run in the fast clock: a request is executed after a tick and visible in the next one, as in a
+//! session.
 
 use std::fs;
 
@@ -18,7 +19,7 @@ use sessions::operator::Event;
 use tempfile::TempDir;
 use whole_system_tests::root;
 
-/// Largest number of ticks for anything to happen: 16 minutes of the robot's time.
+/// Time limit of each action, ticks: 16 minutes of the robot's time.
 const LIMIT: u32 = 24_000;
 const WHO: &str = "anna";
 
@@ -62,7 +63,7 @@ impl Operated {
         self.run().memory()
     }
 
-    /// The cell, for a person in it.
+    /// The cell, for an operator in it.
     fn cell(&mut self) -> &mut Cell {
         self.run.as_mut().unwrap().cell_mut()
     }
@@ -79,7 +80,7 @@ impl Operated {
         answer
     }
 
-    /// One tick, of a run that must not end with it.
+    /// Run one tick that must not end the run.
     fn step(&mut self, what: &str) {
         if !self.run.as_mut().unwrap().step() {
             self.panic_at_the_end(what);
@@ -91,7 +92,7 @@ impl Operated {
         panic!("{what}: the run has ended at tick {}: {}", outcome.result.ticks, story(&outcome));
     }
 
-    /// Ask for each line; all must be accepted.
+    /// Send each line; all must be accepted.
     fn please(&mut self, lines: &[&str]) -> &mut Self {
         for line in lines {
             if let Err(why) = self.ask(line) {
@@ -101,7 +102,6 @@ impl Operated {
         self
     }
 
-    /// Let ticks pass.
     fn wait(&mut self, ticks: u32) -> &mut Self {
         for _ in 0..ticks {
             self.step("wait");
@@ -109,7 +109,7 @@ impl Operated {
         self
     }
 
-    /// Let ticks pass until something holds.
+    /// Run ticks until a condition holds.
     fn until(&mut self, what: &str, holds: impl Fn(&CommonMemory) -> bool) -> &mut Self {
         for _ in 0..LIMIT {
             if holds(self.memory()) {
@@ -120,7 +120,7 @@ impl Operated {
         panic!("{what}: not by tick {}", self.tick());
     }
 
-    /// Wait until the job waits; a command that was sent has ended then.
+    /// Wait until the job waits; a sent command has then ended.
     fn until_it_waits(&mut self) -> &mut Self {
         for _ in 0..LIMIT {
             let status = self.ask("status").unwrap();
@@ -149,7 +149,7 @@ impl Operated {
         (status.report, status.reason)
     }
 
-    /// The commands, each of which must finish.
+    /// Send commands, each of which must finish.
     fn does(&mut self, commands: &[&str]) -> &mut Self {
         for command in commands {
             assert_eq!(self.send(command), (HwsReport::Finished, Reason::None), "{command}");
@@ -157,7 +157,7 @@ impl Operated {
         self
     }
 
-    /// Let the job go on, as soon as the command that is executed has ended.
+    /// Let the job continue, once the present command has ended.
     fn go(&mut self) -> &mut Self {
         for _ in 0..LIMIT {
             match self.ask("job go") {
@@ -168,15 +168,15 @@ impl Operated {
         panic!("job go is refused");
     }
 
-    /// The job finishes, and every part is where its last command should have left it.
+    /// Assert that the job finishes with every part where its last command should have left it.
     fn finishes(self) -> RunOutcome {
         let outcome = self.ends();
         assert!(outcome.is_finished(), "{}", story(&outcome));
         outcome
     }
 
-    /// All lines of the job finish. A part that the person has taken from the gripper falls in the simulated cell, which
-    /// the check of the parts reports.
+    /// Assert that all lines of the job finish. A part that the operator took from the gripper falls in the simulated
+    /// cell, so the check of the parts reports it.
     fn finishes_without_the_part(self) {
         let outcome = self.ends();
         let last = outcome.steps.last().map(|step| step.outcome.text());
@@ -205,12 +205,12 @@ fn story(outcome: &RunOutcome) -> String {
     format!("{:?}\n{steps:#?}", outcome.result.failure)
 }
 
-/// The blank comes to the vise and stays in the hand.
+/// The blank is brought to the vise and stays in the hand.
 const TO_VISE: &str = "** tray UNIT_1 4 LINKBAR1_BH 0 0 0
 ** vise partial PFIXTURE
 == MOVE LINKBAR1_BH +2 UNIT_1 4 +2 PFIXTURE 0 -- 0
 ";
-/// A shaft goes from the tray to the turning machine, with the v-gripper.
+/// A shaft is brought from the tray to the turning machine, with the v-gripper.
 const SHAFT: &str = "** tray UNIT_2 7 SHAFT_BH
 == TRANSFER SHAFT_BH +1 UNIT_2 7 +1 V-VFIXTURE 0 HOME 0
 ";
@@ -263,14 +263,14 @@ fn gripper_that_holds_another_object_places_it_first() {
     let job = format!(
         "** tray UNIT_1 3 LCLEVIS_BH 0 0 0\n{TO_VISE}== ACQUIRE LCLEVIS_BH +2 UNIT_1 3 +0 -- 0 -- 0\n"
     );
-    // The check of the paths finds beforehand that the held object would meet the other one.
+    // The check of the paths would find before the run that the held object meets the other one.
     let mut it = Operated::with(&job, "", |config| RunConfig { unchecked: true, ..config });
     it.fails(Reason::AlreadyHolding);
     it.does(&["TRANSFER LINKBAR1_BH +2 UNIT_1 4 +2 UNIT_1 4 -- 0"]).go();
     it.finishes();
 }
 
-/// The first half of the remedy of an object that is held where nothing would support it.
+/// First half of the remedy of an object held without support.
 #[test]
 fn object_held_in_mid_air_is_placed_with_transfer() {
     let mut it = Operated::start(&format!("{TO_HOME}{LEAVE}"));
@@ -279,7 +279,7 @@ fn object_held_in_mid_air_is_placed_with_transfer() {
     it.finishes();
 }
 
-/// The second half: the person takes it.
+/// Second half: the operator takes it.
 #[test]
 fn object_held_in_mid_air_is_released_by_hand() {
     let mut it = Operated::start(&format!("{TO_HOME}{LEAVE}"));
@@ -290,7 +290,7 @@ fn object_held_in_mid_air_is_released_by_hand() {
     it.finishes_without_the_part();
 }
 
-/// V.4.1: "immediately released", in the vise that has clamped it.
+/// V.4.1: "immediately released", in the vise that clamps it.
 #[test]
 fn object_in_a_closed_vise_is_released_by_position() {
     let outcome = Operated::start(&format!("{TO_VISE}** vise close PFIXTURE\n{LEAVE}")).finishes();
@@ -308,7 +308,7 @@ fn object_in_an_open_vise_is_released_after_the_vise_is_closed() {
     assert_eq!(outcome.result.parts[0].location, "PFIXTURE");
 }
 
-/// The same remedy where the person looks at the vise: what was confirmed is in the log.
+/// The same remedy if the operator looks at the vise: the log contains the confirmation.
 #[test]
 fn object_in_a_vise_is_released_after_a_confirmation() {
     let mut it = Operated::start(&format!("{TO_VISE}{LEAVE}"));
@@ -325,7 +325,7 @@ fn is_held_at_home(memory: &CommonMemory) -> bool {
         && status.at.is_some_and(|at| at.site.location.as_str() == "HOME")
 }
 
-/// The name of what the gripper holds is lost.
+/// Delete the name of the held object.
 fn without_name(it: &mut Operated) {
     it.please(&["board 2 stop"]).wait(4).please(&["write emove.estimates.held NONE"]).wait(4);
     it.please(&["board 2 go"]).wait(8);
@@ -383,7 +383,7 @@ fn tool_command_waits_for_the_command_before_it() {
     it.finishes();
 }
 
-/// TRANSFER to the pedestal is refused before anything moves.
+/// TRANSFER to the pedestal is refused without motion.
 #[test]
 fn transfer_to_the_pedestal_is_refused_without_motion() {
     let mut it = Operated::start("** wait 10\n== MOVE -- 0 -- 0 0 SAFE 0 -- 0\n");
@@ -407,7 +407,7 @@ fn clevis() -> String {
     fs::read_to_string(root().join("data/jobs/clevis.job")).unwrap()
 }
 
-/// The clevis whose part is in the pedestal's hand alone, while the table turns; the command is interrupted.
+/// The clevis with its part in the pedestal's hand alone, while the table turns; the command is interrupted.
 fn flipping() -> Operated {
     let mut it = Operated::start(&clevis());
     it.until("the table turns", turns).wait(10).please(&["PAUSE"]).until_it_waits();
@@ -427,7 +427,7 @@ fn part_in_the_pedestal_is_regripped_by_the_command_sent_again() {
     it.finishes();
 }
 
-/// The other half: the robot is clear and empty, so it leaves; a person takes the part out of the hand.
+/// The other half: the robot is clear and empty, so it leaves; an operator takes the part out of the hand.
 #[test]
 fn part_in_the_pedestal_is_released_by_hand() {
     let mut it = flipping();
@@ -447,7 +447,7 @@ fn part_in_the_pedestal_is_released_by_hand() {
     it.finishes_without_the_part();
 }
 
-/// The joystick box takes the robot while the pedestal alone has the part, and gives it back.
+/// The joystick box controls the robot while the pedestal alone holds the part, and releases it.
 #[test]
 fn robot_clear_of_the_pedestal_leaves_and_the_regrip_continues() {
     let mut it = flipping();
@@ -468,7 +468,7 @@ fn part_in_the_pedestal_is_named_by_the_person() {
     it.finishes();
 }
 
-/// A person turns the table back and forth; the regrip continues from the angle.
+/// An operator turns the table back and forth; the regrip continues from the angle.
 #[test]
 fn regrip_continues_after_a_person_turned_the_table() {
     let mut it = flipping();
@@ -491,13 +491,13 @@ fn table_without_a_known_angle_is_calibrated_after_the_part_is_taken_out() {
     it.does(&[HOME]).please(&["pedestal release by hand"]);
     it.until("the hand is open", |memory| !memory.subtask.status.pedestal_part);
     it.please(&["run clevis"]).until_it_waits();
-    // The counter was set again, at a wrong angle: the table stops at its limit, and PRE-GRIP calibrates it.
+    // The counter was set again at a wrong angle: the table stops at its limit, and PRE-GRIP calibrates it.
     assert_eq!(it.memory().task.status.reason, Reason::TableStuck);
     it.go();
     it.finishes_without_the_part();
 }
 
-/// The remedies of a robot in the drum: the same command again, and RELEASE-TOOL without a tool.
+/// The remedies of a robot in the drum: repeat the command, and RELEASE-TOOL without a tool.
 #[test]
 fn release_tool_moves_the_robot_out_of_an_empty_drum() {
     let mut it = Operated::start(
@@ -588,7 +588,7 @@ fn wrong_command_is_replaced_by_the_right_one() {
     it.finishes();
 }
 
-/// The remedy "send the command that releases the object again": the air fails while the fingers are to open.
+/// The remedy "send the command that releases the object again": the air fails during the opening.
 #[test]
 fn release_without_air_is_completed_by_the_command_sent_again() {
     let job = fs::read_to_string(root().join("data/jobs/linkbar.job")).unwrap();
@@ -613,7 +613,7 @@ fn robot_off_its_path_continues_after_a_pause_that_adopts_its_position() {
     it.finishes();
 }
 
-/// A fault plan in which valves are stuck open.
+/// A fault plan with valves that are stuck open.
 fn stuck_open(valves: &[&str], from: u64, until: u64) -> String {
     let fault = |valve: &&str| {
         format!(
@@ -623,8 +623,8 @@ fn stuck_open(valves: &[&str], from: u64, until: u64) -> String {
     valves.iter().map(fault).collect()
 }
 
-/// The remedy "take the object away, and put it back at the command's source location": the gripper opens on the way, and
-/// the blank falls to the floor.
+/// The remedy "take the object away, and put it back at the command's source location": the gripper opens during the
+/// motion, and the blank falls to the floor.
 #[test]
 fn object_that_was_lost_on_the_way_is_fetched_again_from_its_source() {
     let faults = stuck_open(&["grip.open-coarse", "grip.supply"], 1700, 1760);
@@ -645,8 +645,8 @@ fn object_at_the_edge_of_its_tray_is_moved_to_the_middle() {
     it.finishes();
 }
 
-/// The remedy "take the object out of the pedestal, and put it back at its place": the hand opens while the table turns.
-/// The first place of the part is the tray, from which the whole job begins again.
+/// The remedy "take the object out of the pedestal, and put it back at its place": the hand opens while the table
+/// turns. The first place of the part is the tray, from which the whole job starts again.
 #[test]
 fn object_that_the_pedestal_has_lost_is_delivered_again() {
     let faults = stuck_open(&["pedestal.open-coarse", "pedestal.supply"], 5700, 5760);
@@ -668,7 +668,7 @@ fn hand_of_the_pedestal_calibrates_after_its_potentiometer_is_repaired() {
     it.finishes();
 }
 
-/// The remedy "put the gripper into its holster": the v-gripper is not in the cell when the shaft is to be fetched.
+/// The remedy "put the gripper into its holster": the v-gripper is missing when the shaft is fetched.
 #[test]
 fn gripper_that_is_missing_is_fetched_after_it_was_hung_in_its_holster() {
     let mut it = Operated::start(SHAFT);
@@ -679,7 +679,7 @@ fn gripper_that_is_missing_is_fetched_after_it_was_hung_in_its_holster() {
     it.finishes();
 }
 
-/// The remedy "empty the holster": somebody has hung the tool gripper in the holster of the parts gripper.
+/// The remedy "empty the holster": the tool gripper hangs in the holster of the parts gripper.
 #[test]
 fn gripper_is_put_away_after_its_holster_was_emptied() {
     let mut it = Operated::start(SHAFT);
@@ -690,7 +690,7 @@ fn gripper_is_put_away_after_its_holster_was_emptied() {
     it.finishes();
 }
 
-/// Reasons with the scenario that follows their remedy; other reasons share the text.
+/// Reasons with the scenario of their remedy; other reasons share the text.
 const SCENARIOS: &[(Reason, &str)] = &[
     (Reason::JoystickOn, "joystick_that_is_on_is_switched_off"),
     (Reason::LinkOff, "a_disabled_link_restarts_with_hold"),
@@ -720,7 +720,7 @@ const SCENARIOS: &[(Reason, &str)] = &[
     (Reason::HandNotCalibrated, "hand_of_the_pedestal_calibrates_after_its_potentiometer_is_repaired"),
 ];
 
-/// Remedies without a scenario here, and why.
+/// Remedies without a scenario here, and the reason.
 const ELSEWHERE: &[(Reason, &str)] = &[
     (Reason::UnknownObject, "a block is corrected and loaded in tests/operator.rs"),
     (Reason::UnknownStart, "tests/jobs.rs and tests/operator.rs move the robot with the joystick box"),

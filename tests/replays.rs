@@ -1,7 +1,7 @@
-//! Whatever a run met, its log replays: jobs with random seeds and random faults on the line, cut off after random ticks.
+//! The log of any run replays: jobs with random seeds and random faults on the line, cut off after random ticks.
 //!
-//! An ordinary test run tries a few; `RCS_REPLAYS=30` tries so many, as `.ci/run` does, and `RCS_REPLAYS_FROM=N` begins with
-//! seed N. A failure names its seed, with which it happens again.
+//! An ordinary test run tries a few; `RCS_REPLAYS=30` tries as many, as in `.ci/run`, and `RCS_REPLAYS_FROM=N` starts
+//! with seed N. A failure names its seed for repetition.
 
 use std::{
     env,
@@ -15,9 +15,9 @@ use record::{Log, golden, replay};
 use whole_system_tests::{Outcome, run_with};
 
 const FEW: u64 = 4;
-/// Jobs that are tried in turn.
+/// Jobs, used in turn.
 const JOBS: [&str; 4] = ["linkbar", "clevis", "turned-part", "tool-change"];
-/// Kinds of faults with a rate that lets the run go on for a while.
+/// Kinds of faults with a rate at which the run continues for a while.
 const FAULTS: [(&str, f64); 7] = [
     ("flip", 2e-4),
     ("drop", 1e-4),
@@ -28,7 +28,7 @@ const FAULTS: [(&str, f64); 7] = [
     ("stall", 5e-4),
 ];
 
-/// Numbers that follow from a seed.
+/// Pseudorandom numbers of a seed.
 struct Numbers(u64);
 
 impl Numbers {
@@ -72,7 +72,7 @@ fn outcome_of(seed: u64) -> Outcome {
     })
 }
 
-/// Run, replay, compare; and the same with the golden that is made of the log.
+/// Run, replay, compare; and the same with a golden of the log.
 fn check(seed: u64) {
     let outcome = outcome_of(seed);
     let report = replay(&outcome.log).unwrap_or_else(|error| panic!("seed {seed}: {error}"));

@@ -1,12 +1,12 @@
-//! The shipped jobs finish whatever the noise of the sensors and the places of random parts are, and so do the
-//! linkbar and the clevis from every sector that data/README.md calls fit for random parts.
+//! The shipped jobs finish for any sensor noise and any places of random parts. Linkbar and clevis also finish from
+//! every sector that data/README.md declares suitable for random parts.
 //!
 //! ```text
 //! RCS_SEEDS=20 cargo test --release -p whole-system-tests --test runs seeds -- --nocapture
 //! ```
 //!
-//! runs each with the seeds 1 to 20 and prints a table (docs/evidence.md); without the variable three of them are tried
-//! with seed 1.
+//! runs each with the seeds 1 to 20 and prints a table (docs/evidence.md); without the variable, three are run with
+//! seed 1.
 
 use std::{
     env, fs, iter,
@@ -18,14 +18,13 @@ use whole_system_tests::{Scratch, root, run};
 
 const JOBS: [&str; 7] =
     ["linkbar", "clevis", "turned-part", "tool-change", "shift", "vise-and-back", "brush"];
-/// Jobs with a part that is put down at random, the sector from which it comes, and the others that are fit for it
-/// (data/README.md).
+/// Jobs with a randomly placed part, its sector, and the other suitable sectors (data/README.md).
 const RANDOM: [(&str, &str, &[&str]); 2] = [
     ("linkbar", "UNIT_1 4", &["UNIT_1 1", "UNIT_1 2", "UNIT_1 3", "UNIT_2 1", "UNIT_2 2"]),
     ("clevis", "UNIT_1 3", &["UNIT_1 1", "UNIT_1 2", "UNIT_1 4"]),
 ];
 
-/// A job, and the sector of its random part: the shipped one, and another one in its place.
+/// A job and the sector of its random part: the shipped one, or another.
 #[derive(Clone, Copy)]
 struct Kind {
     job: &'static str,
@@ -37,7 +36,7 @@ impl Kind {
         self.sector.map_or_else(|| self.job.to_owned(), |[_, to]| format!("{} from {to}", self.job))
     }
 
-    /// Why a run with a seed has not finished, if it has not.
+    /// The reason why a run with a seed has not finished, if any.
     fn fails(&self, seed: u64) -> Option<String> {
         let outcome = match self.sector {
             None => run(self.job, seed, "seeds", |_| {}),
@@ -63,7 +62,7 @@ fn kinds() -> Vec<Kind> {
     shipped.into_iter().chain(sectors).collect()
 }
 
-/// Run seeds of each kind on two threads: the number of the kind that has not finished, and why.
+/// Run seeds of each kind on two threads. Returns the kinds that have not finished, with the reason.
 fn failed(kinds: &[Kind], seeds: usize) -> Vec<(usize, String)> {
     let next = AtomicUsize::new(0);
     let work = || {

@@ -1,10 +1,10 @@
-//! Decision tables as the sources write them: their rows, and the columns in which they are written.
+//! Decision tables in the sources: their rows and columns.
 //!
-//! [`aligned`] writes the rows of all tables of a file in columns: the number, the conditions, `=>` with the action,
-//! `->` with the next step. In adjacent rows that ask for the same variables, the variables are in columns too. A line
-//! has at most [`WIDEST`] columns. If the alignment makes a row wider, the variables are not aligned; if that is not
-//! enough, the rows with the longest conditions leave the columns; a row that is still wider has its action in a second
-//! line.
+//! [`aligned`] arranges the rows of all tables of a file in columns: the number, the conditions, `=>` with the
+//! action, `->` with the next step. In adjacent rows with the same variables, the variables are in columns too. A
+//! line has at most [`WIDEST`] columns. If the alignment makes a row wider, the variables are not aligned. If that is
+//! not enough, the rows with the longest conditions leave the columns. A row that is still wider has its action in a
+//! second line.
 
 use std::{
     fs, io,
@@ -16,7 +16,7 @@ use std::{
 pub const WIDEST: usize = 110;
 /// The word of a row without conditions.
 pub const OTHERWISE: &str = "otherwise";
-/// The line with which a table begins.
+/// The first line of a table.
 const BEGIN: &str = "decision_table! {";
 
 /// A row: `4: held: Right | Wrong, work: Over => Release -> Releasing;`.
@@ -24,21 +24,19 @@ const BEGIN: &str = "decision_table! {";
 pub struct Row {
     /// Its lines in the file, from 0.
     pub lines: Range<usize>,
-    /// Its text, in one line.
+    /// Its text in one line.
     pub text: String,
-    /// The characters before the number.
     pub indent: String,
-    /// Rows between the same braces have the same number.
+    /// Number of its group; the rows between two braces form one.
     pub group: usize,
-    /// The step that these rows are for, if it is one.
+    /// The only step of the group, if there is exactly one.
     pub only_step: Option<String>,
-    /// Number of the row.
     pub number: String,
-    /// Of each state variable the alternatives.
+    /// The alternatives of each state variable.
     pub conditions: Vec<(String, Vec<String>)>,
-    /// The action with what it carries.
+    /// The action with its argument.
     pub action: String,
-    /// The step after it, if it changes.
+    /// The next step, if it changes.
     pub next: Option<String>,
 }
 
@@ -83,30 +81,25 @@ impl Row {
     }
 }
 
-/// A condition as it is written.
 fn condition((name, values): &(String, Vec<String>)) -> String {
     format!("{name}: {}", values.join(" | "))
 }
 
-/// A table in a file.
 #[derive(Debug)]
 pub struct Table {
-    /// The file.
     pub file: PathBuf,
     /// Its name, `MOV_TO_LOC`.
     pub name: String,
     /// Its lines, from 0, from `decision_table! {` to the closing brace.
     pub lines: Range<usize>,
-    /// The line of its head.
     pub head: usize,
-    /// Its rows.
     pub rows: Vec<Row>,
-    /// Its steps, as groups of rows name them.
+    /// Its steps, by their names in the groups of rows.
     pub steps: Vec<String>,
 }
 
 impl Table {
-    /// All tables of a file. They may be in comments, or in the code blocks of a page.
+    /// All tables of a file, including those in comments and in code blocks of a page.
     #[must_use]
     pub fn read(file: &Path, text: &str) -> Vec<Self> {
         let mut tables = Vec::<Self>::new();
@@ -160,7 +153,7 @@ impl Table {
     }
 }
 
-/// The step of a group of rows that has one.
+/// The step of a group of rows with exactly one.
 fn only(steps: &[String]) -> Option<&String> {
     let [step] = steps else { return None };
     Some(step).filter(|step| *step != "any")
@@ -169,7 +162,7 @@ fn only(steps: &[String]) -> Option<&String> {
 /// All files with an extension under a directory.
 ///
 /// # Errors
-/// A directory cannot be listed.
+/// If a directory cannot be listed.
 pub fn files(directory: &Path, extension: &str, found: &mut Vec<PathBuf>) -> io::Result<()> {
     for entry in fs::read_dir(directory)? {
         let path = entry?.path();
@@ -223,7 +216,6 @@ fn in_columns(rows: &[Row]) -> Vec<Vec<String>> {
     })
 }
 
-/// The conditions of a row, without columns.
 fn conditions(row: &Row) -> String {
     if row.conditions.is_empty() {
         return OTHERWISE.to_owned();
@@ -231,8 +223,8 @@ fn conditions(row: &Row) -> String {
     row.conditions.iter().map(condition).collect::<Vec<_>>().join(", ")
 }
 
-/// Append the conditions of rows from condition `at` on. Rows that are adjacent and ask for the same variables so far
-/// get the next variable in one column.
+/// Append the conditions of rows from condition `at` on. Adjacent rows with equal variables so far have the next
+/// variable in one column.
 fn align_variables(rows: &[Row], at: usize, texts: &mut [String]) {
     let name = |row: &Row| row.conditions.get(at).map(|(name, _)| name.clone());
     let mut first = 0;
@@ -260,8 +252,8 @@ fn align_variables(rows: &[Row], at: usize, texts: &mut [String]) {
     }
 }
 
-/// Rows with their actions in a column after `column` characters of conditions. Longer conditions leave the columns; an
-/// action that does not fit after them has a line of its own.
+/// Rows with their actions in a column after `column` characters of conditions. Longer conditions leave the columns;
+/// an action that does not fit after them has its own line.
 fn written(rows: &[Row], conditions: &[String], column: usize) -> Vec<Vec<String>> {
     let number = rows.iter().map(|row| row.number.len() + 1).max().unwrap_or_default();
     let continued = rows.iter().filter(|row| row.next.is_some());

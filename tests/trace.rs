@@ -1,9 +1,9 @@
-//! Traces: what a run did, as text that does not depend on the layout of records or on the numbers of tables
-//! and rows.
+//! Traces: the behaviour of a run as text, independent of the layout of records and of the numbers of tables and
+//! rows.
 //!
-//! A golden holds digests of byte images: another layout of a record, or another number of a row, changes all
-//! of them, although the controller does the same. A trace names each field by its path and writes each value
-//! as text. [`crate::compare`] compares the traces of two versions.
+//! A golden contains digests of byte images: a new layout of a record, or a new number of a row, changes all of them,
+//! although the controller behaves the same. A trace names each field by its path and writes each value as text.
+//! [`crate::compare`] compares the traces of two versions.
 //!
 //! ```text
 //! 1       emove.status.report      idle              tick, path, value; in the first tick all fields,
@@ -36,34 +36,34 @@ use zstd::stream::{read::Decoder, write::Encoder};
 use crate::golden::{Ending, Failed};
 
 pub const EXTENSION: &str = "trace";
-/// Stands in place of the tick in the lines that say how the run ended.
+/// Replaces the tick in the lines about the end of the run.
 pub const END: &str = "end";
 /// The number of ticks, a fact of the end.
 pub const TICKS: &str = "ticks";
 /// Last name of the path with the row that fired.
 pub const FIRED: &str = ".fired";
-/// Value of a field that does not exist in this tick: it belongs to another variant of an enum with data.
+/// Value of a field that does not exist in this tick, as it belongs to another variant of an enum with data.
 pub const ABSENT: &str = "-";
-/// First name of what goes to the devices.
+/// First name of the outputs to the devices.
 const DEVICE: &str = "device";
-/// Fields of a header that are not written. The stamp is new in every tick; `age` says how old the outputs
-/// are. The row that decided is named by numbers; `fired` says the same by name. The step belongs to the row.
+/// Fields of a header that are not written. The stamp is new in every tick, and `age` gives the age of the outputs.
+/// The deciding row is named by numbers, and `fired` names it. The step belongs to the row.
 const NOT_WRITTEN: [&str; 3] = ["stamp", "decided", "step"];
 
-/// The trace of a scenario in a directory.
+/// The path of a scenario's trace in a directory.
 #[must_use]
 pub fn path(directory: &Path, scenario: &str) -> PathBuf {
     directory.join(scenario).with_added_extension(EXTENSION)
 }
 
-/// Write the trace of a log; gives the number of ticks.
+/// Write the trace of a log. Returns the number of ticks.
 ///
 /// # Errors
-/// [`Failed`] if the log cannot be read or the trace not be written.
+/// [`Failed`] if the log cannot be read or the trace cannot be written.
 pub fn write(log: &Log, ending: &Ending, path: &Path) -> Result<u64, Failed> {
     log.check_layout()?;
     let failed = |source| Failed::File { path: path.to_owned(), source };
-    // A trace that is interrupted never gets its name.
+    // An interrupted trace never gets its final name.
     let unfinished = path.with_added_extension("unfinished");
     let file = File::create(&unfinished).map_err(failed)?;
     let encoder = Encoder::new(file, zstd::DEFAULT_COMPRESSION_LEVEL).map_err(failed)?;
@@ -85,7 +85,7 @@ pub fn write(log: &Log, ending: &Ending, path: &Path) -> Result<u64, Failed> {
     Ok(ticks)
 }
 
-/// Open a trace to read its lines.
+/// Open a trace for reading.
 ///
 /// # Errors
 /// If the file cannot be opened.
@@ -99,12 +99,12 @@ pub struct Tracer<W> {
     headers: Vec<HeaderPlace>,
     memory: Images,
     devices: Images,
-    /// Age of the outputs and row that fired, a process.
+    /// Per process: age of the outputs, and the row that fired.
     decided: Vec<Option<(u64, String)>>,
     ticks: u64,
 }
 
-/// The byte images of a record in this tick and in the tick before.
+/// The byte images of a record in this tick and in the previous one.
 struct Images {
     was: Option<Vec<u8>>,
     is: Vec<u8>,
@@ -115,7 +115,7 @@ impl Images {
         Self { was: None, is: Vec::new() }
     }
 
-    /// Take in the record of this tick, and write what changed.
+    /// Store the record of this tick, and write its changes.
     fn change<T: Plain>(&mut self, record: &T, prefix: &str, visit: &mut Visit<'_>) -> io::Result<()> {
         self.is.resize(T::SIZE, 0);
         record.encode(&mut Writer::new(&mut self.is));
@@ -127,7 +127,6 @@ impl Images {
 }
 
 impl<W: Write> Tracer<W> {
-    /// A trace without ticks.
     #[must_use]
     pub fn new(out: W) -> Self {
         let headers = headers();
@@ -135,16 +134,16 @@ impl<W: Write> Tracer<W> {
         Self { out, headers, memory: Images::new(), devices: Images::new(), decided, ticks: 0 }
     }
 
-    /// Write what changed in a tick.
+    /// Write the changes of a tick.
     ///
     /// # Errors
-    /// What the file says.
+    /// An error of the file.
     pub fn tick(&mut self, tick: Tick, memory: &CommonMemory) -> io::Result<()> {
         let Self { out, .. } = self;
         let mut line = |path: &str, value: &str| writeln!(out, "{tick}\t{path}\t{}", plain(value));
         self.memory.change(memory, "", &mut line)?;
         self.devices.change::<DeviceOutputs>(&memory.device_outputs(), DEVICE, &mut line)?;
-        // `change` has put the image of this tick where the next tick looks for the one before it.
+        // `change` has moved the image of this tick to the place of the previous one.
         let image = self.memory.was.as_deref().unwrap_or_default();
         for (place, decided) in self.headers.iter().zip(&mut self.decided) {
             let header = place.read(image);
@@ -161,10 +160,10 @@ impl<W: Write> Tracer<W> {
         Ok(())
     }
 
-    /// Write how the run ended; gives back what was written to.
+    /// Write the end of the run. Returns the writer.
     ///
     /// # Errors
-    /// What the file says.
+    /// An error of the file.
     pub fn finish(mut self, ending: &Ending) -> io::Result<W> {
         let status = ending.status.map_or("a signal".to_owned(), |status| status.to_string());
         let last_line = without_rows(&ending.last_line);
@@ -176,12 +175,12 @@ impl<W: Write> Tracer<W> {
     }
 }
 
-/// Gets the path and the value of a field.
+/// Receives the path and the value of a field.
 type Visit<'a> = dyn FnMut(&str, &str) -> io::Result<()> + 'a;
 
-/// Visits the fields whose bytes differ between `was` and `is`, or all fields of `is` if `was` is none.
+/// Visits the fields whose bytes differ between `was` and `is`, or all fields of `is` without `was`.
 ///
-/// A new kind of [`Schema`] is added in this `match`, and nowhere else in traces:
+/// This `match` is the only place in traces for a new kind of [`Schema`]:
 /// * An option: `none`, or the value. An option of a record is an enum with data, `none` or `some`.
 /// * An enum with data: the text of the variant as the value of `path`, its fields below `path`. When the
 ///   variant changes, each field that only the variant before had gets the value [`ABSENT`], and the fields

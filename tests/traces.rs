@@ -1,4 +1,4 @@
-//! Traces and their comparison: every change is in the trace, and every difference is found.
+//! Traces and their comparison: a trace contains every change, and the comparison finds every difference.
 
 use interfaces::{CommonMemory, Decided, Reason, emove::Holding};
 use rcs_core::{name::Name16, tick::Tick};
@@ -10,7 +10,7 @@ use whole_system_tests::{
 
 const END: &str = "end\tticks\t9\nend\tstatus\t0\n";
 
-/// A trace of lines with blanks in place of tabs, and its end.
+/// A trace of lines with blanks instead of tabs, and its end.
 fn trace(lines: &[&str]) -> String {
     let tabs = |line: &&str| line.replacen(' ', "\t", 2) + "\n";
     lines.iter().map(tabs).collect::<String>() + END

@@ -1,9 +1,8 @@
 //! Compares the traces of two versions, tick by tick and field by field.
 //!
-//! What a restructuring changes on purpose stands in a file of [`Renames`]: other paths, other texts of
-//! values, fields that only one version has. Everything else that is not equal is a difference. The rows of
-//! decision tables are not compared: a [`RowMap`] says which row of the new version fired where a row of the
-//! old version did, for review.
+//! A file of [`Renames`] lists intended changes: other paths, other texts of values, fields of only one version. All
+//! other deviations are differences. The rows of decision tables are not compared: for review, a [`RowMap`] shows
+//! which row of the new version fired in place of a row of the old version.
 
 mod read;
 mod renames;
@@ -23,15 +22,15 @@ pub use self::{
 };
 use crate::trace::{FIRED, TICKS};
 
-/// Differences of a scenario that are written out; the others are counted.
+/// Differences of a scenario to print; others are counted.
 const WRITTEN: usize = 12;
 
-/// Why two traces cannot be compared.
+/// Reason why two traces cannot be compared.
 #[derive(Debug, thiserror::Error)]
 pub enum CompareError {
     #[error(transparent)]
     Toml(#[from] toml::de::Error),
-    /// A rename does not say what a star stands for.
+    /// A rename has a star without a meaning.
     #[error("at most as many stars as in old = {old:?} were expected, found new = {new:?}")]
     Stars {
         /// The text in the old version.
@@ -41,18 +40,18 @@ pub enum CompareError {
     },
     #[error("the {0} trace: {1}")]
     Unreadable(&'static str, io::Error),
-    /// A line is not one of a trace, or of an earlier tick than the line before it.
+    /// The line is not part of a trace, or belongs to an earlier tick than the previous line.
     #[error("the {which} trace, line {line}: tick, path and value in order were expected, found {found:?}")]
     Line {
         /// The old or the new one.
         which: &'static str,
-        /// The line, from 1.
+        /// From 1.
         line: usize,
         found: String,
     },
     #[error("the {0} trace ends without saying how the run ended: make it again")]
     NoEnd(&'static str),
-    /// Two fields of the old version are to be one of the new version.
+    /// Two fields of the old version would become one of the new version.
     #[error("{first} and {second} of the old version both become {new}")]
     Twice {
         first: String,
@@ -62,25 +61,25 @@ pub enum CompareError {
     },
 }
 
-/// A field that is not as it was.
+/// A field that differs.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Difference {
-    /// When it first differs.
+    /// First moment of the difference.
     pub first: Moment,
-    /// The field, by its path in the new version.
+    /// Path of the field in the new version.
     pub path: String,
-    /// Its value in the old version at that moment; none if there is no such field.
+    /// Value in the old version at that moment; none without such a field.
     pub was: Option<String>,
-    /// Its value in the new version.
+    /// Value in the new version.
     pub is: Option<String>,
-    /// In how many ticks it differs.
+    /// Number of ticks in which it differs.
     pub ticks: u64,
 }
 
-/// What the comparison of two traces found.
+/// Result of a comparison of two traces.
 #[derive(Clone, Debug, Default)]
 pub struct Comparison {
-    /// Fields that differ, in the order in which they first do.
+    /// Differing fields, by their first difference.
     pub differences: Vec<Difference>,
     /// Rows of the new version for those of the old one, up to the first difference.
     pub rows: Pairs,
@@ -92,13 +91,13 @@ pub struct Comparison {
 /// Compare the trace of an old version with that of a new one.
 ///
 /// # Errors
-/// [`CompareError`] if one of them is not a complete trace, or two old fields become one. A difference is no
-/// error: it is in the result.
+/// [`CompareError`] if one of them is not a complete trace, or two old fields become one. A difference is part of the
+/// result, not an error.
 pub fn compare(was: impl BufRead, is: impl BufRead, renames: &Renames) -> Result<Comparison, CompareError> {
     let (mut was, mut is) = (Lines::new("old", was)?, Lines::new("new", is)?);
     let mut comparer = Comparer::new(renames);
     while let Some(mut moment) = was.moment().min(is.moment()) {
-        // Where only one run goes on there is nothing to compare.
+        // The ticks of only one run cannot be compared.
         let last = was.last_tick().into_iter().chain(is.last_tick()).min();
         if last.is_some_and(|last| moment > Moment::Tick(last)) {
             moment = Moment::End;
@@ -125,19 +124,19 @@ struct Slot {
     is: Option<String>,
     values: Vec<usize>,
     kind: Kind,
-    /// A value came in this tick.
+    /// It got a value in this tick.
     touched: bool,
 }
 
 enum Kind {
     Compared {
-        /// Position among the differences, and since when the values differ.
+        /// Position among the differences, and the first tick of the present difference.
         difference: Option<usize>,
         since: Option<u64>,
     },
-    /// A row that fired: the pair that fires, and since when.
+    /// A row that fired: the present pair and its first tick.
     Row(Option<(Pair, u64)>),
-    /// Only the new version has it.
+    /// A field of the new version only.
     Added,
 }
 
@@ -148,14 +147,13 @@ impl Kind {
 struct Comparer<'a> {
     renames: &'a Renames,
     slots: Vec<Slot>,
-    /// Slots by path in the old version; none for fields that are dropped.
+    /// Slots by path in the old version; none for dropped fields.
     old: HashMap<String, Option<usize>>,
     /// Slots by path in the new version.
     new: HashMap<String, usize>,
     touched: Vec<usize>,
-    /// The last tick so far.
     tick: u64,
-    /// First tick with a difference: rows are learned up to there.
+    /// First tick with a difference: pairs of rows are collected up to it.
     diverged: Option<u64>,
     found: Comparison,
 }
@@ -180,7 +178,7 @@ impl<'a> Comparer<'a> {
         }
     }
 
-    /// A field of the old version has a value.
+    /// Set the value of a field of the old version.
     fn was(&mut self, path: &str, value: String) -> Result<(), CompareError> {
         let slot = match self.old.get(path) {
             Some(slot) => *slot,
@@ -192,7 +190,7 @@ impl<'a> Comparer<'a> {
         Ok(())
     }
 
-    /// A field of the new version has a value.
+    /// Set the value of a field of the new version.
     fn is(&mut self, path: &str, value: String) {
         let slot = self.new_slot(path);
         self.touch(slot).is = Some(value);
@@ -237,17 +235,17 @@ impl<'a> Comparer<'a> {
         self.slots.len() - 1
     }
 
-    /// Compare the fields that got a value in this moment.
+    /// Compare the fields that got a value at this moment.
     fn settle(&mut self, moment: Moment) {
         let mut touched = std::mem::take(&mut self.touched);
-        // Differences first: they end what is learned of rows.
+        // Differences first: they end the collection of rows.
         touched.sort_by_key(|at| (matches!(self.slots[*at].kind, Kind::Row(_)), *at));
         for at in touched.drain(..) {
             let slot = &mut self.slots[at];
             slot.touched = false;
             match (&slot.kind, &slot.was, &slot.is) {
                 (Kind::Row(_), Some(_), Some(_)) => {}
-                // A process that one version does not have, and a field that is not added.
+                // A process of only one version, or a field that was not declared as added.
                 (Kind::Row(_), ..) | (Kind::Added, Some(_), _) => slot.kind = Kind::COMPARED,
                 _ => {}
             }
@@ -291,7 +289,7 @@ impl<'a> Comparer<'a> {
         }
     }
 
-    /// If another pair of rows fires, count the pair that fired up to now.
+    /// If another pair of rows fires, count the previous pair.
     fn change_row(&mut self, at: usize) {
         let slot = &mut self.slots[at];
         let (Kind::Row(firing), Some(was), Some(is)) = (&mut slot.kind, &slot.was, &slot.is) else { return };
@@ -332,7 +330,7 @@ impl fmt::Display for Comparison {
         let text = |value: &Option<String>| {
             value.as_ref().map_or("no such field".to_owned(), |value| format!("{value:?}"))
         };
-        // How the run ended is always written: it comes last.
+        // The end of the run is always printed: it is the last entry.
         let (ends, ticks): (Vec<_>, Vec<_>) = self.differences.iter().partition(|d| d.first == Moment::End);
         let (written, more) = ticks.split_at(WRITTEN.min(ticks.len()));
         for Difference { first, path, was, is, ticks } in written.iter().chain(&ends) {

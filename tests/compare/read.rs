@@ -8,7 +8,7 @@ use std::{
 use super::CompareError;
 use crate::trace::{END, TICKS};
 
-/// When a field has a value: in a tick, or at the end, which is after all ticks.
+/// Moment of a value: a tick, or the end, which is after all ticks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Moment {
     Tick(u64),
@@ -24,7 +24,7 @@ impl fmt::Display for Moment {
     }
 }
 
-/// The lines of a trace, one ahead.
+/// The lines of a trace, with one line of look-ahead.
 pub(super) struct Lines<R> {
     which: &'static str,
     lines: io::Lines<R>,
@@ -33,19 +33,19 @@ pub(super) struct Lines<R> {
 }
 
 impl<R: BufRead> Lines<R> {
-    /// The lines of the trace that messages call `which`.
+    /// The lines of the trace; messages name it `which`.
     pub(super) fn new(which: &'static str, input: R) -> Result<Self, CompareError> {
         let mut lines = Self { which, lines: input.lines(), number: 0, next: None };
         lines.advance()?;
         lines.next.is_some().then_some(lines).ok_or(CompareError::NoEnd(which))
     }
 
-    /// When the next line is; none after the last one.
+    /// The moment of the next line; none after the last one.
     pub(super) fn moment(&self) -> Option<Moment> {
         self.next.as_ref().map(|(moment, ..)| *moment)
     }
 
-    /// The last tick of the run, if the next line is the first one of the end.
+    /// The last tick of the run, if the next line is the first of the end.
     pub(super) fn last_tick(&self) -> Option<u64> {
         match &self.next {
             Some((Moment::End, path, value)) if path == TICKS => value.parse().ok(),
@@ -53,18 +53,18 @@ impl<R: BufRead> Lines<R> {
         }
     }
 
-    /// The path and value of the next line, if it is of this moment.
+    /// Path and value of the next line, if it belongs to this moment.
     pub(super) fn take(&mut self, moment: Moment) -> Result<Option<(String, String)>, CompareError> {
         let Some((_, path, value)) = self.next.as_mut().filter(|(next, ..)| *next == moment) else {
             return Ok(None);
         };
-        // The moment stays for `advance`, which checks the order of the lines.
+        // The moment is kept for `advance`, which checks the order of the lines.
         let taken = (std::mem::take(path), std::mem::take(value));
         self.advance()?;
         Ok(Some(taken))
     }
 
-    /// Go on to the first line of the end.
+    /// Continue with the first line of the end.
     pub(super) fn skip_to_end(&mut self) -> Result<(), CompareError> {
         while self.moment().is_some_and(|moment| moment < Moment::End) {
             self.advance()?;

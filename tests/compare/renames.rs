@@ -1,4 +1,4 @@
-//! What a restructuring changes on purpose: paths, and texts of values.
+//! Intended changes of a restructuring: paths, and texts of values.
 
 use std::collections::BTreeSet;
 
@@ -7,19 +7,19 @@ use serde::Deserialize;
 use super::CompareError;
 use crate::trace::ABSENT;
 
-/// What differs on purpose: a TOML file.
+/// A TOML file with the intended changes.
 ///
-/// In a path `*` stands for any part of one segment, at the end of the path for all that follows:
-/// `emove.poses[*].pose.*`. In a value it stands for any text. The first `*` of `new` is replaced by what the
-/// first `*` of `old` stands for, and so on.
+/// In a path `*` matches any part of one segment, and at the end of the path all that follows:
+/// `emove.poses[*].pose.*`. In a value it matches any text. The first `*` of `new` is replaced by the match of the
+/// first `*` of `old`, and so on.
 #[derive(Clone, Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Renames {
-    /// Fields with another path; the first entry that fits counts.
+    /// Fields with another path; the first matching entry applies.
     pub renamed: Vec<Renamed>,
-    /// Fields that only the old version has.
+    /// Fields of the old version only.
     pub dropped: Vec<Only>,
-    /// Fields that only the new version has. A field that both versions have is compared nevertheless.
+    /// Fields of the new version only. A field of both versions is compared nevertheless.
     pub added: Vec<Only>,
     pub value: Vec<NewText>,
 }
@@ -39,11 +39,11 @@ pub struct Renamed {
 pub struct Only {
     /// Its path in the version that has it.
     pub path: String,
-    /// Why its values need not be compared.
+    /// Reason why its values need not be compared.
     pub reason: String,
 }
 
-/// A value with another text: where the old version has `old`, the new one may have `new`.
+/// A value with another text: for `old` in the old version, the new one may have `new`.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct NewText {
@@ -51,11 +51,11 @@ pub struct NewText {
     pub path: String,
     /// The text in the old version.
     pub old: String,
-    /// The text in the new version; [`ABSENT`] if there is no such field in that tick.
+    /// The text in the new version; [`ABSENT`] if the field does not exist in that tick.
     pub new: String,
 }
 
-/// An entry of [`Renames`], by its position.
+/// An entry of [`Renames`], by position.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Rule {
     Renamed(usize),
@@ -81,7 +81,7 @@ impl Renames {
         Ok(renames)
     }
 
-    /// The path in the new version of a field of the old one; none if the field is dropped.
+    /// The new path of a field of the old version; none if the field is dropped.
     pub(super) fn new_path(&self, old: &str, used: &mut BTreeSet<Rule>) -> Option<String> {
         if let Some(at) = self.dropped.iter().position(|rule| path_matches(&rule.path, old)) {
             used.insert(Rule::Dropped(at));
@@ -95,20 +95,20 @@ impl Renames {
         Some(new)
     }
 
-    /// Whether only the new version has a field.
+    /// True if only the new version has the field.
     pub(super) fn is_added(&self, path: &str, used: &mut BTreeSet<Rule>) -> bool {
         let rule = self.added.iter().position(|rule| path_matches(&rule.path, path));
         used.extend(rule.map(Rule::Added));
         rule.is_some()
     }
 
-    /// Positions of the entries on the values of a field.
+    /// Positions of the entries for the values of a field.
     pub(super) fn values_of(&self, path: &str) -> Vec<usize> {
         let rules = self.value.iter().enumerate();
         rules.filter(|(_, rule)| path_matches(&rule.path, path)).map(|(at, _)| at).collect()
     }
 
-    /// Whether a value is what it was, or what one of `rules` makes of it.
+    /// True if the values are equal, or one of `rules` maps the old one to the new one.
     pub(super) fn agree(
         &self,
         was: Option<&str>,
@@ -119,7 +119,7 @@ impl Renames {
         if was == is {
             return true;
         }
-        // A field that was not written yet is one of a variant that was not used yet: see `trace::changes`.
+        // An unwritten field belongs to a variant that was not used yet: see `trace::changes`.
         let (was, is) = (was.unwrap_or(ABSENT), is.unwrap_or(ABSENT));
         let fits = |at: &usize| {
             self.value.get(*at).is_some_and(|NewText { old, new, .. }| {
@@ -150,7 +150,7 @@ fn path_matches(pattern: &str, path: &str) -> bool {
     captures(pattern, path, '.').is_some()
 }
 
-/// What `text` becomes by a rule from `old` to `new`; none if it does not match `old`.
+/// `text` translated by a rule from `old` to `new`; none if it does not match `old`.
 fn translate(old: &str, new: &str, text: &str, border: char) -> Option<String> {
     let stars = captures(old, text, border)?;
     let mut pieces = new.split('*');
@@ -162,8 +162,8 @@ fn translate(old: &str, new: &str, text: &str, border: char) -> Option<String> {
     Some(result)
 }
 
-/// What the stars of a pattern stand for; none if `text` does not match. A star does not extend over
-/// `border`, unless it ends the pattern.
+/// The matches of a pattern's stars; none if `text` does not match. A star stops at `border`, unless it ends the
+/// pattern.
 fn captures<'a>(pattern: &str, text: &'a str, border: char) -> Option<Vec<&'a str>> {
     let Some((front, rest)) = pattern.split_once('*') else {
         return (pattern == text).then(Vec::new);

@@ -1,4 +1,4 @@
-//! Which row of the new version fires where a row of the old one did.
+//! The rows of the new version that fire in place of those of the old one.
 
 use std::{
     collections::{BTreeMap, BTreeSet},
@@ -12,10 +12,10 @@ use super::{
     renames::{Renames, Rule},
 };
 
-/// A row of the old version and one of the new version that fired in the same tick.
+/// A row of the old and one of the new version that fired in the same tick.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Pair {
-    /// The process: its field of common memory in the new version.
+    /// The process's field of common memory in the new version.
     pub process: String,
     /// Table and row of the old version.
     pub old: Row,
@@ -30,7 +30,7 @@ pub struct Row {
 }
 
 impl Row {
-    /// Of the text in a trace.
+    /// Parse the text of a trace.
     pub(super) fn new(text: &str) -> Self {
         let split = text.rsplit_once(' ').and_then(|(table, row)| Some((table, row.parse().ok()?)));
         let (table, number) = split.map_or((text, None), |(table, row)| (table, Some(row)));
@@ -45,26 +45,24 @@ impl fmt::Display for Row {
     }
 }
 
-/// How often a pair of rows fired.
+/// Statistics of a pair.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Seen {
-    /// In how many ticks.
     pub ticks: u64,
-    /// The first of them.
     pub first: u64,
 }
 
 /// Pairs of rows of one scenario.
 pub type Pairs = BTreeMap<Pair, Seen>;
 
-/// A pair fired in the ticks from `since` to the one before `until`.
+/// Add a pair that fired in the ticks from `since` to `until` - 1.
 pub(super) fn learn(pairs: &mut Pairs, pair: Pair, since: u64, until: u64) {
     if since < until {
         pairs.entry(pair).or_insert(Seen { ticks: 0, first: since }).ticks += until - since;
     }
 }
 
-/// Which row of the new version fires where a row of the old one did, in all scenarios.
+/// The rows of the new version that fire in place of those of the old one, in all scenarios.
 #[derive(Clone, Debug, Default)]
 pub struct RowMap {
     /// With the scenario of the first tick.
@@ -73,7 +71,7 @@ pub struct RowMap {
 }
 
 impl RowMap {
-    /// Take in what the comparison of a scenario found.
+    /// Add the comparison of a scenario.
     pub fn add(&mut self, scenario: &str, found: &Comparison) {
         for (pair, seen) in &found.rows {
             let new = || (Seen { ticks: 0, ..seen.clone() }, scenario.to_owned());
@@ -99,7 +97,7 @@ impl RowMap {
         self.pairs.keys().filter(is_split).collect()
     }
 
-    /// Rows of this version that no header named in any tick, by process and table.
+    /// Rows of this version that never fired, by process and table.
     #[must_use]
     pub fn not_named(&self) -> Vec<(&'static str, &'static str, Vec<u8>)> {
         let fired: BTreeSet<(&str, String)> =

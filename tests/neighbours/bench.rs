@@ -1,4 +1,4 @@
-//! A controller that waits for neighbours, and a workstation controller that says whatever a test wants.
+//! A controller with external neighbours, and a workstation controller that the tests control.
 
 use std::{
     io::{BufRead as _, BufReader, Read as _},
@@ -23,7 +23,7 @@ use serde_json::Value;
 use sessions::network::{Address, Peer, PeerError, Received, Role};
 use whole_system_tests::{Scratch, rcs_run, root};
 
-/// How long something may take that takes milliseconds.
+/// Time limit for actions that take milliseconds.
 pub const PATIENCE: Duration = Duration::from_secs(120);
 
 /// A controller with neighbours in other processes.
@@ -42,18 +42,18 @@ pub struct Ended {
 }
 
 impl Controller {
-    /// One with a socket in its own directory.
+    /// A controller with a socket in its own directory.
     pub fn start(name: &str, outside: &str, more: &[&str]) -> Self {
         Self::start_at(Scratch::new(name), None, outside, more)
     }
 
-    /// One at an address; without a name of a neighbour all of them are its own.
+    /// A controller at an address; without a role all neighbours are its own.
     pub fn start_at(scratch: Scratch, address: Option<&str>, outside: &str, more: &[&str]) -> Self {
         let socket = format!("unix:{}", scratch.file("rcs.sock").display());
         let mut child = Command::new(rcs_run())
             .args(["--network", address.unwrap_or(&socket)])
             .args((!outside.is_empty()).then(|| format!("--outside={outside}")))
-            // A run with a name is one that an operator reaches.
+            // An operator can reach a run with a name.
             .args(if more.contains(&"--run") { &[][..] } else { &["--shared-memory", "off"] })
             .args(if more.contains(&"--log") { &[][..] } else { &["--log", "none"] })
             .args(more)
@@ -84,7 +84,7 @@ impl Controller {
         self.scratch.as_ref().expect("it has one").file(name)
     }
 
-    /// Connect to it, if need be as soon as it has noticed that another one has gone.
+    /// Connect to it, if necessary once it has noticed the departure of a predecessor.
     pub fn connect(&self, role: Role) -> Peer {
         let started = Instant::now();
         loop {
@@ -98,12 +98,12 @@ impl Controller {
         }
     }
 
-    /// Connect to it, or hear why not.
+    /// Try to connect. Returns the reason of a refusal.
     pub fn try_connect(&self, role: Role) -> Result<Peer, PeerError> {
         Peer::connect_within(PATIENCE, &self.address, role)
     }
 
-    /// Kill it, so that it can do nothing more; what it leaves.
+    /// Kill it. Returns its files.
     pub fn kill(mut self) -> Scratch {
         self.child.kill().expect("it runs");
         self.child.wait().expect("a child");
@@ -114,7 +114,7 @@ impl Controller {
         self.end_with(|| {})
     }
 
-    /// Wait for its end, and look at what it leaves.
+    /// Wait for its end, and examine its files.
     pub fn end_with(mut self, look: impl FnOnce()) -> Ended {
         let mut page = String::new();
         self.child.stdout.take().expect("it is piped").read_to_string(&mut page).expect("text");
@@ -127,7 +127,7 @@ impl Controller {
 
 impl Drop for Controller {
     fn drop(&mut self) {
-        // It is over already if the test went well.
+        // It has already ended if the test succeeded.
         let _ = self.child.kill();
         let _ = self.child.wait();
     }
@@ -136,7 +136,7 @@ impl Drop for Controller {
 pub struct Workstation {
     pub peer: Peer,
     pub tick: u64,
-    /// The pulse is to be answered: what is sent before counts in its tick.
+    /// True if the pulse still needs an answer; messages before that belong to its tick.
     unanswered: bool,
     command_box: Mailbox,
     cell_box: Mailbox,
@@ -149,7 +149,7 @@ impl Workstation {
         let command_box = Mailbox::initialized(HWSC_COMMAND);
         let cell_box = Mailbox::initialized(CELL_COMMAND);
         let mut workstation = Self { peer, tick: 0, unanswered: false, command_box, cell_box, line: 0 };
-        // Until the first status is there nothing is known of the controller.
+        // The state of the controller is unknown before its first status.
         while workstation.peer.mailbox(HWSC_STATUS).mailgram() == 0 {
             workstation.tick();
         }
@@ -180,7 +180,7 @@ impl Workstation {
         }
     }
 
-    /// Write into the mailbox of commands, whatever it is.
+    /// Write any bytes into the mailbox of commands.
     pub fn write(&mut self, data: &[u8]) {
         self.command_box.write(data).expect("it fits");
         self.peer.send(&self.command_box).expect("the controller reads");
@@ -190,7 +190,7 @@ impl Workstation {
         self.write(&command::encode(command).expect("it fits"));
     }
 
-    /// Let the cell do what a line of a job says, and wait until it has.
+    /// Send a job line to the cell, and wait until it has been executed.
     pub fn in_cell(&mut self, line: &str) {
         self.begin_in_cell(line);
         loop {
@@ -202,18 +202,18 @@ impl Workstation {
         }
     }
 
-    /// Let the cell begin what a line of a job says.
+    /// Send a job line to the cell.
     pub fn begin_in_cell(&mut self, line: &str) {
         self.line += 1;
         self.write_cell(&cell::encode_line(self.line, line));
     }
 
-    /// The last line has been read, and the cell is not busy with it.
+    /// True if the last line has been read and executed.
     pub fn cell_is_idle(&self) -> bool {
         self.cell().echo == self.line && !self.cell().busy
     }
 
-    /// Write into the mailbox of lines for the cell, whatever it is.
+    /// Write any bytes into the mailbox of lines for the cell.
     pub fn write_cell(&mut self, data: &[u8]) {
         self.cell_box.write(data).expect("it fits");
         self.peer.send(&self.cell_box).expect("the controller reads");
@@ -227,7 +227,7 @@ impl Workstation {
         status::decode(self.peer.mailbox(HWSC_STATUS).data()).expect("a status")
     }
 
-    /// Send a command, and let it come to its end; what the status says then.
+    /// Send a command and wait for its end. Returns the last status.
     pub fn carry_out(&mut self, command: &HwsCommand) -> (String, String) {
         self.send(command);
         loop {
@@ -242,7 +242,7 @@ impl Workstation {
     }
 }
 
-/// Answer every pulse, until the line ends.
+/// Answer every pulse until the connection ends.
 pub fn attend(mut peer: Peer) {
     while let Ok(received) = peer.receive() {
         if let Received::Pulse(tick) = received
@@ -262,8 +262,8 @@ pub fn example(name: &str) -> PathBuf {
     root().join("examples").join(name)
 }
 
-/// Fingerprint of all buffers of a logged run in all ticks, but for what the tables of the pedestal were consulted
-/// with: its mailboxes tell the rows that fired, and nothing about them.
+/// Digest of all buffers of a logged run in all ticks, without the table values of the pedestal: its mailboxes
+/// contain the rows that fired, and no values.
 pub fn computed(log: &Path) -> u64 {
     let log = Log::open(log).expect("a log");
     let (mut digest, mut scratch) = (Digest::new(), vec![0; CommonMemory::SIZE]);
@@ -279,7 +279,7 @@ pub fn computed(log: &Path) -> u64 {
     digest.value()
 }
 
-/// [`computed`] of a shipped job, with options of the run, all of whose neighbours are in the controller's own process.
+/// [`computed`] of a shipped job with options of the run, and with all neighbours in the controller's process.
 pub fn computed_alone(job: &str, options: &[&str]) -> u64 {
     let scratch = Scratch::new(&format!("alone-{job}"));
     let log = scratch.file("alone.mcap");
@@ -294,7 +294,7 @@ pub fn computed_alone(job: &str, options: &[&str]) -> u64 {
     computed(&log)
 }
 
-/// The result of a run with everybody in the controller's own process.
+/// The result of a run with all neighbours in the controller's process.
 pub fn run_alone(arguments: &[&str]) -> Value {
     let output = Command::new(rcs_run())
         .args(arguments)

@@ -1,6 +1,6 @@
-//! The Data System in another process (IV.4.2, IX.2): whatever dies, every update counts once.
+//! The Data System in another process (IV.4.2, IX.2): every update is stored once, whichever process is killed.
 //!
-//! The tests command the robot themselves, in fast clock: the controller's time stands still while they look.
+//! The tests command the robot themselves in fast clock, so the controller's time stops while they check.
 
 use std::{
     path::{Path, PathBuf},
@@ -26,21 +26,21 @@ use whole_system_tests::{Scratch, rcs_neighbour, rcs_run, root};
 
 use super::bench::{Controller, Ended, Workstation, bare};
 
-/// What a Data System does with the first update.
+/// Reaction of a Data System to the first update.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Fate {
     Answers,
-    /// It is killed before it has heard of it.
+    /// It is killed before it has received the update.
     DiesBefore,
-    /// It is killed when it has kept it and not yet answered.
+    /// It is killed after it has stored the update, and before its answer.
     DiesAfter,
-    /// It has no room on its disk just then.
+    /// Its disk is full at that moment.
     Refuses,
     /// It takes half a second.
     Dawdles,
 }
 
-/// A Data System on a thread, which ends when the line does.
+/// A Data System on a thread, which ends with the connection.
 fn serve(mut peer: Peer, file: PathBuf, fate: Fate) -> JoinHandle<()> {
     thread::spawn(move || {
         let mut server = Server::new(Store::open(&file).expect("a data base"));
@@ -68,7 +68,7 @@ fn serve(mut peer: Peer, file: PathBuf, fate: Fate) -> JoinHandle<()> {
                 match (update, fate) {
                     (true, Fate::DiesAfter) => return,
                     (true, Fate::Dawdles) => {
-                        // First what it does, then what became of it.
+                        // First the action, then its result.
                         status.server = ServerStatus::Busy;
                         let busy = Status { summary: Summary::None, ..status };
                         status_box.write(&busy.encode()).expect("it fits");
@@ -90,7 +90,7 @@ fn serve(mut peer: Peer, file: PathBuf, fate: Fate) -> JoinHandle<()> {
     })
 }
 
-/// A cell in which blank 17 lies in its tray, and a robot that is connected with the Data System.
+/// A cell with blank 17 in its tray, and a robot with a connection to the Data System.
 struct Shop {
     controller: Controller,
     workstation: Workstation,
@@ -108,7 +108,7 @@ impl Shop {
         Self { controller, workstation, data_system }
     }
 
-    /// Open, the Data System connected by command 2, and a blank there to be fetched.
+    /// Open the connection by command 2, with a blank to fetch.
     fn with_blank(scratch: Scratch, file: &Path, fate: Fate) -> Self {
         let mut shop = Self::open(scratch, file, fate);
         assert_eq!(shop.connect(2).0, "finished");
@@ -124,13 +124,13 @@ impl Shop {
     fn end(self) -> Ended {
         drop(self.workstation);
         let ended = self.controller.end();
-        // Its line has ended with the run.
+        // Its connection has ended with the run.
         self.data_system.join().expect("it has not panicked");
         ended
     }
 }
 
-/// Blank 17 is fetched from its tray: the robot has it then.
+/// Blank 17 is fetched from its tray, so that the robot holds it.
 fn fetch(number: u32) -> HwsCommand {
     let name = |text| Name16::new(text).expect("a name");
     HwsCommand {
@@ -145,7 +145,7 @@ fn fetch(number: u32) -> HwsCommand {
     }
 }
 
-/// Where 17 is, and how often that was news.
+/// The place of item 17, and the number of its changes.
 fn books(file: &Path) -> (String, usize) {
     let store = Store::open(file).expect("a data base");
     let items = store.items().expect("it can be read");
@@ -178,7 +178,7 @@ fn items_are_kept_by_another_process_and_not_a_bit_of_the_run_changes() {
         .stdout(std::process::Stdio::null())
         .spawn()
         .expect("rcs-neighbour can be started");
-    // Its directory goes with the controller.
+    // The controller's directory is removed with it.
     let digest = own["digest"].clone();
     let ended = controller.end_with(|| assert_eq!(books(&file), ("17 at H_ROBOT".to_owned(), 1)));
     assert_eq!(ended.status, Some(0), "{}", ended.said);

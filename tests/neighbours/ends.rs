@@ -1,4 +1,4 @@
-//! How a run ends that is commanded from another process, and what its exit status says of it.
+//! The end of a run that another process commands, and its exit status.
 
 use std::{
     thread,
@@ -17,7 +17,7 @@ use sessions::network::{Received, Role};
 
 use super::bench::{Controller, Ended, PATIENCE, Workstation, attend, bare};
 
-/// A run that goes on without its workstation controller ends here, and not where it should.
+/// A limit for runs that continue without their workstation controller by mistake.
 const TOO_LONG: [&str; 3] = ["--json", "--ticks", "20000"];
 
 const FAILED: Option<i32> = Some(1);
@@ -33,7 +33,7 @@ fn to_safe(number: u32) -> HwsCommand {
     HwsCommand { destination: Some(Name16::clipped("SAFE")), ..bare(number, "MOVE") }
 }
 
-/// The robot is on its way, by command 2.
+/// The robot moves, by command 2.
 fn start_moving(name: &str) -> (Controller, Workstation) {
     let (controller, mut workstation) = start(name);
     assert_eq!(workstation.carry_out(&bare(1, "PAUSE")).0, "finished");
@@ -48,7 +48,7 @@ fn last_words(ended: &Ended) -> &str {
     ended.said.lines().last().unwrap_or_default()
 }
 
-/// It failed with these words, on standard error and in the result.
+/// Assert that it failed with this message, on standard error and in the result.
 fn assert_ended(ended: &Ended, status: Option<i32>, why: &str) {
     assert_eq!(ended.status, status, "{}", ended.said);
     assert!(last_words(ended).contains(why), "{why}: {}", ended.said);
@@ -139,7 +139,7 @@ fn an_unreset_emergency_stop_ends_the_run_when_the_arm_rests() {
     assert_eq!(ended.result["emergency_stop"]["at_rest"], true);
 }
 
-/// An end that was asked for, too.
+/// Also after a requested end.
 #[test]
 fn an_unreset_emergency_stop_is_a_failure_on_the_grid_too() {
     let controller = Controller::start("standing", "workstation", &["--json", "--clock", "real"]);
@@ -163,7 +163,7 @@ fn a_robot_that_is_switched_off_is_a_lost_link() {
     assert_ended(&controller.end(), STOPPED, "the controller has no power");
 }
 
-/// Lines that bring the robot to HOME from wherever it stands (IV.3.3).
+/// Lines that bring the robot to HOME from any place (IV.3.3).
 const BY_HAND: [&str; 6] = [
     "panel hydraulics disable",
     "panel hydraulics enable",
@@ -173,8 +173,8 @@ const BY_HAND: [&str; 6] = [
     "panel cycle-start",
 ];
 
-/// A command replaces the one that is executed: the robot stops, and goes on from there. The operator may
-/// bring it to HOME instead.
+/// A command replaces the one in progress: the robot stops and continues from there. The operator may bring it to
+/// HOME instead.
 #[test]
 fn a_robot_stopped_on_its_way_continues_or_is_moved_back_by_hand() {
     let (controller, mut workstation) = start_moving("by-hand");
@@ -191,7 +191,7 @@ fn a_robot_stopped_on_its_way_continues_or_is_moved_back_by_hand() {
     assert_eq!(ended.status, Some(0), "{}", ended.said);
 }
 
-/// A workstation controller works the joystick box by lines for the cell.
+/// A workstation controller operates the joystick box by lines for the cell.
 #[test]
 fn motion_by_hand_ends_with_the_workstation_controller_that_commands_it() {
     let name = format!("by-hand-{}", std::process::id());

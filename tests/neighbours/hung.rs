@@ -1,5 +1,5 @@
-//! Neighbours that hang: connected, but without an answer to any pulse. On the 40 ms grid the robot goes on
-//! without them.
+//! Hung neighbours: connected, but without an answer to any pulse. On the 40 ms grid the robot continues without
+//! them.
 
 use std::thread;
 
@@ -9,10 +9,10 @@ use whole_system_tests::Scratch;
 
 use super::bench::{Controller, Workstation, bare};
 
-/// What a neighbour that hangs is told at last.
+/// The last message to a hung neighbour.
 const TOLD: &str = "the controller says: no answer for 10 s";
 
-/// Read, as the system does behind a program that stands still, and answer nothing; what is heard last.
+/// Read like the system on behalf of a stopped program, without an answer. Returns the last message.
 fn hang(mut peer: Peer) -> String {
     loop {
         if let Err(error) = peer.receive() {
@@ -34,7 +34,7 @@ fn hung_neighbour_is_disconnected_without_stopping_the_robot() {
         let peer = controller.connect(role);
         thread::spawn(move || hang(peer))
     });
-    // It waits for the Data System, which is asked for nothing before.
+    // It waits for the Data System, which gets no request before.
     workstation.send(&bare(1, "STARTUP"));
     while !hung.iter().all(thread::JoinHandle::is_finished) {
         workstation.tick();
@@ -42,7 +42,7 @@ fn hung_neighbour_is_disconnected_without_stopping_the_robot() {
     for (role, told) in HUNG.into_iter().zip(hung) {
         assert_eq!(told.join().expect("it has not panicked"), TOLD, "{role}");
     }
-    // The page has the first events only: all three are noted before another takes a place.
+    // The page shows only the first events: all three must be noted before another one replaces them.
     (0..5).for_each(|_| workstation.tick());
     for role in HUNG {
         drop(controller.connect(role));

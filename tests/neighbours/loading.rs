@@ -1,5 +1,5 @@
-//! LOAD by the workstation controller (IV.2.4): a block of the run's own data directory counts from the next command
-//! on.
+//! LOAD by the workstation controller (IV.2.4): a block of the run's own data directory takes effect with the next
+//! command.
 
 use std::{fs, os::unix::fs::symlink, path::PathBuf};
 
@@ -11,16 +11,16 @@ use whole_system_tests::Scratch;
 
 use super::bench::{Controller, Workstation, bare};
 
-/// The finger point of SAFE-P, and one that is half an inch higher with its wrist and tool point.
+/// The finger point of SAFE-P, and one half an inch higher with its wrist and tool point.
 const SAFE: &str = "   -3362    -3734      638\n   -4781    -5310    -1483\n   -2552    -7317    -1483";
 const HIGHER: &str = "   -3362    -3734      688\n   -4781    -5310    -1433\n   -2552    -7317    -1433";
 
-/// A run with a data directory of its own.
+/// A run with its own data directory.
 struct Cell {
     scratch: Scratch,
 }
 
-/// What is left of a run.
+/// Results of a run.
 struct Left {
     scratch: Scratch,
     digest: String,
@@ -44,12 +44,12 @@ impl Cell {
         fs::write(self.poses(), text.replace(from, to)).expect("it can be written");
     }
 
-    /// A run that `play` commands; it finishes.
+    /// Run under the commands of `play`; it must finish.
     fn play(self, more: &[&str], play: impl FnOnce(&Self, &mut Workstation)) -> Left {
         let text = |name: &str| self.scratch.file(name).display().to_string();
         let (data, log, socket) = (text("data"), text("run.mcap"), format!("unix:{}", text("rcs.sock")));
         let arguments = [&["--json", "--data", &data, "--log", &log][..], more].concat();
-        // The scratch directory of the controller is not that of the data: those are read while it runs.
+        // The controller's scratch directory is not that of the data, which are read during the run.
         let controller =
             Controller::start_at(Scratch::new("loading"), Some(&socket), "workstation", &arguments);
         let mut workstation = Workstation::connect(&controller);
@@ -63,7 +63,7 @@ impl Cell {
     }
 }
 
-/// Send a line for the cell; the number that it got and what came of it, when the cell is not busy with it.
+/// Send a line for the cell. Returns its number and result once the cell is idle.
 fn line(workstation: &mut Workstation, line: &str) -> (Trouble, String) {
     workstation.begin_in_cell(line);
     loop {
@@ -83,7 +83,7 @@ fn finishes(workstation: &mut Workstation, command: &HwsCommand) {
     assert_eq!(outcome, ("finished".to_owned(), String::new()));
 }
 
-/// PAUSE, LOAD of block 610 with another SAFE, MOVE to it.
+/// PAUSE, LOAD of block 610 with another SAFE, MOVE to SAFE.
 fn load_and_move(cell: &Cell, workstation: &mut Workstation) {
     finishes(workstation, &bare(1, "PAUSE"));
     cell.change(SAFE, HIGHER);
@@ -105,10 +105,10 @@ fn a_block_that_the_workstation_controller_loads_counts_from_the_next_command_on
     let said = (line.source.as_str(), line.line.as_str(), line.refused.as_deref());
     assert_eq!(said, ("workstation controller", "load 21000 610", None));
     assert_eq!(line.answer, "block 610 (offset 21000) of poses.blk is loaded; the data have generation 1");
-    // Several boards have checked the block before it counts; the run in fast clock waits for them.
+    // Several boards check the block before it takes effect; the run in fast clock waits for them.
     let split = Cell::new("split").play(&["--boards", "split"], load_and_move);
     assert_eq!((split.digest, split.lines), (loaded.digest.clone(), loaded.lines.clone()));
-    // With the inputs of a log the text is that of the log. The file has none of it here.
+    // With the inputs of a log the text comes from the log: the file here does not contain it.
     let log = loaded.scratch.file("run.mcap").display().to_string();
     let again = Cell::new("again").play(&["--inputs", &log], |_, workstation| {
         finishes(workstation, &bare(1, "PAUSE"));
@@ -132,7 +132,7 @@ fn a_refused_load_keeps_the_old_data() {
     };
     let quiet = Cell::new("quiet").play(&[], |cell, workstation| play(cell, workstation, HIGHER, &[]));
     let cell = Cell::new("refused");
-    // A block outside, and a link that leads to it from the data directory.
+    // A block outside, and a link to it in the data directory.
     let outside = cell.scratch.file("outside.blk");
     fs::write(&outside, "BLOCK# 777 OFFSET 21000\n( nothing )\n").expect("it can be written");
     symlink(&outside, cell.scratch.file("data").join("inside.blk")).expect("it can be made");
@@ -151,10 +151,10 @@ fn a_refused_load_keeps_the_old_data() {
     let nonsense = "   -3362    -3734      nonsense";
     let refused = cell.play(&[], |cell, workstation| play(cell, workstation, nonsense, &lines));
     assert_eq!(refused.digest, quiet.digest);
-    // Those that are no loads at all are refused as other lines for the cell are.
+    // Invalid loads are refused like other lines for the cell.
     let logged: Vec<_> = refused.lines.iter().map(|line| line.refused.is_some()).collect();
     assert_eq!(logged, [true; 3]);
-    // A repetition refuses what the log says, though the text is good by now.
+    // A repetition refuses what the log says, although the text is valid by now.
     let log = refused.scratch.file("run.mcap").display().to_string();
     let again = Cell::new("refused-again").play(&["--inputs", &log], |cell, workstation| {
         play(cell, workstation, HIGHER, &lines[..3]);
@@ -177,7 +177,7 @@ fn no_block_is_loaded_during_a_command() {
     });
 }
 
-/// On the 40 ms grid the block is checked beside the ticks, and the cell is busy meanwhile.
+/// On the 40 ms grid the block is checked in parallel with the ticks, and the cell is busy meanwhile.
 #[test]
 fn on_the_grid_a_load_is_answered_later() {
     for boards in ["one", "split"] {

@@ -1,6 +1,6 @@
-//! Neighbours in other processes: the process that commands the robot can be replaced, and no other commands it.
+//! Neighbours in other processes: the commanding process can be replaced, and no other process commands the robot.
 //!
-//! Nearly all of it in fast clock, where the tick waits for its neighbours: nothing depends on how fast the machine is.
+//! Nearly all tests run in fast clock, where the tick waits for its neighbours: the machine's speed has no effect.
 
 mod bench;
 mod data_system;

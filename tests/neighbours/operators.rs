@@ -1,4 +1,4 @@
-//! An operator is a role of the network like others, if the run takes operators there.
+//! An operator is a network role like others, if the run admits operators there.
 
 use std::{
     fs,
@@ -25,7 +25,7 @@ use super::bench::{Controller, PATIENCE};
 
 const JOB: &str = "== MOVE -- 0 -- 0 0 SAFE 0 -- 0\n";
 
-/// A run on stand-by if an operator may connect, with its log.
+/// A run with its log, on stand-by if an operator may connect.
 struct Cell {
     controller: Controller,
     log: PathBuf,
@@ -42,7 +42,7 @@ impl Cell {
         let [log_text, job_text] = paths.each_ref().map(String::as_str);
         let more = [
             &["--clock", "5x", "--operator", access][..],
-            // Without an operator nobody ends a stand-by.
+            // Without an operator a stand-by would not end.
             if access == "none" { &[] } else { &["--stand-by"] },
             &["--run", name.as_str(), "--log", log_text, job_text],
         ];
@@ -50,12 +50,12 @@ impl Cell {
         Self { controller, log, name }
     }
 
-    /// Ask for admission as soon as the run lets operators in.
+    /// Request admission as soon as the run admits operators.
     fn admission(&self) -> Result<UnixStream, PeerError> {
         admission(&self.controller.address)
     }
 
-    /// `rcs-run send` over the network: whether it was taken, and what it prints.
+    /// `rcs-run send` over the network. Returns its success and output.
     fn send(&self, line: &str) -> (bool, String) {
         let address = self.controller.address.to_string();
         let output = Command::new(rcs_run())
@@ -68,7 +68,7 @@ impl Cell {
     }
 }
 
-/// Ask for admission at an address as soon as the run lets operators in.
+/// Request admission at an address as soon as the run admits operators.
 fn admission(address: &Address) -> Result<UnixStream, PeerError> {
     let begun = Instant::now();
     loop {
@@ -89,7 +89,7 @@ fn operator_of_the_network_commands_and_another_name_does_not_hide_it() {
     let mut anna = Client::over(stream, &"anna".parse().expect("a name")).expect("a session");
     assert_eq!(anna.run(), cell.name.as_str());
     assert!(anna.ask("joystick velocity 900").expect("an answer").is_ok());
-    // One commands, here and there, whatever name the other one gives.
+    // Only one operator commands, local or remote, whatever name the other one gives.
     let mut local =
         Client::connect(&operator_socket(&cell.name), &"anna".parse().expect("a name")).expect("it waits");
     let why = local.ask("joystick velocity 800").expect("an answer").expect_err("another one commands");
@@ -114,7 +114,7 @@ fn operator_of_the_network_commands_and_another_name_does_not_hide_it() {
     assert_eq!(said("net2.anna", "joystick velocity 700"), Some(true));
 }
 
-/// A connection to a run that can stall: bytes to the run then wait, as on a network whose packets are lost.
+/// A connection to a run that can stall: bytes to the run then wait, as on a lossy network.
 struct Line {
     address: Address,
     stalls: Arc<AtomicBool>,
@@ -155,7 +155,7 @@ fn carry(mut from: UnixStream, mut to: UnixStream, stalls: &AtomicBool) {
     let _ = to.shutdown(Shutdown::Both);
 }
 
-/// The run cannot know from its own clock how long a request was on its way; its limit tells it.
+/// The run cannot measure the delay of a request with its own clock; the request's limit serves for that.
 #[test]
 fn a_command_that_a_stalled_line_delays_is_discarded() {
     let scratch = Scratch::new("stalled");

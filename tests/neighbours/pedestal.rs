@@ -1,9 +1,8 @@
-//! The Active Pedestal in another process (VI.7, IX.3): not a bit of a run changes by it, and whatever
-//! becomes of it, the robot keeps what it holds, its hand keeps what it holds, and the command ends with
-//! words that name it.
+//! The Active Pedestal in another process (VI.7, IX.3): it changes no bit of a run. After any failure of it, robot
+//! and hand keep their parts, and the command ends with a message that names the pedestal.
 //!
-//! All in fast clock: the controller's time stands still while its workstation controller, which is the test,
-//! does not answer.
+//! All tests run in fast clock: the controller's time stops while its workstation controller, which is the test, does
+//! not answer.
 
 use std::{
     io::{BufRead as _, BufReader},
@@ -32,7 +31,7 @@ use super::bench::{Controller, Ended, Workstation, bare, computed, computed_alon
 
 const SILENT: &str = "the Active Pedestal does not answer";
 
-/// The first fixturing of the clevis: then the robot holds it, and it is to be turned round on the pedestal.
+/// The first fixturing of the clevis: the robot then holds it, to be turned on the pedestal.
 const UNTIL_IT_IS_HELD: [&str; 10] = [
     "== PAUSE -- +0 -- 0 +0 -- 0 -- 0",
     "** tray UNIT_1 3 LCLEVIS_BH",
@@ -47,7 +46,7 @@ const UNTIL_IT_IS_HELD: [&str; 10] = [
 ];
 const REFIXTURE: &str = "== REFIXTURE LCLEVIS_IH +1 PFIXTURE 0 -1 PFIXTURE 0 -- 0";
 
-/// A command as a job has it.
+/// A command in the form of a job line.
 fn command(number: u32, line: &str) -> HwsCommand {
     let words: Vec<&str> = line.split_whitespace().collect();
     let [_, verb, object, source_grip, source, source_sector, grip, destination, sector, end_at, end_sector] =
@@ -97,7 +96,7 @@ impl Shop {
         self.workstation.carry_out(&command(self.number, line))
     }
 
-    /// The clevis is not turned round, and why.
+    /// The regrip fails. Returns its reason.
     fn fails(&mut self) -> String {
         let (status, reason) = self.carry_out(REFIXTURE);
         assert_eq!(status, "error");
@@ -113,7 +112,7 @@ impl Shop {
         guest
     }
 
-    /// Let a pedestal come to its end; what it was then.
+    /// Wait for the end of a pedestal. Returns its last state.
     fn see_off(&mut self, guest: Guest) -> Remains {
         while !guest.serving.is_finished() {
             self.workstation.tick();
@@ -127,23 +126,23 @@ impl Shop {
     }
 }
 
-/// What a pedestal does with its commands.
+/// Behaviour of a pedestal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Fate {
-    /// It executes them, until so many ticks after the first FLIP.
+    /// It executes commands until some ticks after the first FLIP.
     DiesTurning(u32),
-    /// It answers for another command, and goes some ticks after the second one.
+    /// It answers for another command, and leaves some ticks after the second one.
     AnswersForAnother,
-    /// Its status is nonsense from the first command on; it goes some ticks after the second one.
+    /// Its status is invalid from the first command; it leaves some ticks after the second one.
     Babbles,
-    /// It executes them, for so many ticks.
+    /// It executes commands for some ticks.
     Serves(u32),
 }
 
-/// A pedestal when it has ended, and the counts of its finger potentiometer.
+/// An ended pedestal, and the counts of its finger potentiometer.
 type Remains = (System, u16);
 
-/// A pedestal on a thread, which ends when its fate or the line does.
+/// A pedestal on a thread, which ends with its script or the connection.
 struct Guest {
     serving: JoinHandle<Remains>,
     is_there: Arc<AtomicBool>,
@@ -170,7 +169,7 @@ fn serve(mut peer: Peer, fate: Fate, is_there: &AtomicBool) -> Remains {
             (numbers, ticks) = ([numbers, vec![number]].concat(), 0);
         }
         ticks += 1;
-        // The first one stood there when it came.
+        // The first command was already there when the pedestal connected.
         let commanded = numbers.len() > 1;
         let sensors_box = peer.mailbox(PEDESTAL_SENSORS);
         opening = SensorsLayout::decode(sensors_box.data()).expect("its devices are there").potentiometer;
@@ -216,7 +215,7 @@ fn serve(mut peer: Peer, fate: Fate, is_there: &AtomicBool) -> Remains {
     (system, opening)
 }
 
-/// A pedestal in another process, and whether it has said that it has got a pulse.
+/// A pedestal in another process, and whether it has reported a pulse.
 fn start_pedestal(program: &Path, controller: &Controller) -> (Child, Arc<AtomicBool>) {
     let mut child = Command::new(program)
         .args(["pedestal", "--wait", "1", "--network", &controller.address.to_string()])
@@ -239,7 +238,7 @@ fn start_pedestal(program: &Path, controller: &Controller) -> (Child, Arc<Atomic
 
 #[test]
 fn a_pedestal_in_another_process_changes_not_a_bit() {
-    // Brought up to date before the controller waits for it.
+    // Rebuilt before the controller waits for it.
     let (program, alone) = (rcs_neighbour(), computed_alone("clevis", &[]));
     for boards in ["one", "split"] {
         let scratch = Scratch::new(&format!("turned-log-{boards}"));
@@ -259,19 +258,19 @@ fn a_pedestal_in_another_process_changes_not_a_bit() {
 fn every_failure_of_the_pedestal_ends_the_command_without_a_drop() {
     let controller = Controller::start("fates", "workstation,pedestal", &["--json", "--wait", "5"]);
     let mut shop = Shop::with_clevis(controller);
-    // It was never there.
+    // It was never connected.
     assert_eq!(shop.fails(), SILENT);
     for fate in [Fate::AnswersForAnother, Fate::Babbles] {
         let guest = shop.admit(fate);
         assert_eq!(shop.fails(), SILENT, "{fate:?}");
         shop.see_off(guest);
     }
-    // The part stands in its hand when it dies.
+    // The part is in its hand when it is killed.
     let guest = shop.admit(Fate::DiesTurning(25));
     assert_eq!(shop.fails(), SILENT);
     let (dead, held) = shop.see_off(guest);
     assert!(dead.memory().hand.status.position > 240, "it held the clevis");
-    // Its successor leaves the hand as it is as long as no other command comes.
+    // Its successor does not move the hand without a new command.
     let guest = shop.admit(Fate::Serves(300));
     let (successor, opening) = shop.see_off(guest);
     let status = successor.memory().pedestal.status;
@@ -284,7 +283,7 @@ fn every_failure_of_the_pedestal_ends_the_command_without_a_drop() {
     assert_eq!(part["location"], "PEDESTAL", "{part}");
 }
 
-/// One is killed with SIGKILL, and another one takes its place.
+/// A pedestal is killed with SIGKILL, and another one replaces it.
 #[test]
 fn a_pedestal_that_is_killed_and_started_again_turns_the_next_part() {
     let program = rcs_neighbour();
@@ -304,7 +303,7 @@ fn a_pedestal_that_is_killed_and_started_again_turns_the_next_part() {
     assert!(second.wait().expect("a child").success());
 }
 
-/// What a run says when its pedestal is not there.
+/// The message of a run without its pedestal.
 #[test]
 fn a_job_without_its_pedestal_is_refused_with_the_reason() {
     let scratch = Scratch::new("no-pedestal");

@@ -13,7 +13,7 @@ use whole_system_tests::{Scratch, root};
 use super::bench::{Controller, example};
 
 const EXAMPLES: [&str; 2] = ["hwsc.py", "vision.py"];
-/// Mark, version 3, and the clock, which the examples do not read.
+/// Magic number, version 3, and the clock, which the examples do not read.
 const HELLO: &[u8] = b"RCS2\x03\x00\x01\x00";
 /// Address and length of a frame without data.
 const WELCOME: &[u8] = &[2, 0, 0, 0, 8, 0, 0, 0, 0, 0, 0, 0];
@@ -37,7 +37,7 @@ fn has_python() -> bool {
     found
 }
 
-/// The messages and the exit status of an example if the controller sends these bytes and closes the connection.
+/// Messages and exit status of an example if the controller sends these bytes and closes the connection.
 fn against(name: &str, example_name: &str, sent: &[u8]) -> (String, Option<i32>) {
     let scratch = Scratch::new(name);
     let socket = scratch.file("rcs.sock");
@@ -47,7 +47,7 @@ fn against(name: &str, example_name: &str, sent: &[u8]) -> (String, Option<i32>)
         let (mut line, _) = listener.accept().expect("the example connects");
         line.write_all(&sent).expect("the example reads");
         line.shutdown(Shutdown::Write).expect("the example is there");
-        // What the example says is read, so that the end of the line is not a reset.
+        // The example's bytes are read, so that the end of the connection is not a reset.
         let _ = line.read_to_end(&mut Vec::new());
     });
     let output = python()
@@ -65,7 +65,7 @@ fn disconnect(reason: &[u8]) -> Vec<u8> {
     [&1_u32.to_le_bytes()[..], &length.to_le_bytes(), &[0; 6], reason].concat()
 }
 
-/// The client in another language that the documentation shows.
+/// The documented client in another language.
 #[test]
 fn hwsc_py_transfers_a_part() {
     if !has_python() {
@@ -84,8 +84,7 @@ fn hwsc_py_transfers_a_part() {
     assert_eq!(ended.result["parts"][0]["location"], "PFIXTURE", "{}", ended.said);
 }
 
-/// The vision system in another language that the documentation shows: it has nothing but the bytes in common
-/// with the other one.
+/// The documented vision system in another language; it shares only the byte format with the other one.
 #[test]
 fn vision_py_locates_a_part() {
     if !has_python() {

@@ -1,5 +1,5 @@
-//! Neighbours that do not answer. A run in fast clock waits for them, but not beyond its own end. A Data
-//! System that answers every pulse, and not what it is asked, is asked again.
+//! Neighbours that do not answer. A run in fast clock waits for them until its own end. A Data System that answers
+//! every pulse but not its requests is asked again.
 
 use std::{
     sync::mpsc::{Receiver, Sender, channel},
@@ -20,10 +20,10 @@ use whole_system_tests::Scratch;
 
 use super::bench::{Controller, Ended, PATIENCE, Workstation, attend, bare};
 
-/// Exchanges after which it has had time enough.
+/// Exchanges that are more than enough.
 const LONG: usize = 50;
 
-/// Start a controller that is commanded from outside, and a Data System that does as it is told here.
+/// Start a controller under external command, and a Data System with a given behaviour.
 fn start(
     clock: &str,
     serve: impl FnOnce(Peer) + Send + 'static,
@@ -38,7 +38,7 @@ fn start(
     (controller, workstation, data_system)
 }
 
-/// Ask it to end, and see that it does.
+/// Request its end, and assert it.
 fn terminate(mut controller: Controller) -> Ended {
     kill_process(Pid::from_child(&controller.child), Signal::TERM).expect("it runs");
     let asked = Instant::now();
@@ -49,14 +49,14 @@ fn terminate(mut controller: Controller) -> Ended {
     controller.end()
 }
 
-/// Answer pulses as a workstation controller without any more wishes.
+/// Answer pulses like a workstation controller without further commands.
 fn follow(mut workstation: Workstation) {
-    // If the run is over, reading says so as well.
+    // After the end of the run, reading returns an error too.
     let _ = workstation.peer.pulse(workstation.tick);
     attend(workstation.peer);
 }
 
-/// Answer so many pulses, and only read from then on.
+/// Answer some pulses, then only read.
 fn fall_silent(mut peer: Peer, answers: usize, tell: &Sender<()>) {
     let mut pulses = 0;
     while let Ok(received) = peer.receive() {
@@ -121,7 +121,8 @@ fn a_run_ends_as_asked_for_while_it_waits_for_an_answer() {
     }
 }
 
-/// A Data System that answers its first command so, if at all, and all others as it should; all that it hears.
+/// A Data System that gives its first command this answer, or none, and answers all others correctly. Returns its
+/// received commands.
 fn connect_after(first: Option<&'static [u8]>) -> (Ended, Receiver<Vec<u8>>) {
     let (tell, heard) = channel();
     let (controller, mut workstation, data_system) = start("real", move |mut peer| {

@@ -1,4 +1,4 @@
-//! A client that may not command the robot does not: another user at a socket, a second claimant of a role.
+//! A client without permission does not command the robot: another user at a socket, a second claimant of a role.
 
 use std::{
     fs,
@@ -11,7 +11,7 @@ use whole_system_tests::{NOBODY, Scratch, may_become_nobody, rcs_neighbour, rcs_
 
 use super::bench::{Controller, PATIENCE};
 
-/// Forms of earlier versions are refused with a sentence that names the gateway.
+/// Address forms of earlier versions are refused with a sentence that names the gateway.
 #[test]
 fn addresses_and_keys_of_other_machines_are_refused_with_the_new_way() {
     let socket = format!("unix:{}", Scratch::new("removed").file("rcs.sock").display());
@@ -46,7 +46,7 @@ fn there_is_one_workstation_controller() {
     assert_eq!(told, "the controller says: workstation is connected already");
 }
 
-/// Needs the right to become another user; without it nothing can be tried.
+/// Needs the right to become another user; otherwise it is skipped.
 #[test]
 fn at_a_socket_only_the_same_user_is_admitted() {
     let scratch = Scratch::new("socket");
@@ -58,7 +58,7 @@ fn at_a_socket_only_the_same_user_is_admitted() {
     let more = ["--clock", "real", "--ticks", "100"];
     let controller = Controller::start_at(scratch, None, "workstation", &more);
     let socket = controller.address.path();
-    // The program where any user can start it, and data that any user can read.
+    // The program at a place where any user can start it, and data that any user can read.
     let program = controller.file("rcs-neighbour");
     fs::copy(built, &program).expect("the program can be copied");
     controller.scratch.as_ref().expect("it has one").copy_data();
@@ -74,7 +74,7 @@ fn at_a_socket_only_the_same_user_is_admitted() {
     };
     let told = as_nobody();
     assert!(told.contains("Permission denied"), "{told}");
-    // Whatever the mode of the socket is, both sides ask for the user at the other end.
+    // Independent of the mode of the socket, both sides check the user at the other end.
     fs::set_permissions(socket, fs::Permissions::from_mode(0o666)).expect("its mode can be set");
     let told = as_nobody();
     assert!(told.contains("user 65534 was expected, found user 0"), "{told}");

@@ -1,4 +1,4 @@
-//! A run is switched from stand-alone command to a workstation controller and back (IV.4.1).
+//! A run switches from stand-alone command to a workstation controller and back (IV.4.1).
 
 use std::fs;
 
@@ -11,7 +11,7 @@ use super::bench::{Controller, Ended, Workstation, bare};
 /// The fields of a command without object.
 const NOTHING: &str = "-- +0 -- 0 +0";
 
-/// A controller under stand-alone command that plays a job of these lines.
+/// A controller under stand-alone command with a job of these lines.
 fn start(name: &str, lines: &[String], outside: &str, more: &[&str]) -> Controller {
     let scratch = Scratch::new(name);
     let (job, outbox) = (scratch.file("own.job"), scratch.file("outbox"));
@@ -33,7 +33,7 @@ fn hand_over() -> String {
     "** workstation".to_owned()
 }
 
-/// Send a command with the number after the echo, and let it come to its end.
+/// Send a command with the number after the echo, and wait for its end.
 fn next(workstation: &mut Workstation, verb: &str, destination: &str) -> String {
     let number = u32::from(workstation.status().echo) + 1;
     let command = HwsCommand { destination: Some(Name16::clipped(destination)), ..bare(number, verb) };
@@ -72,7 +72,7 @@ fn the_workstation_commands_between_lines_of_the_job() {
     assert_eq!(verbs, expected);
 }
 
-/// The job hands over between commands only.
+/// The job hands over only between commands.
 #[test]
 fn a_workstation_that_goes_amid_a_command_ends_the_run() {
     let controller = start("amid", &[hand_over(), go("SAFE")], "workstation", &[]);

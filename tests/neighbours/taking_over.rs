@@ -1,5 +1,4 @@
-//! An operator takes the command over from a workstation controller that commands from the start, and gives it back
-//! (IV.4.1).
+//! An operator takes command from a workstation controller that commands from the start, and returns it (IV.4.1).
 
 use std::time::Instant;
 
@@ -11,7 +10,8 @@ use sessions::operator::Client;
 
 use super::bench::{Controller, PATIENCE, Workstation, bare};
 
-/// Ask until it is taken, while the workstation controller reads on. Refusals must be for one of these reasons.
+/// Repeat a request until it is accepted, while the workstation controller reads on. Only these refusals are
+/// expected.
 fn ask_until(client: &mut Client, workstation: &mut Workstation, request: &str, meanwhile: &[&str]) {
     let begun = Instant::now();
     while let Err(why) = client.ask(request).expect("the run answers") {
@@ -39,7 +39,7 @@ fn commands_during_an_operator_session_are_not_executed_later() {
     assert!(refused(&mut client, "stand-alone").contains("number 2, is executed"));
     client.ask("stand-alone now").expect("an answer").expect("it is taken");
     assert!(refused(&mut client, "stand-alone").contains("stand-alone already"));
-    // What it sends now is passed over.
+    // Its present command is ignored.
     workstation.send(&bare(3, "PAUSE"));
     ask_until(&mut client, &mut workstation, "PAUSE", &[]);
     assert!(refused(&mut client, "workstation").contains("the robot at HOME"));

@@ -1,5 +1,5 @@
-//! Every neighbour in a process of its own, for a whole shift: not a bit of the run changes, and the Data System knows where
-//! every item lies.
+//! Every neighbour in its own process for a whole shift: no bit of the run changes, and the Data System knows the
+//! place of every item.
 
 use std::{
     path::Path,
@@ -12,12 +12,11 @@ use whole_system_tests::{Scratch, rcs_neighbour, root};
 
 use super::bench::{Controller, computed, computed_alone};
 
-/// The items in a data base.
 fn items(file: &Path) -> Vec<Item> {
     Store::open(file).expect("a data base").items().expect("items")
 }
 
-/// [`computed`] of a shift with all neighbours in the controller's own process, and what the Data System knows then.
+/// [`computed`] of a shift with all neighbours in the controller's process, and the items of its Data System.
 fn shift_alone() -> (u64, Vec<Item>) {
     let scratch = Scratch::new("inside");
     let file = scratch.file("items.db");

@@ -1,5 +1,5 @@
-//! Vision in another process (IX.4, V.2.1): the same bits as in the cell, and whatever it does, the arm goes
-//! nowhere by it that E-move has not checked.
+//! Vision in another process (IX.4, V.2.1): the same bits as in the cell. With any of its answers the arm makes only
+//! motions that E-move has checked.
 
 use std::{
     fs,
@@ -26,7 +26,7 @@ use super::bench::{Controller, Ended, Workstation, bare};
 struct Vision(Child);
 
 impl Vision {
-    /// The program is brought up to date before a controller waits for it.
+    /// Rebuilt before a controller waits for it.
     fn start(program: &Path, address: &str, more: &[&str]) -> Self {
         let child = Command::new(program)
             .args(["vision", "--network", address])
@@ -56,14 +56,14 @@ fn linkbar(name: &str, faults: &str) -> Ended {
     controller.end()
 }
 
-/// What follows a word at the beginning of a line.
+/// The text after a word at the beginning of a line.
 fn after<'t>(text: &'t str, word: &str) -> &'t str {
     let mut lines = text.lines().filter_map(|line| line.trim_start().strip_prefix(word));
     lines.next().unwrap_or_else(|| panic!("no {word} in {text}")).trim()
 }
 
-/// Jobs that LOCATE-OBJ is part of, another seed, and the faults of the camera: each as its golden has it. One process
-/// analyses the pictures of all of them, one run after the other. (The shift has everybody elsewhere, in `together`.)
+/// Jobs with LOCATE-OBJ, another seed, and the faults of the camera: each equals its golden. One process analyses the
+/// pictures of all runs, one after the other. (The shift with all neighbours is in `together`.)
 #[test]
 fn jobs_have_the_same_bits_with_vision_in_another_process() {
     let program = rcs_neighbour();
@@ -94,8 +94,7 @@ fn jobs_have_the_same_bits_with_vision_in_another_process() {
     }
 }
 
-/// What E-move's table has for all that an answer may be (V.2.1 LOCATE-OBJ). Picture 1 is the fast flood, 2
-/// the precise one.
+/// All answers of E-move's table (V.2.1 LOCATE-OBJ). Picture 1 is the fast flood, 2 the precise one.
 #[test]
 fn pictures_that_fail_are_taken_again_and_given_up() {
     for (faults, reason) in [
@@ -121,8 +120,8 @@ fn pictures_that_fail_are_taken_again_and_given_up() {
     }
 }
 
-/// What is no answer to the present request is as if none had come: not a bit of what the controller does
-/// differs, and it says why.
+/// An answer that does not belong to the present request has no effect: no bit of the controller differs, and it
+/// reports the reason.
 #[test]
 fn invalid_answers_are_reported_and_cause_no_motion() {
     let silent = linkbar("silent", "1:off");
@@ -166,7 +165,7 @@ fn a_run_without_its_vision_warns_and_starts() {
     );
 }
 
-/// A vision system that works with other parts than the cell has would recognise none of them.
+/// A vision system for other parts than the cell's would recognise none of them.
 #[test]
 fn vision_with_another_cell_description_ends_with_the_reason() {
     let scratch = Scratch::new("another-cell");
@@ -185,7 +184,7 @@ fn vision_with_another_cell_description_ends_with_the_reason() {
     assert!(ended.said.contains("vision does not answer"), "{}", ended.said);
 }
 
-/// The log of a run that vision has failed says what it was, and replays.
+/// The log of a run that failed due to vision contains the reason, and replays.
 #[test]
 fn the_log_has_the_reason_and_replays_without_vision() {
     let program = rcs_neighbour();
@@ -210,17 +209,17 @@ fn the_log_has_the_reason_and_replays_without_vision() {
     assert_eq!(status, Some(0), "{replayed}");
 }
 
-/// What a scripted vision system does with the first request.
+/// Reaction of a scripted vision system to the first request.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Fate {
     Answers,
-    /// It is killed before it has read it.
+    /// It is killed before it has read the request.
     DiesAtOnce,
-    /// It is killed when it has said that it is busy with it.
+    /// It is killed after it has reported that it is busy.
     DiesInTheMiddle,
 }
 
-/// A vision system on a thread, which ends when the line does. It knows nothing of the cell but the picture.
+/// A vision system on a thread, which ends with the connection. The picture is its only knowledge of the cell.
 fn serve(mut peer: Peer, fate: Fate) -> JoinHandle<()> {
     thread::spawn(move || {
         let mut response_box = Mailbox::initialized(VISION_RESPONSE);
@@ -259,7 +258,7 @@ fn serve(mut peer: Peer, fate: Fate) -> JoinHandle<()> {
     })
 }
 
-/// The truth of the only part in the picture.
+/// The true state of the only part in the picture.
 fn answer(request: &VisionRequest, picture: &Picture) -> VisionResponse {
     let [part] = &picture.parts[..] else { panic!("{picture:?}") };
     let [x, y, z] = part.centre;
@@ -291,8 +290,8 @@ fn fetch(number: u32) -> HwsCommand {
     }
 }
 
-/// In fast clock, and with a workstation controller that does nothing meanwhile, time stands still until the
-/// next vision system is there: the request that it finds is the one that was not answered.
+/// In fast clock with an idle workstation controller, time stops until the next vision system connects: it finds the
+/// unanswered request.
 #[test]
 fn vision_that_is_killed_in_the_middle_and_started_again_answers() {
     for fate in [Fate::Answers, Fate::DiesAtOnce, Fate::DiesInTheMiddle] {

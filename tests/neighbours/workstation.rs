@@ -20,7 +20,7 @@ use super::bench::{Controller, Workstation, bare, run_alone};
 #[test]
 fn a_job_from_another_process_has_the_same_bits() {
     let own = run_alone(&["linkbar"]);
-    // Brought up to date before the controller waits for it.
+    // Rebuilt before the controller waits for it.
     let program = rcs_neighbour();
     let controller = Controller::start("bits", "workstation", &["--json"]);
     let played = Command::new(program)
@@ -43,7 +43,7 @@ fn a_job_from_another_process_has_the_same_bits() {
     assert_eq!(texts(&ended.result), texts(&own));
 }
 
-/// The control processes in processes of their own, and who commands them in another one.
+/// The control processes and their commander run in separate processes.
 #[test]
 fn boards_are_commanded_from_another_process() {
     let controller = Controller::start("boards", "workstation", &["--json", "--boards", "split"]);
@@ -54,7 +54,7 @@ fn boards_are_commanded_from_another_process() {
     assert_eq!(ended.status, Some(0), "{}", ended.said);
 }
 
-/// A controller that gets `what` after a PAUSE, until tick 200; its digest.
+/// A controller that receives `what` after a PAUSE, until tick 200. Returns its digest.
 fn digest_with(name: &str, what: impl FnOnce(&mut Workstation)) -> String {
     let controller = Controller::start(name, "workstation", &["--json"]);
     let mut workstation = Workstation::connect(&controller);
@@ -68,7 +68,7 @@ fn digest_with(name: &str, what: impl FnOnce(&mut Workstation)) -> String {
     ended.result["digest"].as_str().expect("a digest").to_owned()
 }
 
-/// Refused commands say why, and no buffer of the controller differs from those of a run without them.
+/// Refused commands give a reason, and no buffer of the controller differs from a run without them.
 #[test]
 fn refused_commands_report_the_reason_and_cause_no_motion() {
     let quiet = digest_with("quiet", |_| {});
@@ -96,7 +96,7 @@ fn refused_commands_report_the_reason_and_cause_no_motion() {
             assert!(status.verdict != 0 && status.reason.ends_with(why), "{why}: {status:?}");
             assert_eq!((status.echo, status.report.text()), (1, "finished"));
         }
-        // The same command once more is no new one.
+        // The repeated command is not new.
         workstation.send(&bare(1, "PAUSE"));
         workstation.tick();
         workstation.tick();
@@ -136,8 +136,8 @@ fn command_that_fails_its_check_is_refused_with_the_reason_of_a_job_line() {
     assert_eq!(ended.status, Some(0), "{}", ended.said);
 }
 
-/// Every mailgram with a line for the cell is answered: with its number, and a sentence if it is refused.
-/// Nothing is opened for one.
+/// Every mailgram with a line for the cell is answered with its number, and with a sentence if refused. Refused lines
+/// open no file.
 #[test]
 fn lines_for_the_cell_are_refused_by_their_number_and_their_words() {
     const LOAD: &str = "load OFFSET BLOCK was expected, such as load 21000 610; load FILE is for the controller's \
@@ -208,7 +208,7 @@ fn a_command_that_task_does_not_know_fails_and_the_next_one_is_carried_out() {
     assert_eq!(statuses, ["error", "error", "finished"]);
 }
 
-/// On the 40 ms grid the controller goes on alone, and numbers are synchronized when a workstation controller
+/// On the 40 ms grid the controller continues alone, and numbers are synchronized when a workstation controller
 /// connects (IX.1).
 #[test]
 fn a_reconnected_workstation_controller_continues_from_the_echo() {
@@ -220,7 +220,7 @@ fn a_reconnected_workstation_controller_continues_from_the_echo() {
     let mut second = Workstation::connect(&controller);
     assert!(second.tick > last, "the ticks went on");
     assert_eq!((second.status().echo, second.status().verdict), (1, 0));
-    // One that forgot everything, and would begin to count again.
+    // One that has lost its state and starts with number 1 again.
     second.send(&HwsCommand { source_sector: Some(1), ..bare(1, "PAUSE") });
     while second.status().verdict == 0 {
         second.tick();
@@ -238,7 +238,7 @@ fn a_reconnected_workstation_controller_continues_from_the_echo() {
     assert_eq!(ended.result["allocations_after_start"], 0);
 }
 
-/// What no frame of a neighbour can be ends the connection, with words that say why.
+/// An invalid frame of a neighbour ends the connection with a reason.
 #[test]
 fn a_line_that_talks_nonsense_is_closed() {
     let controller = Controller::start("nonsense", "workstation", &["--clock", "real"]);

@@ -1,5 +1,5 @@
-//! The list of chains of tables in docs/design/tables.md is that of the sources. `RCS_PAGES=write cargo test --release
-//! --workspace --test pages chains` writes it.
+//! The list of table chains in docs/design/tables.md matches the sources.
+//! `RCS_PAGES=write cargo test --release --workspace --test pages chains` writes it.
 
 use std::{collections::BTreeMap, env, fs, path::PathBuf};
 
@@ -8,7 +8,7 @@ use whole_system_tests::{root, tables::files};
 const PAGE: &str = "docs/design/tables.md";
 const HEAD: &str = "| process | commands | tables in their order |\n|---|---|---|\n";
 
-/// The names of tables by their functions, as [`chains`] needs them: `e_pause` of `e_pause` is `E-PAUSE`.
+/// The names of tables by function, for [`chains`]: `e_pause` of `e_pause` is `E-PAUSE`.
 fn names(sources: &[(PathBuf, String)]) -> BTreeMap<(PathBuf, String), String> {
     let mut names = BTreeMap::new();
     for (path, text) in sources {

@@ -1,5 +1,5 @@
-//! The rows of all decision tables stand in columns. `RCS_TABLES=write cargo test --release -p whole-system-tests
-//! --test pages columns` writes them so.
+//! The rows of all decision tables are in columns.
+//! `RCS_TABLES=write cargo test --release -p whole-system-tests --test pages columns` aligns them.
 
 use std::{env, fs, path::PathBuf};
 

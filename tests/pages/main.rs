@@ -1,4 +1,4 @@
-//! The pages of documentation: every link leads somewhere, and every page is in the table of contents. No source is long.
+//! The pages: no link is broken, and every page is in the table of contents. No source is too long.
 
 use std::{
     collections::BTreeSet,
@@ -16,7 +16,7 @@ mod words;
 
 const PLACES: [&str; 9] = [".", "docs", "docs/design", "data", "crates", "bins", "benches", "fuzz", "tests"];
 
-/// Every page of the repository: those in [`PLACES`] and in the directories right below them.
+/// Every page of the repository: those in [`PLACES`] and in their direct subdirectories.
 fn pages() -> BTreeSet<PathBuf> {
     let entries = |directory: &Path| {
         let entries = fs::read_dir(directory).expect("the directory is there");
@@ -31,7 +31,7 @@ fn pages() -> BTreeSet<PathBuf> {
     pages
 }
 
-/// The text outside of blocks of code.
+/// The text outside of code blocks.
 fn prose(text: &str) -> String {
     let mut inside = false;
     let outside = |line: &&str| {
@@ -47,7 +47,7 @@ fn links(text: &str) -> Vec<&str> {
     text.split("](").skip(1).filter_map(|rest| rest.split_once(')')).map(|(target, _)| target).collect()
 }
 
-/// The anchors that the headings of a page give, as the web page of a repository makes them.
+/// The anchors of a page's headings, as the web page of a repository generates them.
 fn anchors(text: &str) -> BTreeSet<String> {
     let headings = text.lines().filter(|line| line.starts_with('#'));
     let anchor = |heading: &str| {
@@ -95,10 +95,10 @@ fn every_page_is_in_the_contents_once() {
 }
 
 const WIDEST: usize = 110;
-/// Pages that programs and tests write.
+/// Generated pages.
 const WRITTEN: [&str; 2] = ["traceability.md", "cli.md"];
 
-/// Whether a line may be wider: a table, an indented block, a link, a picture, the name of a test.
+/// True if a line may be wider: a table, an indented block, a link, a picture, the name of a test.
 fn may_be_wide(line: &str) -> bool {
     line.starts_with(['|', '#'])
         || line.starts_with("    ")
@@ -118,10 +118,10 @@ fn prose_is_within_110_columns() {
     assert!(wide.is_empty(), "lines of more than {WIDEST} columns:\n{}", wide.join("\n"));
 }
 
-/// Most lines of a source, without comments, blank lines and tests.
+/// Maximum number of lines of a source, without comments, blank lines and tests.
 const LONGEST: usize = 400;
 
-/// Every source of crates and programs, without their tests and benchmarks.
+/// Every source of crates and programs, without tests and benchmarks.
 fn sources() -> Vec<PathBuf> {
     let (mut open, mut sources) = (vec![root().join("crates"), root().join("bins")], Vec::new());
     while let Some(directory) = open.pop() {
@@ -138,7 +138,7 @@ fn sources() -> Vec<PathBuf> {
     sources
 }
 
-/// Lines of code of a source. What stands under `#[cfg(test)]` ends with a `;` or a brace at its own indentation.
+/// Lines of code of a source. An item under `#[cfg(test)]` ends with a `;` or a brace at its own indentation.
 fn lines_of_code(text: &str) -> usize {
     let mut lines = text.lines();
     let mut count = 0;
@@ -186,7 +186,7 @@ fn every_crate_has_an_example_that_its_page_names() {
     for path in crates.map(|entry| entry.expect("it can be listed").path()) {
         let page = fs::read_to_string(path.join("README.md")).expect("a crate has a page");
         count += 1;
-        // Its macros are shown by the crate that passes them on.
+        // The crate that re-exports its macros shows them.
         if path.ends_with("rcs-macros") {
             continue;
         }

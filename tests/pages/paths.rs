@@ -6,7 +6,7 @@ use whole_system_tests::root;
 
 use super::{pages, prose};
 
-/// Whether a text in back quotes names a file or directory of the repository. A part in capitals is a placeholder.
+/// True if a text in back quotes names a file or directory of the repository. A part in capitals is a placeholder.
 fn is_path(text: &str) -> bool {
     let is_of_path = |c: char| c.is_ascii_alphanumeric() || matches!(c, '/' | '.' | '-' | '_');
     let mut parts = text.split('/');
@@ -22,7 +22,7 @@ fn paths_in_pages_exist() {
     assert!(!is_path("data/robots/NAME.toml") && !is_path("runs") && !is_path("docs/*.png"));
     let (mut missing, mut count) = (Vec::new(), 0);
     for page in pages() {
-        // Versions of long ago had other files.
+        // Older versions had other files.
         if page.ends_with("CHANGELOG.md") {
             continue;
         }

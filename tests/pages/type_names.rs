@@ -1,5 +1,5 @@
-//! A type of one control process does not have the name of a type of another one, so that a name in a message of the
-//! compiler, in an import or in a search says which process is meant.
+//! No type of a control process shares its name with a type of another one, so a name in a compiler message, an
+//! import or a search identifies the process.
 
 use std::{
     collections::{BTreeMap, BTreeSet},
@@ -9,7 +9,7 @@ use std::{
 
 use whole_system_tests::{root, tables::files};
 
-/// Each process has these, and `commands!` and `Process` know them by these names. The module says which process it is.
+/// Each process has these, and `commands!` and `Process` need these names. The module identifies the process.
 const IN_EACH_PROCESS: [&str; 7] =
     ["Action", "Request", "Situation", "State", "StateVariables", "Step", "Subordinates"];
 

@@ -16,7 +16,7 @@ struct Words {
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Word {
-    /// Phrases in lower case, of whole words.
+    /// Phrases of whole words in lower case.
     avoid: Vec<String>,
     better: String,
     why: String,
@@ -36,7 +36,7 @@ fn without_code(text: &str) -> String {
     text.split('`').step_by(2).collect::<Vec<_>>().join("CODE")
 }
 
-/// The comments of a source. A `//` in a string literal counts as a comment too.
+/// The comments of a source, including the text after `//` in a string literal.
 fn comments(source: &str) -> String {
     let texts = source.lines().filter_map(|line| line.split_once("//").map(|(_, comment)| comment));
     texts.collect::<Vec<_>>().join("\n")

@@ -9,16 +9,16 @@ use crate::{
 
 const TICKS: u64 = 400;
 
-/// Where a limit stands: the shell's commands that set it before the run, `SIZE` being a number of kilobytes,
-/// and the largest size that is tried.
+/// A limit: its name, the shell's commands that set it before the run with `SIZE` kilobytes, and the largest size to
+/// try.
 const LIMITS: [(&str, &str, u64); 3] = [
-    // The shell counts blocks of 512 bytes.
+    // The shell uses blocks of 512 bytes.
     ("a limit of N KB on files", "ulimit -f $((2 * SIZE))", 2_000),
     ("a disk of N KB for the log", "mkdir disk && mount -t tmpfs -o size=SIZEk tmpfs disk", 600),
     ("N KB of shared memory", "mkdir disk && mount -t tmpfs -o size=SIZEk tmpfs /dev/shm", 3_000),
 ];
 
-/// A run ended well in spite of the limit, or said why it cannot.
+/// Run under a limit; the run must finish or report the reason.
 fn attempt(commands: &str, size: u64, boards: &str) -> Outcome {
     let scratch = Scratch::new("disks");
     let ticks = TICKS.to_string();

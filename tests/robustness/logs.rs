@@ -1,7 +1,7 @@
-//! Damaged logs: whatever the bytes of a file are, `rcs-log` answers or says why not, within a gigabyte of memory.
+//! Damaged logs: for any bytes of a file, `rcs-log` answers or gives a reason, within a gigabyte of memory.
 //!
-//! Half of them are logs in which bytes change, half hold messages that change in chunks whose checksums are
-//! right: what only an intruder writes.
+//! In half of the logs bytes change. In the others messages change in chunks with correct checksums, as only an
+//! intruder would write.
 
 use std::{
     collections::BTreeMap,
@@ -20,10 +20,10 @@ use whole_system_tests::{Scratch, bench::Ended, rcs_log};
 
 use crate::table::{Chance, Extent, Outcome, Row};
 
-/// Address space of the program, in kilobytes.
+/// Address space of the program, kilobytes.
 const LIMIT: &str = "1048576";
 
-/// What is asked of a damaged log: a name, arguments before the file.
+/// Queries of a damaged log: a name, and the arguments before the file.
 const QUESTIONS: [(&str, &[&str]); 6] = [
     ("info", &["info"]),
     ("replay", &["replay"]),
@@ -42,7 +42,7 @@ fn damage(chance: &mut Chance, bytes: &mut Vec<u8>) {
         match chance.below(7) {
             0 if rest > 0 => bytes[at] ^= 1 << chance.below(8),
             1 if rest > 0 => bytes[at] = chance.byte(),
-            // A length or a number that is very large.
+            // A very large length or number.
             2 if rest >= 8 => {
                 bytes[at..at + 8].copy_from_slice(&(u64::MAX >> chance.below(64)).to_le_bytes())
             }
@@ -55,7 +55,7 @@ fn damage(chance: &mut Chance, bytes: &mut Vec<u8>) {
     }
 }
 
-/// The log once more, with some messages damaged, in chunks with the right checksums.
+/// A copy of the log with some damaged messages, in chunks with correct checksums.
 fn forged(log: &[u8], whole: &Log, chance: &mut Chance) -> Vec<u8> {
     let mut writer = WriteOptions::new().create(Cursor::new(Vec::new())).expect("a log begins");
     let run = Metadata { name: "rcs-run".into(), metadata: whole.run.clone() };
@@ -89,7 +89,7 @@ fn limited(directory: &Path, arguments: &[&str], files: &[&Path]) -> Output {
     command.args(arguments).args(files).current_dir(directory).output().expect("sh runs")
 }
 
-/// The program has ended by itself, with a sentence if it has no answer.
+/// The program must end by itself, with a sentence if it has no answer.
 fn judge(output: &Output) -> Outcome {
     let said = String::from_utf8_lossy(&output.stderr);
     assert!(!said.contains("panicked"), "{said}");
@@ -115,7 +115,7 @@ pub fn rows(extent: Extent) -> Vec<Row> {
     let questions = u64::try_from(QUESTIONS.len()).expect("64 bits") + 1;
     let row = |name: &str, number: u64, ask: &dyn Fn() -> Output| {
         let attack = format!("`rcs-log {name}` of a damaged log");
-        // Together they are as many as asked for.
+        // Together they are the requested number.
         let cases = (0..all).skip(usize::try_from(number).expect("small")).step_by(questions as usize);
         Row::of(extent, &attack, "1 GB of memory", cases, |case, chance| {
             let damaged = if (case / questions).is_multiple_of(2) {

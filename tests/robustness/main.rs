@@ -1,14 +1,13 @@
-//! The robustness campaign: logs, shared memory, readers, signals and disks are treated badly, and each case is judged.
+//! The robustness campaign: it attacks logs, shared memory, readers, signals and disks, and judges each case.
 //!
 //! ```text
 //! cargo run --release -p whole-system-tests --bin robustness -- --help
 //! cargo run --release -p whole-system-tests --bin robustness -- --markdown runs/robustness.md
 //! ```
 //!
-//! It prints how many cases there were and how they ended, and each finding on standard error; the exit
-//! status is 1 if there is one. The tests `survival::campaign` run a sample of it. docs/evidence.md has the sums of
-//! all cases. Everything happens in a
-//! `/dev/shm` and an `RCS_RUNS` of its own.
+//! It prints the number of cases by outcome, and each finding on standard error; with a finding the exit status is 1.
+//! The tests `survival::campaign` run a sample. docs/evidence.md has the sums of all cases. All attacks take place in
+//! a separate `/dev/shm` and `RCS_RUNS`.
 
 #![expect(clippy::print_stdout, clippy::print_stderr, reason = "a program of the developers, at a terminal")]
 
@@ -119,8 +118,8 @@ fn private_memory(scratch: &Scratch) -> Option<Command> {
     Some(command)
 }
 
-/// A program started in the background or under `nohup` inherits signals that are ignored, and so would all that it
-/// starts. A signal with a handler is at its default in a new program; the handlers do what the default does.
+/// A program started in the background or under `nohup` inherits ignored signals, and so would its children. A signal
+/// with a handler has its default in a new program; these handlers act like the default.
 fn hear_signals() {
     for signal in [SIGHUP, SIGINT, SIGQUIT] {
         let always = Arc::new(AtomicBool::new(true));
@@ -144,7 +143,7 @@ fn main() -> ExitCode {
     }
     let extent = Extent { sample: arguments.sample, seed: arguments.seed };
     let asked = if arguments.parts.is_empty() { Part::value_variants() } else { &arguments.parts };
-    // What a judge has to say becomes a finding.
+    // A panic of the judge becomes a finding.
     std::panic::set_hook(Box::new(|_| {}));
     let (mut rows, began) = (Vec::new(), Instant::now());
     for part in asked {

@@ -1,4 +1,4 @@
-//! Processes that attack: this program again, so that they can be killed, stopped, or belong to another user.
+//! Attacking processes: this program again, so that they can be killed, stopped, or belong to another user.
 
 use std::{
     env, fs,
@@ -11,10 +11,10 @@ use std::{
 use clap::ValueEnum;
 use executive::memory::{Attached, RunName};
 
-/// A process ends by itself after this time, if the program that started it cannot end it.
+/// Lifetime of a process that its parent cannot end.
 const LIFE: Duration = Duration::from_secs(120);
 
-/// What it does.
+/// The attack.
 #[derive(Clone, Copy, Debug, ValueEnum)]
 pub enum Process {
     /// Reads the buffers of a run on and on
@@ -24,7 +24,7 @@ pub enum Process {
 }
 
 impl Process {
-    /// Start it for a run, and wait until it is at work.
+    /// Start it for a run, and wait until it is active.
     pub fn start(self, run: &RunName) -> Child {
         let name = self.to_possible_value().expect("no process is skipped");
         let mut child = Command::new(env::current_exe().expect("a program has a path"))

@@ -1,4 +1,4 @@
-//! Readers that are killed or stopped: the run does not notice.
+//! Readers that are killed or stopped do not affect the run.
 
 use std::{path::Path, process::Child, thread, time::Duration};
 
@@ -11,9 +11,9 @@ use crate::{
     table::{Chance, Extent, Outcome, Row},
 };
 
-/// Ticks of a run that is read.
+/// Duration of the run, ticks.
 const TICKS: &str = "100";
-/// Readers that die in a run.
+/// Readers that are killed per run.
 const READERS: u64 = 6;
 
 fn kill(mut reader: Child) {
@@ -21,7 +21,7 @@ fn kill(mut reader: Child) {
     reader.wait().expect("it is dead");
 }
 
-/// Readers of one run are killed one after the other, and one is stopped until its end.
+/// Kill the readers of one run one after the other, and stop one until its end.
 fn die_and_hang(directory: &Path, boards: &str, expected: &str, chance: &mut Chance) -> Outcome {
     let mut run = start(directory, boards, TICKS, "none");
     drop(run.attach());

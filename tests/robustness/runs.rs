@@ -1,4 +1,4 @@
-//! Runs that are attacked, and what is looked at after each.
+//! Attacked runs, and the checks after each.
 
 use std::{fs, path::Path};
 
@@ -26,7 +26,7 @@ pub fn end(mut run: Running) -> Ended {
     run.end()
 }
 
-/// A board of the run lives: `rcs-run board N --run NAME`.
+/// True if a board of the run is alive: `rcs-run board N --run NAME`.
 fn lives(run: &RunName) -> bool {
     let is_board = |line: Vec<u8>| {
         let words: Vec<&[u8]> = line.split(|byte| *byte == 0).collect();
@@ -47,8 +47,8 @@ pub fn judge(ended: &Ended) -> Outcome {
     }
 }
 
-/// How a run ended whose objects of iceoryx2 became garbage: the library may panic over them. While a run is set up
-/// that ends it with words, and later by the panic. Destructors meet the same garbage, and may panic again.
+/// The outcome of a run with garbage in its iceoryx2 objects, over which the library may panic. During the set-up the
+/// run ends with a message, later by the panic. Destructors meet the same garbage and may panic again.
 pub fn judge_damaged(ended: &Ended) -> Outcome {
     let mut panics = ended.said.lines().filter(|line| line.contains("panicked at"));
     let Some(first) = panics.next() else { return judge(ended) };
@@ -59,7 +59,8 @@ pub fn judge_damaged(ended: &Ended) -> Outcome {
     }
 }
 
-/// The next run starts and is seen by readers. What the attacked run left is gone then, and `clean` has no more to do.
+/// Assert that the next run starts and is visible to readers. By then the remains of the attacked run are gone, and
+/// `clean` finds nothing.
 pub fn assert_no_harm(directory: &Path, run: &RunName) {
     let next = Ended::run(directory, "linkbar", &["--ticks", "30", "--log", "none"]);
     assert_eq!((next.status, next.number("ticks")), (Some(0), 30), "the next run: {}", next.said);

@@ -14,7 +14,7 @@ use crate::{
     table::{Chance, Extent, Outcome, Row},
 };
 
-/// Signals, and how a run takes them once it has begun.
+/// Signals, and the outcome of a running run.
 const SIGNALS: [(&str, Signal, Outcome); 7] = [
     ("SIGTERM", Signal::TERM, Outcome::InOrder),
     ("SIGINT", Signal::INT, Outcome::InOrder),
@@ -27,11 +27,11 @@ const SIGNALS: [(&str, Signal, Outcome); 7] = [
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Phase {
-    /// In the first 30 ms of the program, before or after it has its handlers.
+    /// In the first 30 ms of the program, before or after the installation of its handlers.
     Start,
     /// As soon as there are buffers to read.
     WarmUp,
-    /// During the PAUSE with which the job begins.
+    /// During the PAUSE at the start of the job.
     AtRest,
     /// During the first motion.
     InMotion,
@@ -42,7 +42,7 @@ enum Phase {
 const PHASES: [Phase; 5] = [Phase::Start, Phase::WarmUp, Phase::AtRest, Phase::InMotion, Phase::End];
 
 impl Phase {
-    /// After how many ticks the run ends by itself.
+    /// Duration of the run, ticks.
     const fn ticks(self) -> &'static str {
         match self {
             Self::Start => "30",
@@ -71,7 +71,7 @@ impl Phase {
             Self::End => 105,
         };
         let reader = run.attach();
-        // A busy machine may let the run end before the last tick was seen.
+        // On a busy machine the run may end before its last tick is observed.
         wait_for("the phase", || {
             let over = run.child.try_wait().expect("a child").is_some();
             over || reader.pulse().is_ok_and(|pulse| pulse.over || pulse.tick.0 >= tick)
@@ -79,7 +79,7 @@ impl Phase {
     }
 }
 
-/// Let the system write a core file; false if it may not, or writes it elsewhere.
+/// Permit a core file; false if the system forbids it or writes it elsewhere.
 fn allow_core(run: &Running) -> bool {
     let pattern = fs::read_to_string("/proc/sys/kernel/core_pattern").unwrap_or_default();
     let most = getrlimit(Resource::Core).maximum;
@@ -88,7 +88,7 @@ fn allow_core(run: &Running) -> bool {
     pattern.starts_with("core") && most != Some(0) && allowed
 }
 
-/// A core file lies in the directory of the run.
+/// True if a core file is in the directory of the run.
 fn core(directory: &Path) -> bool {
     let entries = fs::read_dir(directory).expect("a directory").flatten();
     entries.filter(|entry| entry.file_name().to_string_lossy().starts_with("core")).count() > 0
@@ -107,9 +107,9 @@ fn attempt(signal: (Signal, Outcome), phase: Phase, boards: &str, chance: &mut C
     let outcome = judge(&ended);
     let said = format!("{phase:?}: {outcome:?} {:?}: {}", ended.signal, ended.said);
     let allowed = match phase {
-        // Before there are handlers the system does what it does for all programs.
+        // Before the installation of handlers the system's default applies.
         Phase::Start => outcome == expected || outcome == Outcome::BySignal,
-        // The run may have been faster.
+        // The run may have ended before.
         Phase::End => outcome == expected || outcome == Outcome::WentOn,
         _ => outcome == expected,
     };
@@ -133,7 +133,7 @@ pub fn rows(extent: Extent) -> Vec<Row> {
     let mut rows = Vec::new();
     for (number, (name, signal, expected)) in SIGNALS.into_iter().enumerate() {
         for (shift, (boards, on)) in BOARDS.into_iter().enumerate() {
-            // A sample takes another phase in each row.
+            // A sample uses another phase in each row.
             let phases = PHASES.into_iter().enumerate();
             let of_sample = (2 * number + shift) % PHASES.len();
             for (_, phase) in phases.filter(|(index, _)| !extent.sample || *index == of_sample) {

@@ -1,31 +1,31 @@
-//! The table of the campaign: a row an attack, a column a way to take it.
+//! The table of the campaign: one row per attack, one column per outcome.
 
 use std::{
     fmt::Write as _,
     panic::{self, AssertUnwindSafe},
 };
 
-/// How the attacked program took it. What is none of these is a panic of the judge, and a finding.
+/// The outcome of an attack. Any other one is a panic of the judge, and a finding.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Outcome {
     /// It continued to its normal end; a tool printed its answer.
     WentOn,
     /// The robot came to rest, the log is complete, and the exit status is 3; a tool found a difference.
     InOrder,
-    /// It ended, or refused to begin, and its last line says why.
+    /// It ended, or refused to start, with the reason in its last line.
     InWords,
-    /// The signal that was sent ended it, or one of the system's, or iceoryx2 whose memory was garbage.
+    /// It was ended by the sent signal, by one of the system's, or by iceoryx2 due to garbage in memory.
     BySignal,
 }
 
 /// The columns, in the order of [`Outcome`].
 const COLUMNS: [&str; 4] = ["continued", "ended in order", "ended with a message", "ended by force"];
 
-/// Random numbers: the same for the same seed.
+/// Random numbers, determined by a seed.
 pub struct Chance(u64);
 
 impl Chance {
-    /// A stream of its own for each case of each row.
+    /// A separate stream for each case of each row.
     fn new(seed: u64, row: &str, case: u64) -> Self {
         let mixed = row.bytes().fold(seed ^ 0xCBF2_9CE4_8422_2325, |hash, byte| {
             (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01B3)
@@ -33,7 +33,7 @@ impl Chance {
         Self((mixed ^ case.wrapping_mul(0x9E37_79B9_7F4A_7C15)) | 1)
     }
 
-    /// A number from 0 to below `limit`; 0 if that is 0.
+    /// A number from 0 to `limit` - 1; 0 if `limit` is 0.
     pub fn below(&mut self, limit: u64) -> u64 {
         // Xorshift: George Marsaglia, Xorshift RNGs, Journal of Statistical Software 8 (2003).
         self.0 ^= self.0 << 13;
@@ -42,7 +42,7 @@ impl Chance {
         (self.0 >> 11) % limit.max(1)
     }
 
-    /// The same for places in memory.
+    /// The same for positions in memory.
     pub fn place(&mut self, limit: usize) -> usize {
         usize::try_from(self.below(u64::try_from(limit).expect("64 bits"))).expect("it is below a usize")
     }
@@ -54,7 +54,7 @@ impl Chance {
 
 #[derive(Clone, Copy)]
 pub struct Extent {
-    /// A few cases of each row.
+    /// True for a few cases per row.
     pub sample: bool,
     pub seed: u64,
 }
@@ -66,17 +66,17 @@ impl Extent {
     }
 }
 
-/// An attack, and how it was taken.
+/// An attack and its outcomes.
 pub struct Row {
     attack: String,
     on: &'static str,
     counts: [u64; 4],
-    /// What did not hold: the case, and the judge's words.
+    /// Violations: the case, and the judge's message.
     pub findings: Vec<String>,
 }
 
 impl Row {
-    /// Try an attack on something in some cases.
+    /// Try an attack in some cases.
     pub fn of(
         extent: Extent,
         attack: &str,

@@ -1,5 +1,5 @@
-//! Changes rows of the decision tables of `crates/levels`, one at a time, and counts which changes the tests of
-//! that crate notice. `cargo-mutants` does not look into `decision_table!`.
+//! Changes rows of the decision tables of `crates/levels`, one at a time, and counts the changes that the tests of
+//! that crate detect. `cargo-mutants` ignores `decision_table!`.
 //!
 //! ```text
 //! cargo run --release -p whole-system-tests --bin row-mutants -- --help
@@ -7,14 +7,14 @@
 //! cargo run --release -p whole-system-tests --bin row-mutants -- --own --only levels/src/grip
 //! ```
 //!
-//! All changes that [`mutate`] knows are drawn in an order that the seed gives. One that does not compile is
-//! counted and does not stand for a row: the table is not total any more, has a dead row, or the names do not
-//! fit. One that compiles is *killed* if a test fails or does not end, and has *survived* otherwise. Each of them
-//! is printed as a line, a survivor as a difference.
+//! The changes of [`mutate`] are drawn in an order determined by the seed. A change that does not compile is counted
+//! but does not represent a row: the table is no longer total, has a dead row, or the names do not match. One that
+//! compiles is *killed* if a test fails or does not end, and has *survived* otherwise. Each is printed as a line, a
+//! survivor as a difference.
 //!
-//! The repository is copied to `target/row-mutants/source`, and there all changes are compiled at once ([`switch`]).
-//! Each test is run once without a change, which says what changes it can notice. Then those tests are run with
-//! each change, the quickest first, until one fails. Tests draw fewer random cases.
+//! The repository is copied to `target/row-mutants/source`, where all changes are compiled at once ([`switch`]). Each
+//! test is run once without a change, which shows the changes that it can detect. Then these tests are run with each
+//! change, the quickest first, until one fails. Tests draw fewer random cases.
 
 #![expect(clippy::print_stdout, clippy::print_stderr, reason = "a program of the developers, at a terminal")]
 
@@ -62,7 +62,7 @@ struct Arguments {
     own: bool,
 }
 
-/// A copy of the repository, and where it is built.
+/// A copy of the repository, and its build directory.
 struct Copied {
     root: PathBuf,
     source: PathBuf,
@@ -75,8 +75,8 @@ impl Copied {
         Self { root: root.to_owned(), source: scratch.join("source"), target: scratch.join("target") }
     }
 
-    /// Copy all files that git knows, `switched` in the place of some, but only those that differ: what is built
-    /// already stays fresh. Sources of an earlier copy that are no longer there are removed.
+    /// Copy all files tracked by git that differ, with those of `switched` replaced, so that existing builds remain
+    /// valid. Sources of an earlier copy that no longer exist are removed.
     fn write(&self, switched: &Switched) -> io::Result<()> {
         let mut earlier = Vec::new();
         if self.source.is_dir() {
@@ -94,7 +94,7 @@ impl Copied {
             let (from, to) = (self.root.join(&name), self.source.join(&name));
             let content = match switched.texts.get(Path::new(&name)) {
                 Some(text) => text.clone().into_bytes(),
-                // A file that git knows may have been deleted.
+                // A file tracked by git may have been deleted.
                 None => match fs::read(from) {
                     Ok(content) => content,
                     Err(_) => continue,
@@ -108,7 +108,7 @@ impl Copied {
         Ok(())
     }
 
-    /// Run cargo for `levels`: its messages, and what it says besides if it fails.
+    /// Run cargo for `levels`. Returns its messages, and the remaining output if it fails.
     fn cargo(&self, arguments: &[&str]) -> io::Result<(Vec<Value>, Option<String>)> {
         let mut command = Command::new("cargo");
         command.args(arguments).args(["--quiet", "--package", "levels", "--message-format=json"]);
@@ -127,13 +127,13 @@ impl Copied {
         ))
     }
 
-    /// The first `number` of the changes that compile, and how many before them did not.
+    /// The first `number` changes that compile, and the number of those before them that did not.
     fn compile(&self, mutants: &[Mutant], number: usize) -> Result<(BTreeMap<usize, Mutant>, usize), String> {
         let said = |error: io::Error| error.to_string();
         let mut refused = BTreeSet::new();
         let mut drawn = 0;
         loop {
-            // Of the changes that are drawn about two thirds compile.
+            // About two thirds of the drawn changes compile.
             drawn = (drawn + 2 * number).min(mutants.len());
             loop {
                 let tried = mutants.iter().zip(1..).take(drawn).map(|(mutant, number)| (number, mutant));
@@ -163,7 +163,7 @@ impl Copied {
         Ok((compiled, refused.range(..last).count()))
     }
 
-    /// Build the tests, those of the library alone or all.
+    /// Build the tests: those of the library alone, or all.
     fn tests(&self, own: bool) -> Result<Vec<Program>, String> {
         let arguments: &[&str] = if own { &["--lib"] } else { &["--lib", "--tests"] };
         let (messages, failed) =
@@ -182,7 +182,7 @@ impl Copied {
     }
 }
 
-/// The number of the change that an error of the compiler is about.
+/// The number of the change to which an error of the compiler belongs.
 fn place(error: &Value, switched: &Switched) -> Option<usize> {
     let spans = error["message"]["spans"].as_array()?;
     let primary = spans.iter().filter(|span| span["is_primary"] == true);
@@ -193,7 +193,7 @@ fn place(error: &Value, switched: &Switched) -> Option<usize> {
     changes.next()
 }
 
-/// Do something with all items, on all cores; the results in the order of the items.
+/// Process all items on all cores. Returns the results in the order of the items.
 fn on_all_cores<T: Sync, R: Send>(
     items: &[T],
     work: impl Fn(&T) -> io::Result<R> + Sync,
@@ -220,7 +220,7 @@ fn on_all_cores<T: Sync, R: Send>(
     results.into_iter().map(|(_, result)| result).collect()
 }
 
-/// The tests of which `own` asks for some, run without a change: the quickest first.
+/// The tests that `own` selects, run without a change: the quickest first.
 fn measured<'a>(
     programs: &'a [Program],
     scratch: &Path,
@@ -243,7 +243,7 @@ fn measured<'a>(
 
 enum Fate {
     Killed,
-    /// Although this many tests reach it.
+    /// Number of tests that reach it.
     Survived(usize),
 }
 

@@ -1,4 +1,4 @@
-//! What can be changed in a row of a decision table.
+//! The possible changes of a row of a decision table.
 
 use std::{
     fmt, fs, io,
@@ -10,7 +10,7 @@ use whole_system_tests::tables::{Row, Table, files};
 
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Mutant {
-    /// The file, from the root of the repository.
+    /// From the root of the repository.
     pub file: PathBuf,
     table: String,
     pub row: String,
@@ -19,11 +19,11 @@ pub struct Mutant {
     pub lines: Range<usize>,
     pub before: String,
     pub after: String,
-    /// Another row that changes with it: an alternative that goes from one row to another.
+    /// A second changed row: an alternative moves from one row to another.
     pub other: Option<(Range<usize>, String)>,
 }
 
-/// What is changed in a row.
+/// The changed part of a row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum What {
     Action,
@@ -43,8 +43,7 @@ impl fmt::Display for Mutant {
 }
 
 impl Mutant {
-    /// The module of the process whose table it is, as names of tests begin; empty for a table that all processes
-    /// consult.
+    /// The module of the table's process, as in the names of tests; empty for a table that all processes consult.
     pub fn process(&self) -> String {
         let mut parts = self.file.components().skip(3).map(|part| part.as_os_str().to_string_lossy());
         match (parts.next(), parts.next()) {
@@ -53,13 +52,13 @@ impl Mutant {
         }
     }
 
-    /// Is it a change of this row, given as `"QC-LOCK 3"`?
+    /// True for a change of this row, given as `"QC-LOCK 3"`.
     pub fn is_of(&self, row: &str) -> bool {
         row.rsplit_once(' ')
             .is_some_and(|(table, number)| table.replace('-', "_") == self.table && number == self.row)
     }
 
-    /// The table passes on instead of deciding, by a row that is changed or with the change.
+    /// True if the table passes on instead of deciding, by a row that is changed or with the change.
     pub fn passes(&self) -> bool {
         let other = self.other.as_ref().map(|(_, after)| after);
         [&self.before, &self.after].into_iter().chain(other).any(|row| row.contains("=> consult"))
@@ -70,7 +69,7 @@ impl Mutant {
         let mut lines: Vec<&str> = text.lines().collect();
         let other = self.other.iter().map(|(lines, after)| (lines, after));
         for (of_row, after) in [(&self.lines, &self.after)].into_iter().chain(other) {
-            // The number of lines stays.
+            // The number of lines remains.
             lines[of_row.clone()].fill("");
             lines[of_row.start] = after;
         }
@@ -91,8 +90,8 @@ fn mutant(table: &Table, row: &Row, what: What, changed: &Row, other: Option<&Ro
     }
 }
 
-/// Every change of one row: its action becomes one of the table's others, its next step another one or
-/// none, an alternative of a condition goes to another row of the same group or is exchanged with one of it.
+/// Every change of one row. Its action becomes another one of the table, its next step another one or none, or an
+/// alternative of a condition moves to another row of the same group or is exchanged with one of it.
 pub fn mutants(table: &Table) -> Vec<Mutant> {
     let mut mutants = Vec::new();
     for row in &table.rows {
@@ -105,7 +104,7 @@ pub fn mutants(table: &Table) -> Vec<Mutant> {
             mutants.push(mutant(table, row, What::Action, &changed, None));
         }
         let steps = table.steps.iter().cloned().map(Some).chain([None]).filter(|next| {
-            // To stay in the only step says the same with and without its name.
+            // Naming the only step as the next one has no effect.
             let stay = |next: &Option<String>| next.is_none() || *next == row.only_step;
             *next != row.next && !(stay(next) && stay(&row.next))
         });
@@ -120,7 +119,7 @@ pub fn mutants(table: &Table) -> Vec<Mutant> {
     mutants
 }
 
-/// What can be exchanged between the conditions of two rows.
+/// The possible exchanges between the conditions of two rows.
 fn exchange(table: &Table, row: &Row, other: &Row, mutants: &mut Vec<Mutant>) {
     for (at, (name, values)) in row.conditions.iter().enumerate() {
         let Some(there) = other.conditions.iter().position(|(known, _)| known == name) else { continue };
@@ -149,8 +148,8 @@ fn random(state: &mut u64) -> u64 {
     mixed ^ (mixed >> 31)
 }
 
-/// All changes of rows of the tables of `levels`, in an order that the seed gives: first a row, each as likely
-/// as any other, then what is changed in it, then how; a row comes again after all others have come.
+/// All changes of rows of the tables of `levels`, in an order determined by the seed: first the row, with equal
+/// probability, then its part, then the change. A row is repeated only after all others.
 pub fn drawn(root: &Path, seed: u64, only: &str) -> io::Result<Vec<Mutant>> {
     let mut paths = Vec::new();
     files(&root.join("crates/levels/src"), "rs", &mut paths)?;

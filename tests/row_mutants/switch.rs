@@ -1,10 +1,10 @@
-//! Files with many changed tables at once, of which one is switched on when a test program starts: all changes are
-//! compiled together.
+//! Files with many changed tables, of which one is selected when a test program starts: all changes are compiled
+//! together.
 //!
-//! Beside `pub TURN: fn turn(..)` stands a whole table for each change, `TURN_CHANGED_17`, and `turn` becomes a
-//! function that consults the one whose number is in [`CHANGED`]. If [`REACHED`] names a file instead, no change is
-//! switched on, and the numbers of those that would have decided otherwise are written to it. A test that reaches no
-//! decision that a change alters cannot notice it.
+//! Next to `pub TURN: fn turn(..)` each change adds a whole table, `TURN_CHANGED_17`, and `turn` becomes a function
+//! that consults the table whose number is in [`CHANGED`]. If [`REACHED`] names a file instead, no change is
+//! selected, and the numbers of those that would have decided otherwise are written to it. A test that reaches no
+//! altered decision cannot detect the change.
 
 use std::{
     collections::{BTreeMap, HashMap},
@@ -18,12 +18,12 @@ use whole_system_tests::tables::Table;
 
 use crate::mutate::Mutant;
 
-/// The variable of the environment that gives the number of the change that is switched on.
+/// The environment variable with the number of the selected change.
 pub const CHANGED: &str = "RCS_CHANGED_ROW";
-/// The variable of the environment that names the file for the numbers of the changes that a test reaches.
+/// The environment variable with the file for the numbers of the reached changes.
 pub const REACHED: &str = "RCS_REACHED_ROWS";
 
-/// What `lib.rs` of the copy has in addition.
+/// The addition to `lib.rs` of the copy.
 const SELECTION: &str = r#"
 extern crate std;
 
@@ -46,14 +46,14 @@ pub(crate) fn reached_row(number: usize) {
 }
 "#;
 
-/// A check of the tests against the table as text, which is not switched: a changed condition would always fail it.
+/// A check of the tests against the unchanged text of the table: every changed condition would fail it.
 const CHECK: (&str, &str) = (
     "assert_eq!(read, Some(row), \"{} with {values:?}\", table.name);",
     "let (_, _, _) = (read, row, table.name);",
 );
 
-/// The head of a table, `pub TURN: fn turn(enum TurnStep, super::Situation) -> super::Action or () {`. With `struct of
-/// super::Senses` the table declares the struct `TurnSituation`.
+/// The head of a table, `pub TURN: fn turn(enum TurnStep, super::Situation) -> super::Action or () {`. With
+/// `struct of super::Senses` the table declares the struct `TurnSituation`.
 struct Head<'a> {
     name: &'a str,
     decide: &'a str,
@@ -92,7 +92,7 @@ impl<'a> Head<'a> {
         format!("{}_{which}", self.decide.trim_start_matches("r#"))
     }
 
-    /// The table as it was, under another name of its function.
+    /// The original table under another name of its function.
     fn unchanged(&self) -> String {
         let step = match (self.step, self.declares) {
             (Some(step), true) => format!("enum {step}, "),
@@ -114,7 +114,7 @@ impl<'a> Head<'a> {
         )
     }
 
-    /// The function that consults the table that is switched on.
+    /// The function that consults the selected table.
     fn selection(&self, mutants: &[(usize, &Mutant)]) -> String {
         let (generic, step) = self.step.map_or(("<Step: Copy>", "Step"), |step| ("", step));
         let (result, row) = match self.result.split_once(" or ") {
@@ -142,7 +142,7 @@ pub fn {}{generic}(step: {step}, situation: &{}) -> ::rcs_core::table::{result} 
         );
         for (number, mutant) in mutants {
             let function = self.function(&format!("changed_{number}"));
-            // Rows that pass on do not tell their number.
+            // Rows that pass on have no number.
             let same = if mutant.passes() { "None".to_owned() } else { format!("Some({})", mutant.row) };
             let _ = writeln!(
                 text,
@@ -163,7 +163,7 @@ pub fn {}{generic}(step: {step}, situation: &{}) -> ::rcs_core::table::{result} 
 /// Lines of each change of a file, from 1, and its number.
 type Places = Vec<(Range<usize>, usize)>;
 
-/// Files of the copy that differ, and where in them a change stands.
+/// Changed files of the copy, and the positions of the changes.
 #[derive(Default)]
 pub struct Switched {
     /// Text by path from the root of the repository.
@@ -202,7 +202,7 @@ impl Switched {
         Ok(switched)
     }
 
-    /// The number of the change that stands at a line, from 1.
+    /// The number of the change at a line, from 1.
     pub fn change_at(&self, file: &Path, line: usize) -> Option<usize> {
         let places = self.places.get(file)?;
         places.iter().find(|(lines, _)| lines.contains(&line)).map(|(_, number)| *number)

@@ -1,4 +1,4 @@
-//! Tests of programs, each run by itself, with a change switched on or to find out which changes it reaches.
+//! Tests of programs, each run separately, with a selected change or to find the changes that it reaches.
 
 use std::{
     collections::BTreeSet,
@@ -14,17 +14,17 @@ use crate::switch::{CHANGED, REACHED};
 #[derive(Clone, Debug)]
 pub struct Program {
     pub path: PathBuf,
-    /// Where it is run: the directory of its package.
+    /// The directory of its package, in which it is run.
     pub directory: PathBuf,
 }
 
-/// A test, and what was found out about it without a change.
+/// A test and its measurements without a change.
 #[derive(Debug)]
 pub struct Test<'a> {
     program: &'a Program,
     pub name: String,
     pub taken: Duration,
-    /// Numbers of the changes that would have decided otherwise somewhere in it.
+    /// Numbers of the changes that would have decided otherwise in it.
     pub reaches: BTreeSet<usize>,
 }
 
@@ -33,7 +33,7 @@ impl Program {
         let mut command = Command::new(&self.path);
         command.current_dir(&self.directory).env("CARGO_MANIFEST_DIR", &self.directory);
         command.stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null());
-        // The same random cases for each change, and no search for a smaller one.
+        // The same random cases for each change, without shrinking.
         command.env("PROPTEST_RNG_SEED", "1988").env("PROPTEST_CASES", "16").env("RCS_MOVES", "2000");
         command.env("PROPTEST_MAX_SHRINK_ITERS", "0");
         command
@@ -50,7 +50,7 @@ impl<'a> Test<'a> {
     /// Run a test without a change; `reached` is a file of its own.
     ///
     /// # Errors
-    /// It fails.
+    /// If it fails.
     pub fn measure(program: &'a Program, name: String, reached: &Path) -> io::Result<Self> {
         fs::write(reached, "")?;
         let mut test = Self { program, name, taken: Duration::ZERO, reaches: BTreeSet::new() };
@@ -63,7 +63,7 @@ impl<'a> Test<'a> {
         Ok(test)
     }
 
-    /// Does it pass with a change, in three times what it takes without one and some seconds?
+    /// True if it passes with a change, within three times its duration without one and some seconds.
     pub fn passes(&self, change: usize) -> io::Result<bool> {
         let patience = self.taken * 3 + Duration::from_secs(20);
         let mut command = self.program.command();
@@ -89,7 +89,7 @@ mod tests {
 
     use super::*;
 
-    /// Stands for a program of two tests, of which change 3 breaks one.
+    /// A mock program with two tests, of which change 3 breaks one.
     const SCRIPT: &str = r#"#!/bin/sh
 case "$*" in
     --list*) echo 'opens: test'; echo 'closes: test' ;;

@@ -1,4 +1,4 @@
-//! Runs under other directories, and programs that stopped or belong to other users: runs and `clean` are unharmed.
+//! Foreign directories, stopped programs and other users harm neither runs nor `clean`.
 
 use std::{
     env, fs,
@@ -56,7 +56,7 @@ fn clean_leaves_a_run_of_the_same_name_under_another_directory_alone() {
     Ended::of(&first.wait_with_output().expect("it ends")).assert_shared();
 }
 
-/// In a `/dev/shm` of its own another user opens and empties what it can, while runs begin and end.
+/// In a separate `/dev/shm` another user opens and empties every accessible object, while runs start and end.
 #[test]
 fn another_user_cannot_open_or_block_a_run() {
     if !geteuid().is_root() {
@@ -64,7 +64,7 @@ fn another_user_cannot_open_or_block_a_run() {
         return;
     }
     let scratch = Scratch::new("stranger");
-    // Another user may not come to where this program lies.
+    // The directory of this program may be inaccessible to another user.
     fs::copy(env!("CARGO_BIN_EXE_robustness"), scratch.file("attacker")).expect("it can be copied");
     let place = scratch.file("");
     fs::set_permissions(&place, fs::Permissions::from_mode(0o755)).expect("it is ours");
@@ -87,7 +87,7 @@ fn another_user_cannot_open_or_block_a_run() {
         .current_dir(&place)
         .env("RCS_RUNS", &place)
         .output();
-    // In a changed root without a mount point of its own `unshare` itself fails.
+    // In a changed root without its own mount point `unshare` itself fails.
     let refused = |output: &Output| output.status.code() == Some(9) || output.stderr.starts_with(b"unshare:");
     let output = match output {
         Ok(output) if !refused(&output) => output,

@@ -1,5 +1,4 @@
-//! Runs that are killed: the log can be read and replayed to the last second, the next run works at once, and
-//! nothing is left behind.
+//! Killed runs: the log can be read and replayed to the last second, the next run works at once, and no files remain.
 
 use executive::memory::ReadError;
 use record::replay;
@@ -11,16 +10,16 @@ use whole_system_tests::{
 /// Jobs whose runs are killed, with their lengths in ticks.
 const JOBS: [(&str, u64); 4] =
     [("linkbar", 5_900), ("clevis", 11_000), ("turned-part", 6_000), ("tool-change", 7_000)];
-/// In fast clock the log may be behind by its ring (1,024 ticks) and by what it writes at once (25).
+/// In fast clock the log may lack the contents of its ring (1,024 ticks) and one write (25).
 const BEHIND_FAST: u64 = 1024 + 25 + 25;
-/// In real clock it writes once a second; one more for a log thread that a busy machine lets wait.
+/// In real clock it writes once per second; one more for a log thread that is delayed by a busy machine.
 const BEHIND_REAL: u64 = 2 * 25;
 
 fn kills() -> u64 {
     std::env::var("RCS_KILLS").map_or(4, |text| text.parse().expect("RCS_KILLS is a number"))
 }
 
-/// Replay what there is of a log, and see that it goes to within `behind` ticks of `tick`.
+/// Replay a log, and assert that it reaches `tick` within `behind` ticks.
 fn assert_log_reaches(log: &std::path::Path, tick: u64, behind: u64) {
     let report = replay(log).expect("the log of a killed run can be read");
     if let Some(difference) = &report.first_difference {
@@ -34,7 +33,7 @@ fn assert_log_reaches(log: &std::path::Path, tick: u64, behind: u64) {
 fn a_run_may_be_killed_in_any_phase_of_a_job() {
     let scratch = Scratch::new("kills");
     for kill in 0..kills() {
-        // Golden steps through the job: all phases come up, in a different order in every job.
+        // Golden steps through the job: all phases occur, in a different order in every job.
         let (job, length) = JOBS[usize::try_from(kill % 4).expect("small")];
         let phase = (kill as f64 * 0.618_033_988_75).fract();
         let target = BEHIND_FAST + 25 + (phase * (length - 1_500) as f64) as u64;
@@ -42,12 +41,12 @@ fn a_run_may_be_killed_in_any_phase_of_a_job() {
         let mut run = Running::start(&scratch.file(""), job, &["--log", "killed.mcap"]);
         let reader = run.attach();
         let tick = run.reach(&reader, target);
-        // Half of the runs leave a reader behind, which still reads what was there.
+        // Half of the runs leave a reader, which can still read the buffers.
         let reader = (kill % 2 == 0).then_some(reader);
         run.kill();
         assert_log_reaches(&log, tick, BEHIND_FAST);
         if let Some(reader) = reader {
-            // A writer that was killed at work leaves half a tick, which no reader takes for a whole one.
+            // A writer killed at work leaves half a tick, which readers detect.
             match reader.memory() {
                 Ok(memory) => assert!(memory.task.header.stamp.0 >= tick),
                 Err(error) => assert_eq!(error, ReadError::Busy),

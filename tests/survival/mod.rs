@@ -1,7 +1,7 @@
-//! What survives what: runs, logs, readers and machines are treated badly.
+//! Survival of runs, logs, readers and machines under attack.
 //!
-//! `RCS_KILLS` sets how often runs are killed (4 if it is not set); the tests that need more than an ordinary
-//! user's rights say so and look at the rest if they do not have them.
+//! `RCS_KILLS` sets the number of killed runs (default 4). Tests that need more than an ordinary user's rights say
+//! so, and skip the corresponding part without them.
 
 mod campaign;
 mod damage;

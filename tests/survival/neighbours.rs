@@ -1,4 +1,4 @@
-//! Runs beside others: of the same user, and of another.
+//! Parallel runs of the same user and of another.
 
 use std::{fs, os::unix::process::CommandExt, process::Stdio};
 
@@ -13,7 +13,7 @@ use whole_system_tests::{
 fn two_runs_side_by_side_do_not_meet() {
     let scratch = Scratch::new("beside");
     let start = |log| Running::start(&scratch.file(""), "linkbar", &["--ticks", "2000", "--log", log]);
-    // Names of equal length: the command line stands in the log.
+    // Names of equal length, as the log contains the command line.
     let (one, other) = (start("one.mcap"), start("two.mcap"));
     let names = [one.name.clone(), other.name.clone()];
     let (one, other) = (one.end(), other.end());
@@ -26,7 +26,7 @@ fn two_runs_side_by_side_do_not_meet() {
     names.iter().for_each(|name| assert!(traces(name).is_empty(), "an orderly end leaves nothing"));
 }
 
-/// Needs the right to become another user; without it nothing can be tried.
+/// Needs the right to become another user; otherwise it is skipped.
 #[test]
 fn another_user_runs_beside_and_after_the_first() {
     let scratch = Scratch::new("users");
@@ -36,7 +36,7 @@ fn another_user_runs_beside_and_after_the_first() {
     }
     let mut first = Running::start(&scratch.file(""), "linkbar", &["--clock", "real", "--log", "none"]);
     drop(first.attach());
-    // The program where every user can start it: the target directory may be the owner's alone.
+    // The program at a place where every user can start it: the target directory may be private.
     let program = scratch.file("rcs-run");
     fs::copy(rcs_run(), &program).expect("the program can be copied");
     let data = scratch.file("data");
@@ -58,7 +58,7 @@ fn another_user_runs_beside_and_after_the_first() {
     assert_eq!(refused.status, Some(2));
     assert!(refused.last_words().contains("there is no run named"), "{}", refused.said);
     first.kill();
-    // Also after a run that was killed.
+    // Also after a killed run.
     as_nobody(&run).assert_shared();
     assert_cleaned(&scratch.file(""), &first.name);
 }

@@ -1,4 +1,4 @@
-//! Who may open what a run shows.
+//! Permissions of the shared files of a run.
 
 use std::{fs, os::unix::fs::PermissionsExt, path::Path};
 

@@ -1,4 +1,4 @@
-//! Memory and disks that are full, taken away, or hold what does not belong there.
+//! Memory and disks that are full, removed, or contain foreign files.
 
 use std::{
     fs::{self, Permissions},
@@ -12,7 +12,7 @@ use whole_system_tests::{
     bench::{Ended, Running, apart, job, rcs},
 };
 
-/// A run of 500 ticks ended well and says a sentence.
+/// Assert that a run of 500 ticks finished and printed a sentence.
 fn assert_goes_on(ended: &Ended, sentence: &str) {
     assert_eq!(ended.status, Some(0), "{}", ended.said);
     assert_eq!(ended.number("ticks"), 500);
@@ -31,7 +31,7 @@ fn without_shared_memory_the_run_continues_unobserved() {
         &ended,
         "other programs cannot watch the run, shared memory is not available: /dev/shm has ",
     );
-    // Enough to begin with, and then taken by another process while the run goes on.
+    // Enough for the start, and then taken by another process during the run.
     let fills = "mount -t tmpfs -o size=8m tmpfs /dev/shm && \
                  { (until ls /dev/shm/rcs-*data; do sleep 0.1; done; sleep 2; \
                     head -c 16M /dev/zero > /dev/shm/filler) > /dev/null 2>&1 & }";
@@ -44,7 +44,7 @@ fn without_shared_memory_the_run_continues_unobserved() {
 #[test]
 fn memory_that_is_taken_while_a_run_begins_is_missed_in_words() {
     let scratch = Scratch::new("race");
-    // Enough to begin with, and taken by another process as soon as the first object is there.
+    // Enough for the start, and taken by another process once the first object exists.
     let fills = "mount -t tmpfs -o size=2200k tmpfs /dev/shm && \
                  { (i=0; until ls /dev/shm/rcs-*_* || [ $((i += 1)) -gt 3000 ]; do :; done; \
                     head -c 4M /dev/zero > /dev/shm/filler) > /dev/null 2>&1 & }";
@@ -53,7 +53,7 @@ fn memory_that_is_taken_while_a_run_begins_is_missed_in_words() {
             eprintln!("no right to mount: a full /dev/shm cannot be tried");
             return;
         };
-        // Who is first is left to chance, but no end is silent.
+        // The first one is random, but every end has a message.
         match ended.status {
             Some(0) => assert_eq!(ended.number("ticks"), 50),
             Some(3) => assert!(ended.last_words().contains("/dev/shm is full"), "{}", ended.said),
@@ -80,16 +80,16 @@ fn stale_and_strange_files_do_not_disturb_and_are_removed() {
     let scratch = Scratch::new("stale");
     let (tmp, user) = (scratch.file(""), geteuid().as_raw());
     let root = scratch.file(&format!("rcs-runs-{user}"));
-    // A killed run of an older version, with a layout that no program has any more.
+    // A killed run of an older version, with a layout that no present program uses.
     fs::create_dir_all(root.join("old-1@00c0ffee/nodes")).expect("a directory");
-    // Objects of a killed run whose directory is gone.
+    // Objects of a killed run without its directory.
     let prefix = format!("/dev/shm/rcs-{:08x}_", std::process::id());
     let objects = ["alive.rcs-run", "x.blackboard"].map(|name| format!("{prefix}{name}"));
     objects.iter().for_each(|object| fs::write(object, "old").expect("an object"));
     objects
         .iter()
         .for_each(|object| fs::set_permissions(object, Permissions::from_mode(0o600)).expect("it is ours"));
-    // What looks like a run and is none, and what does not even look like one.
+    // A file that looks like a run, and one that does not.
     fs::write(root.join("file-1@00c0ffee"), "a file").expect("a file");
     std::os::unix::fs::symlink("/nowhere", root.join("link-1@00c0ffee")).expect("a link");
     fs::create_dir_all(root.join("no run at all")).expect("a directory");

@@ -1,7 +1,7 @@
-//! Every file and every test that a rule of docs/design, or a promise of another page, names is there.
+//! All files and tests in the rules of docs/design, and in the promises of other pages, exist.
 //!
-//! Under the text of a rule stand `- code:` and `- test:`, which may go on over indented lines. What is in
-//! backquotes is a reference; the words between are for people.
+//! The text of a rule is followed by `- code:` and `- test:`, which may continue over indented lines. A text in
+//! backquotes is a reference; the words between are for readers.
 //!
 //! | under   | reference                  | must be there                                                   |
 //! |---------|----------------------------|-----------------------------------------------------------------|
@@ -17,14 +17,14 @@ use whole_system_tests::root;
 
 use super::sources::{Sources, has_item, has_test};
 
-/// Which of the two lines under a rule.
+/// The kind of a line under a rule.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Kind {
     Code,
     Test,
 }
 
-/// A line under a rule, with the lines over which it goes on.
+/// A line under a rule, with its continuation lines.
 #[derive(Debug, PartialEq, Eq)]
 struct Item {
     /// Number of its first line.
@@ -56,7 +56,7 @@ fn items(page: &str) -> Vec<Item> {
     items
 }
 
-/// What stands in backquotes, and whether a bracket is open before it.
+/// The texts in backquotes, and whether a bracket is open before each.
 fn references(text: &str) -> Vec<(&str, bool)> {
     let parts = text.split('`').collect::<Vec<_>>();
     let words = parts.iter().step_by(2);
@@ -67,7 +67,7 @@ fn references(text: &str) -> Vec<(&str, bool)> {
     parts.iter().skip(1).step_by(2).copied().zip(open).collect()
 }
 
-/// What a line names and is not there.
+/// The references of a line that do not exist.
 fn missing(item: &Item, sources: &Sources) -> Vec<String> {
     match item.kind {
         Kind::Code => missing_code(&item.text),
@@ -83,10 +83,10 @@ fn missing_code(text: &str) -> Vec<String> {
             if !path.exists() {
                 missing.push(format!("no file {reference}"));
             }
-            // Of a directory nothing more is said.
+            // A reference to a directory needs no more checks.
             file = fs::read_to_string(path).ok().map(|text| (reference, text));
         } else if let Some((path, text)) = file.as_ref().filter(|_| in_brackets) {
-            // Of `TaskVerb::of` both names are looked for.
+            // Both names of `TaskVerb::of` are searched.
             let is_name = |word: &&str| !word.is_empty() && !word.starts_with(|c: char| c.is_ascii_digit());
             let mut names = reference.split(|c: char| !c.is_alphanumeric() && c != '_').filter(is_name);
             if let Some(name) = names.find(|name| !has_word(text, name)) {

@@ -1,8 +1,8 @@
-//! Compares pages of docs with the code: docs/traceability.md, docs/reasons.md, the design pages
-//! ([`design`]), and the table of packages ([`packages`]).
+//! Compares pages of docs with the code: docs/traceability.md, docs/reasons.md, the design pages ([`design`]), and
+//! the table of packages ([`packages`]).
 //!
-//! Every command, variable and status value of chapters V and VI that docs/traceability.md names is there and
-//! has a test, and everything that the interfaces have is on the page.
+//! Every command, variable and status value of chapters V and VI in docs/traceability.md exists and has a test. Every
+//! name of the interfaces is on the page.
 
 mod design;
 mod packages;
@@ -26,22 +26,22 @@ use whole_system_tests::root;
 
 use self::sources::Sources;
 
-/// A line of one of the three tables: name, whose, section, code, test.
+/// A line of one of the three tables: name, owner, section, code, test.
 struct Line {
     kind: &'static str,
     name: String,
     of: String,
     section: String,
-    /// `Type::Variant` or `Record.field`; none if the name is left out, with the reason in place of the test.
+    /// `Type::Variant` or `Record.field`; none for an omitted name, with the reason in place of the test.
     code: Option<String>,
     test: String,
 }
 
 struct Page {
     lines: Vec<Line>,
-    /// What the interfaces have beyond the manual: code and reason. A star means all of a type.
+    /// Names of the interfaces that are not in the manual: code and reason. A star includes all of a type.
     beyond: Vec<(String, String)>,
-    /// Names whose meaning differs from the manual's: name, whose, the manual, here.
+    /// Names whose meaning differs from the manual's: name, owner, the manual, here.
     differences: Vec<[String; 4]>,
     /// The mailboxes of chapter IX: description, address, bytes, section, test.
     mailboxes: Vec<[String; 5]>,
@@ -49,7 +49,7 @@ struct Page {
     figures: Vec<(String, [usize; 3])>,
 }
 
-/// The cells of a row of a table in Markdown, without the marks of code.
+/// The cells of a row of a Markdown table, without the marks of code.
 fn cells(line: &str) -> Option<Vec<String>> {
     let row = line.strip_prefix("| ")?.strip_suffix(" |")?;
     Some(row.split(" | ").map(|cell| cell.trim().trim_matches('`').to_owned()).collect())
@@ -145,8 +145,7 @@ impl Interfaces {
         self.enums[name].named(variant).expect("it is in the code")
     }
 
-    /// `Type::Variant` and `Record.field` of everything that the interfaces have. A variant that carries
-    /// something goes by its text.
+    /// `Type::Variant` and `Record.field` of all names in the interfaces. A variant with data is named by its text.
     fn everything(&self) -> BTreeSet<String> {
         let mut all = BTreeSet::new();
         for (name, of) in &self.enums {
@@ -238,7 +237,7 @@ fn a_command_or_a_status_is_named_as_the_code_has_it() {
     }
 }
 
-/// Every mailbox of every neighbour, and nothing else, is on the page, at its address and with its size.
+/// The page lists exactly the mailboxes of all neighbours, with address and size.
 #[test]
 fn the_mailboxes_are_those_of_the_neighbours() {
     let of = |role: &Role| role.to_controller().iter().chain(role.from_controller());
@@ -294,7 +293,7 @@ fn the_figures_are_right_and_the_sections_are_those_of_the_interfaces() {
     }
 }
 
-/// docs/reasons.md: it tells what a code in a mailbox means.
+/// docs/reasons.md gives the meaning of a code in a mailbox.
 #[test]
 fn every_reason_is_on_its_page() {
     let mut rows = String::new();

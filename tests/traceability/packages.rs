@@ -1,4 +1,4 @@
-//! Compares the table of packages in ARCHITECTURE.md with the workspace: every package has a row, and uses only the
+//! Compares the table of packages in ARCHITECTURE.md with the workspace: every package has a row and uses only the
 //! packages that its row permits.
 
 use std::{
@@ -9,7 +9,7 @@ use std::{
 use toml::Table;
 use whole_system_tests::root;
 
-/// The packages that the rows name: for each package those that it may use.
+/// The packages of the rows, with the packages that each may use.
 fn rows() -> BTreeMap<String, BTreeSet<String>> {
     let page = fs::read_to_string(root().join("ARCHITECTURE.md")).expect("the page is there");
     let lines = page.lines().skip_while(|line| !line.starts_with("| package |"));
@@ -23,7 +23,7 @@ fn rows() -> BTreeMap<String, BTreeSet<String>> {
     .collect()
 }
 
-/// A package, what it may use, and what those may use.
+/// A package and its permitted direct and indirect dependencies.
 fn permitted(rows: &BTreeMap<String, BTreeSet<String>>, package: &str) -> BTreeSet<String> {
     let mut found = BTreeSet::new();
     let mut open = vec![package.to_owned()];
@@ -40,7 +40,7 @@ fn manifest(directory: &str) -> Table {
     text.parse().unwrap_or_else(|error| panic!("{}: {error}", path.display()))
 }
 
-/// The packages of the workspace with those that each uses, without those of its tests.
+/// The packages of the workspace with their dependencies, without those of tests.
 fn used() -> BTreeMap<String, BTreeSet<String>> {
     let workspace = manifest(".");
     let members = workspace["workspace"]["members"].as_array().expect("a list of members");
@@ -69,7 +69,7 @@ fn every_package_uses_only_what_its_row_permits() {
                 .map(|used| format!("{package} uses {used}")),
         );
         let unused = rows[package].difference(used);
-        // The tests use the libraries of a run in their own tests only.
+        // The tests use the libraries of a run only in their own tests.
         let unused = unused.filter(|_| package != "whole-system-tests");
         wrong.extend(unused.map(|unused| format!("{package} may use {unused} and does not")));
     }

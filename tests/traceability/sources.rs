@@ -1,4 +1,4 @@
-//! The sources of the workspace, and where a test stands in them.
+//! The sources of the workspace, and the tests in them.
 
 use std::{
     collections::BTreeMap,
@@ -11,7 +11,7 @@ use whole_system_tests::root;
 /// Directories of crates and programs: their names with `_` are those of `cargo test`.
 const CRATES: [&str; 2] = ["crates", "bins"];
 
-/// Every file of Rust in the workspace, by its path from the root of the repository.
+/// Every Rust file of the workspace, by its path from the root of the repository.
 pub struct Sources(BTreeMap<PathBuf, String>);
 
 impl Sources {
@@ -31,8 +31,7 @@ impl Sources {
         self.0.get(Path::new(path)).map(String::as_str)
     }
 
-    /// True if there is a test of this name, as `cargo test` prints it with its crate in front:
-    /// `levels::task::tests::name`.
+    /// True if a test of this name exists, as `cargo test` prints it after its crate: `levels::task::tests::name`.
     pub fn has_unit_test(&self, name: &str) -> bool {
         let Some((modules, test)) = name.rsplit_once("::") else { return false };
         self.module(modules).is_some_and(|(text, inline)| {
@@ -40,7 +39,7 @@ impl Sources {
         })
     }
 
-    /// The file of a module, `levels::task::tests`, and the modules that must be in the file itself.
+    /// The file of a module, such as `levels::task::tests`, and the modules that must be inside the file.
     fn module<'a>(&self, name: &'a str) -> Option<(&str, Vec<&'a str>)> {
         let parts: Vec<&str> = name.split("::").collect();
         let (first, modules) = parts.split_first()?;
@@ -72,17 +71,15 @@ fn gather(directory: &Path, all: &mut BTreeMap<PathBuf, String>) {
     }
 }
 
-/// True if a source has a test of this name.
 pub fn has_test(source: &str, name: &str) -> bool {
     source.match_indices(&format!("fn {name}(")).any(|(at, _)| {
-        // The attribute, or the macro of a property test, stands close before it.
+        // The attribute, or the macro of a property test, is shortly before it.
         let before = &source[..at];
         before.lines().rev().take(6).any(|line| matches!(line.trim(), "#[test]" | "proptest! {"))
             || before.rfind("proptest! {") > before.rfind("\n}\n")
     })
 }
 
-/// True if a source has an item of this kind and name.
 pub fn has_item(source: &str, kind: &str, name: &str) -> bool {
     let start = format!("{kind} {name}");
     source.match_indices(&start).any(|(at, _)| {

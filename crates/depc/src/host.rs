@@ -61,8 +61,8 @@ pub enum HostState {
     Waiting,
     /// A cancel is outstanding.
     Cancelling,
-    /// The function was cancelled. A report restarts the link when the program reaches the function again. A
-    /// restart command, after an answer time with DTR on and without a report.
+    /// The function was cancelled. A report restarts the link when the program reaches the function again. If none
+    /// arrives within an answer time with DTR on, the host sends a restart.
     Ended,
 }
 

@@ -11,7 +11,6 @@
 //!
 //! It is independent of computing time and of the distribution of processes over boards: equal runs have equal
 //! digests on every machine.
-//! digests on every machine.
 
 use crate::{Plain, plain::Writer};
 
