@@ -1,4 +1,4 @@
-//! Compiles the commit into the program, so that a log names the sources of the program.
+//! Compiles the commit into the program, so that a log names the sources of its program.
 
 use std::process::Command;
 

@@ -7,7 +7,7 @@ use executive::memory::RunName;
 
 use crate::rcs_console::{model::Screen, view::Look};
 
-/// The help of `--data`, which only serves a run or a log without data of its own.
+/// The help of `--data`, which applies only to a run or a log without data of its own.
 const DATA: &str = "Task data whose blocks screen 5 lists [with --operate those of the run, with a log those in the log; \
                     else data, or built-in, the data of the program]";
 
@@ -58,7 +58,6 @@ pub struct Cli {
     pub tick: Option<u64>,
 }
 
-/// When colours are used.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Colour {
     /// If the terminal has colours and NO_COLOR is not set
@@ -68,7 +67,7 @@ pub enum Colour {
 }
 
 impl Cli {
-    /// How the terminal wants its text, by the options and by the environment.
+    /// The look of the text, from the options and the environment.
     #[must_use]
     pub fn look(&self) -> Look {
         let set = |name: &str| env::var(name).ok().filter(|value| !value.is_empty());
@@ -93,7 +92,7 @@ mod tests {
     use clap::CommandFactory;
 
     #[test]
-    fn the_definitions_are_consistent() {
+    fn command_line_definitions_are_consistent() {
         Cli::command().debug_assert();
     }
 

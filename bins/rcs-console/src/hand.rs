@@ -7,14 +7,14 @@ use sessions::operator::{Client, ClientError, Name};
 
 use crate::rcs_console::model::Operating;
 
-/// Time between two questions about the status, which also keep the session alive: well below the time after which a
+/// Time between two status requests, which also keep the session alive. It is well below the time after which a
 /// run considers the operator silent.
 const ASK: Duration = Duration::from_millis(100);
 
 pub struct Hand {
     client: Client,
     asked: Option<Instant>,
-    /// Number of the question for the directory of the task data.
+    /// Number of the request for the directory of the task data.
     data: Option<u32>,
 }
 

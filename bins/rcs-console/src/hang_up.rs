@@ -1,7 +1,7 @@
 //! Ends the console when its terminal disappears: a closed window, a lost connection, `tmux kill-session`.
 //!
-//! Reading from such a terminal fails at once, and the library that reads keys tries again forever. So a thread waits
-//! for the hang-up.
+//! Reading from such a terminal fails at once, and the library that reads keys tries again forever. A thread
+//! therefore waits for the hang-up.
 
 use std::{
     fs::File,
@@ -18,12 +18,12 @@ use rustix::{
 /// Exit status of a console whose terminal has disappeared.
 const NO_TERMINAL: i32 = 1;
 
-/// End this program at once when the terminal that gives the keys disappears. A run sees the end of the session.
+/// End this program at once when the keyboard's terminal disappears. A run detects the end of the session.
 ///
 /// # Errors
-/// The error of the system if there is no terminal, or no thread.
+/// The error of the system if it provides no terminal or no thread.
 pub fn end_with_terminal() -> io::Result<()> {
-    // The same choice as that of the library that reads keys.
+    // The same choice as in the library that reads keys.
     let keyboard =
         if io::stdin().is_terminal() { None } else { Some(File::options().read(true).open("/dev/tty")?) };
     let wait = move || {
@@ -32,14 +32,14 @@ pub fn end_with_terminal() -> io::Result<()> {
             None => wait_for_hang_up(io::stdin()),
         };
         if gone.is_ok() {
-            // Nothing is left to restore, and no message can be read.
+            // The terminal cannot be restored, and nobody can read a message.
             process::exit(NO_TERMINAL);
         }
     };
     thread::Builder::new().name("hang-up".into()).spawn(wait).map(drop)
 }
 
-/// Wait until a terminal has no other end any more.
+/// Wait until the other end of a terminal is closed.
 fn wait_for_hang_up(terminal: impl AsFd) -> io::Result<()> {
     loop {
         // Without requested events, only hang-ups and errors are reported.

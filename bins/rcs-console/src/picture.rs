@@ -23,7 +23,7 @@ pub struct Timing {
     pub controller_ns: u64,
     /// Number of skipped slots of the 40 ms grid since the start of the run.
     pub skipped: u64,
-    /// Heap allocations of the controller since the start; `None` if not known.
+    /// Heap allocations of the controller since the start, if known.
     pub allocations: Option<u64>,
 }
 
@@ -51,7 +51,7 @@ impl Picture {
         Some(self.memory.said(process).fault).filter(|fault| !fault.is_none())
     }
 
-    /// The reason why a process was not executed in this tick; `None` if it was.
+    /// The reason why a process was not executed in this tick, if it was not.
     #[must_use]
     pub fn absence(&self, process: ProcessId) -> Option<Absence> {
         let header = self.memory.header(process);
@@ -73,9 +73,9 @@ pub enum Absence {
     Dormant,
     /// Its switch on the joystick box is on, or the screen shows a recorded pose (III.3.3).
     Held,
-    /// Its board is stopped, or there is no pulse (IV.2.6).
+    /// Its board is stopped, or receives no pulse (IV.2.6).
     Stopped,
-    /// It has written nothing in this tick.
+    /// It has not written its buffers in this tick.
     Lost,
     Elsewhere,
 }
@@ -107,7 +107,7 @@ mod tests {
     use interfaces::operator::board_bit;
 
     #[test]
-    fn a_process_is_absent_for_one_reason() {
+    fn absent_process_has_one_reason() {
         let mut picture = Picture {
             tick: Tick(9),
             external: ExternalInputs::default(),

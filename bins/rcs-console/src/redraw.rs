@@ -15,7 +15,6 @@ use signal_hook::{consts::SIGTSTP, low_level::emulate_default_handler};
 
 use crate::rcs_console::error::ConsoleError;
 
-/// The letter that was pressed with Control.
 pub fn with_control(event: &Event) -> Option<char> {
     match event {
         Event::Key(KeyEvent { code: KeyCode::Char(letter), modifiers, kind, .. })
@@ -34,8 +33,8 @@ pub fn cleared() -> io::Result<DefaultTerminal> {
     DefaultTerminal::new(CrosstermBackend::new(io::stdout()))
 }
 
-/// Give the terminal back to the shell until it continues this program. The console sends nothing in the meantime, so
-/// the run releases stick and buttons.
+/// Return the terminal to the shell until it continues this program. The console sends nothing in the meantime,
+/// so the run releases stick and buttons.
 pub fn suspended(terminal: DefaultTerminal) -> Result<DefaultTerminal, ConsoleError> {
     drop(terminal);
     ratatui::try_restore().map_err(ConsoleError::Terminal)?;

@@ -9,7 +9,6 @@ use crate::rcs_console::view::Waiting;
 const SEARCH: Duration = Duration::from_secs(1);
 
 pub struct Search {
-    /// The run that was named, if any.
     wanted: Option<RunName>,
     looked: Instant,
 }
@@ -24,7 +23,7 @@ impl Search {
         (waiting, search)
     }
 
-    /// Search again, if it is time. Returns the run to attach to, if there is only one.
+    /// Search again when it is time. Returns the run to attach to, if there is only one.
     pub fn go_on(&mut self, waiting: &mut Waiting) -> Option<RunName> {
         if self.looked.elapsed() >= SEARCH {
             self.look(waiting);
@@ -45,7 +44,7 @@ impl Search {
                 waiting.take(
                     alive.filter(|name| self.wanted.as_ref().is_none_or(|wanted| wanted == name)).collect(),
                 );
-                // A new run may accept operators a moment after its start: if it is the only one, try again.
+                // A new run may accept operators only a moment after its start, so the only run is tried again.
                 waiting.refused.take_if(|_| waiting.runs.len() == 1);
                 waiting.phase = waiting.chosen().and_then(memory::starting);
                 waiting.boards = waiting.chosen().and_then(boards::coming_up).unwrap_or_default();

@@ -1,4 +1,4 @@
-//! The history of a run, stored by change: rows, commands, reports, failures, re-starts, messages.
+//! The history of a run, stored by change: rows, commands, reports, failures, restarts, messages.
 
 use closed_loop::{
     account::{Account, Alarms, has_worked},
@@ -42,7 +42,7 @@ pub struct Trouble {
     pub failure: Failure,
 }
 
-/// A re-start of the link to the robot.
+/// A restart of the link to the robot.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Restart {
     pub tick: u64,
@@ -58,9 +58,8 @@ pub struct Story {
     watch: Box<Watch>,
     /// Ticks in which a command other than PAUSE finished.
     worked: Vec<Tick>,
-    /// The last tick.
     last: u64,
-    /// The account that the run made at its end; `None` while it is under way, or if it was killed.
+    /// The account that the run made at its end; `None` during the run, or if it was killed.
     ended: Option<Option<Account>>,
     headers: Vec<HeaderPlace>,
     limit: usize,
@@ -115,7 +114,7 @@ impl Story {
         }
     }
 
-    /// Add messages derived from two successive ticks, for a source that has no lines on `/log`.
+    /// Add messages derived from two successive ticks, for a source without lines on `/log`.
     pub fn remark(&mut self, before: &Picture, now: &Picture) {
         let said = remarks::remarks(&self.headers, &now.external.hws, &before.memory, &now.memory);
         self.tell(said.into_iter().map(|remark| LogLine {
@@ -127,7 +126,6 @@ impl Story {
         }));
     }
 
-    /// Add lines of `/log`.
     pub fn tell(&mut self, lines: impl IntoIterator<Item = LogLine>) {
         let mut is_new = false;
         for line in lines {
@@ -139,7 +137,7 @@ impl Story {
         }
     }
 
-    /// Take over the account that the run made at its end; `None` if it did not fail.
+    /// Store the account that the run made at its end; `None` if it did not fail.
     pub fn end(&mut self, account: Option<Account>) {
         self.ended = Some(account);
     }
@@ -156,7 +154,8 @@ impl Story {
         until(&self.doings[process.position()], tick, |doing| doing.tick)
     }
 
-    /// The rows that decided in a process up to a tick, oldest first, without changes of its reports only.
+    /// The rows that decided in a process up to a tick, oldest first. Changes of its reports alone are left
+    /// out.
     #[must_use]
     pub fn rows(&self, process: ProcessId, tick: u64) -> Vec<Doing> {
         let mut rows: Vec<Doing> = Vec::new();
@@ -194,8 +193,8 @@ impl Story {
         Some((found, lowest))
     }
 
-    /// The failure that belongs to a picture: the one that Task reports, or that will reach Task in the next ticks of a
-    /// log.
+    /// The failure that belongs to a picture: the one that Task reports, or that reaches Task in the next ticks
+    /// of a log.
     #[must_use]
     pub fn present_trouble(&self, picture: &Picture) -> Option<&Trouble> {
         let tick = picture.tick.0;
@@ -204,13 +203,13 @@ impl Story {
         begun.last().filter(|trouble| is_told || tick < trouble.tick)
     }
 
-    /// What went wrong first, and what followed; `None` if there is no failure, or work has continued after it.
+    /// The first failure and its consequences; `None` without a failure, or if work has continued after it.
     #[must_use]
     pub fn account(&self) -> Option<Account> {
         self.ended.clone().unwrap_or_else(|| self.account_until(u64::MAX))
     }
 
-    /// What had gone wrong first at a tick, unless a command has finished since.
+    /// The first failure at a tick, unless a command has finished since.
     #[must_use]
     pub fn failure(&self, tick: u64) -> Option<Failure> {
         match &self.ended {
@@ -219,7 +218,7 @@ impl Story {
         }
     }
 
-    /// The tick whose picture shows a failure. The cell shows what happened in a tick with the next one, if any.
+    /// The tick whose picture shows a failure. The cell shows the events of a tick with the next one, if any.
     #[must_use]
     pub fn shown_at(&self, failure: &Failure) -> u64 {
         failure.shown_at().min(self.last)
@@ -231,7 +230,7 @@ impl Story {
         matches!(&self.ended, Some(Some(account)) if account.first == *failure)
     }
 
-    /// The account of everything seen up to a tick.
+    /// The account of everything up to a tick.
     fn account_until(&self, tick: u64) -> Option<Account> {
         let mut alarms = Alarms::default();
         for line in self.lines(tick) {
@@ -246,7 +245,7 @@ impl Story {
         alarms.account()
     }
 
-    /// Re-starts of the link up to a tick, oldest first.
+    /// Restarts of the link up to a tick, oldest first.
     #[must_use]
     pub fn restarts(&self, tick: u64) -> &[Restart] {
         until(&self.restarts, tick, |restart| restart.tick)
@@ -265,7 +264,6 @@ impl Story {
     }
 }
 
-/// The process with the manual's name.
 #[must_use]
 pub fn process_named(name: &str) -> Option<ProcessId> {
     let named = Ladder::processes().iter().zip(ProcessId::ALL).find(|(process, _)| process.name == name);
@@ -285,7 +283,7 @@ fn doing(process: ProcessId, picture: &Picture) -> Doing {
     }
 }
 
-/// Reason of a re-start of the link.
+/// Reason of a restart of the link.
 fn restart(before: &Picture, now: &Picture) -> String {
     if remarks::is_restart_ordered(&before.memory) {
         return format!("Prim ordered it, as {} asks: no fault", before.command(ProcessId::Prim));
@@ -297,7 +295,7 @@ fn restart(before: &Picture, now: &Picture) -> String {
     }
 }
 
-/// Add an entry. When there are twice as many entries as must be kept, the oldest half is removed.
+/// Add an entry. At twice the required number of entries, the oldest half is removed.
 fn keep<T>(entries: &mut Vec<T>, entry: T, limit: usize) {
     if entries.len() >= limit.saturating_mul(2) {
         entries.drain(..entries.len() - limit);
@@ -305,7 +303,7 @@ fn keep<T>(entries: &mut Vec<T>, entry: T, limit: usize) {
     entries.push(entry);
 }
 
-/// The entries that are not later than a tick.
+/// The entries up to a tick.
 fn until<T>(entries: &[T], tick: u64, tick_of: impl Fn(&T) -> u64) -> &[T] {
     &entries[..entries.partition_point(|entry| tick_of(entry) <= tick)]
 }
@@ -349,7 +347,7 @@ mod tests {
     }
 
     #[test]
-    fn changes_are_kept_and_nothing_else() {
+    fn only_changes_are_kept() {
         let (story, _) = failing();
         let ticks: Vec<_> = story.doings(ProcessId::Emove, 99).iter().map(|doing| doing.tick).collect();
         assert_eq!(ticks, [1, 2, 3]);
@@ -361,7 +359,7 @@ mod tests {
     }
 
     #[test]
-    fn trouble_has_its_cause_below() {
+    fn failure_has_its_cause_below() {
         let (story, picture) = failing();
         let trouble = story.present_trouble(&picture).expect("Task reports a failure");
         assert_eq!((trouble.tick, trouble.failure.tick), (5, Tick(3)));
@@ -381,7 +379,7 @@ mod tests {
     }
 
     #[test]
-    fn what_went_wrong_in_the_cell_before_a_failure_is_its_cause() {
+    fn earlier_cell_event_is_the_cause_of_a_failure() {
         let (mut story, _) = failing();
         let line = |tick, source: &str| LogLine {
             tick: Tick(tick),
@@ -412,7 +410,7 @@ mod tests {
     }
 
     #[test]
-    fn a_long_story_keeps_its_end() {
+    fn long_history_keeps_its_end() {
         let mut entries = Vec::new();
         (0..100).for_each(|entry| keep(&mut entries, entry, 10));
         assert!((10..=20).contains(&entries.len()), "{}", entries.len());

@@ -1,7 +1,7 @@
 //! Runs the console in the terminal: reads keys, draws frames, and restores the terminal at the end.
 //!
-//! The terminal is restored after quitting, an error, a panic (by the hook of `ratatui`) and the signals that ask a
-//! program to end.
+//! The terminal is restored after quitting, an error, a panic (by the hook of `ratatui`), and signals that ask
+//! the program to end.
 
 use std::{
     io, mem,
@@ -93,7 +93,7 @@ impl Console {
         let mut model = Model::new(Screen::Ladder);
         let mut hand = None;
         let source: Box<dyn Source> = match (&cli.run, &cli.log) {
-            // The run waits for boards or neighbours: it can be shown from its first tick on.
+            // The run waits for boards or neighbours. It can be shown from its first tick on.
             (Some(run), _) if memory::starting(run).is_some() || boards::coming_up(run).is_some() => {
                 return Ok(Self::search(Some(run.clone())));
             }
@@ -119,8 +119,8 @@ impl Console {
     }
 }
 
-/// Let a signal set `stop`, which ends this program in order. If the terminal blocks output (Ctrl-S, a hanging line),
-/// the modes of the terminal are restored, and the program ends after a time limit.
+/// Let a signal set `stop`, which ends this program in order. If the terminal blocks output (Ctrl-S, a hanging
+/// line), its modes are restored, and the program ends after a time limit.
 fn end_by_signal(stop: Arc<AtomicBool>) -> io::Result<()> {
     let mut signals = Signals::new([SIGTERM, SIGHUP, SIGINT, SIGQUIT])?;
     let wait = move || {
@@ -135,7 +135,7 @@ fn end_by_signal(stop: Arc<AtomicBool>) -> io::Result<()> {
     thread::Builder::new().name("signals".into()).spawn(wait).map(drop)
 }
 
-/// End this program: a run's shared memory is damaged, and opening it does not return.
+/// End this program: the run's shared memory is damaged, and opening it does not return.
 fn stuck(limit: Duration) {
     ratatui::restore();
     os_io::stderr_line!(
@@ -183,7 +183,7 @@ impl Session {
         }
     }
 
-    /// Save the list of watched fields when it has changed.
+    /// Save the list of watched fields if it has changed.
     fn keep_watch(&mut self) {
         let Console::Source(model, ..) = &mut self.console else { return };
         let old = mem::replace(&mut self.watched, model.watch.clone());
@@ -215,7 +215,7 @@ impl Session {
                     }
                     self.drawn = None;
                 }
-                // A signal: the flag tells which.
+                // A signal; the flag says which one.
                 Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
                 Err(error) => return Err(ConsoleError::Terminal(error)),
             }
@@ -223,7 +223,6 @@ impl Session {
         Ok(())
     }
 
-    /// Read the source, or search for runs.
     fn refresh(&mut self) {
         match &mut self.console {
             Console::Source(model, source, hand) => {
@@ -292,7 +291,7 @@ impl Session {
         effect
     }
 
-    /// Carry out a key while runs can be chosen.
+    /// Handle a key of the choice of runs.
     fn choose(&mut self, key: Key) -> Effect {
         let Console::Waiting(waiting, _) = &mut self.console else { return Effect::Draw };
         match key {
@@ -328,8 +327,8 @@ impl Session {
     }
 }
 
-/// The log of a run: the one that was named, or the one of its job in `runs/`. It must contain the last tick of the
-/// run, bit for bit, so that a log of an older run of the same job is not used.
+/// The log of a run: the named one, or that of its job in `runs/`. It must contain the last tick of the run,
+/// bit for bit, so that a log of an older run of the same job is not used.
 fn log_of(source: &dyn Source, named: Option<&Path>) -> Result<Recorded, String> {
     let about = source.about();
     if about.state == State::Log {
@@ -351,7 +350,7 @@ fn log_of(source: &dyn Source, named: Option<&Path>) -> Result<Recorded, String>
     }
 }
 
-/// The key of an event; `None` for keys without a meaning.
+/// The key of an event, if the console uses it.
 fn key(pressed: &KeyEvent) -> Option<Key> {
     if pressed.kind == KeyEventKind::Release {
         return None;

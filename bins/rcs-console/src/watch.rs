@@ -17,7 +17,7 @@ pub fn place() -> Option<PathBuf> {
     configuration.map(|directory| directory.join("rcs-ii").join("watch"))
 }
 
-/// The saved list; empty if there is none. Names of another version of the buffers are skipped.
+/// The saved list, or an empty one. Names of another version of the buffers are skipped.
 #[must_use]
 pub fn load(path: &Path) -> Vec<String> {
     let text = fs::read_to_string(path).unwrap_or_default();
@@ -40,7 +40,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_list_comes_back_without_what_is_unknown() {
+    fn saved_list_loads_without_unknown_names() {
         let directory = tempfile::tempdir().unwrap();
         let path = directory.path().join("below").join("watch");
         assert!(load(&path).is_empty());

@@ -1,4 +1,4 @@
-//! The state band as a model, without a terminal: each state from the sensors that show it.
+//! The state band as a model, without a terminal: each state from its sensors.
 
 use executive::memory::{Text, cell::CellView};
 use interfaces::{CommonMemory, ExternalInputs, ProcessId, Reason, hws::HwsReport, operator::board_bit};
@@ -14,7 +14,7 @@ use programs::rcs_console::{
 use rcs_core::{name::Name16, tick::Tick};
 use record::{Level, reader::LogLine};
 
-/// A run with one picture and one view of its cell, in which a MOVE is executed.
+/// A run with one picture and one view of its cell, which executes a MOVE.
 struct Stage {
     picture: Picture,
     view: CellView,
@@ -75,7 +75,7 @@ impl Stage {
     }
 }
 
-/// A change of the stage, and the state, reason and next step that it leads to.
+/// A change of the stage, and the resulting state, reason and next step.
 type Case = (fn(&mut Stage), Condition, &'static str, &'static str);
 
 #[test]

@@ -1,4 +1,4 @@
-//! The procedures: the steps that the console detects, the confirmations of a person, and the requests to the run.
+//! The procedures: steps that the console detects, confirmations by the operator, and requests to the run.
 
 use std::path::Path;
 
@@ -56,7 +56,7 @@ impl Source for Stage {
 }
 
 impl Stage {
-    /// A run in which all processes are executed with PAUSE, and the robot controller is at a stage.
+    /// A run in which all processes execute PAUSE, and the robot controller is at a stage.
     fn at(stage: &str) -> Self {
         let (external, memory) = (ExternalInputs::default(), CommonMemory::default());
         let picture = Picture { tick: Tick(100), external, memory, timing: None };
@@ -151,7 +151,7 @@ fn all_procedures_are_listed_and_open() {
 }
 
 #[test]
-fn the_start_up_is_seen_step_by_step() {
+fn start_up_is_detected_step_by_step() {
     let mut stage = Stage::at("control power off");
     let mut model = open("IV.3.3", "initialize", true);
     look(&mut model, &mut stage);
@@ -160,7 +160,7 @@ fn the_start_up_is_seen_step_by_step() {
     assert_eq!(asked(&mut model), "board 2 stop");
     stage.hold(&[ProcessId::Emove, ProcessId::Prim], true);
     look(&mut model, &mut stage);
-    // Knob and frames of the box are in the required state already.
+    // The knob and the frames of the box are in the required state from the beginning.
     assert_eq!([word(&model, "1b"), word(&model, "2"), cursor(&model)], ["seen", "seen", "4"]);
     // A step whose state is lost loses its mark.
     stage.picture.external.devices.joystick.velocity = 100;
@@ -172,13 +172,13 @@ fn the_start_up_is_seen_step_by_step() {
         look(&mut model, &mut stage);
     }
     assert_eq!([word(&model, "4"), word(&model, "5"), cursor(&model)], ["seen", "seen", "6"]);
-    // Only a person can know that the work volume is clear; the log contains the confirmation.
+    // Only the operator can confirm that the work volume is clear. The log contains the confirmation.
     model.key(Key::Char('y'), &stage);
     assert_eq!([word(&model, "6"), cursor(&model)], ["said", "7"]);
     assert!(asked(&mut model).starts_with("note IV.3.3 6: the work volume is clear"));
     stage.turn_to("hydraulics enabled");
     look(&mut model, &mut stage);
-    // A step that moves the robot shows a warning first.
+    // A step that moves the robot first shows a warning.
     assert_eq!(cursor(&model), "8");
     model.key(Key::Enter, &stage);
     assert!(
@@ -204,7 +204,7 @@ fn the_start_up_is_seen_step_by_step() {
 }
 
 #[test]
-fn after_step_14_what_was_stopped_for_it_need_not_be_stopped() {
+fn after_step_14_stopped_boards_may_run() {
     let mut stage = Stage::at("DEPC");
     stage.view.as_mut().unwrap().controller.aligned = [true; 6];
     stage.hold(&[ProcessId::Emove, ProcessId::Prim], true);
@@ -241,7 +241,7 @@ fn after_step_14_what_was_stopped_for_it_need_not_be_stopped() {
 }
 
 #[test]
-fn what_a_robot_at_a_port_does_not_show_is_said() {
+fn operator_confirms_steps_of_a_robot_at_a_port() {
     let mut stage = Stage::at("DEPC");
     stage.view = None;
     let mut model = open("IV.1", "Power up", false);
@@ -258,7 +258,7 @@ fn what_a_robot_at_a_port_does_not_show_is_said() {
 }
 
 #[test]
-fn a_step_is_left_out_for_a_reason_and_taken_back() {
+fn step_is_skipped_with_a_reason_and_restored() {
     let mut stage = Stage::at("DEPC");
     let mut model = open("III.6", "Stop", true);
     look(&mut model, &mut stage);

@@ -49,7 +49,7 @@ fn log() -> Recorded {
     Recorded::open(&LOG.1).expect("the log can be read")
 }
 
-/// The log in the role of a run in some state.
+/// The log presented as a run in some state.
 struct As(Recorded, State);
 
 impl Source for As {
@@ -117,7 +117,7 @@ impl Source for Operated {
     }
 }
 
-/// A screen with a tick, after the tick before it.
+/// A screen with a tick, after the previous tick.
 fn model(screen: Screen, process: ProcessId, tick: u64, source: &dyn Source) -> Model {
     let mut model = Model::new(screen);
     model.process = process;
@@ -160,7 +160,7 @@ fn ladder() {
 }
 
 #[test]
-fn ladder_with_a_failure_on_its_way_up() {
+fn ladder_shows_a_failure_on_its_way_up() {
     let log = log();
     insta::assert_snapshot!(
         "ladder-failure",
@@ -169,14 +169,14 @@ fn ladder_with_a_failure_on_its_way_up() {
 }
 
 #[test]
-fn a_wide_ladder_has_the_text_of_the_rows() {
+fn wide_ladder_has_the_text_of_the_rows() {
     let log = log();
     let model = model(Screen::Ladder, ProcessId::Emove, FAILURE + 2, &log);
     insta::assert_snapshot!("ladder-wide", drawn(&Scene::Source(&model, &log), PLAIN, 160, 30));
 }
 
 #[test]
-fn large_ladder_has_the_process_at_its_right_and_whole_commands() {
+fn large_ladder_shows_the_process_and_whole_commands() {
     let log = log();
     let model = model(Screen::Ladder, ProcessId::Emove, FAILURE + 2, &log);
     insta::assert_snapshot!("ladder-beside", drawn(&Scene::Source(&model, &log), PLAIN, 120, 40));
@@ -203,9 +203,9 @@ fn process_with_the_text_of_its_table() {
     assert!(!model.shows_source);
 }
 
-/// The workstation controller of another process commands: the console asks how to take over.
+/// The workstation controller of another process commands; the console asks how to take over.
 #[test]
-fn the_command_is_taken_over_from_a_workstation_controller() {
+fn operator_takes_over_from_a_workstation_controller() {
     let run = As(log(), State::Runs);
     let mut model = operating(Screen::Ladder, &run);
     let refusal = "the workstation controller commands this run: ask there, or end its session; stops are possible, \
@@ -293,7 +293,6 @@ fn operating(kind: Screen, run: &dyn Source) -> Model {
     operating
         .answered(0, Ok("tick 624: the job waits; console-4711 commands; knob 1000; connected 1".into()));
     model.operating = Some(operating);
-    // The test gives the answers of the run below.
     keys(&mut model, run, if kind == Screen::Terminal { ":863 12 12 LINE-LOAD\n" } else { ":PAUSE\n" });
     let mut operating = model.operating.take().expect("it operates");
     let line = operating.outbox.pop().expect("a request");
@@ -307,7 +306,7 @@ fn operating(kind: Screen, run: &dyn Source) -> Model {
 }
 
 #[test]
-fn the_keys_of_an_operator_ask_the_run() {
+fn operator_keys_send_requests() {
     let run = As(log(), State::Runs);
     let mut model = operating(Screen::Ladder, &run);
     let asked = |model: &mut Model| std::mem::take(&mut model.operating.as_mut().unwrap().outbox).join("; ");
@@ -363,7 +362,7 @@ fn text_at_the_terminal_of_an_operator_never_acts_as_keys() {
     assert_eq!(model.operating.as_ref().unwrap().outbox, [""; 0]);
     keys(&mut model, &run, "job wait\n");
     assert_eq!(model.operating.as_ref().unwrap().outbox, ["job wait"]);
-    // Stops are keys also while a line is typed, and a console that only reads takes letters as keys.
+    // Stops are keys also while a line is typed. A console that only reads treats letters as keys.
     keys(&mut model, &run, "job");
     model.key(Key::F1, &run);
     assert!(model.prompt.is_none() && model.operating.as_ref().unwrap().is_armed);
@@ -388,8 +387,8 @@ fn one_enter_starts_no_job() {
     assert_eq!(asked(&mut model), "job go");
 }
 
-/// The pictures of the documentation are those of this run, with one process under the cursor. `RCS_PAGES=write` writes
-/// them.
+/// The pictures of the documentation are those of this run, with one process at the cursor. `RCS_PAGES=write`
+/// writes them.
 #[test]
 fn the_page_shows_these_screens() {
     let log = log();
@@ -418,7 +417,7 @@ fn the_page_shows_these_screens() {
     for (shown, drawn) in shown.iter().zip(&drawn) {
         assert_eq!(shown, drawn);
     }
-    // The last picture is made by `procedures.rs`.
+    // `procedures.rs` makes the last picture.
     assert_eq!(shown.len(), drawn.len() + 1);
 }
 
@@ -436,9 +435,9 @@ fn terminal_with_a_block_of_commands() {
     insta::assert_snapshot!("terminal-list", screen(&at_the_terminal(&log, ":863 LIST\n"), &log));
 }
 
-/// IV.2.3: the board is stopped first; the editor shows the checker's messages at their lines, then the diff.
+/// IV.2.3: the board is stopped first. The editor shows the checker's messages at their lines, then the diff.
 #[test]
-fn a_block_is_edited_while_its_board_is_stopped() {
+fn block_is_edited_while_its_board_is_stopped() {
     let data = tempfile::tempdir().expect("a directory can be made");
     let shipped = Path::new(env!("CARGO_MANIFEST_DIR")).join("../data");
     for source in taskdata::load::source::read_blocks_under(&shipped).0 {
@@ -495,14 +494,14 @@ fn terminal_with_a_show_word() {
 }
 
 #[test]
-fn terminal_that_says_what_is_not_there() {
+fn terminal_explains_words_without_effect() {
     let log = log();
     let typed = ":WUNLOAD\n:903 LOAD\n:GO\n:LOC SAFE-P\n:LOC LOCATE-OBJ\n";
     insta::assert_snapshot!("terminal-said", screen(&at_the_terminal(&log, typed), &log));
 }
 
 #[test]
-fn control_c_stops_the_board_of_the_terminal_and_ends_no_console_that_operates() {
+fn control_c_stops_the_board_and_keeps_an_operating_console() {
     let run = As(log(), State::Runs);
     let mut model = operating(Screen::Terminal, &run);
     assert_eq!(model.key(Key::Interrupt, &run), Effect::Draw);
@@ -515,7 +514,7 @@ fn control_c_stops_the_board_of_the_terminal_and_ends_no_console_that_operates()
 }
 
 #[test]
-fn a_command_is_followed_to_its_end() {
+fn command_is_followed_to_its_end() {
     let run = As(log(), State::Runs);
     let mut model = operating(Screen::Terminal, &run);
     let operating = model.operating.as_mut().unwrap();
@@ -528,7 +527,7 @@ fn a_command_is_followed_to_its_end() {
 }
 
 #[test]
-fn what_is_watched_stands_in_the_place_of_the_buffers() {
+fn watched_fields_replace_the_buffers() {
     let log = log();
     let mut model = model(Screen::Process, ProcessId::Task, FAILURE, &log);
     keys(&mut model, &log, "wtask.status.report\nwt3i.status.echo\nwno-such-name\n");
@@ -561,7 +560,7 @@ fn waiting() {
 }
 
 #[test]
-fn the_state_of_a_run_is_said() {
+fn state_of_a_run_is_shown() {
     let line = |state, place, keys_typed: &str| {
         let source = As(log(), state);
         let mut model = Model::new(Screen::Ladder);
@@ -593,7 +592,7 @@ fn the_state_of_a_run_is_said() {
 }
 
 #[test]
-fn an_alarm_stays_until_it_is_acknowledged() {
+fn alarm_stays_until_it_is_acknowledged() {
     let log = log();
     let mut model = model(Screen::Ladder, ProcessId::Task, 400, &log);
     let news = |model: &Model| screen(model, &log).lines().nth(22).map(str::to_owned).unwrap_or_default();
@@ -628,7 +627,7 @@ fn keys_go_in_time() {
 }
 
 #[test]
-fn keys_turn_to_screens_and_out() {
+fn keys_select_screens_and_quit() {
     let log = log();
     let mut model = model(Screen::Ladder, ProcessId::Task, 300, &log);
     for (key, screen) in
@@ -686,7 +685,7 @@ fn ascii_has_no_other_signs() {
 }
 
 #[test]
-fn a_terminal_that_is_too_small_is_said() {
+fn too_small_terminal_shows_a_message() {
     let log = log();
     let model = model(Screen::Ladder, ProcessId::Task, 300, &log);
     let small = |width, height| drawn(&Scene::Source(&model, &log), PLAIN, width, height);
@@ -710,7 +709,7 @@ fn colour_repeats_a_mark() {
     assert!(all > 1 && all == with_colour, "{all} marks, {with_colour} in red");
 }
 
-/// The keys that stop the robot are on every screen of a console that operates a run, also while something is typed.
+/// The keys that stop the robot are on every screen of a console that operates a run, also during text input.
 #[test]
 fn operator_always_sees_the_keys_that_stop_the_robot() {
     let run = As(log(), State::Runs);
@@ -734,7 +733,7 @@ fn operator_always_sees_the_keys_that_stop_the_robot() {
     assert!(!last(&model).contains("Space=stop"), "keys without effect are not offered");
 }
 
-/// A digit selects a screen everywhere; on the panels it turned the velocity knob of a running robot.
+/// A digit selects a screen everywhere. On the panels it once turned the velocity knob of a running robot.
 #[test]
 fn digits_select_screens_on_every_screen() {
     let run = As(log(), State::Runs);

@@ -1,4 +1,4 @@
-//! The program in a terminal: a pseudo-terminal, whose output a terminal parser reads.
+//! The program in a pseudo-terminal, whose output a terminal parser reads.
 
 use std::{
     fs::File,
@@ -28,7 +28,7 @@ use rustix::{
 const LINES: NonZero<u16> = NonZero::new(24).unwrap();
 const COLUMNS: NonZero<u16> = NonZero::new(80).unwrap();
 const TO_SAFE: &str = "== MOVE -- 0 -- 0 0 SAFE 0 -- 0\n";
-/// Time limit for a text to appear, on a busy machine.
+/// Time limit for a text to appear on a busy machine.
 const PATIENCE: Duration = Duration::from_secs(30);
 
 struct Silent;
@@ -37,7 +37,7 @@ impl Observer for Silent {
     fn message(&mut self, _: &str) {}
 }
 
-/// Both ends of a new terminal. Programs that this one starts do not keep it open.
+/// Both ends of a new terminal. Programs started by the test do not inherit it.
 fn open_terminal() -> (OwnedFd, OwnedFd) {
     let flags = pty::OpenptFlags::RDWR | pty::OpenptFlags::NOCTTY | pty::OpenptFlags::CLOEXEC;
     let master = pty::openpt(flags).unwrap();
@@ -116,7 +116,7 @@ impl Terminal {
         self.wait_while(|screen| !screen.contains(text), &format!("{text:?} did not appear"));
     }
 
-    /// Press Escape, and wait until the text that it closes is gone. The terminal would take a key that is read
+    /// Press Escape, and wait until the text that it closes disappears. The terminal would take a key read
     /// together with Escape for that key with Alt.
     fn escape(&mut self, closes: &str) {
         self.press("\x1b");
@@ -155,7 +155,7 @@ impl Terminal {
     fn end(mut self) -> Option<i32> {
         let status = self.status();
         let begun = Instant::now();
-        // The parser may not have read the last bytes yet.
+        // The parser may not have read the last bytes.
         let is_back = || {
             let parser = locked(&self.parser);
             !parser.screen().alternate_screen() && !parser.screen().hide_cursor()
@@ -168,10 +168,10 @@ impl Terminal {
     }
 }
 
-/// A failed test leaves no program running.
+/// A failed test must not leave the program running.
 impl Drop for Terminal {
     fn drop(&mut self) {
-        // After a successful test it has ended already.
+        // After a successful test the program has already ended.
         let _ = self.child.kill();
         let _ = self.child.wait();
     }
@@ -181,10 +181,10 @@ fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// A run in its own thread, which returns the outcome of each step; and the flag that ends it.
+/// A run in its own thread, which returns the outcome of each step, and the flag that ends it.
 type Running = (thread::JoinHandle<Vec<&'static str>>, Arc<AtomicBool>);
 
-/// A run in real time, `speed` times as fast.
+/// A run in real time, accelerated by `speed`.
 fn run(name: &str, log: &Path, job: &str, speed: u8) -> Running {
     let data = shipped();
     let config = RunConfig {
@@ -197,7 +197,8 @@ fn run(name: &str, log: &Path, job: &str, speed: u8) -> Running {
     begin(config)
 }
 
-/// A run in real time, `speed` times as fast, whose job of one command waits for an operator; its data are `data`.
+/// A run in real time, accelerated by `speed`, whose job of one command waits for an operator; its data are
+/// `data`.
 fn waiting_run(directory: &Path, data: &Path, name: &str, speed: u8) -> Running {
     let job = directory.join("safe.job");
     std::fs::write(&job, TO_SAFE).unwrap();
@@ -222,7 +223,7 @@ fn begin(config: RunConfig) -> Running {
         let outcome = Run::new(config, Box::new(Silent)).unwrap().complete();
         outcome.steps.iter().map(|step| step.outcome.text()).collect()
     });
-    // A run exists when it has published its first tick.
+    // A run exists once it has published its first tick.
     let begun = Instant::now();
     let is_alive = || executive::memory::list().unwrap().iter().any(|run| run.name == name && run.alive);
     let listed = || is_alive() && executive::memory::starting(&name).is_none();
@@ -235,7 +236,7 @@ fn begin(config: RunConfig) -> Running {
 }
 
 #[test]
-fn a_run_is_looked_at_on_all_screens_until_its_end_and_then_its_log() {
+fn all_screens_show_a_run_and_then_its_log() {
     let directory = tempfile::tempdir().unwrap();
     let log = directory.path().join("short.mcap");
     let name = format!("console-{}", std::process::id());
@@ -268,7 +269,7 @@ fn a_run_is_looked_at_on_all_screens_until_its_end_and_then_its_log() {
 }
 
 #[test]
-fn an_operator_stops_a_job_jogs_the_robot_recovers_from_an_emergency_stop_and_finishes_the_job() {
+fn operator_jogs_recovers_from_an_emergency_stop_and_finishes() {
     let directory = tempfile::tempdir().unwrap();
     let job = directory.path().join("home.job");
     std::fs::write(&job, TO_SAFE).unwrap();
@@ -349,7 +350,7 @@ fn an_operator_stops_a_job_jogs_the_robot_recovers_from_an_emergency_stop_and_fi
     assert_eq!(outcomes.last(), Some(&"finished"), "{outcomes:?}");
 }
 
-/// A copy of the repository's data, to be changed.
+/// An editable copy of the repository's data.
 fn own_data(directory: &Path) -> PathBuf {
     let data = directory.join("data");
     for from in [shipped(), shipped().join("objects")] {
@@ -412,7 +413,7 @@ fn teach(console: &mut Terminal, pause: Duration) {
 
 /// III.3.3: a via point is taught with the joystick box and added to a trajectory, and the job uses it.
 #[test]
-fn a_via_point_is_taught_and_the_job_goes_through_it() {
+fn job_passes_through_a_taught_via_point() {
     let directory = tempfile::tempdir().unwrap();
     let data = own_data(directory.path());
     let name = format!("taught-{}", std::process::id());
@@ -443,7 +444,7 @@ fn a_via_point_is_taught_and_the_job_goes_through_it() {
 
 /// IV.4.2 step 3, IV.2.6: the stages of STARTUP, and the record of a pointer, in a run.
 #[test]
-fn startup_displays_its_stages_and_a_pointer_its_record() {
+fn terminal_shows_startup_stages_and_a_pointer_record() {
     let directory = tempfile::tempdir().unwrap();
     let name = format!("startup-{}", std::process::id());
     let (run, _) = waiting_run(directory.path(), &shipped(), &name, 1);
@@ -463,7 +464,7 @@ fn startup_displays_its_stages_and_a_pointer_its_record() {
 
 /// IV.2.1, IV.2.8: the console shows a run that waits for its boards, and the missing boards.
 #[test]
-fn a_run_whose_boards_come_up_is_waited_for() {
+fn console_waits_for_a_run_with_missing_boards() {
     let directory = tempfile::tempdir().unwrap();
     let name = format!("boards-{}", std::process::id());
     let config = RunConfig {
@@ -490,7 +491,7 @@ fn a_run_whose_boards_come_up_is_waited_for() {
 }
 
 #[test]
-fn what_cannot_be_operated_is_said() {
+fn operate_is_refused_with_the_reason() {
     let directory = tempfile::tempdir().unwrap();
     let console = Terminal::start(&["--log", "nowhere.mcap", "--operate"], directory.path(), &[]);
     console.wait_for("a log cannot be operated");
@@ -498,7 +499,7 @@ fn what_cannot_be_operated_is_said() {
 }
 
 #[test]
-fn a_signal_leaves_the_terminal_as_it_was() {
+fn signal_restores_the_terminal() {
     let directory = tempfile::tempdir().unwrap();
     // A directory of its own contains no run.
     for signal in [Signal::TERM, Signal::HUP, Signal::INT] {
@@ -509,9 +510,9 @@ fn a_signal_leaves_the_terminal_as_it_was() {
     }
 }
 
-/// ^Z gives the terminal back, and the console draws everything again when it continues.
+/// ^Z returns the terminal, and the console draws everything again when it continues.
 #[test]
-fn a_console_is_suspended_and_goes_on() {
+fn suspended_console_continues() {
     let directory = tempfile::tempdir().unwrap();
     let state = directory.path();
     let mut console = Terminal::start(&[], state, &[("RCS_RUNS", state)]);
@@ -535,7 +536,7 @@ fn a_console_is_suspended_and_goes_on() {
 }
 
 #[test]
-fn what_cannot_be_read_is_said_before_the_terminal_changes() {
+fn unreadable_source_is_reported_before_the_terminal_changes() {
     let directory = tempfile::tempdir().unwrap();
     let console = Terminal::start(&["--log", "nowhere.mcap"], directory.path(), &[]);
     console.wait_for("rcs-console: nowhere.mcap:");
@@ -545,9 +546,9 @@ fn what_cannot_be_read_is_said_before_the_terminal_changes() {
     assert_eq!(console.end(), Some(2));
 }
 
-/// What `tmux kill-session` and a closed window do.
+/// The effect of `tmux kill-session` and of a closed window.
 #[test]
-fn a_terminal_that_disappears_ends_the_console_at_once() {
+fn closed_terminal_ends_the_console_at_once() {
     let directory = tempfile::tempdir().unwrap();
     let (master, slave) = open_terminal();
     let mut child = begin_console(&["--ascii"], directory.path(), &[], &slave);
@@ -562,18 +563,18 @@ fn a_terminal_that_disappears_ends_the_console_at_once() {
     while child.try_wait().unwrap().is_none() && begun.elapsed() < PATIENCE {
         thread::sleep(Duration::from_millis(20));
     }
-    // A failed test leaves no program running.
+    // A failed test must not leave the program running.
     let _ = child.kill();
     assert_eq!(child.wait().unwrap().code(), Some(1), "the console does not end");
     assert!(begun.elapsed() < Duration::from_secs(2), "{:?}", begun.elapsed());
 }
 
 #[test]
-fn a_signal_ends_it_while_the_terminal_takes_no_output() {
+fn signal_ends_a_console_with_blocked_output() {
     let directory = tempfile::tempdir().unwrap();
     let mut console = Terminal::start(&["--ascii"], directory.path(), &[("RCS_RUNS", directory.path())]);
     console.wait_for("Looking for runs");
-    // The same as Ctrl-S: further output waits.
+    // The same as Ctrl-S: the terminal holds further output back.
     tcflow(&console.slave, Action::OOff).unwrap();
     thread::sleep(Duration::from_millis(300));
     kill_process(Pid::from_child(&console.child), Signal::TERM).unwrap();

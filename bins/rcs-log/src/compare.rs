@@ -54,7 +54,7 @@ struct Comparison {
 #[derive(Debug, Serialize)]
 struct OneJob {
     job: String,
-    /// Both runs are the same in everything that is compared.
+    /// True if both runs agree in everything that is compared.
     same: bool,
     outcome: [String; 2],
     seconds: [f64; 2],
@@ -122,7 +122,7 @@ fn run(data: &Path, job: &str, seed: u64) -> Result<Trace, StartError> {
     Ok(trace)
 }
 
-/// The distance in a clearance text; the whole text, such as "none", if it has no distance.
+/// The distance in a clearance text, or the whole text, such as "none", if it has no distance.
 fn inches(clearance: &str) -> &str {
     let distance = clearance.split_once(" by ").and_then(|(_, rest)| rest.split_once(" in "));
     distance.map_or(clearance, |(distance, _)| distance)

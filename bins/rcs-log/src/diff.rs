@@ -1,8 +1,9 @@
-//! `rcs-log diff`: the differences between two runs: changed rows, motions and times ([`Changes`]), then the first tick
-//! that differs, then all by buffer and field. Record numbers are ignored if the runs have different task data.
+//! `rcs-log diff`: the differences between two runs: changed rows, motions and times ([`Changes`]), then the
+//! first tick that differs, then all differences by buffer and field. Record numbers are ignored if the runs
+//! have different task data.
 //!
-//! Ticks are aligned by number, or by command. By command, each tick is counted from the tick in which Task took the
-//! command, so that one longer command does not shift everything after it.
+//! Ticks are aligned by number, or by command. By command, each tick is counted from the tick in which Task
+//! took the command, so that one longer command does not shift all later ticks.
 
 use std::{
     collections::{BTreeMap, HashMap},

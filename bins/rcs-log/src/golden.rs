@@ -1,5 +1,5 @@
-//! `rcs-log golden`: converts logs of whole runs to small files that tests replay, each with a text whose changes a
-//! person can review.
+//! `rcs-log golden`: converts logs of whole runs to small files that tests replay, each with a text for the
+//! review of changes.
 
 use std::{
     fmt, fs,

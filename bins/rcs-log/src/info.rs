@@ -42,13 +42,13 @@ pub struct Info {
     times: Option<Times>,
     /// True if the log has its end record; the log of a killed run has none.
     complete: bool,
-    /// Why part of the file cannot be read.
+    /// The reason why part of the file cannot be read.
     damage: Option<String>,
     result: Option<String>,
     digest: Option<String>,
     commands: Vec<CommandStory>,
     link: Link,
-    /// What went wrong first, and what followed.
+    /// The first failure and its consequences.
     #[serde(rename = "failure")]
     account: Option<Account>,
     /// Facts that the run recorded at its end: parts, faults, verdicts.

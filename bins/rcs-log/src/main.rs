@@ -29,7 +29,7 @@ use std::{io, path::PathBuf, process::ExitCode};
 
 use clap::{Args, Parser, Subcommand};
 
-/// Exit status of an answer that is no: a replay that differs, two logs that differ.
+/// Exit status of a negative answer: a replay that differs, two logs that differ.
 const DIFFERENT: u8 = 1;
 /// Exit status of a usage or file error.
 const UNUSABLE: u8 = 2;
@@ -110,7 +110,7 @@ enum Command {
     Golden(golden::Arguments),
 }
 
-/// Files and the form of the answer: what all subcommands have.
+/// The files and the form of the answer, which all subcommands have.
 #[derive(Clone, Debug, Args)]
 struct Answer {
     /// Print one JSON object on standard output, and nothing else there
@@ -220,7 +220,7 @@ mod tests {
     use clap::CommandFactory;
 
     #[test]
-    fn the_definitions_are_consistent() {
+    fn command_line_definitions_are_consistent() {
         Cli::command().debug_assert();
     }
 }

@@ -1,7 +1,7 @@
 //! `rcs-log page` and `open`: write a log as one page for a browser, which needs no other file and no network.
 //!
-//! `open` leaves the page beside the log instead of serving it: other users of the machine could read what is served,
-//! and the page can be opened again.
+//! `open` writes the page next to the log instead of serving it: other users of the machine could read a served
+//! page, and the page can be opened again.
 
 use std::{path::PathBuf, process::ExitCode};
 
@@ -41,7 +41,7 @@ pub fn page(arguments: &Arguments) -> Result<ExitCode, Error> {
 pub fn open(arguments: &Arguments) -> Result<ExitCode, Error> {
     let output = write(arguments)?;
     console::answer(&format!("{}\n", output.display()))?;
-    // An absolute path cannot be read as an option, whatever the name of the log is.
+    // An absolute path cannot be read as an option, even if the name of the log begins with a dash.
     let path = std::path::absolute(&output).unwrap_or(output);
     if let Err(error) = browser::open(path.as_os_str()) {
         stderr_line!("rcs-log: no browser can be started: {error}; open {} in one", path.display());

@@ -1,4 +1,4 @@
-//! Does the same work for several things in parallel, on as many threads as the machine has cores.
+//! Does the same work for several items in parallel, on as many threads as the machine has cores.
 
 use std::{
     num::NonZero,
@@ -9,7 +9,7 @@ use std::{
     thread,
 };
 
-/// Calls `work` for each thing; the results are in the order of the things.
+/// Calls `work` for each item. The results are in the order of the items.
 pub fn each<T: Sync, A: Send>(things: &[T], work: impl Fn(&T) -> A + Sync) -> Vec<A> {
     let workers = thread::available_parallelism().map_or(1, NonZero::get).min(things.len());
     let next = AtomicUsize::new(0);
@@ -36,7 +36,7 @@ pub fn each<T: Sync, A: Send>(things: &[T], work: impl Fn(&T) -> A + Sync) -> Ve
 #[cfg(test)]
 mod tests {
     #[test]
-    fn answers_have_the_order_of_the_things() {
+    fn answers_are_in_the_order_of_the_items() {
         let things: Vec<u32> = (0..50).collect();
         let squares = super::each(&things, |thing| thing * thing);
         assert_eq!(squares, things.iter().map(|thing| thing * thing).collect::<Vec<_>>());

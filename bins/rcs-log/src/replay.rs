@@ -46,17 +46,17 @@ struct OneLog {
     /// True if every computed tick is the same as recorded.
     same: bool,
     ticks: u64,
-    /// Number of ticks that were not computed: ticks in gaps, and ticks up to the next snapshot after a gap.
+    /// Number of ticks that were not computed: those in gaps, and those from a gap to the next snapshot.
     skipped: u64,
     /// True if the log has its end record.
     complete: bool,
-    /// Why part of the log cannot be read.
+    /// The reason why part of the log cannot be read.
     damage: Option<String>,
     times_real_time: f64,
     digest: Option<String>,
     /// The first difference.
     difference: Option<String>,
-    /// Why the log was not replayed, with its path.
+    /// The reason why the log was not replayed, with its path.
     error: Option<String>,
 }
 

@@ -45,7 +45,7 @@ fn rate(text: &str) -> Result<f64, String> {
 /// [`Error`] if the log cannot be read, or the port is not available.
 pub fn serve(arguments: &Arguments) -> Result<ExitCode, Error> {
     let path = &arguments.file;
-    // The log contains its schemas, so a log of another version can be shown too.
+    // The log contains its schemas, so logs of other versions can be shown too.
     let log = Log::open(path).map_err(|source| Error::Read { path: path.clone(), source })?;
     if let Some(damage) = log.damage() {
         stderr_line!("rcs-log: {}: {damage}", path.display());
@@ -88,7 +88,7 @@ impl Pace {
     fn wait(&mut self, time: u64) {
         let (first, begin) = *self.start.get_or_insert_with(|| (time, Instant::now()));
         let seconds = Duration::from_nanos(time.saturating_sub(first)).as_secs_f64() / self.rate;
-        // A damaged log can have any time stamp; a wait of this length does not end.
+        // A damaged log can have any time stamp. A wait of this length never ends.
         let due = Duration::try_from_secs_f64(seconds).unwrap_or(Duration::MAX);
         thread::sleep(due.saturating_sub(begin.elapsed()));
     }
@@ -99,7 +99,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_rate_is_a_number_above_zero() {
+    fn rate_must_be_positive() {
         assert_eq!((rate("1"), rate("0.5"), rate("1000")), (Ok(1.0), Ok(0.5), Ok(1000.0)));
         for wrong in ["0", "-1", "1001", "NaN", "inf", "x", ""] {
             assert!(rate(wrong).is_err(), "{wrong}");
@@ -107,7 +107,7 @@ mod tests {
     }
 
     #[test]
-    fn messages_are_due_by_their_times_and_the_rate() {
+    fn message_times_follow_time_stamps_and_rate() {
         let mut pace = Pace { rate: 10.0, start: None };
         let begin = Instant::now();
         pace.wait(5_000_000_000);

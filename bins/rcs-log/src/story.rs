@@ -30,7 +30,7 @@ pub struct Moment {
     pub world: Option<u64>,
 }
 
-/// Opens a log; an error if it was written with another layout.
+/// Opens a log, which must have this program's layout.
 pub fn open(path: &Path) -> Result<Log, Error> {
     let failed = |source| Error::Read { path: path.to_owned(), source };
     let log = Log::open(path).map_err(failed)?;
@@ -89,7 +89,7 @@ pub struct CommandStory {
     pub last_tick: u64,
     /// Its last status.
     pub status: String,
-    /// What no sensor confirms about it, if it has finished; empty if the sensors confirm its goal.
+    /// The unconfirmed goals of a finished command; empty if the sensors confirm all of them.
     #[serde(skip_serializing_if = "str::is_empty")]
     pub unconfirmed: &'static str,
 }
@@ -106,12 +106,12 @@ impl CommandStory {
     }
 }
 
-/// The commands of a run, and what went wrong in it.
+/// The commands of a run, and its failure.
 #[derive(Default)]
 pub struct Chronicle {
     /// Commands in order.
     pub commands: Vec<CommandStory>,
-    /// Why the last failed command failed.
+    /// The reason why the last failed command failed.
     pub failure: Option<Failure>,
     watch: Box<Watch>,
     alarms: Alarms,
@@ -151,8 +151,8 @@ impl Chronicle {
         self.last = Some(status.report);
     }
 
-    /// What went wrong first in the run of the log, and what followed: as the run has written it at its end, or as its
-    /// lines show it if the run was killed. `None` if nothing did.
+    /// The first failure in the run of the log and its consequences: as the run has written it at its end, or
+    /// from the lines of a killed run. `None` without a failure.
     pub fn account(&self, log: &Log) -> Option<Account> {
         if let Some(account) = log.end.as_ref().and_then(Account::of_facts) {
             return account;

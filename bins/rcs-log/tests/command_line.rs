@@ -108,7 +108,7 @@ fn info_prints_commands_and_failure() {
 }
 
 #[test]
-fn why_finds_the_tick_of_the_failure_and_names_the_row() {
+fn why_finds_the_tick_and_row_of_the_failure() {
     let scratch = Scratch::new();
     let log = scratch.log("run.mcap", 1000);
     let text = stdout(&rcs_log(&["why"], &[&log]));
@@ -143,7 +143,7 @@ fn why_finds_the_tick_of_the_failure_and_names_the_row() {
 }
 
 #[test]
-fn an_answer_without_a_reader_ends_quietly() {
+fn answer_without_a_reader_ends_quietly() {
     let scratch = Scratch::new();
     let log = scratch.log("run.mcap", 1000);
     for arguments in [&["why"][..], &["why", "--json"], &["info"], &["replay"], &["diff"]] {
@@ -232,7 +232,7 @@ fn page_writes_one_file_with_the_log_inside() {
 }
 
 #[test]
-fn open_starts_the_browser_with_the_page_and_does_without_one() {
+fn open_starts_the_browser_if_there_is_one() {
     let scratch = Scratch::new();
     let log = scratch.log("run.mcap", 1000);
     let page = log.with_extension("html");

@@ -46,7 +46,7 @@ fn rcs_log(arguments: &[&str], files: &[&Path]) -> Output {
     command.args(arguments).args(files).output().expect("sh runs")
 }
 
-/// Checks that the program ended normally, and that it printed a sentence if it has no answer.
+/// Checks that the program ended normally, and printed a sentence if it has no answer.
 fn assert_answered(output: &Output, what: &str) -> i32 {
     let said = String::from_utf8_lossy(&output.stderr);
     let status = output.status.code();
@@ -82,7 +82,7 @@ fn chunks(bytes: &[u8]) -> Vec<usize> {
 }
 
 #[test]
-fn damage_in_the_middle_is_reported_and_the_rest_is_read() {
+fn damage_in_the_middle_keeps_the_rest_readable() {
     let place = tempfile::tempdir().unwrap();
     let path = with_a_bad_chunk(place.path());
     let output = rcs_log(&["info", "--json"], &[&path]);
@@ -98,7 +98,7 @@ fn damage_in_the_middle_is_reported_and_the_rest_is_read() {
 }
 
 #[test]
-fn a_length_that_is_wrong_loses_one_chunk() {
+fn wrong_length_loses_one_chunk() {
     let place = tempfile::tempdir().unwrap();
     let path = place.path().join("length.mcap");
     record(&path);

@@ -62,7 +62,7 @@ fn ends<'v>(answer: &'v Value, what: &str) -> Option<[&'v str; 2]> {
 }
 
 #[test]
-fn a_fork_without_a_change_is_the_run() {
+fn fork_without_a_change_equals_the_run() {
     let copy = LOGS.path().join("copy.mcap");
     let output = rcs_log(&["fork", text(&LINKBAR), "--tick", "3000", "-o", text(&copy)]);
     let said = stdout(&output);
@@ -76,7 +76,7 @@ fn a_fork_without_a_change_is_the_run() {
 }
 
 #[test]
-fn a_line_more_makes_all_that_follows_later() {
+fn inserted_line_delays_the_rest() {
     let answer = fork(&LINKBAR, "3000", &["line=** wait 50"]);
     assert_eq!(answer["outcome"], serde_json::json!(["finished", "finished"]));
     assert_eq!(ends(&answer, "duration").map(|[_, fork]| fork), Some("240.88 s, 2.00 s longer"));
@@ -85,7 +85,7 @@ fn a_line_more_makes_all_that_follows_later() {
 }
 
 #[test]
-fn another_pose_moves_the_robot_and_is_in_the_log_of_the_fork() {
+fn changed_pose_moves_the_robot_and_is_logged() {
     let lower = LOGS.path().join("lower.mcap");
     let change = format!("{TRAY}-=40");
     let output = rcs_log(&["fork", text(&LINKBAR), "--tick", "500", "--set", &change, "-o", text(&lower)]);
@@ -97,7 +97,7 @@ fn another_pose_moves_the_robot_and_is_in_the_log_of_the_fork() {
 }
 
 #[test]
-fn another_seed_changes_the_noise_from_its_tick_on() {
+fn new_seed_changes_the_noise_from_its_tick_on() {
     let seeded = LOGS.path().join("seeded.mcap");
     rcs_log(&["fork", text(&LINKBAR), "--tick", "1500", "--set", "seed=7", "-o", text(&seeded)]);
     let said = stdout(&rcs_log(&["diff", text(&LINKBAR), text(&seeded)]));
@@ -115,7 +115,7 @@ fn faults_begin_after_the_tick() {
 }
 
 #[test]
-fn another_command_takes_the_place_of_the_next() {
+fn new_command_replaces_the_next_one() {
     // ACQUIRE continues; TRANSFER would be the next command.
     let answer = fork(&LINKBAR, "4000", &["command=MOVE -- +0 -- 0 +0 HOME 0 -- 0"]);
     let [logged, forked] = ends(&answer, "parts").expect("the part is not brought to the tray");
@@ -127,14 +127,14 @@ fn another_command_takes_the_place_of_the_next() {
 }
 
 #[test]
-fn a_cell_with_less_friction_is_another_cell() {
+fn changed_friction_changes_the_cell() {
     let answer = fork(&LINKBAR, "0", &["cell gripper.parts.friction=0.03"]);
     let [logged, forked] = ends(&answer, "parts").expect("the part slips");
     assert_ne!(logged, forked);
 }
 
 #[test]
-fn a_fork_at_the_failure_is_before_its_last_command() {
+fn fork_at_the_failure_precedes_its_last_command() {
     let output = rcs_log(&["fork", text(&MISSING), "--at-failure", "--json"]);
     let answer: Value = serde_json::from_slice(&output.stdout).expect("one JSON object");
     let tick = answer["tick"].as_u64().expect("a tick");
@@ -169,9 +169,9 @@ fn wrong_changes_are_refused_before_anything_runs() {
     assert!(said.contains("a tick from 0 to 5971 was expected"), "{said}");
 }
 
-/// A run that was changed in a way that its log does not record.
+/// A run with a change that its log does not record.
 #[test]
-fn a_log_that_this_program_does_not_repeat_is_not_forked() {
+fn unrepeatable_log_is_not_forked() {
     let path = LOGS.path().join("changed.mcap");
     let log = LogTarget::File(path.clone());
     let config = RunConfig { log, shared_memory: false, ticks: Some(900), ..RunConfig::new(DATA, "linkbar") };

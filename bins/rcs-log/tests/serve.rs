@@ -44,7 +44,7 @@ fn serve(arguments: &[&str], log: &Path) -> (Child, impl Iterator<Item = String>
 }
 
 #[test]
-fn a_viewer_gets_the_log_with_its_times() {
+fn viewer_receives_the_log_with_its_times() {
     let directory = tempfile::tempdir().unwrap();
     let path = directory.path().join("log.mcap");
     record(&path);
@@ -58,7 +58,7 @@ fn a_viewer_gets_the_log_with_its_times() {
     stream.set_read_timeout(Some(Duration::from_secs(20))).unwrap();
     let (mut socket, _) = tungstenite::client(request, stream).unwrap();
     let mut text = || loop {
-        // The server asks with pings whether the viewer reads.
+        // The server sends pings to check whether the viewer reads.
         if let Message::Text(text) = socket.read().unwrap() {
             return serde_json::from_str::<Value>(&text).unwrap();
         }
@@ -100,7 +100,7 @@ fn a_viewer_gets_the_log_with_its_times() {
 }
 
 #[test]
-fn a_port_that_is_taken_is_refused_in_words() {
+fn occupied_port_is_refused_with_a_message() {
     let directory = tempfile::tempdir().unwrap();
     let path = directory.path().join("log.mcap");
     record(&path);

@@ -75,7 +75,7 @@ struct OfDatum {
     positions: Vec<usize>,
 }
 
-/// Load and report. Exit status 0 if there is no error, else 2.
+/// Load and report. Exit status 0 without errors, else 2.
 pub fn check(arguments: &CheckArguments) -> Result<ExitCode, Error> {
     let named = arguments.directory.clone().map(DataArgument::from);
     let data = named.unwrap_or_else(|| arguments.data.clone());
@@ -147,7 +147,6 @@ impl Flights {
     }
 }
 
-/// The findings of a data directory.
 struct Checked {
     /// Reports with their titles: task data, jobs, cell description, faults and robots.
     reports: Vec<(String, Diagnostics)>,
@@ -157,8 +156,8 @@ struct Checked {
 }
 
 impl Checked {
-    /// Check everything under a data directory. Motions that earlier checks of the same cell have simulated are not
-    /// simulated again.
+    /// Check everything under a data directory, without simulating motions again that earlier checks of the
+    /// same cell have simulated.
     fn of(data: &Path, flights: &Flights) -> Self {
         let (store, report) = match Store::load_part(data) {
             Ok((store, report)) => (Ok(store), report),
@@ -210,7 +209,6 @@ impl Checked {
         Self { reports, jobs: names, cell: cell.map(|(cell, _)| cell) }
     }
 
-    /// All findings, in the order of the reports.
     fn findings(&self) -> Vec<&Diagnostic> {
         self.reports.iter().flat_map(|(_, report)| report.diagnostics()).collect()
     }
@@ -228,8 +226,8 @@ impl Checked {
         grouped(&blames).into_iter().map(of_datum).collect()
     }
 
-    /// The findings of each datum, the worst datum first, and a summary of each report, as a person reads it. Only the
-    /// first finding of a datum is printed, unless `all` are.
+    /// The findings of each datum, the worst datum first, and a summary of each report, as text. It has only
+    /// the first finding of each datum, unless `all` is set.
     fn text(&self, all: bool) -> String {
         let graphical = io::stdout().is_terminal();
         let findings = self.findings();

@@ -1,4 +1,4 @@
-//! `rcs-run clean`: removes shared memory that killed runs have left.
+//! `rcs-run clean`: removes the shared memory of killed runs.
 
 use std::process::ExitCode;
 

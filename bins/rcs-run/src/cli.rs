@@ -99,7 +99,7 @@ mod tests {
     use crate::rcs_run::clock::Clock;
 
     #[test]
-    fn the_definitions_are_consistent() {
+    fn command_line_definitions_are_consistent() {
         Cli::command().debug_assert();
     }
 
@@ -114,14 +114,14 @@ mod tests {
     }
 
     #[test]
-    fn database_has_its_old_name_too() {
+    fn database_option_accepts_its_old_name() {
         let database = |option| Cli::parse_from(["rcs-run", option, "items.db"]).run.database;
         assert_eq!(database("--database"), Some(PathBuf::from("items.db")));
         assert_eq!(database("--data-base"), database("--database"));
     }
 
     #[test]
-    fn a_board_is_one_that_has_processes() {
+    fn board_option_accepts_boards_with_processes() {
         crate::shipped::carry();
         let board = |number| {
             let command = Cli::try_parse_from(["rcs-run", "board", number, "--run", "x", "linkbar"])?.command;

@@ -18,7 +18,7 @@ use crate::rcs_run::{error::Error, programs};
 
 /// Name of the console program, which is installed in the same directory.
 const PROGRAM: &str = "rcs-console";
-/// Time between two looks at the console.
+/// Time between two checks of the console.
 const LOOK: Duration = Duration::from_millis(20);
 
 pub struct Console {
@@ -32,7 +32,7 @@ impl Console {
     /// Path of the console program.
     ///
     /// # Errors
-    /// [`Error::NoConsole`] if it is not beside this program.
+    /// [`Error::NoConsole`] if it is not in the directory of this program.
     pub fn program() -> Result<PathBuf, Error> {
         let program = programs::beside(PROGRAM)?;
         if program.is_file() { Ok(program) } else { Err(Error::NoConsole(program)) }
@@ -55,8 +55,8 @@ impl Console {
         Ok(Self { stop, over, waiting })
     }
 
-    /// After the end of a run: wait until the operator leaves the console, which shows the last picture. If a signal
-    /// has ended the run, or comes now, the console ends, too.
+    /// After the end of a run: wait until the operator leaves the console, which shows the last picture. A
+    /// signal that ended the run or arrives now ends the console, too.
     pub fn wait(self) {
         while !self.waiting.is_finished() {
             self.over.store(self.stop.load(Ordering::Relaxed), Ordering::Relaxed);
@@ -67,12 +67,13 @@ impl Console {
     }
 }
 
-/// Wait for the end of the console, and set `stop` then: nobody watches the robot any more. `over` ends the console.
+/// Wait for the end of the console, and then set `stop`: nobody watches the robot any more. `over` ends the
+/// console.
 fn watch(mut child: Child, stop: &AtomicBool, over: &AtomicBool) {
     let mut is_asked = false;
     while matches!(child.try_wait(), Ok(None)) {
         if over.load(Ordering::Relaxed) && !is_asked {
-            // It restores the terminal. An error means that it has just ended.
+            // The console restores the terminal. An error means that it has just ended.
             let _ = kill_process(Pid::from_child(&child), Signal::TERM);
             is_asked = true;
         }

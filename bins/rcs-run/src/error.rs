@@ -36,15 +36,14 @@ pub enum Error {
     /// An output file cannot be written.
     #[error("{} cannot be written: {source}", path.display())]
     Write { path: PathBuf, source: io::Error },
-    /// A job of the list cannot be read.
     #[error("{} cannot be read: {source}", path.display())]
     Unlisted { path: PathBuf, source: io::Error },
-    /// A robot at a port, and no data that a person has named.
+    /// A robot at a port, without data named by the user.
     #[error(
         "a robot at a port needs the data of its cell: --data DIR, or those of the program with --data built-in"
     )]
     BuiltInAtPort,
-    /// A word that is no job, but nearly a subcommand.
+    /// A word that is not a job, but nearly a subcommand.
     #[error("there is no job {word}: the nearest is the subcommand {subcommand}")]
     Subcommand { word: String, subcommand: String },
     #[error("the run cannot be forked: {0}")]
@@ -59,7 +58,7 @@ pub enum Error {
     /// The buffers of a run cannot be read.
     #[error("the run cannot be read: {0}")]
     Unreadable(#[from] ReadError),
-    /// There are several runs, and none is named.
+    /// There are several runs, and the command names none.
     #[error("there are several runs, name one: {}", .0.join(", "))]
     WhichRun(Vec<String>),
     /// A run does not accept the operator.
@@ -84,7 +83,7 @@ pub enum Error {
 }
 
 impl Error {
-    /// The exit status. A stop by the user counts as it does after the first tick.
+    /// The exit status. A stop by the user has the same status as after the first tick.
     #[must_use]
     pub const fn status(&self) -> u8 {
         match self {

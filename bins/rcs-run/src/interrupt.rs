@@ -19,12 +19,12 @@ use signal_hook::{
 
 use crate::rcs_run::error::Error;
 
-/// Signals within this time after the first one count as one: a terminal, a shell, `timeout` and a service manager send
-/// several at once.
+/// Signals within this time after the first one are treated as one: a terminal, a shell, `timeout` and a
+/// service manager send several at once.
 const SAME: Duration = Duration::from_secs(1);
 
-/// A flag that an interrupt, a hang-up or a termination request sets. A second signal, [`SAME`] later, ends the program
-/// at once.
+/// A flag that an interrupt, a hang-up or a termination request sets. A second signal, [`SAME`] later, ends the
+/// program at once.
 ///
 /// # Errors
 /// [`Error::Signals`] if the system refuses the handlers, or a thread.
@@ -42,7 +42,7 @@ fn watch(stop: Arc<AtomicBool>) -> io::Result<()> {
             stop.store(true, Ordering::Relaxed);
             if is_second(&mut first, Instant::now()) {
                 stderr_line!("rcs-run: a second signal ends the program at once");
-                // Without destructors: one of them may be what blocks the orderly end.
+                // Without destructors: one of them may block the orderly end.
                 low_level::exit(128 + signal);
             }
         }
@@ -50,7 +50,7 @@ fn watch(stop: Arc<AtomicBool>) -> io::Result<()> {
     thread::Builder::new().name("signals".into()).spawn(wait).map(drop)
 }
 
-/// Records the first signal; true for one that does not count as the same.
+/// Record the first signal. True for a later one that is not treated as the same.
 fn is_second(first: &mut Option<Instant>, now: Instant) -> bool {
     now.saturating_duration_since(*first.get_or_insert(now)) > SAME
 }
@@ -60,7 +60,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn signals_within_a_second_count_as_one() {
+    fn signals_within_a_second_are_one_signal() {
         let (begin, mut first) = (Instant::now(), None);
         for milliseconds in [0, 1, 400, 1000] {
             assert!(!is_second(&mut first, begin + Duration::from_millis(milliseconds)), "{milliseconds} ms");

@@ -72,7 +72,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_job_is_described_by_the_first_sentence_of_its_comment() {
+    fn job_description_is_the_first_sentence_of_its_comment() {
         let about = |text| first_sentence(text);
         assert_eq!(about("% The linkbar (VIII.2). Lines with\n% == are commands.\n"), "The linkbar (VIII.2)");
         assert_eq!(about("% A long\n% sentence.\n\n% Not this.\n"), "A long sentence");

@@ -1,4 +1,4 @@
-//! The last lines of a run: first where the parts are, then the commands with which a person continues.
+//! The last lines of a run: where the parts are, then the commands with which a person continues.
 
 use std::{
     fmt,
@@ -10,7 +10,7 @@ use runtime::{Ending, RunOutcome};
 
 use crate::rcs_run::programs::start_of;
 
-/// The script that opens a log in Rerun, and the layout for Foxglove and Lichtblick, in the directory of the viewers.
+/// The script that opens a log in Rerun; it is in the directory of the viewers.
 const RERUN: &str = "rerun.sh";
 const LAYOUT: &str = "foxglove.json";
 
@@ -22,7 +22,7 @@ fn viewers() -> Option<PathBuf> {
     [here, sources].into_iter().find(|directory| directory.join(RERUN).is_file())
 }
 
-/// The lines. A run without a log leaves nothing to open.
+/// The lines. A run without a log has no lines about opening one.
 pub struct LastLines<'a>(pub &'a RunOutcome);
 
 impl fmt::Display for LastLines<'_> {
@@ -35,7 +35,7 @@ impl fmt::Display for LastLines<'_> {
         if result.parts.is_empty() {
             writeln!(f, "No part is in the cell.")?;
         }
-        // A held part first: a person must know of it before anything else.
+        // A held part first, as the most important information for the operator.
         let (held, others): (Vec<_>, Vec<_>) = result.parts.iter().partition(|part| part.held);
         for part in held.into_iter().chain(others) {
             writeln!(f, "{part}")?;

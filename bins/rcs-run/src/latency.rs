@@ -1,8 +1,8 @@
 //! `rcs-run latency`: measures how late this machine wakes a thread that sleeps on the 40 ms grid.
 //!
-//! The thread has the same settings as the ticks of a run (locked memory, SCHED_FIFO, one core). It sleeps until each
-//! slot begins and reads the clock. The result is the operating system's part of a tick's jitter. Measure under the
-//! load that the machine will have when it controls the robot.
+//! The thread has the same settings as the ticks of a run (locked memory, SCHED_FIFO, one core). It sleeps
+//! until each slot begins and reads the clock. The result is the operating system's share of a tick's jitter.
+//! Measure under the load that the machine has when it controls the robot.
 
 use std::{
     fmt,
@@ -69,7 +69,6 @@ impl Fitness {
 struct Measurement {
     seconds: f64,
     wakeups: u64,
-    /// Slots in which the thread did not wake.
     skipped: u64,
     late_us: Late,
     /// Histogram: upper edge in microseconds, and number of wake-ups up to it.
@@ -104,7 +103,6 @@ pub fn latency(arguments: &LatencyArguments) -> Result<ExitCode, Error> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// Sleeps on the grid and reads the clock.
 struct Watch {
     late: Box<Histogram>,
     counts: [u64; EDGES.len()],
@@ -130,7 +128,6 @@ impl Watch {
             }
             let late = now - begins;
             self.note(late);
-            // Slots that were missed are skipped.
             let missed = u64::try_from(late.as_nanos() / SLOT.as_nanos()).unwrap_or(u64::MAX);
             self.skipped += missed;
             slot += missed;
@@ -214,7 +211,7 @@ mod tests {
     }
 
     #[test]
-    fn lateness_is_counted_from_the_beginning_of_each_slot() {
+    fn lateness_is_relative_to_the_start_of_each_slot() {
         let measured = watched(&[5, 15, 150], 3);
         assert_eq!((measured.wakeups, measured.skipped, measured.verdict), (3, 0, Fitness::Good));
         assert!((measured.late_us.max - 150.0).abs() < 1e-9);
@@ -223,7 +220,7 @@ mod tests {
     }
 
     #[test]
-    fn slots_that_were_slept_through_are_skipped_and_judged() {
+    fn missed_slots_are_counted_and_judged() {
         let measured = watched(&[5, 85_000, 5], 5);
         assert_eq!((measured.wakeups, measured.skipped), (3, 2));
         assert_eq!(measured.verdict, Fitness::Poor);
@@ -231,7 +228,7 @@ mod tests {
     }
 
     #[test]
-    fn milliseconds_late_is_usable_and_more_is_poor() {
+    fn latency_verdict_follows_the_limits() {
         assert_eq!(watched(&[1_500; 10], 10).verdict, Fitness::Usable);
         assert_eq!(watched(&[2_500; 10], 10).verdict, Fitness::Poor);
     }

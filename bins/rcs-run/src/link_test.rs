@@ -1,8 +1,9 @@
 //! `rcs-run link-test`: measures round trips on a DEPC link, and prints a verdict.
 //!
-//! The host of [`depc::host`] starts the link and then sends, every 40 ms, the position that the robot has reported, so
-//! that nothing moves. The latency of an answer ends when its byte can be read, not at the next tick. A frame is in
-//! time if its ACK comes within a tick, since then the next frame follows without a gap.
+//! The host of [`depc::host`] starts the link and then sends, every 40 ms, the position that the robot has
+//! reported, so that the robot does not move. The latency of an answer ends when its byte is readable, not at
+//! the next tick. A frame is in time if its ACK arrives within a tick, since the next frame then follows
+//! without a gap.
 
 mod dump;
 mod tally;
@@ -37,7 +38,8 @@ use crate::rcs_run::{
 /// Length of a tick.
 const PERIOD: Duration = Duration::from_millis(TICK_MS);
 
-/// Test the link and print the result. Exit status 0 if the link is usable, 1 if not, 3 if there is no link.
+/// Test the link and print the result. Exit status 0 if the link is usable, 1 if not, 3 if the link never came
+/// up.
 ///
 /// # Errors
 /// [`Error`] if the test cannot run.
@@ -90,7 +92,7 @@ impl Test {
         Self { line, host, dump, outstanding: None, modem_lines, starts: 0, latencies: Vec::new() }
     }
 
-    /// Run a number of ticks. The last ones send nothing new, so that every frame has time for its answer.
+    /// Run a number of ticks. The last ones send nothing new, so that every frame can be answered in time.
     fn run(&mut self, ticks: u64, interrupted: impl Fn() -> bool) {
         let quiet = ticks.saturating_sub(u64::from(ANSWER_TICKS) + 1);
         let (mut rx, mut held) = (LinkBytes::default(), true);
@@ -99,7 +101,7 @@ impl Test {
             let ready = self.line.receive(&mut rx) && held;
             self.receive(&rx, ready);
             self.transmit(tick < quiet);
-            // Late ticks are not made up for: the robot would get more than one command per tick.
+            // Late ticks are not caught up: the robot would get more than one command per tick.
             due = (due + PERIOD).max(Instant::now());
             (rx, held) = self.collect(due);
             if interrupted() {
@@ -124,7 +126,7 @@ impl Test {
             self.line.wait(left);
             let before = rx.as_slice().len();
             if !self.line.receive(&mut rx) {
-                // The host sees the loss of the line at the end of the tick.
+                // The host detects the loss of the line at the end of the tick.
                 std::thread::sleep(due.saturating_duration_since(Instant::now()));
                 return (LinkBytes::default(), false);
             }

@@ -39,7 +39,7 @@ pub fn survive_file_limit() -> Result<(), Error> {
 #[expect(unsafe_code, reason = "what a signal handler may do is for its author to see to")]
 pub fn explain() -> Result<(), Error> {
     let last_words = || {
-        // If this write fails nothing else can be done.
+        // A failure of this write cannot be reported.
         let _ = write(stderr(), WORDS);
         exit(i32::from(STOPPED));
     };

@@ -116,7 +116,7 @@ impl fmt::Display for Page<'_> {
             )?;
         }
         let allocations = result.allocations_after_start.map_or("not counted".to_owned(), |n| n.to_string());
-        // In the fast clock nothing has to be on time, so times are no result.
+        // The fast clock has no deadlines, so times are not part of the result.
         let is_timed = result.late_us.is_some();
         let times = &result.tick_us;
         let mut timing = String::new();

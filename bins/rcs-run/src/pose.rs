@@ -35,13 +35,13 @@ use crate::rcs_run::{
 
 /// Limit of coordinates in inches and of angles in degrees, far beyond every arm.
 const FARTHEST: f64 = 1000.0;
-/// Ticks until a record button that was pressed has recorded the pose.
+/// Ticks until a pressed record button has recorded the pose.
 const RECORD_TICKS: u64 = 3;
 /// Longest wait for these ticks.
 const RECORD_LIMIT: Duration = Duration::from_millis(500);
 
-/// Print a pose, and write its form on request. Exit status 2 if the robot cannot reach the pose; then nothing is
-/// written.
+/// Print a pose, and write its form on request. Exit status 2 if the robot cannot reach the pose; the form is
+/// then not written.
 ///
 /// # Errors
 /// [`Error`] if the data or the run cannot be read, or the file cannot be written.
@@ -105,8 +105,9 @@ fn asked(arguments: &PoseArguments, store: &Store) -> Result<Pose, Error> {
     })
 }
 
-/// Common memory some ticks later: the controller carries out `joystick record` in the tick after its answer, and an
-/// earlier recorded pose must not be taken for it. A run that makes no tick meanwhile has nothing to carry out.
+/// Common memory some ticks later. The controller carries out `joystick record` in the tick after its answer,
+/// so an earlier reading would show the previous record. A run without further ticks has no request to carry
+/// out.
 fn settled(attached: &Attached) -> Result<CommonMemory, Error> {
     let first = attached.memory()?;
     let begun = Instant::now();

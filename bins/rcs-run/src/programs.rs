@@ -1,4 +1,4 @@
-//! The other programs of this workspace: where they are, and how a person starts them from the present terminal.
+//! The other programs of this workspace: their paths, and how a person starts them from the present terminal.
 
 use std::{
     env, io,
@@ -15,8 +15,8 @@ pub fn beside(program: &str) -> io::Result<PathBuf> {
     Ok(env::current_exe()?.with_file_name(program))
 }
 
-/// The beginning of a command line that starts a program in the way in which this one was started: with cargo, by a
-/// path, or by its name.
+/// The beginning of a command line that starts a program in the same way as this one: with cargo, by a path, or
+/// by its name.
 pub fn start_of(program: &str) -> String {
     let is_by_cargo = env::var_os("CARGO_MANIFEST_DIR").is_some();
     let own = env::args_os().next().map(PathBuf::from).unwrap_or_default();
@@ -37,7 +37,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn program_is_started_like_this_one() {
+    fn start_command_follows_this_program() {
         let as_by = |own: &str| started_as("rcs-log", false, Path::new(own));
         assert_eq!(as_by("rcs-run"), "rcs-log");
         assert_eq!(as_by("target/release/rcs-run"), "target/release/rcs-log");

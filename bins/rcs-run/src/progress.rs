@@ -1,5 +1,5 @@
-//! Progress on a terminal: the present line of the job, and the commands of the levels. A run in the background of a
-//! shell prints its messages only.
+//! Progress on a terminal: the present line of the job, and the commands of the levels. A run in the background
+//! of a shell prints only its messages.
 
 use std::{
     io::{self, IsTerminal},
@@ -80,7 +80,7 @@ impl Observer for Progress {
         }
     }
 
-    /// Update the progress line, at most ten times a second.
+    /// Update the progress line, at most ten times per second.
     fn tick(&mut self, report: &TickReport<'_>) {
         if self.shown.elapsed() < PERIOD {
             return;
@@ -105,7 +105,7 @@ impl Drop for Progress {
 /// The commands of Task, Subtask, E-move and Prim as text.
 fn levels(hws: &HwsCommand, memory: &CommonMemory) -> String {
     let doing = ProcessId::ALL.iter().take(LEVELS).filter_map(|process| {
-        // The line of the job already shows all of Task's command.
+        // The line of the job already shows Task's command.
         let command = match process {
             ProcessId::Task => hws.command.to_string(),
             _ => failure::command(*process, hws, memory),
@@ -122,7 +122,7 @@ mod tests {
     use rcs_core::name::{Name10, Name16};
 
     #[test]
-    fn levels_without_a_command_are_left_out() {
+    fn levels_without_a_command_are_omitted() {
         let mut memory = CommonMemory::default();
         let hws = HwsCommand { command: Name16::clipped("MOVE"), ..HwsCommand::default() };
         memory.subtask.emove.command = EmoveVerb::MovToLoc;

@@ -1,8 +1,8 @@
 //! `rcs-run check --robot NAME`: checks whether the arm of another robot follows the T3's tool through all jobs, and
 //! reaches every taught pose.
 //!
-//! The motions are those of `check`, simulated again point by point. Under EGM a robot keeps the configuration in which
-//! it began, so the check tries each configuration of the start and reports the best one.
+//! The motions are those of `check`, simulated again point by point. Under EGM a robot keeps its initial
+//! configuration, so the check tries each configuration of the start and reports the best one.
 
 use std::{fmt, panic::resume_unwind, path::Path, thread};
 
@@ -34,18 +34,17 @@ pub struct Reach {
     start_deg: Option<Axes>,
     /// Number of taught poses and location points that the T3 reaches.
     poses: usize,
-    /// Names of those that the arm does not reach.
+    /// Names of the poses that the arm does not reach.
     poses_out_of_reach: Vec<String>,
     jobs: Vec<JobReach>,
 }
 
-/// Result of the arm in a job.
 #[derive(Clone, Debug, Serialize)]
 struct JobReach {
     job: String,
     /// Number of motions from point to point that the arm follows.
     ways: usize,
-    /// The axis, from 1, that comes nearest to a limit, and its distance from the limit, degrees.
+    /// The axis, from 1, that is nearest to a limit, and its distance from the limit, degrees.
     axis: usize,
     margin_deg: f64,
     /// Smallest angle of the wrist from the straight position, degrees.
@@ -110,7 +109,6 @@ impl Reach {
         })
     }
 
-    /// True if everything is within reach.
     #[must_use]
     pub fn is_complete(&self) -> bool {
         self.start_deg.is_some()
@@ -197,7 +195,6 @@ impl Bench<'_> {
     }
 }
 
-/// The arm in motion through a job.
 struct Follower {
     track: Track,
     ways: usize,

@@ -38,7 +38,7 @@ pub fn run(arguments: &RunArguments) -> Result<ExitCode, Error> {
     let program = env::current_exe()?;
     let config =
         RunConfig { stop: Arc::clone(&stop), on_stuck, program, name: name.clone(), ..arguments.config() };
-    // The console uses the terminal; the log of the run contains its messages, too.
+    // The console uses the terminal, so messages go to the log of the run.
     let observer: Box<dyn Observer> =
         if console.is_some() { Box::new(()) } else { Box::new(Progress::default()) };
     if config.robot.kind.lives_in_real_time() && arguments.data.is_none() && is_carried(&config.data) {
@@ -64,7 +64,7 @@ pub fn run(arguments: &RunArguments) -> Result<ExitCode, Error> {
     Ok(ExitCode::from(status))
 }
 
-/// The error of the start; a word that is nearer to a subcommand than to any job was meant as one.
+/// The error of the start. A word that is nearer to a subcommand than to any job probably means the subcommand.
 fn explained(error: StartError) -> Error {
     if let StartError::NoFile(UnknownFile { what, name, known }) = &error
         && *what == JOBS.what

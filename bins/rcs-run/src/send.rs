@@ -21,7 +21,7 @@ fn connect(arguments: &SendArguments) -> Result<Client, Error> {
         }
         let socket = operator_socket(&run);
         if !socket.exists() {
-            // A run without operators has no socket either: then connecting fails with the reason.
+            // A run without operators has no socket: connecting then fails with the reason.
             Attached::open(&run)?;
         }
         return Ok(Client::connect(&socket, &arguments.name)?);

@@ -16,8 +16,8 @@ use crate::rcs_run::{answer::answer, arguments::StatusArguments, error::Error, m
 /// Read the state of a run, and print it.
 ///
 /// # Errors
-/// [`Error::SharedMemory`] if there is no such run or it cannot be read; [`Error::WhichRun`] if there are several and
-/// none is named.
+/// [`Error::SharedMemory`] if there is no such run or it cannot be read; [`Error::WhichRun`] if there are
+/// several and the command names none.
 pub fn status(arguments: &StatusArguments) -> Result<ExitCode, Error> {
     let name = match &arguments.run {
         Some(name) => name.clone(),

@@ -1,8 +1,8 @@
 //! `rcs-run tables`: every decision table as Markdown, with explanations of its names.
 //!
-//! Each table is followed by its steps, and by the state variables and actions that no other table of the process has.
-//! What several tables share is explained once, under *Values* at the end of the process. A table that an earlier
-//! process already has is not printed again.
+//! Each table is followed by its steps, and by the state variables and actions that only it has. Those of
+//! several tables are explained once, under *Values* at the end of the process. A table that an earlier process
+//! has is not printed again.
 
 #[cfg(test)]
 mod tests;
@@ -41,13 +41,11 @@ The log, `rcs-run status` and the sentence about a failure name a row by table a
 in small letters: `letting-go` for `LettingGo`.
 ";
 
-/// Print all tables.
 pub fn tables() -> Result<ExitCode, Error> {
     console::answer(&page(Ladder::processes()))?;
     Ok(ExitCode::SUCCESS)
 }
 
-/// The tables of all processes.
 fn page(processes: &'static [ProcessInfo]) -> String {
     let mut text = HEAD.to_owned();
     text.push('\n');
@@ -168,7 +166,7 @@ fn conditions(row: &Row) -> String {
     if asked.is_empty() { "otherwise".to_owned() } else { asked.join(", ") }
 }
 
-/// State variables, each with the tables that test it, and groups of tables with the same actions.
+/// State variables with the tables that test them, and groups of tables with the same actions.
 struct Groups {
     variables: Vec<(&'static Variable, Vec<&'static Table>)>,
     actions: Vec<Vec<&'static Table>>,

@@ -1,4 +1,4 @@
-//! The motions of jobs and stored routes in `rcs-run check`, walked through before anything moves ([`paths`]), and
+//! The motions of jobs and stored routes in `rcs-run check`, simulated before the robot moves ([`paths`]), and
 //! `check --explain-job`.
 
 use std::{panic::resume_unwind, path::Path, process::ExitCode, thread};
@@ -23,7 +23,7 @@ use crate::rcs_run::{
     error::{Error, UNUSABLE},
 };
 
-/// The findings in the motions of jobs, in their order, and in the stored routes. `known` contains motions that were
+/// The findings in the motions of jobs, in their order, and in the stored routes. `known` contains motions
 /// already simulated in the same cell.
 pub fn of_all(
     jobs: &[Job],
@@ -176,7 +176,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_line_is_found_by_its_number() {
+    fn line_is_found_by_its_number() {
         let source = Source { name: "j".to_owned(), text: "one\n\nthree\n".into() };
         assert_eq!((line(&source, 1).start, line(&source, 1).length), (0, 3));
         assert_eq!((line(&source, 3).start, line(&source, 3).length), (5, 5));

@@ -1,10 +1,10 @@
-//! `rcs-run campaign` as a program: a branch that is not interrupted is the ordinary run, and what is printed.
+//! `rcs-run campaign` as a program: the branch without interruption is the ordinary run, and the output is
+//! complete.
 
 use std::{path::Path, process::Command};
 
 use serde_json::Value;
 
-/// Directory of the workspace, whose data are used.
 const WORKSPACE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/..");
 
 fn rcs_run(arguments: &[&str]) -> String {
@@ -21,10 +21,10 @@ fn json(arguments: &[&str]) -> Value {
     serde_json::from_str(&rcs_run(arguments)).expect("the output is JSON")
 }
 
-/// The same number of ticks and the same digest: of the undisturbed run, and of a branch that an operator
-/// plays to its end.
+/// The undisturbed run, and a branch that an operator plays to its end, have the same number of ticks and the
+/// same digest.
 #[test]
-fn a_branch_that_is_not_interrupted_is_the_ordinary_run_bit_for_bit() {
+fn uninterrupted_branch_equals_the_ordinary_run() {
     for job in ["linkbar", "turned-part"] {
         let run = json(&["run", job, "--log", "none", "--shared-memory", "off", "--json"]);
         let campaign =
@@ -44,7 +44,7 @@ fn a_branch_that_is_not_interrupted_is_the_ordinary_run_bit_for_bit() {
 }
 
 #[test]
-fn a_single_branch_is_printed_row_by_row() {
+fn single_branch_is_printed_row_by_row() {
     let text = rcs_run(&["campaign", "linkbar", "--at", "60", "--interrupt", "refused"]);
     assert!(text.starts_with("refused after tick 60, in `PAUSE`"), "{text}");
     for expected in ["the operator sends MOVE to NOWHERRE", "Task", "row", "Done at tick"] {
@@ -53,7 +53,7 @@ fn a_single_branch_is_printed_row_by_row() {
 }
 
 #[test]
-fn the_table_is_written_as_markdown() {
+fn campaign_table_is_written_as_markdown() {
     let directory = tempfile::tempdir().expect("there is room");
     let file = directory.path().join("table.md");
     let name = file.to_str().expect("the path is text");
@@ -68,7 +68,7 @@ fn the_table_is_written_as_markdown() {
 
 /// Branches that were hurt in earlier campaigns (docs/evidence.md "Series").
 #[test]
-fn faults_found_by_searches_stay_fixed() {
+fn branches_hurt_in_earlier_campaigns_are_done() {
     for (job, tick, kind) in [
         ("turned-part", "1564", "fault:id-pins-bad"),
         ("turned-part", "2528", "fault:air-lost+1:replaced"),
@@ -89,14 +89,14 @@ fn faults_found_by_searches_stay_fixed() {
     }
 }
 
-/// Interruptions that a job must survive in 97 of 100 branches, without harm.
+/// Interruptions after which a job must continue in 97 of 100 branches, without harm.
 const REQUIRED: &str =
     "pause,pause-twice,refused,replaced,answer-lost,answer-late,answer-damaged,hold,nudge,held,restart,power";
 
-/// A sample of the campaign: all jobs, all required kinds and the E-stop, at ticks that follow from the
-/// number of the job.
+/// A sample of the campaign: all jobs, all required kinds and the E-stop. The ticks follow from the number of
+/// the job.
 #[test]
-fn a_sample_of_the_campaign_recovers_without_damage() {
+fn campaign_sample_recovers_without_damage() {
     let count = |row: &Value, name: &str| row[name].as_u64().expect("counts are numbers");
     let (mut branches, mut done) = (0, 0);
     for (number, job) in ["linkbar", "clevis", "turned-part", "tool-change"].into_iter().enumerate() {
@@ -112,7 +112,7 @@ fn a_sample_of_the_campaign_recovers_without_damage() {
             let judged = ["done", "stranded", "apart", "hurt", "false"].map(|name| count(row, name));
             assert_eq!(judged.iter().sum::<u64>(), count(row, "branches"), "{job}: {row}");
             match row["interruption"].as_str() {
-                // Nothing is found where nothing was interrupted.
+                // A branch without interruption has no findings.
                 Some("none") => assert_eq!(count(row, "done"), count(row, "branches"), "{job}: {row}"),
                 Some("estop") => {}
                 _ => {
@@ -127,10 +127,10 @@ fn a_sample_of_the_campaign_recovers_without_damage() {
     assert!(100 * done >= 97 * branches, "{done} of {branches} branches are done");
 }
 
-/// Confirmations of a small draw, and those of its branches alone: a draw repeats, whatever the number of threads, and
-/// each branch is repeated by one command line.
+/// Confirmations of a small draw, and those of its branches alone. A draw repeats with any number of threads,
+/// and one command line repeats each branch.
 #[test]
-fn drawn_disturbances_repeat_and_each_branch_is_repeated_alone() {
+fn drawn_disturbances_repeat_alone_and_together() {
     let draw = |threads: &str| {
         json(&["campaign", "linkbar", "--truth", "6", "--draw", "3", "--threads", threads, "--json"])
     };
@@ -154,10 +154,10 @@ fn drawn_disturbances_repeat_and_each_branch_is_repeated_alone() {
     assert_eq!(alone["branches"][0]["state"], first["state"], "{kind} at {at}");
 }
 
-/// The pressure fails while a part is grasped or has just been released, and while a gripper is attached: each of these
-/// ticks had a false confirmation.
+/// The pressure fails while a part is grasped or has just been released, and while a gripper is attached. Each
+/// of these ticks had a false confirmation.
 #[test]
-fn false_confirmations_under_lost_pressure_stay_away() {
+fn lost_pressure_causes_no_false_confirmation() {
     for (job, at) in [
         ("clevis", "1190,1270,9080,9118,9130"),
         ("turned-part", "1570,1572,4800,5920"),
@@ -173,10 +173,10 @@ fn false_confirmations_under_lost_pressure_stay_away() {
     }
 }
 
-/// A person leads the empty robot past an object of which no picture is taken, and pushes it; and takes the robot while the
-/// jaws hold a tool, which is lost, so that they close on.
+/// A person moves the empty robot past an object of which no picture is taken, and pushes it; and moves the
+/// robot while the jaws hold a tool, which is lost, so that they close further.
 #[test]
-fn false_confirmations_after_a_jog_stay_away() {
+fn jog_causes_no_false_confirmation() {
     for (job, at, jog) in [
         ("shift", "11734", "jog:-96:36:-165"),
         ("shift", "16317", "jog:-62:-3:-337"),
@@ -189,9 +189,9 @@ fn false_confirmations_after_a_jog_stay_away() {
     }
 }
 
-/// A part is taken away before its picture. The command fails, which is true, and continues when the part is back.
+/// A part is removed before its picture. The command fails correctly, and continues when the part is back.
 #[test]
-fn a_job_continues_after_the_remedy_of_its_error() {
+fn job_continues_after_the_remedy_of_its_error() {
     let campaign =
         json(&["campaign", "linkbar", "--at", "300", "--interrupt", "take:1", "--judge", "job", "--json"]);
     let branch = &campaign["branches"][0];

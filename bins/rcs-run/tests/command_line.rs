@@ -12,7 +12,6 @@ use rustix::process::{Pid, Signal, kill_process};
 use serde_json::Value;
 use tempfile::TempDir;
 
-/// The data directory of the repository.
 fn data() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../data")
 }
@@ -77,7 +76,7 @@ fn json(output: &Output) -> Value {
     serde_json::from_str(&text).unwrap_or_else(|error| panic!("{error}: {text:?}; {}", last_line(output)))
 }
 
-/// A reader of a pipe waits until there is a writer, and no device is a file of blocks.
+/// A reader of a pipe waits until there is a writer, and devices are not files of blocks.
 #[test]
 fn blocks_are_loaded_from_regular_files_only() {
     let place = Place::new();
@@ -86,14 +85,14 @@ fn blocks_are_loaded_from_regular_files_only() {
     assert_eq!(output.status.code(), Some(2));
     let said = String::from_utf8_lossy(&output.stderr);
     let why = "/dev/null cannot be read: a regular file was expected";
-    // The words may be broken into lines, for a person.
+    // The words may be broken into lines.
     let said = said.split_whitespace().collect::<Vec<_>>().join(" ");
     assert!(said.contains(why), "{said}");
 }
 
 /// A pedestal form that turns the part beyond the table's limit, in the blocks that a job loads.
 #[test]
-fn blocks_that_a_job_loads_are_checked_against_the_cell() {
+fn blocks_loaded_by_a_job_are_checked_against_the_cell() {
     let place = Place::new();
     let blocks = "BLOCK# 1 OFFSET 22000\n:S \"p-object\" <= LCLEVIS_IH\nped-appr <= 500 ped-grasp-size <= 250\n\
                   ped-force <= 0 ped-release-size <= 450\nped-table-pos <= 100 ped-flip-angle <= 1835 :R\n\
@@ -102,7 +101,7 @@ fn blocks_that_a_job_loads_are_checked_against_the_cell() {
     let refused = |line: &str| {
         let output = rcs_run(&["run", &place.job("loads", &format!("{line}\n")), "--log", "none"]);
         assert_eq!(output.status.code(), Some(2));
-        // The words may be broken into lines, for a person.
+        // The words may be broken into lines.
         String::from_utf8_lossy(&output.stderr).split_whitespace().collect::<Vec<_>>().join(" ")
     };
     for line in ["** load pedestal.blk", "** after 50 load pedestal.blk"] {
@@ -112,7 +111,7 @@ fn blocks_that_a_job_loads_are_checked_against_the_cell() {
             assert!(said.contains(found) && said.contains(place), "{found}: {said}");
         }
     }
-    // On purpose: then they must not fit.
+    // An expected error must occur.
     let marked = place.job("marked", "** load pedestal.blk expect error\n** wait 1\n");
     assert_eq!(rcs_run(&["run", &marked, "--log", "none"]).status.code(), Some(0));
     fs::write(
@@ -124,9 +123,9 @@ fn blocks_that_a_job_loads_are_checked_against_the_cell() {
     assert!(said.contains("the blocks fit the cell"), "{said}");
 }
 
-/// Two objects that differ in their vision ids alone; then the cell has parts of two sizes by these names.
+/// Two objects that differ only in their vision ids; the cell has parts of two sizes by these names.
 #[test]
-fn objects_that_only_the_camera_distinguishes_are_warned_of() {
+fn objects_differing_only_in_vision_id_cause_a_warning() {
     let place = Place::new();
     let data = place.data();
     let blocks = "BLOCK# 1 OFFSET 22000\n-obj- ONE 1 300 60 30 350   -obj- TWO 1 300 60 30 350\n\
@@ -158,12 +157,12 @@ fn objects_that_only_the_camera_distinguishes_are_warned_of() {
 }
 
 #[test]
-fn help_and_version_are_given() {
+fn help_and_version_have_status_0() {
     let help = rcs_run(&["--help"]);
     assert_eq!(help.status.code(), Some(0));
     assert!(stdout(&help).contains("Examples:") && stdout(&help).contains("Exit status"));
     let version = rcs_run(&["--version"]);
-    // The commit stands behind it, where the source is a repository.
+    // The commit follows it if the source is a repository.
     assert!(
         stdout(&version).starts_with(concat!("rcs-run ", env!("CARGO_PKG_VERSION"))),
         "{}",
@@ -172,7 +171,7 @@ fn help_and_version_are_given() {
 }
 
 #[test]
-fn usage_errors_have_status_2_and_a_sentence() {
+fn usage_error_has_status_2_and_a_sentence() {
     for (arguments, sentence) in [
         (&["--robot", "serial:/dev/ttyS0"][..], "add --clock real"),
         (&["--clock", "slow"], "fast, real"),
@@ -230,7 +229,7 @@ fn faults_are_found_by_name() {
 }
 
 #[test]
-fn the_data_of_the_repository_is_good() {
+fn shipped_data_have_no_findings() {
     let output = rcs_run(&["check", "--json", "--data", "data"]);
     let found = json(&output);
     assert_eq!(found["findings"], serde_json::json!([]), "nor is anything warned of");
@@ -281,14 +280,14 @@ fn tool_command_without_a_path_to_its_end_at_location_is_refused() {
     }
 }
 
-/// The approach A/D-15 leads down instead of up: the fingers run into the floor of the tray.
+/// The approach A/D-15 leads down instead of up: the fingers collide with the floor of the tray.
 const DOWN: [&str; 2] = [
     "    1    t    -1500        0      0      -mtb-   A/D-15\n",
     "    1    t      300        0      0      -mtb-   A/D-15\n",
 ];
 
 #[test]
-fn run_refuses_a_job_that_uses_a_wrong_datum_and_names_it() {
+fn run_refuses_a_job_using_a_wrong_datum() {
     let place = Place::new();
     let data = data_with(&place, "movetables.blk", DOWN[0], DOWN[1]);
     let run = |more: &[&str]| rcs_run(&[&["--log", "none", "--data", &data], more].concat());
@@ -299,12 +298,12 @@ fn run_refuses_a_job_that_uses_a_wrong_datum_and_names_it() {
     assert!(last_line(&refused).contains("--unchecked runs it"), "{}", last_line(&refused));
     let unchecked = run(&["linkbar", "--unchecked", "--ticks", "5", "--json"]);
     assert_eq!((unchecked.status.code(), &json(&unchecked)["ticks"]), (Some(0), &5.into()));
-    // A job that does not pass there is run.
+    // A job that does not use the datum is run.
     let other = place.job("other", "== MOVE -- 0 -- 0 0 HOME 0 -- 0\n");
     assert_eq!(run(&[&other]).status.code(), Some(0), "{}", last_line(&run(&[&other])));
 }
 
-/// Mistyped records of the holster of the v-gripper, in a file, with what is missing then.
+/// Mistyped records of the holster of the v-gripper, in a file, with the missing datum.
 const HOLSTER: [(&str, &str, &str, &str); 7] = [
     ("locations.blk", "-pt-  HOLSTER-L ", "...  HOLSTER-L ", "GRIPPER-2 is assigned to no location point"),
     ("locations.blk", "-pt-  HOLSTER-L ", "-pt-  HOLSTER-X ", "GRIPPER-2 is assigned to no location point"),
@@ -331,7 +330,7 @@ const HOLSTER: [(&str, &str, &str, &str); 7] = [
 ];
 
 #[test]
-fn run_refuses_a_job_whose_gripper_has_a_mistyped_holster() {
+fn run_refuses_a_job_with_a_mistyped_holster() {
     for (file, from, to, missing) in HOLSTER {
         let place = Place::new();
         let data = data_with(&place, file, from, to);
@@ -344,7 +343,8 @@ fn run_refuses_a_job_whose_gripper_has_a_mistyped_holster() {
             "{file} {to}: {said}"
         );
         assert!(said.contains("objects/grippers.blk, block 703"), "{file} {to}: {said}");
-        // A job that keeps its gripper does not need the holster. An error of a location form concerns all its names.
+        // A job that keeps its gripper does not need the holster. An error of a location form concerns all its
+        // names.
         if file != "locations.blk" {
             assert_eq!(run("linkbar").status.code(), Some(0), "{file} {to}: {}", last_line(&run("linkbar")));
         }
@@ -352,7 +352,7 @@ fn run_refuses_a_job_whose_gripper_has_a_mistyped_holster() {
 }
 
 #[test]
-fn check_finds_the_line_of_a_job_whose_gripper_has_no_holster() {
+fn check_names_the_job_line_without_a_holster() {
     let place = Place::new();
     let entry = "-o-loc- GRIPPER-2         lpt          HOLSTER-L";
     let data = data_with(&place, "objects/grippers.blk", entry, "( no holster )");
@@ -366,7 +366,7 @@ fn check_finds_the_line_of_a_job_whose_gripper_has_no_holster() {
 }
 
 #[test]
-fn run_starts_in_spite_of_an_unrelated_datum() {
+fn run_starts_despite_an_unrelated_wrong_datum() {
     let place = Place::new();
     let data = data_with(&place, "objects/linkbar.blk", "LK-GRP-FX1", "LK-GPR-FX1");
     let run = |job: &str| rcs_run(&[job, "--log", "none", "--ticks", "5", "--data", &data]);
@@ -420,14 +420,14 @@ fn assert_announced(data: &str) {
 const TOLERATED: [&[(&str, &str, &str)]; 5] = [
     // A name of the cell that the task data lack.
     &[("cell.toml", "name = \"LINKBAR1_BH\"", "name = \"LINKBAR1_BX\"")],
-    // The same beside an error of the task data: these are not compared with the cell.
+    // The same with an error of the task data: these are not compared with the cell.
     &[
         ("cell.toml", "name = \"LINKBAR1_BH\"", "name = \"LINKBAR1_BX\""),
         ("directory.blk", "100 load ( files            )", "999 load ( files            )"),
     ],
     // A place of the cell that disagrees with its form.
     &[("cell.toml", "location = \"BRUSH\"", "location = \"BRUSX\"")],
-    // The same beside an error of the task data.
+    // The same with an error of the task data.
     &[
         ("cell.toml", "location = \"BRUSH\"", "location = \"BRUSX\""),
         ("directory.blk", "642 load ( brush           )", "999 load ( brush           )"),
@@ -437,7 +437,7 @@ const TOLERATED: [&[(&str, &str, &str)]; 5] = [
 ];
 
 #[test]
-fn run_announces_the_findings_that_check_shows() {
+fn run_announces_as_many_findings_as_check() {
     for changes in TOLERATED {
         let place = Place::new();
         let data = place.data();
@@ -484,7 +484,7 @@ fn findings_are_grouped_by_datum() {
 }
 
 #[test]
-fn a_data_error_is_shown_with_its_place_and_prevents_the_run() {
+fn data_error_has_a_place_and_prevents_the_run() {
     let place = Place::new();
     let data = place.data();
     let poses = data.join("poses.blk");
@@ -518,7 +518,7 @@ fn said_of(place: &Place, file: &str, from: &str, to: &str) -> [String; 2] {
 }
 
 #[test]
-fn a_name_that_only_the_cell_has_is_reported_before_the_first_tick() {
+fn name_only_in_the_cell_is_reported_before_the_run() {
     let place = Place::new();
     let unknown = |from: &str, to: &str, sentences: &[&str]| {
         for said in said_of(&place, "cell.toml", from, to) {
@@ -549,7 +549,7 @@ fn a_name_that_only_the_cell_has_is_reported_before_the_first_tick() {
 }
 
 #[test]
-fn a_name_that_only_the_job_has_is_reported_before_the_first_tick() {
+fn name_only_in_the_job_is_reported_before_the_run() {
     let place = Place::new();
     let said = said_of(&place, "jobs/linkbar.job", "vise partial PFIXTURE", "vise partial PFIXTURE CLEVISS");
     for said in said {
@@ -559,7 +559,7 @@ fn a_name_that_only_the_job_has_is_reported_before_the_first_tick() {
 }
 
 #[test]
-fn a_finding_can_be_shown_in_an_editor() {
+fn finding_opens_in_an_editor() {
     let place = Place::new();
     let data = place.data();
     let poses = data.join("poses.blk");
@@ -580,7 +580,7 @@ fn a_finding_can_be_shown_in_an_editor() {
 }
 
 #[test]
-fn a_command_is_explained_without_running() {
+fn explain_shows_a_command_without_a_run() {
     let command = "MOVE LINKBAR1_BH +2 UNIT_1 4 +2 PFIXTURE 0 -- 0";
     let output = rcs_run(&["check", "--json", "--explain", command]);
     let found = json(&output);
@@ -604,9 +604,9 @@ fn a_command_is_explained_without_running() {
     assert_eq!(rcs_run(&["check", "--from", "SAFE"]).status.code(), Some(2), "--from needs --explain");
 }
 
-/// `check --where` is `pose --of`: the same words, and the same refusals.
+/// `check --where` is `pose --of`: the same text, and the same refusals.
 #[test]
-fn a_pose_of_the_task_data_is_looked_at_by_its_name() {
+fn check_where_equals_pose_of() {
     let (checked, posed) = (rcs_run(&["check", "--where", "PFIX-P"]), rcs_run(&["pose", "--of", "PFIX-P"]));
     assert_eq!((checked.status.code(), stdout(&checked)), (Some(0), stdout(&posed)));
     for word in ["joints  base", "nearest to its limit", "in from", "near    PFIX-P"] {
@@ -635,7 +635,7 @@ fn all_tables_are_printed_as_markdown() {
 }
 
 #[test]
-fn a_few_ticks_give_the_same_bits_every_time() {
+fn few_ticks_repeat_bit_for_bit() {
     let arguments = ["--ticks", "50", "--json", "--log", "none", "--shared-memory", "off"];
     let (one, other) = (json(&rcs_run(&arguments)), json(&rcs_run(&arguments)));
     assert_eq!((&one["ticks"], &one["simulated_s"]), (&50.into(), &2.0.into()));
@@ -649,7 +649,7 @@ fn a_few_ticks_give_the_same_bits_every_time() {
 }
 
 #[test]
-fn real_time_runs_as_many_ticks_as_there_were_slots() {
+fn real_time_run_has_one_tick_per_slot() {
     let output = rcs_run(&["--clock", "real", "--ticks", "10", "--json", "--log", "none"]);
     let result = json(&output);
     let slots = result["ticks"].as_u64().unwrap() + result["overruns"].as_u64().unwrap();
@@ -662,7 +662,7 @@ fn real_time_runs_as_many_ticks_as_there_were_slots() {
 }
 
 #[test]
-fn a_blank_that_is_missing_fails_the_job_with_the_row_that_knows() {
+fn missing_blank_fails_the_job_with_the_detecting_row() {
     let place = Place::new();
     let job = place
         .job("no-blank", "** vise partial PFIXTURE\n== MOVE LINKBAR1_BH +2 UNIT_1 4 +2 PFIXTURE 0 -- 0\n");
@@ -678,7 +678,7 @@ fn a_blank_that_is_missing_fails_the_job_with_the_row_that_knows() {
 }
 
 #[test]
-fn a_place_that_is_taken_fails_the_job_in_words() {
+fn occupied_place_fails_the_job_with_a_message() {
     let place = Place::new();
     let twice = "** tray UNIT_1 4 LINKBAR1_BH 0 0 0\n";
     let job = place.job("taken", &format!("{twice}{twice}== PAUSE -- 0 -- 0 0 -- 0 -- 0\n"));
@@ -689,7 +689,7 @@ fn a_place_that_is_taken_fails_the_job_in_words() {
 }
 
 #[test]
-fn an_interrupt_ends_the_run_in_order() {
+fn interrupt_ends_the_run_in_order() {
     let place = Place::new();
     let log = place.0.path().join("cut.mcap").display().to_string();
     let mut child = command(&["--clock", "real", "--json", "--log", &log])
@@ -710,7 +710,7 @@ fn an_interrupt_ends_the_run_in_order() {
 }
 
 #[test]
-fn an_observing_program_changes_no_digest() {
+fn observing_program_leaves_the_digest_unchanged() {
     let child = command(&["--clock", "real", "--ticks", "40", "--json", "--log", "none"])
         .stdout(Stdio::piped())
         .stderr(Stdio::null())
@@ -752,7 +752,7 @@ fn clean_removes_the_remains_of_a_killed_run() {
     assert!(stdout(&alive).contains(&format!("linkbar-{} is running", child.id())), "{}", stdout(&alive));
     child.kill().unwrap();
     child.wait().unwrap();
-    // A run of another test may clean up already when it starts; what counts is that nothing is left.
+    // A run of another test may have cleaned up already; the test requires only that nothing is left.
     let cleaned = rcs_run(&["clean"]);
     assert_eq!(cleaned.status.code(), Some(0));
     assert_eq!(executive_runs(child.id()), 0);
@@ -779,9 +779,9 @@ fn wait_for(mut condition: impl FnMut() -> bool) {
     }
 }
 
-/// The shipped place of the arm is one from which it does all jobs; a place nearer to the parts is not.
+/// The arm does all jobs from its shipped place, but not from a place nearer to the parts.
 #[test]
-fn the_reach_of_another_robot_is_checked_pose_by_pose_and_way_by_way() {
+fn reach_check_covers_every_pose_and_motion() {
     let check = |robot: &str| {
         let output = rcs_run(&["check", "--json", "--robot", robot]);
         let result: Value = serde_json::from_slice(&output.stdout).expect("JSON");

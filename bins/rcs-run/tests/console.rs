@@ -1,4 +1,4 @@
-//! Standard output and standard error that go away: a tool ends quietly, and a run goes on.
+//! Loss of standard output and standard error: a tool ends quietly, and a run continues.
 
 use std::{
     fs::File,
@@ -12,7 +12,7 @@ use rustix::pty;
 
 use crate::common::command;
 
-/// A pipe whose reader has gone, as in `rcs-run | head`.
+/// A pipe whose reader has closed it, as in `rcs-run | head`.
 fn closed_pipe() -> Stdio {
     let (reader, writer) = io::pipe().unwrap();
     drop(reader);
@@ -44,7 +44,7 @@ fn closed_terminal() -> Stdio {
 /// All ways to lose a stream.
 const LOST: [fn() -> Stdio; 3] = [closed_pipe, full, closed_terminal];
 
-/// A job that fails: the sentence about it goes to standard error.
+/// A job that fails, with a sentence on standard error.
 const FAILS: &str = "** tray UNIT_1 4 LINKBAR1_BH 0 0 0\n** tray UNIT_1 4 LINKBAR1_BH 0 0 0\n";
 
 /// A run into a log in `place`, with the streams as set by `streams`, has the status and a log with its end.
@@ -67,7 +67,7 @@ fn text(bytes: &[u8]) -> String {
 }
 
 #[test]
-fn a_run_continues_without_standard_error() {
+fn run_continues_without_standard_error() {
     let place = tempfile::tempdir().unwrap();
     let job = place.path().join("fails.job");
     std::fs::write(&job, FAILS).unwrap();
@@ -86,7 +86,7 @@ fn a_run_continues_without_standard_error() {
 }
 
 #[test]
-fn a_terminal_that_is_closed_in_mid_run_does_not_end_the_run() {
+fn closed_terminal_does_not_end_the_run() {
     let place = tempfile::tempdir().unwrap();
     let (master, slave) = terminal();
     let log = place.path().join("run.mcap");
@@ -103,7 +103,7 @@ fn a_terminal_that_is_closed_in_mid_run_does_not_end_the_run() {
     assert!(record::Log::open(&log).unwrap().complete);
 }
 
-/// What a program says on standard error whose standard output is lost.
+/// The standard error of a program whose standard output is lost.
 fn without_output(arguments: &[&str], lost: Stdio) -> Output {
     command(arguments).stdout(lost).stderr(Stdio::piped()).spawn().unwrap().wait_with_output().unwrap()
 }
@@ -121,7 +121,7 @@ const TOOLS: [&[&str]; 9] = [
 ];
 
 #[test]
-fn a_tool_without_a_reader_ends_quietly() {
+fn tool_without_a_reader_ends_quietly() {
     for arguments in TOOLS {
         let with_reader = command(arguments).output().unwrap();
         let output = without_output(arguments, closed_pipe());
@@ -131,7 +131,7 @@ fn a_tool_without_a_reader_ends_quietly() {
 }
 
 #[test]
-fn an_answer_that_finds_no_room_is_an_error_in_words() {
+fn answer_on_a_full_disk_is_an_error() {
     for arguments in TOOLS {
         let output = without_output(arguments, full());
         assert_eq!(output.status.code(), Some(2), "{arguments:?}");
@@ -144,7 +144,7 @@ fn an_answer_that_finds_no_room_is_an_error_in_words() {
 }
 
 #[test]
-fn a_run_without_a_reader_of_its_result_has_its_own_status() {
+fn run_without_a_reader_keeps_its_status() {
     let place = tempfile::tempdir().unwrap();
     assert_run(place.path(), &["--ticks", "40"], 0, |command| command.stdout(closed_pipe()));
     assert_run(place.path(), &["--ticks", "40"], 0, |command| {

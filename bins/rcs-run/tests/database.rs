@@ -1,4 +1,4 @@
-//! The Data System behind a run: items in a file that outlives it, and that other programs can read.
+//! The Data System of a run: items in a file that remains after the run, and that other programs can read.
 
 use std::{
     fs,
@@ -51,7 +51,7 @@ impl Place {
     }
 }
 
-/// The blank of [`FETCH`]: it stands in the vise, and the robot has it yet.
+/// The blank of [`FETCH`]: it is in the vise, and the robot still holds it.
 fn in_hand() -> Item {
     Item {
         number: "17".into(),
@@ -64,7 +64,7 @@ fn in_hand() -> Item {
 }
 
 #[test]
-fn the_file_gives_the_place_of_every_part() {
+fn item_file_has_the_place_of_every_part() {
     let place = Place::new();
     let output = place.run(&format!("{CONNECT}{FETCH}"));
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
@@ -84,12 +84,12 @@ fn without_startup_no_update_is_sent() {
 #[test]
 fn sent_updates_survive_a_killed_run() {
     let place = Place::new();
-    // An hour and more of waiting, some seconds of it in fast clock.
+    // More than an hour of waiting: some seconds in fast clock.
     let job = format!("{CONNECT}{FETCH}{}", "** wait 36000\n".repeat(100));
     let mut run = place.command(&job, &[]).stdout(Stdio::null()).spawn().unwrap();
     for _ in 0..600 {
         thread::sleep(Duration::from_millis(100));
-        // The run makes the file and its tables, and then the journal; until then there is nothing to ask.
+        // The run makes the file and its tables, and then the journal. Before that, queries have no answer.
         if place.file("items.db-wal").exists()
             && Store::open(&place.file("items.db"))
                 .is_ok_and(|store| !store.items().unwrap_or_default().is_empty())
@@ -105,7 +105,7 @@ fn sent_updates_survive_a_killed_run() {
 }
 
 #[test]
-fn a_file_of_another_kind_is_refused_before_the_first_tick() {
+fn file_of_another_kind_is_refused_before_the_run() {
     let place = Place::new();
     fs::write(place.file("items.db"), "these are holiday pictures under a wrong name").unwrap();
     let output = place.run(CONNECT);
@@ -114,9 +114,9 @@ fn a_file_of_another_kind_is_refused_before_the_first_tick() {
     assert!(error.contains("the Data System cannot keep its items") && error.contains("items.db"), "{error}");
 }
 
-/// Before, the second run closed the session of the first, whose job failed.
+/// In an earlier version the second run closed the session of the first, whose job failed.
 #[test]
-fn a_second_run_with_the_same_file_is_refused_and_the_first_continues() {
+fn second_run_with_the_same_file_is_refused() {
     let place = Place::new();
     let first = place
         .command(&format!("{CONNECT}{FETCH}"), &["--clock", "5x", "--operator", "none"])

@@ -1,4 +1,5 @@
-//! The program with a robot at a serial port: over a pseudo-terminal, with the controller of [`depc`] behind it.
+//! The program with a robot at a serial port: a pseudo-terminal, with the controller of [`depc`] at its other
+//! end.
 
 mod common;
 
@@ -51,7 +52,7 @@ impl Place {
     }
 }
 
-/// A robot that is where it is told to be.
+/// A robot that is always at its commanded position.
 struct Exact {
     joints: Joints,
     at: Plate,
@@ -75,7 +76,7 @@ impl Robot for Exact {
     }
 }
 
-/// A controller behind a pseudo-terminal. Dropped, it hangs up: the cable is pulled.
+/// A controller at the other end of a pseudo-terminal. Dropping it hangs up, as a pulled cable does.
 struct Peer {
     stop: Arc<AtomicBool>,
     thread: Option<JoinHandle<(ControllerState, Exact)>>,
@@ -83,11 +84,11 @@ struct Peer {
 
 #[derive(Clone, Copy, Default)]
 struct Manner {
-    /// It answers after this time, or never.
+    /// Time until it answers, or `None` if it never does.
     delay: Option<Duration>,
-    /// The arm stands so many hundredths of an inch above HOME.
+    /// Height of the arm above HOME, 0.01 in.
     raised: i16,
-    /// It is powered up so much later.
+    /// Time until it is powered up.
     late: Duration,
 }
 
@@ -98,11 +99,11 @@ impl Peer {
     }
 
     fn plug_with(link: &Path, manner: Manner) -> Self {
-        // A program that another test starts meanwhile must not inherit it, or it would not hang up.
+        // A program that another test starts meanwhile must not inherit it; otherwise it would not hang up.
         let master = openpt(OpenptFlags::RDWR | OpenptFlags::NOCTTY | OpenptFlags::CLOEXEC).unwrap();
         grantpt(&master).unwrap();
         unlockpt(&master).unwrap();
-        // A cable has no echo: what is sent before the port is open would come back.
+        // A cable has no echo. Bytes sent before the port is open would otherwise return.
         let mut settings = tcgetattr(&master).unwrap();
         settings.make_raw();
         tcsetattr(&master, OptionalActions::Now, &settings).unwrap();
@@ -115,7 +116,7 @@ impl Peer {
         Self { stop, thread: Some(thread) }
     }
 
-    /// Pull the cable; the state in which the controller was.
+    /// Pull the cable. Returns the last state of the controller.
     fn pull(self) -> ControllerState {
         self.pull_robot().0
     }
@@ -154,7 +155,7 @@ fn control(mut master: File, manner: Manner, stop: &AtomicBool) -> (ControllerSt
         inputs.rx = LinkBytes::default();
         match master.read(&mut inputs.rx.bytes) {
             Ok(count) => inputs.rx.length = u8::try_from(count).unwrap(),
-            // Nothing there, or no process has the port open.
+            // No data, or no process has the port open.
             Err(error) => assert!(error.kind() == ErrorKind::WouldBlock || error.raw_os_error() == Some(5)),
         }
         // Silence is a step of its own: it ends a torn frame.
@@ -192,7 +193,7 @@ fn link_test(place: &Place, seconds: &str) -> (Output, Value) {
     (output, tally)
 }
 
-/// Play the linkbar with the robot of a place, for so many ticks.
+/// Play the linkbar with the robot of a place for a number of ticks.
 fn linkbar(place: &Place, ticks: &str) -> (Output, Value) {
     let output = rcs_run(&[
         "linkbar",
@@ -213,11 +214,11 @@ fn linkbar(place: &Place, ticks: &str) -> (Output, Value) {
 }
 
 const PROMPT: Option<Duration> = Some(Duration::from_millis(2));
-/// How often a test on the 40 ms grid is begun. A machine that has other things to do may hold up a frame;
-/// what is wrong is wrong every time.
+/// Attempts of a test on the 40 ms grid. Other load may delay a frame in one attempt; a real error recurs in
+/// each.
 const ATTEMPTS: u32 = 5;
 
-/// Try something on the 40 ms grid: once beside other tests of this file, then with nothing else of it beside.
+/// Try something on the 40 ms grid: first concurrently with other tests of this file, then alone.
 fn on_the_grid(attempt: impl Fn()) {
     static ALONE: RwLock<()> = RwLock::new(());
     let is_held_up = || panic::catch_unwind(AssertUnwindSafe(&attempt)).is_err();
@@ -233,7 +234,7 @@ fn on_the_grid(attempt: impl Fn()) {
 }
 
 #[test]
-fn a_link_that_answers_is_good() {
+fn answering_link_is_good() {
     on_the_grid(|| {
         let place = Place::new();
         let peer = Peer::plug(&place.port(), PROMPT);
@@ -255,7 +256,7 @@ fn a_link_that_answers_is_good() {
 }
 
 #[test]
-fn the_dump_shows_every_frame() {
+fn dump_shows_every_frame() {
     on_the_grid(|| {
         let place = Place::new();
         let _peer = Peer::plug(&place.port(), PROMPT);
@@ -269,7 +270,7 @@ fn the_dump_shows_every_frame() {
 }
 
 #[test]
-fn a_dump_without_a_reader_ends_quietly() {
+fn dump_without_a_reader_ends_quietly() {
     on_the_grid(|| {
         let place = Place::new();
         let _peer = Peer::plug(&place.port(), PROMPT);
@@ -288,7 +289,7 @@ fn a_dump_without_a_reader_ends_quietly() {
 }
 
 #[test]
-fn a_link_that_is_late_is_not_usable() {
+fn late_link_is_not_usable() {
     on_the_grid(|| {
         let place = Place::new();
         let _peer = Peer::plug(&place.port(), Some(Duration::from_millis(60)));
@@ -300,7 +301,7 @@ fn a_link_that_is_late_is_not_usable() {
 }
 
 #[test]
-fn a_port_without_peer_is_not_a_link() {
+fn port_without_peer_has_no_link() {
     on_the_grid(|| {
         let place = Place::new();
         let _peer = Peer::plug(&place.port(), None);
@@ -314,7 +315,7 @@ fn a_port_without_peer_is_not_a_link() {
 }
 
 #[test]
-fn an_unplugged_port_is_reopened() {
+fn unplugged_port_is_reopened() {
     on_the_grid(|| {
         let place = Place::new();
         let first = Peer::plug(&place.port(), PROMPT);
@@ -323,7 +324,7 @@ fn an_unplugged_port_is_reopened() {
             thread::sleep(Duration::from_millis(1500));
             first.pull();
             thread::sleep(Duration::from_millis(300));
-            // Meanwhile the arm was led elsewhere: the old position would be a leap of 2 in, and a warning.
+            // Meanwhile the arm was moved elsewhere: the old position would be a jump of 2 in, and a warning.
             Peer::plug_with(&link, Manner { delay: PROMPT, raised: 200, ..Manner::default() })
         });
         let (output, tally) = link_test(&place, "6");
@@ -335,7 +336,7 @@ fn an_unplugged_port_is_reopened() {
 }
 
 #[test]
-fn the_linkbar_begins_over_a_port_in_real_time() {
+fn linkbar_begins_over_a_port_in_real_time() {
     on_the_grid(|| {
         let place = Place::new();
         let peer = Peer::plug(&place.port(), PROMPT);
@@ -351,10 +352,10 @@ fn the_linkbar_begins_over_a_port_in_real_time() {
     });
 }
 
-/// LOAD (IV.2.4) beside the ticks of a robot at a port: the block is read and checked while frames go on, and the next
-/// command uses it.
+/// LOAD (IV.2.4) during the ticks of a robot at a port: the block is read and checked while frames continue,
+/// and the next command uses it.
 #[test]
-fn a_block_is_loaded_while_the_link_to_a_robot_runs() {
+fn block_is_loaded_while_the_link_runs() {
     on_the_grid(|| {
         let place = Place::new();
         let own = place.0.path().join("data");
@@ -393,7 +394,7 @@ fn a_block_is_loaded_while_the_link_to_a_robot_runs() {
         fs::write(&commands, text.replace(safe, &longer)).unwrap();
         ask("load 16000 863", "generation 1");
         ask("line-load 863 5 5", "command ");
-        // A block with an error is told, and changes nothing.
+        // A block with an error is reported, and changes nothing.
         fs::write(&commands, text.replace(safe, "== NONSENSE\n")).unwrap();
         ask("load 16000 863", "the task data have errors");
         ask("line-load 863 5 5", "command ");
@@ -435,9 +436,9 @@ fn send(child: &Child, signal: Signal) {
     kill_process(Pid::from_child(child), signal).unwrap();
 }
 
-/// Whatever ends a run, the stream of points ends at rest.
+/// The stream of points ends at rest, however a run ends.
 #[test]
-fn a_signal_brings_the_robot_to_rest_before_the_run_ends() {
+fn signal_stops_the_robot_before_the_run_ends() {
     thread::scope(|all| {
         for (signal, word) in [(Signal::TERM, "SIGTERM"), (Signal::INT, "SIGINT"), (Signal::HUP, "SIGHUP")] {
             all.spawn(move || on_the_grid(|| a_signal_brings_it_to_rest(signal, word)));
@@ -461,7 +462,7 @@ fn a_signal_brings_it_to_rest(signal: Signal, word: &str) {
 }
 
 #[test]
-fn the_last_tick_of_a_run_over_a_port_is_followed_by_a_ramp() {
+fn last_tick_over_a_port_is_followed_by_a_ramp() {
     on_the_grid(|| {
         let place = Place::new();
         let peer = Peer::plug(&place.port(), PROMPT);
@@ -490,9 +491,9 @@ fn two_signals_within_a_second_stop_the_run_in_order() {
     });
 }
 
-/// The host first, the robot controller 3 s later.
+/// The robot controller starts 3 s after the host.
 #[test]
-fn a_robot_controller_that_is_powered_up_later_is_waited_for() {
+fn run_waits_for_a_robot_controller_powered_up_later() {
     let late = Manner { delay: PROMPT, late: Duration::from_secs(3), ..Manner::default() };
     let linkbar = |place: &Place, wait: &str| {
         let robot = format!("{},silence=1", place.robot());
@@ -514,7 +515,7 @@ fn a_robot_controller_that_is_powered_up_later_is_waited_for() {
 }
 
 #[test]
-fn a_pulled_cable_ends_the_run_with_its_reason() {
+fn pulled_cable_ends_the_run_with_its_reason() {
     on_the_grid(|| {
         let place = Place::new();
         let peer = Peer::plug(&place.port(), PROMPT);
@@ -570,7 +571,7 @@ fn injected_faults_are_counted_and_survived() {
     let output = run();
     let result = json(&output);
     assert_eq!(output.status.code(), Some(0), "{result} {}", last_words(&output));
-    // Without a rate a fault strikes every byte of its tick.
+    // Without a rate, a fault strikes every byte of its tick.
     assert_eq!(result["faults"]["kinds"]["flip"], 32, "{result}");
     assert_eq!(json(&run())["digest"], result["digest"], "the same plan gives the same run");
 }

@@ -1,4 +1,4 @@
-//! Files that are none, limits of files, and signals: a run refuses in words, or ends in order.
+//! Special files, file size limits, and signals: a run is refused with a message, or ends in order.
 
 use std::{
     fs,
@@ -16,13 +16,13 @@ use rustix::{
 use crate::common::data::copy;
 use crate::common::{command, root};
 
-/// What the program says on standard error, on one line.
+/// The program's standard error, on one line.
 fn said(output: &Output) -> String {
     let said = String::from_utf8_lossy(&output.stderr);
     said.split_whitespace().collect::<Vec<_>>().join(" ")
 }
 
-/// The end of a program that must end by itself: one that waits for a FIFO never would.
+/// The end of a program that must end by itself; one that waits for a FIFO never would.
 fn ended(mut child: Child) -> Output {
     let started = Instant::now();
     while child.try_wait().unwrap().is_none() {
@@ -45,7 +45,7 @@ fn fifo(path: &Path) -> &str {
 }
 
 #[test]
-fn fifos_and_devices_are_refused_in_words() {
+fn fifos_and_devices_are_refused_with_a_message() {
     let place = tempfile::tempdir().unwrap();
     let pipe = fifo(&place.path().join("pipe")).to_owned();
     for (option, file, found) in [
@@ -78,14 +78,14 @@ fn fifos_and_devices_are_refused_in_words() {
 }
 
 #[test]
-fn a_log_to_the_null_device_is_none() {
+fn log_to_the_null_device_is_not_written() {
     let output = run(&["--log", "/dev/null", "--ticks", "10", "--json"]);
     let result: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
     assert_eq!((output.status.code(), &result["log"]), (Some(0), &serde_json::Value::Null));
 }
 
 #[test]
-fn a_link_that_leads_back_is_followed_once() {
+fn cyclic_link_is_followed_once() {
     let place = tempfile::tempdir().unwrap();
     let data = place.path().join("data");
     copy(&root().join("data"), &data);
@@ -96,7 +96,7 @@ fn a_link_that_leads_back_is_followed_once() {
 }
 
 #[test]
-fn a_limit_of_files_ends_the_log_and_not_the_run() {
+fn file_size_limit_ends_the_log_but_not_the_run() {
     let place = tempfile::tempdir().unwrap();
     let log = place.path().join("run.mcap");
     // Blocks of 512 bytes or of 1024: more than the head of the log, less than all of it.
@@ -114,7 +114,7 @@ fn a_limit_of_files_ends_the_log_and_not_the_run() {
 }
 
 #[test]
-fn log_whose_head_exceeds_the_limit_of_files_is_not_begun() {
+fn log_head_above_the_size_limit_is_not_begun() {
     let place = tempfile::tempdir().unwrap();
     let log = place.path().join("run.mcap");
     let output = Command::new("sh")
@@ -128,7 +128,7 @@ fn log_whose_head_exceeds_the_limit_of_files_is_not_begun() {
 }
 
 #[test]
-fn printed_commands_have_one_word_for_each_odd_path() {
+fn printed_commands_quote_odd_paths() {
     let place = tempfile::tempdir().unwrap();
     let name = "a\nlog\tof \u{202e}mine.mcap";
     let log = place.path().join(name);
@@ -143,7 +143,7 @@ fn printed_commands_have_one_word_for_each_odd_path() {
 }
 
 #[test]
-fn a_hang_up_ends_a_run_in_order() {
+fn hang_up_ends_a_run_in_order() {
     let place = tempfile::tempdir().unwrap();
     for boards in ["one", "split"] {
         let log = place.path().join(boards).with_extension("mcap");

@@ -1,7 +1,7 @@
-//! A robot of the caller for the linkbar job: `cargo run --release -p runtime --example own_robot`.
+//! A caller's own robot for the linkbar job: `cargo run --release -p runtime --example own_robot`.
 //!
-//! The robot reaches each point at once, and measures its path. A real one would forward the points, and report its
-//! position. The rest of the cell is simulated: the simulated arm follows the robot.
+//! The robot reaches each point at once, and measures its path. A real one would forward the points and report
+//! its position. The rest of the cell is simulated, and the simulated arm follows the robot.
 
 #![expect(clippy::print_stdout, reason = "an example prints what it does")]
 

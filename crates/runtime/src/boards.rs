@@ -1,4 +1,4 @@
-//! Board 0's side of `--boards`: the ladder of this process, or boards in processes of their own.
+//! Board 0's side of `--boards`: the ladder of this process, or boards in other processes.
 
 use std::{
     process::{Child, Command, Stdio},
@@ -27,13 +27,13 @@ use crate::{
     observer::Observer,
 };
 
-/// Time limit until the boards that this process starts are ready: they load the task data first.
+/// Time limit for the start of the boards by this process, including the load of the task data.
 const STARTING: Duration = Duration::from_secs(60);
 
 pub enum Controller {
-    /// All of them in this process.
+    /// All boards in this process.
     One(Box<Present>),
-    /// Boards in processes of their own.
+    /// Boards in other processes.
     Split(Box<Coordinator>),
 }
 
@@ -58,7 +58,7 @@ impl Levels<TaskData<'_>> for Controller {
         }
     }
 
-    /// Board 0 has no processes to warm up; the other boards wake with the pulse and not before it.
+    /// Board 0 has no processes to warm up. The other boards wake with the pulse, not before it.
     fn shadow(&self) -> Option<Box<Self>> {
         match self {
             Self::One(present) => present.shadow().map(Self::One).map(Box::new),
@@ -81,11 +81,11 @@ impl Levels<TaskData<'_>> for Controller {
 }
 
 impl Controller {
-    /// Start the boards of the configuration; all boards are ready when this returns.
+    /// Start the boards of the configuration. All boards are ready when this returns.
     ///
     /// # Errors
-    /// [`StartError::Interrupted`] if the run is interrupted before the boards are there, [`StartError::Boards`] if a
-    /// board does not become ready.
+    /// [`StartError::Interrupted`] if the run is interrupted before the boards are ready,
+    /// [`StartError::Boards`] if a board does not become ready.
     pub fn start(
         config: &RunConfig,
         name: &RunName,
@@ -126,7 +126,7 @@ impl Controller {
         Ok(Self::Split(Box::new(coordinator)))
     }
 
-    /// Wait for a board that takes the place of a lost one: a board that was started by hand can be replaced by hand.
+    /// Wait for a replacement of a lost board. A board that was started by hand can be replaced by hand.
     /// Returns false if the run must end.
     pub fn replace(&mut self, lost: &Lost, config: &RunConfig, observer: &mut dyn Observer) -> bool {
         let Self::Split(coordinator) = self else { return false };
@@ -161,7 +161,7 @@ impl Controller {
         }
     }
 
-    /// Boards without all real-time settings.
+    /// Boards that lack some real-time settings.
     #[must_use]
     pub fn unpunctual(&self) -> Vec<Board> {
         match self {
@@ -185,7 +185,7 @@ fn patience(config: &RunConfig) -> Duration {
     Duration::from_secs(config.wait.into())
 }
 
-/// Print which boards have joined, have left, and are missing.
+/// Print which boards have joined, have left, or are missing.
 fn announce(event: BoardEvent, missing: &[Board], observer: &mut dyn Observer) {
     let missing: Vec<String> = missing.iter().map(|board| board.number().to_string()).collect();
     let rest = match missing.as_slice() {
@@ -202,15 +202,15 @@ fn announce(event: BoardEvent, missing: &[Board], observer: &mut dyn Observer) {
     }
 }
 
-/// Data that a board must have in common with the run.
+/// Data that a board must share with the run.
 #[must_use]
 pub fn fingerprint(store: &Store, job: &Job) -> Fingerprint {
     let reloads = job.reloads.iter().map(|reload| &reload.source);
     Fingerprint::of(crate::COMMIT, store.sources(), std::iter::once(job.source()).chain(reloads))
 }
 
-/// Start the process of a board. Its messages go to standard error, as those of this process do; standard output is for
-/// the result.
+/// Start the process of a board. Its messages go to standard error, like those of this process; standard output
+/// is for the result.
 fn spawn(config: &RunConfig, name: &RunName, board: Board) -> std::io::Result<Child> {
     let mut command = Command::new(&config.program);
     command.args(["board", &board.number().to_string(), "--run", name.as_str()]);
@@ -227,7 +227,7 @@ fn spawn(config: &RunConfig, name: &RunName, board: Board) -> std::io::Result<Ch
         .spawn()
 }
 
-/// The same as a command line for a terminal.
+/// The same command line for a terminal.
 fn command_line(config: &RunConfig, name: &RunName, board: Board) -> String {
     let job = config.played().map_or_else(|| "--commanded".to_owned(), shell::path);
     format!("rcs-run board {} --run {name} --data {} {job}", board.number(), shell::path(&config.data))

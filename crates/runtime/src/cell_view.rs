@@ -24,9 +24,9 @@ pub struct View {
 }
 
 impl View {
-    /// Fill the view with the cell after `tick`. `warning` is the last warning on the screen of the robot controller;
-    /// `place` is the number of the job's line that was begun last and the number of its lines; `steps` are all that have
-    /// begun.
+    /// Fill the view with the cell after `tick`. `warning` is the last warning on the screen of the robot
+    /// controller; `place` is the number of the job's last begun line and the number of its lines; `steps` are
+    /// all begun steps.
     pub fn look(
         &mut self,
         tick: Tick,
@@ -58,7 +58,7 @@ impl View {
     }
 }
 
-/// The console of the robot controller after `tick`; `before` is the last one.
+/// The console of the robot controller after `tick`; `before` is the previous one.
 pub fn controller(
     t3: &T3Controller,
     warning: Option<&Failure>,
@@ -66,7 +66,7 @@ pub fn controller(
     before: &ControllerView,
 ) -> ControllerView {
     let stage = t3.stage();
-    // While FAULT RESET is lit, the screen shows its error instead of anything before.
+    // While FAULT RESET is lit, the screen shows its error instead of older messages.
     let shown = match t3.error() {
         Some(error) if before.screen.as_str() == error => (before.screen_tick, before.screen),
         Some(error) => (tick, Text::clipped(error)),
@@ -129,7 +129,8 @@ fn job((begun, lines): (usize, usize), steps: &[BegunStep]) -> JobView {
     }
 }
 
-/// Lateness of the ticks. The statistics over all ticks take too long for every tick: they are updated once a second.
+/// Lateness of the ticks. The statistics over all ticks take too long for every tick, so they are updated once
+/// per second.
 fn lateness(before: LatenessView, tick: Tick, pace: &Pace) -> LatenessView {
     let last = pace.last_late().as_secs_f64() * 1e6;
     match pace.late() {

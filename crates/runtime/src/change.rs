@@ -1,7 +1,8 @@
 //! Changes of a run between two ticks: experiments with a recorded run ([`crate::repeat`]).
 //!
-//! A change takes effect in the next tick, and is written to the log. Changed task data are a new generation, so that a
-//! replay of the log finds them; unlike those of a line `** load` they do not wait for the end of a command.
+//! A change takes effect in the next tick, and is written to the log. Changed task data are a new generation,
+//! so that a replay of the log finds them. Unlike those of a line `** load`, they do not wait for the end of a
+//! command.
 
 use plant::fault::{What, text::FaultFile};
 use taskdata::load::{
@@ -24,7 +25,7 @@ pub enum ChangeError {
     /// The job is at its last line.
     #[error("the job sends no command after tick {0}: name an earlier tick")]
     NoCommand(u64),
-    /// The line to the robot has faults already.
+    /// The line to the robot already has faults.
     #[error("the line to the robot has faults already: leave those of the line out of the file")]
     Line,
     #[error(
@@ -40,19 +41,19 @@ impl From<Box<Diagnostics>> for ChangeError {
 }
 
 impl Run {
-    /// Add these blocks to the task data from the next tick on. An entry replaces an existing one of the same name,
-    /// also in the middle of a command.
+    /// Add these blocks to the task data from the next tick on. An entry replaces an existing one of the same
+    /// name, also in the middle of a command.
     ///
     /// # Errors
-    /// [`ChangeError::Data`], [`ChangeError::Reload`]; then nothing has changed.
+    /// [`ChangeError::Data`], [`ChangeError::Reload`]. The run is then unchanged.
     pub fn change_data(&mut self, source: Source) -> Result<(), ChangeError> {
         let generations = self.closed.generations();
         let reloads = insert(generations.current(), generations.reloads(), generations.done(), &source)?;
         if self.use_reloads(reloads) { Ok(()) } else { Err(ChangeError::Reload) }
     }
 
-    /// Add reloads from the next tick on. Returns false, and changes nothing, if a reload of the job waits for the end
-    /// of a command.
+    /// Add reloads from the next tick on. Returns false, and changes nothing, if a reload of the job waits for
+    /// the end of a command.
     pub(crate) fn use_reloads(&mut self, reloads: Vec<Reload>) -> bool {
         let inserted = self.closed.generations_mut().insert(reloads);
         if inserted {
@@ -61,10 +62,10 @@ impl Run {
         inserted
     }
 
-    /// Enable the faults of a file from the next tick on, those of the cell and those of the line.
+    /// Enable the faults of a file, in the cell and on the line, from the next tick on.
     ///
     /// # Errors
-    /// [`ChangeError::Displaced`], [`ChangeError::Line`]; then nothing has changed.
+    /// [`ChangeError::Displaced`], [`ChangeError::Line`]. The run is then unchanged.
     pub fn add_faults(&mut self, faults: &FaultFile, seed: u64) -> Result<(), ChangeError> {
         let moves = faults.cell.faults.iter().find(|fault| matches!(fault.what, What::PedestalMoved { .. }));
         if let Some(fault) = moves {

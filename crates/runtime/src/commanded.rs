@@ -1,15 +1,15 @@
-//! A run in which a workstation controller in another process commands from the start, and an operator can take the
-//! command and give it back (IV.4.1).
+//! A run in which a workstation controller in another process commands from the start, and an operator can take
+//! the command and return it (IV.4.1).
 //!
 //! ```text
-//!                        `stand-alone`: no command is executed; `now`: PAUSE takes its place
+//!                        `stand-alone`: no command is executed; `now`: PAUSE replaces it
 //!   workstation controller ─────────────────────────────────────────────────────────────► operator
 //!            ▲                                                                                │
 //!            └──── `workstation`: robot at HOME, PAUSE last, Data System connected ◄──────────┘
 //! ```
 //!
-//! The numbers of the commands form one sequence. While an operator commands, the workstation controller reads an
-//! initialized status mailbox, like one that has connected too early, and its commands are not executed.
+//! The numbers of the commands form one sequence. While an operator commands, the workstation controller reads
+//! an initialized status mailbox, like one that has connected too early, and its commands are not executed.
 
 use closed_loop::{JobPlayer, workstation::SimulatedWorkstation};
 use interfaces::{CommonMemory, TaskOutputs, hws::HwsReport};
@@ -30,7 +30,7 @@ use crate::{
 /// A workstation controller in another process, which an operator can replace temporarily.
 pub struct Commanded {
     pub(crate) outside: OutsideWorkstation,
-    /// Sends the commands of the operator; `None` while the workstation controller commands.
+    /// Sends the operator's commands; `None` while the workstation controller commands.
     alone: Option<JobPlayer>,
     before: Vec<BegunStep>,
 }
@@ -48,7 +48,7 @@ impl Commanded {
         self.alone.is_some()
     }
 
-    /// The emulator that sends the commands of an operator, if an operator commands.
+    /// The emulator that sends the operator's commands, if an operator commands.
     pub fn job_under_way(&mut self) -> Option<&mut Hwsc> {
         self.alone.as_mut().map(|emulator| &mut emulator.hwsc)
     }

@@ -31,7 +31,7 @@ pub const MOST_SPEED: u8 = 20;
 pub struct RunConfig {
     /// Directory of task data, jobs and cell description.
     pub data: PathBuf,
-    /// Name of a job in the data directory, or a path. Not used if another process commands.
+    /// Name of a job in the data directory, or a path. Unused if another process commands.
     pub job: String,
     /// Ticks as fast as possible, or one every 40 ms.
     pub clock: ClockKind,
@@ -40,11 +40,11 @@ pub struct RunConfig {
     /// Reaction to skipped slots of the 40 ms grid.
     #[serde(with = "as_text")]
     pub overrun: Policy,
-    /// CPU core for the real clock; `None` for the highest number that the process may use.
+    /// CPU core for the real clock; `None` for the highest core that the process may use.
     pub cpu: Option<usize>,
     #[serde(with = "as_text")]
     pub robot: RobotConfig,
-    /// Couplers between the controller and the devices of the cell; `None` for none.
+    /// Couplers between the controller and the devices of the cell, if any.
     #[serde(with = "as_text::option")]
     pub field: Option<FieldConfig>,
     /// File with faults of the cell and of the line to the simulated robot.
@@ -63,10 +63,10 @@ pub struct RunConfig {
     pub seed: u64,
     #[serde(with = "as_text")]
     pub log: LogTarget,
-    /// Size after which the run begins a new log, and number of those that are kept; `None` for one log.
+    /// Size after which the run begins a new log, and number of logs that are kept; `None` for one log.
     #[serde(skip)]
     pub log_limit: Option<LogLimit>,
-    /// SQLite file of the Data System's items; without it they are in memory and lost at the end.
+    /// SQLite file of the Data System's items. Without it they are in memory and lost at the end.
     #[serde(alias = "data-base")]
     pub database: Option<PathBuf>,
     /// Address at which neighbours in other processes connect.
@@ -74,18 +74,19 @@ pub struct RunConfig {
     pub network: Option<Address>,
     #[serde(with = "as_text::list")]
     pub outside: Vec<Role>,
-    /// Begin under stand-alone command, with the job, although the workstation controller is another process (IV.4.1).
+    /// Begin under stand-alone command, with the job, although the workstation controller is another process
+    /// (IV.4.1).
     pub stand_alone: bool,
     /// File that keeps updates until a Data System in another process receives them.
     pub outbox: PathBuf,
     /// Stop after this number of ticks, unless the job ends before.
     pub ticks: Option<u64>,
-    /// After a command that ends with an error, send PAUSE and the same command again, at most this number of times per
-    /// line of the job.
+    /// After a command that ends with an error, send PAUSE and the same command again, at most this number of
+    /// times per line of the job.
     pub retry: u32,
     /// Access of operators to the run.
     pub operator: OperatorAccess,
-    /// A log whose operator's inputs are replayed, each in its tick; no operator can connect then.
+    /// A log whose operator inputs are replayed, each in its tick. Operators cannot connect then.
     pub inputs: Option<PathBuf>,
     /// Make the job wait for an operator before its first line.
     pub stand_by: bool,
@@ -93,17 +94,17 @@ pub struct RunConfig {
     pub unchecked: bool,
     /// Port of 127.0.0.1 for viewers of the run, 0 for any free port; needs a log.
     pub live: Option<u16>,
-    /// Origins of web pages that may connect as viewers, besides Foxglove's.
+    /// Origins of web pages that may connect as viewers, in addition to Foxglove's.
     #[serde(with = "as_text::list")]
     pub live_origins: Vec<Origin>,
     pub remarks: BTreeMap<String, String>,
     /// Share the buffers with other programs.
     pub shared_memory: bool,
-    /// Called to end the process if the set-up of shared memory takes too long (`executive::memory::limit`), before
-    /// anything moves; `None` for no limit.
+    /// Called to end the process if the set-up of shared memory takes too long (`executive::memory::limit`),
+    /// before the robot moves; `None` for no limit.
     #[serde(skip)]
     pub on_stuck: Option<OnStuck>,
-    /// Ends the run when it is set; the robot is brought to rest first.
+    /// Ends the run when it is set. The robot is first brought to rest.
     #[serde(skip)]
     pub stop: Arc<AtomicBool>,
 }
@@ -168,7 +169,7 @@ pub struct FieldConfig {
     pub mapping: PathBuf,
 }
 
-/// What comes before the name of a mapping whose couplers are emulated in simulated time.
+/// Prefix of a mapping whose couplers are emulated in simulated time.
 const SIMULATED: &str = "sim:";
 
 impl fmt::Display for FieldConfig {
@@ -230,12 +231,12 @@ pub enum RobotKind {
     /// A robot controller at a serial port.
     Serial(SerialSettings),
     Egm(Box<EgmOptions>),
-    /// A robot of the caller of the library ([`Run::with_robot`](crate::Run::with_robot)).
+    /// A robot of the library's caller ([`Run::with_robot`](crate::Run::with_robot)).
     Own,
 }
 
 impl RobotKind {
-    /// True if the robot needs real time: it cannot follow simulated time.
+    /// True if the robot cannot follow simulated time.
     #[must_use]
     pub fn lives_in_real_time(&self) -> bool {
         match self {
@@ -252,7 +253,8 @@ pub struct RobotConfig {
     pub kind: RobotKind,
     /// Seconds for which a controller may be silent while its DTR is on; `None` for the default.
     pub silence: Option<u16>,
-    /// Time by which the robot is expected to lag behind its points, ms; `None` for what the robot states, or 200 ms.
+    /// Time by which the robot is expected to lag behind its points, ms; `None` for the robot's own value, or
+    /// 200 ms.
     pub lag: Option<u16>,
 }
 
@@ -381,7 +383,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_log_goes_into_a_file_or_nowhere() {
+    fn log_target_parses_from_text() {
         assert_eq!("none".parse(), Ok(LogTarget::None));
         assert_eq!("run.mcap".parse(), Ok(LogTarget::File("run.mcap".into())));
         let error = "off".parse::<LogTarget>().expect_err("most likely a mistake for none");
@@ -390,7 +392,7 @@ mod tests {
     }
 
     #[test]
-    fn a_robot_is_simulated_or_at_a_port() {
+    fn robot_parses_from_text() {
         let robot = |text: &str| text.parse::<RobotConfig>();
         assert_eq!(robot("sim").ok(), Some(RobotConfig { kind: RobotKind::Sim, silence: None, lag: None }));
         let kind = RobotKind::Serial(SerialSettings::new("/dev/ttyS0"));
@@ -417,7 +419,7 @@ mod tests {
     }
 
     #[test]
-    fn a_configuration_round_trips_and_omitted_keys_have_defaults() {
+    fn configuration_round_trips_with_defaults() {
         let config = RunConfig {
             overrun: Policy::Hold(3),
             robot: "serial:/dev/ttyS0,parity=even,silence=90".parse().unwrap(),

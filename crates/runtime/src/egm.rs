@@ -34,7 +34,7 @@ pub struct EgmPort {
     bridge: Bridge,
     outputs: BridgeOutputs,
     resolvers: Resolvers,
-    /// Joints of a T3 at the robot's last position, which determine the turns of base and roll at the next.
+    /// Joints of a T3 at the robot's last position, which determine the next turns of base and roll.
     joints: [f64; 6],
     figures: Box<Figures>,
 }
@@ -67,7 +67,8 @@ impl EgmPort {
                 let real = config.clock == ClockKind::Real;
                 let prepare = move || {
                     if real {
-                        // The run reports missing settings for its own thread; this thread gets the same ones at most.
+                        // The run reports missing settings for its own thread. This thread gets at most the
+                        // same ones.
                         let _ = realtime::raise_priority();
                     }
                 };
@@ -94,8 +95,8 @@ impl EgmPort {
         })
     }
 
-    /// Wait until the robot follows, until the time limit or an interruption. If it does not follow, the run begins,
-    /// and fails with a reason that names it.
+    /// Wait until the robot follows, until the time limit or an interruption. If it does not follow, the run
+    /// begins, and fails with a reason that names the robot.
     pub fn gather(&mut self, config: &RunConfig, observer: &mut dyn Observer) {
         let started = Instant::now();
         let limit = Duration::from_secs(config.wait.into());
@@ -136,8 +137,8 @@ impl EgmPort {
         }
     }
 
-    /// After the controller's tick: pass the host's bytes to the DEPC function, or hold the robot where it is. `exact`
-    /// is the tool frame that Prim has commanded, as T3I gets it and exactly.
+    /// After the controller's tick: pass the host's bytes to the DEPC function, or hold the robot in place.
+    /// `exact` is Prim's commanded tool frame, as T3I receives it and exactly.
     pub fn send(&mut self, tx: &LinkBytes, hold: bool, exact: Option<(WireFrame, Frame)>) {
         if let Some((wire, exact)) = exact {
             self.bridge.offer(&wire, &exact);
@@ -150,7 +151,7 @@ impl EgmPort {
         self.line.advance(u64::try_from(by.as_nanos()).unwrap_or(u64::MAX));
     }
 
-    /// Position of the robot in DEPC words; `None` outside the range of the words.
+    /// Position of the robot in DEPC words, if it is within the range of the words.
     #[must_use]
     pub fn feedback(&self) -> Option<Plate> {
         self.bridge.feedback()
@@ -162,7 +163,7 @@ impl EgmPort {
         self.bridge.trouble().map(|trouble| self.with_refusals(trouble))
     }
 
-    /// A trouble, and the refused datagrams if there are any.
+    /// A trouble, with the refused datagrams if there are any.
     fn with_refusals(&self, trouble: &str) -> String {
         match self.line.refusals() {
             refusals if refusals.count() == 0 => trouble.to_owned(),
@@ -170,7 +171,7 @@ impl EgmPort {
         }
     }
 
-    /// Expected lag behind the positions sent, ms.
+    /// Expected lag behind the commanded positions, ms.
     #[must_use]
     pub const fn lag_ms(&self) -> u16 {
         self.lag_ms

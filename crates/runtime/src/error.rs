@@ -31,7 +31,7 @@ pub enum StartError {
     )]
     WrongData {
         job: String,
-        /// A line for each command, with its first error.
+        /// One line per command, with its first error.
         wrong: Vec<String>,
     },
     /// The job or the fault file does not exist.
@@ -46,7 +46,7 @@ pub enum StartError {
     NotInRealTime,
     #[error("a speed from 1 to {most} times real time was expected, found {0}", most = crate::config::MOST_SPEED)]
     Speed(u8),
-    /// The configuration names a robot of the caller, and the caller has provided none.
+    /// The configuration names a robot of the caller, which has provided none.
     #[error("the configuration names a robot of the caller's own: start the run by Run::with_robot")]
     NoOwnRobot,
     /// Faults of the line need the simulated robot.
@@ -74,7 +74,7 @@ pub enum StartError {
     /// The database of the Data System cannot be opened.
     #[error("the Data System cannot keep its items: {0}")]
     DataBase(#[from] StoreError),
-    /// Another process keeps the items of the Data System.
+    /// Another process owns the items of the Data System.
     #[error("the Data System is another process: name the database there, not here")]
     DataBaseElsewhere,
     /// The file for pending updates of the Data System cannot be used.
@@ -83,7 +83,7 @@ pub enum StartError {
     /// An operator cannot be configured as a neighbour.
     #[error("an operator is no neighbour: --operator network lets operators connect, not --outside operator")]
     OperatorOutside,
-    /// An address needs a neighbour or an operator that may connect there.
+    /// An address requires a neighbour or an operator that may connect there.
     #[error(
         "nobody may connect at the address of --network: add --outside for neighbours, or --operator network"
     )]
@@ -99,12 +99,12 @@ pub enum StartError {
          --shared-memory on"
     )]
     StandBy,
-    /// The socket for operators cannot be opened, and the job would wait for one forever.
+    /// The socket for operators cannot be opened, so the job would wait for one forever.
     #[error("--stand-by waits for an operator, and none can connect: {}: {source}", path.display())]
     NoOperator { path: PathBuf, source: io::Error },
     #[error("neighbours cannot connect: {0}")]
     Network(#[from] ListenError),
-    /// The mailboxes of a neighbour cannot be made.
+    /// The mailboxes of a neighbour cannot be created.
     #[error("neighbours cannot connect: {0}")]
     Endpoint(#[source] io::Error),
     /// The workstation controller has not connected.
@@ -112,7 +112,7 @@ pub enum StartError {
     NoWorkstation(u32),
     #[error("the log cannot be written: {0}; --log names another file, --log none runs without")]
     Log(#[from] RecordError),
-    /// The log that the run repeats could be removed by it.
+    /// The run could remove the log that it repeats.
     #[error(
         "{} is an earlier log of {}, which --log-keep may remove: name another file with --log",
         .inputs.display(), .log.display()
@@ -132,7 +132,7 @@ pub enum StartError {
     /// The user has stopped the run before the first tick.
     #[error("{0} was stopped by the user before the first tick")]
     Interrupted(String),
-    /// A living run has the name that was chosen.
+    /// A living run has the chosen name.
     #[error(transparent)]
     NameInUse(SharedMemoryError),
     /// Not all boards of a run have started.

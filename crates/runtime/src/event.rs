@@ -27,15 +27,15 @@ use closed_loop::{
 #[derive(Debug)]
 #[non_exhaustive]
 pub enum Event {
-    /// In the cell. Only contacts that are not permitted are events: [`Event::Contact`].
+    /// An event in the cell. Only prohibited contacts are events: [`Event::Contact`].
     Cell(CellEvent),
-    /// Two objects touch that must not, or have separated.
+    /// Two objects have a prohibited contact, or have separated.
     Contact(ContactEvent),
     /// Faults of these kinds have occurred on the line to the robot.
     LineFaults(Vec<&'static str>),
     /// The state of the line to the robot has changed.
     Link(&'static str),
-    /// The robot of the caller refuses a point, or reports a fault.
+    /// The caller's robot refuses a point, or reports a fault.
     RobotRefuses(Warning),
     /// A neighbour has connected, disconnected or was refused.
     Network(NetEvent),
@@ -57,13 +57,13 @@ pub enum Event {
     CommandFailsCheck(String),
     /// A line of the workstation controller for the cell is refused, for this reason.
     CellLineRefused(String),
-    /// A confirmation that is not true in the cell.
+    /// A confirmation that is false in the cell.
     Untrue(Confirmation),
-    /// Something has happened to a coupler.
+    /// An event at a coupler.
     Field(FieldEvent),
     /// The status of the cell cannot be written for the workstation controller.
     CellStatusUnsent(MailboxError),
-    /// The job has handed over to the workstation controller.
+    /// The job has transferred the command to the workstation controller.
     HandedOver,
     /// The workstation controller has disconnected, and the job continues.
     TakenBack,
@@ -71,7 +71,7 @@ pub enum Event {
     Waits(WaitReason),
     /// Task data have been loaded during the run.
     Loaded { generation: u32, name: String },
-    /// The run was changed from outside.
+    /// An external change of the run.
     Changed(String),
     RealTime {
         /// The settings that the system granted, and the system.
@@ -79,26 +79,26 @@ pub enum Event {
         /// True if all were granted.
         complete: bool,
     },
-    /// A board was not granted all real-time settings.
+    /// A board lacks some real-time settings.
     BoardNotPunctual(Board),
     /// Slots of the 40 ms grid were skipped.
     Overrun(Overrun),
     /// The live view has disconnected a viewer, for this reason.
     ViewerDisconnected(String),
-    /// At the end of a run that failed: what went wrong first, or what followed, in a sentence.
+    /// At the end of a failed run: the first failure or a consequence, as a sentence.
     WentWrong(String),
     /// The user stops the run, by a signal or by leaving the console that the run has started.
     UserStops,
-    /// After skipped slots the robot is brought to rest, and the run ends.
+    /// After skipped slots, the robot is brought to rest and the run ends.
     Stops,
-    /// After skipped slots the robot holds.
+    /// After skipped slots, the robot holds.
     Holds,
     /// The ticks are on time again, and the robot continues.
     Punctual,
 }
 
 impl Event {
-    /// Stable short name of the kind, such as `cell.dropped`.
+    /// Stable short name of the event's kind, such as `cell.dropped`.
     #[must_use]
     pub const fn code(&self) -> &'static str {
         match self {
@@ -158,7 +158,7 @@ impl Event {
         }
     }
 
-    /// Source of its line in the log: injected faults have another source than their effects.
+    /// Source of its line in the log. Injected faults have another source than their effects.
     #[must_use]
     pub fn source(&self) -> &'static str {
         match self {
@@ -276,7 +276,7 @@ mod tests {
     use sessions::network::Role;
 
     #[test]
-    fn an_event_has_a_code_a_severity_a_source_and_a_sentence() {
+    fn event_has_code_severity_source_and_sentence() {
         let fell = Event::Cell(CellEvent::Fell { part: "SHAFT".to_owned() });
         assert_eq!((fell.code(), fell.level(), fell.source()), ("cell.fell", Level::Error, "cell"));
         assert_eq!(fell.to_string(), "SHAFT lies on the floor");

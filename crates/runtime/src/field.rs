@@ -1,4 +1,4 @@
-//! Field I/O of a run: the mapping, and what the run says of it.
+//! Field I/O of a run: the mapping, and the run's messages about it.
 
 use std::path::Path;
 
@@ -10,13 +10,13 @@ use plant::fault::{FaultPlan, What};
 
 use crate::{config::FieldConfig, error::StartError};
 
-/// Groups that a mapping can have, and that only the simulated cell carries out in this version.
+/// Groups that a mapping can have, but that this version executes only in the simulated cell.
 const ONLY_SIMULATED: [Group; 5] = [Group::Vise, Group::Machine, Group::Drum, Group::Trays, Group::Supply];
 
 /// Reads the mapping of a run.
 ///
 /// # Errors
-/// [`StartError`], with all mistakes of the file.
+/// [`StartError`], with all errors of the file.
 pub fn load(config: &FieldConfig, data: &Path) -> Result<Mapping, StartError> {
     read(&FIELDS.find(&config.mapping, data)?)
 }
@@ -24,7 +24,7 @@ pub fn load(config: &FieldConfig, data: &Path) -> Result<Mapping, StartError> {
 /// Reads a mapping.
 ///
 /// # Errors
-/// [`StartError`], with all mistakes of the file.
+/// [`StartError`], with all errors of the file.
 pub fn read(path: &Path) -> Result<Mapping, StartError> {
     let text = files::read_text(path).map_err(|source| StartError::Read { path: path.to_owned(), source })?;
     let source = Source { name: path.display().to_string(), text: text.into() };
@@ -32,7 +32,7 @@ pub fn read(path: &Path) -> Result<Mapping, StartError> {
     Mapping::parse(&source).map_err(|report| StartError::Data { what: what(), report: Box::new(report) })
 }
 
-/// Checks that the devices whose connection a fault plan cuts are there.
+/// Checks that the devices whose connection a fault plan cuts exist.
 ///
 /// # Errors
 /// [`StartError::NoSuchDevice`].
@@ -55,7 +55,7 @@ pub fn check_cuts(faults: &FaultPlan, mapping: Option<&Mapping>) -> Result<(), S
     Ok(())
 }
 
-/// What a run with emulated couplers says at its start.
+/// Message of a run with emulated couplers at its start.
 #[must_use]
 pub fn introduction(mapping: &Mapping) -> String {
     let devices: Vec<&str> = mapping.devices.iter().map(|device| device.name.as_str()).collect();

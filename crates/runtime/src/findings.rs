@@ -1,5 +1,5 @@
-//! The findings in the data of a run that do not prevent it. The run states their number, and `rcs-run check` shows
-//! exactly these; the warnings of motions, which need the complete check, are only there.
+//! The findings in the data of a run that do not prevent it. The run reports their number, and `rcs-run check`
+//! shows them; only the latter, with its complete check, has warnings about motions.
 
 use diagnostics::{Diagnostic, Diagnostics};
 use os_io::text::amount;
@@ -25,7 +25,7 @@ impl Count {
         Self::default().and(report, |_| true)
     }
 
-    /// The findings of the report that meet a condition, in addition to these.
+    /// Adds the findings of the report that meet a condition.
     fn and(self, report: &Diagnostics, is_of: impl Fn(&&Diagnostic) -> bool) -> Self {
         Self {
             errors: self.errors + report.errors().filter(&is_of).count(),
@@ -34,7 +34,7 @@ impl Count {
     }
 }
 
-/// The line about findings of a kind in a source; `None` without one.
+/// The line about findings of a kind in a source, if there are any.
 fn line(count: usize, one: &str, source: &str) -> Option<String> {
     let them = if count == 1 { "it" } else { "them" };
     (count > 0).then(|| format!("{} in {source}; rcs-run check shows {them}", amount(count, one)))
@@ -43,7 +43,7 @@ fn line(count: usize, one: &str, source: &str) -> Option<String> {
 impl Findings {
     /// The findings in task data and job, in the cell description with the task data, and in the job with the cell.
     ///
-    /// Task data with errors are not compared with the cell, as `check` does not: a difference may only be a
+    /// Task data with errors are not compared with the cell, as in `check`: a difference may only be a
     /// consequence of the error.
     #[must_use]
     pub fn of(data: &Diagnostics, job: &Diagnostics, of_cell: &Diagnostics, of_job: &Diagnostics) -> Self {
@@ -51,7 +51,7 @@ impl Findings {
         let is_form = |finding: &&Diagnostic| is_sound && finding.block().is_some();
         let is_entry = |finding: &&Diagnostic| is_sound && finding.block().is_none();
         let mut job = if is_sound { job.clone().with(of_job.clone()) } else { job.clone() };
-        // Equal findings of several lines count once.
+        // Equal findings of several lines are counted once.
         Diagnostics::tell_once(&mut [&mut job]);
         Self {
             data: Count::of(data).and(of_cell, is_form),
@@ -60,8 +60,8 @@ impl Findings {
         }
     }
 
-    /// A line for each source with warnings, and one for each kind of tolerated errors. `unchecked` if commands may
-    /// use data with errors.
+    /// One line per source with warnings, and one per kind of tolerated error. `unchecked` if commands may use
+    /// data with errors.
     #[must_use]
     pub fn lines(self, unchecked: bool) -> Vec<String> {
         let lines = [

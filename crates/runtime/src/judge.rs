@@ -1,8 +1,8 @@
 //! The verdict on a command before Task reads it, for all sources of commands: the job, an operator, the mailbox of a
 //! workstation controller.
 //!
-//! A command passes if the task data have what it needs ([`Verdict`]), and if `check` has found no error in the records
-//! that it uses. With `--unchecked` the second condition does not count. PAUSE always passes.
+//! A command passes if the task data have what it needs ([`Verdict`]), and if `check` has found no error in the
+//! records that it uses. `--unchecked` disables the second condition. PAUSE always passes.
 
 use closed_loop::{JobPlayer, generations::Generations, workstation::SimulatedWorkstation};
 use diagnostics::{Blame, Group, grouped};
@@ -34,7 +34,7 @@ pub struct CommandJudge<'a> {
     pub load: Option<u32>,
     /// Common memory after the tick.
     pub memory: &'a CommonMemory,
-    /// Errors in the records that a command uses do not count.
+    /// Ignore errors in the records that a command uses.
     pub unchecked: bool,
 }
 
@@ -44,8 +44,8 @@ impl Judge for CommandJudge<'_> {
     }
 }
 
-/// What is wrong with a command of a robot that is where `present` says, as a sentence; `None` if it passes. If
-/// `unchecked`, errors in the records that it uses do not count.
+/// The error in a command of a robot at the place in `present`, as a sentence; `None` if it passes. `unchecked`
+/// ignores errors in the records that it uses.
 #[must_use]
 pub fn verdict(command: &HwsCommand, store: &Store, present: &Present, unchecked: bool) -> Option<String> {
     let verdict = Verdict::of(command, &store.view(), Before::unknown());
@@ -66,7 +66,7 @@ pub fn verdict(command: &HwsCommand, store: &Store, present: &Present, unchecked
 }
 
 impl<'a> CommandJudge<'a> {
-    /// Task data with which Task reads a command that is sent now.
+    /// The task data that Task uses for a command that is sent now.
     #[must_use]
     pub fn store(&self) -> &'a Store {
         self.generations.next(self.memory, self.load)
@@ -102,7 +102,7 @@ pub fn read_command(
     refused
 }
 
-/// Called once per tick: a job reads its status and writes its command, which is then read from its mailbox.
+/// Called once per tick. A job reads its status and writes its command, which is then read from its mailbox.
 pub fn play(
     job: &mut JobPlayer,
     tick: Tick,
@@ -119,7 +119,7 @@ pub fn play(
     progress
 }
 
-/// The reason why a command with these errors in its data is refused; `None` without an error.
+/// The reason why a command with errors in its data is refused, if it has any.
 fn of_faults(faults: &[&Fault]) -> Option<String> {
     let (first, others) = faults.split_first()?;
     let more = match others.len() {
@@ -130,8 +130,8 @@ fn of_faults(faults: &[&Fault]) -> Option<String> {
     Some(format!("{}{more}", first.in_line()))
 }
 
-/// Find the errors in the paths of a job, and add each to the task data as an error of the record that is probably
-/// wrong, so that no command uses that record.
+/// Find the errors in the paths of a job, and add each to the task data as an error of the record that is
+/// probably wrong, so that no command uses that record.
 pub fn add_paths(store: &mut Store, job: &mut Job, cell: &CellDescription) -> WalkedJob {
     let walked = walk_job_once(job, store, &Room::new(cell));
     let expected = |line: u32| job.steps.iter().any(|step| step.line == line && step.expects_error);
@@ -144,7 +144,7 @@ pub fn add_paths(store: &mut Store, job: &mut Job, cell: &CellDescription) -> Wa
     walked
 }
 
-/// The errors of paths as errors of records: for each record that is probably wrong, one.
+/// The errors of paths as errors of records: one for each record that is probably wrong.
 fn path_faults(findings: &[&Finding], store: &Store) -> Vec<Fault> {
     let named = |finding: &&&Finding| !finding.data.is_empty();
     let findings: Vec<&Finding> = findings.iter().filter(named).copied().collect();

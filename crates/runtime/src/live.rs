@@ -34,7 +34,7 @@ pub struct Live {
     notices: Option<Receiver<String>>,
 }
 
-/// What a viewer cannot learn from the messages of a run.
+/// Data for viewers that the messages of a run do not contain.
 pub struct Beginning {
     pub attachments: Vec<Attachment>,
     /// Time of tick 0.
@@ -43,7 +43,7 @@ pub struct Beginning {
     pub words: Words,
 }
 
-/// The words that an operator's line can have.
+/// The valid words of an operator's line.
 #[derive(serde::Serialize)]
 pub struct Words {
     pub first: Vec<&'static str>,
@@ -51,8 +51,8 @@ pub struct Words {
 }
 
 impl Beginning {
-    /// The page of the run, which connects to the server that sent it. Other users of the machine can read it, so it has
-    /// neither the command line nor the paths of the run.
+    /// The page of the run, which connects to the server that sent it. Other users of the machine can read it,
+    /// so it contains neither the command line nor the paths of the run.
     fn page(&self, job: &str, mut run: BTreeMap<String, String>) -> String {
         run.insert(TICK_0.to_owned(), self.epoch.of(Tick::BEFORE_START).to_string());
         let added = [
@@ -147,13 +147,13 @@ impl Live {
         Ok(())
     }
 
-    /// The address of the page; `None` before the start.
+    /// The address of the page, once it is served.
     #[must_use]
     pub fn address(&self) -> Option<String> {
         self.server.as_ref().map(|server| format!("http://{}/", server.address()))
     }
 
-    /// A viewer that the server has disconnected since the last call, and why, as a sentence.
+    /// A viewer that the server has disconnected since the last call, and the reason, as a sentence.
     pub fn disconnected(&self) -> Option<String> {
         self.notices.as_ref()?.try_recv().ok()
     }
@@ -168,7 +168,6 @@ fn access(socket: &Path) -> Result<Access, NoRandom> {
     Ok(Access { socket: socket.to_owned(), token: Token::random()? })
 }
 
-/// Facts about the run for viewers.
 fn facts(config: &RunConfig, job: &str) -> BTreeMap<String, String> {
     let facts = [
         ("job", job.to_owned()),

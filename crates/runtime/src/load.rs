@@ -1,9 +1,9 @@
-//! LOAD during a run (IV.2.4): a block of the run's data directory, in the present version of its file, becomes part of
-//! the task data before the next command. First all boards check the whole data with the block. An operator requests
-//! it, or the workstation controller with a line for the cell.
+//! LOAD during a run (IV.2.4): a block of the run's data directory, in the present version of its file, becomes
+//! part of the task data before the next command. First all boards check the whole data with the block. An
+//! operator requests the load, or the workstation controller with a line for the cell.
 //!
-//! On the 40 ms grid the check runs in parallel to the ticks. In fast clock the next tick waits for the check, so that
-//! a run does not depend on the speed of the machine.
+//! On the 40 ms grid the check runs in parallel to the ticks. In fast clock the next tick waits for the check,
+//! so that a run does not depend on the speed of the machine.
 //!
 //! The log contains the text, so that a replay, and a repetition with the same inputs, load the same block.
 
@@ -34,10 +34,10 @@ use self::error::PATIENCE;
 
 /// The same time limit in ticks.
 const BOARDS_LIMIT: u64 = PATIENCE.as_secs() * 1000 / TICK_MS;
-/// Time between two looks at the boards, when the run waits for them.
+/// Time between two checks of the boards, when the run waits for them.
 const LOOK: Duration = Duration::from_millis(5);
 
-/// Source of a load, which gets the answer.
+/// Source of a load, which receives the answer.
 pub enum Asker {
     Operator(Input),
     /// The workstation controller, with this line for the cell.
@@ -54,7 +54,7 @@ pub struct Loads {
     loading: Option<Loading>,
     /// Number of the last load that was announced to boards in other processes.
     last: u32,
-    /// Number of jobs that have replaced the rest of the job before.
+    /// Number of jobs that have replaced the rest of an earlier job.
     pub played: u32,
 }
 
@@ -70,7 +70,7 @@ impl Loads {
         self.loading.is_some()
     }
 
-    /// Withdraw the load that an operator has requested: when it is checked, nothing changes.
+    /// Withdraw the load that an operator has requested. Its check then has no effect.
     pub fn withdraw(&mut self, who: &str) {
         if let Some(Loading { asker: Asker::Operator(input), is_withdrawn, .. }) = &mut self.loading {
             *is_withdrawn |= input.source() == who;
@@ -104,7 +104,7 @@ impl Run {
         if generations::is_busy(self.closed.memory()) { Err(LoadError::Busy) } else { Ok(()) }
     }
 
-    /// Load a block. In parallel to the ticks it only begins, and [`Run::follow_load`] returns the answer later.
+    /// Load a block. In parallel to the ticks it only begins; [`Run::follow_load`] returns the answer later.
     pub(crate) fn load(&mut self, number: BlockNumber, asker: Asker) -> Option<Answer> {
         if let Err(why) = self.can_load() {
             return Some((asker, Err(why)));
@@ -151,7 +151,7 @@ impl Run {
         None
     }
 
-    /// Load a block before the next tick; in a repetition from the log.
+    /// Load a block before the next tick; in a repetition, from the log.
     fn load_at_once(&mut self, number: BlockNumber, inside: bool) -> Result<String, LoadError> {
         let recorded = self.asked.recorded_block(self.closed.generations().number().saturating_add(1));
         let source = recorded.map(|block| block.ok_or(LoadError::NotRecorded)).transpose()?;
@@ -193,8 +193,8 @@ impl Run {
         }
     }
 
-    /// Announce the file to the boards in other processes, which check it. Returns the number of the load; `None` on
-    /// one board.
+    /// Announce the file to the boards in other processes, which check it. Returns the number of the load;
+    /// `None` on one board.
     fn announce(&mut self) -> Option<u32> {
         let load = self.loads.last.saturating_add(1);
         self.coordinator()?.announce(load);
@@ -206,7 +206,7 @@ impl Run {
         self.coordinator().map_or(Ok(true), |coordinator| coordinator.have_checked(load, loaded.data))
     }
 
-    /// Withdraw an announced load: a board that joins later must not read it.
+    /// Withdraw an announced load, so that a board that joins later does not read it.
     fn take_back(&self, why: LoadError) -> LoadError {
         // Otherwise the file is removed with the run.
         let _ = fs::remove_file(load_file(&self.name, self.loads.last));

@@ -4,10 +4,10 @@
 //!   operator: load ──► thread of the run: reads the block, checks all data with it, writes the file
 //!                                │
 //!                                ▼  the number of the file comes with the pulse
-//!                      thread of each board: reads the file, checks all data with it
+//!                                ▼  the pulse carries the number of the file
 //!                                │
-//!                                ▼  its report says which data it has come to
-//!                      all boards have the same: the generation counts from the next tick on
+//!                                ▼  its report has the fingerprint of its data
+//!                      all boards have the same data: the generation is valid from the next tick on
 //! ```
 //!
 //! On one board the middle step is omitted. The threads start before the process requests real-time priority, and keep
@@ -40,8 +40,8 @@ use taskdata::{
 
 use crate::load::error::LoadError;
 
-/// Read `load OFFSET BLOCK` (IV.2.4); `None` if the words begin something else. With another word after it, the text is
-/// a line of a job, whose reader gives the error.
+/// Read `load OFFSET BLOCK` (IV.2.4); `None` if the words begin something else. With another word after it, the
+/// text is a line of a job, whose reader reports the error.
 #[must_use]
 pub fn asked(words: &[&str]) -> Option<Result<BlockNumber, String>> {
     let ["load", offset, block] = words else { return None };
@@ -50,11 +50,11 @@ pub fn asked(words: &[&str]) -> Option<Result<BlockNumber, String>> {
     Some(numbers.map(|(offset, number)| BlockNumber { offset, number }).ok_or_else(expected))
 }
 
-/// Insert a reload into the reloads of a run, after the first `done` ones, which have led to `base`. The later ones are
-/// loaded on top of it.
+/// Insert a reload into the reloads of a run, after the first `done` ones, which have led to `base`. The later
+/// ones are loaded on top of it.
 ///
 /// # Errors
-/// The report of the first reload that has errors now.
+/// The report of the first reload that now has errors.
 pub fn insert(
     base: &Store,
     reloads: &[Reload],
@@ -73,26 +73,26 @@ pub fn insert(
 
 /// A block that has been checked.
 pub struct Loaded {
-    /// All reloads of the run, with this one.
+    /// All reloads of the run, including this one.
     pub reloads: Vec<Reload>,
     /// Number of reloads before it.
     pub done: usize,
-    /// [`Fingerprint::data`] of the task data with it.
+    /// [`Fingerprint::data`] of the task data with the block.
     pub data: u64,
 }
 
 pub struct Order {
     pub number: BlockNumber,
-    /// Text of the block, if it does not come from the directory.
+    /// Text of the block, if it is not from the directory.
     pub source: Option<Source>,
     /// The directory of the run's task data.
     pub directory: PathBuf,
     pub base: Store,
     pub reloads: Vec<Reload>,
     pub done: usize,
-    /// File from which the boards of other processes read it.
+    /// File from which the boards of other processes read the block.
     pub file: Option<PathBuf>,
-    /// True if a symbolic link must not lead out of the directory.
+    /// True if symbolic links must not lead out of the directory.
     pub inside: bool,
 }
 
@@ -145,7 +145,7 @@ fn read(path: &Path) -> Option<(usize, Source)> {
     Some((done.parse().ok()?, Source { name: name.to_owned(), text: text.into() }))
 }
 
-/// The thread that reads and checks for a run.
+/// The thread that reads and checks blocks for a run.
 pub struct Loader {
     orders: Sender<Order>,
     done: Receiver<Result<Loaded, LoadError>>,
@@ -175,7 +175,7 @@ impl Loader {
         let _ = self.orders.send(order);
     }
 
-    /// The result; `None` while the thread works.
+    /// The result, once the thread has finished.
     pub fn look(&self) -> Option<Result<Loaded, LoadError>> {
         match self.done.try_recv() {
             Ok(done) => Some(done),
@@ -203,7 +203,7 @@ pub struct BoardFiles {
 }
 
 impl BoardFiles {
-    /// Start with the reloads of the job. Starts the thread that checks.
+    /// Start with the reloads of the job, and start the checking thread.
     ///
     /// # Errors
     /// The error of the system.
@@ -270,7 +270,7 @@ impl BoardData for BoardFiles {
     fn check(&mut self, load: u32) -> Checked {
         if load != self.asked {
             self.asked = load;
-            // If the thread has ended, no load is ever checked, and the run reports it.
+            // If the thread has ended, the load is never checked, and the run reports it.
             let _ = self.orders.send((load, Arc::clone(&self.reloads)));
         }
         while let Ok((load, made)) = self.done.try_recv() {
@@ -286,7 +286,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_block_is_cut_out_of_its_file() {
+    fn block_is_cut_out_of_its_file() {
         let text = "%% about the file\nBLOCK# 1 OFFSET 21000\n  a\nBLOCK# 2 OFFSET 21000\n  b\n";
         let file = Source { name: "x.blk".into(), text: text.into() };
         let block = |number| cut(&file, BlockNumber { offset: 21_000, number });

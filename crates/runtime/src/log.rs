@@ -42,16 +42,16 @@ pub const LOADS: &str = "loads/";
 
 /// Key of the metadata: origin of the task data, and the number of files.
 pub const DATA: &str = "data";
-/// Key: number of times that a command is sent again after an error.
+/// Key: number of times that a command is repeated after an error.
 pub const RETRY: &str = "retry";
 pub const OUTSIDE: &str = "outside";
 /// Key: file of the Data System's items.
 pub const DATA_BASE: &str = "data_base_in";
-/// Its value if the items are kept in memory only.
+/// Its value if the items are only in memory.
 pub const IN_MEMORY: &str = "memory";
 /// Key: the job waited for an operator before its first line.
 pub const STAND_BY: &str = "stand_by";
-/// Metadata key: the run executes commands also if the records that they use have errors.
+/// Metadata key: the run also executes commands that use records with errors.
 pub const UNCHECKED: &str = "unchecked";
 /// Key: number of ticks after which the run was to stop.
 pub const TICKS: &str = "ticks";
@@ -65,7 +65,7 @@ pub struct Log {
     faults: Counts,
     kinds: Vec<&'static str>,
     vision: Vision,
-    /// What the live view sends to a browser; `None` without a live view, and after it was taken.
+    /// The data that the live view sends to a browser; `None` without a live view, and after they were taken.
     beginning: Option<Beginning>,
     /// The contacts of the last tick.
     touches: Vec<Touch>,
@@ -87,8 +87,8 @@ impl Vision {
         Self { camera: camera.clone(), request, answer, taken: 0, seen: None }
     }
 
-    /// Take a picture for a new request. Returns the drawing of the last one when it has been answered, or when the next
-    /// request replaces it: the answer often leads to the next request in the same tick.
+    /// Take a picture for a new request. Returns the drawing of the last one when it has been answered, or when
+    /// the next request replaces it, since an answer often leads to the next request in the same tick.
     fn look(&mut self, cell: &Cell) -> Option<Vec<u8>> {
         let VisionRequest { number, picture, .. } = self.request;
         let is_new = number != self.taken && picture != Picture::None;
@@ -159,13 +159,13 @@ impl Log {
         })
     }
 
-    /// What the live view sends to a browser; `None` without a live view, and after the first call.
+    /// The data that the live view sends to a browser; `None` without a live view, and after the first call.
     pub const fn take_beginning(&mut self) -> Option<Beginning> {
         self.beginning.take()
     }
 
-    /// Log the cell that the controller sees in `tick`, with the [`FRAMES`] of a robot with EGM; call it before
-    /// [`Log::tick`].
+    /// Log the cell that the controller reads in `tick`, with the [`FRAMES`] of a robot with EGM. Call it
+    /// before [`Log::tick`].
     pub fn cell(&mut self, tick: Tick, cell: &Cell, frames: Option<[Pose; 2]>) {
         let mut places = vec![Transform::IDENTITY; self.links.len()];
         let mut put = |name: &str, place: Transform| {
@@ -186,7 +186,7 @@ impl Log {
         }
     }
 
-    /// Log the contacts in `tick`, and which of them are not permitted; call it before [`Log::tick`].
+    /// Log the contacts in `tick`, with the prohibited ones marked. Call it before [`Log::tick`].
     pub fn contacts(&mut self, tick: Tick, contacts: &[Contact], collides: impl Fn(&Contact) -> bool) {
         let touching = contacts.iter().filter(|contact| contact.touches());
         let touches: Vec<_> = touching.map(|contact| touch(contact, collides(contact))).collect();
@@ -196,23 +196,22 @@ impl Log {
         }
     }
 
-    /// Log a state of the run that is valid from `tick` on; call it before [`Log::tick`] of that tick.
+    /// Log a state of the run that is valid from `tick` on. Call it before [`Log::tick`] of that tick.
     pub fn view(&mut self, tick: Tick, view: View) {
         self.recorder.show(tick, Shown::View(view));
     }
 
-    /// Log an event; call it before [`Log::tick`] of the same tick.
+    /// Log an event. Call it before [`Log::tick`] of the same tick.
     pub fn event(&mut self, tick: Tick, event: &Event) {
         self.recorder.note(tick, event.level(), event.source(), event.code(), &event.to_string());
     }
 
-    /// Log a request of an operator; call it before [`Log::tick`] of the first tick that sees it.
+    /// Log an operator's request. Call it before [`Log::tick`] of the first tick with its effect.
     pub fn operator(&mut self, line: OperatorLine) {
         self.recorder.operator(line);
     }
 
-    /// Log the faults of the line when their kinds differ from those of the tick before; call it before [`Log::tick`]
-    /// of the same tick.
+    /// Log the faults of the line when their kinds change. Call it before [`Log::tick`] of the same tick.
     pub fn faults(&mut self, tick: Tick, counts: Counts) {
         let fresh = FaultKind::ALL.iter().filter(|kind| counts.of(**kind) > self.faults.of(**kind));
         let kinds: Vec<&'static str> = fresh.map(|kind| kind.text()).collect();
@@ -222,8 +221,8 @@ impl Log {
         (self.faults, self.kinds) = (counts, kinds);
     }
 
-    /// Log that from `tick` on the task data are of another generation, with the blocks of `source`; call it before
-    /// [`Log::tick`] of that tick.
+    /// Log that the task data are of another generation from `tick` on, with the blocks of `source`. Call it
+    /// before [`Log::tick`] of that tick.
     pub fn reload(&mut self, tick: Tick, generation: u32, source: &Source) {
         for file in Attachment::reload(generation, std::slice::from_ref(source)) {
             self.recorder.attach(tick, file);
@@ -231,27 +230,28 @@ impl Log {
         self.event(tick, &Event::Loaded { generation, name: source.name.clone() });
     }
 
-    /// Log that from `tick` on this job replaces the rest of the one before; call it before [`Log::tick`] of that tick.
+    /// Log that this job replaces the rest of the previous one from `tick` on. Call it before [`Log::tick`] of
+    /// that tick.
     pub fn played(&mut self, tick: Tick, number: u32, job: &Job) {
         let source = Source { name: format!("{}.{EXTENSION}", job.name), text: job.source().text.clone() };
         self.recorder.attach(tick, Attachment::played(number, &source));
     }
 
-    /// Attach what went wrong first and what followed, at the end of a run.
+    /// Attach the first failure and its consequences, at the end of a run.
     pub fn failure(&mut self, tick: Tick, failure: &FailureResult) {
-        // Text and numbers, which JSON can hold.
+        // JSON can represent all its text and numbers.
         let data = serde_json::to_vec(failure).unwrap_or_default();
         let (name, media_type) = (explanation::FAILURE.to_owned(), "application/json".to_owned());
         self.recorder.attach(tick, Attachment { name, media_type, data });
     }
 
-    /// Set the times of the tick; call it before [`Log::tick`] of the same tick. Not for runs in fast clock: equal runs
-    /// must have equal logs.
+    /// Set the times of the tick. Call it before [`Log::tick`] of the same tick, but not in fast clock: equal
+    /// runs must have equal logs.
     pub const fn timing(&mut self, controller_ns: u64, skipped: u64) {
         self.recorder.timing(Timing { controller_ns, skipped });
     }
 
-    /// Hand over a tick. This is part of the tick itself: its allocations are counted.
+    /// Log a tick. This is part of the tick itself: its allocations are counted.
     pub fn tick(
         &mut self,
         tick: Tick,
@@ -282,7 +282,8 @@ fn transform(link: &plant::LinkPose) -> Transform {
     Transform { position: link.position, rotation: link.rotation }
 }
 
-/// A contact for viewers, rounded so that small vibrations make no new message: position to 0.01 in, depth to 0.001 in.
+/// A contact for viewers, rounded so that small vibrations cause no new message: position to 0.01 in, depth to
+/// 0.001 in.
 fn touch(contact: &Contact, collides: bool) -> Touch {
     let Contact { mover, obstacle, depth, at, .. } = contact;
     let rounded = |inches: f64, steps: f64| (inches * steps).round() / steps;
@@ -314,7 +315,6 @@ fn delivered(step: &Step) -> Option<&str> {
     }
 }
 
-/// The words of an operator's line.
 fn words(store: &Store) -> Words {
     let data = store.view();
     let objects = data.objects.iter().map(|object| object.name.to_string());

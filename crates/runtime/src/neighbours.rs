@@ -1,8 +1,8 @@
-//! The neighbours of a run: the source of Task's commands, the Data System, and, if they are other processes, Active
-//! Pedestal and vision.
+//! The neighbours of a run: the source of Task's commands, the Data System, and, if they are other processes,
+//! Active Pedestal and vision.
 //!
-//! A neighbour runs in this process, or in another one behind the network. The run reaches both through mailboxes. In
-//! fast clock, which runs both in lock step, the results are the same bits.
+//! A neighbour runs in this process, or in another one behind the network. The run reaches both through
+//! mailboxes. In fast clock, which runs both in lock step, the results are equal bit for bit.
 
 mod command;
 
@@ -44,7 +44,7 @@ pub enum WorkstationSource {
     Emulator(Box<JobPlayer>),
     /// A workstation controller in another process.
     Outside(Box<Commanded>),
-    /// The emulator, whose job hands over to a workstation controller in another process.
+    /// The emulator, whose job transfers the command to a workstation controller in another process.
     Switched(Box<Switched>),
 }
 
@@ -58,16 +58,16 @@ impl WorkstationSource {
 
 pub struct Neighbours {
     pub(crate) workstation: WorkstationSource,
-    /// `None` if the run keeps the books itself.
+    /// The Data System; `None` if the run keeps the items itself.
     data_system: Option<DataSystem>,
     /// `None` if the controller contains the processes of the pedestal.
     pedestal: Option<Box<pedestal::Agent>>,
-    /// The port of vision; without it the cell analyses its pictures itself.
+    /// The port of vision. Without it, the cell analyses its pictures itself.
     vision: Option<vision::Port>,
     /// Accepts neighbours during the run; `None` if no neighbour is another process.
     pub(crate) network: Option<Network>,
     pub(crate) events: Vec<Event>,
-    /// True if errors in the records that a command uses do not count.
+    /// True to ignore errors in the records that a command uses.
     unchecked: bool,
     /// True if no more commands are accepted.
     is_ending: bool,
@@ -95,16 +95,16 @@ impl Neighbours {
         }
     }
 
-    /// Execute commands also if the records that they use have errors.
+    /// Also execute commands that use records with errors.
     #[must_use]
     pub fn unchecked(self, unchecked: bool) -> Self {
         Self { unchecked, ..self }
     }
 
-    /// Wait for neighbours in other processes, until the time limit or an interruption, which the run handles. On the
-    /// 40 ms grid the run waits only for the workstation controller: the others may connect later. In fast clock a run
-    /// ends when one disconnects, also before the first tick. `say` takes the phrase for programs that look for the
-    /// run.
+    /// Wait for neighbours in other processes, until the time limit or an interruption, which the run handles.
+    /// On the 40 ms grid the run waits only for the workstation controller; the others may connect later. In
+    /// fast clock a run ends when one disconnects, also before the first tick. `say` receives the phrase for
+    /// programs that search for the run.
     ///
     /// # Errors
     /// [`StartError::NoWorkstation`].
@@ -160,7 +160,6 @@ impl Neighbours {
         self.is_ending
     }
 
-    /// True if another process commands.
     #[must_use]
     pub fn are_commanding(&self) -> bool {
         match &self.workstation {
@@ -170,7 +169,7 @@ impl Neighbours {
         }
     }
 
-    /// The emulator of the workstation controller that plays the job; `None` if another process commands, or may.
+    /// The emulator of the workstation controller that plays the job; `None` if another process may command.
     pub fn job_player(&mut self) -> Option<&mut Hwsc> {
         match &mut self.workstation {
             WorkstationSource::Emulator(emulator) => Some(&mut emulator.hwsc),
@@ -216,13 +215,13 @@ impl Neighbours {
         }
     }
 
-    /// True if another process may command for a time.
+    /// True if another process may command temporarily.
     #[must_use]
     pub const fn can_switch(&self) -> bool {
         matches!(self.workstation, WorkstationSource::Switched(_))
     }
 
-    /// The status of a Data System that the run does not keep itself.
+    /// The status of a Data System outside the run.
     #[must_use]
     pub fn data_base(&self) -> DataBaseStatus {
         self.data_system.as_ref().map(DataSystem::status).unwrap_or_default()
@@ -234,8 +233,8 @@ impl Neighbours {
         self.pedestal.as_deref().map_or(&OutsidePedestal::ZERO, pedestal::Agent::sent)
     }
 
-    /// Before the first tick: the pedestal reads the initial buffers, so that it runs from the controller's first tick
-    /// on, and a Data System that has connected is noted.
+    /// Before the first tick: the pedestal reads the initial buffers, so that it runs from the controller's
+    /// first tick on, and the connection of a Data System is recorded.
     pub fn begin(&mut self, memory: &CommonMemory, inputs: &DeviceInputs) {
         self.data_system.iter().for_each(|system| system.keeper().look());
         self.step_pedestal(Tick::BEFORE_START, memory, inputs);
@@ -248,7 +247,8 @@ impl Neighbours {
         self.events.extend(agent.remarks().into_iter().map(Event::from));
     }
 
-    /// Vision reads E-move's request and the camera picture; its answer is among the device words of the next tick.
+    /// Vision reads E-move's request and the camera picture. Its answer is among the device words of the next
+    /// tick.
     fn step_vision(&mut self, tick: Tick, memory: &CommonMemory, workstation: &mut SimulatedWorkstation) {
         let Some(port) = &mut self.vision else { return };
         let cell = &mut workstation.cell;
@@ -267,7 +267,7 @@ impl Neighbours {
         }
     }
 
-    /// Number of the job's line that was begun last, 0 before the first, and the number of its lines; both 0 without a
+    /// Number of the job's last begun line, 0 before the first, and the number of its lines; both 0 without a
     /// job.
     #[must_use]
     pub fn place(&self) -> (usize, usize) {
@@ -278,7 +278,7 @@ impl Neighbours {
         }
     }
 
-    /// The same, with the commands of a workstation controller to which the job has handed over.
+    /// The same, with the commands of a workstation controller to which the job has transferred the command.
     #[must_use]
     pub fn all_steps(&self) -> Vec<BegunStep> {
         match &self.workstation {
@@ -288,7 +288,7 @@ impl Neighbours {
         }
     }
 
-    /// The commands of the job that failed and were sent again.
+    /// The commands of the job that failed and were repeated.
     #[must_use]
     pub fn retried(&self) -> &[Retry] {
         match &self.workstation {
@@ -298,7 +298,7 @@ impl Neighbours {
         }
     }
 
-    /// The line of the job in progress in a tick; a failure at the start of a line belongs to that line.
+    /// The line of the job in progress in a tick. A failure at the start of a line belongs to that line.
     #[must_use]
     pub fn line_at(&self, tick: Tick) -> Option<&str> {
         let is_refused = |step: &BegunStep| step.outcome == Outcome::Failed && step.ticks == 0;
@@ -346,7 +346,7 @@ impl Neighbours {
         std::mem::take(&mut self.events)
     }
 
-    /// A Data System that the run does not keep itself.
+    /// A Data System outside the run.
     pub const fn data_system(&mut self) -> Option<&mut DataSystem> {
         self.data_system.as_mut()
     }

@@ -14,7 +14,7 @@ use crate::{
     observer::Observer,
 };
 
-/// The network of a run; it ends when this is dropped.
+/// The network of a run. Dropping it ends the network.
 pub struct Network {
     /// Endpoints of the neighbours that may connect.
     pub handles: Vec<EndpointHandle>,
@@ -51,7 +51,7 @@ impl Network {
         Ok(Some(Self { handles, operators, _listener: listener }))
     }
 
-    /// Admit operators: the run has begun.
+    /// Admit operators, since the run has begun.
     pub fn let_operators_in(
         &self,
         enter: impl Fn(UnixStream, Vec<u8>) -> io::Result<()> + Send + Sync + 'static,

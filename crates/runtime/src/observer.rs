@@ -10,7 +10,7 @@ use crate::event::Event;
 #[non_exhaustive]
 pub struct TickReport<'a> {
     pub tick: Tick,
-    /// Number of the job's line that was begun last, 0 before the first.
+    /// Number of the job's last begun line, 0 before the first.
     pub line: usize,
     /// Number of lines of the job.
     pub lines: usize,
@@ -21,14 +21,15 @@ pub struct TickReport<'a> {
     pub memory: &'a CommonMemory,
 }
 
-/// Receives messages, events and each tick. Calls come between ticks and delay the next one. `()` ignores everything.
+/// Receives messages, events and each tick. Calls happen between ticks and delay the next one. `()` ignores all
+/// of them.
 pub trait Observer {
     /// A message for the operator: one line, without newline.
     fn message(&mut self, text: &str) {
         let _ = text;
     }
 
-    /// An event of a tick; if an operator should read it, it also comes as a message.
+    /// An event of a tick. Events for the operator are also sent as messages.
     fn event(&mut self, tick: Tick, event: &Event) {
         let _ = (tick, event);
     }

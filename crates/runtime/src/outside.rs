@@ -1,8 +1,8 @@
-//! A workstation controller in another process: its mailboxes, and the commands that a run remembers.
+//! A workstation controller in another process: its mailboxes, and the commands that a run stores.
 //!
-//! It also commands the simulated cell: actions of the workstation are lines of a job, in a separate mailbox. A run in
-//! fast clock ends when its workstation controller disconnects, and has failed if that was in the middle of a command;
-//! on the 40 ms grid the robot waits until it connects again.
+//! It also commands the simulated cell: actions of the workstation are lines of a job, in a separate mailbox. A
+//! run in fast clock ends when its workstation controller disconnects, and has failed if this happens during a
+//! command. On the 40 ms grid the robot waits until it connects again.
 
 use closed_loop::workstation::SimulatedWorkstation;
 use interfaces::{HwsCommand, TaskOutputs, Unconfirmed, hws::HwsReport};
@@ -27,7 +27,7 @@ use crate::{
     loads,
 };
 
-/// Number of commands that a run remembers, so that a run of a year does not fill the memory.
+/// Number of stored commands, so that a run of a year does not exhaust the memory.
 const REMEMBERED: usize = 10_000;
 
 /// A workstation controller in another process.
@@ -38,16 +38,16 @@ pub struct OutsideWorkstation {
     line: u16,
     /// The reason why that line was refused.
     refused: Option<String>,
-    /// The block that it requests, until the run begins to load it.
+    /// The requested block, until the run begins to load it.
     load: Option<(BlockNumber, String)>,
-    /// Number of the line whose load has no answer yet.
+    /// Number of the line whose load is unanswered.
     loading: Option<u16>,
     begun_steps: Vec<BegunStep>,
     began: Tick,
     /// True if it has been connected in a tick.
     came: bool,
     here: bool,
-    /// True if it has worked the joystick box or the rotary table's panel since it connected.
+    /// True if it has used the joystick box or the rotary table's panel since it connected.
     by_hand: bool,
     /// The reason why the last connection ended.
     disconnect: Option<Disconnect>,
@@ -72,7 +72,7 @@ impl OutsideWorkstation {
         }
     }
 
-    /// The accepted commands, as far as they are remembered.
+    /// The accepted commands that are stored.
     #[must_use]
     pub fn begun_steps(&self) -> &[BegunStep] {
         &self.begun_steps
@@ -83,7 +83,6 @@ impl OutsideWorkstation {
         self.here
     }
 
-    /// True if it can connect.
     #[must_use]
     pub const fn endpoint(&self) -> &Endpoint {
         &self.endpoint
@@ -96,7 +95,7 @@ impl OutsideWorkstation {
         }
     }
 
-    /// Skip the commands that came while another source commanded: it commands again.
+    /// Skip the commands that arrived while another source commanded.
     pub fn pass_over(&mut self, gate: &mut Gate) {
         gate.pass_over(self.endpoint.incoming(HWSC_COMMAND));
         self.line_read = self.endpoint.incoming(CELL_COMMAND).mailgram();
@@ -113,16 +112,16 @@ impl OutsideWorkstation {
         self.load.take()
     }
 
-    /// Answer a load with the reason of a refusal, or `None`. A newer line, or another workstation controller, does not
-    /// get the answer.
+    /// Answer a load with the reason of a refusal, or `None`. Only the line that requested it receives the
+    /// answer.
     pub fn load_answered(&mut self, refused: Option<String>) {
         if self.loading.take() == Some(self.line) {
             self.refused = refused;
         }
     }
 
-    /// Called once per tick while an operator or the job commands: it may connect and disconnect, but reads no status,
-    /// and its commands are not read.
+    /// Called once per tick while an operator or the job commands. It may connect and disconnect, but reads no
+    /// status, and its commands are not read.
     pub fn attend(&mut self, tick: Tick, workstation: &mut SimulatedWorkstation, events: &mut Vec<Event>) {
         for place in [HWSC_STATUS, CELL_STATUS] {
             self.endpoint.outgoing(place).initialize();
@@ -130,7 +129,7 @@ impl OutsideWorkstation {
         self.exchange(tick, workstation, events);
     }
 
-    /// Send and receive the mailboxes of a tick. Motion by hand ends with the connection that commands it.
+    /// Exchange the mailboxes of a tick. Motion by hand ends with the connection that commands it.
     fn exchange(
         &mut self,
         tick: Tick,
@@ -283,7 +282,7 @@ impl OutsideWorkstation {
         }
     }
 
-    /// Begin a line for the cell, or note a load, which the run begins after this tick.
+    /// Begin a line for the cell, or store a load, which the run begins after this tick.
     fn begin_line(
         &mut self,
         line: &str,

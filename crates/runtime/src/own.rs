@@ -1,4 +1,4 @@
-//! A robot that the caller of the library provides, behind a DEPC function in this process.
+//! A robot that the caller of the library provides, with a DEPC function in this process.
 
 use std::time::Duration;
 
@@ -14,40 +14,41 @@ use plant::t3::explained;
 
 /// A robot instead of the T3, for [`Run::with_robot`](crate::Run::with_robot).
 ///
-/// The calls of a tick are first [`advance`](Self::advance), then at most one point ([`Robot::accept`]) or request for
-/// the present position ([`Robot::present`]), then [`position`](Self::position).
+/// The calls of a tick are first [`advance`](Self::advance), then at most one point ([`Robot::accept`]) or
+/// request for the present position ([`Robot::present`]), then [`position`](Self::position).
 ///
-/// The robot is supervised while it moves (docs/design/link.md "Following"): T3 Interface compares `position` with the
-/// path of the last points. A robot that is off this path gets no further point, and [`Robot::stop`] is called once: it
-/// must come to rest where it is, and from then on [`Robot::present`] must give that position.
+/// The robot is supervised while it moves (docs/design/link.md "Following"): T3 Interface compares `position`
+/// with the path of the last points. A robot that is off this path receives no further point, and
+/// [`Robot::stop`] is called once. It must stop in place, and [`Robot::present`] must return that position from
+/// then on.
 pub trait OwnRobot: Robot {
     /// A tick of 40 ms begins: move towards the last accepted point.
     fn advance(&mut self);
 
-    /// Position of the end plate, `None` while unknown. The arm of the simulated cell, and everything that it carries,
+    /// Position of the end plate, if known. The arm of the simulated cell, and everything that it carries,
     /// follows it.
     fn position(&self) -> Option<Plate>;
 
-    /// Time by which the robot is expected to lag behind its points, at most 1 s, with the 80 ms of the simulated arm,
-    /// which follows it and has the resolvers. A robot that is more than 0.5 in off the path of this time is stopped.
+    /// Time by which the robot is expected to lag behind its points, at most 1 s, including the 80 ms of the
+    /// simulated arm, which follows it and has the resolvers. A robot that is more than 0.5 in off the path of
+    /// this time is stopped.
     fn lag(&self) -> Duration {
         Duration::from_millis(LAG_MS.into())
     }
 }
 
-/// The robot, and its DEPC function.
+/// The robot with its DEPC function.
 pub struct OwnPort {
     robot: Box<dyn OwnRobot>,
     function: Controller,
     outputs: ControllerOutputs,
-    /// The robot was told to stop, and no path has begun since.
+    /// True from a stop of the robot to the start of the next path.
     held: bool,
     /// The warning of this tick, if it is new.
     news: Option<Warning>,
 }
 
 impl OwnPort {
-    /// The function has not started.
     pub fn new(robot: Box<dyn OwnRobot>) -> Self {
         let (function, outputs) = (Controller::new(Limits::NBS), ControllerOutputs::default());
         Self { robot, function, outputs, held: false, news: None }
@@ -58,8 +59,8 @@ impl OwnPort {
         RobotInputs { rx: self.outputs.tx, ready: self.outputs.dtr, unsent: false, resolvers: None }
     }
 
-    /// After the controller's tick: pass the host's bytes to the function, or stop the robot where it is. The function
-    /// starts again whenever the robot reports no trouble.
+    /// After the controller's tick: pass the host's bytes to the function, or stop the robot in place. The
+    /// function starts again whenever the robot reports no trouble.
     pub fn send(&mut self, tx: &LinkBytes, hold: bool) {
         self.robot.advance();
         if hold && !self.held {
@@ -76,7 +77,7 @@ impl OwnPort {
         self.news = (warning != before && warning != Warning::None).then_some(warning);
     }
 
-    /// The warning that the function shows since this tick: the robot has refused a point, or reports a fault.
+    /// The new warning of the function in this tick: the robot has refused a point, or reports a fault.
     pub const fn news(&self) -> Option<Warning> {
         self.news
     }

@@ -29,7 +29,7 @@ pub struct Pace {
 }
 
 impl Pace {
-    /// A clock in which one tick follows another at once.
+    /// A clock without waiting between ticks.
     #[must_use]
     pub fn fast(policy: Policy) -> Self {
         Self {
@@ -43,8 +43,8 @@ impl Pace {
         }
     }
 
-    /// Run a tick every 40 ms, or `speed` ticks in that time, from now on. The threads of log and progress must run
-    /// already: they keep their ordinary priority.
+    /// Run a tick every 40 ms, or `speed` ticks in that time, from now on. The threads of log and progress must
+    /// already run: they keep their ordinary priority.
     pub fn ask_for_real_time(&mut self, core: Option<usize>, speed: u8) -> Event {
         let granted = realtime::acquire(core);
         let verdict = format!("{}; {}", granted.verdict, Machine::look());
@@ -60,7 +60,7 @@ impl Pace {
         self.clock.wake_early()
     }
 
-    /// Wait until the tick is due. Returns events for skipped slots and for the reaction to them.
+    /// Wait until the tick is due. Returns events for skipped slots and the reaction to them.
     pub fn wait(&mut self, stage_times: &StageTimes) -> Vec<Event> {
         let slots = self.clock.wait();
         let late = self.clock.late();
@@ -95,7 +95,7 @@ impl Pace {
         self.policy
     }
 
-    /// True if ticks are on the 40 ms grid, false if they follow each other at once.
+    /// True if ticks are on the 40 ms grid, false in fast clock.
     #[must_use]
     pub const fn is_real(&self) -> bool {
         matches!(self.clock, Clock::Real(_))
@@ -106,7 +106,7 @@ impl Pace {
         self.clock.skipped()
     }
 
-    /// The real-time settings that the system has granted; `None` if ticks follow each other at once.
+    /// The real-time settings that the system has granted; `None` in fast clock.
     #[must_use]
     pub fn verdict(&self) -> Option<String> {
         self.verdict.clone()
@@ -118,7 +118,7 @@ impl Pace {
         self.clock.late()
     }
 
-    /// Lateness of all ticks; `None` if they follow each other at once.
+    /// Lateness of all ticks; `None` in fast clock.
     #[must_use]
     pub fn late(&self) -> Option<TickTimes> {
         self.verdict.is_some().then(|| self.late.summary().into())

@@ -1,9 +1,9 @@
 //! Repeats a recorded run, with the configuration from its log.
 //!
-//! A log contains everything on which a run with the simulated robot depends: task data, job and the blocks that it
-//! loads, cell description, faults, and in its metadata seed, retries and limits. [`unpack`] writes the files into a
-//! directory and returns the configuration. The clock is always the fast one: if the run missed no slots, the
-//! repetition has the same bits.
+//! A log contains all data on which a run with the simulated robot depends: task data, job and the blocks that
+//! it loads, cell description, faults, and in its metadata seed, retries and limits. [`unpack`] writes the
+//! files into a directory and returns the configuration. The clock is always the fast one: if the run missed no
+//! slots, the repetition is equal bit for bit.
 
 use std::{
     collections::BTreeMap,
@@ -28,12 +28,12 @@ pub const CHANGES: &str = "changes";
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum RepeatError {
-    /// The log lacks something that a run needs.
+    /// The log lacks data that a run needs.
     #[error(
         "the log has no {0}, which a run needs: rcs-run of this version writes it; run the job again to get such a log"
     )]
     Missing(&'static str),
-    /// The run had a participant that is not in the log.
+    /// The log lacks the actions of a participant of the run.
     #[error(
         "{0} took part in the run, and its actions are not in the log: only a run that is simulated whole can be repeated"
     )]
@@ -58,8 +58,8 @@ pub enum RepeatError {
     Write { path: PathBuf, source: io::Error },
 }
 
-/// Write the files of a log into an empty directory, and return the configuration to run them: without a log and
-/// without shared memory.
+/// Write the files of a log into an empty directory, and return the configuration to run them, without a log
+/// and shared memory.
 ///
 /// # Errors
 /// [`RepeatError`] if the log does not contain the whole run.
@@ -98,7 +98,7 @@ pub fn unpack(log: &Log, directory: &Path) -> Result<RunConfig, RepeatError> {
     write(&data, CELL, cell)?;
     let job = log.attachment(Attachment::JOB).ok_or(RepeatError::Missing("job"))?;
     let job = write(&jobs, &format!("{name}.{EXTENSION}"), job)?;
-    // A run on stand-by waits for the inputs of its log, also if there are none.
+    // A run on stand-by waits for the inputs of its log, even if there are none.
     let stand_by = said(STAND_BY).is_some();
     let operated = stand_by || log.operator_lines().next().is_some();
     let faults = log.attachment(FAULTS).map(|faults| write(directory, FAULTS, faults)).transpose()?;
@@ -144,7 +144,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_name_in_a_log_leads_nowhere_else() {
+    fn file_name_in_a_log_stays_in_its_directory() {
         let file = Attachment::text("x", "text");
         for name in ["", "..", "../x", "/etc/x", "a/../../x"] {
             let refused = write(Path::new("/nowhere"), name, &file);
@@ -153,7 +153,7 @@ mod tests {
     }
 
     #[test]
-    fn a_silence_is_a_part_of_the_robot_in_the_log() {
+    fn silence_is_stored_with_the_robot_in_the_log() {
         for text in ["sim", "sim,silence=60"] {
             assert_eq!(text.parse::<RobotConfig>().map(|robot| robot.to_string()).as_deref(), Ok(text));
         }

@@ -1,4 +1,4 @@
-//! The result of a run: the JSON object, from which the text is made.
+//! The result of a run: the JSON object from which the text is made.
 
 mod cell;
 mod data;
@@ -31,17 +31,17 @@ pub struct CommandResult {
     pub text: String,
     /// `finished`, `error` or `executing`.
     pub status: &'static str,
-    /// What no sensor confirms about a finished command; not written if the sensors confirm its goal.
+    /// The unconfirmed goals of a finished command; not written if the sensors confirm them.
     #[serde(skip_serializing_if = "str::is_empty")]
     pub unconfirmed: &'static str,
-    /// Ticks from the one that sent it to the one that saw its end.
+    /// Ticks from sending the command to detecting its end.
     pub ticks: u64,
 }
 
-/// A failed command that was sent again.
+/// A failed command that was repeated.
 #[derive(Clone, Debug, Serialize)]
 pub struct RetryResult {
-    /// Tick in which the failure was seen.
+    /// Tick in which the failure was detected.
     pub tick: u64,
     pub text: String,
     pub reason: &'static str,
@@ -55,25 +55,25 @@ impl From<&Retry> for RetryResult {
     }
 }
 
-/// A line without the sign that marks a command.
+/// A line without the prefix of a command.
 pub fn bare(line: &str) -> String {
     line.trim_start_matches("==").trim_start().to_owned()
 }
 
 #[derive(Clone, Debug, Serialize)]
 pub struct FailureResult {
-    /// What went wrong first, and what followed.
+    /// The first failure and its consequences.
     #[serde(flatten)]
     pub account: Account,
-    /// The line of the job, or the command, in progress when it went wrong first.
+    /// The line of the job, or the command, in progress at the first failure.
     pub line: Option<String>,
-    /// What a person must do before the job can continue; `None` if PAUSE and the same command may be enough.
+    /// The operator's action before the job can continue; `None` if PAUSE and the same command may be enough.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub remedy: Option<&'static str>,
 }
 
 impl FailureResult {
-    /// A failure in a line, and what a person must do.
+    /// A failure in a line, with its remedy.
     #[must_use]
     pub fn new(account: &Account, line: Option<&str>, remedy: Option<&'static str>) -> Self {
         Self { account: account.clone(), line: line.map(str::to_owned), remedy }
@@ -95,9 +95,9 @@ pub struct RunResult {
     pub data: DataResult,
     /// Commands that were sent to Task.
     pub commands: Vec<CommandResult>,
-    /// Commands that failed and were sent again, after a PAUSE (`--retry`).
+    /// Commands that failed and were repeated after a PAUSE (`--retry`).
     pub retries: Vec<RetryResult>,
-    /// Requests of operators; `None` if there were none.
+    /// Requests of operators, if any.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub operator: Option<Requests>,
     /// The couplers between controller and cell; `None` without `--field`.
@@ -142,7 +142,7 @@ pub struct RunResult {
     /// Counts and times of the line to a robot with EGM.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub egm: Option<EgmResult>,
-    /// The last emergency, if any, also if the robot was restarted after it.
+    /// The last emergency, if any, even if the robot was restarted after it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub emergency_stop: Option<EmergencyResult>,
     /// Fingerprint of all output buffers of all ticks.
@@ -155,10 +155,11 @@ pub struct RunResult {
     pub parts: Vec<PartState>,
     /// Items of the MBD in the Data System.
     pub data_base: Vec<ItemResult>,
-    /// The judge of confirmations: how many commands of all levels were reported as finished, and which are not.
+    /// The judge of confirmations: number of commands of all levels that were reported as finished, and the
+    /// false reports.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub truth: Option<TruthResult>,
-    /// Contacts that are not permitted.
+    /// Prohibited contacts.
     pub contacts: Vec<Collision>,
     /// The nearest miss, if a distance was less than 2 in.
     #[serde(skip_serializing_if = "Option::is_none")]

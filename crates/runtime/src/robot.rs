@@ -1,11 +1,11 @@
-//! The other end of the DEPC line: the T3 controller of the simulated cell, a robot at a serial port, or a robot with
-//! EGM or one of the caller, behind a DEPC function in this process.
+//! The other end of the DEPC line: the T3 controller of the simulated cell, a robot at a serial port, or a
+//! robot with EGM or a robot of the caller, with a DEPC function in this process.
 //!
-//! With the simulated controller, the bytes of a tick go through the fault injector, if there is a fault plan, and then
-//! through the cell. With a serial port they go to the port; the rest of the cell (gripper, camera, tray, vise,
-//! resolvers) is still simulated, and follows the position that the robot has acknowledged. A robot with EGM reports
-//! its position, which the cell follows and the resolvers read. A robot with EGM and one of the caller can be stopped
-//! where they are.
+//! With the simulated controller, the bytes of a tick pass through the fault injector, if there is a fault
+//! plan, and then through the cell. With a serial port they go to the port; the rest of the cell (gripper,
+//! camera, tray, vise, resolvers) is still simulated, and follows the position that the robot has acknowledged.
+//! A robot with EGM reports its position, which the cell follows and the resolvers read. A robot with EGM or of
+//! the caller can be stopped in place.
 
 use std::{
     sync::atomic::Ordering,
@@ -29,9 +29,8 @@ use crate::{config::RunConfig, egm::EgmPort, observer::Observer, own::OwnPort};
 /// Length of a tick.
 const PERIOD: Duration = Duration::from_millis(TICK_MS);
 
-/// The other end of the line.
 pub enum Robot {
-    /// The simulated T3 controller: the cell has it.
+    /// The T3 controller in the simulated cell.
     Simulated,
     /// A robot controller at a serial port.
     Serial(Port),
@@ -43,7 +42,7 @@ pub enum Robot {
 /// A serial line, with its measurements.
 pub struct Port {
     line: SerialLine,
-    /// Time when the last data command was handed to the port.
+    /// Time when the last data command was written to the port.
     sent: Option<Instant>,
     /// Deviation of the time between two data commands from a tick, ns.
     deviations: Box<Histogram>,
@@ -89,8 +88,8 @@ impl Port {
 }
 
 impl Robot {
-    /// Wait until the robot controller at a port has switched DTR on, until the time limit or an interruption. Without
-    /// DTR the run begins, and fails with a reason that names DTR.
+    /// Wait until the robot controller at a port has switched DTR on, until the time limit or an interruption.
+    /// Without DTR the run begins, and fails with a reason that names DTR.
     pub fn gather(&mut self, config: &RunConfig, observer: &mut dyn Observer) {
         let port = match self {
             Self::Simulated | Self::Own(_) => return,
@@ -118,7 +117,7 @@ impl Robot {
         }
     }
 
-    /// Before the controller's tick: receive from a robot elsewhere. Its time counts as part of the tick.
+    /// Before the controller's tick: receive from a robot outside the cell. Its time is part of the tick.
     pub fn receive(&mut self) -> Option<RobotInputs> {
         let _section = Section::enter();
         match self {
@@ -133,8 +132,8 @@ impl Robot {
         }
     }
 
-    /// After the controller's tick: send over the line. `exact` gives the tool frame that Prim has commanded, as T3I
-    /// gets it and exactly; it is called for a robot with EGM only. Its time counts as part of the tick.
+    /// After the controller's tick: send over the line. `exact` gives Prim's commanded tool frame, as T3I
+    /// receives it and exactly; it is called only for a robot with EGM. Its time is part of the tick.
     pub fn send(&mut self, outputs: &DeviceOutputs, exact: impl FnOnce() -> Option<(WireFrame, Frame)>) {
         let _section = Section::enter();
         match self {
@@ -145,9 +144,9 @@ impl Robot {
         }
     }
 
-    /// After the controller's tick: the position of a robot elsewhere, which the cell follows, if it is known.
-    /// `acknowledged` gives the position that the robot has last acknowledged or reported; it is called for a robot at a
-    /// port only.
+    /// After the controller's tick: the position of a robot outside the cell, which the cell follows, if known.
+    /// `acknowledged` gives the position that the robot has last acknowledged or reported; it is called only
+    /// for a robot at a port.
     pub fn moved(&mut self, acknowledged: impl FnOnce() -> Option<Plate>) -> Option<Plate> {
         match self {
             Self::Simulated => None,
@@ -160,7 +159,7 @@ impl Robot {
         }
     }
 
-    /// Expected lag of the robot behind the positions sent, ms; `None` for that of the T3.
+    /// Expected lag of the robot behind the commanded positions, ms; `None` for that of the T3.
     #[must_use]
     pub fn lag_ms(&self) -> Option<u16> {
         match self {
@@ -170,7 +169,7 @@ impl Robot {
         }
     }
 
-    /// The warning that the DEPC function of a robot of the caller shows since this tick.
+    /// The new warning of the DEPC function of the caller's robot in this tick.
     #[must_use]
     pub const fn news(&self) -> Option<Warning> {
         if let Self::Own(own) = self { own.news() } else { None }
@@ -188,7 +187,7 @@ impl Robot {
         matches!(self, Self::Own(_))
     }
 
-    /// The trouble of the connection to a robot outside the cell, as text; `None` if there is none.
+    /// The trouble of the connection to a robot outside the cell, as text, if any.
     #[must_use]
     pub fn trouble(&self) -> Option<String> {
         match self {
@@ -199,13 +198,13 @@ impl Robot {
         }
     }
 
-    /// The serial port, if there is one.
+    /// The serial port, if any.
     #[must_use]
     pub const fn port(&self) -> Option<&Port> {
         if let Self::Serial(port) = self { Some(port) } else { None }
     }
 
-    /// The robot with EGM, if there is one.
+    /// The robot with EGM, if any.
     #[must_use]
     pub const fn egm(&self) -> Option<&EgmPort> {
         if let Self::Egm(egm) = self { Some(egm) } else { None }

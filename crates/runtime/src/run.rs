@@ -80,30 +80,30 @@ pub struct Run {
     ending: Option<Ending>,
     /// The last warning on the screen of the robot controller.
     pub(crate) warning: Option<Failure>,
-    /// Emergencies, what fell, and which devices of the cell failed.
+    /// Emergencies, fallen parts, and failed devices of the cell.
     pub(crate) alarms: Alarms,
     /// The status of Task after the last tick.
     task: HwsStatus,
     /// The state of the cell for other programs.
     view: Box<View>,
-    /// The states of the run that were logged last, and why the job waits, if it does.
+    /// The states of the run that were logged last, and the reason why the job waits, if it does.
     viewed: Viewed,
     waits: Option<WaitReason>,
     /// Events of the cell since the last tick, for the log of the next one.
     fresh: Vec<Event>,
     events: Events,
-    /// Detects when the robot is at rest.
     rest: RestWatch,
-    /// The end of the run while the robot is brought to rest for it.
+    /// The end of the run for which the robot is brought to rest.
     ramp: Option<Ramp>,
-    /// Ticks for which the host waits for an answer; at a port it waits for the first answer as long as `--wait`.
+    /// Ticks for which the host waits for an answer. At a port it waits for the first answer as long as
+    /// `--wait`.
     patience: Option<u16>,
     first_patience: Option<u16>,
     /// The last reported state of the line.
     trouble: Option<&'static str>,
-    /// What a person must do before the failed job can continue.
+    /// The operator's action before the failed job can continue.
     remedy: Option<&'static str>,
-    /// The run for programs that look for it. It must be dropped after `runner`.
+    /// The run's announcement to programs that search for it. It must be dropped after `runner`.
     announced: Option<Announced>,
 }
 
@@ -121,7 +121,7 @@ impl Run {
         self.finish()
     }
 
-    /// Run one tick. Returns false if the run has ended; further calls do nothing.
+    /// Run one tick. Returns false if the run has ended; further calls have no effect.
     pub fn step(&mut self) -> bool {
         if self.ending.is_none() {
             if self.started.is_none() {
@@ -137,7 +137,7 @@ impl Run {
         self.closed.tick()
     }
 
-    /// The simulated cell, to change it between two ticks as a person in it would.
+    /// The simulated cell, for changes by a person in it between two ticks.
     pub const fn cell_mut(&mut self) -> &mut Cell {
         &mut self.closed.workstation.cell
     }
@@ -160,7 +160,8 @@ impl Run {
         self.closed.workstation.cell.digest()
     }
 
-    /// Start the clock and prepare the first tick. The 40 ms grid begins with the clock, so the preparation counts.
+    /// Start the clock and prepare the first tick. The 40 ms grid begins with the clock, including the
+    /// preparation.
     fn begin(&mut self) {
         self.started = Some(Instant::now());
         if self.config.clock == ClockKind::Real {
@@ -171,7 +172,7 @@ impl Run {
         self.note_neighbours(self.closed.tick().next());
     }
 
-    /// Request real-time settings. The thread of the log runs already, so it keeps its ordinary priority.
+    /// Request real-time settings. The thread of the log already runs, so it keeps its ordinary priority.
     fn ask_for_real_time(&mut self, core: Option<usize>) {
         let granted = self.pace.ask_for_real_time(core, self.config.speed);
         self.observer.message(&granted.to_string());
@@ -196,7 +197,7 @@ impl Run {
         self.runner.stage_times_mut().begin();
     }
 
-    /// What comes from outside before the next tick.
+    /// The external inputs of the next tick.
     fn given(&self, robot: Option<RobotInputs>) -> Given {
         let mut joystick = self.operator.at_the_box();
         joystick.velocity = self.pace.knob(joystick.velocity);
@@ -262,7 +263,7 @@ impl Run {
             }
             player::Progress::Running => self.end_if_nobody_asks(tick),
         }
-        // An obstacle stops an arm that sinks without pressure; the verdict is the emergency.
+        // An obstacle stops an arm that sinks without pressure. The verdict is the emergency.
         let stuck = self.closed.contacts().is_stuck() && !self.closed.workstation.is_settling(tick);
         if let Some(failure) = self.closed.contacts().verdict().filter(|_| stuck) {
             return Some(failure.into());
@@ -295,7 +296,7 @@ impl Run {
         None
     }
 
-    /// Run the processes. If a board that was lost is replaced, the boards run the same tick again; if not, the run
+    /// Run the processes. If a lost board is replaced, the boards run the same tick again; otherwise the run
     /// ends.
     fn decide(&mut self, given: &Given) -> Option<Ending> {
         loop {
@@ -311,14 +312,14 @@ impl Run {
         }
     }
 
-    /// The position of a robot elsewhere; `None` for the simulated one.
+    /// The position of a robot outside the cell; `None` for the simulated one.
     fn moved(&mut self) -> Option<Plate> {
         let levels = self.closed.course().levels();
         self.robot.moved(|| acknowledged(&levels.state()))
     }
 
-    /// Handle the loss of a board: the robot gets no more frames and the valves keep their state, while the simulation
-    /// of the cell continues.
+    /// Handle the loss of a board: the robot receives no more frames and the valves keep their state, while the
+    /// simulation of the cell continues.
     fn lost(&mut self, lost: &Lost) -> Failure {
         for tick in (lost.tick.0..).take(SETTLING).map(Tick) {
             let moved = self.moved();
@@ -330,14 +331,14 @@ impl Run {
         Failure { stopped: true, ..failure }
     }
 
-    /// Put the task data into effect that the job has loaded, if no command is in progress.
+    /// Put the task data that the job has loaded into effect, if no command is in progress.
     fn reload(&mut self) {
         if self.closed.reload() {
             self.log_reload();
         }
     }
 
-    /// Log the reload that counts from the next tick on.
+    /// Log the reload that is valid from the next tick on.
     pub(crate) fn log_reload(&mut self) {
         let (tick, generations) = (self.closed.tick().next(), self.closed.generations());
         let number = generations.number();
@@ -353,7 +354,7 @@ fn acknowledged(state: &LadderState) -> Option<Plate> {
     host.is_running().then(|| host.position())
 }
 
-/// The tool frame that Prim has commanded in this tick, as T3I gets it and exactly.
+/// Prim's commanded tool frame in this tick, as T3I receives it and exactly.
 fn commanded(state: &LadderState, memory: &CommonMemory) -> Option<(WireFrame, Frame)> {
     state.prim.motion.map(|motion| (memory.prim.t3i.frame, motion.frame()))
 }

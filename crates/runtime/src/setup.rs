@@ -55,7 +55,6 @@ pub use plant::description::CELL;
 
 pub struct Setup {
     pub store: Store,
-    /// Origin of the task data and of the cell description.
     pub data: DataResult,
     pub job: Job,
     pub description_text: String,
@@ -71,7 +70,7 @@ pub struct Setup {
     pub robot: Robot,
     /// The source of commands, and the Data System.
     pub neighbours: Neighbours,
-    /// File of the log, if there is one.
+    /// File of the log, if any.
     pub log: Option<LogFile>,
     pub live: Option<Live>,
 }
@@ -132,7 +131,7 @@ impl Setup {
             return Err(StartError::InputsOfLog { inputs: inputs.clone(), log: log.path().to_owned() });
         }
         let neighbours = neighbours(config, &job, &description, observer)?;
-        // Last of all, so that no byte is sent to the robot if the run cannot begin.
+        // Last, so that no byte is sent to the robot if the run cannot begin.
         let robot = match &config.robot.kind {
             RobotKind::Sim => Robot::Simulated,
             RobotKind::Serial(settings) => Robot::Serial(Port::new(SerialLine::open(settings.clone())?)),
@@ -164,18 +163,18 @@ pub struct TaskFiles {
     pub store: Store,
     /// The job, with the task data that it loads during the run.
     pub job: Job,
-    /// Path of the job's file; empty without one.
+    /// Path of the job's file; empty without a job.
     pub job_path: PathBuf,
     /// The findings in the task data.
     in_data: Diagnostics,
     in_job: Diagnostics,
-    /// The line about a job with errors that was left out.
+    /// The line about an omitted job with errors.
     left_out: Option<String>,
 }
 
 impl TaskFiles {
-    /// Read and check task data and job. Without a job there are no steps: another process commands. Task data with
-    /// errors are used, too: [`Store::faults`]. If `is_lenient`, a job with errors is left out.
+    /// Read and check task data and job. Without a job there are no steps: another process commands. Task data
+    /// with errors are used too: [`Store::faults`]. If `is_lenient`, a job with errors is omitted.
     ///
     /// # Errors
     /// [`StartError`], with all errors of the job.
@@ -273,7 +272,7 @@ fn neighbours(
     let network = Network::start(config, &endpoints, observer)?;
     let data_system = match items {
         Some(endpoint) => Some(data_system::elsewhere(Agent::new(endpoint, outbox(config)?), pace)),
-        // Without a file the run keeps the books itself.
+        // Without a file the run keeps the items itself.
         None => {
             let items = config.database.as_deref().map(data_system::Store::open_alone).transpose()?;
             items.map(|items| data_system::here(items, ANSWER_TICKS, pace))

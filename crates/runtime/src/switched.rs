@@ -6,8 +6,8 @@
 //!    └──── PAUSE, next line ◄──── it has disconnected, and no command is executed ◄───┘
 //! ```
 //!
-//! The numbers of the commands form one sequence. A workstation controller that connects before the line waits: it
-//! reads no status.
+//! The numbers of the commands form one sequence. A workstation controller that connects before this line
+//! waits, and reads no status.
 
 use std::{
     thread,
@@ -34,7 +34,7 @@ const HOME: &str = "HOME";
 /// Last command before the workstation controller takes over.
 const PAUSE: &str = "PAUSE";
 
-/// Outputs of a tick, and data around them.
+/// Outputs of a tick, and related data.
 pub struct Around<'a> {
     pub tick: Tick,
     /// Common memory after the tick and the task data, and the verdict on commands.
@@ -43,7 +43,7 @@ pub struct Around<'a> {
     pub has_data_system: bool,
 }
 
-/// A job, and the workstation controller in another process to which it hands over.
+/// A job, and the workstation controller in another process to which it transfers the command.
 pub struct Switched {
     job: JobPlayer,
     outside: OutsideWorkstation,
@@ -68,18 +68,17 @@ impl Switched {
         }
     }
 
-    /// True if the workstation controller commands.
     #[must_use]
     pub fn is_handed_over(&self) -> bool {
         self.job.hwsc.is_handed_over()
     }
 
-    /// The job, unless it has handed over.
+    /// The job, unless it has transferred the command.
     pub fn job_under_way(&mut self) -> Option<&mut Hwsc> {
         (!self.is_handed_over()).then_some(&mut self.job.hwsc)
     }
 
-    /// The job, to read it, unless it has handed over.
+    /// The job, read-only, unless it has transferred the command.
     #[must_use]
     pub fn job(&self) -> Option<&Hwsc> {
         (!self.is_handed_over()).then_some(&self.job.hwsc)
@@ -89,7 +88,7 @@ impl Switched {
         &mut self.outside
     }
 
-    /// Number of the job's line that was begun last, and the number of its lines.
+    /// Number of the job's last begun line, and the number of its lines.
     #[must_use]
     pub fn place(&self) -> (usize, usize) {
         self.job.hwsc.place()
@@ -101,14 +100,14 @@ impl Switched {
         if self.is_handed_over() { self.outside.begun_steps() } else { self.job.hwsc.begun_steps() }
     }
 
-    /// Steps of the job, and the commands since the hand-over.
+    /// Steps of the job, and the later commands of the workstation controller.
     #[must_use]
     pub fn all_steps(&self) -> Vec<BegunStep> {
         let outside = if self.is_handed_over() { self.outside.begun_steps() } else { &[] };
         [self.job.hwsc.begun_steps(), outside].concat()
     }
 
-    /// The commands of the job that failed and were sent again.
+    /// The commands of the job that failed and were repeated.
     #[must_use]
     pub fn retried(&self) -> &[Retry] {
         self.job.hwsc.retried()
@@ -130,7 +129,7 @@ impl Switched {
         if self.is_handed_over() { self.hand_over(around, gate, events) } else { progress }
     }
 
-    /// Carry out the line `** workstation`.
+    /// Execute the line `** workstation`.
     fn hand_over(&mut self, around: &Around<'_>, gate: &mut Gate, events: &mut Vec<Event>) -> Progress {
         if let Some(obstacle) = obstacle(around.judge.memory, gate.command(), around.has_data_system) {
             return self.refuse(around.tick, obstacle);
@@ -200,7 +199,7 @@ impl Switched {
     }
 }
 
-/// The reason why the workstation controller cannot take over (IV.4.1); `None` if it can.
+/// The reason why the workstation controller cannot take over (IV.4.1), if any.
 pub fn obstacle(memory: &CommonMemory, last: &HwsCommand, has_data_system: bool) -> Option<String> {
     let needs = "the workstation controller is connected with";
     let place = memory.emove.estimates.place.map(|place| place.site.location);

@@ -1,4 +1,4 @@
-//! How a run ended, and the reason, from which the last line on standard error and the exit status follow.
+//! The ending of a run and its reason, which determine the last line on standard error and the exit status.
 
 use std::borrow::Cow;
 
@@ -20,9 +20,9 @@ const EXPLAINS_TICKS: u64 = RESTART_TICKS;
 
 pub enum Ending {
     Finished,
-    /// The run has ended as configured: at `--ticks`, or, without a job of its own, by a request to stop.
+    /// Ended as configured: at `--ticks`, or, without a job of its own, by a request to stop.
     Stopped,
-    /// The user has stopped the run before its job had finished.
+    /// Stopped by the user before the job had finished.
     StoppedByUser,
     Failed(Account),
 }
@@ -48,8 +48,8 @@ impl Ending {
         }
     }
 
-    /// The ending with the verdicts on the cell: a job with an error in the cell counts as failed, and a job that
-    /// failed may have failed because of it.
+    /// The ending with the verdicts on the cell. A job with an error in the cell has failed, and that error may
+    /// be the cause of a failed job.
     fn checked(self, verdicts: Vec<Failure>) -> Self {
         match self {
             Self::Failed(account) => Self::Failed(account.with(verdicts)),
@@ -65,9 +65,8 @@ impl From<Failure> for Ending {
 }
 
 impl Run {
-    /// The ending with the verdicts on the cell: collisions of the robot, parts that are not at their
-    /// places, and false confirmations. A run that failed also has the
-    /// emergencies that are still in force, what fell, and which devices failed.
+    /// The ending with the verdicts on the cell: collisions of the robot, misplaced parts, and false
+    /// confirmations. For a failed run also the emergencies still in force, fallen parts, and failed devices.
     pub(super) fn checked(&self, ending: Ending) -> Ending {
         let parts = self.closed.workstation.cell.parts();
         let mut verdicts: Vec<Failure> = self
@@ -91,7 +90,8 @@ impl Run {
         ending.checked(verdicts)
     }
 
-    /// The ending of a run that another process commands: without a job that can fail, the state of the robot decides.
+    /// The ending of a run that another process commands. Without a job that can fail, the state of the robot
+    /// decides.
     pub(super) fn left(&self, ending: Ending) -> Ending {
         let commanding = self.neighbours.are_commanding();
         self.standing().filter(|_| commanding).map_or(ending, Ending::from)
@@ -114,7 +114,7 @@ impl Run {
         })
     }
 
-    /// What the robot controller has shown, or the robot at a port has reported, shortly before a failure that it
+    /// The warning of the robot controller, or of the robot at a port, shortly before a failure that it
     /// explains.
     fn warning_before(&self, failure: &Failure) -> Option<Failure> {
         if let Some(trouble) = self.robot.trouble().filter(|_| failure.stopped) {
@@ -135,8 +135,8 @@ impl Run {
         Some(Failure { stopped: true, ..Failure::outside(*tick, kind, "T3", text) })
     }
 
-    /// What went wrong when the job failed: the reason of the process that reports it, or the observation of the
-    /// workstation controller, and what explains them.
+    /// The cause of the job's failure: the reason of the process that reports it, or the observation of the
+    /// workstation controller, and the events that explain them.
     pub(super) fn explain(&self, failure: &JobFailure, external: &ExternalInputs) -> Ending {
         let reported = || self.closed.course().watch().failure(Ladder::processes());
         let found = match failure {

@@ -1,7 +1,7 @@
 //! The state of the run for viewers: job, source of commands, robot controller, parts and places, for the log.
 //!
-//! After each tick the states are gathered, and those that differ from the last ones are logged. This is between two
-//! ticks, where a run may allocate.
+//! After each tick the states are collected, and the changed ones are logged. This is between two ticks, where
+//! a run may allocate.
 
 use closed_loop::failure::Failure;
 use executive::memory::cell::ControllerView;
@@ -22,7 +22,7 @@ use crate::{
     operator::{Operator, is_led},
 };
 
-/// What the states are gathered from.
+/// The sources of the states.
 pub struct Around<'a> {
     /// The last tick.
     pub tick: Tick,
@@ -33,10 +33,10 @@ pub struct Around<'a> {
     pub job: &'a str,
     /// Number of jobs that operators have played.
     pub played: u32,
-    /// Why the job waits, if it does.
+    /// The reason why the job waits, if it does.
     pub waits: Option<&'a WaitReason>,
     pub cell: &'a Cell,
-    /// The robot controller is that of the cell: it is not a robot elsewhere.
+    /// True if the robot controller is that of the cell, not one outside.
     pub has_controller: bool,
     /// The last warning on the screen of the robot controller.
     pub warning: Option<&'a Failure>,
@@ -47,12 +47,11 @@ pub struct Around<'a> {
 pub struct Viewed {
     last: [Option<View>; KINDS],
     console: ControllerView,
-    /// Number of lines of the job, and of jobs played: the lines change only with them.
+    /// Number of lines of the job, and of played jobs. The lines change only with them.
     lines: Option<(usize, u32)>,
 }
 
 impl Viewed {
-    /// Log the states that have changed, with `log`.
     pub fn look(&mut self, around: &Around<'_>, mut log: impl FnMut(View)) {
         let job = around.neighbours.job();
         let lines = job.map(|job| (job.lines().len(), around.played));

@@ -24,7 +24,7 @@ impl Observer for Lines {
 }
 
 #[test]
-fn the_linkbar_finishes_and_is_observed() {
+fn linkbar_finishes_and_is_observed() {
     let lines = Lines::default();
     let outcome = Run::new(config("linkbar"), Box::new(lines.clone())).unwrap().complete();
     assert!(outcome.is_finished(), "{:?}", outcome.result.failure.map(|failure| failure.account));
@@ -35,7 +35,7 @@ fn the_linkbar_finishes_and_is_observed() {
 }
 
 #[test]
-fn a_run_after_a_hang_up_is_stopped() {
+fn run_after_a_hang_up_is_stopped() {
     let mut run = Run::new(config("linkbar"), Box::new(())).unwrap();
     for tick in 1..=100 {
         assert!(run.step());
@@ -47,7 +47,7 @@ fn a_run_after_a_hang_up_is_stopped() {
 }
 
 #[test]
-fn a_stop_request_brings_the_robot_to_rest() {
+fn stop_request_brings_the_robot_to_rest() {
     let config = config("linkbar");
     let stop = Arc::clone(&config.stop);
     let mut run = Run::new(config, Box::new(())).unwrap();
@@ -63,7 +63,7 @@ fn a_stop_request_brings_the_robot_to_rest() {
 }
 
 #[test]
-fn an_impossible_run_is_refused_before_any_motion() {
+fn impossible_run_is_refused_before_any_motion() {
     let error = Run::new(config("no-such-job"), Box::new(())).err().unwrap();
     assert!(
         matches!(&error, StartError::NoFile(file) if file.known.contains(&"linkbar".to_owned())),

@@ -10,7 +10,7 @@ use rcs_core::tick::Tick;
 use runtime::{Event, FieldConfig, LogTarget, Observer, Run, RunConfig, RunOutcome, StartError};
 
 const DATA: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../data");
-/// What happens when a part, or a gripper, is lost.
+/// Event codes of a lost part or gripper.
 const LOST: [&str; 6] = [
     "cell.dropped",
     "cell.fell",
@@ -46,7 +46,7 @@ impl Codes {
     }
 }
 
-/// A run in which the connections of these devices are cut for some ticks from a tick on.
+/// A run in which the connections of these devices are cut for some ticks.
 fn cut(devices: &[&str], at: u64, ticks: u64) -> (RunOutcome, Codes) {
     let directory = tempfile::tempdir().unwrap();
     let path = directory.path().join("cuts.toml");
@@ -66,7 +66,7 @@ fn cut(devices: &[&str], at: u64, ticks: u64) -> (RunOutcome, Codes) {
 }
 
 #[test]
-fn couplers_without_a_fault_change_nothing_in_the_cell() {
+fn couplers_without_a_fault_leave_the_cell_unchanged() {
     let mut plain = Run::new(RunConfig { field: None, ..config() }, Box::new(())).unwrap();
     let mut through = Run::new(config(), Box::new(())).unwrap();
     loop {
@@ -84,7 +84,7 @@ fn couplers_without_a_fault_change_nothing_in_the_cell() {
 }
 
 #[test]
-fn short_cuts_finish_without_a_person() {
+fn short_cuts_need_no_operator() {
     for at in [130, 450, 770, 1090, 1410, 1730] {
         let (outcome, codes) = cut(&["arm"], at, 1);
         assert!(outcome.is_finished(), "one tick at {at}");
@@ -98,7 +98,7 @@ fn short_cuts_finish_without_a_person() {
 }
 
 #[test]
-fn long_cuts_wait_for_a_person_and_drop_nothing() {
+fn long_cuts_wait_for_an_operator_and_drop_nothing() {
     for at in [450, 1090, 1730] {
         let (outcome, codes) = cut(&["arm"], at, 50);
         assert!(!outcome.is_finished(), "2 s at tick {at}");

@@ -59,7 +59,7 @@ fn run(complains_after: u32) -> RunOutcome {
 }
 
 #[test]
-fn it_does_the_job_and_the_cell_follows_it() {
+fn own_robot_does_the_job_and_the_cell_follows() {
     let outcome = run(u32::MAX);
     assert!(outcome.is_finished(), "{:?}", outcome.result.failure);
     let part = &outcome.result.parts[0];
@@ -69,22 +69,22 @@ fn it_does_the_job_and_the_cell_follows_it() {
 }
 
 #[test]
-fn a_complaint_of_the_workstation_ends_the_job_with_a_message() {
+fn workstation_error_ends_the_job_with_a_message() {
     let outcome = run(300);
     let Ending::Failed(account) = &outcome.ending else { panic!("it was stopped") };
     assert!(account.first.text.contains("the robot has left its path"), "{account}");
 }
 
-/// Shows its position some ticks late, and may have a fault.
+/// A robot that shows its position some ticks late, and may have a fault.
 struct Lagging {
     robot: Follower,
     lag: Lag,
-    /// Positions that it has not shown yet.
+    /// Positions that it has not yet shown.
     path: VecDeque<Plate>,
     stopped: bool,
 }
 
-/// How a robot lags: its fault begins when it has accepted so many points.
+/// The kind of lag. A fault begins after this number of accepted points.
 #[derive(Clone, Copy)]
 struct Lag {
     ticks: usize,
@@ -96,19 +96,19 @@ struct Lag {
 enum Fault {
     None,
     Frozen(u32),
-    /// It stays for 1 s, and catches up.
+    /// The robot waits for 1 s, and catches up.
     Waits(u32),
-    /// It is 3 in higher at once.
+    /// The robot jumps 3 in up.
     Jumps(u32),
 }
 
-/// More points than a linkbar has before its first motion: it moves.
+/// More points than a linkbar has before its first motion: the robot moves.
 const MOVES: u32 = 150;
 
 impl Robot for Lagging {
     fn present(&mut self) -> Plate {
         if std::mem::take(&mut self.stopped) {
-            // The robot stays where it is.
+            // The robot stays in place.
             self.path.clear();
             self.robot.goal = self.robot.at;
         }
@@ -165,7 +165,7 @@ fn lagging(ticks: usize, stated_ms: u64, fault: Fault) -> RunOutcome {
 }
 
 #[test]
-fn a_robot_with_the_lag_that_it_states_does_the_job() {
+fn robot_with_its_stated_lag_does_the_job() {
     // The simulated arm, which the resolvers read, adds its own 80 ms.
     for (ticks, stated) in [(1, 200), (2, 200), (8, 500)] {
         let outcome = lagging(ticks, stated, Fault::None);
@@ -174,7 +174,7 @@ fn a_robot_with_the_lag_that_it_states_does_the_job() {
 }
 
 #[test]
-fn a_robot_that_does_not_follow_is_stopped_and_reported() {
+fn robot_off_its_path_is_stopped_and_reported() {
     let constant = [9, 13, 25, 75].map(|ticks| (ticks, Fault::None));
     let faults = [Fault::Frozen(MOVES), Fault::Waits(MOVES), Fault::Jumps(MOVES)].map(|fault| (2, fault));
     for (ticks, fault) in constant.into_iter().chain(faults) {
@@ -189,7 +189,7 @@ fn a_robot_that_does_not_follow_is_stopped_and_reported() {
     }
 }
 
-/// Refuses points from a number on, as a robot at a joint limit does, and is then found where it was before.
+/// A robot that refuses points from a number on, as at a joint limit, and then stays at its previous position.
 struct Refusing(Follower, Plate);
 
 impl Robot for Refusing {
@@ -217,7 +217,7 @@ impl OwnRobot for Refusing {
 }
 
 #[test]
-fn the_refusal_of_a_point_is_in_the_last_line_and_in_the_log() {
+fn refused_point_is_in_the_last_line_and_the_log() {
     let folder = tempfile::tempdir().unwrap();
     let log = folder.path().join("refused.mcap");
     let config = RunConfig { log: LogTarget::File(log.clone()), ..config() };
@@ -234,7 +234,7 @@ fn the_refusal_of_a_point_is_in_the_last_line_and_in_the_log() {
 }
 
 #[test]
-fn a_configuration_that_names_it_needs_it() {
+fn configuration_with_own_robot_needs_one() {
     let mut config = config();
     config.robot.kind = runtime::RobotKind::Own;
     let refused = Run::new(config, Box::new(()));

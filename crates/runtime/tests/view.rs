@@ -28,7 +28,7 @@ fn run(config: RunConfig, last: u64, mut look: impl FnMut(&Run, &Attached)) -> C
 }
 
 #[test]
-fn the_cell_page_shows_the_state_of_the_cell() {
+fn cell_view_shows_the_state_of_the_cell() {
     let view = run(config("view"), 881, |_, _| {});
     let controller = &view.controller;
     assert_eq!((view.tick, controller.stage.as_str()), (Tick(881), "DEPC"));
@@ -47,7 +47,7 @@ fn the_cell_page_shows_the_state_of_the_cell() {
 }
 
 #[test]
-fn every_header_of_a_run_has_the_row_that_its_values_give() {
+fn every_header_has_the_row_of_its_values() {
     let (mut seen, mut near) = (Tick::BEFORE_START, 0);
     run(config("rows"), 881, |run, reader| {
         // The longest interval at which a reader loses no tick.

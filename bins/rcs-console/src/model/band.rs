@@ -1,4 +1,5 @@
-//! The state band: the state of the robot in one word, the reason, the next step of a person, and the main facts.
+//! The state band: the state of the robot in one word, its reason, the operator's next step, and the main
+//! facts.
 
 use closed_loop::{account::Kind, failure::Failure};
 use interfaces::{
@@ -19,9 +20,7 @@ use crate::rcs_console::{
     story::process_named,
 };
 
-/// Command that stops the motion and holds the position.
 const PAUSE: &str = "PAUSE";
-/// Result of a run that has finished its job.
 const FINISHED: &str = "finished";
 /// Ticks over which the speed of the hand is measured.
 const SPEED_TICKS: u64 = 5;
@@ -31,16 +30,16 @@ const AT_REST: f64 = 0.05;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Condition {
     Running,
-    /// It waits at rest: for a command, or for a person.
+    /// Waiting at rest for a command or a person.
     Paused,
-    /// It cannot move, because a person or a switch stops it.
+    /// Unable to move, because a person or a switch stops the robot.
     Stopped,
-    /// An emergency stop has taken its pressure.
+    /// Without pressure after an emergency stop.
     EStop,
     Fault,
     /// The run has finished its job.
     Finished,
-    /// The run has ended without a failure that is known here.
+    /// The run has ended, and this console knows of no failure.
     Ended,
     NoData,
 }
@@ -60,7 +59,7 @@ impl Condition {
         }
     }
 
-    /// A sign for the word, which needs neither colour nor a special font.
+    /// A sign for the word that requires neither colour nor a special font.
     #[must_use]
     pub const fn shape(self) -> &'static str {
         match self {
@@ -94,17 +93,17 @@ pub struct Band {
     pub condition: Condition,
     /// The reason, or the command in progress.
     pub why: String,
-    /// The next step of a person; empty if there is none.
+    /// The operator's next step; empty if none is needed.
     pub next: String,
     /// Line of the job, hand, knob, tick, time, speed of the hand, name, and who commands: the most important first.
     pub facts: Vec<String>,
     /// `OPERATOR`, `VIEWER`, `ENDED` or `RECORDED`.
     pub role: &'static str,
-    /// True for a log: the state is not the present state of a robot.
+    /// True for a log, whose state is not the present state of a robot.
     pub is_recorded: bool,
 }
 
-/// The data that the state is decided from.
+/// The data that determine the state.
 struct Scene<'a> {
     model: &'a Model,
     source: &'a dyn Source,
@@ -115,11 +114,11 @@ struct Scene<'a> {
     failure: Option<Failure>,
 }
 
-/// The checks in the order of their importance: the first that applies gives the state.
+/// The checks in the order of their importance. The first that applies gives the state.
 const CHECKS: [fn(&Scene<'_>) -> Option<Finding>; 7] =
     [no_data, finished, emergency, failed, ended, stopped, paused];
 
-/// The band of a console. A frozen picture does not change it: it shows the present state of the run.
+/// The band of a console. It shows the present state of the run even if the picture is frozen.
 #[must_use]
 pub fn band(model: &Model, source: &dyn Source) -> Band {
     let about = source.about();
@@ -285,7 +284,7 @@ impl Scene<'_> {
         self.picture.external.hws.in_words().to_string()
     }
 
-    /// True if the robot has no pressure, or if no data say that it has.
+    /// True if the robot has no pressure, or if no data show it.
     fn lacks_pressure(&self) -> bool {
         match &self.cell {
             Cell::Shown(view) => !view.controller.cut.as_str().is_empty(),
@@ -293,7 +292,7 @@ impl Scene<'_> {
         }
     }
 
-    /// What a person has to do before the same command can succeed, if it is known.
+    /// The operator's action before the same command can succeed, if it is known.
     fn to_do(&self, failure: &Failure) -> Option<&'static str> {
         match failure.kind {
             Kind::Collision | Kind::Lost | Kind::Misplaced | Kind::FalseReport => {
@@ -373,7 +372,7 @@ impl Scene<'_> {
         facts
     }
 
-    /// Speed of the tool point by the resolvers, in/s; `None` if it is not known.
+    /// Speed of the tool point by the resolvers, in/s; `None` if unknown.
     fn hand_speed(&self) -> Option<f64> {
         let before = self.source.picture(self.picture.tick.0.checked_sub(SPEED_TICKS)?)?;
         let seconds =

@@ -19,7 +19,7 @@ pub struct Field {
     /// Path from the buffer to the field: the manual's names in Rust's spelling.
     pub name: String,
     pub value: String,
-    /// Type: `u32`, `option text 10`, or the name of an enum.
+    /// Type, such as `u32`, `option text 10`, or the name of an enum.
     pub kind: String,
     /// Unit; empty for none.
     pub unit: &'static str,
@@ -27,7 +27,6 @@ pub struct Field {
     pub changed: bool,
 }
 
-/// The byte images of a picture.
 struct Images {
     memory: Vec<u8>,
     outside: Vec<u8>,
@@ -117,7 +116,7 @@ fn field(leaf: &Leaf, now: &[u8], was: Option<&Vec<u8>>) -> Field {
     }
 }
 
-/// The buffers as lines, only those that contain the text of the filter.
+/// The buffers as lines that contain the text of the filter.
 #[must_use]
 pub fn section(process: ProcessId, picture: &Picture, last: Option<&Picture>, filter: &str) -> Section {
     let lines = |way: &'static str, fields: Vec<Field>| {
@@ -182,7 +181,7 @@ mod tests {
     }
 
     #[test]
-    fn a_process_reads_its_command_the_status_below_and_its_devices() {
+    fn process_inputs_are_command_status_below_and_devices() {
         let (was, mut is) = (picture(), picture());
         is.memory.emove.grip.force = 25;
         is.external.devices.grip.strain_left = 1500;
@@ -201,7 +200,7 @@ mod tests {
     }
 
     #[test]
-    fn a_process_writes_all_but_its_header() {
+    fn process_outputs_exclude_its_header() {
         let fields = outputs(ProcessId::Grip, &picture(), None);
         assert!(fields.iter().all(|field| field.name.starts_with("grip.")));
         assert!(fields.iter().all(|field| !field.name.starts_with("grip.header")));
@@ -209,7 +208,7 @@ mod tests {
     }
 
     #[test]
-    fn a_filter_looks_at_names_and_values() {
+    fn filter_matches_names_and_values() {
         let lines = |filter| section(ProcessId::Grip, &picture(), None, filter).lines.len();
         assert!(lines("FORCE") > 0 && lines("FORCE") < lines(""));
         assert_eq!(lines("no such field"), 0);

@@ -1,4 +1,4 @@
-//! The cell screen: the controller's sensors with joints and their margins, hand, grippers and holsters, and the parts.
+//! The cell screen: the controller's sensors with joint margins, hand, grippers and holsters, and the parts.
 
 use std::f64::consts::TAU;
 
@@ -222,7 +222,7 @@ fn shown(view: &CellView) -> Vec<Text> {
     lines
 }
 
-/// The line of the job, and the step that was begun last.
+/// The line of the job, and the last step that was begun.
 fn progress(job: &JobView) -> String {
     match (job.lines, job.line.as_str()) {
         (_, "") => "job: nothing has begun yet".to_owned(),
@@ -237,7 +237,7 @@ mod tests {
     use executive::memory::Text as MemoryText;
 
     #[test]
-    fn angles_are_turned_into_the_limits() {
+    fn angles_are_shifted_into_the_limits() {
         let mut devices = DeviceInputs::default();
         // 190 degrees back, in the resolver's counts.
         devices.resolvers.counts[0] = RESOLVER_COUNTS * 170 / 360;
@@ -246,7 +246,7 @@ mod tests {
     }
 
     #[test]
-    fn a_joint_near_its_limit_is_marked() {
+    fn joint_near_its_limit_is_marked() {
         let mut devices = DeviceInputs::default();
         devices.resolvers.valid = true;
         devices.resolvers.counts[1] = RESOLVER_COUNTS * 45 / 360;
@@ -261,7 +261,7 @@ mod tests {
     }
 
     #[test]
-    fn what_the_cell_shows_is_told_in_words() {
+    fn cell_screen_names_states_in_text() {
         let mut view = CellView::default();
         let text =
             |view: &CellView| shown(view).into_iter().map(|line| line.text).collect::<Vec<_>>().join("\n");
@@ -285,7 +285,7 @@ mod tests {
     }
 
     #[test]
-    fn a_holster_tells_where_its_gripper_is() {
+    fn holster_text_names_the_gripper_position() {
         assert_eq!([0b0000, 0b0011, 0b1111].map(holster), ["empty", "between", "seated"]);
     }
 }

@@ -20,7 +20,7 @@ use super::{Section, Text, Tone};
 
 /// Least number of lines of a view; a smaller terminal scrolls.
 const LEAST_LINES: usize = 13;
-/// A smaller body is only marked by its name, in.
+/// A smaller body is marked only by its name, in.
 const LEAST: f64 = 6.0;
 /// A larger body is not drawn, in.
 const LARGEST: f64 = 200.0;
@@ -32,7 +32,7 @@ const NAMED: usize = 3;
 /// The bodies of a cell description.
 pub struct Drawing {
     room: Room,
-    /// Name, lowest and highest corner of each thing, in.
+    /// Name, lowest and highest corner of each body, in.
     blocks: Vec<(String, [f64; 3], [f64; 3])>,
 }
 
@@ -60,15 +60,14 @@ struct Size {
     lines: usize,
 }
 
-/// A place on a sheet: column and line.
 type Place = (isize, isize);
 
 /// A sheet of characters, and the part of the world that it shows.
 struct Sheet {
     signs: Vec<Vec<char>>,
-    /// The characters that belong to labels, marks and the arm: no label covers them.
+    /// True for characters of labels, marks and the arm, which no label may cover.
     taken: Vec<Vec<bool>>,
-    /// Bodies whose names have no room: their letters.
+    /// Letters of the bodies whose names have no room.
     legend: Vec<String>,
     low: (f64, f64),
     /// Inches per column; a line is twice as high.
@@ -140,8 +139,8 @@ impl Sheet {
         self.put((left, top), &border(['┌', '┐']), false);
     }
 
-    /// Write the name of a block where it covers no other name and no mark: into its borders, inside, beside it. If it
-    /// has no room, a letter stands for it, and the legend explains the letter.
+    /// Write the name of a block where it covers neither a name nor a mark: on its borders, inside, or next to
+    /// it. If there is no room, write a letter, which the legend explains.
     fn label(&mut self, name: &str, (left, bottom): Place, (right, top): Place) {
         let length = isize::try_from(name.chars().count()).unwrap_or(isize::MAX);
         let within = (top..=bottom).filter(|_| length < right - left).map(|line| ((left + 1, line), false));
@@ -166,7 +165,7 @@ impl Sheet {
         }
     }
 
-    /// True if a text can be written there, with a column free on both sides. `blank`: over no outline.
+    /// True if a text fits there with a free column on both sides. `blank`: and covers no outline.
     fn is_free(&self, (column, line): Place, length: isize, blank: bool) -> bool {
         let is_clear = |at: isize| match self.inside((at, line)) {
             Some((x, y)) => !self.taken[y][x],
@@ -177,7 +176,6 @@ impl Sheet {
             && (column - 1..=column + length).all(is_clear)
     }
 
-    /// Draw a straight line between two points.
     fn line(&mut self, from: (f64, f64), to: (f64, f64)) {
         let (from, to) = (self.place(from), self.place(to));
         let steps = (to.0 - from.0).abs().max((to.1 - from.1).abs()).max(1);
@@ -194,7 +192,7 @@ impl Sheet {
     }
 }
 
-/// Name of the thing that a body belongs to: a tray has a floor and walls, a holster has cheeks and a foot.
+/// Name of the object to which a body belongs: a tray has a floor and walls, a holster has cheeks and a foot.
 fn whole(block: &Block) -> String {
     match block.kind {
         Kind::Tray | Kind::Holster => block.name.splitn(3, '_').take(2).collect::<Vec<_>>().join("_"),
@@ -259,12 +257,12 @@ impl Drawing {
         Self { room: Room::new(cell), blocks: blocks.into_iter().filter(fits).collect() }
     }
 
-    /// Draw the cell with the arm at these joint angles, for a terminal of this width and a body of this height: the
-    /// two views stand side by side if they are larger then.
+    /// Draw the cell with the arm at these joint angles, for a terminal of this width and a body of this
+    /// height. The two views are side by side if this makes them larger.
     #[must_use]
     pub fn sections(&self, joints: &Joints, width: usize, room: usize) -> Vec<Section> {
         let nearest = self.nearest(joints);
-        // Below the views are the legends of their letters, a title, and the nearest things.
+        // Below the views are the legends of their letters, a title, and the nearest bodies.
         let others = nearest.lines.len() + 3;
         let lines = |views: usize| (room.saturating_sub(others) / views).saturating_sub(1).max(LEAST_LINES);
         let above = Size { columns: width.saturating_sub(2), lines: lines(2) };
@@ -333,7 +331,7 @@ impl Drawing {
             let place = sheet.place(side.of(point));
             sheet.put(place, sign, true);
         }
-        // A small body has fewer places for its name.
+        // Names of small bodies go first: they have fewer possible positions.
         placed.sort_by_key(|(_, low, high)| (high.0 - low.0) * (low.1 - high.1));
         for (name, low, high) in placed {
             sheet.label(name, low, high);

@@ -5,7 +5,6 @@ use depc::{
     wire::{Control, DataCommand, FILL, FRAME_BYTES, Report, Response, START},
 };
 
-/// The frames that the host sent in a tick.
 #[must_use]
 pub fn sent(bytes: &[u8]) -> Vec<String> {
     split(bytes, |bytes| match bytes.first()? {
@@ -24,7 +23,7 @@ pub fn sent(bytes: &[u8]) -> Vec<String> {
     })
 }
 
-/// The frames that came from the robot controller for a tick.
+/// The frames that the robot controller sent in a tick.
 #[must_use]
 pub fn received(bytes: &[u8]) -> Vec<String> {
     split(bytes, |bytes| match bytes.first()? {
@@ -43,7 +42,7 @@ pub fn received(bytes: &[u8]) -> Vec<String> {
     })
 }
 
-/// The frames from the first byte on. Bytes at which no frame begins are shown as they are: the receivers discard them,
+/// The frames from the first byte on. Bytes that begin no frame are shown as they are: receivers discard them,
 /// or wait for the rest of a frame.
 fn split(mut bytes: &[u8], frame: impl Fn(&[u8]) -> Option<(String, usize)>) -> Vec<String> {
     let mut found = Vec::new();
@@ -81,7 +80,7 @@ mod tests {
     }
 
     #[test]
-    fn damage_and_parts_of_frames_are_said() {
+    fn damaged_and_partial_frames_are_listed() {
         let mut damaged = HOME;
         damaged[5] ^= 1;
         assert!(sent(&damaged)[0].starts_with("a data command that is damaged: "));

@@ -1,5 +1,3 @@
-//! Carries out the keys.
-
 use closed_loop::account::Account;
 use interfaces::ProcessId;
 
@@ -9,7 +7,6 @@ use crate::rcs_console::{
     story::process_named,
 };
 
-/// Ticks per second.
 const SECOND: u64 = 25;
 const PAGE: usize = 8;
 
@@ -155,7 +152,6 @@ impl Model {
         }
     }
 
-    /// Switch the cell screen between drawing and values.
     fn draw_or_not(&mut self, source: &dyn Source) {
         self.scroll = 0;
         if self.drawing.take().is_some() {
@@ -171,12 +167,10 @@ impl Model {
         }
     }
 
-    /// Switch the process screen between watched fields and buffers.
     fn turn_to_watch(&mut self) {
         (self.pane, self.scroll, self.shows_watch) = (Pane::Buffers, 0, !self.shows_watch);
     }
 
-    /// Start or stop watching the fields of a name.
     fn watch_or_not(&mut self, name: &str) {
         let mut found: Vec<String> = fields_named(name, &[]).into_iter().map(str::to_owned).collect();
         if buffers::paths().any(|path| buffers::is_within(path, name)) {
@@ -206,7 +200,6 @@ impl Model {
         }
     }
 
-    /// Go to a tick, or to the nearest available one.
     fn go(&mut self, tick: u64, source: &dyn Source) {
         let Some((first, last)) = source.range() else { return };
         self.answer = match tick {
@@ -217,7 +210,7 @@ impl Model {
         self.place = Place::At(tick.clamp(first, last));
     }
 
-    /// Go to the next or previous change: of this process on the process screen, else of any process.
+    /// Go to the next or previous change: of this process on the process screen, otherwise of any process.
     fn go_to_change(&mut self, forward: bool, source: &dyn Source) {
         let processes = match self.screen {
             Screen::Process => std::slice::from_ref(&self.process),
@@ -250,7 +243,7 @@ impl Model {
         }
     }
 
-    /// Carry out a key while text is typed: only Enter, Esc, Control-C and F1 end the input.
+    /// Handle a key while text is typed: only Enter, Esc, Control-C and F1 end the input.
     fn type_on(&mut self, mut prompt: Prompt, key: Key, source: &dyn Source) {
         if key == Key::F1 {
             self.operate(key);

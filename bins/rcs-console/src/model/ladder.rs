@@ -1,4 +1,4 @@
-//! The ladder (VI.6): a line per process and per neighbour, with command, status and row.
+//! The ladder (VI.6): one line per process and per neighbour, with command, status and row.
 
 use closed_loop::failure;
 use interfaces::{CommonMemory, Header, ProcessId, Said, device::VisionStatus, for_each_process};
@@ -14,27 +14,27 @@ use crate::rcs_console::{
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Item {
     Process(ProcessId),
-    /// The workstation controller: its command, and its status from Task.
+    /// The workstation controller: its command to Task, and Task's status.
     Workstation,
     /// The Data System: its request and its answer.
     DataSystem,
     /// The vision system: its request and its answer.
     Vision,
-    /// The robot controller behind the link.
+    /// The robot controller at the other end of the link.
     Robot,
 }
 
-/// Connection of a line to the lines above.
+/// Connection of a line to the lines above it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Branch {
     Level,
-    /// A process or neighbour beside the level, with others after it.
+    /// A process or neighbour at the same level, with others after it.
     Beside,
-    /// The last one beside the level.
+    /// The last process or neighbour at the same level.
     Last,
-    /// A process below one that has others after it.
+    /// A process below one that is not the last at its level.
     Below,
-    /// A process below the last one.
+    /// A process below the last one at its level.
     LastBelow,
 }
 
@@ -61,15 +61,15 @@ const LINES: [(Branch, Item); 16] = [
 /// The marks in the first two columns.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Mark {
-    /// It reports a failure or an error.
+    /// The process reports a failure or an error.
     pub trouble: bool,
-    /// It is the process that detected the first failure.
+    /// The process detected the first failure.
     pub cause: bool,
-    /// It was not executed, or no data came from it.
+    /// The process was not executed, or the neighbour sent no data.
     pub absent: bool,
-    /// It is the gripper on the robot.
+    /// The process controls the gripper on the robot.
     pub on: bool,
-    /// It differs from the previous picture.
+    /// The line differs from the previous picture.
     pub changed: bool,
 }
 
@@ -115,7 +115,7 @@ pub fn lines(picture: &Picture, last: Option<&Picture>, story: &Story) -> Vec<Li
             let was = self::line(branch, item, last, cause_before);
             let key = |line: &Line| (line.number, line.status.clone(), line.row.clone());
             match item {
-                // It gets a new command in every tick.
+                // T3 Interface gets a new command in every tick.
                 Item::Process(ProcessId::T3i) => {
                     (was.status, was.row) != (line.status.clone(), line.row.clone())
                 }
@@ -128,7 +128,7 @@ pub fn lines(picture: &Picture, last: Option<&Picture>, story: &Story) -> Vec<Li
     LINES.into_iter().map(line).collect()
 }
 
-/// The process that detected the first failure; `None` if there is no failure, or if no process detected the first one.
+/// The process that detected the first failure, if any did.
 fn cause(picture: &Picture, story: &Story) -> Option<ProcessId> {
     match (story.failure(picture.tick.0), story.present_trouble(picture)) {
         (Some(failure), _) => story::process_named(&failure.process),
@@ -179,13 +179,13 @@ fn process_line(branch: Branch, process: ProcessId, picture: &Picture, cause: Op
     }
 }
 
-/// The row that fired, after what no sensor confirms about a finished command.
+/// The row that fired, preceded by the unconfirmed goals of a finished command.
 fn row_text(said: &Said, fired: Option<Fired>) -> String {
     let row = fired.map_or_else(String::new, |fired| fired.text().to_string());
     if said.unconfirmed.is_none() { row } else { format!("unconfirmed: {}; {row}", said.unconfirmed) }
 }
 
-/// Seconds since the row fired; `None` if it fired in this tick, or if the time is not known.
+/// Seconds since the row fired; `None` if it fired in this tick, or at an unknown time.
 fn age(header: &Header) -> Option<f64> {
     let ticks = header.age().filter(|ticks| *ticks > 0)?;
     Some(ticks as f64 * TICK_S)
@@ -294,7 +294,7 @@ pub fn neighbour(process: ProcessId, by: usize, down: bool) -> ProcessId {
     processes().take(wanted + 1).last().unwrap_or(process)
 }
 
-/// What the process under the cursor does and why, one sentence each.
+/// The action of the process at the cursor and its reason, one sentence each.
 #[must_use]
 pub fn explanation(process: ProcessId, picture: &Picture, story: &Story) -> [String; 2] {
     let line = process_line(Branch::Level, process, picture, None);
@@ -332,7 +332,6 @@ macro_rules! echoes {
             reads: $reads:expr;
         }
     )+) => {
-        /// Number of the command to which the status of a process belongs.
         #[must_use]
         pub const fn echo(memory: &CommonMemory, process: ProcessId) -> u32 {
             match process { $( ProcessId::$id => memory.$field.status.echo, )+ }
@@ -361,14 +360,14 @@ mod tests {
     }
 
     #[test]
-    fn the_cursor_stops_at_both_ends() {
+    fn cursor_stops_at_both_ends() {
         assert_eq!(neighbour(ProcessId::Task, 1, false), ProcessId::Task);
         assert_eq!(neighbour(ProcessId::Task, 1, true), ProcessId::Subtask);
         assert_eq!(neighbour(ProcessId::T3i, 3, true), ProcessId::T3i);
     }
 
     #[test]
-    fn the_cause_is_marked_and_those_above_are_in_trouble() {
+    fn cause_is_marked_and_processes_above_are_in_trouble() {
         let mut story = Story::new(usize::MAX);
         let mut now = picture();
         let changes: [fn(&mut CommonMemory); 3] = [
@@ -397,7 +396,7 @@ mod tests {
     }
 
     #[test]
-    fn what_changed_since_the_last_picture_is_marked() {
+    fn changes_since_the_last_picture_are_marked() {
         let (was, mut is) = (picture(), picture());
         is.memory.task.subtask.number = 4;
         is.memory.t3i.status.counters.frames = 9;

@@ -13,7 +13,6 @@ use crate::rcs_console::{picture::Picture, source::Cell, story::Story};
 
 const MESSAGES: usize = 6;
 const RESTARTS: usize = 3;
-/// Sources of the messages about link, robot controller and clock.
 const SOURCES: [&str; 4] = ["T3 Interface", "cell", "fault", "executive"];
 
 /// The sections from top to bottom.
@@ -189,7 +188,7 @@ mod tests {
     }
 
     #[test]
-    fn a_fault_of_the_link_is_told_with_what_it_may_mean() {
+    fn link_fault_is_listed_with_possible_causes() {
         let mut picture = picture();
         assert!(!all(&picture, &Story::new(9)).contains("!!"));
         picture.memory.t3i.status.fault = LinkFault::NotResponding;
@@ -201,7 +200,7 @@ mod tests {
     }
 
     #[test]
-    fn times_are_those_of_all_ticks() {
+    fn times_cover_all_ticks() {
         let mut picture = picture();
         assert!(all(&picture, &Story::new(9)).contains("records no times"));
         let mut story = Story::new(9);

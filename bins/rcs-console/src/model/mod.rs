@@ -1,4 +1,5 @@
-//! The state of the console without a terminal: keys and pictures change it; it selects screen, tick and process.
+//! The state of the console without a terminal. Keys and pictures change it; it selects screen, tick and
+//! process.
 
 pub mod band;
 pub mod buffers;
@@ -61,11 +62,9 @@ pub enum Screen {
 }
 
 impl Screen {
-    /// All screens, in the order of their keys.
     pub const ALL: [Self; 7] =
         [Self::Ladder, Self::Process, Self::Link, Self::Cell, Self::Terminal, Self::Panels, Self::Procedures];
 
-    /// The name in the first line.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -90,11 +89,9 @@ pub enum Pane {
 }
 
 impl Pane {
-    /// All panes from top to bottom.
     pub const ALL: [Self; 3] = [Self::Table, Self::Rows, Self::Buffers];
 }
 
-/// The tick on the screen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Place {
     /// The last available tick.
@@ -103,7 +100,7 @@ pub enum Place {
     At(u64),
 }
 
-/// Emphasis of a line. Words or marks in the text express the same.
+/// Emphasis of a line. Words or marks in the text have the same meaning.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Tone {
     #[default]
@@ -122,7 +119,7 @@ pub struct Text {
 }
 
 impl Text {
-    /// A line, with its quantities in the units of the person.
+    /// A line, with its quantities in the user's units.
     #[must_use]
     pub fn new(tone: Tone, text: impl Into<String>) -> Self {
         let text = text.into();
@@ -133,13 +130,12 @@ impl Text {
         Self { tone, text }
     }
 
-    /// A line of a file or a buffer, which keeps the units of the data.
+    /// A line of a file or a buffer, in the units of the data.
     #[must_use]
     pub fn verbatim(tone: Tone, text: impl Into<String>) -> Self {
         Self { tone, text: text.into() }
     }
 
-    /// A line without emphasis.
     #[must_use]
     pub fn plain(text: impl Into<String>) -> Self {
         Self::new(Tone::Plain, text)
@@ -215,7 +211,6 @@ pub struct Model {
 }
 
 impl Model {
-    /// The console with its first screen.
     #[must_use]
     pub fn new(screen: Screen) -> Self {
         Self {
@@ -279,31 +274,30 @@ impl Model {
         }
     }
 
-    /// The tick on the screen; 0 before the first.
     #[must_use]
     pub fn tick(&self) -> u64 {
         self.picture.as_ref().map_or(0, |picture| picture.tick.0)
     }
 
-    /// True if the run accepts the requests of this console.
+    /// True if the run accepts requests of this console.
     #[must_use]
     pub fn operates(&self) -> bool {
         self.operating.as_ref().is_some_and(|operating| operating.lost.is_none())
     }
 
-    /// True if the job waits for an operator; a viewer cannot know it.
+    /// True if the job waits for an operator. A viewer cannot detect this.
     #[must_use]
     pub fn job_waits(&self) -> bool {
         self.operates() && self.operating.as_ref().is_some_and(Operating::job_waits)
     }
 
-    /// True while the console asks whether to take the command over.
+    /// The open question whether to take the command over, if any.
     #[must_use]
     pub fn taking_over(&self) -> Option<TakeOver> {
         self.operating.as_ref()?.take_over
     }
 
-    /// The joystick box in the controller's inputs.
+    /// The joystick box as the controller reads it.
     #[must_use]
     pub fn joystick(&self) -> JoystickBox {
         self.picture.as_ref().map_or_else(JoystickBox::default, |picture| picture.external.devices.joystick)

@@ -9,7 +9,6 @@ use super::{
 };
 
 impl Model {
-    /// Carry out a key that sends a request. Returns false for other keys.
     pub(super) fn operate(&mut self, key: Key) -> bool {
         let on_panels = self.screen == Screen::Panels;
         let velocity = self.joystick().velocity;
@@ -47,8 +46,8 @@ impl Model {
         true
     }
 
-    /// Carry out a key of the panel screen: of the joystick box, or of the list. The first Enter names the key under
-    /// the cursor, the second one presses it, so that a stray Enter starts nothing.
+    /// Handle a key of the panel screen: of the joystick box, or of the list. The first Enter names the key at
+    /// the cursor, the second one presses it, so that an accidental Enter has no effect.
     fn work_a_panel(&mut self, key: Key, was_chosen: bool) -> bool {
         let (frame, velocity) = (self.joystick().frame, self.joystick().velocity);
         let knob = |velocity: u16| format!("joystick velocity {velocity}");
@@ -118,7 +117,6 @@ impl Model {
         true
     }
 
-    /// Carry out a key of the request prompt.
     pub(super) fn type_request(&mut self, mut text: String, key: Key) {
         let mut recall = |back| self.operating.as_mut().and_then(|operating| operating.recall(back));
         match key {
@@ -156,15 +154,14 @@ const PLAY: f64 = 0.03;
 /// Ticks per second.
 const TICKS: f64 = 25.0;
 
-/// Deflection, as a share, and ticks for a motion of this length at full knob: the ramps at both ends cancel each
-/// other.
+/// Deflection, as a share, and ticks for a motion of this length at full knob. The ramps at both ends cancel.
 fn stick(inches: f64) -> (f64, u32) {
     let ticks = (inches * TICKS).clamp(2.0, 20.0).round();
     let share = (inches * TICKS / ticks / SPEED).clamp(0.0, 1.0);
     (PLAY + share * (1.0 - PLAY), ticks as u32)
 }
 
-/// Ticks to hold a button for a motion of about this length at full knob; its speed is always the full one.
+/// Ticks to hold a button for a motion of about this length at full knob, always at full speed.
 fn button_ticks(inches: f64) -> u32 {
     let ramp = SPEED / ACCELERATION;
     let seconds = if inches < SPEED * ramp { (inches / ACCELERATION).sqrt() } else { inches / SPEED };

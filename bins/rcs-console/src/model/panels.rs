@@ -1,5 +1,5 @@
-//! The panel screen: joystick box (III.3.3), robot controller (IV.3.3), emergency stops (III.6), rotary table (IV.1
-//! step 3) and Active Pedestal (VI.7) in their present state, and the requests to a run.
+//! The panel screen: present state of joystick box (III.3.3), robot controller (IV.3.3), emergency stops
+//! (III.6), rotary table (IV.1 step 3) and Active Pedestal (VI.7), and the requests to a run.
 
 use executive::memory::cell::TableView;
 use geometry::units::inches;
@@ -62,7 +62,7 @@ const KEYS: [(&str, &[&str]); 7] = [
     ),
     ("confirm", &["clamped", "by hand"]),
 ];
-/// Word of a key that the operator replaces by a name before it is sent.
+/// Placeholder that the operator replaces by a name before the request is sent.
 pub const TO_NAME: &str = "OBJECT";
 /// Columns of a line of the key list.
 const WIDTH: usize = 79;
@@ -73,7 +73,7 @@ pub fn requests() -> impl Iterator<Item = String> {
     KEYS.iter().flat_map(move |(title, all)| all.iter().map(move |words| whole(title, words)))
 }
 
-/// A request of the list; empty if there is none.
+/// A request of the list; empty if the list has no such request.
 #[must_use]
 pub fn request(at: usize) -> String {
     requests().nth(at).unwrap_or_default()
@@ -253,7 +253,7 @@ mod tests {
         lines.into_iter().map(|line| line.text).collect::<Vec<_>>().join("\n")
     }
 
-    /// The smallest terminal has room for all lines: 18 below the band, with the two titles.
+    /// The smallest terminal has room for 18 lines below the band, including the two titles.
     #[expect(clippy::field_reassign_with_default, reason = "another field is private")]
     #[test]
     fn panels_with_all_requests_fit_the_smallest_terminal() {
@@ -262,7 +262,7 @@ mod tests {
         let cell = Cell::Shown(Box::default());
         let all = sections(&DeviceInputs::default(), &CommonMemory::default(), &cell, Some(&operating));
         let lines: Vec<_> = all.into_iter().flat_map(|section| section.lines).collect();
-        // A text on the screen of the robot controller takes a line more.
+        // A text on the screen of the robot controller needs one more line.
         assert!(lines.len() < 18 - 2, "{}", text(lines));
         assert!(lines.iter().all(|line| line.text.chars().count() <= 80), "{}", text(lines));
         let said = text(lines);
@@ -273,14 +273,14 @@ mod tests {
     }
 
     #[test]
-    fn a_recorded_pose_suspends_prim_and_emove_until_carriage_return() {
+    fn recorded_pose_suspends_prim_and_emove_until_return() {
         let shown = |recording| text(joystick_box(&JoystickBox::default(), recording, None));
         assert!(!shown(false).contains("suspended"));
         assert!(shown(true).contains("E-move and Prim are suspended until carriage return (M)"));
     }
 
     #[test]
-    fn a_log_is_not_a_robot_at_a_port() {
+    fn log_is_not_a_robot_at_a_port() {
         let log = Cell::Recorded { parts: Vec::new(), clearance: None, contacts: None };
         assert!(!text(controller(&log)).contains("at the robot"));
         assert!(text(controller(&Cell::NotPublished)).contains("its E-stops are at the robot"));

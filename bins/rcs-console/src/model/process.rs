@@ -14,8 +14,8 @@ use crate::rcs_console::{
     story::{Doing, Story},
 };
 
-/// The table that decided last, with the fired row marked: a line with the row's conditions, a line with its action,
-/// then the rows. Lines without the text of the filter are omitted.
+/// The table that decided last, with the fired row marked: a line with the row's conditions, a line with its
+/// action, then the rows. Lines without the text of the filter are omitted.
 #[must_use]
 pub fn table(process: ProcessId, picture: &Picture, filter: &str) -> Section {
     let info = &Ladder::processes()[process.position()];
@@ -67,7 +67,7 @@ fn asked(table: &Table, values: Values) -> String {
     format!("       values: {}", step.into_iter().chain(values).collect::<Vec<_>>().join(", "))
 }
 
-/// The single changes of a variable with which a row would have fired; `None` if there is none.
+/// The single changes of a variable with which a row would have fired, if any.
 fn near(table: &Table, row: &Row, values: Values) -> Option<String> {
     let misses = table.near_misses(values).filter(|miss| miss.row.number == row.number);
     let misses: Vec<String> =
@@ -84,7 +84,7 @@ fn beside(info: &ProcessInfo, header: &Header) -> Vec<Text> {
     rows.map(|fired| Text::plain(format!("       beside: {fired}"))).collect()
 }
 
-/// The meaning of a row in the words of the source: each condition, the action, the next step.
+/// The meaning of a row from its doc comments: each condition, the action, the next step.
 #[must_use]
 pub fn meaning(table: &Table, row: &Row) -> Vec<String> {
     let mut lines = Vec::new();
@@ -157,7 +157,7 @@ mod tests {
     }
 
     #[test]
-    fn the_row_that_fired_is_marked_and_explained() {
+    fn fired_row_is_marked_and_explained() {
         let section = table(ProcessId::Grip, &picture(1, 2), "");
         let marked: Vec<_> = section.lines.iter().filter(|line| line.tone == Tone::Marked).collect();
         assert_eq!(marked.len(), 1);
@@ -170,14 +170,14 @@ mod tests {
     }
 
     #[test]
-    fn a_filter_leaves_lines_out() {
+    fn filter_omits_lines() {
         let all = table(ProcessId::Grip, &picture(1, 2), "").lines;
         let some = table(ProcessId::Grip, &picture(1, 2), "DOES").lines;
         assert!(!some.is_empty() && some.len() < all.len());
     }
 
     #[test]
-    fn a_process_without_a_row_names_its_tables() {
+    fn process_without_a_row_lists_its_tables() {
         let mut picture = picture(1, 1);
         picture.memory.grip.header.decided = None;
         let section = table(ProcessId::Grip, &picture, "");

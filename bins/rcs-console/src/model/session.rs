@@ -5,14 +5,13 @@ use interfaces::hws::HwsReport;
 use super::take_over::{TakeOver, is_due};
 use crate::rcs_console::picture::Picture;
 
-/// Number of requests and answers kept.
 const KEPT: usize = 200;
 pub const JOGS: [f64; 4] = [0.10, 0.50, 2.00, 0.02];
 
 /// The command that connects the Data System (V.4.1).
 const STARTUP: &str = "STARTUP";
-/// The steps of Task's table STARTUP after the first, and what the original terminal displayed (IV.4.2 step 3). Earlier
-/// updates are sent while it connects.
+/// The steps of Task's table STARTUP after the first, and the texts of the original terminal (IV.4.2 step 3).
+/// Pending updates are sent while it connects.
 const STAGES: [(&str, &str); 4] = [
     ("aborting", "Aborting..."),
     ("initiating", "Initiating..."),
@@ -24,14 +23,14 @@ const STAGES: [(&str, &str); 4] = [
 pub struct Exchange {
     pub number: u32,
     pub line: String,
-    /// The answer, once it has come.
+    /// The answer, once it has arrived.
     pub answer: Option<Result<String, String>>,
-    /// Progress of the command that it has sent, if any.
+    /// Progress of the requested command, if any.
     pub stages: Vec<String>,
 }
 
 impl Exchange {
-    /// Update the progress of the command that it has sent, in the words of the original terminal (IV.4.2 step 3).
+    /// Update the progress of the requested command, in the words of the original terminal (IV.4.2 step 3).
     fn follow(&mut self, picture: &Picture) {
         let Some(Ok(answer)) = &self.answer else { return };
         let number = answer.rsplit_once("command ").and_then(|(_, number)| number.parse::<u32>().ok());
@@ -55,7 +54,7 @@ impl Exchange {
 
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Operating {
-    /// The status line of the run: the source of commands, whether the job waits, the velocity knob.
+    /// The run's status line: the source of commands, whether the job waits, the velocity knob.
     pub status: String,
     /// Requests, oldest first.
     pub exchanges: Vec<Exchange>,
@@ -80,7 +79,7 @@ pub struct Operating {
 }
 
 impl Operating {
-    /// Note that a request was sent.
+    /// Record a sent request.
     pub fn sent(&mut self, number: u32, line: String) {
         if self.exchanges.len() == KEPT {
             self.exchanges.remove(0);
@@ -94,7 +93,7 @@ impl Operating {
         self.count
     }
 
-    /// The requests with their numbers among all that were sent, from 1.
+    /// The requests, numbered from 1 among all that were sent.
     pub fn numbered(&self) -> impl Iterator<Item = (u64, &Exchange)> {
         let kept = u64::try_from(self.exchanges.len()).unwrap_or(u64::MAX);
         (self.count.saturating_sub(kept) + 1..).zip(&self.exchanges)
@@ -109,7 +108,7 @@ impl Operating {
         }
     }
 
-    /// Note an answer to a request or to the question about the status.
+    /// Record an answer to a request or to a status request.
     pub fn answered(&mut self, number: u32, verdict: Result<String, String>) {
         match self.exchanges.iter_mut().rev().find(|exchange| exchange.number == number) {
             Some(exchange) => {
@@ -129,7 +128,7 @@ impl Operating {
         self.status.starts_with("the job waits")
     }
 
-    /// The operator who commands the run; `None` for nobody.
+    /// The operator who commands the run, if any.
     #[must_use]
     pub fn commander(&self) -> Option<&str> {
         let who = self.status.split("; ").nth(1)?.strip_suffix(" commands")?;
@@ -142,7 +141,7 @@ impl Operating {
         self.exchanges.last().map_or(0, |exchange| exchange.number)
     }
 
-    /// True if all requests after this one have been sent, answered and accepted.
+    /// True if all requests after this one have been accepted.
     #[must_use]
     pub fn has_taken_since(&self, number: u32) -> bool {
         let mut since = self.exchanges.iter().filter(|exchange| exchange.number > number).peekable();
@@ -150,7 +149,6 @@ impl Operating {
         sent && since.all(|exchange| matches!(exchange.answer, Some(Ok(_))))
     }
 
-    /// Queue a request to the run.
     pub fn ask(&mut self, line: impl Into<String>) {
         self.outbox.push(line.into());
     }
@@ -210,7 +208,7 @@ mod tests {
     }
 
     #[test]
-    fn the_last_requests_come_back() {
+    fn recall_returns_the_last_requests() {
         let mut operating = Operating::default();
         operating.sent(1, "stop".into());
         operating.sent(2, "go".into());

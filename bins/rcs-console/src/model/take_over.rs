@@ -1,11 +1,11 @@
-//! Takes the command over from the workstation controller of another process, and gives it back (IV.4.1).
+//! Takes the command over from the workstation controller of another process, and returns it (IV.4.1).
 
 use rcs_core::tick::Tick;
 
 use super::{Key, Model, Section, Text, Tone};
 use crate::rcs_console::picture::Picture;
 
-/// Part of a refusal which says that the command can be taken over.
+/// Part of a refusal that offers to take the command over.
 const OFFER: &str = "`stand-alone` takes over";
 const AGAIN: u64 = 25;
 
@@ -21,7 +21,8 @@ pub enum TakeOver {
 }
 
 impl TakeOver {
-    /// The state after an answer of the run: a refusal that offers a take-over begins it, an accepted request ends it.
+    /// The state after an answer of the run. A refusal that offers a take-over begins it; an accepted request
+    /// ends it.
     #[must_use]
     pub fn after(self_: Option<Self>, line: &str, verdict: &Result<String, String>) -> Option<Self> {
         match verdict {

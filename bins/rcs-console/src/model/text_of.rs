@@ -1,4 +1,4 @@
-//! The source text of the decision table that decided, with the fired row.
+//! The source text of the last deciding table, with the fired row.
 
 use interfaces::ProcessId;
 use levels::ladder::Ladder;
@@ -9,7 +9,7 @@ use crate::rcs_console::picture::Picture;
 /// Files with decision tables, and their texts.
 static FILES: &[(&str, &str)] = include!(concat!(env!("OUT_DIR"), "/tables.rs"));
 
-/// The complete source text of the table that decided last.
+/// The complete source text of the last deciding table.
 #[must_use]
 pub fn section(process: ProcessId, picture: &Picture, filter: &str) -> Section {
     let info = &Ladder::processes()[process.position()];
@@ -56,9 +56,8 @@ mod tests {
     use interfaces::{CommonMemory, Decided, ExternalInputs};
     use rcs_core::tick::Tick;
 
-    /// Every table of every process is found in the sources, with each of its rows.
     #[test]
-    fn every_row_of_every_table_stands_in_its_text() {
+    fn source_text_contains_every_row_of_every_table() {
         for (process, info) in ProcessId::ALL.iter().zip(Ladder::processes()) {
             for (number, table) in (1..).zip(info.tables) {
                 for row in table.rows {

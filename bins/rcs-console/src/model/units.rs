@@ -78,7 +78,7 @@ mod tests {
     use record::layout;
 
     #[test]
-    fn every_unit_is_that_of_a_field() {
+    fn every_unit_matches_a_field() {
         let paths: Vec<String> = [CommonMemory::STRUCT, ExternalInputs::STRUCT]
             .into_iter()
             .flat_map(layout::leaves)
@@ -90,7 +90,7 @@ mod tests {
     }
 
     #[test]
-    fn the_more_particular_name_decides() {
+    fn more_specific_name_decides() {
         assert_eq!(unit("table.status.position"), "0.1 deg");
         assert_eq!(unit("grip.status.position"), "0.01 in");
         assert_eq!(unit("devices.force.x"), "counts");

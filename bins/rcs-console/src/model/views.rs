@@ -6,7 +6,7 @@ use os_io::text::amount;
 use super::{Section, Text, Tone, buffers};
 use crate::rcs_console::picture::Picture;
 
-/// A show word (IV.2.6): its board, its subject, and its buffers.
+/// A show word (IV.2.6) with its board, subject and buffers.
 #[derive(Debug)]
 pub struct ShowWord {
     pub word: &'static str,
@@ -49,8 +49,8 @@ pub static SHOW_WORDS: [ShowWord; 5] = [
     },
 ];
 
-/// The vocabularies (IV.2.5; V to VII) and their processes; `None` for SDEF, which each board has, and for FDEF, that
-/// of the task data. The name of T3 Interface's is not known (VI.1).
+/// The vocabularies (IV.2.5; V to VII) and their processes; `None` for SDEF, which each board has, and for FDEF
+/// of the task data. The vocabulary of T3 Interface has no known name (VI.1).
 pub static VOCABULARIES: [(&str, Option<ProcessId>); 10] = [
     ("SDEF", None),
     ("TDEF", Some(ProcessId::Task)),
@@ -197,7 +197,7 @@ static NAMES: &[(&str, &str)] = &[
     ("SECTOR#", "task.data_base.sector"),
 ];
 
-/// The manual's name of a field; `None` for fields that the manual does not name.
+/// The manual's name of a field, if it has one.
 #[must_use]
 pub fn manual_name(path: &str) -> Option<&'static str> {
     NAMES.iter().find(|(_, field)| buffers::is_within(path, field)).map(|(name, _)| *name)
@@ -255,7 +255,7 @@ mod tests {
     use rcs_core::tick::Tick;
 
     #[test]
-    fn every_name_leads_to_a_field() {
+    fn every_manual_name_matches_a_field() {
         for (name, path) in NAMES {
             assert!(buffers::paths().any(|field| buffers::is_within(field, path)), "{name}: {path}");
         }
@@ -267,7 +267,7 @@ mod tests {
     }
 
     #[test]
-    fn a_name_is_looked_for_among_buffers() {
+    fn name_search_covers_the_given_buffers() {
         assert_eq!(fields_named("command-#-in", &["hws"]), ["hws.number"]);
         assert_eq!(fields_named("\"command-in\"", &["subtask.emove"]), ["subtask.emove.command"]);
         assert!(fields_named("number", &["task.subtask"]).contains(&"task.subtask.number"));
@@ -275,7 +275,7 @@ mod tests {
     }
 
     #[test]
-    fn a_show_word_has_the_names_of_the_manual() {
+    fn show_word_uses_the_names_of_the_manual() {
         let (external, memory) = (ExternalInputs::default(), CommonMemory::default());
         let picture = Picture { tick: Tick(1), external, memory, timing: None };
         let said: Vec<String> =

@@ -1,7 +1,8 @@
-//! The ticks of a log in memory: differences from tick to tick, and whole images once a second, as in the file.
+//! The ticks of a log in memory: differences from tick to tick, and a whole image once per second, as in the
+//! file.
 //!
-//! A log of an hour has 90,000 ticks. Whole images would take half a gigabyte; differences take a fiftieth of it, and
-//! any tick is decoded in 25 steps at most.
+//! A log of an hour has 90,000 ticks. Whole images would take half a gigabyte. Differences take a fiftieth of
+//! it, and any tick is decoded in at most 25 steps.
 
 use interfaces::{CommonMemory, ExternalInputs};
 use rcs_core::{
@@ -35,7 +36,6 @@ impl Images {
     }
 }
 
-/// All ticks of a log.
 pub struct Deltas {
     external: Codec,
     memory: Codec,
@@ -44,7 +44,6 @@ pub struct Deltas {
 }
 
 impl Deltas {
-    /// An empty store.
     pub fn new() -> Self {
         Self {
             external: Codec::new(ExternalInputs::STRUCT),

@@ -15,7 +15,7 @@ use crate::rcs_console::{
     story::Story,
 };
 
-/// Number of pictures kept: ten seconds, if none is missed.
+/// Number of pictures kept: ten seconds, without missed ones.
 const KEPT: usize = 250;
 const STORY: usize = 4096;
 /// Number of attempts to read a consistent picture. In a fast run the next tick may begin during one.
@@ -36,7 +36,7 @@ impl Live {
     /// Attach to a run.
     ///
     /// # Errors
-    /// [`SharedMemoryError`] if there is no such run, if it was built from other sources, or if it cannot be read.
+    /// [`SharedMemoryError`] if the run does not exist, was built from other sources, or cannot be read.
     pub fn open(name: &RunName, on_stuck: Option<OnStuck>) -> Result<Self, SharedMemoryError> {
         let run = within_limit(SET_UP_LIMIT, on_stuck, || Attached::open(name))?;
         let mut live = Self {
@@ -51,8 +51,8 @@ impl Live {
         Ok(live)
     }
 
-    /// A picture of one tick, and true if it is the last one of the run. `None` if the next tick began during every
-    /// attempt, or if no tick has begun.
+    /// A picture of one tick, and true if it is the last one of the run. `None` if the next tick began during
+    /// every attempt, or before the first tick.
     fn read(&self) -> Result<Option<(Picture, bool)>, ReadError> {
         for _ in 0..ATTEMPTS {
             let pulse = self.run.pulse()?;
@@ -80,7 +80,7 @@ impl Live {
             self.pictures.pop_front();
         }
         self.pictures.push_back(picture);
-        // The cell is published after the tick; if it cannot be read now, it is read with the next tick.
+        // The cell is published after the tick. If it cannot be read now, it is read with the next tick.
         if let Ok(Some(cell)) = self.run.cell() {
             let tick = cell.tick.min(self.pictures.back().map_or(cell.tick, |picture| picture.tick)).next();
             let lines = self.cells.back().map_or_else(Vec::new, |before| seen::lines(before, &cell, tick));

@@ -13,7 +13,7 @@ use taskdata::load::Source as Blocks;
 
 use crate::rcs_console::{picture::Picture, story::Story};
 
-/// A source of pictures. No source writes to the data that it reads.
+/// A source of pictures. It never writes to the data that it reads.
 pub trait Source {
     /// Name and state of the source.
     fn about(&self) -> About<'_>;
@@ -49,29 +49,28 @@ pub struct About<'a> {
     pub name: &'a str,
     /// Log, or state of the run.
     pub state: State,
-    /// Ending of the run, one line; `None` while not known.
+    /// Ending of the run, one line, once known.
     pub result: Option<&'a str>,
     /// The parts of a log that cannot be read, as text.
     pub damage: Option<String>,
 }
 
-/// A log, or the state of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum State {
     Log,
     Runs,
     /// The run has ended in an orderly way.
     Over,
-    /// No new tick has come for this number of seconds.
+    /// No new tick for this number of seconds.
     Silent(u64),
-    /// At the last attempts its buffers were being written, or could not be read.
+    /// The last attempts found buffers that were being written or could not be read.
     Torn,
 }
 
 /// State of the cell in a source, in addition to the controller's sensors.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Cell {
-    /// None: the robot is at a port.
+    /// Not published: the robot is at a port.
     NotPublished,
     /// The published state of a simulated cell.
     Shown(Box<CellView>),

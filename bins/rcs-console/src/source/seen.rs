@@ -1,5 +1,5 @@
-//! Events of the cell, found by comparing two of its published views. A log has them as lines; shared memory has only
-//! the states.
+//! Events of the cell, found by comparing two of its published views. Logs contain events as lines; shared
+//! memory contains only states.
 
 use executive::memory::cell::{CellView, PartView};
 use plant::{CellEvent, Cut, EStop, t3::RobotEvent};
@@ -12,14 +12,14 @@ const FLOOR: &str = "floor";
 /// Code of a warning of the robot controller, as in a log.
 const WARNING: &str = "cell.warning";
 
-/// The events between two views, as the lines that a log has, in the tick after the second view.
+/// The events between two views, as the lines of a log, in the tick after the second view.
 pub fn lines(before: &CellView, now: &CellView, tick: Tick) -> Vec<LogLine> {
     let (was, is) = (&before.controller, &now.controller);
     let mut lines = Vec::new();
     if was.cut != is.cut
         && let Some(cut) = cut(is.cut.as_str())
     {
-        // A button is pressed between two ticks: the pressure is lost in the second.
+        // A button is pressed between two ticks, so the pressure is lost in the second.
         let tick = if matches!(cut, Cut::EStop(_)) { tick.next() } else { tick };
         lines.push(line(tick, CellEvent::Robot(RobotEvent::Sinks(cut))));
     }
@@ -33,7 +33,7 @@ pub fn lines(before: &CellView, now: &CellView, tick: Tick) -> Vec<LogLine> {
     lines
 }
 
-/// The loss of pressure with this text.
+/// The loss of pressure that this text reports.
 fn cut(text: &str) -> Option<Cut> {
     let others = [Cut::PressureLost, Cut::ManualOff, Cut::KeySwitch, Cut::ControlPower, Cut::PrimBox];
     EStop::ALL.iter().copied().map(Cut::EStop).chain(others).find(|cut| cut.to_string() == text)
@@ -74,7 +74,7 @@ mod tests {
         assert_eq!(lines(&now, &before, Tick(9)), [], "what has been put right is no event");
     }
 
-    /// The views hold the texts in full; else a cause of a loss would not be found.
+    /// The views must contain the texts in full; otherwise the cause of a loss is not found.
     #[test]
     fn every_loss_of_pressure_is_found_by_its_text() {
         for site in EStop::ALL.iter().copied() {

@@ -1,11 +1,9 @@
-//! The help page.
-
 use ratatui::text::Line;
 
 use super::Look;
 use crate::rcs_console::model::{Model, Tone};
 
-/// Keys and their effects on every console.
+/// Keys of every console, and their effects.
 const KEYS: [(&str, &str); 10] = [
     ("1 ... 7", "screens, from every screen; 2: the process at the cursor"),
     ("j k, arrows", "choose, scroll; PgUp PgDn by a page; Enter opens, Esc goes back"),

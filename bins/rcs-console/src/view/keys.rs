@@ -7,7 +7,7 @@ use crate::rcs_console::{
 
 use super::text::fit;
 
-/// The keys of the present screen. While this console operates a run, the line begins with those that stop the robot.
+/// The keys of the present screen. While this console operates a run, the keys that stop the robot come first.
 pub fn line(model: &Model, state: State, width: usize) -> String {
     let takes_requests = model.operates() && !matches!(state, State::Over | State::Log);
     let is_typing =
@@ -20,7 +20,7 @@ pub fn line(model: &Model, state: State, width: usize) -> String {
     };
     let mut line = String::new();
     for key in stops.iter().chain(keys(model, state, takes_requests)) {
-        // A key that does not fit is on the help page.
+        // A key without room is on the help page.
         if line.chars().count() + 2 + key.chars().count() < width {
             let gap = if line.is_empty() { " " } else { "  " };
             line = line + gap + key;

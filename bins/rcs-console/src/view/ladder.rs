@@ -1,4 +1,4 @@
-//! The ladder: in columns, or on a large terminal the hierarchy beside the process at the cursor.
+//! The ladder: in columns, or on a large terminal the hierarchy next to the process at the cursor.
 
 use interfaces::ProcessId;
 use ratatui::{
@@ -23,9 +23,9 @@ use crate::rcs_console::{
 const LEAST_TEXT: usize = 24;
 /// Columns for a command on the smallest terminal.
 const COMMAND: usize = 19;
-/// Smallest body with the hierarchy beside the process: columns, and two lines per process or neighbour.
+/// Smallest body with both hierarchy and process: columns, and two lines per process or neighbour.
 const BESIDE: (usize, usize) = (120, 33);
-/// Columns of the hierarchy beside the process, without its row.
+/// Columns of the hierarchy without the row, if the process is shown too.
 const HIERARCHY: usize = 43;
 /// Least and most columns for its row.
 const ROW: (usize, usize) = (15, 30);
@@ -36,7 +36,7 @@ struct Widths {
 }
 
 impl Widths {
-    /// Commands are not cut as long as there is room; the text of the rows gets the rest.
+    /// Commands are not cut if there is room; the text of the rows gets the rest.
     fn of(width: usize, ladder: &[ladder::Line]) -> Self {
         let extra = width.saturating_sub(80);
         let longest = ladder.iter().map(|line| line.command.chars().count()).max().unwrap_or_default();
@@ -78,7 +78,7 @@ pub fn body(
         let drawn = look.line(line.mark.tone(), row(&widths, &line));
         lines.push(if chosen { drawn.patch_style(Modifier::REVERSED) } else { drawn });
     }
-    // In the smallest terminal there is room for one sentence only.
+    // The smallest terminal has room for only one sentence.
     if room > lines.len() + 2 {
         lines.push(look.line(Tone::Plain, rule("", width)));
     }
@@ -130,7 +130,7 @@ fn spans(line: Line<'static>) -> impl Iterator<Item = Span<'static>> {
     })
 }
 
-/// A process or neighbour in two lines or more: status and row, then the whole command.
+/// A process or neighbour in two or more lines: status and row, then the whole command.
 fn entry(line: &ladder::Line, row: usize, width: usize) -> Vec<String> {
     let (mark, name) = (mark(&line.mark), name(line));
     let shown = if line.item == Item::Robot { "" } else { &line.row };
@@ -147,7 +147,7 @@ fn entry(line: &ladder::Line, row: usize, width: usize) -> Vec<String> {
     std::iter::once(first).chain(command).collect()
 }
 
-/// The sentences about the process under the cursor, each in at most half of the available lines.
+/// The sentences about the process at the cursor, each in at most half of the available lines.
 fn explanation(
     process: ProcessId,
     picture: &Picture,
@@ -167,7 +167,7 @@ fn explanation(
         .collect()
 }
 
-/// The first lines; the last one shows that more follow.
+/// The first lines. The last one shows that more follow.
 fn shortened(mut lines: Vec<String>, share: usize, width: usize) -> Vec<String> {
     lines.truncate(share);
     if let Some(last) = lines.last_mut() {
@@ -193,7 +193,6 @@ fn row(widths: &Widths, line: &ladder::Line) -> String {
     )
 }
 
-/// The two characters of the mark.
 fn mark(mark: &Mark) -> String {
     match *mark {
         Mark { trouble: true, .. } => "!!".to_owned(),

@@ -1,7 +1,7 @@
 //! Draws the model as a frame of text.
 //!
-//! Line 1 has the screens, lines 2 to 4 the state band; the last line has the keys, the one before it the latest news.
-//! A mark or a word always expresses the same as a colour.
+//! Line 1 has the screens, lines 2 to 4 the state band, the last line the keys, and the one before it the
+//! latest news. A mark or a word always has the same meaning as a colour.
 
 mod band;
 mod help;
@@ -42,7 +42,6 @@ const FRAME: usize = BAND + 3;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Look {
     pub colour: bool,
-    /// ASCII characters only.
     pub ascii: bool,
 }
 

@@ -1,4 +1,4 @@
-//! Sections below each other: in panes that share the height, or in one column with scrolling.
+//! Sections one above the other: in panes that share the height, or in one column with scrolling.
 
 use interfaces::Said;
 use ratatui::text::Line;
@@ -82,7 +82,7 @@ pub fn column(
         all.extend(body(section, width));
     }
     let mut reach = Reach::default();
-    // If lines are hidden, one line shows how many.
+    // One line shows the number of hidden lines.
     let height = if all.len() > room { room - 1 } else { room };
     let start = scrolled(0, model.scroll, all.len(), height, &mut reach);
     let length = all.len();
@@ -97,13 +97,13 @@ pub fn column(
     (lines, reach)
 }
 
-/// Sections scrolled automatically, so that the line that must be visible stays on the screen.
+/// Sections, scrolled so that the line that must be visible stays on the screen.
 pub fn list(sections: &[Section], look: Look, width: usize, room: usize) -> Vec<Line<'static>> {
     let mut lines = Vec::new();
     for section in sections {
         let (body, at) = (body(section, width), at(section, width));
         let height = room.saturating_sub(lines.len() + 1);
-        // The details of that line are below it.
+        // The details of that line follow it.
         let start = at.saturating_sub(height / 3).min(body.len().saturating_sub(height));
         let more = more(start, body.len(), height);
         lines.push(look.line(Tone::Plain, rule(&format!("{}{more}", section.title), width)));

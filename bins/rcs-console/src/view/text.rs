@@ -1,6 +1,6 @@
 //! Text in columns: every character is one column wide.
 
-/// Text of exactly `width` columns; an ellipsis ends a text that is too long.
+/// Text of exactly `width` columns. An ellipsis ends a text that is too long.
 pub fn fit(text: &str, width: usize) -> String {
     let length = text.chars().count();
     if length <= width {
@@ -13,8 +13,8 @@ pub fn fit(text: &str, width: usize) -> String {
     cut
 }
 
-/// Text in lines of at most `width` columns. The indentation of further lines is two columns more than that of the text
-/// after blanks and marks.
+/// Text in lines of at most `width` columns. Further lines are indented two columns more than the text, after
+/// blanks and marks.
 pub fn wrap(text: &str, width: usize) -> Vec<String> {
     let indent = text.chars().take_while(|sign| " >~!".contains(*sign)).count() + 2;
     let mut lines = Vec::new();
@@ -55,7 +55,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_does_not_fit_is_told() {
+    fn cut_text_ends_with_an_ellipsis() {
         assert_eq!(fit("MOVE", 6), "MOVE  ");
         assert_eq!(fit("TRANSFER", 5), "TRAN…");
         assert_eq!(fit("x", 0), "");

@@ -15,16 +15,17 @@ pub struct Waiting {
     pub runs: Vec<RunName>,
     /// Index of the run under the cursor.
     pub cursor: usize,
-    /// The boards of that run, with true for those that have joined, while it waits for boards (IV.2.1, IV.2.8).
+    /// The boards of the selected run while it waits for boards, with true for those that have joined (IV.2.1,
+    /// IV.2.8).
     pub boards: Vec<(Board, bool)>,
-    /// What that run says about its state before its first tick, as a phrase after its name.
+    /// State of that run before its first tick, as a phrase after its name.
     pub phase: Option<String>,
     /// The reason why the last run could not be shown.
     pub refused: Option<String>,
 }
 
 impl Waiting {
-    /// Update the list of runs; the cursor stays on one of them.
+    /// Update the list of runs. The cursor stays on its run.
     pub fn take(&mut self, runs: Vec<RunName>) {
         self.cursor = self.cursor.min(runs.len().saturating_sub(1));
         self.runs = runs;

@@ -1,5 +1,5 @@
-//! The start-up of the manual (IV.3.3) and a taught point (III.3.3), with the keys that a person presses; and a
-//! recording of it for `asciinema play`:
+//! The start-up of the manual (IV.3.3) and a taught point (III.3.3), with an operator's keys; and a recording
+//! of it for `asciinema play`:
 //!
 //! ```sh
 //! RCS_RECORDING=docs/console.cast cargo test --release -p programs --test console recording
@@ -14,13 +14,13 @@ use super::*;
 
 /// The last step of IV.3.3.
 const LAST: &str = "19b";
-/// The step that a person must confirm.
+/// The step that the operator must confirm.
 const LOOK: &str = "6";
-/// Time after which Enter is pressed again, because the robot controller was not ready for its key; ten times as long
+/// Time after which Enter is repeated because the robot controller was not ready for its key; ten times as long
 /// in a recording.
 const AGAIN: Duration = Duration::from_millis(300);
 
-/// A recording in version 2 of asciicast: a header, then a line per piece of output.
+/// A recording in version 2 of asciicast: a header, then one line per piece of output.
 fn asciicast(written: &Written) -> String {
     let title = "rcs-console: start-up of the robot (IV.3.3), and a taught point (III.3.3)";
     let header =
@@ -43,7 +43,7 @@ fn asciicast(written: &Written) -> String {
     text
 }
 
-/// Mark and number of the step under the cursor.
+/// Mark and number of the step at the cursor.
 fn step_under_cursor(screen: &str) -> Option<(String, String)> {
     let line = screen.lines().skip(3).find(|line| line.starts_with("> "))?;
     let part =
@@ -94,7 +94,7 @@ fn do_all_steps(console: &mut Terminal, pause: Duration) {
 }
 
 #[test]
-fn a_recording_shows_the_start_up_of_the_robot_and_a_taught_point() {
+fn recording_shows_the_start_up_and_a_taught_point() {
     let file = env::var_os("RCS_RECORDING").map(PathBuf::from);
     let (speed, pause) = if file.is_some() { (5, Duration::from_millis(900)) } else { (10, Duration::ZERO) };
     let directory = tempfile::tempdir().unwrap();

@@ -23,7 +23,7 @@ struct Rows {
     ticks: u64,
     /// True if the same rows fired in the same order, at other times.
     same_order: bool,
-    /// Tick of both runs where the order first differs, or else the times. `a` and `b` are the rows.
+    /// Tick of both runs where the order or else the times first differ. `a` and `b` are the rows.
     first: [u64; 2],
     a: String,
     b: String,
@@ -88,13 +88,12 @@ impl Changes {
         changes
     }
 
-    /// Returns true if nothing differs.
     #[must_use]
     pub const fn is_empty(&self) -> bool {
         self.rows.is_empty() && self.motion.is_none() && self.link.is_none() && self.times.is_empty()
     }
 
-    /// Number of processes that decided differently, and of those that decided the same at other times.
+    /// Number of processes that decided differently, and of those with the same decisions at other times.
     #[must_use]
     pub fn deciding(&self) -> (usize, usize) {
         let late = self.rows.iter().filter(|rows| rows.same_order).count();
@@ -119,7 +118,6 @@ impl Changes {
         }
     }
 
-    /// Compares the durations and the results of the commands.
     fn times(&mut self, a: &Chronicle, b: &Chronicle) {
         let said = |command: Option<&CommandStory>| {
             command.map_or_else(
@@ -150,7 +148,7 @@ impl Changes {
 fn rows(process: usize, others: Others, a: &Trace, b: &Trace) -> Option<Rows> {
     let (was, is) = (a.decisions(process), b.decisions(process));
     let parted = was.iter().zip(&is).position(|((_, was), (_, is))| was != is);
-    // A longer run has decisions that the other run lacks.
+    // A longer run has additional decisions.
     let parted = parted.or((was.len() != is.len()).then_some(was.len().min(is.len())));
     let (first, decided) = match (parted, others) {
         (None, None) => return None,

@@ -38,7 +38,7 @@ impl End {
         self.ticks as f64 * TICK_S
     }
 
-    /// Least distance between the robot and an obstacle, as text; "none" if there was none.
+    /// Least distance between the robot and an obstacle, as text; "none" if the run has no distance.
     #[must_use]
     pub fn clearance(&self) -> &str {
         self.fact("clearance")
@@ -49,7 +49,7 @@ impl End {
     }
 }
 
-/// A fact that differs at the end.
+/// A difference at the end.
 #[derive(Debug, Serialize)]
 struct Ended {
     what: &'static str,
@@ -81,7 +81,6 @@ impl Ends {
         Self(said.collect())
     }
 
-    /// Returns true if the ends do not differ.
     #[must_use]
     pub const fn is_empty(&self) -> bool {
         self.0.is_empty()

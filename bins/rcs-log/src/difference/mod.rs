@@ -39,7 +39,6 @@ impl Difference {
         Self { ends: Ends::between(&a.end, &b.end), changes: Changes::between(a, b, align) }
     }
 
-    /// Returns true if nothing differs.
     #[must_use]
     pub const fn is_none(&self) -> bool {
         self.ends.is_empty() && self.changes.is_empty()

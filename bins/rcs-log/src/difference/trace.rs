@@ -31,14 +31,12 @@ pub struct Mark {
 /// The data of a run that are compared.
 #[derive(Default)]
 pub struct Trace {
-    /// Its ticks.
     pub marks: Vec<Mark>,
     pub chronicle: Chronicle,
     pub end: End,
 }
 
 impl Trace {
-    /// Records a tick.
     pub fn note(&mut self, moment: &Moment) {
         self.chronicle.note(moment);
         let mut rows = [None; PROCESS_COUNT];
@@ -70,7 +68,6 @@ impl Trace {
         self.end = End::of_log(log, self.marks.last().map_or(0, |mark| mark.tick));
     }
 
-    /// The key of each tick.
     pub fn keys(&self, align: Align) -> impl Iterator<Item = Key> {
         let (mut command, mut since) = (0, 0);
         self.marks.iter().map(move |mark| match align {

@@ -89,7 +89,7 @@ pub enum RefusedChange {
     /// The changed task data have errors.
     #[error("with this change the task data have errors:\n{0}")]
     Data(String),
-    /// The text is no valid line of a job.
+    /// The text is not a valid line of a job.
     #[error("this is not a line of a job:\n{0}")]
     Line(String),
     /// The text is not exactly one line of the expected kind.
@@ -177,11 +177,11 @@ pub fn description(text: &str) -> Result<CellDescription, Box<Refusal>> {
     })
 }
 
-/// Converts changes to operations, with the task data and the cell of the tick. Changes of the cell description are
-/// left out.
+/// Converts changes to operations, with the task data and the cell of the tick, except changes of the cell
+/// description.
 ///
 /// # Errors
-/// [`Refusal`] of the first change that is not possible.
+/// [`Refusal`] of the first impossible change.
 pub fn operations(
     changes: &[Change],
     store: &Store,
@@ -272,7 +272,7 @@ pub fn with_value(text: &str, key: &str, value: &str) -> Result<String, RefusedC
     Ok(text)
 }
 
-/// The error for a key that does not exist, with the keys that exist at this place.
+/// The error for an unknown key, with the known keys at this place.
 fn missing(table: &toml::Table, key: &str) -> RefusedChange {
     let mut known: Vec<String> = table.keys().cloned().collect();
     let mut at: Option<&toml::Value> = None;
@@ -300,7 +300,7 @@ mod tests {
     }
 
     #[test]
-    fn changes_are_read_as_they_are_documented() {
+    fn documented_changes_parse() {
         let read = |text: &str| text.parse::<Change>();
         assert_eq!(read("seed=7"), Ok(Change::Seed(7)));
         assert_eq!(read("line=** wait 50"), Ok(Change::Line("** wait 50".to_owned())));
@@ -315,7 +315,7 @@ mod tests {
     }
 
     #[test]
-    fn a_value_of_the_cell_is_replaced() {
+    fn value_of_the_cell_is_replaced() {
         let changed = with_value(&cell(), "gripper.parts.friction", "0.15").unwrap();
         let description = CellDescription::from_toml(&changed).unwrap();
         assert!((description.gripper.parts.friction - 0.15).abs() < 1e-12);
@@ -324,7 +324,7 @@ mod tests {
     }
 
     #[test]
-    fn a_value_that_is_not_there_is_refused_with_those_that_are() {
+    fn unknown_value_is_refused_with_the_known_ones() {
         let text = |key, value| with_value(&cell(), key, value).unwrap_err().to_string();
         let error = text("vise.fricton", "0.1");
         assert_eq!(error, "cell.toml has no value vise.fricton: the nearest is friction");

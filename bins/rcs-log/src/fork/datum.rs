@@ -242,7 +242,7 @@ mod tests {
     }
 
     #[test]
-    fn all_changes_of_a_block_stand_in_it() {
+    fn changed_block_contains_all_its_changes() {
         let text = "BLOCK# 7 OFFSET 21000\n%% remark\n  1  2\n  3  4\nBLOCK# 8 OFFSET 21000\n  5\n";
         let sources = [Source { name: "f.blk".to_owned(), text: text.into() }];
         let datum: Datum = "f.blk:7:1:2=40".parse().unwrap();

@@ -27,7 +27,7 @@ pub enum ForkError {
         tick: u64,
         source: ChangeError,
     },
-    /// A change of the cell after tick 0: the cell is built before the first tick.
+    /// A change of the cell after tick 0. The cell is built before the first tick.
     #[error("cell {0} can be changed before the first tick only, when the cell is built: use --tick 0")]
     CellLater(String),
     /// The log has no such tick, or no tick after it.
@@ -41,7 +41,7 @@ pub enum ForkError {
     /// The run has no failure, which `--at-failure` needs.
     #[error("nothing went wrong in this run: name a tick with --tick")]
     NoFailure,
-    /// The output would replace the log of the fork, or a file that is no log.
+    /// The output would replace the log of the fork, or a file that is not a log.
     #[error("the fork cannot be written to {path}: {source}")]
     Output { path: PathBuf, source: io::Error },
     /// The program has changed, or the log lacks data that the run depended on.

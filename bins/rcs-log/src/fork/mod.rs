@@ -56,7 +56,6 @@ pub struct Arguments {
     answer: Answer,
 }
 
-/// The answer of `fork`.
 #[derive(Debug, Serialize)]
 struct Forked {
     file: String,

@@ -1,11 +1,11 @@
 //! Traces a failure back over the ticks to its first cause.
 //!
-//! The trace begins with the process that first reported the reason which Task received. A row fired in the tick in
-//! which that process began to report it; the conditions of the row that were not true in the tick before are the news.
-//! If a process below reports a failure at that time, or reported anything new in the tick before, the trace continues
-//! with that process and the tick of its report. It ends at a process with no such report from below: the cause is then
-//! a device, a limit, or data. From this process, the commands are traced upwards: who gave each command, when, and by
-//! which row.
+//! The trace begins with the process that first reported the reason which Task received. The row that fired
+//! when that process began to report it has new conditions: those that were false in the previous tick. If a
+//! process below reports a failure at that time, or reported a change in the previous tick, the trace continues
+//! with that process and the tick of its report. It ends at a process with no such report from below. The cause
+//! is then a device, a limit, or data. From this process, the commands are traced upwards: who gave each
+//! command, when, and by which row.
 
 use interfaces::t3i::LinkFault;
 use levels::ladder::{PROCESS_COUNT, ProcessId};
@@ -32,7 +32,7 @@ pub struct Root {
 /// is the first cause.
 pub fn down(history: &History, process: ProcessId, tick: u64) -> (Root, Vec<Link>) {
     let (mut root, mut links) = (Root { process, tick }, Vec::new());
-    // The ladder has four levels above the link: a longer trace would be a cycle.
+    // The ladder has four levels above the link, so a longer trace would be a cycle.
     for _ in 0..PROCESS_COUNT {
         links.push(report(history, root));
         match below(history, root) {
@@ -43,8 +43,8 @@ pub fn down(history: &History, process: ProcessId, tick: u64) -> (Root, Vec<Link
     (root, links)
 }
 
-/// The process below that made the row of this tick fire: one that reports a failure, or one that reported anything new
-/// in the tick before.
+/// The process below that made the row of this tick fire: one that reports a failure, or one that reported a
+/// change in the previous tick.
 fn below(history: &History, at: Root) -> Option<Root> {
     let seen = at.tick.checked_sub(1)?;
     let said = |process: ProcessId| Some((process, history.report(process, seen)?));
@@ -54,13 +54,14 @@ fn below(history: &History, at: Root) -> Option<Root> {
     found.map(|(process, report)| Root { process, tick: report.tick })
 }
 
-/// Returns true if `reason` is a failure. T3I reports `no error` for none, the other processes an empty text.
+/// Returns true if `reason` is a failure. T3I reports `no error` for success, the other processes an empty
+/// text.
 pub fn has_failed(process: ProcessId, reason: &str) -> bool {
     let none = if process == ProcessId::T3i { LinkFault::None.text() } else { "" };
     reason != none
 }
 
-/// The report of a process in a tick, with the row and its news.
+/// The report of a process in a tick, with the row and its new conditions.
 fn report(history: &History, at: Root) -> Link {
     let mut text = match history.report(at.process, at.tick) {
         Some(report) if has_failed(at.process, report.reason) => {
@@ -78,8 +79,8 @@ fn report(history: &History, at: Root) -> Link {
     Link { tick: at.tick, process: info(at.process).name.to_owned(), text }
 }
 
-/// The conditions of a row that the previous row does not have: the reasons why it fired. `None` unless it fired for
-/// the first time and under the same command as in the tick before.
+/// The conditions of a row that the previous row lacks: the reasons why it fired. `None` unless it fired for
+/// the first time and under the same command as in the previous tick.
 fn news(history: &History, at: Root, fired: &history::Fired) -> Option<String> {
     if fired.tick != at.tick {
         return None;
@@ -91,7 +92,8 @@ fn news(history: &History, at: Root, fired: &history::Fired) -> Option<String> {
     }
     let last = history.row(at.process, seen)?;
     let (now, before) = (row_of(at.process, fired)?, row_of(at.process, last)?);
-    // A table consulted first that decides now had passed the decision on before, by a row that no header names.
+    // A table consulted first that decides now had passed on the decision before, by a row that no header
+    // names.
     let is_above = before.table.name != now.table.name;
     let passed = now.table.rows.iter().filter(|row| is_above && row.action == CONSULT);
     let changed = changed(passed.chain([before.row]), &now);
@@ -101,8 +103,8 @@ fn news(history: &History, at: Root, fired: &history::Fired) -> Option<String> {
 /// The action of rows that pass the decision on to the next table.
 const CONSULT: &str = "consult";
 
-/// The values for which a row fired, of the conditions that no row before it has. The step is left out, because it is
-/// the table's own state.
+/// The values for which a row fired, except those of conditions of earlier rows. The step is left out, because
+/// it is the table's own state.
 fn changed<'a>(before: impl Iterator<Item = &'a Row>, now: &Fired) -> Vec<String> {
     let known: Vec<&Condition> = before.flat_map(|row| row.when).collect();
     let asked = now.row.when.iter().zip(now.conditions());
@@ -129,7 +131,7 @@ pub fn commands(history: &History, at: Root) -> Vec<Link> {
     links
 }
 
-/// How the failure was reported upwards from a process to Task: process and tick of each report.
+/// The path of the failure upwards from a process to Task: process and tick of each report.
 pub fn up(history: &History, from: ProcessId, tick: u64) -> Vec<Link> {
     let (mut links, mut at, mut tick) = (Vec::new(), from, tick);
     while let Some(commander) = at.commander() {
@@ -197,7 +199,7 @@ mod tests {
     }
 
     #[test]
-    fn the_walk_goes_down_to_the_process_that_knows() {
+    fn trace_ends_at_the_lowest_reporting_process() {
         let (root, links) = down(&missed(), ProcessId::Emove, 6);
         assert_eq!(root, Root { process: ProcessId::Prim, tick: 5 });
         let said: Vec<_> = links.iter().map(|link| (link.tick, link.process.as_str())).collect();
@@ -217,7 +219,7 @@ mod tests {
     }
 
     #[test]
-    fn a_failure_passes_one_level_per_tick() {
+    fn failure_rises_one_level_per_tick() {
         let said: Vec<_> =
             up(&missed(), ProcessId::Emove, 6).into_iter().map(|link| (link.tick, link.process)).collect();
         assert_eq!(said, [(7, "Subtask".to_owned()), (8, "Task".to_owned())]);
@@ -230,9 +232,10 @@ mod tests {
         Decided { table: u8::try_from(at + 1).unwrap(), row }
     }
 
-    /// ORDERED passed the decision on while E-move was busy, so the condition that E-move has the order is not news.
+    /// ORDERED passed on the decision while E-move was busy, so the condition that E-move has the order is not
+    /// new.
     #[test]
-    fn a_table_above_reports_the_rows_that_it_consumed() {
+    fn passed_on_conditions_are_not_new() {
         let history = history(&[
             |_, memory| memory.subtask.header.decided = Some(subtask("GET-OBJECT", 1)),
             |_, memory| memory.subtask.header.decided = Some(subtask("ORDERED", 4)),

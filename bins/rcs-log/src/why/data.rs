@@ -1,6 +1,6 @@
-//! The task data that the last commands used, each with file, block and line: the point of the path, the grip with its
-//! movetable and its sizes, the location. Records are found by their numbers, because two objects can have forms with
-//! the same text in different files.
+//! The task data of the last commands, each with file, block and line: the point of the path, the grip with its
+//! movetable and sizes, the location. Records are found by their numbers, because two objects can have forms
+//! with the same text in different files.
 
 use interfaces::{
     CommonMemory,
@@ -73,7 +73,7 @@ impl Found<'_> {
         }
     }
 
-    /// The grip or the view of the object that E-move is commanded to, with its movetable and its sizes.
+    /// The grip or the view of the object in E-move's command, with its movetable and sizes.
     fn grip(&mut self, order: &EmoveCommand) {
         let Some(object) = order.object else { return };
         let (view, origins) = (self.view, self.store.origins());
@@ -110,7 +110,7 @@ impl Found<'_> {
         self.add(&format!("array {name}"), &origins.arrays, array.index());
     }
 
-    /// A movetable; `of` says what it belongs to.
+    /// A movetable; `of` names its owner.
     fn movetable(&mut self, of: &str, id: MovtabId) {
         let name = id.of(self.view.movetables).map_or_else(String::new, |table| table.name.to_string());
         self.add(&format!("movetable {name}{of}"), &self.store.origins().movetables, id.index());
@@ -120,7 +120,7 @@ impl Found<'_> {
 /// The line of the path to which a command sends Prim.
 fn path_point<'a>(data: &TaskData<'a>, way: &Way, motion: &PrimCommand) -> Option<&'a PathPoint> {
     let written = route_of(way, data).ok()?.written(way.next, data)?;
-    // A command that belongs to no path, such as PAUSE, has other parameters.
+    // A command without a path, such as PAUSE, has other parameters.
     (written.para == motion.trajectory_parameters).then_some(written)
 }
 

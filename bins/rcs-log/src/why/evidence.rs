@@ -1,8 +1,9 @@
 //! The inputs of the devices during a command: the end of a causal chain.
 //!
-//! A switch is listed with its value and the ticks of its changes, a converter with its range. One line lists all
-//! inputs that never changed, and absent devices are left out. For a guarded move, the evidence is its sensor: the
-//! condition that would have ended the move, how near the reading came to it, and how far the robot moved meanwhile.
+//! A switch is listed with its value and the ticks of its changes, a converter with its range. One line lists
+//! all inputs that never changed; absent devices are left out. For a guarded move, the evidence is its sensor:
+//! the condition that would have ended the move, the reading nearest to it, and the distance that the robot
+//! moved meanwhile.
 
 use geometry::pose::WireFrame;
 use interfaces::{ExternalInputs, prim::PrimVerb};
@@ -24,7 +25,7 @@ use taskdata::files::{SensorPara, SensorSource};
 
 use crate::story::{Moment, moments};
 
-/// Greatest number of changes listed for a switch; if there are more, only their number is given.
+/// Greatest number of changes listed for a switch. More changes are only counted.
 const CHANGES: usize = 8;
 
 /// The findings between two ticks.
@@ -72,7 +73,7 @@ pub fn gather(log: &Log, process: ProcessId, from: u64, until: u64) -> Evidence 
     Evidence { guard: guard.tell(travel(&frames)), devices: tell(&traces) }
 }
 
-/// A line for each input that changed, and one line for all others.
+/// One line per changed input, and one line for all others.
 fn tell(traces: &[Trace]) -> Vec<String> {
     let mut lines: Vec<String> = traces.iter().filter_map(Trace::tell).collect();
     let steady: Vec<String> = traces.iter().filter_map(Trace::steady).collect();
@@ -159,7 +160,7 @@ struct Guard {
 
 impl Guard {
     fn new(log: &Log, process: ProcessId) -> Self {
-        // Without task data the thresholds are unknown; the failure is explained without them.
+        // Without task data the thresholds are unknown; the failure is then explained without them.
         let sensors = generations(log).ok().and_then(|mut all| all.pop());
         let sensors = sensors.map_or_else(Vec::new, |store| store.view().sensors.to_vec());
         Self {

@@ -13,7 +13,7 @@ use crate::story::Moment;
 /// A command, valid from the tick of its writing.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Commanded {
-    /// Tick of writing; the receiver reads it one tick later, Task in the same tick.
+    /// Tick of writing. Task reads it in the same tick, other receivers one tick later.
     pub tick: u64,
     pub number: u32,
     pub text: String,
@@ -37,7 +37,7 @@ pub struct Reported {
     pub tick: u64,
     /// The report as text: `executing`, `done`, `not-detected` ...
     pub report: &'static str,
-    /// Why the command failed; empty if it did not.
+    /// The reason of a failed command; empty otherwise.
     pub reason: &'static str,
 }
 
@@ -77,7 +77,7 @@ impl History {
 
     /// The command that a process had in a tick.
     pub fn command(&self, process: ProcessId, tick: u64) -> Option<&Commanded> {
-        // Every process but Task reads commands that were written one tick earlier.
+        // Except for Task, processes read commands that were written one tick earlier.
         let written = if process == ProcessId::Task { tick } else { tick.saturating_sub(1) };
         latest(&self.commands[process.position()], written, |command| command.tick)
     }
@@ -121,8 +121,8 @@ pub fn condition(asked: &Condition) -> String {
     format!("{} is {}", asked.variable, asked.values.join(" or "))
 }
 
-/// Action and next step of a row as text: `GraspObj, then Grasping`. For a row that fires in any step, the text names
-/// the step: `Wait in step moving`.
+/// Action and next step of a row as text: `GraspObj, then Grasping`. For a row that fires in any step, the text
+/// names the step: `Wait in step moving`.
 pub fn effect(row: &Row, step: &str) -> String {
     let at = if row.steps.is_empty() && row.next.is_none() && !step.is_empty() {
         format!(" in step {step}")
@@ -176,7 +176,7 @@ mod tests {
     }
 
     #[test]
-    fn a_row_is_reported_with_the_step_in_which_it_fired() {
+    fn row_is_reported_with_its_step() {
         let any = Row {
             number: 1,
             steps: &[],
@@ -199,7 +199,7 @@ mod tests {
     }
 
     #[test]
-    fn a_reason_names_the_values_for_which_the_row_fired() {
+    fn reason_names_the_values_of_the_fired_row() {
         let of_row = |number: u8, values: Option<Values>| {
             let row = EXECUTE.row(number).unwrap();
             because(&conditions(&table::Fired { table: &EXECUTE, row, values }))

@@ -1,10 +1,10 @@
 //! `rcs-log why`: explains a failure, or what each level did in a tick, and by which row.
 //!
-//! The explanation begins with the first thing that went wrong in the world ([`world`]): a contact, a lost part, a
-//! warning of the robot controller, or a line of the workstation that could not be executed. A failure is explained as
-//! a chain of causes over the ticks ([`chain`]): the commands that led to the failed process, each with its row; the
-//! inputs of the devices during the command ([`evidence`]); events in the cell; the first cause; and how the failure
-//! was reported up to Task. All statements come from buffers and rows of the log ([`history`]); nothing is guessed.
+//! The explanation begins with the first failure in the world ([`world`]): a contact, a lost part, a warning of
+//! the robot controller, or a line of the workstation that could not be executed. A failure is explained as a
+//! chain of causes over the ticks ([`chain`]): the commands that led to the failed process, each with its row;
+//! the inputs of the devices during the command ([`evidence`]); events in the cell; the first cause; and the
+//! reports up to Task. All statements come from buffers and rows of the log ([`history`]), without guesses.
 
 mod chain;
 mod data;
@@ -47,8 +47,8 @@ const LINES_BEFORE: usize = 12;
 /// Number of lines about cell and link shown with a failure.
 const LINES_MEANWHILE: usize = 8;
 
-/// Sources of lines about events around the robot: the cell and injected faults. Such a line has the tick after the
-/// event.
+/// Sources of lines about events around the robot: the cell and injected faults. Such a line has the tick after
+/// the event.
 const EVENTS: [&str; 2] = ["cell", FAULT];
 const FAULT: &str = "fault";
 
@@ -69,11 +69,11 @@ pub struct Arguments {
 pub struct Explanation {
     tick: u64,
     seconds: f64,
-    /// What went wrong first in the world; `None` if a tick was requested.
+    /// The first failure in the world; `None` if a tick was requested.
     world: Option<World>,
     /// The failure that began in this tick; `None` if a tick was requested.
     failure: Option<Story>,
-    /// How the run ended, if not by the failure of a process.
+    /// The ending of the run, if it was not the failure of a process.
     ended: Option<String>,
     /// Log lines before the tick, oldest first; for a failure, the events of cell and link during the command.
     before: Vec<LineBefore>,
@@ -93,7 +93,7 @@ pub struct Story {
     pub first_cause: String,
     /// Inputs of the devices during the command.
     pub evidence: Vec<String>,
-    /// How the failure was reported up to Task.
+    /// The reports of the failure up to Task.
     pub consequences: Vec<Link>,
 }
 
@@ -111,14 +111,14 @@ struct LineBefore {
     text: String,
 }
 
-/// What a process did in a tick.
+/// Action of a process in a tick.
 #[derive(Debug, Serialize)]
 struct Rung {
     process: String,
     command: String,
     /// The process was not executed, because it was dormant or held.
     held: bool,
-    /// Tick in which the row fired, if it is an earlier one: the process has decided nothing since.
+    /// Tick in which the row fired, if the process has not decided since.
     old: Option<u64>,
     /// Values of the state variables of the table when the row fired.
     values: Option<String>,
@@ -139,14 +139,13 @@ struct Rung {
     effect: String,
 }
 
-/// Explains a tick and prints the explanation.
 pub fn why(arguments: &Arguments) -> Result<ExitCode, Error> {
     let log = open(&arguments.file)?;
     print(&explanation(&log, &arguments.file, arguments.tick)?, arguments.answer.json)?;
     Ok(ExitCode::SUCCESS)
 }
 
-/// The explanation of a tick; of the failure, if none is requested.
+/// The explanation of a tick, or of the failure if no tick is requested.
 ///
 /// # Errors
 /// [`Error::Read`] if the log cannot be read, [`Error::NoTick`] if it does not have the tick.
@@ -177,7 +176,7 @@ fn read(log: &Log, path: &Path) -> Result<(Chronicle, History), Error> {
     Ok((chronicle, history))
 }
 
-/// The last command that led to the first thing that went wrong in a log, with its tick; `None` if nothing did.
+/// The last command that led to the first failure in a log, with its tick, if there is a failure.
 ///
 /// # Errors
 /// [`Error::Read`] if the log cannot be read.
@@ -193,8 +192,8 @@ pub fn last_command(log: &Log, path: &Path) -> Result<Option<Link>, Error> {
     Ok(commands.pop())
 }
 
-/// Explains a failure that a process began to report in a tick, from its commands to its first cause.
-/// `account` says what went wrong before.
+/// Explains a failure that a process began to report in a tick, from its commands to its first cause. `account`
+/// has the earlier failures.
 pub fn tell(log: &Log, history: &History, failure: &Failure, account: Option<&Account>) -> Option<Told> {
     let at = ProcessId::from_text(&failure.process)?;
     let (tick, text) = (failure.tick.0, failure.text.clone());
@@ -354,13 +353,13 @@ impl Explanation {
     }
 }
 
-/// Links under a title; nothing if there are none.
+/// Links under a title; empty without links.
 fn links(title: &str, links: &[Link], f: &mut fmt::Formatter<'_>) -> fmt::Result {
     let line = |Link { tick, process, text }: &Link| format!("tick {tick:>6}  {process} {text}");
     list(title, &links.iter().map(line).collect::<Vec<_>>(), f)
 }
 
-/// Lines under a title; nothing if there are none.
+/// Lines under a title; empty without lines.
 fn list(title: &str, lines: &[String], f: &mut fmt::Formatter<'_>) -> fmt::Result {
     if lines.is_empty() {
         return Ok(());

@@ -1,5 +1,5 @@
-//! What went wrong first in the world, with the commands that led there from the workstation controller down, each with
-//! its row, and the data that the last row used, with file, block and line.
+//! The first failure in the world, with the commands that led to it from the workstation controller down, each
+//! with its row, and the data that the last row used, with file, block and line.
 
 use closed_loop::{
     account::{Account, Kind},
@@ -20,7 +20,7 @@ use crate::story::moments;
 /// End effector id of the gripper whose hand is the process Grip.
 const PARTS_GRIPPER: u8 = 1;
 
-/// What went wrong first, and what followed.
+/// The first failure in the world and its consequences.
 #[derive(Debug, Serialize)]
 pub struct World {
     /// The failures in order.
@@ -48,7 +48,7 @@ impl Motion {
     }
 }
 
-/// What went wrong first. Commands and data are listed for what a command can have caused.
+/// The first failure. It has commands and data if a command can have caused it.
 pub fn first(log: &Log, history: &History, account: Account) -> World {
     let Failure { tick, kind, .. } = account.first;
     let mut world = World { account: account.clone(), commands: Vec::new(), data: Vec::new() };

@@ -75,25 +75,22 @@ impl<'f> Branch<'f> {
         (self.events, self.untrue) = (events, untrue);
     }
 
-    /// The last tick.
     #[must_use]
     pub const fn at(&self) -> Tick {
         self.closed.tick()
     }
 
-    /// Common memory after the last tick.
     #[must_use]
     pub const fn memory(&self) -> &CommonMemory {
         self.closed.memory()
     }
 
-    /// The state of the control processes after the last tick.
     #[must_use]
     pub fn ladder(&self) -> LadderState {
         self.closed.course().levels().ladder().state()
     }
 
-    /// Number of confirmations that were judged so far.
+    /// Number of confirmations judged so far.
     #[must_use]
     pub const fn judged(&self) -> u64 {
         self.closed.truth().result().judged
@@ -107,15 +104,15 @@ impl<'f> Branch<'f> {
         self.closed.books_mut().map_or(Ok(Vec::new()), |books| books.items())
     }
 
-    /// Forget the faults of cell and line that are over. Call it only if no others follow.
+    /// Discard the faults of cell and line that are over. Call it only if no others follow.
     pub fn forget_past_faults(&mut self) {
         let now = self.at();
         self.closed.workstation.cell.forget_past_faults();
         self.closed.line_mut().forget_past(now);
     }
 
-    /// Digest of everything on which the next ticks depend, but for numbers and times that make no difference
-    /// ([`past`]), and of `beside`.
+    /// Digest of `beside` and of everything on which the next ticks depend, without the numbers and times that
+    /// make no difference ([`past`]).
     ///
     /// # Errors
     /// [`Error::Fork`] if the cell cannot be saved.
@@ -146,7 +143,6 @@ impl<'f> Branch<'f> {
         Ok(digest)
     }
 
-    /// The data that all branches share.
     #[must_use]
     pub const fn facility(&self) -> &'f Facility {
         self.facility

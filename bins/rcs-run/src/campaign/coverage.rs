@@ -1,4 +1,4 @@
-//! What the control processes have done in branches: rows of the decision tables, and states.
+//! Coverage of the control processes in branches: rows of the decision tables, and states.
 
 use std::collections::BTreeSet;
 
@@ -11,7 +11,6 @@ use serde::{Deserialize, Serialize};
 
 use super::{branch::Branch, parent, trial::Observer};
 
-/// The rows that have fired, and the states that the processes were in.
 #[derive(Clone, Debug, Default, Deserialize, PartialEq, Serialize)]
 pub struct Coverage {
     /// Fired rows: index of the process in [`ProcessId::ALL`], of the table, and of the row.
@@ -22,7 +21,7 @@ pub struct Coverage {
 }
 
 impl Coverage {
-    /// Merge the coverage of another branch. Returns what is new.
+    /// Merge the coverage of another branch. Returns the part of it that is new.
     pub fn take_in(&mut self, other: Self) -> Self {
         let Self { rows, states } = other;
         Self {
@@ -60,8 +59,8 @@ impl Coverage {
     }
 }
 
-/// True if a header can name a row with this action. Headers do not name rows that pass on to the next table, nor rows
-/// of EXECUTE that do not refuse.
+/// True if a header can name a row with this action. Headers name neither rows that pass on to the next table
+/// nor rows of EXECUTE that accept.
 fn is_named(table: &str, action: &str) -> bool {
     action != "consult" && (table != EXECUTE.name || action == "Refuse")
 }

@@ -1,5 +1,5 @@
-//! What a person does to the cell between two commands: leads the robot aside, or moves, exchanges, adds or takes away a
-//! part. Campaigns of confirmations (`--truth`) draw them.
+//! Disturbances of the cell by a person between two commands: the person moves the robot aside, or moves,
+//! exchanges, adds or removes a part. Campaigns of confirmations (`--truth`) draw them.
 
 use std::fmt;
 
@@ -9,11 +9,11 @@ use plant::{BoxAction, BoxButton, Cell, Placement, WorkstationAction, Workstatio
 
 /// Velocity of the joystick box with its knob at the end, in/s.
 const BOX_SPEED: f64 = levels::prim::manual::SPEED;
-/// Seconds that a person takes to lead the robot over a short way.
+/// Time in which a person moves the robot a short way, s.
 const SECONDS: f64 = 1.0;
 /// Greatest share of the box's velocity.
 const FASTEST: f64 = 0.5;
-/// Least share of the box's velocity: slower the robot would not stop where it is wanted.
+/// Least share of the box's velocity. A slower robot would not stop at the intended place.
 const SLOWEST: f64 = 0.02;
 
 #[derive(Clone, Debug, PartialEq)]
@@ -37,12 +37,11 @@ pub enum Follow {
     Same,
     /// PAUSE, and the next command of the job.
     Next,
-    /// The command before the interrupted one again, which has finished, and then the interrupted one.
+    /// The previous command again, which has finished, and then the interrupted one.
     Again,
 }
 
 impl Follow {
-    /// All, with the ends of their names.
     pub const ALL: [(Self, &'static str); 3] =
         [(Self::Same, ""), (Self::Next, ":next"), (Self::Again, ":again")];
 
@@ -51,7 +50,6 @@ impl Follow {
     }
 }
 
-/// A disturbance, and the command that follows it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Disturbance {
     pub what: What,
@@ -62,7 +60,6 @@ pub struct Disturbance {
 pub const WORDS: [&str; 5] = ["jog", "take", "move", "swap", "add"];
 
 impl What {
-    /// The first word of its name.
     #[must_use]
     pub const fn word(&self) -> &'static str {
         match self {
@@ -92,7 +89,7 @@ impl fmt::Display for Disturbance {
 }
 
 impl Disturbance {
-    /// The disturbance of a name; `None` if it is no name of one.
+    /// The disturbance of this name, if there is one.
     #[must_use]
     pub fn named(text: &str) -> Option<Self> {
         let ends = |(then, end): &(Follow, &str)| Some((text.strip_suffix(end)?, *then));
@@ -117,14 +114,14 @@ fn inches([x, y, z]: [i32; 3]) -> Vector {
     Vector::new(f64::from(x), f64::from(y), f64::from(z)) / 100.0
 }
 
-/// The robot on its way by hand: first along X and Y with the stick, then along Z with the buttons.
+/// A motion of the robot by hand: first along X and Y with the stick, then along Z with the buttons.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Lead {
     start: Option<Vector>,
     way: Vector,
     /// Along Z, after X and Y.
     upward: bool,
-    /// Ticks in which the robot has not come nearer.
+    /// Ticks without progress.
     idle: u32,
     done: f64,
 }
@@ -133,13 +130,13 @@ pub struct Lead {
 const IDLE: u32 = 50;
 
 impl Lead {
-    /// Lead the robot by a vector, 0.01 in.
+    /// Move the robot by a vector, 0.01 in.
     #[must_use]
     pub fn by(hundredths: [i32; 3]) -> Self {
         Self { start: None, way: inches(hundredths), upward: false, idle: 0, done: 0.0 }
     }
 
-    /// Lead the robot back over the same way.
+    /// Move the robot back over the same way.
     #[must_use]
     pub fn back(hundredths: [i32; 3]) -> Self {
         Self::by(hundredths.map(|one| -one))
@@ -188,7 +185,7 @@ impl Lead {
     }
 }
 
-/// What a person has changed, to undo it.
+/// A step that undoes a change of the cell.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Undo {
     /// Put this kind of part back at a frame.
@@ -198,17 +195,16 @@ pub enum Undo {
     Remove(u32),
 }
 
-/// The free parts of the cell, in the order of their numbers.
 fn free(cell: &Cell) -> Vec<u32> {
     let had =
         |id: u32| cell.holders(id).is_none_or(|holders| holders.robot || holders.pedestal || holders.vise);
     cell.parts().into_iter().map(|part| part.id).filter(|id| !had(*id)).collect()
 }
 
-/// Change the cell. Returns the numbers of the parts that have changed, and what undoes it.
+/// Change the cell. Returns the numbers of the changed parts, and the step that undoes the change.
 ///
 /// # Errors
-/// A message if the cell refuses it, or there is no such part; nothing has changed then.
+/// A message if the cell refuses the change or there is no such part; the cell is then unchanged.
 pub fn change(cell: &mut Cell, what: &What) -> Result<(Vec<u32>, Vec<Undo>), String> {
     let said = |error: WorkstationError| error.to_string();
     let chosen = |cell: &Cell, number: usize| {
@@ -241,7 +237,7 @@ pub fn change(cell: &mut Cell, what: &What) -> Result<(Vec<u32>, Vec<Undo>), Str
             let new = cell.next_part_number();
             let put = |part: &str, frame: Frame| WorkstationAction::Put { part: part.to_owned(), frame };
             if cell.workstation(&put(kind, raised)).is_err() {
-                // It does not fit there. The part that is put back has another number.
+                // The new part does not fit there. The part that is put back gets another number.
                 cell.workstation(&put(&name, frame)).map_err(said)?;
                 return Ok((vec![id, new], Vec::new()));
             }
@@ -288,7 +284,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_disturbance_is_read_back_from_its_name() {
+    fn disturbance_name_parses_back() {
         for text in
             ["jog:30:0:-5", "take:1:next", "move:2:-40:7:again", "swap:1:SHAFT", "add:DRILL-2:TOOL-TRNS:0"]
         {

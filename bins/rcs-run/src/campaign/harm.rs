@@ -45,7 +45,6 @@ fn distance(a: &[f64; 3], b: &[f64; 3]) -> f64 {
 }
 
 impl World {
-    /// The present world of a branch.
     #[must_use]
     pub fn of(branch: &mut Branch<'_>) -> Self {
         let items = branch.items();
@@ -60,8 +59,8 @@ impl World {
         Self { parts: parts.collect(), gripper: cell.gripper(), hand: cell.tool().position.into(), items }
     }
 
-    /// The first difference from the undisturbed run, as text; `None` if there is none. Where the hand is counts
-    /// only if the command `moves` the robot: STARTUP and SHUTDOWN leave it where the command before has brought it.
+    /// The first difference from the undisturbed run, as text, if any. The position of the hand matters only if
+    /// the command `moves` the robot: STARTUP and SHUTDOWN leave it in place.
     #[must_use]
     pub fn unlike(&self, undisturbed: &Self, moves: bool) -> Option<String> {
         if self.gripper != undisturbed.gripper {
@@ -137,7 +136,7 @@ pub struct Harm {
     /// True if a commanded point has caused it; false for an arm without pressure, a person at the joystick box, or the
     /// robot controller's travel to HOME.
     pub commanded: bool,
-    /// Index of the contact, if it is one.
+    /// Index of the contact, if the harm is a contact.
     contact: Option<usize>,
 }
 
@@ -174,8 +173,8 @@ impl HarmMonitor {
         self.harms.iter().find(|harm| harm.commanded).or_else(|| self.harms.first())
     }
 
-    /// True if the difference `unlike` of a part is the consequence of a slide, which then counts as a harm: no sensor
-    /// shows where in the fingers the part is. A slide without consequence is no harm.
+    /// True if the difference `unlike` of a part results from a slide; the slide is then harm. No sensor shows
+    /// where in the fingers the part is. A slide without consequence is harmless.
     pub fn attribute_to_slide(&mut self, unlike: &str) -> bool {
         match self.slide.take_if(|(part, _)| unlike.is_empty() || unlike.starts_with(part.as_str())) {
             Some((_, harm)) => {
@@ -186,13 +185,12 @@ impl HarmMonitor {
         }
     }
 
-    /// Note what must not be, such as an invariant that is broken.
+    /// Record a violation, such as a broken invariant.
     pub fn note(&mut self, tick: Tick, what: String) {
         let commanded = !self.is_displaced();
         self.harms.push(Harm { tick, kind: what.clone(), what, commanded, contact: None });
     }
 
-    /// Check a tick. `person` is true while a person moves the robot at the joystick box.
     pub fn look(&mut self, branch: &Branch<'_>, person: bool) {
         let tick = branch.at();
         let commanded = is_commanded(branch) && !person;
@@ -209,7 +207,7 @@ impl HarmMonitor {
             }
         }
         self.seen = contacts.len();
-        // The consequence of a contact is known later than the contact itself.
+        // The consequence of a contact becomes known after the contact.
         for harm in &mut self.harms {
             if let Some(contact) = harm.contact.and_then(|at| contacts.get(at)) {
                 harm.what = contact.to_string();

@@ -20,7 +20,7 @@ use crate::rcs_run::error::Error;
 
 /// Duration of a Hold, ticks: 3 s.
 const HOLD: u64 = 75;
-/// Ticks for which the box holds a process.
+/// Ticks for which the box holds a process: 2 s.
 const HELD: u64 = 50;
 /// Ticks without power: 2 s.
 const OUTAGE: u64 = 50;
@@ -31,7 +31,7 @@ const STOPPED: u64 = 100;
 
 #[derive(Clone, Debug, PartialEq)]
 pub enum Kind {
-    /// None: the branch continues as its parent.
+    /// No interruption: the branch continues as its parent.
     None,
     Pause,
     /// PAUSE, and a second PAUSE during the recovery.
@@ -52,7 +52,7 @@ pub enum Kind {
     Nudge,
     /// The joystick moves the robot 3 in away and back.
     Away,
-    /// A switch on the joystick box holds a process, and releases it again.
+    /// A switch on the joystick box holds a process, and then releases it.
     Held(ProcessId),
     Restart(ProcessId),
     /// A process writes nothing from now on.
@@ -65,7 +65,7 @@ pub enum Kind {
     Estop,
     /// The faults of a file for [`FAULT`] ticks, with the name of the file.
     Fault(String, Arc<FaultFile>),
-    /// A person leads the robot aside, or changes the parts in the cell.
+    /// A person moves the robot aside, or changes the parts in the cell.
     Disturbed(Disturbance),
 }
 
@@ -176,7 +176,7 @@ impl Kind {
         )
     }
 
-    /// True if it stops the robot, or changes who controls the robot.
+    /// True if the interruption stops the robot, or changes who controls the robot.
     #[must_use]
     pub const fn is_stop(&self) -> bool {
         matches!(self, Self::Pause | Self::Hold | Self::Estop) || self.is_for_good()
@@ -248,13 +248,11 @@ impl Kind {
     }
 }
 
-/// The first words of all interruptions.
 pub fn first_words() -> impl Iterator<Item = &'static str> {
     let plain = PLAIN.iter().map(|(name, _)| *name);
     plain.chain(OF_PROCESS).chain(["fault", "all"]).chain(disturbance::WORDS)
 }
 
-/// All words of the command line, for messages.
 fn words() -> String {
     let plain = PLAIN.iter().map(|(name, _)| *name).collect::<Vec<_>>().join(", ");
     let processes = ProcessId::ALL.iter().map(|process| word_of(*process)).collect::<Vec<_>>().join(", ");
@@ -264,7 +262,6 @@ fn words() -> String {
     )
 }
 
-/// All fault files that can be switched on.
 fn faults(data: &Path, cell: &CellDescription) -> Result<Vec<Kind>, Error> {
     FAULTS.all(data).iter().filter_map(|path| fault(path, cell).transpose()).collect()
 }

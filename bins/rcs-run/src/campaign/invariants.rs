@@ -1,12 +1,12 @@
-//! What holds after every tick of a branch, whatever has interrupted it.
+//! Invariants that hold after every tick of a branch, whichever interruption preceded it.
 //!
 //! * each process that runs has stamped its outputs with this tick;
-//! * nothing was allocated in the tick of the control processes;
-//! * Prim's point is no farther from the one before than the link permits (14 in/s, 1 rad/s). Near the poles of the
-//!   T3's wrist, where its D and R turn faster than the tool, T3 Interface takes longer for a point; that is no fault;
-//! * what E-move says of the gripper is true: it holds an object, or nothing.
+//! * the tick of the control processes has not allocated;
+//! * the distance between Prim's successive points is within the link's limit (14 in/s, 1 rad/s). Near the poles of
+//!   the T3's wrist, where D and R turn faster than the tool, T3 Interface takes longer for a point; this is permitted;
+//! * E-move's status of the gripper is true: it holds an object, or nothing.
 //!
-//! The first three hold at once. Sensors say late, and during a fault wrongly, what is between the fingers: E-move may
+//! The first three hold at all times. Sensors report late, and during a fault wrongly, what the fingers hold: E-move may
 //! be wrong for [`PATIENCE`] ticks after an interruption is over.
 
 use executive::alloc;
@@ -23,20 +23,18 @@ use rcs_core::tick::TICK_S;
 
 use super::branch::Branch;
 
-/// Ticks for which E-move may be wrong about what is held: 5 s, longer than fingers take for their travel.
+/// Ticks for which E-move may be wrong about the held object: 5 s, longer than the travel of the fingers.
 const PATIENCE: u32 = 125;
 /// Longest step from a point to the next, in: 14 in/s (A 2.3) for a tick, and the rounding of two points.
 const STEP_INCHES: f64 = LINK_VELOCITY * TICK_S + 0.02;
 /// The same for 1 rad/s, radians.
 const STEP_RADIANS: f64 = LINK_VELOCITY / INCHES_PER_RADIAN * TICK_S + 0.002;
 
-/// Watches the invariants of a branch.
 #[derive(Clone, Debug)]
 pub struct Invariants {
     allocations: u64,
     /// The last point that Prim has sent since it started the link.
     point: Option<WireFrame>,
-    /// Ticks for which E-move has been wrong.
     wrong: u32,
 }
 
@@ -48,13 +46,13 @@ impl Invariants {
         Self { allocations: alloc::allocations(), point, wrong: 0 }
     }
 
-    /// True if all held in the last tick.
+    /// True if all invariants held in the last tick.
     #[must_use]
     pub const fn hold(&self) -> bool {
         self.wrong == 0
     }
 
-    /// The invariant that this tick has broken, as a sentence. `disturbed` is true during an interruption.
+    /// The invariant broken in this tick, as a sentence. `disturbed` is true during an interruption.
     pub fn broken(&mut self, branch: &Branch<'_>, disturbed: bool) -> Option<String> {
         let unstamped = unstamped(branch);
         let allocated = alloc::allocations().saturating_sub(self.allocations);
@@ -69,7 +67,7 @@ impl Invariants {
     }
 }
 
-/// Is a point of Prim too far from the `last` one, which it replaces?
+/// True if a point of Prim is too far from the `last` one, which it replaces.
 fn steps_too_far(last: &mut Option<WireFrame>, sent: &T3iCommand) -> bool {
     match sent.command {
         T3iVerb::Point => {}
@@ -101,7 +99,7 @@ fn unstamped(branch: &Branch<'_>) -> Option<String> {
     late.next().map(|(_, name)| format!("{name} has not stamped its outputs"))
 }
 
-/// E-move's status of the gripper, if it is untrue.
+/// E-move's status of the gripper as a sentence, if it is false.
 fn misled(branch: &Branch<'_>) -> Option<String> {
     if !branch.closed.course().levels().processes().contains(&ProcessId::Emove) {
         return None;
@@ -110,7 +108,7 @@ fn misled(branch: &Branch<'_>) -> Option<String> {
     untrue(&branch.memory().emove.status.held, held.map(|part| part.name).as_deref())
 }
 
-/// What is said to be held, if the gripper holds this part, or none.
+/// The object that the status claims to be held, if the gripper holds another part or none.
 fn untrue(said: &Holding, held: Option<&str>) -> Option<String> {
     match (said, held) {
         (Holding::Object(said), None) => {
@@ -129,7 +127,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_point_is_near_the_one_before_it() {
+    fn point_step_beyond_the_limit_breaks_the_invariant() {
         let at = |inches: f64, radians: f64| {
             WireFrame::from_frame(&Frame {
                 position: Vector::new(60.0 + inches, 0.0, 0.0),
@@ -153,7 +151,7 @@ mod tests {
     }
 
     #[test]
-    fn the_reported_held_object_is_true_or_not_known() {
+    fn reported_held_object_is_true_or_unknown() {
         let object = Holding::Object(ObjectGrip::default());
         assert!(untrue(&object, None).is_some() && untrue(&Holding::Nothing, Some("SHAFT")).is_some());
         assert_eq!(untrue(&object, Some("SHAFT")), None);

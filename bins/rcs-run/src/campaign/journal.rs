@@ -1,8 +1,8 @@
-//! The file into which a campaign writes each branch as soon as it is judged, so that it can be stopped and continued.
+//! The file to which a campaign appends each judged branch, so that a stopped campaign can continue.
 //!
-//! Each line is a JSON object: the campaign, the branch, and the rows and states that it was the first to meet; of a
-//! drawn branch all that it has met, since they decide what is drawn next. A line counts if it belongs to the same
-//! campaign: same undisturbed run, program and procedure.
+//! Each line is a JSON object: the campaign, the branch, and the rows and states that it was the first to
+//! reach. A drawn branch lists all that it has reached, since they decide the next draw. Lines are used only if
+//! they belong to the same campaign: same undisturbed run, program and procedure.
 
 use std::{
     borrow::Cow,
@@ -30,8 +30,8 @@ struct Line<'a> {
     met: Cow<'a, Coverage>,
 }
 
-/// The branches judged before, and the file to which new ones are appended. The default journal is empty and writes
-/// nothing.
+/// The branches judged before, and the file to which new ones are appended. The default journal is empty and
+/// has no file.
 #[derive(Debug, Default)]
 pub struct Journal {
     file: Option<(PathBuf, File)>,
@@ -39,11 +39,11 @@ pub struct Journal {
     known: HashMap<(u64, String), Judged>,
 }
 
-/// A branch, and what it has met.
+/// A branch with its coverage.
 pub type Judged = (BranchResult, Coverage);
 
-/// Identifies a campaign: equal branches of the same campaign end the same way. The journal has all that a drawn branch
-/// has met, and of another one what is new.
+/// Identifies a campaign: equal branches of the same campaign end the same way. The journal has the whole
+/// coverage of a drawn branch, and the new coverage of other branches.
 #[must_use]
 pub fn campaign(facility: &Facility, parent: &Parent, procedure: Procedure, drawn: bool) -> String {
     let Procedure { recovery, tries, until } = procedure;
@@ -57,8 +57,8 @@ pub fn campaign(facility: &Facility, parent: &Parent, procedure: Procedure, draw
 }
 
 impl Journal {
-    /// Read the lines of a campaign from the file, which is created if it does not exist. An incomplete last line, as a
-    /// killed program leaves it, is cut off.
+    /// Read the lines of a campaign from the file, or create it. An incomplete last line, as a killed program
+    /// leaves it, is removed.
     ///
     /// # Errors
     /// [`Error`] if the file cannot be read or written, or is not a journal.
@@ -95,7 +95,6 @@ impl Journal {
         Ok(journal)
     }
 
-    /// A branch that was judged before, if any.
     #[must_use]
     pub fn known(&self, plan: &Plan) -> Option<&Judged> {
         self.known.get(&(plan.at, plan.series.to_string()))

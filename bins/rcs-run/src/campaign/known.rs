@@ -1,15 +1,16 @@
-//! States of branches that are done: a branch that comes to one of them is done, too.
+//! States of completed branches. A branch that reaches one of them is done, too.
 //!
-//! A tick depends on nothing but the state. Two branches that are in the same state in the same tick, but for what
-//! [`past`](super::past) forgets, go on alike, and the second one need not be run to its end. Many interruptions leave
-//! nothing behind, such as the fault of a sensor that is not read, or leave the same behind as at another tick, such as
-//! a process that has restarted.
+//! A tick depends only on the state. Two branches with the same state in the same tick, except for the values
+//! that [`past`](super::past) removes, continue alike, and the second one need not run to its end. Many
+//! interruptions leave no trace, such as the fault of an unused sensor, or the same trace as at another tick,
+//! such as a restarted process.
 //!
-//! The judge of confirmations is no part of the state. Whether a confirmation is true depends on the command, the cell,
-//! and where the robot has released a part; a part that lies in the same place was released there, as branches in which
-//! one has slid are not compared. What else the judge remembers, such as the parts that a person has changed, only tells
-//! why no sensor could show an untrue confirmation. So the states of a branch are known only if all its confirmations
-//! were true. How many are judged from a state to the end is known with it.
+//! The judge of confirmations does not belong to the state. Whether a confirmation is true depends on the
+//! command, the cell, and where the robot has released a part. A part that lies in the same place was released
+//! there, since branches in which a part has slid are not compared. The judge's other data, such as the parts
+//! that a person has changed, only explain why no sensor could show a false confirmation. The states of a
+//! branch are therefore known only if all its confirmations were true. The number of confirmations judged from
+//! a state to the end is stored with it.
 //!
 //! ```text
 //!   branch 1  --x----------+-----------+-----------+------- done     x  interrupted
@@ -24,18 +25,15 @@ use std::{
 
 use rcs_core::{digest::Digest, tick::Tick};
 
-/// Ticks between two comparisons (2 s): for each of them the whole cell is saved.
+/// Ticks between two comparisons (2 s). Each one saves the whole cell.
 const EVERY: u64 = 50;
 
-/// A state: its tick, and its digest.
 type State = (Tick, u64);
 
-/// How a branch ended that is done.
+/// The end of a branch that is done.
 #[derive(Clone, Debug)]
 pub struct End {
-    /// Its last tick.
     pub until: Tick,
-    /// Digest of its last state.
     pub state: Digest,
     /// The commands that ended, with their ticks.
     pub ended: Vec<(Tick, String)>,
@@ -46,15 +44,15 @@ pub struct End {
 pub struct Passed {
     pub tick: Tick,
     pub state: Digest,
-    /// Number of confirmations that were judged up to it, from the fork of the branch on.
+    /// Number of confirmations judged from the fork of the branch up to this state.
     pub judged: u64,
 }
 
-/// How a branch ends that is in a known state.
+/// The remainder of a branch from a known state on.
 #[derive(Clone, Debug)]
 pub struct Rest {
     pub end: Arc<End>,
-    /// Number of confirmations that are judged from the state to the end.
+    /// Number of confirmations judged from the state to the end.
     pub judged: u64,
 }
 
@@ -68,13 +66,13 @@ impl Known {
         tick.0.is_multiple_of(EVERY)
     }
 
-    /// How a branch ends that is in this state.
+    /// The remainder of a branch that is in this state.
     #[must_use]
     pub fn rest(&self, tick: Tick, state: Digest) -> Option<Rest> {
         self.0.lock().unwrap_or_else(PoisonError::into_inner).get(&(tick, state.value())).cloned()
     }
 
-    /// Note the states of a branch, its end, and the number of confirmations that were judged up to it, from the fork on.
+    /// Store the states of a branch, its end, and the number of confirmations judged from the fork to the end.
     pub fn add(&self, path: &[Passed], end: &Arc<End>, judged: u64) {
         let mut known = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         known.extend(path.iter().map(|passed| {

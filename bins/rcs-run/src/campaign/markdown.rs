@@ -1,5 +1,5 @@
-//! The Markdown table of a campaign, one column per job: columns of the jobs that were run are replaced, others are
-//! kept.
+//! The Markdown table of a campaign, one column per job. Columns of the jobs that were run are replaced; others
+//! stay.
 
 use std::fmt::Write as _;
 
@@ -7,17 +7,15 @@ use std::fmt::Write as _;
 const BEGIN: &str = "<!-- campaign: made by rcs-run campaign JOB... --markdown FILE -->";
 /// The line after the table.
 const END: &str = "<!-- end of the campaign -->";
-/// Heading of the first column.
 const FIRST: &str = "interruption";
 
-/// Results of a job, one per interruption.
 #[derive(Debug, PartialEq)]
 pub struct Column {
     pub job: String,
     pub cells: Vec<(String, String)>,
 }
 
-/// The page with the table, or the table alone if there is no page yet.
+/// The page with the table, or the table alone if there is no page.
 ///
 /// # Errors
 /// A message if the page has no place for the table.
@@ -58,7 +56,7 @@ fn columns(table: &str) -> Vec<Column> {
     jobs.iter().enumerate().map(column).collect()
 }
 
-/// A table of columns, with the interruptions in the order of their first occurrence.
+/// A table of columns. The interruptions are in the order of their first occurrence.
 fn table(columns: &[&Column]) -> String {
     let mut interruptions: Vec<&str> = Vec::new();
     for (interruption, _) in columns.iter().flat_map(|column| &column.cells) {
@@ -92,7 +90,7 @@ mod tests {
     }
 
     #[test]
-    fn columns_of_other_jobs_and_the_text_around_the_table_stay() {
+    fn table_update_keeps_other_columns_and_text() {
         let shift = column("shift", &[("pause", "2/2")]);
         let old = column("linkbar", &[("pause", "1/2, 1 stranded"), ("hold", "2/2")]);
         let first = page(None, &[old, shift]).expect("a new page");

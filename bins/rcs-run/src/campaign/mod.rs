@@ -9,8 +9,8 @@
 //! ```
 //!
 //! With `--truth`, the interruptions are drawn disturbances of robot and parts ([`truth`]). With `--random`, ticks and
-//! series of interruptions are drawn. A tick of a branch does what a tick of a run does ([`branch`]); the campaign knows
-//! the control processes only by their interfaces. docs/campaign.md describes the verdicts.
+//! series of interruptions are drawn. A tick of a branch is a tick of a run ([`branch`]); the campaign uses
+//! only the interfaces of the control processes. docs/campaign.md describes the verdicts.
 
 mod arguments;
 mod branch;
@@ -154,7 +154,6 @@ fn tell(
     Ok(())
 }
 
-/// The draw that the arguments ask for.
 fn draw(
     arguments: &CampaignArguments,
     facility: &Facility,
@@ -170,7 +169,6 @@ fn draw(
     Ok(Draw::new(parent, &kinds, procedure, settings))
 }
 
-/// The branches that the arguments ask for.
 fn plans(
     arguments: &CampaignArguments,
     facility: &Facility,

@@ -47,7 +47,6 @@ impl Posture {
     }
 }
 
-/// The motion after a stop.
 pub struct Motion {
     posture: Posture,
     began: Tick,
@@ -57,7 +56,7 @@ pub struct Motion {
 }
 
 impl Motion {
-    /// Start at a stop that comes after the present tick.
+    /// Start at a stop, which happens after the present tick.
     #[must_use]
     pub fn from_now(branch: &Branch<'_>) -> Self {
         let began = branch.at();
@@ -70,7 +69,6 @@ impl Motion {
         self.now == self.began
     }
 
-    /// Check a tick for motion.
     pub fn look(&mut self, branch: &Branch<'_>) {
         let posture = Posture::of(branch);
         self.now = branch.at();
@@ -80,14 +78,13 @@ impl Motion {
         self.posture = posture;
     }
 
-    /// Ticks from the stop to the last motion.
     #[must_use]
     pub fn ticks(&self) -> u64 {
         self.last.since(self.began)
     }
 
-    /// The verdict, as soon as the branch can be judged. `commanded` tells whether a commanded point has caused the
-    /// worst harm.
+    /// The verdict, as soon as the branch can be judged. `commanded` is true if a commanded point has caused
+    /// the worst harm.
     #[must_use]
     pub fn verdict(&self, commanded: Option<bool>) -> Option<Verdict> {
         let (still, all) = (self.now.since(self.last), self.now.since(self.began));

@@ -1,7 +1,7 @@
-//! Plays the job from an interruption on: first the recovery procedure of an operator, then the rest of the job.
+//! Plays the job after an interruption: first the operator's recovery procedure, then the rest of the job.
 //!
-//! The procedure: PAUSE, and the same command again, up to a number of tries. When the command ends with `finished`,
-//! the job continues with its next line. `** after` lines that have begun are not begun again.
+//! The procedure: PAUSE, and the same command again, up to a number of tries. When the command is `finished`,
+//! the job continues with its next line. `** after` lines that have begun do not begin again.
 //!
 //! ```text
 //!   interruption ──► [a command of the operator] ──► PAUSE ──► the same command ──► next lines of the job ──► over
@@ -44,7 +44,6 @@ enum Doing {
     Stranded,
 }
 
-/// What follows a command of the operator.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Then {
     Recovery,
@@ -53,7 +52,7 @@ pub enum Then {
     Nothing,
 }
 
-/// What an operator does first when a command was interrupted or has failed.
+/// The operator's first action when a command was interrupted or has failed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
 pub enum Recovery {
     /// PAUSE, and the same command again
@@ -95,8 +94,8 @@ pub struct Operator<'f> {
     number: u32,
     /// Number of the job's command that a command of the operator replaces.
     replaced: Option<u32>,
-    /// True if the command of the job finished during the interruption, or before Task accepted the operator's
-    /// command: it is not sent again.
+    /// True if the job's command finished during the interruption, or before Task accepted the operator's
+    /// command. It is then not sent again.
     has_finished: bool,
     outgoing: Option<HwsCommand>,
     /// True while the interruption continues: the operator waits.
@@ -104,7 +103,7 @@ pub struct Operator<'f> {
     recovery: Recovery,
     tries: u32,
     tried: u32,
-    /// Ticks from the first command that is sent again to its PAUSE; `None` for no PAUSE.
+    /// Ticks from the first repeated command to its PAUSE; `None` for no PAUSE.
     second_pause: Option<u64>,
     later: Vec<Later>,
     delayed: Vec<(u64, Action, String)>,
@@ -113,7 +112,7 @@ pub struct Operator<'f> {
 }
 
 impl<'f> Operator<'f> {
-    /// An operator at line `current` of a job, which began at `began`; `last` is Task's present command.
+    /// An operator at line `current` of a job, begun at `began`; `last` is Task's present command.
     #[must_use]
     pub fn new(lines: &'f [JobLine], current: usize, began: Tick, last: &HwsCommand, tries: u32) -> Self {
         let mut operator = Self {
@@ -145,19 +144,19 @@ impl<'f> Operator<'f> {
         self
     }
 
-    /// Note an interruption, the first or another one: all tries are left again. The first command that is sent again
-    /// gets a PAUSE after `second_pause` ticks.
+    /// Record an interruption: all tries are available again. A PAUSE follows the first repeated command after
+    /// `second_pause` ticks.
     pub const fn interrupt(&mut self, second_pause: Option<u64>) {
         (self.tried, self.has_finished) = (0, false);
         self.second_pause = second_pause;
     }
 
-    /// Give up the present command of the job: the next line follows the PAUSE. A line that is not a command continues.
+    /// Give up the present command of the job: PAUSE and the next line follow. Other lines continue.
     pub fn give_up(&mut self) {
         self.has_finished |= self.command_at(self.current).is_some();
     }
 
-    /// A person follows the remedy of a failed command: all tries are left again, and a PAUSE is next.
+    /// A person has applied the remedy of a failed command: all tries are available again, and PAUSE is next.
     pub fn retry(&mut self) {
         self.tried = 0;
         self.doing = Doing::Failed;
@@ -206,21 +205,22 @@ impl<'f> Operator<'f> {
         self.send(tick, command);
     }
 
-    /// The next command of the operator replaces that of the job, which may finish before Task accepts it.
+    /// The operator's next command replaces the job's, which may finish before Task accepts it.
     fn replace(&mut self, doing: Doing) {
         self.replaced = (self.doing == Doing::Command).then_some(self.number);
         self.doing = doing;
     }
 
-    /// Note that the operator has sent the robot elsewhere, instead of the command of the job.
+    /// True if the operator has sent the robot elsewhere, instead of the command of the job.
     #[must_use]
     pub const fn has_replaced(&self) -> bool {
         matches!(self.doing, Doing::Own(Then::SameCommand))
     }
 
-    /// The state after tick `now` on which what the operator does next depends. Commands are numbered from `newest`.
+    /// The state after tick `now` on which the operator's next action depends. Commands are numbered from
+    /// `newest`.
     ///
-    /// The tick in which a command began does not belong to it once Task has had the time to echo it: see
+    /// The tick in which a command began is not part of it once Task has had the time to echo the command: see
     /// [`Self::waits_until`].
     pub fn state(&self, now: Tick, newest: u32) -> impl fmt::Debug {
         let is_echoed = now.since(self.began) > ECHO_LIMIT.max(REST_LIMIT);
@@ -234,23 +234,22 @@ impl<'f> Operator<'f> {
         (place, replaced, tries, &self.later, &self.delayed)
     }
 
-    /// True if the operator still waits for the end of the current command in this tick.
+    /// True if the operator still waits in this tick for the end of the current command.
     pub fn waits_until(&self, tick: Tick) -> bool {
         tick.since(self.began) <= TIME_LIMIT
     }
 
-    /// The commands and actions that have ended since the last call.
+    /// The commands and actions ended since the last call.
     pub fn ended(&mut self) -> Vec<Ended> {
         std::mem::take(&mut self.ended)
     }
 
-    /// True if the job is over.
     #[must_use]
     pub fn is_over(&self) -> bool {
         self.doing == Doing::Over && self.later.is_empty()
     }
 
-    /// Why the job does not continue, if it does not.
+    /// The reason why the job does not continue, if any.
     #[must_use]
     pub fn stranded(&self) -> Option<&str> {
         (self.doing == Doing::Stranded).then_some(self.reason.as_str())
@@ -372,7 +371,7 @@ impl Commander for Operator<'_> {
         workstation: &mut SimulatedWorkstation,
     ) -> Option<HwsCommand> {
         for later in self.later.extract_if(.., |later| later.due <= tick) {
-            // The cell can refuse an action that comes too late because its command was interrupted.
+            // The cell can refuse an action that is too late because its command was interrupted.
             let _ = workstation.begin(&later.action, &later.text);
         }
         if let Some(fault) = workstation.fault() {
@@ -444,7 +443,7 @@ impl Operator<'_> {
     }
 }
 
-/// An operator at joystick box or panel, who sends nothing: Task continues its command, and may finish it.
+/// An operator at joystick box or panel, who sends no command: Task continues its command, and may finish it.
 pub struct Watching<'o, 'f>(pub &'o mut Operator<'f>);
 
 impl Commander for Watching<'_, '_> {

@@ -1,4 +1,4 @@
-//! The undisturbed run: which line of the job is executed in each tick, the world at the end of each line, and the
+//! The undisturbed run: the line of the job executed in each tick, the world at the end of each line, and the
 //! ticks in which something changes.
 
 use std::collections::HashSet;
@@ -17,9 +17,7 @@ use crate::rcs_run::error::Error;
 /// Selects the ticks at which the parent is forked.
 #[derive(Clone, Debug)]
 pub enum Ticks {
-    /// Every n-th tick.
     Every(u64),
-    /// The given ticks.
     At(Vec<u64>),
     /// Ticks in which a step or a command number changes, and the two ticks after each.
     Changes,
@@ -32,10 +30,8 @@ pub enum Ticks {
 pub struct Parent {
     /// First tick of each line; line 0 is the first PAUSE.
     begun: Vec<Tick>,
-    /// The world at the end of each line.
     worlds: Vec<World>,
     changes: Vec<u64>,
-    /// The first tick of each state of the control processes.
     states: Vec<u64>,
     pub ticks: u64,
     pub digest: String,
@@ -115,20 +111,18 @@ impl Parent {
         }
     }
 
-    /// The line that continues after a tick, and the tick in which it began.
+    /// The line that is executed after a tick, and the tick in which it began.
     #[must_use]
     pub fn line_at(&self, tick: Tick) -> (usize, Tick) {
         let line = self.begun.iter().rposition(|began| *began <= tick).unwrap_or(0);
         (line, self.begun.get(line).copied().unwrap_or(tick))
     }
 
-    /// The world at the end of a line.
     #[must_use]
     pub fn world_after(&self, line: usize) -> Option<&World> {
         self.worlds.get(line)
     }
 
-    /// The ticks after which the run is forked, in order.
     #[must_use]
     pub fn forks(&self, ticks: &Ticks) -> Vec<u64> {
         let every = |step: u64| (1..).map(move |n| n * step).take_while(|tick| *tick < self.ticks);

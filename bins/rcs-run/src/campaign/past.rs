@@ -1,12 +1,12 @@
-//! What the control processes keep of the past and no longer act on, removed from a copy of their state.
+//! Removes the past that the control processes no longer act on from a copy of their state.
 //!
-//! Two states that differ in nothing else go on alike, but for these same values:
+//! Two states that differ in nothing else continue alike, except for these values:
 //!
-//! - the numbers of commands and pose records: they are only compared with each other, so they are counted again, from
-//!   the newest one;
+//! - the numbers of commands and pose records: they are only compared with each other, so they are renumbered from the
+//!   newest one;
 //! - the rows in the headers, and the counters of the line: no process acts on them;
-//! - times that are over: of a command that is echoed, of an old RESTART, of a table that stands;
-//! - readings of a calibration that has ended: the next one takes them again.
+//! - expired times: of an echoed command, of an old RESTART, of a table at rest;
+//! - readings of a completed calibration: the next one takes them again.
 
 use std::collections::BTreeSet;
 
@@ -50,7 +50,7 @@ pub fn forget(memory: &mut CommonMemory, ladder: &mut LadderState, now: Tick) {
     }
 }
 
-/// Number the commands of each process from the newest one: it becomes [`NEWEST`], the one before it one less.
+/// Number the commands of each process backwards from the newest one, which becomes [`NEWEST`].
 fn count_commands(memory: &mut CommonMemory, ladder: &mut LadderState, now: Tick) {
     // A commander, the number in its buffer, and the echoes of the process below in its state and its status.
     macro_rules! count {
@@ -86,7 +86,7 @@ fn count_commands(memory: &mut CommonMemory, ladder: &mut LadderState, now: Tick
 /// The number that the newest command gets; 0 means none.
 const NEWEST: u32 = 1000;
 
-/// Number a commander's commands. When the last one was sent counts as long as it is not echoed everywhere.
+/// Number a commander's commands. The send time of the last one matters until it is echoed everywhere.
 fn settle(commander: &mut Commander, numbers: [&mut u32; 3], now: Tick) {
     let newest = commander.number;
     if numbers.iter().all(|number| **number == newest) && commander.sent != now {
@@ -120,7 +120,6 @@ fn count_poses(memory: &mut CommonMemory, ladder: &mut LadderState) {
     }
 }
 
-/// All fields that hold the number of a pose record.
 fn pose_numbers<'a>(memory: &'a mut CommonMemory, ladder: &'a mut LadderState) -> Vec<&'a mut u32> {
     let (task, subtask, emove, prim) =
         (&mut memory.task, &mut memory.subtask, &mut memory.emove, &mut memory.prim);
@@ -209,7 +208,7 @@ mod tests {
     }
 
     #[test]
-    fn no_other_field_holds_the_number_of_a_pose_record() {
+    fn every_pose_number_field_is_renumbered() {
         let (mut memory, mut ladder, now) = fetching();
         let numbers: BTreeSet<u32> =
             pose_numbers(&mut memory, &mut ladder).into_iter().map(|one| *one).collect();
@@ -230,7 +229,7 @@ mod tests {
     }
 
     #[test]
-    fn states_that_differ_in_the_past_are_the_same() {
+    fn states_differing_only_in_the_past_are_equal() {
         let (mut memory, mut ladder, now) = fetching();
         let expected = forgotten((memory, ladder, now));
         for number in pose_numbers(&mut memory, &mut ladder) {
@@ -252,7 +251,7 @@ mod tests {
     }
 
     #[test]
-    fn a_command_without_echo_is_not_an_old_command() {
+    fn command_without_echo_keeps_its_time() {
         let (mut memory, mut ladder, now) = fetching();
         let expected = forgotten((memory, ladder, now));
         (memory.emove.prim.number, ladder.emove.motion.commander().number) =

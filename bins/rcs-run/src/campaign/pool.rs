@@ -29,8 +29,8 @@ pub struct Plan {
 /// A forked state, and the index of the plan that begins with it.
 type Work<'f> = (Arc<Branch<'f>>, usize);
 
-/// Run a branch for each plan, up to a known state. Calls `done` with each new result and what the branch has met; what
-/// it returns is collected in the order of the plans, which does not depend on `threads`.
+/// Run a branch for each plan, up to a known state. Calls `done` with each new result and its coverage. The
+/// return values of `done` are in the order of the plans, which does not depend on `threads`.
 ///
 /// # Errors
 /// [`Error`] if the run cannot be forked, and the errors of `done`.
@@ -58,7 +58,7 @@ pub fn run<T: Send>(
                         }
                         let Plan { series, procedure, .. } = &plans[at];
                         let mut met = Coverage::default();
-                        // A branch that panics must end the campaign, and not only its thread.
+                        // A panic in a branch must end the campaign, not only its thread.
                         let run = AssertUnwindSafe(|| {
                             trial::run(facility, parent, &fork, series, *procedure, known, &mut met)
                         });
@@ -92,7 +92,6 @@ pub fn run<T: Send>(
     Ok(collected.into_iter().map(|(_, done)| done).collect())
 }
 
-/// The next fork; `None` if there are no more.
 fn next<'f>(receive: &Mutex<mpsc::Receiver<Work<'f>>>) -> Option<Work<'f>> {
     receive.lock().ok()?.recv().ok()
 }

@@ -1,8 +1,8 @@
 //! Branches drawn at random, and the smallest series of interruptions with the same outcome as a drawn one.
 //!
-//! Branches are drawn in rounds. From the second round on about one half of them are changes of earlier ones, and those
-//! that have met most new rows and states are changed most often. A draw depends on its seed and on what the branches
-//! of the rounds before have met, and not on the order in which they end.
+//! Branches are drawn in rounds. From the second round on, about half of them are variations of earlier ones,
+//! preferably of those with most new rows and states. A draw depends on its seed and on the coverage of the
+//! branches of earlier rounds, but not on the order in which they end.
 
 use std::collections::HashSet;
 
@@ -22,13 +22,13 @@ use super::{
 /// command.
 const BETWEEN: [u64; 3] = [3, 60, 600];
 const ROUND: usize = 64;
-/// Weight of a new row: that of so many new states.
+/// Weight of a new row, in new states.
 const ROW: usize = 20;
-/// Greatest weight of a branch: the first ones meet everything for the first time.
+/// Greatest weight of a branch, since the first ones are the first to reach everything.
 const MOST: usize = 5 * ROW;
 /// A changed branch begins this many ticks sooner or later, at most.
 const NEAR: u64 = 12;
-/// Number of times that a branch is drawn again if it was drawn before.
+/// Number of repeated draws if a branch was drawn before.
 const AGAIN: usize = 8;
 
 #[derive(Clone, Copy, Debug)]
@@ -43,16 +43,15 @@ pub struct Draw {
     settings: Settings,
     procedure: Procedure,
     random: ChaCha8Rng,
-    /// Last tick after which a branch can begin, and the ticks in which something changes.
     last: u64,
     changes: Vec<u64>,
-    /// The kinds that are drawn, and the stops that follow if the branches are judged at rest; those with the same word
-    /// in a group.
+    /// The kinds that are drawn, and the stops that follow if the branches are judged at rest. Kinds with the
+    /// same word form a group.
     kinds: Vec<Vec<Kind>>,
     stops: Vec<Vec<Kind>>,
     drawn: HashSet<(u64, String)>,
     met: Coverage,
-    /// Branches that have met something new, and how much.
+    /// Branches with new coverage, and its weight.
     fruitful: Vec<(Plan, usize)>,
 }
 
@@ -80,13 +79,13 @@ impl Draw {
         }
     }
 
-    /// The branches of the next round; none if all are drawn.
+    /// The branches of the next round; empty if all are drawn.
     pub fn round(&mut self) -> Vec<Plan> {
         let left = self.settings.branches.saturating_sub(self.drawn.len());
         (0..left.min(ROUND)).map_while(|_| self.next()).collect()
     }
 
-    /// Learn what a branch of the last round has met. Call it for all of them, in order.
+    /// Take in the coverage of a branch of the last round. Call it for all of them, in order.
     pub fn learn(&mut self, plan: &Plan, coverage: Coverage) {
         let (rows, states) = self.met.take_in(coverage).counts();
         let weight = (ROW * rows + states).min(MOST);
@@ -120,7 +119,7 @@ impl Draw {
         Some(Plan { at, series: Series::of(drawn)?, procedure: self.procedure })
     }
 
-    /// A tick and interruptions that have nothing to do with those before.
+    /// A tick and interruptions that are independent of the earlier ones.
     fn anew(&mut self) -> Option<(u64, Vec<Interruption>)> {
         let change = self.changes.choose(&mut self.random).filter(|_| self.random.random());
         let at = change.copied().unwrap_or_else(|| self.random.random_range(1..=self.last));
@@ -159,23 +158,22 @@ impl Draw {
     }
 }
 
-/// What tells a branch from others.
+/// Identifies a branch.
 fn key(plan: &Plan) -> (u64, String) {
     (plan.at, plan.series.to_string())
 }
 
-/// The command line word of a kind, without its parameter.
 fn word(kind: &Kind) -> String {
     kind.to_string().split(':').next().unwrap_or_default().to_owned()
 }
 
-/// Draw a kind: each word is equally likely, whatever number of kinds it selects.
+/// Draw a kind: each word is equally likely, regardless of the number of kinds that it selects.
 fn kind(groups: &[Vec<Kind>], random: &mut ChaCha8Rng) -> Option<Kind> {
     groups.choose(random)?.choose(random).cloned()
 }
 
-/// The smallest series, found by leaving out interruptions and shortening the time between them, for which `is_same`
-/// holds.
+/// The smallest series for which `is_same` holds, found by leaving out interruptions and shortening the time
+/// between them.
 ///
 /// # Errors
 /// The errors of `is_same`.

@@ -18,7 +18,6 @@ use crate::rcs_run::error::Error;
 
 const LISTED: usize = 3;
 
-/// Results of a kind of interruption.
 #[derive(Debug, Default, Serialize)]
 struct Row {
     interruption: String,
@@ -69,7 +68,7 @@ impl Row {
     }
 }
 
-/// The row of the table that counts a branch: its interruption, or the number of its interruptions.
+/// The row of the table in which a branch is counted: its interruption, or the number of its interruptions.
 fn title(result: &BranchResult) -> String {
     let name = result.interruption.as_str();
     let word = name.split(':').next().unwrap_or_default();
@@ -83,7 +82,8 @@ fn title(result: &BranchResult) -> String {
     }
 }
 
-/// The cause by which a branch is counted; for a stranded branch the process that failed, its command and its row.
+/// The cause by which a branch is counted. For a stranded branch: the process that failed, its command and its
+/// row.
 fn cause(result: &BranchResult) -> &str {
     let known = (result.verdict == Verdict::Stranded)
         .then(|| result.detail.strip_prefix("tick ")?.split_once(": "))
@@ -91,7 +91,6 @@ fn cause(result: &BranchResult) -> &str {
     known.map_or(&result.reason, |(_, cause)| cause)
 }
 
-/// The results of a finished campaign.
 pub struct CampaignReport<'a> {
     job: &'a str,
     parent: &'a Parent,
@@ -106,7 +105,6 @@ pub struct CampaignReport<'a> {
 #[derive(Serialize)]
 struct Json<'a> {
     job: &'a str,
-    /// Ticks and fingerprint of the undisturbed run.
     ticks: u64,
     digest: &'a str,
     rows: &'a [Row],
@@ -139,7 +137,6 @@ impl<'a> CampaignReport<'a> {
         Self { job, parent, results, rows, decisions, never_fired, command }
     }
 
-    /// The report as one JSON object.
     ///
     /// # Errors
     /// [`Error::Output`] if it cannot be written.
@@ -150,7 +147,6 @@ impl<'a> CampaignReport<'a> {
         Ok(serde_json::to_string(&json).map_err(io::Error::from)? + "\n")
     }
 
-    /// The campaign as a column of the Markdown table.
     #[must_use]
     pub fn column(&self) -> Column {
         let cells = self.rows.iter().map(|row| (row.interruption.clone(), row.cell()));

@@ -24,16 +24,15 @@ use super::{
 };
 use crate::rcs_run::error::Error;
 
-/// What is kept of the coverage of a branch.
+/// The part of a branch's coverage that is kept.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Keep {
-    /// What no earlier branch has met.
+    /// Rows and states that no earlier branch has reached.
     New,
-    /// All: it decides what is drawn next.
+    /// The whole coverage: it decides the next draw.
     All,
 }
 
-/// Runs the branches of a campaign.
 pub struct Runner<'a> {
     facility: &'a Facility,
     parent: &'a Parent,
@@ -84,7 +83,7 @@ impl<'a> Runner<'a> {
             self.journal.write(&result, &kept)?;
             Ok((result, kept))
         };
-        // What a branch meets behind a known state was met before; a draw needs it for each branch.
+        // A branch reaches nothing new after a known state; a draw needs the coverage of each branch.
         let states = (keep == Keep::New).then_some(&self.known);
         let mut run =
             pool::run(self.facility, self.parent, &missing, self.threads, states, &done)?.into_iter();
@@ -111,7 +110,7 @@ impl<'a> Runner<'a> {
         }
     }
 
-    /// Take in what a branch has met, and show it. Returns what is new.
+    /// Merge the coverage of a branch, and show it. Returns the new part.
     fn learn(&self, met: Coverage) -> Coverage {
         let mut all = self.met.lock().unwrap_or_else(PoisonError::into_inner);
         let new = all.take_in(met);
@@ -123,7 +122,7 @@ impl<'a> Runner<'a> {
         new
     }
 
-    /// Show a branch that is hurt at once.
+    /// Report a hurt branch at once.
     fn warn(&self, result: &BranchResult) {
         if let (Some(bar), Verdict::Hurt) = (&self.bar, result.verdict) {
             let line = format!("hurt: {} at {}: {}", result.interruption, result.at, result.detail);

@@ -1,5 +1,5 @@
-//! The steps of an interruption, and who carries them out tick by tick: a person at the joystick box, at the panel or in
-//! the cell, or a fault.
+//! The steps of an interruption, carried out tick by tick by a person at the joystick box, at the panel or in
+//! the cell, or by a fault.
 
 use std::sync::Arc;
 
@@ -24,7 +24,7 @@ const RISE: f64 = 3.0;
 const GOES_ON: f64 = 0.8;
 /// Longest time for which a button of the joystick box is held down, ticks.
 const LED: u64 = 100;
-/// Ticks for which a refused key of the panel is tried again.
+/// Ticks for which a refused key of the panel is repeated.
 const PATIENCE: u64 = 2000;
 /// Ticks from CYCLE START to the DEPC function: the program makes two short motions.
 const REHEARSAL: u64 = 75;
@@ -67,7 +67,6 @@ pub fn away() -> Vec<ScriptStep> {
     joystick(500, stop.into_iter().chain(lead))
 }
 
-/// An action between two ticks.
 #[derive(Clone, Debug)]
 pub enum ScriptStep {
     Workstation(WorkstationAction),
@@ -113,13 +112,12 @@ pub struct Script {
     until: Option<Tick>,
     /// Height of the tool before it was moved away, in.
     height: f64,
-    /// Present state of a [`ScriptStep::Lead`].
     lead: Option<Lead>,
-    /// What undoes the changes of the cell.
+    /// Steps that undo the changes of the cell.
     undo: Vec<Undo>,
 }
 
-/// Lead the robot over a way, 0.01 in, world, and give it back.
+/// Move the robot over a way, 0.01 in, world, and return control of it.
 pub fn lead(way: [i32; 3]) -> Vec<ScriptStep> {
     let lead = Lead::by(way);
     joystick(lead.knob(), [ScriptStep::Lead(lead), ScriptStep::Wait(25)])
@@ -131,8 +129,8 @@ impl Script {
         Self { steps, at: 0, until: None, height: 0.0, lead: None, undo: Vec::new() }
     }
 
-    /// The script that takes back what a person has done in this one: the remedy for a command that is refused because
-    /// of it. `None` if there is nothing to take back.
+    /// The script that undoes a person's changes in this one: the remedy for a command refused because of them.
+    /// `None` if there are no changes.
     #[must_use]
     pub fn undone(&self, what: &What) -> Option<Self> {
         if let What::Jog(way) = what {
@@ -149,7 +147,7 @@ impl Script {
         self.at >= self.steps.len()
     }
 
-    /// Carry out the steps that come before the next tick. Returns the message of the cell if it refuses one.
+    /// Carry out the steps before the next tick. Returns the cell's message if it refuses one.
     pub fn step(&mut self, branch: &mut Branch<'_>) -> Option<String> {
         let mut refused = None;
         while let Some(step) = self.steps.get(self.at).cloned() {
@@ -259,7 +257,7 @@ impl Script {
     }
 }
 
-/// The faults of the cell in a window, with random faults frequent enough to occur in it.
+/// The faults of the cell in a window. Random faults are frequent enough to occur in it.
 fn cell_faults(plan: &FaultPlan, from: u64) -> FaultPlan {
     let mut plan = plan.clone();
     plan.faults.retain(|fault| !fault.what.is_delivery());
@@ -280,7 +278,7 @@ fn line_faults(plan: &Plan, from: u64) -> Plan {
             false if rule.rate == 0 => rule.window(from, from + FAULT),
             false => rule.window(from, from + FAULT).rate(rule.rate.max(CHANCE)),
         };
-        // Rules that do not fit together in this window, only in their own ones, are left out.
+        // Rules that conflict only in this window are left out.
         let _ = windowed.add(rule);
     }
     windowed

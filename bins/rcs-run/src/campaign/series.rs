@@ -9,7 +9,7 @@ use crate::rcs_run::error::Error;
 
 #[derive(Clone, Debug, PartialEq)]
 pub struct Interruption {
-    /// Ticks since the end of the interruption before; 0 for the first.
+    /// Ticks since the end of the previous interruption; 0 for the first.
     pub after: u64,
     pub kind: Kind,
 }
@@ -38,7 +38,7 @@ impl fmt::Display for Series {
 }
 
 impl Series {
-    /// A series of these interruptions; `None` if there are none.
+    /// A series of these interruptions; `None` if the list is empty.
     #[must_use]
     pub fn of(mut interruptions: Vec<Interruption>) -> Option<Self> {
         interruptions.first_mut()?.after = 0;
@@ -52,7 +52,6 @@ impl Series {
         self
     }
 
-    /// The interruptions in order.
     #[must_use]
     pub fn interruptions(&self) -> &[Interruption] {
         &self.0
@@ -75,7 +74,7 @@ impl Series {
         Some(sooner)
     }
 
-    /// The series that a word of the command line selects: one per combination of the kinds that its parts select.
+    /// The series that a word of the command line selects: one per combination of the kinds of its parts.
     ///
     /// # Errors
     /// [`Error::Campaign`] for an unknown kind, or for ticks that are not a number.

@@ -81,8 +81,9 @@ fn fingerprint(branch: &Branch<'_>) -> (Digest, u64) {
 }
 
 #[test]
-fn a_fork_continues_like_its_parent_bit_for_bit() {
-    // STARTUP sends a statement about the robot to the Data System: at one of the forks an answer is pending.
+fn fork_continues_bit_for_bit_like_its_parent() {
+    // STARTUP sends a statement about the robot to the Data System, so an answer is pending at one of the
+    // forks.
     let facility = with_job(
         "== STARTUP -- +0 -- 0 +0 -- 0 -- 0\n\
          ** tray UNIT_1 4 LINKBAR1_BH\n\
@@ -131,7 +132,7 @@ fn judged(facility: &Facility, parent: &Parent, fork: &Branch<'_>, text: &str) -
 }
 
 #[test]
-fn an_undisturbed_branch_is_done() {
+fn undisturbed_branch_is_done() {
     let (facility, parent) = empty_move();
     let fork = under_way(&facility);
     let result = judged(&facility, &parent, &fork, "none");
@@ -141,7 +142,7 @@ fn an_undisturbed_branch_is_done() {
 }
 
 #[test]
-fn a_command_that_finishes_while_it_is_replaced_or_the_box_is_on_is_not_sent_again() {
+fn command_finished_during_interruption_is_not_repeated() {
     let (facility, parent) = empty_move();
     let fork = under_way(&facility);
     let last =
@@ -159,7 +160,7 @@ fn a_command_that_finishes_while_it_is_replaced_or_the_box_is_on_is_not_sent_aga
 
 /// SHUTDOWN moves nothing: after a MOVE elsewhere the hand stays there.
 #[test]
-fn a_shutdown_that_is_replaced_by_a_move_is_done() {
+fn shutdown_replaced_by_a_move_is_done() {
     let facility = with_job("== MOVE -- +0 -- 0 +0 SAFE 0 -- 0\n== SHUTDOWN -- +0 -- 0 +0 -- 0 -- 0\n");
     let parent = Parent::run(&facility).expect("the job finishes");
     let at = parent.ticks - 3;
@@ -172,7 +173,7 @@ fn a_shutdown_that_is_replaced_by_a_move_is_done() {
 
 /// A part in the path of the hand: the report names the contact, the tick and the command.
 #[test]
-fn the_monitor_finds_a_contact_that_was_planted() {
+fn monitor_finds_a_planted_contact() {
     let (facility, parent) = empty_move();
     let fork = under_way(&facility);
     let mut branch = fork.clone();
@@ -192,9 +193,9 @@ fn the_monitor_finds_a_contact_that_was_planted() {
     assert!(result.detail.starts_with("tick 1"), "{result:?}");
 }
 
-/// A part at a place where no command has put it: every command finishes, and the world differs.
+/// A part at a place where no command has put it: every command finishes, but the world differs.
 #[test]
-fn the_monitor_reports_a_world_that_contradicts_a_finished_command() {
+fn monitor_reports_world_contradicting_a_finished_command() {
     let (facility, parent) = empty_move();
     let fork = under_way(&facility);
     let mut branch = fork.clone();
@@ -211,10 +212,10 @@ fn the_monitor_reports_a_world_that_contradicts_a_finished_command() {
     assert_eq!(result.reason, "MOVE is finished, but 1 part in the cell, not 0");
 }
 
-/// The arm jumps when the pressure comes back, and the clevis slides in the fingers, which no sensor shows. REFIXTURE does
-/// not grasp it again.
+/// The arm jumps when the pressure returns, and the clevis slides in the fingers, which no sensor shows.
+/// REFIXTURE does not grasp it again.
 #[test]
-fn a_part_that_slides_while_no_point_is_commanded_is_counted_apart() {
+fn slide_without_commanded_point_is_counted_apart() {
     let facility = facility("clevis");
     let parent = Parent::run(&facility).expect("the job finishes");
     let fork = pool::fork_at(&facility, 5082).expect("the run can be forked");
@@ -235,7 +236,7 @@ fn plans(facility: &Facility, parent: &Parent, texts: &[&str], step: u64) -> Vec
 }
 
 #[test]
-fn all_threads_give_the_same_judgements_in_the_same_order() {
+fn judgements_do_not_depend_on_thread_count() {
     let (facility, parent) = empty_move();
     let plans = plans(&facility, &parent, &["pause", "refused", "hold+5:pause"], 60);
     let campaign = |threads: usize| {
@@ -258,7 +259,7 @@ fn all_threads_give_the_same_judgements_in_the_same_order() {
 }
 
 #[test]
-fn a_branch_in_a_known_state_ends_as_if_it_went_on() {
+fn branch_in_a_known_state_has_the_same_end() {
     let (facility, parent) = empty_move();
     let quiet = ["fault:camera-blind", "fault:bytes-lost", "restart:tool_grip", "held:task"];
     let delayed = ["hold", "answer-lost", "restart:prim", "restart:table", "pause", "pause+9:hold"];
@@ -280,7 +281,7 @@ fn a_branch_in_a_known_state_ends_as_if_it_went_on() {
 
 /// A campaign that was killed while it wrote a line continues after the last complete line.
 #[test]
-fn a_campaign_resumes_from_its_journal() {
+fn campaign_resumes_from_its_journal() {
     let (facility, parent) = empty_move();
     let plan = |at| Plan { at, series: series(&facility, "pause"), procedure: PROCEDURE };
     let plans = [60, 120].map(plan);
@@ -312,7 +313,7 @@ fn a_campaign_resumes_from_its_journal() {
 }
 
 #[test]
-fn every_interruption_has_a_name_that_is_read_back() {
+fn every_interruption_name_parses_back() {
     let facility = facility("linkbar");
     let all = Kind::named("all", Path::new(DATA), &facility.description).expect("there are some");
     for kind in &all {
@@ -323,9 +324,9 @@ fn every_interruption_has_a_name_that_is_read_back() {
     assert!(unknown.to_string().contains("the nearest is pause"), "{unknown}");
 }
 
-/// docs/campaign.md lists the fault files that are no interruption.
+/// docs/campaign.md lists the fault files that do not work as interruptions.
 #[test]
-fn the_page_lists_the_faults_that_cannot_be_switched_on() {
+fn page_lists_the_faults_without_a_time_limit() {
     let facility = facility("linkbar");
     let page = std::fs::read_to_string(Path::new(DATA).join("../docs/campaign.md")).expect("there is a page");
     let switchable = Kind::named("fault", Path::new(DATA), &facility.description).expect("there are some");
@@ -342,11 +343,11 @@ fn the_page_lists_the_faults_that_cannot_be_switched_on() {
 /// Ticks in which the robot ramps down from the greatest speed of a job, or fingers finish their command: 3 s.
 const STOPS: u64 = 75;
 
-/// Ticks in which gripper and pedestal calibrate themselves after a start, whatever their command.
+/// Ticks in which gripper and pedestal calibrate themselves after a start, under any command.
 const CALIBRATED: u64 = 150;
 
 #[test]
-fn every_stop_brings_the_robot_to_rest_from_every_state() {
+fn every_stop_in_every_state_ends_at_rest() {
     let (facility, parent) = empty_move();
     let procedure = Procedure { until: Until::Rest, ..PROCEDURE };
     let forks = parent.forks(&Ticks::States);
@@ -366,7 +367,7 @@ fn every_stop_brings_the_robot_to_rest_from_every_state() {
 }
 
 #[test]
-fn a_branch_that_is_judged_at_rest_ends_with_a_stop() {
+fn branch_judged_at_rest_ends_with_a_stop() {
     let (facility, parent) = empty_move();
     let named = |text| Kind::named(text, Path::new(DATA), &facility.description).expect("it is known");
     let kinds = [named("all"), named("cut"), named("lost")].concat();
@@ -382,7 +383,7 @@ fn a_branch_that_is_judged_at_rest_ends_with_a_stop() {
 }
 
 #[test]
-fn forks_are_where_something_changes() {
+fn forks_follow_the_selected_changes() {
     let (_, parent) = empty_move();
     let (every, changes) = (parent.forks(&Ticks::Every(50)), parent.forks(&Ticks::Changes));
     assert!(every.iter().all(|tick| tick % 50 == 0) && changes.len() > 10);
@@ -392,7 +393,7 @@ fn forks_are_where_something_changes() {
 }
 
 #[test]
-fn a_second_interruption_comes_after_the_first() {
+fn second_interruption_follows_the_first() {
     let (facility, parent) = empty_move();
     let fork = under_way(&facility);
     let result = judged(&facility, &parent, &fork, "pause+20:refused+3:hold");
@@ -403,7 +404,7 @@ fn a_second_interruption_comes_after_the_first() {
 }
 
 #[test]
-fn a_series_is_read_back_from_its_name() {
+fn series_name_parses_back() {
     let facility = facility("linkbar");
     let named = |text: &str| Series::named(text, Path::new(DATA), &facility.description);
     let text = "held:prim+12:fault:air-lost+0:estop";
@@ -417,10 +418,10 @@ fn a_series_is_read_back_from_its_name() {
 }
 
 #[test]
-fn a_draw_repeats_and_another_seed_draws_other_branches() {
+fn draw_depends_on_its_seed_alone() {
     let (facility, parent) = empty_move();
     let kinds = Kind::named("all", Path::new(DATA), &facility.description).expect("there are some");
-    // As if each branch had met its own tick, and nothing else.
+    // As if each branch had covered only its own tick.
     let draw = |seed, learns: bool| {
         let mut draw = Draw::new(&parent, &kinds, PROCEDURE, Settings { branches: 200, longest: 3, seed });
         let mut plans = Vec::new();
@@ -459,7 +460,7 @@ fn shares_a_kind(a: &Plan, b: &Plan) -> bool {
 }
 
 #[test]
-fn a_series_is_made_as_small_as_it_goes() {
+fn failing_series_is_minimised() {
     let facility = facility("linkbar");
     let drawn = series(&facility, "hold+100:pause+70:nudge");
     // The test fails with a nudge at least 10 ticks after another interruption.

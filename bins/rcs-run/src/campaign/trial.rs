@@ -1,6 +1,6 @@
-//! One branch: interrupts it, and lets an operator follow the recovery procedure, until it can be judged.
+//! Interrupts one branch, and lets an operator follow the recovery procedure until the branch can be judged.
 //!
-//! [`judgement`] says when that is, and what the verdict is.
+//! [`judgement`] decides when this is, and gives the verdict.
 
 mod judgement;
 
@@ -43,19 +43,17 @@ pub enum Until {
     Rest,
 }
 
-/// How a branch is recovered and judged.
+/// The recovery of a branch, and the time of its judgement.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Procedure {
     pub recovery: Recovery,
-    /// Number of times that the interrupted command is sent again.
+    /// Number of times that the interrupted command is repeated.
     pub tries: u32,
     pub until: Until,
 }
 
 pub trait Observer {
-    /// Called after each tick.
     fn tick(&mut self, branch: &Branch<'_>);
-    /// Called for an action between two ticks.
     fn say(&mut self, tick: Tick, text: &str);
 }
 
@@ -66,7 +64,6 @@ impl Observer for NoObserver {
     fn say(&mut self, _: Tick, _: &str) {}
 }
 
-/// A branch with its operator and the monitor of harm.
 struct Trial<'f, 'p> {
     parent: &'p Parent,
     branch: Branch<'f>,
@@ -76,7 +73,7 @@ struct Trial<'f, 'p> {
     series: &'p Series,
     /// Index of the present or last interruption.
     interruption: usize,
-    /// Tick in which that interruption ended.
+    /// Tick in which the present or last interruption ended.
     over: Option<Tick>,
     /// True while the job is played: the interrupted command continues, or the operator recovers it.
     following: bool,
@@ -90,7 +87,7 @@ struct Trial<'f, 'p> {
     /// The states in which it was compared with others.
     path: Vec<Passed>,
     mismatch: Option<(String, String)>,
-    /// True if the operator has moved the robot away with a part that the vise holds, too.
+    /// True if the operator has moved the robot away with a part that the vise also holds.
     tears: bool,
     /// Motion since the last interruption, if the branch is judged at rest.
     motion: Option<Motion>,
@@ -98,14 +95,14 @@ struct Trial<'f, 'p> {
     untrue: Vec<Confirmation>,
     /// Number of confirmations that were judged before the fork.
     judged_before: u64,
-    /// Number of confirmations that are judged behind the known state in which the branch has ended.
+    /// Number of confirmations judged after the known state in which the branch has ended.
     judged_behind: u64,
-    /// The remedy was followed, and the disturbance undone.
+    /// True if the remedy was applied and the disturbance undone.
     remedied: bool,
 }
 
-/// Interrupt a fork after its last tick, and judge the branch. If it comes to a known state it is not run to its end;
-/// if it is done, its states are known from then on.
+/// Interrupt a fork after its last tick, and judge the branch. It stops at a known state; if it is done, its
+/// states become known.
 ///
 /// # Errors
 /// [`Error`] if the branch cannot be made from the fork, or its cell cannot be saved.
@@ -152,7 +149,6 @@ pub fn run(
     trial.play(doing, known, observer)
 }
 
-/// The present command of each process.
 fn present(branch: &Branch<'_>) -> Vec<String> {
     let (hws, memory) = (&branch.closed.external().hws, branch.memory());
     let lines = ProcessId::ALL.iter().zip(Ladder::processes()).filter_map(|(id, process)| {
@@ -257,8 +253,8 @@ impl Trial<'_, '_> {
         self.operator.pause(at);
     }
 
-    /// True if contacts of this tick count as those of a person: at the joystick box, or who has put parts where the
-    /// controller does not expect any.
+    /// True if a person causes the contacts of this tick: at the joystick box, or by putting parts where the
+    /// controller expects none.
     fn is_of_a_person(&self, over: bool) -> bool {
         match self.kind() {
             Kind::Nudge | Kind::Away => !over,
@@ -267,8 +263,8 @@ impl Trial<'_, '_> {
         }
     }
 
-    /// The remedy of a command that has failed because of a disturbance, once, in a branch that runs to the end of the
-    /// job.
+    /// The remedy of a command that has failed because of a disturbance. It is used once, in a branch that runs
+    /// to the end of the job.
     fn remedy(&mut self, script: &Script) -> Option<Script> {
         let what = &self.kind().disturbance()?.what;
         if self.remedied || self.until != Until::Job || self.operator.stranded().is_none() {
@@ -279,8 +275,8 @@ impl Trial<'_, '_> {
         Some(remedy)
     }
 
-    /// True if the branch depends on nothing but its state and the operator's, and may be in a known one. A branch that
-    /// nothing interrupts shows that a fork goes on as the ordinary run does, and runs to its end.
+    /// True if the branch depends only on its state and the operator's, so that the state may be a known one. A
+    /// branch without interruption shows that a fork continues like the ordinary run, and runs to its end.
     fn is_comparable(&self) -> bool {
         let was_interrupted = *self.kind() != Kind::None && self.next().is_none();
         let goes_on = self.following && self.motion.is_none();
@@ -312,22 +308,21 @@ impl Trial<'_, '_> {
         Ok(Some(end))
     }
 
-    /// The end of the branch, which is now.
+    /// The end of the branch: the present tick.
     fn end(&mut self) -> Result<End, Error> {
         Ok(End { until: self.branch.at(), state: self.state()?, ended: self.ended.clone() })
     }
 
-    /// Number of confirmations that were judged since the fork, and are behind a known state.
+    /// Number of confirmations judged since the fork, including those after a known state.
     const fn judged(&self) -> u64 {
         self.branch.judged() - self.judged_before + self.judged_behind
     }
 
-    /// The present or last interruption.
     fn kind(&self) -> &Kind {
         &self.series.interruptions()[self.interruption].kind
     }
 
-    /// Ticks before the next interruption; `None` if there is none.
+    /// Ticks before the next interruption, if any.
     fn next(&self) -> Option<u64> {
         self.series.interruptions().get(self.interruption + 1).map(|next| next.after)
     }
@@ -351,7 +346,7 @@ impl Trial<'_, '_> {
                 commands.take(2).last().unwrap_or(usize::MAX)
             }
         };
-        // A delay that differs between branches and is the same in each run.
+        // A delay that differs between branches, but not between runs.
         self.operator.interrupt((kind == Kind::PauseTwice).then_some(1 + at.0 * 37 % 120));
         // No command follows a stop.
         self.following = kind.leaves_command() && self.motion.is_none();
@@ -359,8 +354,8 @@ impl Trial<'_, '_> {
         kind.script()
     }
 
-    /// True if the operator moves the robot away while both fingers and vise hold a part: no sensor shows the vise's
-    /// part to the controller.
+    /// True if the operator moves the robot away while both fingers and vise hold a part. No sensor shows the
+    /// part in the vise to the controller.
     fn takes_from_vise(&self) -> bool {
         self.operator.has_replaced()
             && self.branch.closed.workstation.cell.parts().iter().any(|part| part.held && part.clamped)

@@ -1,9 +1,10 @@
 //! Branches of a campaign of confirmations: a person disturbs the cell at a drawn tick, and the judge of
-//! [`closed_loop::truth`] watches what is reported as finished from then on.
+//! [`closed_loop::truth`] then checks every report of a finished command.
 //!
-//! A draw depends on its seed, the job and the cell alone. Half of the branches lead the robot aside, by 0.05 to 6 in in
-//! any direction; the others move, exchange, add or take away a part. One in [`WHOLE`] runs to the end of the job: if a
-//! command is refused there, the person undoes the disturbance, and the job must finish.
+//! A draw depends only on its seed, the job and the cell. In half of the branches a person moves the robot
+//! aside, by 0.05 to 6 in in any direction; in the others a person moves, exchanges, adds or removes a part.
+//! One in [`WHOLE`] runs to the end of the job: if a command is refused there, the person undoes the
+//! disturbance, and the job must finish.
 
 use std::collections::BTreeSet;
 
@@ -21,22 +22,22 @@ use super::{
     trial::{Procedure, Until},
 };
 
-/// One branch in so many runs to the end of the job.
+/// One branch in this number runs to the end of the job.
 pub const WHOLE: usize = 10;
-/// Least and greatest way by which the joystick moves the robot aside, in.
+/// Least and greatest distance by which the joystick moves the robot aside, in.
 const JOG: [f64; 2] = [0.05, 6.0];
-/// Least and greatest way by which a part is moved, in.
+/// Least and greatest distance by which a part is moved, in.
 const MOVED: [f64; 2] = [0.05, 4.0];
-/// Parts of the cell that may be chosen, from the first.
+/// Number of parts of the cell that may be chosen, from the first.
 const PARTS: usize = 4;
-/// Shares of the branches in which the command before follows, and of the others of one command in which the next one
-/// does, percent.
+/// Percentage of the branches in which the previous command follows, and of the other branches on one command
+/// in which the next one does.
 const AGAIN: u32 = 33;
 const NEXT: u32 = 33;
-/// Share of the parts and places that are those of the job, percent.
+/// Percentage of the parts and places that are those of the job.
 const OF_JOB: u32 = 75;
 
-/// Parts and places that a draw chooses from.
+/// Parts and places from which a draw chooses.
 struct Choice {
     /// Kinds of parts of the job, and all of the cell.
     kinds: [Vec<String>; 2],
@@ -94,13 +95,13 @@ impl Draw {
         self.random.random_range(0..100_u32) < share
     }
 
-    /// A length between two, each order of magnitude equally often.
+    /// A length between two limits; all orders of magnitude are equally frequent.
     fn length(&mut self, [least, greatest]: [f64; 2]) -> f64 {
         let share = self.random.random_range(0.0..1.0);
         least * (greatest / least).powf(share)
     }
 
-    /// A vector of some length in any direction, 0.01 in.
+    /// A vector of this length in a random direction, 0.01 in.
     fn vector(&mut self, length: f64) -> [i32; 3] {
         loop {
             let way: [f64; 3] = core::array::from_fn(|_| self.random.random_range(-1.0..1.0));

@@ -14,7 +14,7 @@ pub enum Verdict {
     Apart,
     /// A commanded point has done damage, or a finished command has not had its effect.
     Hurt,
-    /// A command is reported as finished, and the cell is not as its goal has it.
+    /// A command is reported as finished, but the cell does not correspond to its goal.
     False,
 }
 
@@ -34,18 +34,17 @@ pub struct BranchResult {
     pub detail: String,
     /// The line of the job that was interrupted.
     pub line: String,
-    /// True if that line was a command.
+    /// True if that line is a command.
     pub met_command: bool,
     /// The command of each process at the interruption.
     pub doing: Vec<String>,
     /// The commands that have ended since: tick, command and result.
     pub ended: Vec<String>,
-    /// Last tick of the branch.
     pub until: u64,
     /// Ticks from the interruption to the last motion, if the branch is judged at rest.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub rest_after: Option<u64>,
-    /// The confirmations that are not true.
+    /// The false confirmations.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub untrue: Vec<Confirmation>,
     /// Number of confirmations that were judged.
@@ -59,7 +58,7 @@ pub struct BranchResult {
     pub whole: bool,
     /// Digest of its last state.
     pub state: String,
-    /// Digest of all its ticks, if nothing has interrupted it: that of the ordinary run.
+    /// Digest of all ticks of a branch without interruption: that of the ordinary run.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub digest: Option<String>,
 }

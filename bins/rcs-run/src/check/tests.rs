@@ -1,4 +1,4 @@
-//! A file that cannot be read, and files with mistakes.
+//! Unreadable files, and files with errors.
 
 use std::{fs, path::Path};
 
@@ -23,7 +23,7 @@ fn replace(file: &Path, from: &str, to: &str) {
 }
 
 #[test]
-fn a_file_that_cannot_be_read_is_one_mistake_and_hides_none_of_the_others() {
+fn unreadable_file_is_one_error_and_hides_no_other() {
     let shipped = Path::new(env!("CARGO_MANIFEST_DIR")).join("../data");
     let scratch = tempfile::tempdir().unwrap();
     let data = scratch.path().join("data");

@@ -1,5 +1,5 @@
 //! Wrong variants of the shipped data (variants.toml), and the findings of `rcs-run check` for each
-//! (variants.txt). Each variant is refused before anything moves, or gives a reason why it is harmless.
+//! (variants.txt). Each variant is refused before the robot moves, or has a reason why it is harmless.
 //!
 //! `RCS_VARIANTS=write cargo test --release -p programs --lib variants` writes variants.txt again.
 
@@ -15,7 +15,6 @@ use serde::Deserialize;
 
 use super::{Checked, Finding, Flights, data::copy};
 
-/// The root directory of the workspace.
 fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
 }
@@ -148,7 +147,7 @@ fn all_said(variants: &[Variant]) -> Vec<String> {
 }
 
 #[test]
-fn every_variant_is_refused_before_anything_moves_or_harmless() {
+fn every_variant_is_refused_or_harmless() {
     let table: Table = toml::from_str(include_str!("variants.toml")).unwrap();
     assert!(table.variant.len() >= 150, "{} variants", table.variant.len());
     let said = all_said(&table.variant);

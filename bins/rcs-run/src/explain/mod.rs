@@ -1,8 +1,8 @@
 //! `rcs-run check --explain COMMAND`: the complete motion of a command, as the levels find it in the task data.
 //!
-//! E-move's own route ([`paths::walk`]) looks up places, grips, approaches and trajectories, so that the output shows
-//! the motion that a run would make. Times come from Prim's own motion with the knob at full speed. The times of
-//! fingers, camera and pedestal, and the lag of line and arm, are not included.
+//! E-move's own route ([`paths::walk`]) looks up places, grips, approaches and trajectories, so the output
+//! shows the motion of a run. Times are those of Prim's motion with the knob at full speed. They exclude
+//! fingers, camera and pedestal, and the lag of line and arm.
 
 use std::{fmt, process::ExitCode};
 

@@ -27,7 +27,7 @@ fn whats(explanation: &Explanation) -> Vec<&str> {
 }
 
 #[test]
-fn a_transfer_is_explained_point_by_point() {
+fn transfer_is_explained_point_by_point() {
     let found = explanation("TRANSFER LINKBAR1 +2 PFIXTURE 0 +2 UNIT_1 1 SAFE 0", "HOME");
     assert_eq!(
         whats(&found),
@@ -75,7 +75,7 @@ fn every_entry_has_its_place() {
 }
 
 #[test]
-fn vision_comes_before_an_object_in_a_tray() {
+fn vision_precedes_an_object_in_a_tray() {
     let found = explanation("== MOVE LINKBAR1_BH +2 UNIT_1 4 +2 PFIXTURE 0 -- 0", "HOME");
     assert_eq!(
         whats(&found)[..3],
@@ -85,7 +85,8 @@ fn vision_comes_before_an_object_in_a_tray() {
             "MOV-TO-OBJ LINKBAR1_BH with grip +2 at UNIT_1 sector 4",
         ]
     );
-    // Within the location there is no trajectory: the departure from the view, if any, and the approach.
+    // A motion within a location uses no trajectory: only the departure from the view, if any, and the
+    // approach.
     assert!(points(&found, 2).iter().all(|(part, _)| *part != "trajectory"));
     assert_eq!(found.phases.last().unwrap().what, "MOV-OBJ-TO LINKBAR1_BH with grip +2 at PFIXTURE");
 }
@@ -111,7 +112,7 @@ fn times_are_those_of_the_motion() {
 }
 
 #[test]
-fn a_way_that_is_missing_is_named_and_the_rest_is_explained() {
+fn missing_path_is_named_and_the_rest_explained() {
     let found = explanation("MOVE -- +0 -- 0 +0 SAFE 0 -- 0", "PFIXTURE");
     assert_eq!(
         found.phases[0].missing.as_deref(),
@@ -120,7 +121,7 @@ fn a_way_that_is_missing_is_named_and_the_rest_is_explained() {
 }
 
 #[test]
-fn a_regrip_leads_over_the_pedestal() {
+fn regrip_uses_the_pedestal() {
     let name = Name16::clipped;
     let command = HwsCommand {
         command: name("TRANSFER"),
@@ -150,7 +151,7 @@ fn a_regrip_leads_over_the_pedestal() {
             "RELEASE LCLEVIS_IH: to 4.00 in",
         ]
     );
-    // These data have no approaches of the clevis. The explanation names each of them and continues.
+    // These data have no approaches of the clevis. The explanation names each missing one and continues.
     let missing: Vec<&str> = found.phases.iter().filter_map(|phase| phase.missing.as_deref()).collect();
     assert_eq!(missing.first(), Some(&"from HOME: no approach trajectory for the object at the location"));
     assert_eq!(missing.len(), 5, "{missing:?}");
@@ -170,7 +171,7 @@ fn unreadable_input_is_refused() {
 }
 
 #[test]
-fn the_text_has_every_point_and_the_sum() {
+fn text_has_every_point_and_the_sum() {
     let found = explanation("TRANSFER LINKBAR1 +2 PFIXTURE 0 +2 UNIT_1 1 SAFE 0", "HOME");
     let text = found.to_string();
     for phase in &found.phases {

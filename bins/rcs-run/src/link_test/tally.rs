@@ -14,9 +14,9 @@ const IN_TIME: Duration = Duration::from_millis(TICK_MS);
 const GOOD: f64 = 0.95;
 /// Least share for `usable`.
 const USABLE: f64 = 0.90;
-/// Largest share of frames without an answer for `good`. Each such frame costs a restart, and 10 restarts in 10 s lose
-/// the link (docs/design/link.md "Recovery"): of 250 frames 1.25 are lost on average, and 10 in one run of 250 in a
-/// million.
+/// Largest share of frames without an answer for `good`. Each such frame costs a restart, and 10 restarts in 10
+/// s lose the link (docs/design/link.md "Recovery"). At this share, 1.25 of 250 frames are lost on average, and
+/// 10 in one run of 250 in a million.
 const LOST_GOOD: f64 = 0.005;
 /// Largest share for `usable`: 10 of 250 frames are lost in one run of 5000.
 const LOST_USABLE: f64 = 0.01;
@@ -107,7 +107,7 @@ pub struct Tally {
     pub verdict: Verdict,
 }
 
-/// What the test observes of a link in addition to the counters.
+/// Observations of a link in addition to the counters.
 #[derive(Clone, Copy, Debug)]
 pub struct Observed {
     /// True if the port has modem lines.
@@ -223,7 +223,7 @@ mod tests {
     }
 
     #[test]
-    fn the_verdict_follows_the_share_in_time() {
+    fn verdict_follows_the_share_in_time() {
         for (late, verdict) in [
             (0, Verdict::Good),
             (4, Verdict::Good),
@@ -241,7 +241,7 @@ mod tests {
     }
 
     #[test]
-    fn a_line_that_loses_answers_is_not_good() {
+    fn line_with_lost_answers_is_not_good() {
         for (acknowledged, verdict) in [
             (998, Verdict::Good),
             (994, Verdict::Good),

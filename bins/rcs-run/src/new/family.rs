@@ -19,14 +19,12 @@ use crate::rcs_run::error::Error;
 pub struct Family {
     /// From the blank to the finished part, in the order of the job.
     pub parts: Vec<PartType>,
-    /// The common beginning of their names.
     pub stem: String,
     /// For a tool: the other tools of the job.
     pub others: Vec<String>,
     pub job: Source,
     /// The program of the vise in the job, if the vise holds one of the parts.
     pub program: Option<ViseProgram>,
-    /// All entries of the task data.
     pub entered: Entered,
 }
 
@@ -94,7 +92,6 @@ impl Family {
         })
     }
 
-    /// The camera's numbers of all objects.
     pub fn vision_ids(&self) -> impl Iterator<Item = i32> {
         self.entered.all().filter_map(|entry| match entry {
             Entry::View(view) => Some(view.id),

@@ -14,7 +14,7 @@ pub struct Blocks {
 }
 
 impl Blocks {
-    /// No form yet. `from` names the source from which the forms are derived.
+    /// Blocks without forms. `from` names the source from which the forms are derived.
     pub fn new(name: &str, from: String, area: u32) -> Self {
         Self { name: name.to_owned(), from, area, blocks: Vec::new() }
     }
@@ -34,7 +34,7 @@ impl Blocks {
         }
     }
 
-    /// Number of blocks, with the directory block.
+    /// Number of blocks, including the directory block.
     pub fn count(&self) -> u32 {
         u32::try_from(self.blocks.len() + 1).unwrap_or(u32::MAX)
     }

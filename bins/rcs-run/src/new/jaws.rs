@@ -1,13 +1,14 @@
 //! Chooses the step of the vise for a new part: an existing step, or a new step in the jaws.
 //!
-//! A step is a notch in both jaws, from the front to its back and down to its ledge, as deep as its clamping face. A
-//! part fits if it stands by itself before it is pushed to the back, projects in front far enough to be pushed, and is
-//! wider than the remaining gap between the ledges. A new step is deeper than all others and ends above their ledges,
-//! so that it takes no ledge from them and leaves the lower part of each clamping face.
+//! A step is a notch in both jaws, from the front to its back and down to its ledge, as deep as its clamping
+//! face. A part fits if it is stable before it is pushed to the back, projects far enough in front to be
+//! pushed, and is wider than the remaining gap between the ledges. A new step is deeper than all others and
+//! ends above their ledges, so that it does not cut their ledges and leaves the lower part of each clamping
+//! face.
 
 use plant::description::{Vise, ViseProgram};
 
-/// Length by which a part projects from its step in front, so that fingers can push it to the back, in.
+/// Length by which a part must project from its step, so that fingers can push it to the back, in.
 const PUSHED: f64 = 0.05;
 /// Distance of the middle of a part behind the front edge of its ledge, before it is pushed, in.
 const STANDS: f64 = 0.03;
@@ -33,7 +34,7 @@ const LOWEST: f64 = -0.30;
 pub struct Wanted {
     /// Height of the blank in the orientation in which it enters the vise.
     pub height: f64,
-    /// Least height of the parts that are pushed to the back; `None` if none is.
+    /// Least height of the parts that are pushed to the back, if any.
     pub pushed: Option<f64>,
     /// Length by which the blank projects in front.
     pub out: f64,
@@ -53,7 +54,7 @@ pub struct Wanted {
     pub stands_in_open: bool,
 }
 
-/// A step, and whether it is new.
+/// A step that fits.
 pub struct Chosen {
     pub program: ViseProgram,
     pub is_new: bool,
@@ -61,7 +62,7 @@ pub struct Chosen {
     pub behind: f64,
 }
 
-/// The first step that fits: the step of the like part, another step, or a new one.
+/// The first step that fits: that of the like part, another step, or a new one.
 ///
 /// # Errors
 /// The reasons why no step fits, one line per step.
@@ -178,7 +179,7 @@ impl Wanted {
     }
 }
 
-/// Where the ledge of a step begins, from the front, at the depth where lower and deeper steps leave most of it. `None`
+/// Start of a step's ledge, from the front, at the depth where lower and deeper steps leave most of it. `None`
 /// if they leave nothing.
 fn front(vise: &Vise, step: &ViseProgram) -> Option<f64> {
     let lower: Vec<_> = vise.program.iter().filter(|other| other.ledge < step.ledge).collect();
@@ -240,7 +241,7 @@ mod tests {
     }
 
     #[test]
-    fn the_clevis_itself_gets_its_step() {
+    fn clevis_gets_its_own_step() {
         let found = chosen(&clevis(1.73, 2.56, 4.0)).unwrap_or_else(|why| panic!("{why:?}"));
         assert!(!found.is_new);
         let program = found.program;
@@ -249,13 +250,12 @@ mod tests {
     }
 
     #[test]
-    fn a_lower_part_gets_a_step_of_its_own() {
+    fn lower_part_gets_a_new_step() {
         let found = chosen(&clevis(1.0, 1.5, 3.0)).unwrap_or_else(|why| panic!("{why:?}"));
         assert!(found.is_new);
         let program = found.program;
         assert_eq!((program.back, program.ledge), (0.87, -0.60));
         assert!((program.depth - 0.2625).abs() < 1e-9);
-        // The other steps keep their ledges.
         let mut all = vise();
         let before: Vec<_> = all.program.iter().map(|step| front(&all, step)).collect();
         all.program.push(program);
@@ -263,7 +263,7 @@ mod tests {
     }
 
     #[test]
-    fn a_part_that_fits_nowhere_is_reported_with_the_reason() {
+    fn part_without_a_step_is_refused_with_reasons() {
         let why = |wanted: &Wanted| chosen(wanted).err().unwrap_or_default().join("\n");
         assert!(why(&clevis(1.73, 3.5, 4.0)).contains("the jaws open for parts up to 3.00 in"));
         assert!(why(&clevis(1.73, 2.56, 1.0)).contains("comes 0.40 in above the jaws"));

@@ -39,7 +39,7 @@ use crate::rcs_run::{arguments::CheckArguments, error::Error, pose, ways};
 /// Make new data.
 ///
 /// # Errors
-/// [`Error`] with the reason, if nothing was written.
+/// [`Error`] with the reason. No file was written.
 pub fn new(arguments: &NewArguments) -> Result<ExitCode, Error> {
     match &arguments.what {
         What::Part(arguments) => {

@@ -1,8 +1,8 @@
-//! Parts that lie in nests (cylinders and tools): where a part of another size comes to rest in the nests of the like
-//! part, and how its grips move.
+//! Parts that lie in nests (cylinders and tools): the resting place of a part of another size in the nests of
+//! the like part, and the displacement of its grips.
 //!
-//! A grip keeps its place relative to the middle of the part: a grip at a nest moves with the middle of the part, other
-//! grips stay. A part that does not come to rest like the like part does not fit its nests.
+//! A grip keeps its position relative to the middle of the part. Grips at a nest move with the middle of the
+//! part; other grips stay. A part that does not rest like the like part does not fit its nests.
 
 use geometry::{
     frame::{Frame, Vector},

@@ -1,4 +1,4 @@
-//! What a part of another size changes: the numbers in the forms of its family, and vise or nests of the cell.
+//! The changes for a part of another size: numbers in the forms of its family, and vise or nests of the cell.
 
 use geometry::movetable::MovetableLine;
 use plant::description::PartType;
@@ -34,11 +34,10 @@ pub trait Numbers {
     /// Add the vise's program or the nests to the cell description.
     ///
     /// # Errors
-    /// [`Error::New`] if there is no table after which theirs can be inserted.
+    /// [`Error::New`] if the cell description has no table after which the new tables can be inserted.
     fn places(&self, change: &mut Change) -> Result<Places, Error>;
 }
 
-/// The changes of vise or nests for the new parts.
 pub struct Places {
     pub chosen: Vec<(&'static str, String)>,
     pub to_teach: Vec<String>,

@@ -1,4 +1,4 @@
-//! `rcs-run new part`: forms, movetables, cell description and a job for a part that is like another one.
+//! `rcs-run new part`: forms, movetables, cell description and a job for a part like an existing one.
 
 use std::path::Path;
 
@@ -30,11 +30,9 @@ const LONGEST: usize = 11;
 /// Number of the name's characters with which its movetables begin.
 const BEGINS: usize = 6;
 
-/// The request for a part or a tool.
 pub struct Order<'a> {
     pub name: &'a str,
     pub like: &'a str,
-    /// True for a tool, false for a part.
     pub tool: bool,
     /// Size of the blank; `None` for the size of the like part.
     pub size: Option<Size>,
@@ -52,7 +50,7 @@ pub struct Made {
     /// True if jobs of other parts are tried, too.
     pub others: bool,
     pub size: Size,
-    /// The choices that were made: pairs of subject and text.
+    /// The choices made: pairs of subject and text.
     pub chosen: Vec<(&'static str, String)>,
     /// The poses that must be taught at the machine.
     pub to_teach: Vec<String>,
@@ -117,7 +115,6 @@ pub fn make(
     Ok(Made { change, trial, jobs, others, size, chosen, to_teach })
 }
 
-/// Check the name of the new part.
 fn is_name(order: &Order<'_>, family: &Family, store: &Store, cell: &CellDescription) -> Result<(), Error> {
     let Order { name, tool, .. } = *order;
     let fits = |c: char| c.is_ascii_uppercase() || c.is_ascii_digit() || (c == '-' && tool);
@@ -144,7 +141,6 @@ fn is_name(order: &Order<'_>, family: &Family, store: &Store, cell: &CellDescrip
     Ok(())
 }
 
-/// The data of a new family.
 struct New<'a> {
     name: &'a str,
     family: &'a Family,
@@ -255,8 +251,8 @@ impl New<'_> {
         Ok((tables, grips))
     }
 
-    /// The job of the like part with the new names, and without its comments, which describe the like part. `like` and
-    /// its family are replaced by the new parts.
+    /// The job of the like part with the new names. Its comments, which describe the like part, are removed.
+    /// The new parts replace `like` and its family.
     fn job(&self, like: &str) -> String {
         let mut text = format!("% {}, made like {} by rcs-run new.\n\n", self.name, self.family.stem);
         let mut opened = false;

@@ -1,5 +1,5 @@
-//! The size of a blank in text form: three sides of a box, or length and diameter of a cylinder. A person types it in
-//! the units of the command line.
+//! The size of a blank as text, in the units of the command line: three sides of a box, or length and diameter
+//! of a cylinder.
 
 use std::{fmt, str::FromStr};
 

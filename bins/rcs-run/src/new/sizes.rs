@@ -1,9 +1,9 @@
 //! Computes the numbers of a family whose parts have other sizes: the place of each grip, and the openings and forces
 //! of the fingers.
 //!
-//! A grip moves with the face to which it refers: in a tray with the floor, in the vise with back, ledge and fixed face
-//! of the step, for a push with the front face, at the pedestal with the middle of the part. So the clearances of the
-//! like part remain.
+//! A grip moves with the face to which it refers: in a tray with the floor, in the vise with back, ledge and
+//! fixed face of the step, for a push with the front face, at the pedestal with the middle of the part. This
+//! keeps the clearances of the like part.
 
 use plant::{
     CellDescription,
@@ -219,13 +219,13 @@ impl<'a> Sizes<'a> {
         match (place, own) {
             (Place::Tray, _) => [deeper, 0.0, higher - (new[2] - old[2]) / 2.0],
             (Place::Vise, true) => {
-                // A part that would not stand otherwise is released nearer to the back.
+                // A part that would not be stable is released nearer to the back.
                 let gap = (before.back - x - self.tips[0]).max(0.0);
                 let nearer =
                     if self.behind > 0.0 { gap * (1.0 - self.step.behind / self.behind) } else { 0.0 };
                 [after.back - before.back + deeper + nearer, aside, after.ledge - before.ledge + higher]
             }
-            // A push stays at its height above the ledge, and at its distance behind the front face.
+            // A push keeps its height above the ledge, and its distance behind the front face.
             (Place::Vise, false) => {
                 let up = z * after.ledge / before.ledge - z;
                 [(after.back - new[0]) - (before.back - old[0]), aside, up]
@@ -378,7 +378,7 @@ pub fn hundredths(inches: f64) -> i32 {
     whole(inches * 100.0)
 }
 
-/// The nearest whole number; sizes are limited far below what it holds.
+/// The nearest whole number; sizes are limited far below the range of `i32`.
 fn whole(number: f64) -> i32 {
     number.round() as i32
 }

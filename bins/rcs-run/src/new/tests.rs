@@ -40,7 +40,7 @@ fn refused(name: &str, size: &str, like: &str) -> String {
 }
 
 #[test]
-fn a_part_of_the_same_size_has_the_same_numbers() {
+fn part_of_the_same_size_has_the_same_numbers() {
     let (store, cell) = loaded();
     for like in ["LINKBAR1", "LCLEVIS"] {
         let family = Family::of(like, &store, &cell, &data()).expect("it has a job");
@@ -59,23 +59,23 @@ fn a_part_of_the_same_size_has_the_same_numbers() {
 }
 
 #[test]
-fn a_smaller_clevis_is_machined_on_both_sides() {
+fn smaller_clevis_is_machined_on_both_sides() {
     // The part gets a new step of the vise.
     assert_eq!(tried("HINGE", "3x1.5x1", "LCLEVIS").map_err(|error| error.to_string()), Ok(3));
 }
 
 #[test]
-fn a_longer_and_wider_linkbar_round_trips() {
+fn longer_and_wider_linkbar_round_trips() {
     assert_eq!(tried("BAR", "5x0.8x0.625", "LINKBAR1").map_err(|error| error.to_string()), Ok(3));
 }
 
 #[test]
-fn a_thicker_and_longer_shaft_is_turned() {
+fn thicker_and_longer_shaft_is_turned() {
     assert_eq!(tried("PIN", "5x1.55", "SHAFT").map_err(|error| error.to_string()), Ok(3));
 }
 
 #[test]
-fn a_longer_tool_goes_into_the_drum_and_out_of_it() {
+fn longer_tool_enters_and_leaves_the_drum() {
     assert_eq!(tried("REAMER-3", "4x1.75", "DRILL-2").map_err(|error| error.to_string()), Ok(6));
 }
 
@@ -106,7 +106,7 @@ fn parts_in_nests_move_with_their_centre() {
 }
 
 #[test]
-fn the_forms_move_with_the_size() {
+fn form_positions_follow_the_size() {
     let made = made("HINGE", "3x1.5x1", "LCLEVIS").expect("it can be made");
     let diff = made.change.diff();
     for line in [
@@ -123,7 +123,7 @@ fn the_forms_move_with_the_size() {
 }
 
 #[test]
-fn a_tray_can_stand_elsewhere() {
+fn tray_at_another_point_passes_its_trial() {
     let (store, cell) = loaded();
     let made = super::tray::make("UNIT_3", [-40.0, -45.0], "UNIT_1", (&store, &cell, &data()));
     let diff = made.expect("it can be made").change.diff();

@@ -159,7 +159,7 @@ fn table(name: &str, like: &Tray, [dx, dy]: [f64; 2]) -> String {
     )
 }
 
-/// The shortest job that takes loose parts from the like tray only, changed for the new one: its name and text.
+/// The shortest job that takes loose parts only from the like tray, changed for the new one: its name and text.
 fn job(like: &str, name: &str, cell: &CellDescription, data: &Path) -> Result<(String, String), Error> {
     let loose =
         |part: &str| cell.part(part).is_some_and(|part| !cell.nest.iter().any(|nest| nest.takes(part)));

@@ -11,7 +11,7 @@ use crate::rcs_run::{check, error::Error};
 
 /// Seeds for the runs of a new job.
 const SEEDS: [u64; 3] = [1, 2, 3];
-/// Number of runs at the same time.
+/// Number of simultaneous runs.
 const AT_A_TIME: usize = 2;
 
 /// A copy of the data directory with the change.
@@ -30,7 +30,7 @@ impl Trial {
         change.copy_to(place.path())?;
         let (errors, mut warnings) = check::findings(place.path());
         if !errors.is_empty() {
-            // The copy no longer exists when the message is read.
+            // The copy no longer exists when the user reads the message.
             let copy = format!("{}/", place.path().display());
             let errors = errors.join("\n  ").replace(&copy, "");
             return Err(Error::New(format!("check finds errors:\n  {errors}")));
@@ -43,7 +43,8 @@ impl Trial {
         self.place.path()
     }
 
-    /// Run the new job with several seeds, and every other job once if `others`. Returns the number of finished runs.
+    /// Run the new job with several seeds and, if `others`, every other job once. Returns the number of
+    /// finished runs.
     ///
     /// # Errors
     /// [`Error::New`] with the first run that did not finish.

@@ -25,7 +25,7 @@ pub enum Kind {
 }
 
 impl Kind {
-    /// The compiling word, which is in the last line of the form.
+    /// The compiling word, in the last line of the form.
     const fn word(self) -> &'static str {
         match self {
             Self::Pose => "-pose-",
@@ -126,7 +126,7 @@ BLOCK# 612 OFFSET 21000
 ";
 
     #[test]
-    fn a_new_form_follows_the_block() {
+    fn new_form_follows_the_block() {
         let changed = put_pose(TEXT, Some(610), "NEW-P", "...").unwrap();
         assert_eq!(changed.line, 7);
         assert!(changed.removed.is_empty());
@@ -139,7 +139,7 @@ BLOCK# 612 OFFSET 21000
     }
 
     #[test]
-    fn a_form_of_that_name_is_replaced() {
+    fn form_of_the_same_name_is_replaced() {
         let changed = put_pose(TEXT, None, "HOME-POS", "M-1").unwrap();
         assert_eq!((changed.line, changed.removed.len(), changed.added.len()), (4, 3, 3));
         assert_eq!(changed.removed[0], "       0    -5022      636");
@@ -148,7 +148,7 @@ BLOCK# 612 OFFSET 21000
     }
 
     #[test]
-    fn values_without_a_place_are_refused() {
+    fn form_without_a_valid_block_is_refused() {
         let refused = |block| put_pose(TEXT, block, "NEW-P", "...").unwrap_err();
         assert!(refused(None).contains("--block"));
         assert!(refused(Some(99)).contains("it has 610, 612"));
@@ -158,7 +158,7 @@ BLOCK# 612 OFFSET 21000
     }
 
     #[test]
-    fn a_movetable_takes_the_place_of_all_its_lines() {
+    fn movetable_replaces_all_old_lines() {
         let text = "BLOCK# 1 OFFSET 21000\n    1    t 1 2 3  -mtb-   A\n    1    t 1 2 3  ----\n    2    ro 5  -mtb-   B\n";
         let form = vec!["    1    t 9 9 9      -mtb-   B".to_owned()];
         let changed = put(text, None, Kind::Movetable, "B", form).unwrap();

@@ -113,7 +113,7 @@ static PROCESSES: [ProcessInfo; 2] = [
 ];
 
 #[test]
-fn a_page_explains_each_word_of_its_tables_once() {
+fn page_explains_each_table_word_once() {
     let all = page(&PROCESSES);
     let text = all.strip_prefix(HEAD).expect("the form is explained first");
     let sources = |line: &&str| !line.starts_with("Source: ");
@@ -218,7 +218,7 @@ Actions:
 }
 
 #[test]
-fn links_of_doc_comments_are_left_out() {
+fn doc_comment_links_are_omitted() {
     assert_eq!(
         prose(" See [`Pose`](crate::rcs_run::pose), [`Tick`] and [the cell](docs/cell.md)."),
         "See `Pose`, `Tick` and the cell."
@@ -228,7 +228,7 @@ fn links_of_doc_comments_are_left_out() {
 
 /// The page explains every name in a row.
 #[test]
-fn every_value_in_the_rows_has_a_meaning() {
+fn every_value_in_a_row_is_explained() {
     let tables = Ladder::processes().iter().flat_map(|process| process.tables);
     for (table, row) in tables.flat_map(|table| table.rows.iter().map(move |row| (table, row))) {
         let at = || format!("{} row {}", table.name, row.number);

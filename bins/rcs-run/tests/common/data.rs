@@ -1,8 +1,6 @@
-//! Copies of task data.
-
 use std::{fs, path::Path};
 
-/// Copy a directory with all that is in it.
+/// Copy a directory recursively.
 pub fn copy(from: &Path, to: &Path) {
     fs::create_dir_all(to).unwrap();
     for entry in fs::read_dir(from).unwrap().flatten() {

@@ -1,4 +1,4 @@
-//! What tests of the program share.
+//! Helpers of the tests of the program.
 
 pub mod data;
 

@@ -12,7 +12,7 @@ use taskdata::{files::TaskData, load::Workstation};
 /// Tolerance for rounding in the description, in.
 const ROUNDING: f64 = 1e-6;
 
-/// The reason why a part cannot be put into a sector: a fixture is in the way of the part, whose centre is at most
+/// The reason why a part does not fit into a sector: a fixture obstructs the part, whose centre is at most
 /// `off` from the middle of the sector.
 pub fn occupied(action: &WorkstationAction, cell: &CellDescription) -> Option<String> {
     let WorkstationAction::Place { part, unit, sector, placement } = action else { return None };
@@ -59,18 +59,18 @@ fn in_the_way<'c>(
     near.filter(|(_, distance, room)| distance < room).min_by(|a, b| a.1.total_cmp(&b.1))
 }
 
-/// Why a command is impossible, the word of its line that causes it, and what to do.
+/// Why a command is impossible, the word of its line that causes it, and the remedy.
 pub struct Refused {
     pub word: String,
     pub message: String,
     pub help: &'static str,
 }
 
-/// The vise and the trays between two lines, as far as they are known.
+/// The vise and the trays between two lines, as far as known.
 pub struct State<'c> {
     cell: &'c CellDescription,
     pub data: TaskData<'c>,
-    /// `None` if it is unknown.
+    /// State of the jaws, if known.
     jaws: Option<Jaws<'c>>,
     /// The object that was put into the vise last.
     in_vise: Option<Name16>,
@@ -92,8 +92,8 @@ impl<'c> State<'c> {
         Self { cell, data, jaws, in_vise: None, random: Vec::new() }
     }
 
-    /// Apply a `**` line. `lost` is true if it takes effect at another time or was refused. Returns the reason if it is
-    /// impossible.
+    /// Apply a `**` line. `lost` is true if it takes effect at another time or was refused. Returns the reason
+    /// if the line is impossible.
     pub fn action(&mut self, action: &Workstation, lost: bool) -> Option<String> {
         let vise = self.cell.vise.location.as_str();
         match action {
@@ -131,7 +131,7 @@ impl<'c> State<'c> {
         Some(Refused { word: destination.to_string(), message, help })
     }
 
-    /// A part at a random position must be located by the camera. Parts that have nests lie in them.
+    /// A part at a random position must be located by the camera. Parts with nests lie in them.
     fn unseen(&self, command: &HwsCommand, part: &PartType) -> Option<Refused> {
         let (object, source) = (command.object?, command.source?);
         let location = self.data.resolve_location(&source, command.source_sector, Some(&object)).ok()?;
@@ -149,8 +149,8 @@ impl<'c> State<'c> {
 }
 
 impl Jaws<'_> {
-    /// The reason why a part cannot be brought in: no side of it fits between the clamping faces and is wider than the
-    /// remaining gap between the inner faces, through which the part would fall.
+    /// The reason why a part cannot be inserted: none of its sides fits between the clamping faces and is wider
+    /// than the gap between the inner faces, through which the part would fall.
     fn refuse(&self, part: &PartType) -> Option<String> {
         let (opening, how) = match self.opening {
             ViseOpening::Close => {

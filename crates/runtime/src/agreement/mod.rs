@@ -1,8 +1,8 @@
 //! Checks that task data, job and cell description describe the same cell.
 //!
-//! Each of the three has been checked alone before. This module finds names that only one of them has: they would make
-//! a run fail late, or send the robot to an empty place. It also compares numbers that several of them give: `sizes`,
-//! `places`, `job`.
+//! Each of the three has already been checked alone. This module finds names that only one of them has: they
+//! would make a run fail late, or send the robot to an empty place. It also compares numbers that several of
+//! them contain: `sizes`, `places`, `job`.
 
 mod alike;
 mod both;
@@ -25,7 +25,7 @@ use taskdata::{
 
 use closed_loop::workstation::orders;
 
-/// The names in the `**` lines of a job that the cell does not have. `source` is the text of the description, `path`
+/// The names in the `**` lines of a job that the cell lacks. `source` is the text of the description, `path`
 /// its file.
 pub fn of_job(job: &Job, source: &Source, cell: &CellDescription, store: &Store, path: &Path) -> Diagnostics {
     let mut problems = Problems::default();
@@ -72,8 +72,8 @@ pub fn of_job(job: &Job, source: &Source, cell: &CellDescription, store: &Store,
     Diagnostics::of_file(problems, job.source())
 }
 
-/// Check blocks that a line loads against the cell, as those of the data directory. A line that ends with `expect
-/// error` loads blocks that do not fit.
+/// Check blocks that a line loads against the cell, like those of the data directory. A line that ends with
+/// `expect error` must load blocks that do not fit.
 fn load(
     job: &Source,
     line: &JobLine,
@@ -115,8 +115,8 @@ fn place(source: &Source, line: &JobLine, word: Option<&str>) -> At {
     At { source: 0, start: short(begin + start), length: short(length) }
 }
 
-/// The names in a cell description that the task data do not have: errors for locations, warnings for names that no job
-/// needs.
+/// The names in a cell description that the task data lack: errors for locations, warnings for names that no
+/// job needs.
 pub fn of_cell(source: Source, cell: &CellDescription, store: &Store) -> Diagnostics {
     let mut names = Names { source: &source, data: store.view(), problems: Problems::default() };
     names.locations(cell);
@@ -205,7 +205,7 @@ impl Names<'_> {
         }
         for (number, tray) in cell.tray.iter().enumerate() {
             let loose = cell.part.iter().filter(|part| !cell.nest.iter().any(|nest| nest.takes(part)));
-            // Parts that the task data never put on this tray are skipped.
+            // Parts that the task data never place on this tray are skipped.
             let here = |part: &&str| self.resolves(&tray.unit, 1, part);
             let parts: Vec<&str> = loose.map(|part| part.name.as_str()).filter(here).collect();
             let last = u16::try_from(tray.sectors.len()).unwrap_or(u16::MAX);
@@ -227,7 +227,7 @@ impl Names<'_> {
         self.unresolved(location, sector, [part].into_iter()).is_empty()
     }
 
-    /// The reasons why known objects have no location in a sector of the task data; each reason once.
+    /// The reasons why known objects have no location in a sector of the task data, each reason once.
     fn unresolved<'p>(
         &self,
         location: &str,

@@ -1,4 +1,4 @@
-//! Checks that bodies stand at their places in the task data: trays, vise, pedestal, drum, nests and holsters.
+//! Checks that bodies are at their places in the task data: trays, vise, pedestal, drum, nests and holsters.
 
 use geometry::frame::{Frame, Rotation, Vector};
 use plant::{
@@ -11,8 +11,8 @@ use taskdata::files::Location;
 
 use super::both::Both;
 
-/// Greatest distance of a body from its place in the task data, inches and degrees: less than the clearances of the
-/// nests into which a part is moved (SPECNOTES).
+/// Greatest distance of a body from its place in the task data, inches and degrees. It is less than the
+/// clearances of the nests into which a part is moved (SPECNOTES).
 const INCHES: f64 = 0.25;
 const DEGREES: f64 = 2.0;
 
@@ -40,7 +40,7 @@ pub fn bodies(cell: &CellDescription) -> impl Iterator<Item = Body<'_>> {
     .chain(framed)
 }
 
-/// Add an error for each body that stands elsewhere.
+/// Add an error for each body that is at another place.
 pub fn check(both: &mut Both<'_>) {
     for (entry, name, frame) in bodies(both.cell) {
         stands(both, entry, name, &frame);
@@ -49,7 +49,7 @@ pub fn check(both: &mut Both<'_>) {
     nests(both);
 }
 
-/// Check that a body stands at a location.
+/// Check that a body is at a location.
 fn stands(both: &mut Both<'_>, entry: &str, name: &str, body: &Frame) {
     let Some(location) = both.location(name, 0, None) else { return };
     if let Some(apart) = apart(body, &location.frame) {
@@ -92,9 +92,9 @@ fn nests(both: &mut Both<'_>) {
     }
 }
 
-/// Checks that the tool point of a grip of a part in a nest is inside the part, and at the same point of the part in
-/// all nests. For a cylinder, which may be turned about its axis, the position along the axis counts. Returns the first
-/// wrong grip, and the reason.
+/// Checks that the tool point of a grip of a part in a nest is inside the part, and at the same point of the
+/// part in all nests. For a cylinder, which may be turned about its axis, only the position along the axis
+/// matters. Returns the first wrong grip, and the reason.
 fn beside(both: &Both<'_>, number: usize, part: &PartType) -> Option<(Location, String)> {
     let (name, data) = (Name16::clipped(&part.name), both.data);
     let nest = both.cell.nest.get(number)?;

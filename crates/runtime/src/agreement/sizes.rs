@@ -11,7 +11,7 @@ use taskdata::files::{EndEffPara, RefType, VisionPara};
 
 use super::both::Both;
 
-/// Fingers within this distance of the width of a part count as touching it, in: rounding of the forms.
+/// Fingers within this distance of the width of a part are treated as touching it, in: rounding of the forms.
 const ROUNDING: f64 = 0.005;
 /// `endeff-id#` of the tool gripper (VII.7.2).
 const TOOL_GRIPPER: i32 = 3;
@@ -59,14 +59,13 @@ pub fn check(both: &mut Both<'_>) {
             both.form(origins, Some(index), message, "pedestal.table.limits");
         }
     }
-    // If a tray stands elsewhere every range to it is wrong.
+    // If a tray is at another place, every range to it is wrong.
     let views = both.data.visions.iter().enumerate().filter(|(_, record)| record.enabled);
     for (index, record) in views.take_while(|_| both.places_agree()).collect::<Vec<_>>() {
         view(both, index, record);
     }
 }
 
-/// The message for a size beyond the stroke of a gripper.
 fn beyond(what: &str, size: i32, [low, high]: [f64; 2], gripper: &str) -> Option<String> {
     let size = inches(size);
     let outside = size < low - ROUNDING || size > high + ROUNDING;
@@ -103,7 +102,7 @@ fn grip(both: &mut Both<'_>, index: usize, record: &EndEffPara) {
     let cell = both.cell;
     let part = cell.part.iter().position(|part| part.name == object.as_str());
     let what = format!("grip {:+} of {object}", record.grip);
-    // Grippers are objects too, but they are locked on the arm, not held.
+    // Grippers are objects too, but the arm locks onto them instead of holding them.
     if GRIPPERS.contains(&object.as_str()) {
         return;
     }
@@ -170,8 +169,9 @@ fn grip(both: &mut Both<'_>, index: usize, record: &EndEffPara) {
     }
 }
 
-/// Possible widths of a part between the fingers, in. On a tray its X axis points down and its Z axis along that of the
-/// sector, so that the movetable of the grip there determines the side; elsewhere any side is possible.
+/// Possible widths of a part between the fingers, in. On a tray the part's X axis points down and its Z axis is
+/// along that of the sector, so the movetable of the grip there determines the side. Elsewhere any side is
+/// possible.
 fn widths(both: &Both<'_>, record: &EndEffPara, part: &PartType) -> Vec<f64> {
     let on_tray = |kind| matches!(kind, RefType::Any | RefType::Array);
     let grips = both.data.grip_locs.iter().filter(|g| g.object == record.object && g.grip == record.grip);

@@ -24,15 +24,15 @@ pub enum LoadError {
     Recorded(String),
     /// The data with the block have errors.
     Data(Box<Diagnostics>),
-    /// The job has loaded blocks meanwhile, or waits for the end of a command to load some.
+    /// The job has meanwhile loaded blocks, or waits for the end of a command to load some.
     Reload,
     /// The file for the boards cannot be written.
     Write(io::Error),
-    /// A board has not finished its check in time.
+    /// A board has exceeded the time limit of its check.
     Late,
     /// A board has other data after the load.
     Differs(Board),
-    /// The thread that checks has ended.
+    /// The checking thread has ended.
     NoThread,
 }
 

@@ -40,7 +40,7 @@ impl Neighbours {
         }
     }
 
-    /// Take over from the workstation controller; with `now` also in the middle of a command.
+    /// Take over from the workstation controller; `now` also permits it in the middle of a command.
     ///
     /// # Errors
     /// A sentence with the reason if that is not possible.
@@ -60,7 +60,7 @@ impl Neighbours {
         }
     }
 
-    /// Give the command back to the workstation controller (IV.4.1).
+    /// Return the command to the workstation controller (IV.4.1).
     ///
     /// # Errors
     /// A sentence with the reason if that is not possible.

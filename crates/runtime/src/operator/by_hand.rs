@@ -1,6 +1,6 @@
-//! Orders of a person to the Active Pedestal, and statements about what the gripper holds. The tables of the controller
-//! decide (`levels::subtask::manual`, `levels::task::support`); what they would refuse in the next tick is refused here,
-//! with the reason.
+//! An operator's orders to the Active Pedestal, and statements about the object in the gripper. The tables of
+//! the controller decide (`levels::subtask::manual`, `levels::task::support`). Orders that they would refuse in
+//! the next tick are refused here, with the reason.
 
 use geometry::units::inches;
 use interfaces::{
@@ -112,7 +112,7 @@ pub fn check_confirmation(by: Support, memory: &CommonMemory, data: &TaskData<'_
     }
 }
 
-/// Check that a process runs: else it would not see the request.
+/// Check that a process runs and can therefore read the request.
 fn runs(process: ProcessId, memory: &CommonMemory) -> Result<(), String> {
     if may_be_written(process, memory) {
         Err(format!("{process} does not run: `board {} go` starts it", process.board()))
@@ -154,7 +154,7 @@ mod tests {
     }
 
     #[test]
-    fn orders_to_the_pedestal_parse_with_object_angle_and_hand() {
+    fn pedestal_orders_parse_with_object_angle_and_hand() {
         let grip = read("grip LCLEVIS_IH").unwrap();
         assert_eq!((grip.command, grip.object), (PedestalVerb::Grip, Name16::new("LCLEVIS_IH").ok()));
         assert_eq!(read("flip -183.5").unwrap().table_angle, -1835);

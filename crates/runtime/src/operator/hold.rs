@@ -1,14 +1,14 @@
-//! What ends with a session, as text for answer and log.
+//! The motions that end with a session, as text for answer and log.
 
 use std::fmt;
 
 /// Motion by hand that has ended with its session.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Ended {
-    /// Stick, buttons, single steps or frame.
+    /// Motion by stick, buttons, single steps or frame.
     pub joystick: bool,
     pub passes: bool,
-    /// A motion of the rotary table by the keys of its panel.
+    /// Motion of the rotary table by the keys of its panel.
     pub turns_table: bool,
     /// The knob has gone to 0.
     pub knob: bool,

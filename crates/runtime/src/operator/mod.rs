@@ -1,19 +1,19 @@
-//! The operator of a run (IV): requests between two ticks, who may send them, and how they are carried out.
+//! The operator of a run (IV): requests between two ticks, their permitted senders, and their execution.
 //!
 //! A request is a line of text ([`Request`]). Switches go to the joystick box, which the controller reads
 //! ([`Operator::at_the_box`]); entries at the terminals of the boards are a further input
-//! ([`Operator::at_the_terminals`]); requests to the cell are applied to the cell; a command goes through the mailbox
-//! of the job player and shares its command numbers. All of it happens in [`Run::operate`](crate::Run), after the cell
-//! has moved and before the job player runs: the next tick is the first one that sees it. Every request is in the log
-//! with that tick, so that the inputs can be replayed.
+//! ([`Operator::at_the_terminals`]); requests to the cell are applied to the cell; a command goes through the
+//! mailbox of the job player and shares its command numbers. All of this happens in
+//! [`Run::operate`](crate::Run), after the motion of the cell and before the job player runs, so it takes
+//! effect in the next tick. The log contains every request with that tick, so that the inputs can be replayed.
 //!
-//! One operator commands at a time: the first that sends a request that moves something, until it sends `leave` or
-//! disconnects. Stops are accepted from every operator.
+//! One operator commands at a time: the first that sends a request for a motion, until it sends `leave` or
+//! disconnects. Every operator may send a stop.
 //!
-//! What an operator commands by hand (stick, buttons, frame, single steps, passes of a stopped process, keys of the
-//! rotary table's panel) ends with `leave`, with the session, and with its silence ([`Operator::end_hold`]); knob, stops
-//! and switches that hold stay. A request whose sender no longer waits is discarded unless it is a stop
-//! ([`Event::Late`]). Both rules are here, for all ways by which an operator can connect.
+//! An operator's commands by hand (stick, buttons, frame, single steps, passes of a stopped process, keys of
+//! the rotary table's panel) end with `leave`, with the session, and with its silence ([`Operator::end_hold`]).
+//! Knob, stops and holding switches stay. A request whose sender no longer waits is discarded unless it is a
+//! stop ([`Event::Late`]). Both rules are here, for all kinds of connections.
 
 mod by_hand;
 mod hold;
@@ -49,19 +49,19 @@ pub use self::{
 };
 use crate::{judge, neighbours::Neighbours};
 
-/// Largest number of requests carried out in a tick; others wait for the next one.
+/// Largest number of requests executed in a tick. Others wait for the next one.
 pub const A_TICK: usize = 16;
 
 pub struct Operator {
-    /// The operators' joystick box; the lines of the job have another one.
+    /// The operators' joystick box. The lines of the job have another one.
     hand: Joystick,
     /// State of that box in the next tick.
     shown: JoystickBox,
     /// Entries at the terminals of the boards.
     terminals: Terminals,
-    /// Part of a request that the run must carry out.
+    /// Part of a request that the run must execute.
     later: Option<Later>,
-    /// A request that waits until the commands have the robot again, and the tick in which it arrived.
+    /// A request that waits until the commands control the robot again, and the tick in which it arrived.
     awaiting: Option<(Input, Tick)>,
     /// True if the velocity knob is at zero until `go`.
     is_stopped: bool,
@@ -81,15 +81,15 @@ pub struct Requests {
     pub refused: u64,
 }
 
-/// A request that the run itself must carry out.
+/// A request that the run itself must execute.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Later {
     Load(BlockNumber),
     /// Play a job instead of the rest of the present one.
     Play(String),
-    /// Withdraw a load that the session has requested and that has not been carried out.
+    /// Withdraw a load that the session has requested and that is still pending.
     Withdraw,
-    /// Carry the request out when the commands have the robot again.
+    /// Execute the request when the commands control the robot again.
     Await,
 }
 
@@ -101,18 +101,18 @@ pub struct Around<'a> {
     pub memory: &'a CommonMemory,
     /// Task data of the next tick, for reading lines of a job.
     pub store: &'a Store,
-    /// Errors in the records that a command uses do not count.
+    /// Ignore errors in the records that a command uses.
     pub unchecked: bool,
     pub data: &'a Path,
     pub gate: &'a mut Gate,
     pub neighbours: &'a mut Neighbours,
     pub workstation: &'a mut SimulatedWorkstation,
-    /// True while a block is being checked: what moves the robot must wait.
+    /// True while a block is being checked: requests for a motion must wait.
     pub loading: bool,
 }
 
 impl Operator {
-    /// No operator is connected, and the box is in its initial state.
+    /// The initial state: the box is unused, and no operator is connected.
     #[must_use]
     pub fn new(robot_elsewhere: bool) -> Self {
         Self {
@@ -149,25 +149,25 @@ impl Operator {
         (self.commander.as_deref(), &self.sessions, self.is_stopped)
     }
 
-    /// Called once per tick, after all requests: sets the box and the terminals for the next tick. `is_table_led` is
-    /// true while a key of its panel moves the rotary table.
+    /// Called once per tick, after all requests: sets the box and the terminals for the next tick.
+    /// `is_table_led` is true while a key of its panel moves the rotary table.
     pub fn end_tick(&mut self, is_table_led: bool) {
         self.shown = self.hand.read();
         self.terminals.end_tick();
         self.turns_table &= is_table_led;
     }
 
-    /// The part of the last request that the run must carry out.
+    /// The part of the last request that the run must execute.
     pub const fn take_later(&mut self) -> Option<Later> {
         self.later.take()
     }
 
-    /// Keep a request that is to be carried out when the commands have the robot again.
+    /// Store a request for execution when the commands control the robot again.
     pub fn keep(&mut self, input: Input, tick: Tick) {
         self.awaiting = Some((input, tick));
     }
 
-    /// The request that waits, to be tried again in this tick; as late if its sender has given up.
+    /// The waiting request, to be tried again in this tick. It is late if its sender no longer waits.
     pub fn awaited(&mut self) -> Option<(Input, Tick)> {
         self.awaiting.take().map(|(input, since)| (input.judged(), since))
     }
@@ -185,7 +185,7 @@ impl Operator {
         (self.counts != Requests::default()).then_some(self.counts)
     }
 
-    /// Carry out an event. Returns the text of the answer, or the reason of the refusal.
+    /// Execute an event. Returns the text of the answer, or the reason of the refusal.
     pub fn carry_out(&mut self, input: &Input, around: &mut Around<'_>) -> Result<String, String> {
         let who = input.source();
         match input.event() {
@@ -207,8 +207,8 @@ impl Operator {
         Ok(String::new())
     }
 
-    /// End what an operator commands by hand, because it leaves, is silent, or has disconnected. Nothing moves faster by
-    /// it; the knob of a robot at a port goes to 0. Returns what has ended, as text.
+    /// End the commands by hand of an operator who leaves, is silent, or has disconnected. This never
+    /// accelerates a motion; the knob of a robot at a port goes to 0. Returns the ended motions as text.
     fn end_hold(&mut self, who: &str, around: &mut Around<'_>) -> String {
         let ended = self.release(who);
         if ended.turns_table {
@@ -241,7 +241,7 @@ impl Operator {
         Ok(ended)
     }
 
-    /// End what an operator holds, withdraw its load, and take the command from it.
+    /// End an operator's commands by hand, withdraw its load, and take the command from it.
     fn leave(&mut self, who: &str, around: &mut Around<'_>) -> String {
         let ended = self.end_hold(who, around);
         if self.commander.as_deref() == Some(who) {
@@ -251,7 +251,7 @@ impl Operator {
         ended
     }
 
-    /// Tell the job whether an operator is connected: only then it waits for one.
+    /// Set whether an operator is connected in the job, which waits only for a connected one.
     fn attend(&self, around: &mut Around<'_>) {
         if let Ok(job) = around.neighbours.job_under_way() {
             job.attend(!self.sessions.is_empty());
@@ -388,7 +388,7 @@ impl Operator {
         format!("{job}; {commander} commands; knob {knob}; connected {number}: {names}{held}")
     }
 
-    /// What keeps the robot from moving although the job plays, as text; empty if nothing does.
+    /// The obstacles to the robot's motion although the job plays, as text; empty if there are none.
     fn what_holds_the_robot(&self, around: &Around<'_>) -> String {
         let knob = if self.is_stopped { 0 } else { self.shown.velocity };
         obstacles::of_the_robot(around.memory, knob, &self.shown, self.terminals.inputs())
@@ -409,7 +409,7 @@ fn job<'a>(around: &'a mut Around<'_>) -> Result<&'a mut Hwsc, String> {
 /// The couplers of the run.
 ///
 /// # Errors
-/// The run has none.
+/// A message if the run has no couplers.
 fn field<'a>(around: &'a mut Around<'_>) -> Result<&'a mut SimulatedField, String> {
     around.workstation.field.as_deref_mut().ok_or_else(|| "this run has no couplers: --field".to_owned())
 }
@@ -424,7 +424,7 @@ mod tests {
     use super::terminals::Entry;
 
     #[test]
-    fn one_commands_until_it_leaves() {
+    fn first_operator_commands_until_it_leaves() {
         let mut operator = Operator::new(false);
         assert_eq!(operator.take_command("a"), Ok(()));
         assert_eq!(operator.take_command("a"), Ok(()));
@@ -432,7 +432,7 @@ mod tests {
         assert!(refused.starts_with("a commands this run"), "{refused}");
     }
 
-    /// An operator who commands, with the knob at 400 and everything held that a session can hold.
+    /// An operator who commands, with the knob at 400 and everything that a session can hold.
     fn holding(robot_elsewhere: bool) -> Operator {
         let mut operator = Operator::new(robot_elsewhere);
         operator.take_command("a").unwrap();
@@ -453,7 +453,7 @@ mod tests {
     }
 
     #[test]
-    fn motion_by_hand_ends_with_its_session_and_speed_never_rises() {
+    fn session_end_stops_motion_by_hand() {
         for elsewhere in [false, true] {
             let mut operator = holding(elsewhere);
             assert_eq!(operator.release("b"), Ended::default(), "another session ends");
@@ -471,7 +471,7 @@ mod tests {
     }
 
     #[test]
-    fn a_session_without_motion_by_hand_leaves_the_knob_of_a_robot_at_a_port() {
+    fn session_without_motion_keeps_the_knob_at_a_port() {
         let mut operator = Operator::new(true);
         operator.take_command("a").unwrap();
         operator.hand.act(BoxAction::Velocity(400));
@@ -480,7 +480,7 @@ mod tests {
     }
 
     #[test]
-    fn a_stop_outlasts_the_end_of_a_session() {
+    fn stop_remains_after_its_session() {
         let mut operator = holding(false);
         operator.is_stopped = true;
         operator.release("a");

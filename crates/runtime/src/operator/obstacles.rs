@@ -1,4 +1,4 @@
-//! What keeps the robot from moving, as text for the status and for the answers to `job go` and `job skip`.
+//! The obstacles to the robot's motion, as text for the status and for the answers to `job go` and `job skip`.
 
 use interfaces::{
     CommonMemory, OperatorInputs, StatusReport, device::JoystickBox, hws::HwsReport, operator::BOARDS,
@@ -10,10 +10,10 @@ use plant::EStop;
 use super::Around;
 use closed_loop::workstation::SimulatedWorkstation;
 
-/// Start-up of the robot after an emergency, in requests.
+/// Requests that start up the robot after an emergency.
 const START_UP: &str = "`panel fault-reset`, then start the robot up at its panel (IV.3.3)";
 
-/// The emergency that keeps the robot without pressure, and what to do; `None` without an emergency.
+/// The emergency that removed the robot's pressure, and the remedy, if there is one.
 pub fn emergency(workstation: &SimulatedWorkstation) -> Option<String> {
     let pressed: Vec<EStop> =
         EStop::ALL.iter().copied().filter(|site| workstation.cell.t3().is_pressed(*site)).collect();
@@ -29,7 +29,7 @@ pub fn emergency(workstation: &SimulatedWorkstation) -> Option<String> {
 /// Refuse to continue a job under an emergency, unless a line of the job itself resets it.
 ///
 /// # Errors
-/// The emergency, and what to do.
+/// The emergency and its remedy.
 pub fn check_job(around: &mut Around<'_>) -> Result<(), String> {
     match emergency(around.workstation) {
         Some(why) if !around.neighbours.job_under_way()?.resets_emergency() => {
@@ -42,16 +42,16 @@ pub fn check_job(around: &mut Around<'_>) -> Result<(), String> {
 /// Why a command is refused soon after a motion by hand.
 pub const LED: &str = "the robot is still coming to rest after its motion by hand: ask again";
 
-/// True while a process reports that the joystick box has the robot. The box is read by Prim, and each report passes up a
-/// process per tick: a command that Task gets meanwhile fails.
+/// True while a process reports that the joystick box controls the robot. Prim reads the box, and each report
+/// rises one process per tick: a command that Task receives meanwhile fails.
 pub fn is_led(memory: &CommonMemory) -> bool {
     memory.prim.status.report == PrimReport::JoystickOn
         || [memory.emove.status.report, memory.subtask.status.report].contains(&StatusReport::JoystickOn)
         || memory.task.status.report == HwsReport::JoystickOn
 }
 
-/// What keeps the robot from moving although the job plays; empty if nothing does. `knob` is the operators' knob,
-/// `shown` their joystick box, `terminals` their entries.
+/// The obstacles to the robot's motion although the job plays; empty if there are none. `knob` is the
+/// operators' knob, `shown` their joystick box, `terminals` their entries.
 pub fn of_the_robot(
     memory: &CommonMemory,
     knob: u16,
@@ -86,7 +86,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn an_emergency_names_its_buttons_and_the_way_out() {
+    fn emergency_text_names_buttons_and_remedy() {
         let data = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../data"));
         let description = CellDescription::load(&data.join("cell.toml")).unwrap();
         let mut workstation = SimulatedWorkstation::new(Cell::new(&description, 1).unwrap());

@@ -18,11 +18,11 @@ use crate::loads;
 
 #[derive(Clone, Debug, PartialEq)]
 pub enum Request {
-    /// Ask for the status; changes nothing.
+    /// Read the status; changes nothing.
     Status,
-    /// Ask for the directory of the task data; changes nothing.
+    /// Read the directory of the task data; changes nothing.
     Data,
-    /// Ask for the state of the Active Pedestal; changes nothing.
+    /// Read the state of the Active Pedestal; changes nothing.
     Pedestal,
     Field,
     Release(String),
@@ -52,7 +52,7 @@ pub enum Request {
         /// Also in the middle of a command.
         now: bool,
     },
-    /// Give the command back to the workstation controller.
+    /// Return the command to the workstation controller.
     Workstation,
     /// Another action in the cell, and its text.
     Cell(Workstation, String),
@@ -86,7 +86,7 @@ const WORDS: &[(&str, Request)] = &[
     ("workstation", Request::Workstation),
 ];
 
-/// First words of the requests with arguments, beside the lines for the cell.
+/// First words of the requests with arguments, except the lines for the cell.
 const OTHER_WORDS: [&str; 12] = [
     "note",
     "io",
@@ -151,7 +151,8 @@ impl Request {
         }
     }
 
-    /// True if it can only stop something, or changes nothing: every operator may send it, also while another commands.
+    /// True if it can only stop a motion, or changes nothing. Every operator may send it, also while another
+    /// commands.
     pub const fn is_stop(&self) -> bool {
         match self {
             Self::Status
@@ -199,7 +200,6 @@ impl Request {
     }
 }
 
-/// The first words of requests.
 fn first() -> impl Iterator<Item = &'static str> {
     let known = WORDS.iter().filter_map(|(words, _)| words.split(' ').next());
     known.chain(OTHER_WORDS).chain(LineVerb::ALL.iter().map(|verb| verb.text()))

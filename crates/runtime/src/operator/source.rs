@@ -20,18 +20,18 @@ pub enum Inputs {
     Sessions(Listener),
     /// A log, read tick by tick, with the texts that were loaded during the run.
     Recorded(VecDeque<OperatorLine>, Texts),
-    /// The program that runs the tick ([`Run::ask`](crate::Run::ask)): requests for the next tick, and the verdict on
-    /// the last one.
+    /// The program that runs the tick ([`Run::ask`](crate::Run::ask)): requests for the next tick, and the
+    /// verdict on the last one.
     Program(VecDeque<(String, Event)>, Option<Result<String, String>>),
 }
 
 /// Blocks and jobs that were loaded during a run, from its log.
 #[derive(Default)]
 pub struct Texts {
-    /// Blocks, by the generation of the task data that each has made.
+    /// Blocks, by the generation of the task data that each created.
     blocks: Vec<(u32, Source)>,
     jobs: Vec<(u32, Source)>,
-    /// Loads of the workstation controller. It also requests them in a repetition; only their verdicts are taken from
+    /// Loads of the workstation controller. It also requests them in a repetition; only their verdicts are from
     /// the log.
     workstation: VecDeque<OperatorLine>,
     /// The last tick of the log.
@@ -45,7 +45,7 @@ pub const WORKSTATION: &str = "workstation controller";
 pub enum Input {
     Given(Given),
     Recorded(OperatorLine, Event),
-    /// From the program that runs the tick.
+    /// An input of the program that runs the tick.
     Program(String, Event),
 }
 
@@ -63,7 +63,7 @@ impl Input {
         matches!(self, Self::Given(_))
     }
 
-    /// The input as late, if it is from a session and nobody waits for its answer any more.
+    /// The input, marked as late if it is from a session that no longer waits for the answer.
     pub fn judged(self) -> Self {
         match self {
             Self::Given(given) => Self::Given(given.judged()),
@@ -78,7 +78,7 @@ impl Input {
         }
     }
 
-    /// The reason of a refusal in the log; `None` for an input of a session, and for an accepted one.
+    /// The reason of a refusal in the log, if the log refused the input.
     pub fn refusal(&self) -> Option<&str> {
         match self {
             Self::Given(_) | Self::Program(..) => None,
@@ -91,7 +91,7 @@ impl Input {
         self.event().line().is_some_and(|line| QUESTIONS.contains(&line))
     }
 
-    /// Its line in the log, with the first tick that sees it; `None` if it changes nothing.
+    /// Its line in the log, with the first tick in which it has an effect; `None` if it changes nothing.
     pub fn line(&self, tick: Tick, verdict: &Result<String, String>) -> Option<OperatorLine> {
         (!self.is_question()).then(|| OperatorLine {
             tick,
@@ -102,7 +102,7 @@ impl Input {
         })
     }
 
-    /// Answer it. In a repetition the verdict should be that of the log; a difference is returned.
+    /// Answer it. Returns a verdict in a repetition that differs from that of the log.
     pub fn answer(self, tick: Tick, verdict: &Result<String, String>) -> Option<String> {
         match self {
             Self::Given(given) => {
@@ -191,7 +191,7 @@ impl Inputs {
         }
     }
 
-    /// The block that a log has for a generation of the task data; `None` if the inputs are not from a log.
+    /// The block in a log for a generation of the task data; `None` if the inputs are not from a log.
     #[must_use]
     pub fn recorded_block(&self, generation: u32) -> Option<Option<Source>> {
         let Self::Recorded(_, texts) = self else { return None };
@@ -199,13 +199,13 @@ impl Inputs {
         Some(found.map(|(_, source)| source.clone()))
     }
 
-    /// The reason why the log has refused the next load of the workstation controller; `None` if it was accepted.
+    /// The reason why the log has refused the next load of the workstation controller, if it has.
     pub fn recorded_refusal(&mut self) -> Option<String> {
         let Self::Recorded(_, texts) = self else { return None };
         texts.workstation.pop_front()?.refused
     }
 
-    /// True if the inputs are from a log that has ended: nobody will ask for anything more.
+    /// True if the inputs are from a log that has ended, so that no further request follows.
     #[must_use]
     pub fn have_ended(&self, tick: Tick) -> bool {
         matches!(self, Self::Recorded(lines, texts) if lines.is_empty() && tick >= texts.end)
@@ -219,7 +219,7 @@ impl Inputs {
         Some(found.map(|(_, source)| source.clone()))
     }
 
-    /// Queue a request of the program that runs the tick. False if the inputs have another source.
+    /// Queue a request of the program that runs the tick. Returns false if the inputs have another source.
     pub fn ask(&mut self, source: &str, event: Event) -> bool {
         if matches!(self, Self::None) {
             *self = Self::Program(VecDeque::new(), None);
@@ -229,7 +229,7 @@ impl Inputs {
         true
     }
 
-    /// Keep the verdict on a request of the program that runs the tick.
+    /// Store the verdict on a request of the program that runs the tick.
     pub fn keep(&mut self, verdict: &Result<String, String>) {
         if let Self::Program(_, last) = self {
             *last = Some(verdict.clone());
@@ -241,7 +241,7 @@ impl Inputs {
         if let Self::Program(_, last) = self { last.take() } else { None }
     }
 
-    /// The next input that `tick` must see.
+    /// The next input for `tick`.
     pub fn next(&mut self, tick: Tick) -> Option<Input> {
         match self {
             Self::None => None,

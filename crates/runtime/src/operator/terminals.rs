@@ -1,5 +1,5 @@
-//! Entries at the terminals of the boards (IV.2.6, IV.3.2, IV.3.3): they stop and start boards, execute a level once,
-//! and initialize the link. The record is an input of the controller like the others of the tick.
+//! Entries at the terminals of the boards (IV.2.6, IV.3.2, IV.3.3): they stop and start boards, execute a level
+//! once, and initialize the link. The record is one of the controller's inputs in a tick.
 
 use std::{collections::VecDeque, mem};
 
@@ -23,17 +23,17 @@ pub enum Entry {
     Stop(u8),
     /// `GO`, on board 0 `SSGO`.
     Go(u8),
-    /// `PRIM-LEVEL` and the like: a number of passes of a process, one per tick.
+    /// `PRIM-LEVEL` and similar: a number of passes of a process, one per tick.
     Execute(ProcessId, u8),
     /// `.R` on board 2.
     RobotInit,
-    /// DB-DONE of block 903: true if it is in the block.
+    /// DB-DONE of block 903; true if the block contains it.
     DbDone(bool),
     /// `<= VALUE` for a variable.
     Write(Write),
     /// An order to the Active Pedestal.
     Pedestal(HandOrder),
-    /// What keeps the object from falling when the gripper opens.
+    /// Support that keeps the object from falling when the gripper opens.
     Confirm(Support),
 }
 
@@ -103,7 +103,7 @@ pub struct Terminals {
     writes: [Option<Write>; WRITES],
     /// Order to the pedestal in the next tick.
     order: Option<HandOrder>,
-    /// Statement about what the gripper holds in the next tick.
+    /// Statement about the object in the gripper, for the next tick.
     confirmed: Option<Support>,
 }
 
@@ -122,15 +122,15 @@ impl Terminals {
         self.shown.confirmed = self.confirmed.take();
     }
 
-    /// Drop the passes that are still to come. Returns true if there were any.
+    /// Discard the remaining passes. Returns true if there were any.
     pub fn drop_passes(&mut self) -> bool {
         let had_some = !self.passes.is_empty();
         self.passes.clear();
         had_some
     }
 
-    /// Carry out an entry. `memory` is common memory after the last tick, which has the number `tick`; `data` are the task
-    /// data of the next one.
+    /// Execute an entry. `memory` is common memory after the last tick, which has the number `tick`; `data` are
+    /// the task data of the next one.
     ///
     /// # Errors
     /// The reason of the refusal.
@@ -210,8 +210,8 @@ impl Terminals {
         Ok(answer)
     }
 
-    /// Initialize the link: E-move sends ROBOT-INIT to Prim during E-PAUSE. On a stopped board each process is executed
-    /// as often as needed.
+    /// Initialize the link: E-move sends ROBOT-INIT to Prim during E-PAUSE. On a stopped board each process is
+    /// executed as often as needed.
     fn initialize(&mut self, memory: &CommonMemory) -> Result<String, String> {
         let command = memory.subtask.emove.command;
         if !matches!(command, EmoveVerb::None | EmoveVerb::Pause) {
@@ -281,7 +281,7 @@ mod tests {
     }
 
     #[test]
-    fn a_pass_is_of_one_tick_and_of_a_board_that_is_stopped() {
+    fn pass_takes_one_tick_on_a_stopped_board() {
         let (mut terminals, memory) = (Terminals::default(), CommonMemory::default());
         let prim = Entry::Execute(ProcessId::Prim, 2);
         assert!(
@@ -308,7 +308,7 @@ mod tests {
     }
 
     #[test]
-    fn a_board_goes_when_there_is_the_pulse() {
+    fn board_starts_only_with_the_pulse() {
         let (mut terminals, memory) = (Terminals::default(), CommonMemory::default());
         let mut enter = |entry| terminals.enter(entry, Tick(1), &memory, &TaskData::default());
         assert_eq!(enter(Entry::Go(6)).unwrap(), "board 6 runs", "it did before");
@@ -319,7 +319,7 @@ mod tests {
     }
 
     #[test]
-    fn the_link_is_initialized_while_e_move_pauses() {
+    fn link_is_initialized_during_e_pause() {
         let (mut terminals, mut memory) = (Terminals::default(), CommonMemory::default());
         terminals.enter(Entry::RobotInit, Tick(1), &memory, &TaskData::default()).unwrap();
         assert_eq!(terminals.inputs().robot_init, 1);
@@ -344,7 +344,7 @@ mod tests {
     }
 
     #[test]
-    fn a_written_value_applies_in_one_tick_and_is_logged_with_the_old_one() {
+    fn written_value_applies_for_one_tick_and_is_logged() {
         let mut terminals = Terminals::default();
         let mut memory = standing(&[ProcessId::Emove]);
         let located = Located { object: Name16::clipped("LINKBAR1"), ..Located::default() };
@@ -382,7 +382,7 @@ mod tests {
     }
 
     #[test]
-    fn only_a_sensed_object_gets_a_name_of_the_task_data() {
+    fn name_is_accepted_only_for_a_sensed_object() {
         let (store, _) = Store::load(Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../data"))).unwrap();
         let mut memory = standing(&[ProcessId::Emove, ProcessId::Subtask]);
         let ask = |line: &str, memory: &CommonMemory| {

@@ -1,5 +1,5 @@
-//! `<=` (IV.2.6): a value for a variable of a process that is stopped. [`Variable`] lists the variables that can be
-//! written; each value is checked against the task data and the sensors before it goes to the controller.
+//! `<=` (IV.2.6): a value for a variable of a stopped process. [`Variable`] lists the writable variables. Each
+//! value is checked against the task data and the sensors before the controller receives it.
 
 use geometry::units::inches;
 use interfaces::{
@@ -47,7 +47,7 @@ pub fn read(words: &[&str]) -> Result<Write, String> {
 /// Check a value for the next tick. Returns the old and the new value, as text for operator and log.
 ///
 /// # Errors
-/// A message with the reason of the refusal, and what to do.
+/// A message with the reason of the refusal, and the remedy.
 pub fn check(write: &Write, memory: &CommonMemory, data: &TaskData<'_>) -> Result<String, String> {
     stands(write.variable.owner(), memory)?;
     if let Some(object) = &write.object {
@@ -95,7 +95,7 @@ fn is_in_data(write: &Write, object: &Name16, data: &TaskData<'_>) -> Result<(),
     Ok(())
 }
 
-/// Check that the sensors feel an object: only then it can have a name.
+/// Check that the sensors detect an object, which is required for a name.
 fn is_felt(variable: Variable, memory: &CommonMemory) -> Result<(), String> {
     let (hand, felt, process) = match variable {
         Variable::Regrip => {

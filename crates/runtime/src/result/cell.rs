@@ -48,7 +48,7 @@ pub struct ContactResult {
     pub depth_in: f64,
 }
 
-/// The last loss of hydraulic pressure in an emergency, and where the arm came to rest.
+/// The last loss of hydraulic pressure in an emergency, and the place where the arm came to rest.
 #[derive(Clone, Debug, Serialize)]
 pub struct EmergencyResult {
     /// Tick in which the pressure was lost.
@@ -87,7 +87,7 @@ impl From<&Emergency> for EmergencyResult {
 #[derive(Clone, Debug, Serialize)]
 pub struct ItemResult {
     pub item: String,
-    /// Its serial number; empty if the commands gave none.
+    /// Its serial number; empty if the commands contained none.
     pub serial: String,
     /// A location, or `H_ROBOT` while the robot holds it.
     pub position: String,
@@ -127,14 +127,14 @@ impl fmt::Display for EventResult {
     }
 }
 
-/// Number of events that a run remembers, so that a run of a year does not fill the memory; the log has all of them.
+/// Number of stored events, so that a run of a year does not exhaust the memory. The log has all of them.
 const REMEMBERED: usize = 1000;
 
 /// Events of a run in the cell and with the neighbours.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct Events {
     pub count: usize,
-    /// The first thousand of them.
+    /// The first thousand events.
     pub first: Vec<EventResult>,
 }
 

@@ -9,7 +9,7 @@ use serde::Serialize;
 #[derive(Clone, Debug, Serialize)]
 pub struct FieldResult {
     pub devices: Vec<FieldDevice>,
-    /// The groups of devices that were simulated: all of them, since the couplers are emulated.
+    /// The simulated groups of devices: all of them, since the couplers are emulated.
     pub simulated: Vec<&'static str>,
 }
 
@@ -18,7 +18,7 @@ pub struct FieldDevice {
     pub name: String,
     pub exchanges: u32,
     pub failures: u32,
-    /// Times that its outputs were made safe until a release.
+    /// Number of times that its outputs were made safe until a release.
     pub trips: u32,
 }
 

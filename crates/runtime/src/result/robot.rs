@@ -94,7 +94,7 @@ pub struct EgmResult {
     pub sent: u64,
     /// Points that were added to a path.
     pub points: u64,
-    /// Motions that were stopped because no point, or no message, came in time.
+    /// Motions that were stopped because no point, or no message, arrived in time.
     pub interrupted: u64,
     pub beyond: u64,
     /// Root mean square of the distance from the robot to its target, mm.

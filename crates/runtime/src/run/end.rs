@@ -1,4 +1,4 @@
-//! The end of a run: the robot ramps to rest before.
+//! The end of a run, before which the robot ramps to rest.
 
 use closed_loop::{account::Kind, failure::Failure, rest::AT_LAST};
 use interfaces::CommonMemory;
@@ -7,11 +7,11 @@ use rcs_core::{digest::Digest, tick::Tick};
 use super::Run;
 use crate::{event::Event, verdict::Ending};
 
-/// The robot is brought to rest: the velocity knob is at zero, and no more commands are sent.
+/// A ramp to rest: the velocity knob is at zero, and no more commands are sent.
 pub(super) struct Ramp {
     pub(super) ending: Ending,
     pub(super) ticks: u32,
-    /// Digest of the ticks before.
+    /// Digest of the ticks before the ramp.
     pub(super) before: Digest,
 }
 
@@ -23,13 +23,13 @@ impl Run {
         }
         self.observer.message(&format!("tick {tick}: {}", Event::UserStops));
         self.log_event(tick.next(), &Event::UserStops);
-        // If another process commands, there is no job that ends by itself.
+        // If another process commands, no job ends by itself.
         let is_commanded = self.neighbours.are_commanding();
         self.end_at_rest(if is_commanded { Ending::Stopped } else { Ending::StoppedByUser });
     }
 
-    /// End a run whose inputs are from a log that has ended, if the job waits for an operator: in the fast clock it
-    /// would wait forever.
+    /// End a run whose inputs are from a log that has ended, if the job waits for an operator. In the fast
+    /// clock it would wait forever.
     pub(super) fn end_if_nobody_asks(&mut self, tick: Tick) {
         let have_ended = self.ramp.is_none() && self.asked.have_ended(tick);
         if have_ended && self.neighbours.job_under_way().is_ok_and(|job| job.waits_idle()) {
@@ -51,7 +51,7 @@ impl Run {
         }
     }
 
-    /// After a tick: the ending, if the robot is at rest for it.
+    /// After a tick: the ending, once the robot is at rest for it.
     pub(super) fn at_rest(&mut self, memory: &CommonMemory) -> Option<Ending> {
         self.rest.observe(memory);
         let ramp = self.ramp.as_mut()?;

@@ -1,4 +1,4 @@
-//! Carries out requests of operators, between two ticks.
+//! Executes requests of operators between two ticks.
 
 use std::path::{Component, Path};
 
@@ -20,17 +20,17 @@ use crate::{
     operator::{A_TICK, Around, Input, Later, WORKSTATION},
 };
 
-/// Longest time in which a command waits for a robot that comes to rest after a motion by hand. It is less than the
-/// second in which a sender waits for its answer.
+/// Longest time for which a command waits for a robot that is coming to rest after a motion by hand. It is less
+/// than the second for which a sender waits for its answer.
 const REST_TICKS: u64 = 20;
 
 impl Run {
-    /// Carry out an event of an operator in this program, for a run to which nobody else connects: in the fast clock, or
-    /// without operators. Runs the tick after which it is carried out; the tick after that is the first to see it. A
+    /// Execute an operator's event in this program, for a run without other operators: in the fast clock, or
+    /// with none configured. Runs one tick and then executes the event, which takes effect in the next tick. A
     /// session begins with [`Event::Connected`].
     ///
     /// # Errors
-    /// The reason of the refusal, or that the run has ended or takes its operators from elsewhere.
+    /// The reason of the refusal, or that the run has ended or has another source of operators' inputs.
     pub fn ask(&mut self, who: &str, event: Event) -> Result<String, String> {
         if !self.asked.ask(who, event) {
             return Err("the operators of this run are elsewhere".to_owned());
@@ -41,7 +41,7 @@ impl Run {
             .unwrap_or_else(|| Err("the run has ended, or a block is being checked".to_owned()))
     }
 
-    /// Carry out the requests since the last tick. The next tick is the first to see them.
+    /// Execute the requests since the last tick. They take effect in the next tick.
     pub(super) fn operate(&mut self, tick: Tick) {
         let first = tick.next();
         if let Some(answer) = self.follow_load(tick) {
@@ -71,7 +71,7 @@ impl Run {
             let verdict = self.operator.carry_out(&input, &mut around);
             let verdict = match (self.operator.take_later(), input.refusal()) {
                 (None, _) => verdict,
-                // In a repetition it has the tick in which it was carried out.
+                // In a repetition it has the tick of its execution.
                 (Some(Later::Await), None) if input.is_of_a_session() && tick.since(since) < REST_TICKS => {
                     self.operator.keep(input, since);
                     continue;
@@ -96,7 +96,7 @@ impl Run {
         self.operator.end_tick(self.closed.workstation.cell.is_table_led_by_hand());
     }
 
-    /// Carry out the load that the workstation controller has requested. The next tick is the first to see it.
+    /// Execute the load that the workstation controller has requested. It takes effect in the next tick.
     pub(super) fn load_for_workstation(&mut self, tick: Tick) {
         let Some((block, line)) = self.neighbours.load_asked() else { return };
         let asker = Asker::Workstation(line);
@@ -170,8 +170,8 @@ impl Run {
         Ok(format!("the job {name} plays, lines: {lines}"))
     }
 
-    /// Check that a job can be started during a run: it must load no blocks, not hand over, and need nothing that the
-    /// cell does not have.
+    /// Check that a job can be started during a run: it must load no blocks, not transfer the command, and need
+    /// only what the cell has.
     fn can_be_played(&self, job: &Job) -> Result<(), String> {
         if job.steps.is_empty() {
             return Err(format!("the job {} has no line", job.name));

@@ -25,7 +25,7 @@ pub struct RunOutcome {
     /// File and size of the log, or the reason why it ended, as text.
     pub log: String,
     pub slowest: String,
-    /// What a person must do before a failed job can continue.
+    /// The operator's action before a failed job can continue.
     pub remedy: Option<&'static str>,
 }
 
@@ -38,7 +38,7 @@ impl RunOutcome {
 }
 
 impl Run {
-    /// End the run and its log. A run that has not ended counts as stopped.
+    /// End the run and its log. A run that has not ended is reported as stopped.
     #[must_use]
     pub fn finish(mut self) -> RunOutcome {
         let wall_s = self.started.map_or(0.0, |started| started.elapsed().as_secs_f64());
@@ -121,7 +121,7 @@ impl Run {
         }
     }
 
-    /// Items in the data base at the end.
+    /// Items in the database at the end.
     fn items(&mut self) -> Vec<ItemResult> {
         let items = match (self.closed.books_mut(), self.neighbours.data_system()) {
             (Some(books), _) => books.items(),

@@ -30,7 +30,8 @@ use crate::{
     views::{self, Viewed},
 };
 
-/// Ticks to wait for the first answer of a robot controller at a port, which may be powered up after the run has begun.
+/// Ticks to wait for the first answer of a robot controller at a port, which may be powered up after the run
+/// has begun.
 fn first_patience(config: &RunConfig) -> Option<u16> {
     if config.robot.kind == RobotKind::Sim {
         return None;
@@ -40,7 +41,7 @@ fn first_patience(config: &RunConfig) -> Option<u16> {
     Some(u16::try_from(wait).unwrap_or(u16::MAX).max(patience))
 }
 
-/// Announce a run that has a name, before it touches a file of its own.
+/// Announce a run that has a name, before it uses a file of its own.
 ///
 /// # Errors
 /// [`StartError::NameInUse`].
@@ -49,7 +50,7 @@ fn announced(config: &RunConfig) -> Result<Option<Announced>, StartError> {
     match Announced::named(name) {
         Ok(announced) => Ok(Some(announced)),
         Err(error @ SharedMemoryError::NameInUse { .. }) => Err(StartError::NameInUse(error)),
-        // Without shared memory the run has its name for itself; the publisher reports the error.
+        // Without shared memory, names cannot conflict; the publisher reports the error.
         Err(_) => Ok(None),
     }
 }
@@ -74,7 +75,7 @@ fn publisher(config: &RunConfig, name: &RunName, observer: &mut dyn Observer) ->
     publisher.ok()
 }
 
-/// Open the mirror of the status, which is optional, too.
+/// Open the mirror of the status, which is optional too.
 fn mirror(publisher: &Publisher, observer: &mut dyn Observer) -> Option<Mirror> {
     let mirror = Mirror::start(publisher);
     mirror.inspect_err(|error| observer.message(&format!("the status is not mirrored: {error}"))).ok()
@@ -84,7 +85,7 @@ impl Run {
     /// Read, check and start everything that the run needs, and wait for boards, neighbours and robot controller.
     ///
     /// # Errors
-    /// [`StartError`] if the run cannot begin, with all errors of the data. Nothing has moved then.
+    /// [`StartError`] if the run cannot begin, with all errors of the data. The robot has not moved.
     pub fn new(config: RunConfig, observer: Box<dyn Observer>) -> Result<Self, StartError> {
         Self::start(config, None, observer)
     }
@@ -92,7 +93,7 @@ impl Run {
     /// Like [`Run::new`], with a robot of the caller instead of the configured one.
     ///
     /// # Errors
-    /// As [`Run::new`].
+    /// The errors of [`Run::new`].
     pub fn with_robot(
         mut config: RunConfig,
         robot: Box<dyn OwnRobot>,

@@ -38,7 +38,7 @@ impl Run {
         self.show_state();
     }
 
-    /// Log the states of the run that have changed; the next tick is the first with them.
+    /// Log the changed states of the run, which are valid from the next tick on.
     pub(super) fn show_state(&mut self) {
         let Some(log) = &mut self.log else { return };
         let tick = self.closed.tick();
@@ -67,7 +67,7 @@ impl Run {
         self.runner.show_cell(|| self.view.look(tick, cell, warning, job, &self.pace));
     }
 
-    /// A command that finishes shows that the cause of an earlier stop is gone.
+    /// The end of a command shows that the cause of an earlier stop is gone.
     pub(super) fn note_work(&mut self, tick: Tick, memory: &CommonMemory) {
         let before = std::mem::replace(&mut self.task, memory.task.status);
         if account::has_worked(&before, &memory.task.status) {
@@ -99,7 +99,7 @@ impl Run {
         self.events.push(tick, &event);
     }
 
-    /// Collect what has happened in the cell in a tick, for log, result and verdict.
+    /// Collect the events of the cell in a tick, for log, result and verdict.
     pub(super) fn observe(&mut self, tick: Tick, settled: Settled) {
         let Settled { events, contacts, untrue, field } = settled;
         let shown = |event: &CellEvent| matches!(event, CellEvent::Warning(_)).then(|| event.to_string());
@@ -122,7 +122,8 @@ impl Run {
             self.fresh.push(event);
         }
         for event in &self.fresh {
-            // Contacts and false reports have their own judges, and a warning counts only if it explains a failure.
+            // Contacts and false reports have their own judges, and a warning matters only if it explains a
+            // failure.
             if let Some(Kind::EmergencyStop | Kind::Power | Kind::Lost | Kind::Device) =
                 Kind::of_code(event.code())
             {

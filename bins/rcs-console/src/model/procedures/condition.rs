@@ -19,9 +19,9 @@ pub const HOME: WireFrame =
     WireFrame { tool: [0, -7145, -1483], wrist_to_tool: [0, -2123, -2119], tool_to_finger: [3000, 0, 0] };
 /// Tolerance of HOME's values, and of two frames that must agree (IV.3.3 steps 11 and 13).
 pub const TOLERANCE: i32 = 4;
-/// A robot that has moved at most this far stands still, 0.01 in.
+/// A robot that has moved at most this far is at rest, 0.01 in.
 const STANDS: i32 = 4;
-/// Ticks for which the robot must stand still: 2 s.
+/// Ticks for which the robot must be at rest: 2 s.
 const STANDS_FOR: u64 = 50;
 /// A robot that has moved this far has moved, 0.01 in.
 const MOVED: i32 = 10;
@@ -42,7 +42,6 @@ pub const STAGES: [&str; 11] = [
 ];
 
 pub struct Sight<'a> {
-    /// The picture of the tick.
     pub picture: &'a Picture,
     pub cell: &'a Cell,
     /// The session with the run; `None` on a console without `--operate`.
@@ -61,7 +60,7 @@ pub struct Begun {
     pub asked: Option<u32>,
 }
 
-/// A condition, which is true, false, or unknown to the console.
+/// A condition that is true, false, or unknown to the console.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Condition {
     /// The robot controller has reached this stage of its start-up, or a later one.
@@ -78,7 +77,7 @@ pub enum Condition {
     AtHome,
     /// The frame that Prim receives and the frame that it outputs agree to within [`TOLERANCE`].
     FramesAgree,
-    /// The robot has stood still since the step began, for two seconds at least.
+    /// The robot has been at rest since the step began, for at least two seconds.
     Stands,
     /// The robot has moved since the step began.
     Moved,
@@ -94,7 +93,7 @@ pub enum Condition {
     HandCalibrated,
     /// The rotary table is calibrated and at this angle, 0.1 degree.
     TableAt(i32),
-    /// The Data System has this state of connection.
+    /// The Data System has this connection state.
     DataSystem(Connection),
     /// The pedestal is a separate system, and answers.
     PedestalAnswers,
@@ -109,7 +108,7 @@ pub enum Condition {
 }
 
 impl Sight<'_> {
-    /// The value of a condition; `None` if the console cannot know it.
+    /// The value of a condition; `None` if the console cannot determine it.
     #[must_use]
     pub fn holds(&self, condition: Condition) -> Option<bool> {
         let (memory, external) = (&self.picture.memory, &self.picture.external);
@@ -157,7 +156,6 @@ impl Sight<'_> {
         }
     }
 
-    /// The robot controller of the simulated cell.
     pub(super) fn shown(&self) -> Option<&executive::memory::cell::ControllerView> {
         match self.cell {
             Cell::Shown(view) => Some(&view.controller),
@@ -179,8 +177,8 @@ impl Sight<'_> {
         status.resolver_frame.unwrap_or(status.frame_feedback)
     }
 
-    /// The present frame that Prim reads, and the frame that Prim writes (IV.3.3 step 13). After ROBOT-INIT, before its
-    /// first point, Prim has not written one: its present pose is used.
+    /// The frames that Prim reads and writes (IV.3.3 step 13). After ROBOT-INIT, before its first point, Prim
+    /// has not written one, so its present pose is used.
     pub(super) fn prim_frames(&self) -> (WireFrame, WireFrame) {
         let memory = &self.picture.memory;
         let present = memory.prim.status.present_pose.and_then(|number| memory.changing_pose(number));
@@ -199,7 +197,7 @@ impl Sight<'_> {
         self.picture.memory.t3i.status.resolver_frame.map(|frame| frame.tool)
     }
 
-    /// Distance of the tool point from its position when the step began, 0.01 in: the largest of X, Y, Z.
+    /// Largest distance in X, Y or Z of the tool point from its position when the step began, 0.01 in.
     pub(super) fn way(&self) -> Option<i32> {
         let (now, was) = (self.tool()?, self.begun.tool?);
         now.iter().zip(was).map(|(now, was)| (now - was).abs()).max()
@@ -210,7 +208,7 @@ impl Sight<'_> {
     }
 }
 
-/// Index of a stage in the start-up; `None` for an unknown one, which is before all others.
+/// Index of a stage in the start-up; `None` for an unknown one, which precedes all others.
 fn place(stage: &str) -> Option<usize> {
     STAGES.iter().position(|known| *known == stage)
 }
@@ -250,7 +248,7 @@ mod tests {
     }
 
     #[test]
-    fn home_and_the_stages_are_those_of_the_cell() {
+    fn home_and_stages_equal_those_of_the_cell() {
         assert_eq!((HOME, TOLERANCE), (plant::t3::HOME, plant::t3::HOME_TOLERANCE));
         use plant::t3::Stage;
         let stages = [
@@ -270,7 +268,7 @@ mod tests {
     }
 
     #[test]
-    fn a_stage_is_reached_by_it_and_by_all_behind_it() {
+    fn later_stages_also_reach_a_stage() {
         let reached = |stage, wanted| {
             holds(&picture(), &cell(stage), Begun::default(), Condition::Reached(wanted)).unwrap()
         };
@@ -281,7 +279,7 @@ mod tests {
     }
 
     #[test]
-    fn a_robot_stands_or_has_moved_since_the_step_began() {
+    fn rest_and_motion_are_relative_to_the_step_start() {
         let (mut picture, cell) = (picture(), cell("DEPC"));
         let begun = Begun { tick: Tick(40), tool: Some([0, 0, 0]), asked: None };
         let both = |picture: &Picture| {
@@ -298,7 +296,7 @@ mod tests {
     }
 
     #[test]
-    fn home_is_home_to_within_four() {
+    fn home_tolerance_is_four() {
         let (mut picture, cell) = (picture(), cell("DEPC"));
         let mut at_home = |frame| {
             picture.memory.t3i.status.resolver_frame = Some(frame);

@@ -1,5 +1,5 @@
-//! Steps at the robot controller that several procedures share (III.6, IV.3.1, IV.3.3, IV.3.4): text, requests and
-//! warning. Each procedure gives them its own numbers.
+//! Steps at the robot controller that several procedures share (III.6, IV.3.1, IV.3.3, IV.3.4): text, requests
+//! and warning. Each procedure numbers them itself.
 
 use super::{Ask::Line, Ask::ReleaseEStops, Condition, Show, Step, event, state};
 
@@ -59,14 +59,12 @@ pub const INTERRUPT: Step = Step {
     ..event("", "INTERRUPT is pressed", &[Condition::Taken])
 };
 
-/// `CANCEL`, the first time.
 pub const CANCEL: Step = Step {
     ask: &[Line("panel cancel")],
     show: Show::Screen,
     ..event("", "CANCEL is pressed", &[Condition::Taken])
 };
 
-/// `CANCEL`, the second time.
 pub const CANCEL_AGAIN: Step = Step {
     ask: &[Line("panel cancel")],
     show: Show::Screen,

@@ -9,7 +9,6 @@ use crate::rcs_console::{
 const PAGE: usize = 8;
 
 impl Model {
-    /// Carry out a key of the procedures. Returns false for other keys.
     pub(in crate::rcs_console::model) fn work_a_procedure(&mut self, key: Key, source: &dyn Source) -> bool {
         if !self.procedures.is_open {
             return self.choose_a_procedure(key);
@@ -80,7 +79,7 @@ impl Model {
         }
     }
 
-    /// Send the requests of the step under the cursor; a warning comes first.
+    /// Send the requests of the step at the cursor, after its warning.
     fn do_a_step(&mut self, source: &dyn Source) {
         let Some(picture) = &self.picture else { return };
         let cell = source.cell(picture.tick.0);

@@ -1,9 +1,9 @@
 //! Procedures (IV): checklists that detect when a step is done.
 //!
-//! A procedure is a table of steps. A step has its number in the manual, a text, a [`Watch`] with the conditions under
-//! which it is done, and requests to the run that carry it out. The console keeps watching a state: a step whose state
-//! is lost loses its mark, until the step that ends the state is done. The operator confirms what the console cannot
-//! observe, because the robot is at a port or no device shows it.
+//! A procedure is a table of steps. A step has its number in the manual, a text, a [`Watch`] with the
+//! conditions that complete it, and requests to the run that execute it. The console keeps checking: a step
+//! whose state is lost loses its mark, until the step that ends the state is done. The operator confirms states
+//! that the console cannot observe, because the robot is at a port or no device shows them.
 
 mod condition;
 mod controller;
@@ -35,20 +35,20 @@ pub struct Procedure {
 #[derive(Clone, Copy, Debug)]
 pub struct Step {
     pub id: &'static str,
-    /// What must be done, or must be the case.
+    /// The required action or state.
     pub text: &'static str,
     /// Additional information; empty for none.
     pub how: &'static str,
     /// How the console detects that the step is done.
     pub watch: Watch,
-    /// Number of the step that ends the state of this one: from its requests or its completion on, the mark of this
-    /// step stays.
+    /// Number of the step that ends this state. Once that step has sent its requests or is done, this step
+    /// keeps its mark.
     pub until: &'static str,
     /// Requests that Enter sends, in order.
     pub ask: &'static [Ask],
     /// Warning before Enter sends; empty if no harm is possible.
     pub warning: &'static str,
-    /// State of the cell shown with the step.
+    /// State of the cell that is shown with the step.
     pub show: Show,
 }
 
@@ -60,7 +60,7 @@ pub enum Watch {
     /// All conditions have held once since the step began.
     Event(&'static [Condition]),
     Said,
-    /// The operator confirms it at a real robot; a simulated cell has no such device.
+    /// The operator confirms it at a real robot. A simulated cell has no such device.
     Real,
 }
 
@@ -89,22 +89,18 @@ pub const ALL: [&Procedure; 14] = [
     &neighbours::PEDESTAL_SHUT_DOWN,
 ];
 
-/// A step without requests.
 const fn step(id: &'static str, text: &'static str, watch: Watch) -> Step {
     Step { id, text, how: "", watch, until: "", ask: &[], warning: "", show: Show::Nothing }
 }
 
-/// A step that leads to a state.
 const fn state(id: &'static str, text: &'static str, conditions: &'static [Condition]) -> Step {
     step(id, text, Watch::State(conditions))
 }
 
-/// A step that ends with an event.
 const fn event(id: &'static str, text: &'static str, conditions: &'static [Condition]) -> Step {
     step(id, text, Watch::Event(conditions))
 }
 
-/// A step that the operator confirms.
 const fn said(id: &'static str, text: &'static str) -> Step {
     step(id, text, Watch::Said)
 }
@@ -119,7 +115,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_step_fits_and_names_steps_that_are_there() {
+    fn every_step_fits_and_names_existing_steps() {
         for procedure in ALL {
             let at = |id: &str| procedure.steps.iter().position(|step| step.id == id);
             for (index, step) in procedure.steps.iter().enumerate() {

@@ -1,4 +1,4 @@
-//! Progress of each procedure: the marks of its steps, and the keys that change them.
+//! Progress of the procedures: the marks of their steps, and the keys that change the marks.
 
 use interfaces::station::EStop;
 use rcs_core::tick::Tick;
@@ -11,18 +11,18 @@ use crate::rcs_console::source::Cell;
 
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub enum Mark {
-    /// Not done, as far as known.
+    /// Not done, as far as the console can detect.
     #[default]
     Open,
-    /// The console detects that it is done.
+    /// Done, as the console detects.
     Seen,
-    /// It was done; from this tick on the console no longer checks it.
+    /// Done in this tick; the console no longer checks it.
     Done(Tick),
-    /// The operator confirmed it in this tick.
+    /// Confirmed by the operator in this tick.
     Said(Tick),
-    /// The operator skipped it, for a reason.
+    /// Skipped by the operator in this tick, with a reason.
     Skipped(Tick, String),
-    /// A simulated cell has no such device.
+    /// Without a device in the simulated cell.
     NotThere,
 }
 
@@ -55,7 +55,7 @@ pub struct Track {
     pub begun: Begun,
     /// Index of the step to which `begun` belongs.
     current: Option<usize>,
-    /// True if the warning has been shown: the next Enter sends the requests of the step under the cursor.
+    /// True if the warning has been shown; the next Enter sends the requests of the step at the cursor.
     pub is_warned: bool,
 }
 
@@ -77,7 +77,6 @@ impl Track {
         }
     }
 
-    /// The first step without a mark.
     #[must_use]
     pub fn next(&self) -> Option<usize> {
         self.marks.iter().position(|mark| !mark.is_set())
@@ -88,13 +87,12 @@ impl Track {
         self.procedure.steps.get(self.cursor)
     }
 
-    /// Move the cursor to another step.
     pub fn move_to(&mut self, cursor: usize) {
         self.cursor = cursor.min(self.procedure.steps.len().saturating_sub(1));
         self.is_warned = false;
     }
 
-    /// Mark the step under the cursor, and move the cursor to the next open one.
+    /// Mark the step at the cursor, and move the cursor to the next open one.
     pub fn mark(&mut self, mark: Mark) {
         if let Some(marked) = self.marks.get_mut(self.cursor) {
             *marked = mark;
@@ -102,7 +100,7 @@ impl Track {
         self.go_on();
     }
 
-    /// Remove the operator's mark from the step under the cursor.
+    /// Remove the operator's mark from the step at the cursor.
     pub fn take_back(&mut self) {
         if let Some(marked) = self.marks.get_mut(self.cursor) {
             *marked = Mark::Open;
@@ -115,7 +113,7 @@ impl Track {
         }
     }
 
-    /// The requests of the step under the cursor; `last` is the number of the last request before them.
+    /// The requests of the step at the cursor; `last` is the number of the last request before them.
     pub fn ask(&mut self, sight: &Sight<'_>, last: u32) -> Vec<String> {
         let Some(step) = self.step() else { return Vec::new() };
         self.begin(self.cursor, sight);
@@ -129,7 +127,7 @@ impl Track {
         self.begun = Begun { tick: sight.picture.tick, tool: sight.tool(), asked: None };
     }
 
-    /// Update the marks from a picture: steps whose conditions hold get a mark, others lose it.
+    /// Update the marks from a picture: steps get a mark if their conditions hold, and lose it otherwise.
     fn look(&mut self, sight: &Sight<'_>) {
         let was = self.next();
         if was.is_some() && self.current != was && self.begun.asked.is_none() {
@@ -149,7 +147,7 @@ impl Track {
         if self.current.is_some_and(|at| self.marks.get(at).is_some_and(Mark::is_set)) {
             self.begun.asked = None;
         }
-        // The cursor moves on if it is on the step that has just been done.
+        // Move the cursor on from a step that has just been done.
         if was == Some(self.cursor) && self.next() != was {
             self.go_on();
         }
@@ -174,7 +172,7 @@ fn looked(step: &Step, mark: Mark, sight: &Sight<'_>, is_current: bool, is_ended
     }
 }
 
-/// True if all conditions hold; `None` if one of them is unknown and no other one fails.
+/// True if all conditions hold; `None` if some are unknown and no other one fails.
 fn all(conditions: &[super::Condition], sight: &Sight<'_>) -> Option<bool> {
     let seen: Vec<_> = conditions.iter().map(|condition| sight.holds(*condition)).collect();
     match (seen.contains(&Some(false)), seen.contains(&None)) {
@@ -185,7 +183,7 @@ fn all(conditions: &[super::Condition], sight: &Sight<'_>) -> Option<bool> {
 }
 
 impl Step {
-    /// True if the console cannot detect the step here: the operator must confirm it.
+    /// True if the console cannot detect the step here, so that the operator must confirm it.
     #[must_use]
     pub fn needs_a_word(&self, sight: &Sight<'_>) -> bool {
         match self.watch {
@@ -211,9 +209,8 @@ fn lines(ask: Ask, cell: &Cell) -> Vec<String> {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Progress {
     pub tracks: Vec<Track>,
-    /// The procedure under the cursor of the list.
     pub cursor: usize,
-    /// True if the procedure under the cursor is open.
+    /// True if the procedure at the cursor is open.
     pub is_open: bool,
 }
 
@@ -229,7 +226,7 @@ impl Progress {
         self.tracks.get_mut(self.cursor).filter(|_| is_open)
     }
 
-    /// Update the marks from a picture of the run. Events count only in the open procedure.
+    /// Update the marks from a picture of the run. Only the open procedure detects events.
     pub fn look(&mut self, sight: &Sight<'_>) {
         if let Some(track) = self.open() {
             track.look(sight);

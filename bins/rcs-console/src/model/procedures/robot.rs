@@ -4,9 +4,9 @@ use interfaces::{ProcessId, data_base::Connection};
 
 use super::{Ask::Line, Condition, Procedure, Show, Step, Watch, controller, event, real, said, state, step};
 
-/// The processes that take commands from each other.
+/// The processes that command each other.
 const LEVELS: &[ProcessId] = &[ProcessId::Task, ProcessId::Subtask, ProcessId::Emove, ProcessId::Prim];
-/// Those that have PAUSE whether the link to the robot runs or not.
+/// The processes that have PAUSE also without a link to the robot.
 const PAUSING: &[ProcessId] = &[ProcessId::Task, ProcessId::Subtask, ProcessId::Emove];
 /// The processes of board 2.
 const BOARD_2: &[ProcessId] = &[ProcessId::Emove, ProcessId::Prim];
@@ -22,7 +22,7 @@ const BELOW: &[ProcessId] = &[
     ProcessId::VGrip,
     ProcessId::ToolGrip,
 ];
-/// The command that leads to HOME (block 863, line 3).
+/// The command that moves to HOME (block 863, line 3).
 pub const HOME: &str = "MOVE -- 0 -- 0 0 HOME 0 -- 0";
 
 /// IV.1.

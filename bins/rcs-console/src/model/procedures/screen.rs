@@ -52,7 +52,7 @@ fn steps(track: &Track, sight: &Sight<'_>) -> Section {
     Section { title, lines, at }
 }
 
-/// Details of the step under the cursor.
+/// Details of the step at the cursor.
 fn details(step: &Step, mark: &Mark, sight: &Sight<'_>) -> Vec<Text> {
     let mut lines: Vec<Text> = step.show.lines(sight);
     let mut say = |tone, text: String| lines.push(Text::new(tone, text));

@@ -1,5 +1,3 @@
-//! The state of the cell that is shown with a step.
-
 use interfaces::{
     device::KNOB_FULL,
     station::{BoxFrame, Stepped},
@@ -14,9 +12,9 @@ pub enum Show {
     Nothing,
     /// The screen of the robot controller.
     Screen,
-    /// Its line with the aligned axes.
+    /// Its line of aligned axes.
     Aligned,
-    /// `frame-feedback` beside HOME.
+    /// `frame-feedback` next to HOME.
     Frame,
     /// `tp-xyz`, `wr->tp` and `tp->fp`, input and output.
     Frames,

@@ -23,7 +23,8 @@ pub struct Names {
 }
 
 impl Names {
-    /// The names in these texts, and the jobs in their directory. If the data have errors only the blocks are known.
+    /// The names in these texts, and the jobs in their directory. If the data have errors, only the blocks are
+    /// known.
     #[must_use]
     pub fn of(sources: &[Source], directory: &Path) -> Self {
         let numbers = sources.iter().flat_map(|source| blocks(0, source).0).map(|block| block.number);
@@ -112,7 +113,7 @@ fn candidates(words: &[&str], names: &Names, terminal: &[&str]) -> Vec<String> {
     };
     match *words {
         [] => {
-            // The words of lines that only a job can have have other meanings as requests, or none.
+            // Words that are valid only in a job have another meaning as requests, or none.
             let station =
                 LineVerb::ALL.iter().filter(|verb| !matches!(verb, LineVerb::Wait | LineVerb::After));
             let first = REQUESTS.iter().chain(TASK_COMMANDS).chain(terminal).copied();
@@ -164,7 +165,7 @@ fn field(fields: &[&str], names: &Names) -> Vec<String> {
     }
 }
 
-/// The values of a variable that can be written.
+/// The values that can be written to a variable.
 fn values(names: &Names) -> Vec<String> {
     std::iter::once("NONE".to_owned()).chain(names.objects.iter().cloned()).collect()
 }
@@ -207,7 +208,7 @@ mod tests {
     }
 
     #[test]
-    fn words_and_names_are_completed_where_they_can_stand() {
+    fn completion_offers_words_and_names_by_position() {
         let names = names();
         let completed = |line: &str| complete(line, &names, &["LIST", "TAI"]).0;
         for (line, full) in [
@@ -242,7 +243,7 @@ mod tests {
     }
 
     #[test]
-    fn of_data_with_errors_the_blocks_are_known() {
+    fn data_with_errors_have_known_blocks() {
         let wrong = Source { name: "x.blk".into(), text: "BLOCK# 7 OFFSET 21000\nnonsense\n".into() };
         let names = Names::of(&[wrong], Path::new("nowhere"));
         assert_eq!(names.blocks, [BlockNumber { offset: 21_000, number: 7 }]);

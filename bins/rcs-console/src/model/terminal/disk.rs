@@ -7,7 +7,7 @@ use taskdata::load::{BlockNumber, commands};
 use super::{library::AREAS, said, teach::Lesson, words::Interpreter};
 
 impl Interpreter<'_> {
-    /// `n EDIT`, for which the manual has a screen editor (IV.2.3).
+    /// `n EDIT`: the manual has a screen editor for it (IV.2.3).
     pub(super) fn edit(&mut self) -> Result<(), String> {
         let number = self.pop("n EDIT")?;
         self.outcome.edits = Some(BlockNumber { offset: self.board.offset, number });
@@ -29,7 +29,7 @@ impl Interpreter<'_> {
         let Some((file, lines)) = self.library.block(number) else { return Err(self.missing(number)) };
         self.outcome.listed = Some(number);
         self.say(format!("  {number}, {file}"));
-        // Empty lines are skipped: a screen of 24 lines has no room for a block of 16.
+        // Empty lines are omitted: a screen of 24 lines has no room for a block of 16.
         for (at, line) in lines.iter().enumerate().filter(|(_, line)| !line.trim().is_empty()) {
             self.say(format!(" {at:>2} {line}"));
         }

@@ -6,8 +6,8 @@
 //!               └──────────────Esc─────────────────────────┘
 //! ```
 //!
-//! Only the lines of the block are changed in its file; comments (`%%`) and other blocks stay as they are. A file that
-//! has changed in the meantime is not overwritten.
+//! Only the lines of the block are changed in its file; comments (`%%`) and other blocks stay unchanged. A file
+//! that has changed in the meantime is not overwritten.
 
 use std::{
     fs, io,
@@ -43,7 +43,6 @@ enum Stage {
     Diff,
 }
 
-/// The action after a key.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Wish {
     None,
@@ -59,7 +58,7 @@ pub struct Editor {
     path: PathBuf,
     /// Text of the file when the editor was opened.
     before: String,
-    /// All texts of the task data, and the index of the file among them.
+    /// All texts of the task data, and the index of the edited file among them.
     sources: Vec<Source>,
     at: usize,
     /// The lines when the editor was opened.
@@ -72,7 +71,6 @@ pub struct Editor {
     about: Vec<String>,
 }
 
-/// The reason why a block cannot be edited.
 pub type Refused = String;
 
 impl Editor {
@@ -110,7 +108,7 @@ impl Editor {
         })
     }
 
-    /// Insert a form: in place of the one with the same last words, or after the last line.
+    /// Insert a form. It replaces the one with the same last words, or follows the last line.
     ///
     /// # Errors
     /// A message if the block has no room.
@@ -118,7 +116,7 @@ impl Editor {
         let words = |line: &str| line.split_whitespace().rev().take(3).map(str::to_owned).collect::<Vec<_>>();
         let key = |line: &str| {
             let words = words(line);
-            // Name and compiling word: in a pose, its movetable is between them.
+            // Name and compiling word; in a pose, its movetable is between them.
             (
                 words.first().cloned(),
                 ["-pose-", "-mtb-"].into_iter().find(|word| words.iter().any(|is| is == word)),
@@ -206,7 +204,7 @@ impl Editor {
         Wish::None
     }
 
-    /// Check all data with the block. If there are no errors the diff is shown.
+    /// Check all data with the block. Without errors, the diff is shown.
     fn check(&mut self) -> Wish {
         if self.changes().is_empty() {
             return Wish::Say("nothing has changed");
@@ -244,7 +242,7 @@ impl Editor {
     /// Write the block into the file.
     ///
     /// # Errors
-    /// A message with the reason; the file is unchanged then.
+    /// A message with the reason. The file is then unchanged.
     pub fn write(&self) -> Result<(), String> {
         let told = |error: io::Error| format!("{}: {error}", self.path.display());
         if fs::read_to_string(&self.path).map_err(told)? != self.before {
@@ -285,7 +283,7 @@ impl Editor {
             .map(|line| format!("\n{}", line.trim_end()))
             .collect();
         text.insert_str(end, &more);
-        // From the last to the first, so that a replacement does not move the lines still to be replaced.
+        // Backwards, so that a replacement does not move the lines still to be replaced.
         for (line, old) in self.lines.iter().zip(&block.lines).rev() {
             let start = byte(old.at.start);
             text.replace_range(start..start + byte(old.at.length), line.trim_end());
@@ -401,7 +399,7 @@ mod tests {
     }
 
     #[test]
-    fn a_line_is_added_shown_as_a_change_and_written() {
+    fn added_line_is_shown_as_a_change_and_written() {
         let directory = data();
         let before = fs::read_to_string(directory.path().join("commands.blk")).unwrap();
         let mut editor = editor(directory.path(), COMMANDS);
@@ -421,7 +419,7 @@ mod tests {
     }
 
     #[test]
-    fn a_form_stands_behind_the_last_line_or_in_the_place_of_the_old_one() {
+    fn form_follows_the_last_line_or_replaces_the_old_one() {
         let directory = data();
         let form =
             |name: &str| vec!["1".to_owned(), "2".to_owned(), format!("3   -pose-   ...         {name}")];
@@ -437,7 +435,7 @@ mod tests {
     }
 
     #[test]
-    fn errors_stand_at_their_lines_and_keep_the_file() {
+    fn errors_are_shown_at_their_lines_and_prevent_writing() {
         let directory = data();
         let mut editor = editor(directory.path(), COMMANDS);
         (0..4).for_each(|_| assert_eq!(editor.key(Key::Down), Wish::None));
@@ -452,7 +450,7 @@ mod tests {
     }
 
     #[test]
-    fn a_line_has_64_columns_and_lines_go_in_and_out() {
+    fn line_has_64_columns_and_lines_can_be_inserted() {
         let directory = data();
         let mut editor = editor(directory.path(), POSES);
         (0..15).for_each(|_| assert_eq!(editor.key(Key::Down), Wish::None));
@@ -468,7 +466,7 @@ mod tests {
     }
 
     #[test]
-    fn lines_that_are_new_stand_behind_the_block_and_removed_ones_are_empty() {
+    fn new_lines_follow_the_block_and_removed_ones_are_empty() {
         let text = "%% file\nBLOCK# 1 OFFSET 21000\n%% remark\na\nb\nBLOCK# 2 OFFSET 21000\nc";
         let directory = tempfile::tempdir().unwrap();
         fs::write(directory.path().join("x.blk"), text).unwrap();

@@ -61,7 +61,6 @@ impl Library {
         }
     }
 
-    /// The names in the blocks, for completion.
     pub fn names(&mut self) -> &Names {
         let directory = self.directory.clone();
         if self.names.is_none() {
@@ -83,7 +82,7 @@ impl Library {
         self.read.get_or_insert_with(|| read_blocks_under(directory).0)
     }
 
-    /// The lines of a block, from line 0, and its file. If there are several, the newest one.
+    /// The lines of a block, from line 0, and its file. The newest of several blocks is used.
     pub fn block(&mut self, number: BlockNumber) -> Option<(String, Vec<String>)> {
         self.sources().iter().rev().find_map(|source| {
             let (found, _) = blocks(0, source);
@@ -108,7 +107,7 @@ impl Library {
         numbers
     }
 
-    /// The places of a word: block, line, and text of the line.
+    /// The occurrences of a word: block, line, and text of the line.
     pub fn find(&mut self, word: &str) -> Vec<(BlockNumber, usize, String)> {
         let of_block = |block: taskdata::load::source::Block<'_>| {
             let holds = |text: &str| text.split_whitespace().any(|found| found.trim_matches('"') == word);
@@ -129,7 +128,7 @@ mod tests {
     }
 
     #[test]
-    fn blocks_of_two_areas_may_have_one_number() {
+    fn blocks_of_two_areas_may_share_a_number() {
         let mut library = library();
         let line = |library: &mut Library, offset| {
             library.block(BlockNumber { offset, number: 863 }).map(|(file, lines)| (file, lines[12].clone()))
@@ -142,7 +141,7 @@ mod tests {
     }
 
     #[test]
-    fn a_word_is_found_where_it_stands() {
+    fn word_search_returns_its_places() {
         let found = library().find("SAFE-P");
         assert!(
             found.iter().any(|(block, _, text)| block.number == 610 && text.contains("-pose-")),

@@ -1,4 +1,4 @@
-//! The terminal of a board (IV.2): words that execute, show and list, and requests in today's words.
+//! The terminal of a board (IV.2): words that execute, show and list, and requests in modern words.
 
 pub mod complete;
 mod disk;
@@ -32,7 +32,8 @@ pub use self::{screen::sections, words::known};
 pub const BOARDS: [u8; 6] = [0, 2, 4, 6, 8, 12];
 /// Number of typed lines that are kept.
 const KEPT: usize = 100;
-/// The characters that are keys on this screen while the run takes requests, besides digits; all others begin a line.
+/// The characters, in addition to digits, that are keys on this screen while the run takes requests. All others
+/// begin a line.
 const KEYS: &str = " !:?[]{}";
 
 /// The mode of a terminal (IV.2.6).
@@ -103,13 +104,12 @@ impl Board {
     }
 }
 
-/// A typed line, and its immediate output.
 #[derive(Clone, Debug)]
 struct Typed {
     board: u8,
     line: String,
     said: Vec<Text>,
-    /// Number of requests sent before.
+    /// Number of earlier requests.
     after: u64,
 }
 
@@ -125,7 +125,6 @@ pub struct BoardTerminal {
 }
 
 impl BoardTerminal {
-    /// A terminal with the blocks of a directory.
     #[must_use]
     pub fn of(directory: PathBuf) -> Self {
         Self { library: Library::of(directory), ..Self::default() }
@@ -140,7 +139,7 @@ impl BoardTerminal {
 }
 
 impl Model {
-    /// Carry out a typed line: words of the board, or a request in today's words.
+    /// Execute a typed line: words of the board, or a request in modern words.
     pub(super) fn enter(&mut self, line: &str) {
         let terminal = &mut self.terminal;
         let sent = self.operating.as_ref().map_or(0, Operating::count);
@@ -187,7 +186,7 @@ impl Model {
         runs.then(|| format!("board {board} runs: ^C stops it before its blocks are edited (IV.2.3)"))
     }
 
-    /// Open the editor, or show why it cannot be opened.
+    /// Open the editor, or show the reason why it cannot be opened.
     fn begin_edit(&mut self, number: BlockNumber) {
         if let Some(why) = self.cannot_edit() {
             self.answer = Some(why);
@@ -202,7 +201,7 @@ impl Model {
         }
     }
 
-    /// Open the editor with the form of the recorded pose, or show why it cannot be opened.
+    /// Open the editor with the form of the recorded pose, or show the reason why it cannot be opened.
     fn begin_lesson(&mut self, lesson: &Lesson) {
         if let Some(why) = self.cannot_edit() {
             self.answer = Some(why);
@@ -218,7 +217,7 @@ impl Model {
         }
     }
 
-    /// Carry out a key of the editor. Returns false if no editor is open.
+    /// Handle a key of the editor. Returns false if no editor is open.
     pub(super) fn edit(&mut self, key: Key) -> bool {
         let Some(editor) = self.terminal.editor.as_mut().filter(|_| key != Key::F1) else { return false };
         match editor.key(key) {
@@ -259,8 +258,8 @@ impl Model {
         }
     }
 
-    /// Carry out a key that only the terminal has, or begin a line with it if the run takes requests. Returns false for
-    /// other keys.
+    /// Handle a key that only the terminal has, or begin a line with it if the run takes requests. Returns
+    /// false for other keys.
     pub(super) fn work_the_terminal(&mut self, key: Key, runs: bool) -> bool {
         let is_recording = self.picture.as_ref().is_some_and(|picture| picture.memory.prim.status.recording);
         let board = &mut self.terminal.board;

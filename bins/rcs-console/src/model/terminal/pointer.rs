@@ -1,5 +1,5 @@
-//! Show mode follows a pointer: the record that a variable such as `pose-^-in` names, by its name and values (IV.2.6,
-//! VII.1).
+//! Show mode follows a pointer: it shows the name and values of the record that a variable such as `pose-^-in`
+//! refers to (IV.2.6, VII.1).
 
 use geometry::{movetable::System, pose::Pose};
 use interfaces::{CommonMemory, pose_range};
@@ -9,7 +9,7 @@ use taskdata::files::{EndEffId, LocptId, MovtabId, ObjGripsId, PoseId, TaskData,
 use super::library::Library;
 use crate::rcs_console::{model::buffers, picture::Picture};
 
-/// The file of a pointer, by the end of its field's path.
+/// The file of a pointer, from the end of its field's path.
 #[derive(Clone, Copy)]
 enum File {
     Pose,
@@ -37,7 +37,7 @@ const POINTERS: [(&str, File); 12] = [
     ("object_vision", File::View),
 ];
 
-/// The record of a pointer as lines; none for a field that is no pointer, or points to nothing.
+/// The record of a pointer as lines; `None` if the field is not a pointer, or is empty.
 #[must_use]
 pub fn target(path: &str, picture: &Picture, library: &mut Library) -> Vec<String> {
     let end = path.rsplit('.').next().unwrap_or_default();
@@ -55,7 +55,7 @@ pub fn target(path: &str, picture: &Picture, library: &mut Library) -> Vec<Strin
     lines.unwrap_or_else(|| vec!["  this record is not in the blocks that this console has".to_owned()])
 }
 
-/// A record that changes while running: its writer, and for Task the name of VII.1.
+/// A record that changes during the run: its writer, and for Task the name of VII.1.
 fn changing(memory: &CommonMemory, number: u32) -> Option<Vec<String>> {
     let pose = memory.changing_pose(number)?;
     let of_task = memory.task.poses.iter().position(|record| record.number == Some(number));

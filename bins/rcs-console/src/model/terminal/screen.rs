@@ -94,7 +94,7 @@ fn about(operating: Option<&Operating>, picture: &Picture, is_used: bool) -> Vec
     lines
 }
 
-/// The typed lines and the requests, newest first; a request follows the words that have sent it.
+/// The typed lines and the requests, newest first. A request follows the words that sent it.
 fn conversation(terminal: &BoardTerminal, operating: Option<&Operating>) -> Vec<Text> {
     let mut all: Vec<((u64, u8), Vec<Text>)> = Vec::new();
     all.extend(terminal.typed.iter().map(|typed| ((typed.after, 1), of_words(typed))));
@@ -130,7 +130,7 @@ mod tests {
     use interfaces::{ChangingPose, pose_range};
 
     #[test]
-    fn a_recorded_pose_is_displayed_on_the_terminal_of_the_prim_board() {
+    fn recorded_pose_is_shown_on_the_prim_terminal() {
         let mut memory = CommonMemory::default();
         let number = pose_range::PRIM + 9;
         let pose = Pose { wrist: [0, -4145, -4602], tool: [0, -7145, -1483], finger: [3000, -7145, -1483] };

@@ -49,7 +49,7 @@ impl Lesson {
         let path = directory.join(CELL);
         let cell = CellDescription::load(&path).map_err(|error| format!("{}: {error}", path.display()))?;
         let standing = Standing::of(&pose, &data, &Room::new(&cell))?;
-        // The form contains the points, so they are skipped. The most important lines come first.
+        // The form contains the points, so they are omitted. The most important lines come first.
         let mut about: Vec<String> = standing.to_string().lines().skip(3).map(str::to_owned).collect();
         about.sort_by_key(|line| !(line.starts_with("limits") || line.starts_with("cell")));
         if !standing.is_usable() {

@@ -1,6 +1,6 @@
-//! The words of a board's terminal (IV.2, IV.3): numbers go on a stack, and words take them from it, as in FORTH. A
-//! word that affects the run becomes a request in today's words ([`operator`]); a word that shows something is answered
-//! at once.
+//! The words of a board's terminal (IV.2, IV.3): numbers are pushed on a stack, and words pop them, as in
+//! FORTH. A word that affects the run becomes a request in modern words ([`operator`]); a word that shows a
+//! value is answered at once.
 
 use interfaces::{ProcessId, operator::Variable};
 use levels::ladder::Ladder;
@@ -36,8 +36,8 @@ const WORDS: [&str; 17] = [
     "%",
 ];
 
-/// Words that execute a process once, such as PRIM-LEVEL (IV.3.3 step 13; VI.2, VI.5; the others are not in the
-/// manual).
+/// Words that execute a process once, such as PRIM-LEVEL (IV.3.3 step 13; VI.2, VI.5). The others are not in
+/// the manual.
 static LEVELS: [(&str, ProcessId, &str); 9] = [
     ("TASK-LEVEL", ProcessId::Task, "TASK"),
     ("SUBTASK-LEVEL", ProcessId::Subtask, "SUBTASK"),
@@ -59,7 +59,6 @@ pub struct Outcome {
     pub listed: Option<BlockNumber>,
 }
 
-/// Executes the words of a terminal.
 pub struct Interpreter<'a> {
     pub board: &'a mut Board,
     pub library: &'a mut Library,
@@ -70,7 +69,7 @@ pub struct Interpreter<'a> {
     pub(super) outcome: Outcome,
 }
 
-/// True if a line consists of words of a terminal; otherwise it is a request in today's words.
+/// True if a line consists of words of a terminal; otherwise it is a request in modern words.
 #[must_use]
 pub fn is_of_terminal(line: &str, mode: Mode) -> bool {
     let first = line.split_whitespace().next().unwrap_or_default();
@@ -93,7 +92,6 @@ pub fn known(board: u8) -> Vec<&'static str> {
 }
 
 impl<'a> Interpreter<'a> {
-    /// An interpreter with an empty stack.
     pub fn new(
         board: &'a mut Board,
         library: &'a mut Library,
@@ -103,7 +101,7 @@ impl<'a> Interpreter<'a> {
         Self { board, library, picture, last, stack: Vec::new(), outcome: Outcome::default() }
     }
 
-    /// Execute a line. It ends at the first wrong word.
+    /// Execute a line up to its first wrong word.
     #[must_use]
     pub fn interpret(mut self, line: &str) -> Outcome {
         let words: Vec<&str> = line.split_whitespace().collect();
@@ -163,7 +161,7 @@ impl<'a> Interpreter<'a> {
         Ok(0)
     }
 
-    /// Execute a word that names something.
+    /// Execute a word that is the name of an entry.
     fn named(&mut self, word: &str) -> Result<usize, String> {
         if let Some((_, process, name)) = LEVELS.iter().find(|(level, ..)| *level == word) {
             self.on(process.board())?;
@@ -379,7 +377,7 @@ mod tests {
     }
 
     #[test]
-    fn what_chapter_four_enters_becomes_requests() {
+    fn words_of_chapter_four_become_requests() {
         for (board, line, requests) in [
             (6, "863 12 12 LINE-LOAD", "line-load 863 12 12"),
             (6, "GO", "board 6 go"),
@@ -401,7 +399,7 @@ mod tests {
     }
 
     #[test]
-    fn a_word_belongs_to_its_board() {
+    fn word_is_known_only_on_its_board() {
         for (board, line, why) in [
             (6, ".R", "word of board 2"),
             (2, "TAI", "word of board 6"),

@@ -1,11 +1,11 @@
-//! The verdict on a branch, as soon as it can be judged, and the report of it.
+//! The verdict on a branch and its report.
 //!
 //! ```text
 //!   a command has ended ──► the world as in the undisturbed run?     no: hurt, or apart after a slide
 //!   a confirmation is false                                          false
 //!   a contact, a part that slides                                    hurt if a point was commanded, or else apart
 //!   the operator has no try left                                     stranded
-//!   the command behind the interrupted one has finished              done
+//!   the command after the interrupted one has finished               done
 //! ```
 
 use levels::ladder::Ladder;
@@ -68,7 +68,7 @@ impl Trial<'_, '_> {
 
     /// Compare the world with that of the undisturbed run when a command finishes.
     fn compare(&mut self, line: usize, command: &str) {
-        // A person has made the world another one.
+        // A person has changed the world.
         if self.kind().disturbance().is_some() {
             return;
         }
