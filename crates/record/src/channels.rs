@@ -1,9 +1,10 @@
-//! The channels of the buffers: one a buffer of [`CommonMemory`] and [`ExternalInputs`], found in their
+//! The channels of the buffers: one per buffer of [`CommonMemory`] and [`ExternalInputs`], found in their
 //! schemas.
 //!
-//! The outputs of a process are a header and buffers. Each buffer gets a channel `/process/buffer`, a command
-//! `/process/buffer_command`; the header gets `/process/row` ([`crate::rows`]). A message is written when its buffer
-//! changes, and every ten seconds anyway, so that a viewer that starts in the middle finds a value soon.
+//! The outputs of a process are a header and buffers. Each buffer has a channel `/process/buffer`, a command
+//! `/process/buffer_command`; the header has `/process/row` ([`crate::rows`]). A message is written when its
+//! buffer changes, and at least every ten seconds, so that a viewer that starts in the middle soon finds a
+//! value.
 
 use std::{
     collections::BTreeMap,
@@ -35,17 +36,15 @@ pub struct Output<W: Write + Seek> {
     pub mcap: mcap::Writer<W>,
     /// Time of tick 0.
     pub epoch: Epoch,
-    /// A further receiver of the messages.
+    /// Another receiver of the messages.
     pub tap: Option<Box<dyn Tap>>,
 }
 
 impl<W: Write + Seek> Output<W> {
-    /// A new channel whose schema and messages are protobuf.
     pub fn protobuf(&mut self, topic: &str, schema: &str, descriptors: &[u8]) -> McapResult<u16> {
         self.channel(topic, schema, PROTOBUF, descriptors, PROTOBUF)
     }
 
-    /// A new channel with a schema in any encoding.
     pub fn channel(
         &mut self,
         topic: &str,
@@ -70,10 +69,10 @@ impl<W: Write + Seek> Output<W> {
         Ok(())
     }
 
-    /// Write a message of a tick that was passed to the tap.
+    /// Write a message of a tick that was already passed to the tap.
     pub fn write(&mut self, channel_id: u16, tick: Tick, data: &[u8]) -> McapResult<()> {
         let log_time = self.epoch.of(tick);
-        // A tick number beyond 32 bits is five years of running.
+        // A tick number needs more than 32 bits after five years.
         let sequence = u32::try_from(tick.0).unwrap_or(u32::MAX);
         let header = MessageHeader { channel_id, sequence, log_time, publish_time: log_time };
         self.mcap.write_to_known_channel(&header, data)
@@ -94,20 +93,20 @@ impl<W: Write + Seek> Output<W> {
     }
 }
 
-/// Fields that count on by themselves while the robot runs: clocks of the T3 interface, frames on the line, and numbers
-/// of changing poses. A buffer is not written only because of them; their values are on `/replay`.
+/// Fields that change by themselves while the robot runs: clocks of the T3 interface, frames on the line, and
+/// numbers of changing poses. They do not cause a message of their buffer; their values are on `/replay`.
 const CLOCKS: [&str; 7] =
     ["cycle", "cycle_echo", "frames", "acknowledged", "reference_pose", "present_pose", "sensor_pose"];
 
-/// Buffers that change in every tick and add nothing to others: Prim's changing poses are the frames of `/t3i/status`.
-/// They are written with the repetitions only.
+/// Buffers that change in every tick and repeat other data: Prim's changing poses are the frames of
+/// `/t3i/status`. They are written only with the repetitions.
 const SCRATCH: [&str; 1] = ["/prim/poses"];
 
 /// A part of an image with a channel of its own.
 struct Buffer {
     channel: u16,
     bytes: Range<usize>,
-    /// Parts of the image that are compared: all but the [`CLOCKS`].
+    /// Parts of the image that are compared: all except the [`CLOCKS`].
     compared: Vec<Range<usize>>,
     schema: StructSchema,
 }
@@ -121,7 +120,7 @@ struct Place {
     schema: StructSchema,
 }
 
-/// The buffers of a record: its fields but for the header, named after `prefix`.
+/// The buffers of a record: its fields except the header, named after `prefix`.
 fn places(prefix: &str, record: &'static StructSchema, mut offset: usize) -> Vec<Place> {
     let mut found = Vec::new();
     for field in record.fields {
@@ -161,7 +160,7 @@ fn memory_places() -> Vec<Place> {
     found
 }
 
-/// Stretches of a buffer at `offset` that hold no [`CLOCKS`].
+/// Ranges of a buffer at `offset` that contain no [`CLOCKS`].
 fn compared(schema: &StructSchema, offset: usize) -> Vec<Range<usize>> {
     let mut found: Vec<Range<usize>> = Vec::new();
     for leaf in layout::leaves_of(schema.fields) {
@@ -225,7 +224,6 @@ impl Buffers {
 /// The header of one process in the image of common memory.
 #[derive(Clone, Copy, Debug)]
 pub struct HeaderPlace {
-    /// Field of [`CommonMemory`].
     pub field: &'static str,
     /// First byte of the header.
     pub offset: usize,
@@ -266,7 +264,7 @@ mod tests {
     use std::collections::BTreeSet;
 
     #[test]
-    fn every_buffer_has_a_topic_of_its_own() {
+    fn every_buffer_has_its_own_topic() {
         let topics: Vec<String> =
             external_places().into_iter().chain(memory_places()).map(|place| place.topic).collect();
         assert_eq!(topics.iter().collect::<BTreeSet<_>>().len(), topics.len());
@@ -286,7 +284,7 @@ mod tests {
     }
 
     #[test]
-    fn headers_are_where_the_processes_are() {
+    fn header_places_follow_the_processes() {
         let mut memory = CommonMemory::default();
         memory.prim.header =
             Header { stamp: Tick(7), decided: Some(Decided { table: 2, row: 3 }), ..Header::default() };

@@ -52,8 +52,8 @@ impl Comparison {
         }
     }
 
-    /// The first difference of a recorded tick from the byte images of common memory and of the states of the processes,
-    /// if the log has those.
+    /// The first difference of a recorded tick from the byte images of common memory and of the states of the
+    /// processes, if the log has states.
     pub fn difference(
         &self,
         logged: &LoggedTick,

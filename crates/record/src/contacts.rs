@@ -1,6 +1,6 @@
-//! Marks where the robot, or what it carries, touches something: `/contacts`.
+//! Marks where the robot, or its load, touches something: `/contacts`.
 //!
-//! A message has all marks that are valid from its tick on, so that a reader needs only the last one.
+//! A message has all marks that are valid from its tick on, so that a reader needs only the last message.
 
 use crate::{
     input::Touch,
@@ -11,7 +11,7 @@ pub const CONTACTS: &str = "/contacts";
 
 /// An inch, metres.
 pub(crate) const INCH: f64 = 0.0254;
-/// The mark of two things that may touch: its diameter, m, and its colour.
+/// The mark of a permitted contact: its diameter, m, and its colour.
 const PERMITTED: (f64, Colour) = (0.03, [0.15, 0.75, 0.30, 0.9]);
 const COLLISION: (f64, Colour) = (0.06, [0.90, 0.10, 0.10, 0.85]);
 /// Height of the letters at a collision, m.
@@ -56,7 +56,7 @@ mod tests {
         Touch { mover, obstacle, point: [10.0, -20.0, 5.0], depth: 0.25, collides }
     }
 
-    /// How often a field is in a message.
+    /// Number of occurrences of a field in a message.
     fn count(data: &[u8], number: u64) -> usize {
         Fields(data).filter(|field| matches!(field, (n, Value::Bytes(_)) if *n == number)).count()
     }
@@ -68,19 +68,19 @@ mod tests {
     }
 
     #[test]
-    fn what_no_longer_touches_is_deleted() {
+    fn ended_contact_is_deleted() {
         let none = marks(&[]);
         assert_eq!((count(&none, 1), count(&none, 2)), (1, 0));
     }
 
     #[test]
-    fn a_collision_is_named_and_what_may_touch_is_not() {
+    fn only_collisions_are_named() {
         assert_eq!(count(&marks(&[touch(false)]), 2), 1);
         assert_eq!(count(&marks(&[touch(true)]), 2), 2);
     }
 
     #[test]
-    fn a_mark_says_which_two_bodies_touch_and_where() {
+    fn contact_mark_has_both_bodies_and_the_place() {
         let data = marks(&[touch(false)]);
         let text = String::from_utf8_lossy(&data);
         for fact in ["forearm", "vise", "10.00 -20.00 5.00", "0.250", "true"] {

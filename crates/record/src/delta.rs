@@ -1,16 +1,16 @@
-//! Images of one tick as their difference from the tick before, field by field.
+//! Images of one tick as their difference from the previous tick, field by field.
 //!
 //! In a quiet tick a few fields of some hundreds change, and most of those by a little: a clock by one, a
-//! position by a step, a converter by its noise. So a delta names the fields that changed and gives each as
+//! position by a step, a converter by its noise. A delta therefore names the changed fields and gives each as
 //! the difference of two numbers:
 //!
 //! ```text
-//! count of changed fields | fields to skip before each | the differences, one behind the other
+//! count of changed fields | fields to skip before each | the differences in sequence
 //! ```
 //!
-//! all as varints, differences with their sign in the lowest bit. The skips are stored together because they hardly
-//! differ from tick to tick, so that they compress well. Names and frames on the line are bytes, not numbers: their
-//! difference is a list of runs. A full image is a delta from zeros.
+//! all as varints, differences with their sign in the lowest bit. The skips are stored together because they
+//! hardly differ from tick to tick, so that they compress well. Names and frames on the line are bytes, not
+//! numbers: their difference is a list of runs. A full image is a delta from zeros.
 
 use rcs_core::{plain::StructSchema, reflect};
 
@@ -59,7 +59,7 @@ impl Codec {
         out.extend_from_slice(&values);
     }
 
-    /// Apply `delta` to `image`; false if the delta does not fit, and then the image is invalid.
+    /// Apply `delta` to `image`. Returns false if the delta does not fit; the image is then invalid.
     #[must_use]
     pub fn apply(&self, delta: &[u8], image: &mut [u8]) -> bool {
         self.try_apply(delta, image).is_some()
@@ -114,7 +114,7 @@ impl Piece {
     }
 }
 
-/// Add to a number of at most eight bytes; it wraps around.
+/// Add to a number of at most eight bytes, with wrap-around.
 fn add(field: &mut [u8], difference: u64) {
     let [a, b, c, d, ..] = difference.to_le_bytes();
     if let Ok(field) = <&mut [u8; 4]>::try_from(&mut *field) {
@@ -183,14 +183,14 @@ mod tests {
     }
 
     #[test]
-    fn a_run_goes_over_short_gaps() {
+    fn run_spans_short_gaps() {
         let mut runs = Vec::new();
         encode_runs(&[0; 12], &[0, 0, 1, 0, 0, 2, 0, 0, 0, 0, 0, 3], &mut runs);
         assert_eq!(runs, [2, 4, 1, 0, 0, 2, 5, 1, 3]);
     }
 
     #[test]
-    fn a_small_change_is_a_few_bytes() {
+    fn small_change_takes_few_bytes() {
         let codec = Codec::new(ExternalInputs::STRUCT);
         let mut was = ExternalInputs::default();
         was.devices.resolvers.counts = [65_535; 6];
@@ -204,7 +204,7 @@ mod tests {
     }
 
     #[test]
-    fn numbers_of_every_width_come_back_over_their_ends() {
+    fn numbers_of_every_width_round_trip_with_wrap_around() {
         let codec = Codec::new(CommonMemory::STRUCT);
         let (mut was, mut is) = (vec![0xFF; codec.size()], vec![0x80; codec.size()]);
         for _ in 0..2 {
@@ -218,7 +218,7 @@ mod tests {
     }
 
     #[test]
-    fn a_delta_that_does_not_fit_is_refused() {
+    fn delta_of_another_layout_is_refused() {
         let codec = Codec::new(ExternalInputs::STRUCT);
         let mut image = vec![0; codec.size()];
         assert!(!codec.apply(&[], &mut image), "no count");
@@ -231,7 +231,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn what_was_encoded_comes_back(
+        fn encoded_image_round_trips(
             changes in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 0..60),
         ) {
             for record in [CommonMemory::STRUCT, LadderState::STRUCT] {
@@ -253,7 +253,7 @@ mod tests {
         #[test]
         fn no_bytes_are_too_strange(delta in prop::collection::vec(any::<u8>(), 0..200)) {
             let codec = Codec::new(ExternalInputs::STRUCT);
-            // What it says does not matter here, that it ends does.
+            // Only termination is tested, not the result.
             let _ = codec.apply(&delta, &mut vec![0; codec.size()]);
         }
     }

@@ -6,7 +6,7 @@ use mcap::records::{self, Record};
 
 use crate::tap::{Channel, Tap};
 
-/// Channels and schemas by number; the first entry of a number counts.
+/// Channels and schemas by number. The first entry of a number is used.
 #[derive(Default)]
 pub struct Described {
     channels: BTreeMap<u16, records::Channel>,
@@ -14,7 +14,7 @@ pub struct Described {
 }
 
 impl Described {
-    /// Add a record, if it is a channel or schema.
+    /// Add a record that is a channel or schema.
     pub fn note(&mut self, record: &Record<'_>) {
         match record {
             Record::Channel(channel) => {
@@ -27,7 +27,7 @@ impl Described {
         }
     }
 
-    /// Passes the channels to a tap; a channel without a schema is left out.
+    /// Passes the channels to a tap, except those without a schema.
     pub fn tell(&self, tap: &mut dyn Tap) {
         for (id, channel) in &self.channels {
             let Some((header, schema)) = self.schemas.get(&channel.schema_id) else { continue };

@@ -1,4 +1,4 @@
-//! The writer's end of the rings, in a thread of its own.
+//! The writer's end of the rings, in a separate thread.
 
 use std::{
     mem,
@@ -23,7 +23,7 @@ use crate::{
     writer::{FULL_SET, LogWriter, TickRecord, Written},
 };
 
-/// Sleep of the writer when there is nothing to write: an eighth of a tick.
+/// Sleep of an idle writer: an eighth of a tick.
 const IDLE: Duration = Duration::from_millis(5);
 
 fn text_of(bytes: &[u8]) -> String {
@@ -33,7 +33,7 @@ fn text_of(bytes: &[u8]) -> String {
 /// The data with which the next log of the same run starts.
 pub(crate) struct Rotation {
     pub(crate) limit: LogLimit,
-    /// Head of each log, with the files of the run that have been added.
+    /// Head of each log, with the files that were added to the run.
     pub(crate) setup: Setup,
     pub(crate) durable: bool,
     /// Number of logs that have ended.
@@ -56,11 +56,11 @@ pub(crate) struct Drain {
 }
 
 impl Drain {
-    /// Write until the run has ended. Returns the last log, and the number of those before.
+    /// Write until the run has ended. Returns the last log, and the number of earlier ones.
     pub(crate) fn run(mut self) -> Result<(Written, usize), RecordError> {
         loop {
-            // Read before the ring is emptied, so that entries pushed before the run has dropped the producer are still
-            // found.
+            // Read before the ring is emptied, so that entries pushed before the run dropped the producer are
+            // still found.
             let ended = self.ticks.is_abandoned();
             while let Ok(record) = self.ticks.pop() {
                 if record.tick.0.is_multiple_of(FULL_SET) {
@@ -83,8 +83,8 @@ impl Drain {
         Ok((written, self.rotation.map_or(0, |rotation| rotation.count)))
     }
 
-    /// End a log that has reached its size, and begin the next one with this tick, whose states are recorded. Returns
-    /// the tick as the first one of a log: the ticks before it are missing there.
+    /// End a log that has reached its size, and begin the next one with this tick, whose states are recorded.
+    /// Returns the tick as the first one of a log, without the ticks before it.
     fn rotate(&mut self, record: &TickRecord) -> Result<TickRecord, RecordError> {
         let Some(rotation) = &mut self.rotation else { return Ok(*record) };
         if !self.log.has_ticks() || self.file.length()? < rotation.limit.bytes {

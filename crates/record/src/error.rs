@@ -1,4 +1,4 @@
-//! Why a log cannot be written, read or replayed.
+//! Reasons why a log cannot be written, read or replayed.
 
 use std::{
     fs,
@@ -8,7 +8,7 @@ use std::{
 use diagnostics::nearest;
 use os_io::files;
 
-/// Errors of writing a log: it ended before the run did, or never began.
+/// Errors of writing a log: it ended before the run, or never began.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum RecordError {
@@ -17,20 +17,20 @@ pub enum RecordError {
     Create { path: PathBuf, source: std::io::Error },
     #[error("the log {path} is being written by another run: name another file with --log")]
     InUse { path: PathBuf },
-    /// The file was removed or replaced while the run went on.
+    /// The file was removed or replaced during the run.
     #[error("the log {path} was removed during the run")]
     Removed { path: PathBuf },
     /// The head of the log cannot be written: the disk is full, or a limit of file sizes is below the head.
     #[error("the log could not be begun: {}", deepest(.0))]
     Begin(#[source] mcap::McapError),
-    /// Writing failed: the disk is full, or the device is gone.
+    /// Writing failed: the disk is full, or the device is missing.
     #[error("the log could not be written further: {}", deepest(.0))]
     Write(#[from] mcap::McapError),
     /// The cell has more links or joints than a frame of it can carry.
     #[error("a cell of at most {allowed} {what} was expected, this one has {found}")]
     CellTooLarge {
         what: &'static str,
-        /// How many a [`crate::CellFrame`] carries.
+        /// Number that a [`crate::CellFrame`] can carry.
         allowed: usize,
         found: usize,
     },
@@ -84,7 +84,8 @@ pub enum ReadError {
 }
 
 impl ReadError {
-    /// The error as text, with the path of the log once; for a missing file also the nearest name of a log beside it.
+    /// The error as text, with the path of the log once. For a missing file, also the nearest name of a log in
+    /// the directory.
     #[must_use]
     pub fn of(&self, path: &Path) -> String {
         let (named, mut text) = (path.display().to_string(), self.to_string());
@@ -114,7 +115,7 @@ fn by(version: &str) -> String {
 pub enum ReplayError {
     #[error(transparent)]
     Read(#[from] ReadError),
-    /// The log holds no tick.
+    /// The log has no ticks.
     #[error("the log holds no tick there that a replay could start from")]
     Empty,
     /// The recorded inputs of a tick are not a valid record.

@@ -1,5 +1,5 @@
-//! What a log carries so that it explains itself, also to a program with other tables: the decision tables of the run, and
-//! the reasons of failures with their remedies, as JSON.
+//! Data with which a log explains itself, also to a program with other tables: the decision tables of the run,
+//! and the reasons of failures with their remedies, as JSON.
 //!
 //! MCAP does not compress attachments, so these are compressed with zstd.
 
@@ -20,12 +20,12 @@ use crate::{Attachment, Log};
 pub const TABLES: &str = "tables.json.zst";
 /// Name of the attachment with the reasons.
 pub const REASONS: &str = "reasons.json.zst";
-/// Name of the attachment with what went wrong first and what followed; only in the log of a failed run.
+/// Name of the attachment with the first failure and its consequences; only in the log of a failed run.
 pub const FAILURE: &str = "failure.json";
 
 /// Level of the compression: at 19 the tables are an eighth smaller, and a run starts 0.13 s later.
 const COMPRESSION: i32 = 6;
-/// Greatest size of a decompressed file, bytes: a damaged one may claim any size.
+/// Greatest size of a decompressed file, bytes, since a damaged one may claim any size.
 const LARGEST: u64 = 16 << 20;
 
 /// The decision tables and the reasons of this program, as attachments.
@@ -38,8 +38,8 @@ pub fn attachments() -> [Attachment; 2] {
     })
 }
 
-/// The tables of a log, or its reasons, by the name of the attachment; `None` if the log is older than these attachments,
-/// or if the attachment is damaged.
+/// The tables of a log, or its reasons, by the name of the attachment. `None` if the log is older than these
+/// attachments, or the attachment is damaged.
 #[must_use]
 pub fn of_log(log: &Log, name: &str) -> Option<Value> {
     let data = &log.attachment(name)?.data;
@@ -58,7 +58,8 @@ pub fn tables() -> Value {
     Ladder::processes().iter().map(process).collect()
 }
 
-/// The reasons of failures: `[{code, text, remedy}]`; no remedy if PAUSE and the same command may be enough.
+/// The reasons of failures: `[{code, text, remedy}]`; without a remedy if PAUSE and the same command may be
+/// enough.
 #[must_use]
 pub fn reasons() -> Value {
     let Schema::Enum(schema) = Reason::SCHEMA else { return Value::Array(Vec::new()) };
@@ -86,7 +87,7 @@ fn variable(variable: &'static Variable) -> Value {
     json!({ "name": variable.name, "doc": prose([variable.doc]), "values": values(variable.values) })
 }
 
-/// An action with the arguments that the rows give it; `None` if no row names it.
+/// An action with its arguments in the rows; `None` if the rows do not use it.
 fn action(action: &ActionText, rows: &[Row]) -> Option<Value> {
     let naming: Vec<&Row> = rows.iter().filter(|row| row.action == action.name).collect();
     let given = |name: &str| naming.iter().any(|row| row.argument == Some(name));
@@ -121,7 +122,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_row_of_every_process_is_there() {
+    fn tables_contain_every_row_of_every_process() {
         let tables = tables();
         for (process, shown) in Ladder::processes().iter().zip(tables.as_array().unwrap()) {
             assert_eq!(shown["process"], process.name);

@@ -15,20 +15,20 @@ use time::OffsetDateTime;
 
 use crate::error::RecordError;
 
-/// A file that only this run writes, until it is dropped. If it was made for a log that never began, it is removed
-/// then.
+/// A file that only this run writes, until it is dropped. It is then removed if it was created for a log that
+/// never began.
 pub struct LogFile {
     path: PathBuf,
     file: File,
     identity: (u64, u64),
-    /// The file is new, and the log has not begun.
+    /// True if the file is new, and the log has not begun.
     unused: bool,
-    /// An earlier log at the path is renamed when this one begins; otherwise it is replaced.
+    /// True to rename an earlier log at the path when this one begins, false to replace it.
     keeps_earlier: bool,
 }
 
 impl LogFile {
-    /// Claim a file; create it, with its directory, if missing. Its content stays until the log begins.
+    /// Claim a file, which is created if necessary, with its directory. Its content stays until the log begins.
     ///
     /// # Errors
     /// [`RecordError::InUse`] if another run writes it, [`RecordError::Create`] if it cannot be opened.
@@ -49,15 +49,16 @@ impl LogFile {
             let found = file.metadata().map_err(failed)?;
             let identity = (found.dev(), found.ino());
             let claimed = Self { path: path.to_owned(), file, identity, unused, keeps_earlier: false };
-            // Another run may have removed the file, which it had not used, before it was locked here.
+            // Another run may have removed the unused file before it was locked here.
             if claimed.look().is_ok() {
                 return Ok(claimed);
             }
         }
     }
 
-    /// Claim `<name>.mcap` in a directory, or `<name>-2.mcap` and so on while other runs write those before it. A log of
-    /// an earlier run is kept under the time of its end, for example `<name>-2026-11-27T214500Z.mcap`.
+    /// Claim `<name>.mcap` in a directory, or `<name>-2.mcap` and so on while other runs write the earlier
+    /// ones. A log of an earlier run is kept under the time of its end, for example
+    /// `<name>-2026-11-27T214500Z.mcap`.
     ///
     /// # Errors
     /// [`RecordError::Create`].
@@ -90,11 +91,11 @@ impl LogFile {
         found.map(|found| found.len()).map_err(|_| RecordError::Removed { path: self.path.clone() })
     }
 
-    /// End this log, which stays open until its writer has finished, and begin a new one at its path. Returns the new
-    /// file, and the name that the ended one now has.
+    /// End this log, which stays open until its writer has finished, and begin a new one at its path. Returns
+    /// the new file, and the new name of the ended one.
     ///
     /// # Errors
-    /// [`RecordError`] if the file cannot be renamed, or the new one cannot be made.
+    /// [`RecordError`] if the file cannot be renamed, or the new one cannot be created.
     pub(crate) fn succeeded(&self) -> Result<(Self, PathBuf), RecordError> {
         let name = free_name(&self.path, SystemTime::now());
         let failed = |source| RecordError::Create { path: self.path.clone(), source };
@@ -102,7 +103,7 @@ impl LogFile {
         Ok((Self::claim(&self.path)?, name))
     }
 
-    /// The file, empty: the log begins. An earlier log is renamed if it is to be kept.
+    /// The empty file for a log that begins. An earlier log is renamed if it must be kept.
     pub(crate) fn emptied(&mut self) -> Result<File, RecordError> {
         let failed = |path: &Path| {
             let path = path.to_owned();
@@ -136,7 +137,7 @@ impl LogFile {
 impl Drop for LogFile {
     fn drop(&mut self) {
         if self.unused && self.look().is_ok() {
-            // One that cannot be removed stays, empty.
+            // A file that cannot be removed stays, but is empty.
             let _ = fs::remove_file(&self.path);
         }
     }
@@ -158,11 +159,11 @@ fn free_name(path: &Path, ended: SystemTime) -> PathBuf {
     let numbers = (2_u32..).map(|number| format!("{stem}-{number}.mcap"));
     let mut names =
         std::iter::once(format!("{stem}.mcap")).chain(numbers).map(|name| path.with_file_name(name));
-    // The chain of names has no end.
+    // The chain of names is infinite.
     names.find(|name| fs::symlink_metadata(name).is_err()).unwrap_or_else(|| path.to_owned())
 }
 
-/// True if a path has a name that [`free_name`] gives to earlier logs of a log.
+/// True if [`free_name`] gives this name to earlier logs of a log.
 pub fn is_earlier(log: &Path, path: &Path) -> bool {
     let stem = log.file_stem().unwrap_or_default().to_string_lossy();
     let name = path.file_name().unwrap_or_default().to_string_lossy();
@@ -187,7 +188,7 @@ mod tests {
     const EARLIER: &[u8] = b"\x89MCAP0\r\nearlier";
 
     #[test]
-    fn a_file_whose_log_never_began_is_removed_if_it_was_made_for_it() {
+    fn unused_new_file_is_removed() {
         let directory = tempfile::tempdir().unwrap();
         let path = directory.path().join("run.mcap");
         drop(LogFile::claim(&path).unwrap());
@@ -202,7 +203,7 @@ mod tests {
     }
 
     #[test]
-    fn an_explicit_log_replaces_a_log_and_no_other_file() {
+    fn explicit_log_replaces_only_a_log() {
         let directory = tempfile::tempdir().unwrap();
         let path = directory.path().join("cell.toml");
         fs::write(&path, "[robot]").unwrap();
@@ -214,7 +215,7 @@ mod tests {
     }
 
     #[test]
-    fn a_run_keeps_the_earlier_logs_of_its_job() {
+    fn run_keeps_the_earlier_logs_of_its_job() {
         let directory = tempfile::tempdir().unwrap();
         let path = directory.path().join("linkbar.mcap");
         let day = Duration::from_secs(86_400);
@@ -248,7 +249,7 @@ mod tests {
     }
 
     #[test]
-    fn a_second_run_gets_a_name_of_its_own_and_an_explicit_name_is_refused() {
+    fn second_run_gets_another_name_or_is_refused() {
         let directory = tempfile::tempdir().unwrap();
         let first = LogFile::claim_free(directory.path(), "linkbar").unwrap();
         assert_eq!(first.path(), directory.path().join("linkbar.mcap"));

@@ -20,8 +20,8 @@ pub const MAX_JOINTS: usize = 16;
 /// Time of tick 0 of a log.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Epoch {
-    /// The beginning of the day on which the manual's system was finished, 1987-12-16: for runs in fast
-    /// clock, whose logs are to be the same bytes whenever they are written.
+    /// The beginning of the day on which the manual's system was finished, 1987-12-16. It is for runs in fast
+    /// clock, whose logs must have the same bytes at any time.
     Fixed,
     /// Nanoseconds since 1970: for runs in real time.
     At(u64),
@@ -75,7 +75,7 @@ impl Attachment {
         Self { name: name.into(), media_type: "text/plain".into(), data: text.as_bytes().into() }
     }
 
-    /// The task data of a run, in the order in which it was loaded: record numbers depend on it.
+    /// The task data of a run, in the order of loading, on which record numbers depend.
     #[must_use]
     pub fn task_data(sources: &[Source]) -> Vec<Self> {
         sources
@@ -84,7 +84,7 @@ impl Attachment {
             .collect()
     }
 
-    /// Blocks that make a new generation of the task data.
+    /// Blocks that create a new generation of the task data.
     #[must_use]
     pub fn reload(generation: u32, sources: &[Source]) -> Vec<Self> {
         sources
@@ -100,7 +100,7 @@ impl Attachment {
         Some((generation.parse().ok()?, self.source(name)))
     }
 
-    /// A job with which an operator has replaced the rest of the job; the first has the number 1.
+    /// A job with which an operator has replaced the rest of the job. The first has the number 1.
     #[must_use]
     pub fn played(number: u32, job: &Source) -> Self {
         Self::text(&format!("{}{number}/{}", Self::PLAYED, job.name), &job.text)
@@ -124,17 +124,17 @@ impl Attachment {
 pub struct Model {
     /// Its name, unique among the models.
     pub name: String,
-    /// The link that it moves with.
+    /// The link with which it moves.
     pub frame: String,
     /// The file: glTF 2.0 in binary form, metres, Y up.
     pub glb: Vec<u8>,
 }
 
-/// A name drawn beside a body.
+/// A name drawn next to a body.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Name {
     pub text: String,
-    /// The link that it moves with.
+    /// The link with which it moves.
     pub frame: String,
     /// Position in the frame of the link, metres.
     pub position: [f64; 3],
@@ -148,7 +148,8 @@ pub struct CellModel {
     pub names: Vec<Name>,
     /// Links that move, in the order of [`CellFrame::transforms`].
     pub links: Vec<Link>,
-    /// Fixed links, with their places in their parents. A viewer draws no link without a transform, even with a URDF.
+    /// Fixed links, with their places in their parents. A viewer draws no link without a transform, even with a
+    /// URDF.
     pub fixed: Vec<(Link, Transform)>,
     /// Names of the joints in the order of [`CellFrame::joints`].
     pub joints: Vec<String>,
@@ -181,7 +182,7 @@ pub struct CellFrame {
 }
 
 impl CellFrame {
-    /// A frame in which nothing has moved yet.
+    /// A frame without any motion yet.
     #[must_use]
     pub const fn new(tick: Tick) -> Self {
         Self { tick, transforms: [Transform::IDENTITY; MAX_LINKS], joints: [0.0; MAX_JOINTS], digest: None }
@@ -194,7 +195,7 @@ impl CellFrame {
         self
     }
 
-    /// A frame from lists; entries beyond the limits are left out.
+    /// A frame from lists. Entries beyond the limits are omitted.
     #[must_use]
     pub fn of(
         tick: Tick,
@@ -218,11 +219,11 @@ pub struct Touch {
     pub point: [f64; 3],
     /// Depth of penetration, inches.
     pub depth: f64,
-    /// The contact is not permitted by the cell description.
+    /// True if the cell description does not permit the contact.
     pub collides: bool,
 }
 
-/// Data for viewers besides the frames of the cell.
+/// Data for viewers, in addition to the frames of the cell.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Shown {
     /// The picture of the wrist camera: a PNG file.
@@ -233,7 +234,7 @@ pub enum Shown {
     View(View),
 }
 
-/// Data of a log from before the first tick.
+/// Data of a log before the first tick.
 #[derive(Clone, Debug)]
 pub struct Setup {
     /// Time of tick 0.
@@ -243,7 +244,7 @@ pub struct Setup {
     pub run: BTreeMap<String, String>,
     /// Task data, job, cell description. URDF and layout are added.
     pub attachments: Vec<Attachment>,
-    /// The cell; none with a real robot.
+    /// The cell; `None` with a real robot.
     pub cell: Option<CellModel>,
 }
 
@@ -253,14 +254,14 @@ impl Default for Setup {
     }
 }
 
-/// Data of a log from after the last tick.
+/// Data of a log after the last tick.
 #[derive(Clone, Debug, Default)]
 pub struct End {
     /// Digest of all output buffers of all ticks.
     pub digest: Option<u64>,
-    /// How the job ended, one line.
+    /// Ending of the job, one line.
     pub result: String,
-    /// Further facts of the run: real-time verdict, overruns, faults, where the parts are.
+    /// Further facts of the run: real-time verdict, overruns, faults, places of the parts.
     pub facts: BTreeMap<String, String>,
 }
 
@@ -277,10 +278,10 @@ pub(crate) struct Note {
     pub(crate) text: [u8; NOTE],
 }
 
-/// Number of entries that did not fit into the rings.
+/// Number of entries without room in the rings.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Lost {
-    /// Ticks. The run cannot be replayed across them.
+    /// Number of ticks. The run cannot be replayed across them.
     pub ticks: u64,
     pub frames: u64,
     /// Lines for `/log`.
@@ -305,7 +306,7 @@ mod tests {
     }
 
     #[test]
-    fn a_cell_that_is_too_large_is_refused() {
+    fn too_large_cell_is_refused() {
         let link = |number| Link { name: format!("link-{number}"), parent: "world".into() };
         let model = CellModel { links: (0..=MAX_LINKS).map(link).collect(), ..CellModel::default() };
         let error = model.check().unwrap_err();

@@ -1,7 +1,7 @@
 //! Openings and forces of the grippers in SI units: `/instruments`, for the curves of viewers.
 //!
-//! The statuses of the grippers have hundredths of an inch and pounds, as the manual does, and viewers cannot convert
-//! them.
+//! The statuses of the grippers have hundredths of an inch and pounds, as in the manual, which viewers cannot
+//! convert.
 
 use std::io::{Seek, Write};
 
@@ -53,7 +53,7 @@ impl InstrumentsChannel {
         Ok(Self { id: output.protobuf(INSTRUMENTS, &name, &descriptors)?, last: None })
     }
 
-    /// Write the values after a tick, if they have changed, or if they are `due`.
+    /// Write the values after a tick if they have changed or are `due`.
     pub fn write<W: Write + Seek>(
         &mut self,
         output: &mut Output<W>,

@@ -1,7 +1,7 @@
 //! All processes in one message: `/ladder`, with the command, the status and the row of each.
 //!
-//! A viewer shows it as a table. It is written when a process gets another command, reports something else, or decides
-//! another row, and repeated with the buffers.
+//! A viewer shows it as a table. It is written when the command, the report or the deciding row of a process
+//! changes, and repeated with the buffers.
 
 use std::io::{Seek, Write};
 
@@ -45,7 +45,7 @@ messages! {
     }
 }
 
-/// What must change for a new message.
+/// The data whose change causes a new message.
 #[derive(Clone, Copy, PartialEq)]
 struct Key {
     command: Option<u32>,
@@ -79,7 +79,7 @@ impl LadderChannel {
         Ok(Self { id: output.protobuf(LADDER, &name, &descriptors)?, last: Vec::new() })
     }
 
-    /// Write the state after a tick, if it has changed, or if it is `due`.
+    /// Write the state after a tick if it has changed or is `due`.
     pub fn write<W: Write + Seek>(
         &mut self,
         output: &mut Output<W>,
@@ -141,7 +141,7 @@ mod tests {
     }
 
     #[test]
-    fn points_alone_make_no_message() {
+    fn points_alone_cause_no_message() {
         let key = |memory: &CommonMemory| Key::of(ProcessId::T3i, &HwsCommand::default(), memory);
         let before = CommonMemory::default();
         let mut after = before;

@@ -1,6 +1,6 @@
 //! The layout of byte images: the position of each field, the text of a value, and the version of the whole layout.
 //!
-//! [`rcs_core::reflect`] walks the schemas; a [`Leaf`] is one field of it that is kept.
+//! [`rcs_core::reflect`] walks the schemas; a [`Leaf`] is one field that is kept.
 
 use std::{fmt::Write as _, sync::LazyLock};
 
@@ -12,7 +12,7 @@ use rcs_core::{
     reflect::{self, Value},
 };
 
-/// A field that is not made of other fields: its position in the image and its schema.
+/// A field without inner fields: its position in the image and its schema.
 #[derive(Clone, Debug)]
 pub struct Leaf {
     /// Names from the outermost record inwards, joined by dots; array elements in brackets:
@@ -20,7 +20,7 @@ pub struct Leaf {
     pub path: String,
     /// First byte in the image.
     pub offset: usize,
-    /// Bytes in the image. Only the first one of an option or a union that has other leaves.
+    /// Number of bytes in the image. For an option or a union with other leaves, only the first byte.
     pub size: usize,
     pub schema: &'static Schema,
     /// Bytes with their value in each image that holds the leaf: flags of options, codes of variants.
@@ -28,13 +28,13 @@ pub struct Leaf {
 }
 
 impl Leaf {
-    /// The bytes of the field in `image`; none if the image is too short.
+    /// The bytes of the field in `image`; empty if the image is too short.
     #[must_use]
     pub fn bytes<'a>(&self, image: &'a [u8]) -> &'a [u8] {
         image.get(self.offset..).and_then(|rest| rest.get(..self.size)).unwrap_or_default()
     }
 
-    /// True if the value to which the field belongs is in `image`.
+    /// True if `image` contains the value to which the field belongs.
     #[must_use]
     pub fn is_in(&self, image: &[u8]) -> bool {
         self.given.iter().all(|(at, byte)| image.get(*at) == Some(byte))
@@ -47,8 +47,9 @@ impl Leaf {
         if self.is_in(image) { value.to_string() } else { reflect::NONE.to_owned() }
     }
 
-    /// The field holds a record number of the task data. A record has another number when something is added before it,
-    /// and means the same: runs with different task data are compared without these fields, by names and results.
+    /// True if the field is a record number of the task data. Added data change the numbers of later records
+    /// but not their meaning, so runs with different task data are compared without these fields, by names and
+    /// results.
     #[must_use]
     pub fn is_record_number(&self) -> bool {
         let number = match self.schema {
@@ -101,18 +102,18 @@ pub fn leaves_of(fields: &'static [FieldSchema]) -> Vec<Leaf> {
     found
 }
 
-/// A stretch of an image that changes as a whole.
+/// A range of an image that changes as a whole.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Piece {
     /// First byte in the image.
     pub offset: usize,
     pub size: usize,
-    /// It is a number of at most eight bytes, which changes by a difference.
+    /// True for a number of at most eight bytes, which changes by a difference.
     pub number: bool,
 }
 
-/// The pieces of a record: each byte of its image is in one of them. The payloads of the variants of a union share the
-/// same bytes, so they are one piece.
+/// The pieces of a record, which together contain each byte of its image once. The payloads of the variants of
+/// a union share the same bytes, so they are one piece.
 #[must_use]
 pub fn pieces(record: &'static StructSchema) -> Vec<Piece> {
     let mut found = Vec::new();
@@ -157,12 +158,12 @@ pub fn first_difference<'a>(leaves: &'a [Leaf], was: &[u8], is: &[u8]) -> Option
         return None;
     }
     let differ = |leaf: &&Leaf| leaf.differs(was, is);
-    // Bytes that no value holds differ only between images that were not encoded.
+    // Bytes without a value differ only between images that were not encoded.
     leaves.iter().find(differ).or_else(|| leaves.iter().find(|leaf| leaf.bytes(was) != leaf.bytes(is)))
 }
 
-/// The layout of a record for people and for the version: a line a leaf with its offset, size, kind and path,
-/// and a line for each enum and union with its codes.
+/// The layout of a record for readers and for the version: one line per leaf with its offset, size, kind and
+/// path, and one line per enum and union with its codes.
 #[must_use]
 pub fn describe(name: &str, record: &'static StructSchema) -> String {
     let mut lines = format!("{name}: {}, {} bytes\n", record.name, record.size());
@@ -181,11 +182,11 @@ pub fn describe(name: &str, record: &'static StructSchema) -> String {
     lines + &definitions.concat()
 }
 
-/// How images are written on `/replay`: see [`crate::delta`]. Logs of another format are refused as those of
+/// Format of the images on `/replay`: see [`crate::delta`]. Logs of another format are refused like those of
 /// another layout.
 const FORMAT: &str = "format 2: differences by field\n";
 
-/// The layout of all images of a log: the text that goes into each log, and from which the version is made.
+/// The layout of all images of a log: a text in each log, from which the version is computed.
 #[must_use]
 pub fn description() -> &'static str {
     static DESCRIPTION: LazyLock<String> = LazyLock::new(|| {
@@ -209,7 +210,7 @@ pub fn interface_version() -> String {
     digest.to_string()
 }
 
-/// Version of the layout: a digest of [`description`], so that it changes if, and only if, the meaning of an image
+/// Version of the layout: a digest of [`description`], which changes if, and only if, the meaning of an image
 /// changes.
 #[must_use]
 pub fn version() -> String {
@@ -278,7 +279,7 @@ mod tests {
     }
 
     #[test]
-    fn each_name_of_a_record_number_is_that_of_a_field() {
+    fn every_record_number_name_matches_a_field() {
         let all: Vec<Leaf> =
             [CommonMemory::STRUCT, LadderState::STRUCT].into_iter().flat_map(leaves).collect();
         for name in RECORD_NUMBERS {
@@ -301,7 +302,7 @@ mod tests {
     }
 
     #[test]
-    fn leaves_cover_every_byte_and_have_paths_of_their_own() {
+    fn leaves_cover_every_byte_and_have_unique_paths() {
         for record in [ExternalInputs::STRUCT, CommonMemory::STRUCT, LadderState::STRUCT, Order::STRUCT] {
             let (leaves, mut covered) = (leaves(record), vec![false; record.size()]);
             for (at, leaf) in leaves.iter().enumerate() {
@@ -313,7 +314,7 @@ mod tests {
     }
 
     #[test]
-    fn a_difference_names_its_field() {
+    fn difference_names_its_field() {
         let was = CommonMemory::default();
         let mut is = was;
         is.prim.poses[2].pose.tool[1] = -7145;
@@ -326,7 +327,7 @@ mod tests {
     }
 
     #[test]
-    fn values_read_as_people_write_them() {
+    fn values_have_readable_text() {
         assert_eq!(value_text(&Schema::I16, &[0xFE, 0xFF]), "-2");
         assert_eq!(value_text(&Schema::U32, &[0, 0, 0, 0x80]), "2147483648");
         assert_eq!(value_text(&Schema::F64, &0.25_f64.to_le_bytes()), "0.25");
@@ -340,7 +341,7 @@ mod tests {
     }
 
     #[test]
-    fn a_value_that_is_absent_is_none() {
+    fn absent_value_is_none() {
         let told = |order: &Order| {
             let found = texts(Order::STRUCT, order);
             found.iter().map(|(path, text)| format!("{path} {text}")).collect::<Vec<_>>()
@@ -372,7 +373,7 @@ mod tests {
     }
 
     #[test]
-    fn leaves_stand_at_their_bytes() {
+    fn leaves_have_the_offsets_of_their_bytes() {
         let expected = [
             1, 7, 0, // number
             1, 1, // phase
@@ -388,9 +389,9 @@ mod tests {
         );
     }
 
-    /// The bytes of a variant that is not there are no difference.
+    /// Bytes of an inactive variant are not a difference.
     #[test]
-    fn a_difference_is_one_of_the_variant_that_is_there() {
+    fn difference_is_in_the_active_variant() {
         let (was, leaves) = (Order { to: Goal::Kind(1), ..Order::default() }, leaves(Order::STRUCT));
         let first = |is: &Order| {
             let (was, is) = (image(&was), image(is));
@@ -405,7 +406,7 @@ mod tests {
     }
 
     #[test]
-    fn the_description_tells_what_a_union_carries() {
+    fn description_lists_the_payloads_of_a_union() {
         let text = describe("order", Order::STRUCT);
         let expected = "\
 order: Order, 31 bytes

@@ -1,4 +1,4 @@
-//! The record of a run: an MCAP file that shows the moving cell in any viewer and is a test at the same time.
+//! The record of a run: an MCAP file that shows the moving cell in any viewer and is also a test.
 //!
 //! ```text
 //!  tick ──copy──> ring ──> writer thread ──> file.mcap ──> viewers
@@ -6,18 +6,17 @@
 //!                              difference <── replay ──> Ladder
 //! ```
 //!
-//! * [`recorder`]: what the run calls. Nothing there allocates or waits in a real-time run.
-//! * [`writer`]: what a log holds, and how it gets into the file.
-//! * [`reader`]: reads a log back, also one whose program was killed.
+//! * [`recorder`]: the interface for the run. It neither allocates nor waits in a real-time run.
+//! * [`writer`]: the content of a log, and its path into the file.
+//! * [`reader`]: reads a log, also that of a killed program.
 //! * [`mod@replay`]: runs the control processes on the recorded inputs and compares every output buffer of every
 //!   tick, bit for bit.
 //! * [`views`], [`ladder`], [`instruments`], [`rows`]: the state of the run for viewers.
-//! * [`explanation`]: tables and reasons, so that a log explains itself.
-//! * [`layout`], [`delta`]: byte images, and what changed in them.
+//! * [`explanation`]: tables and reasons, with which a log explains itself.
+//! * [`layout`], [`delta`]: byte images and their differences.
 //! * [`proto`]: the messages of the channels.
 //!
-//! The log of a run in fast clock has no wall-clock time in it: the same run writes the same file, to the
-//! byte.
+//! The log of a run in fast clock contains no wall-clock time: the same run writes the same bytes.
 
 #![forbid(unsafe_code)]
 #![cfg_attr(

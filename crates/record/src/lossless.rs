@@ -24,9 +24,9 @@ use crate::{
 /// Field numbers of the message on [`REPLAY`].
 pub mod replay_field {
     pub const TICK: u32 = 1;
-    /// Ticks that are missing before this one.
+    /// Number of missing ticks before this one.
     pub const GAP: u32 = 2;
-    /// The images are differences from zeros, not from the message before.
+    /// True if the images are differences from zeros, not from the previous message.
     pub const FULL: u32 = 3;
     /// Inputs of the tick.
     pub const EXTERNAL: u32 = 4;
@@ -37,7 +37,7 @@ pub mod replay_field {
     /// Fingerprint of the simulated cell before the tick.
     pub const WORLD: u32 = 7;
     pub const CONTROLLER_NS: u32 = 8;
-    /// Slots of the 40 ms grid that were skipped so far.
+    /// Number of slots of the 40 ms grid skipped so far.
     pub const SKIPPED: u32 = 9;
 }
 
@@ -73,7 +73,7 @@ impl Images {
 
 pub(crate) struct Lossless {
     channel: u16,
-    /// Messages of the second that is not over.
+    /// Messages of the present second.
     second: Vec<(Tick, Vec<u8>)>,
     codecs: Codecs,
     zeros: Images,
@@ -85,8 +85,8 @@ impl Lossless {
         Ok(Self { channel, second: Vec::new(), codecs: Codecs::new(), zeros: Images::zeros() })
     }
 
-    /// Note the message of a tick with its images, `now`, as a difference from those of the tick before, `last`, or from
-    /// zeros if it is `full`.
+    /// Store the message of a tick with its images, `now`, as a difference from those of the previous tick,
+    /// `last`, or from zeros if it is `full`.
     pub fn note<W: Write + Seek>(
         &mut self,
         output: &mut Output<W>,

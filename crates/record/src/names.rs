@@ -1,4 +1,4 @@
-//! Names in the file: of its metadata, topics and keys, and words with which lines begin.
+//! Names in the file: of its metadata, topics and keys, and beginnings of lines.
 
 /// Name of the metadata written at the start.
 pub const RUN: &str = "rcs-run";
@@ -9,9 +9,9 @@ pub const LAYOUT: &str = "layout";
 /// Topic of the byte images.
 pub const REPLAY: &str = "/replay";
 pub const LOG_TOPIC: &str = "/log";
-/// Begin of the line on `/log` that names the log before this one.
+/// Beginning of the line on `/log` that names the previous log.
 pub(crate) const EARLIER: &str = "the ticks before this one are in ";
-/// Begin of the result of a log after which the run began another one.
+/// Beginning of the result of a log that the run continues in another one.
 pub(crate) const CONTINUES: &str = "the run continues at tick ";
-/// Key of the metadata: how the run ended.
+/// Key of the metadata: the ending of the run.
 pub(crate) const RESULT: &str = "result";

@@ -17,7 +17,7 @@ pub enum Part {
     Later {
         /// The first tick of the log.
         begin: Tick,
-        /// The earlier logs of the run, as far as they are known.
+        /// The earlier logs of the run, as far as known.
         before: Before,
     },
     /// The log has the first ticks, and the run continues in another log.
@@ -41,8 +41,8 @@ pub enum Before {
 }
 
 impl Log {
-    /// The place of this log in a run that wrote several logs; `None` if the log has its run from the first tick to the
-    /// end, or to where the program was killed.
+    /// The place of this log in a run that wrote several logs; `None` if the log has its run from the first
+    /// tick to the end, or to the moment at which the program was killed.
     #[must_use]
     pub fn part(&self) -> Option<Part> {
         let begin = self.first_tick()?;
@@ -58,7 +58,7 @@ impl Log {
         self.messages(REPLAY).next().map(|(tick, _)| tick)
     }
 
-    /// Path of the log before this one, in the same directory.
+    /// Path of the previous log, in the same directory.
     fn earlier(&self) -> Option<PathBuf> {
         let name = self.lines().find_map(|line| line.text.strip_prefix(EARLIER).map(str::to_owned))?;
         // A name in a log must not lead out of the directory.
@@ -66,7 +66,7 @@ impl Log {
         is_name.then(|| self.path().with_file_name(name))
     }
 
-    /// Follow the logs before this one to the first one. Each must begin earlier, so that the search ends.
+    /// Follow the earlier logs to the first one. Each must begin earlier, so that the search ends.
     fn before(&self, mut begin: Tick) -> Before {
         let Some(mut path) = self.earlier() else { return Before::Damaged };
         loop {

@@ -1,16 +1,17 @@
 //! Splits a log file, which may be damaged, into pieces.
 //!
-//! Every length in the file is checked against the size of the file before it is used. An unreadable piece ends at the
-//! next readable record: a chunk or an attachment with the right checksum, or metadata of this program. The total of
-//! decompressed bytes is limited in proportion to the size of the file, and with it memory and time of reading.
+//! Every length in the file is checked against the size of the file before use. An unreadable piece ends at the
+//! next readable record: a chunk or an attachment with the right checksum, or metadata of this program. The
+//! total of decompressed bytes, and with it memory and time of reading, is limited in proportion to the size of
+//! the file.
 //!
-//! Logs that other programs have written again are read, too: with other compressions, without chunks, or without
-//! checksums. Damage in a part without a checksum may go unnoticed.
+//! Logs that other programs have rewritten are also read: with other compressions, without chunks, or without
+//! checksums. Damage in a part without a checksum may remain undetected.
 //!
-//! A whole file has at its end the right checksums of all its chunks and of the index after them: then no chunk needs
-//! to be decompressed before it is read, and the index says which chunks have messages of a channel. Otherwise each
-//! chunk has to show by its own checksum that it is readable. All processors check the first chunks ahead; what they
-//! decompress for it is not kept: decompressing it again takes no longer than fetching it from memory that is not in
+//! A whole file has at its end the right checksums of all its chunks and of the index after them. Its chunks
+//! are then decompressed only when read, and the index lists the chunks with messages of a channel. Otherwise
+//! each chunk must prove by its own checksum that it is readable. All processors check the first chunks ahead.
+//! The decompressed data are not kept: decompressing them again is as fast as fetching them from memory outside
 //! the caches.
 
 use std::{collections::BTreeMap, io::Read as _, iter, ops::Range, thread};
@@ -26,8 +27,8 @@ use crate::names::{END, RUN};
 
 /// Size of a record's header, bytes: operation code and length.
 const HEAD: usize = 9;
-/// Largest decompressed size of a chunk, bytes: the recorder closes a chunk at a quarter of a megabyte. Other programs
-/// write chunks of some tens of megabytes.
+/// Largest decompressed size of a chunk, bytes. The recorder closes a chunk at a quarter of a megabyte; other
+/// programs write chunks of some tens of megabytes.
 const CHUNK: u64 = 64 << 20;
 /// Messages outside chunks are read in parts of about this size, bytes.
 const LOOSE: usize = 1 << 18;
@@ -42,13 +43,13 @@ const AHEAD: u64 = 64 << 20;
 const FOOTER: usize = 20;
 /// Size of a checksum, bytes.
 const CHECKSUM: usize = 4;
-/// Size of what stands before the data of a message, bytes: channel, number, and two times.
+/// Size of the data before those of a message, bytes: channel, number, and two times.
 const MESSAGE_HEAD: usize = 22;
 
-/// Why a part of the file cannot be read.
+/// Why a part of the file is unreadable.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum Damage {
-    /// Its bytes are no record, or have a wrong checksum.
+    /// Its bytes are not a record, or have a wrong checksum.
     #[error("damaged")]
     Bytes,
     /// A chunk in a compression that this program does not have.
@@ -61,11 +62,11 @@ pub enum Damage {
 
 pub enum Piece<'a> {
     Record(Record<'a>),
-    /// A chunk, including its record header, and the channels and schemas in it. That of a whole file is not
-    /// decompressed here: its channels and schemas stand after its data, too.
+    /// A chunk, including its record header, with its channels and schemas. A whole file has these after its
+    /// data too, so its chunks are not decompressed here.
     Chunk(Range<usize>, Vec<Record<'static>>),
     Loose(Range<usize>),
-    /// The chunk before has messages of a channel.
+    /// The previous chunk has messages of this channel.
     Index(u16),
     /// Unreadable bytes.
     Damaged(Range<usize>, Damage),
@@ -87,7 +88,7 @@ impl<'a> Pieces<'a> {
     /// The pieces of a file that begins with the magic of MCAP.
     ///
     /// # Errors
-    /// [`McapError::BadMagic`] if it does not.
+    /// [`McapError::BadMagic`] for another beginning.
     pub fn new(bytes: &'a [u8]) -> McapResult<Self> {
         if !bytes.starts_with(MAGIC) {
             return Err(McapError::BadMagic);
@@ -100,7 +101,7 @@ impl<'a> Pieces<'a> {
         Ok(Self { bytes, is_whole, at, left, decoder, ahead })
     }
 
-    /// The file has the right checksums at its end, and its channels and schemas stand there, too.
+    /// True if the file has the right checksums at its end, with its channels and schemas.
     pub const fn is_whole(&self) -> bool {
         self.is_whole
     }
@@ -143,7 +144,7 @@ impl<'a> Pieces<'a> {
         Some(())
     }
 
-    /// The next position from `from` at which a record certainly begins; the end of the file if there is none.
+    /// The next position from `from` at which a record certainly begins, or the end of the file.
     fn next_good(&mut self, from: usize) -> usize {
         let bytes = self.bytes;
         let surely = |piece: &Piece<'_>| match piece {
@@ -193,7 +194,7 @@ fn loose_end(bytes: &[u8], from: usize) -> usize {
     row.last().map_or(from, |(.., end)| end)
 }
 
-/// Why a whole chunk cannot be read, and its end; `None` if no chunk begins there, or its head is damaged.
+/// Why a whole chunk is unreadable, and its end; `None` if no chunk begins there, or its head is damaged.
 fn unreadable(bytes: &[u8], at: usize) -> Option<(Damage, usize)> {
     let (opcode, end) = frame(bytes, at).filter(|(opcode, _)| *opcode == op::CHUNK)?;
     // A damaged length of a chunk must not hide what follows it.
@@ -205,10 +206,11 @@ fn unreadable(bytes: &[u8], at: usize) -> Option<(Damage, usize)> {
     }
 }
 
-/// True if the file ends with the right checksums of its data and of what stands after them, and its channels and
-/// schemas stand there, too; `None` if it has no such end.
+/// True if the file ends with the right checksums of its data and of its summary, which has its channels and
+/// schemas; `None` without such an end.
 fn is_whole(bytes: &[u8]) -> Option<bool> {
-    // Footer: begin of the summary, begin of its offsets, checksum of the summary and of the footer up to here.
+    // Footer: beginning of the summary, beginning of its offsets, checksum of the summary and of the footer up
+    // to here.
     let footer = bytes.len().checked_sub(HEAD + FOOTER + MAGIC.len())?;
     let (opcode, end) = frame(bytes, footer)?;
     if opcode != op::FOOTER || bytes.get(end..) != Some(MAGIC) {
@@ -259,7 +261,7 @@ fn ahead(bytes: &[u8]) -> BTreeMap<usize, Option<Vec<Record<'static>>>> {
     })
 }
 
-/// Decompressed size of a chunk, given with its record header, as it says.
+/// Decompressed size of a chunk according to its record header.
 fn chunk_size(chunk: &[u8]) -> Option<u64> {
     chunk.get(HEAD..)?.get(16..24)?.try_into().map(u64::from_le_bytes).ok()
 }
@@ -301,7 +303,7 @@ impl<'a> Message<'a> {
     }
 }
 
-/// Time of the first message of a chunk, which is given with its record header, as it says: nanoseconds since 1970.
+/// Time of the first message of a chunk according to its record header, nanoseconds since 1970.
 pub fn chunk_begin(chunk: &[u8]) -> Option<u64> {
     chunk.get(HEAD..)?.first_chunk().map(|begin| u64::from_le_bytes(*begin))
 }
@@ -321,7 +323,7 @@ pub fn messages(records: &[u8]) -> impl Iterator<Item = Message<'_>> {
     })
 }
 
-/// Operation code and end of a record that would begin at a position; `None` if it would be longer than the file.
+/// Operation code and end of a record at a position; `None` if it would be longer than the file.
 fn frame(bytes: &[u8], at: usize) -> Option<(u8, usize)> {
     let head = bytes.get(at..at.checked_add(HEAD)?)?;
     let (opcode, length) = head.split_first()?;
@@ -330,7 +332,8 @@ fn frame(bytes: &[u8], at: usize) -> Option<(u8, usize)> {
     (end <= bytes.len()).then_some((*opcode, end))
 }
 
-/// Begin, operation code and end of the records from a position on, up to one that would be longer than the file.
+/// Begin, operation code and end of the records from a position on, up to one that would be longer than the
+/// file.
 fn frames(bytes: &[u8], from: usize) -> impl Iterator<Item = (usize, u8, usize)> {
     let mut at = from;
     iter::from_fn(move || {
@@ -339,7 +342,7 @@ fn frames(bytes: &[u8], from: usize) -> impl Iterator<Item = (usize, u8, usize)>
     })
 }
 
-/// Parse a record of a kind that is used; of others keep only the bytes. The library allocates memory for a text before
+/// Parse a record of a used kind; keep only the bytes of others. The library allocates memory for a text before
 /// it checks the length, so the lengths are checked here.
 fn parse(opcode: u8, body: &[u8]) -> Option<Record<'_>> {
     match opcode {
@@ -388,7 +391,7 @@ enum Compression {
 }
 
 impl<'a> Packed<'a> {
-    /// The content of a chunk, which is given with its record header.
+    /// The content of a chunk with its record header.
     fn of(chunk: &'a [u8]) -> Result<Self, Damage> {
         let (size, checksum, name, records) = Self::fields(chunk).ok_or(Damage::Bytes)?;
         let compression = match name {
@@ -421,7 +424,7 @@ pub struct Decoder {
 }
 
 impl Decoder {
-    /// The records of a chunk, which is given with its record header.
+    /// The records of a chunk with its record header.
     ///
     /// `None` if the chunk cannot be decompressed, or its checksum is wrong.
     pub fn unpack<'a>(&'a mut self, chunk: &'a [u8]) -> Option<&'a [u8]> {
@@ -435,7 +438,7 @@ impl Decoder {
                 records = &self.records;
             }
             Compression::Lz4 => {
-                // One byte more than the size: a chunk that is longer than it says is damaged.
+                // One byte more than the size: a chunk that is longer than stated is damaged.
                 let limit = u64::try_from(size).ok()?.saturating_add(1);
                 FrameDecoder::new(records).take(limit).read_to_end(&mut self.records).ok()?;
                 records = &self.records;

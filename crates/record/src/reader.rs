@@ -1,9 +1,9 @@
 //! Reads a log, which may be incomplete or damaged.
 //!
-//! A killed program leaves a file without an end, possibly with an incomplete record; a file can be damaged anywhere.
-//! Everything that is readable is read ([`crate::pieces`]). Images are differences, so after a damaged chunk the ticks
-//! continue with the next whole images, which the recorder writes once a second. Missing parts are reported, and are
-//! not an error.
+//! A killed program leaves a file without an end, possibly with an incomplete record, and a file can be damaged
+//! anywhere. All readable data are read ([`crate::pieces`]). Images are differences, so after a damaged chunk
+//! the ticks continue with the next whole images, which the recorder writes once per second. Missing parts are
+//! reported, but are not an error.
 
 use std::{
     borrow::Borrow,
@@ -50,17 +50,17 @@ pub struct Log {
     described: Described,
     /// Metadata of the start: facts of the run.
     pub run: BTreeMap<String, String>,
-    /// Metadata of the end: how the run ended; `None` if the program was killed.
+    /// Metadata of the end: the ending of the run; `None` if the program was killed.
     pub end: Option<BTreeMap<String, String>>,
     /// Files attached to the log, in order.
     pub attachments: Vec<Attachment>,
-    /// True if the file has its end. If not, up to a second before the end of the run is missing.
+    /// True if the file has its end. Otherwise up to the last second of the run is missing.
     pub complete: bool,
 }
 
 /// A part of the file with messages.
 enum Segment {
-    /// A chunk with the channels of its messages; none if they are not known for sure.
+    /// A chunk with the channels of its messages; an empty list if they are uncertain.
     Chunk(Range<usize>, Vec<u16>),
     Loose(Range<usize>),
     Damaged(Range<usize>, Damage),
@@ -90,12 +90,11 @@ pub struct LogLine {
     pub level: Level,
     pub source: String,
     pub text: String,
-    /// Code of the event, such as `cell.dropped`, or source file of the decision table; empty for neither.
+    /// Code of the event, such as `cell.dropped`, or source file of the decision table; empty without both.
     pub code: String,
 }
 
 impl Log {
-    /// Read a log, also an incomplete or damaged one.
     ///
     /// # Errors
     /// [`ReadError`] if the file is not a log. The layout is not checked: see [`Log::check_layout`].
@@ -114,7 +113,7 @@ impl Log {
     /// A log from the bytes of a file; `path` names it in errors.
     ///
     /// # Errors
-    /// As [`Log::open`].
+    /// The errors of [`Log::open`].
     pub fn from_bytes(path: &Path, bytes: Vec<u8>) -> Result<Self, ReadError> {
         let mut log = Self {
             path: path.to_owned(),
@@ -188,7 +187,7 @@ impl Log {
         ReadError::NotMcap { path: self.path.clone(), source }
     }
 
-    /// The damaged parts of the file, as text; `None` if there are none.
+    /// The damaged parts of the file, as text, if any.
     #[must_use]
     pub fn damage(&self) -> Option<String> {
         let damaged = |segment: &Segment| match segment {
@@ -237,12 +236,12 @@ impl Log {
         iter::from_fn(move || ticks.advance().map(|read| read.map(|(_, logged)| logged.clone())))
     }
 
-    /// The number of parts of the file with messages, about two for a second of the run.
+    /// The number of parts of the file with messages, about two per second of the run.
     pub(crate) const fn parts(&self) -> usize {
         self.segments.len()
     }
 
-    /// The recorded ticks from a part of the file on: those from its first whole images on.
+    /// The recorded ticks from the first whole images in a part of the file on.
     pub(crate) fn ticks_from<C: Borrow<Codecs>>(
         &self,
         first: usize,
@@ -306,13 +305,13 @@ impl Log {
         fixed.chain(self.messages(TF)).map(|(tick, data)| (tick, foxglove::take_transforms(&data)))
     }
 
-    /// Pass the channels to a tap; a channel without its schema is left out.
+    /// Pass the channels to a tap, except those without a schema.
     pub fn tell_channels(&self, tap: &mut dyn Tap) {
         self.described.tell(tap);
     }
 
-    /// Pass all messages to a tap, in the order of their times. `before` gets the time of each message before it is
-    /// passed, nanoseconds since 1970, and may wait.
+    /// Pass all messages to a tap, in the order of their times. `before` receives the time of each message
+    /// before it is passed, nanoseconds since 1970, and may wait.
     pub fn play(&self, tap: &mut dyn Tap, mut before: impl FnMut(u64)) {
         let mut decoder = Decoder::default();
         let mut waiting: Vec<(u64, u16, Vec<u8>)> = Vec::new();
@@ -329,7 +328,7 @@ impl Log {
         }
     }
 
-    /// For each part of the file, the time of the first message after it: nanoseconds since 1970.
+    /// For each part of the file, the time of the next message after it: nanoseconds since 1970.
     fn next_times(&self) -> Vec<u64> {
         let begins = self.segments.iter().rev().map(|segment| self.begin(segment));
         let mut times: Vec<u64> = begins
@@ -344,8 +343,8 @@ impl Log {
         self.items(topic, 0).filter_map(|(_, message)| message)
     }
 
-    /// The messages of a topic from a part of the file on, with their ticks, and `None` where the file is damaged; each
-    /// with the number of its part.
+    /// The messages of a topic from a part of the file on, with their ticks, and `None` at damage; each with
+    /// the number of its part.
     fn items(&self, topic: &str, first: usize) -> impl Iterator<Item = Item> + use<'_> {
         let id = self.channels.get(topic).copied();
         let mut decoder = Decoder::default();
@@ -359,7 +358,7 @@ impl Log {
                 }
                 Segment::Chunk(..) | Segment::Loose(_) => {}
             }
-            // Whether a chunk of a whole file can be read shows only here.
+            // Only here it becomes known whether a chunk of a whole file is readable.
             let Some(messages) = self.messages_in(segment, &mut decoder) else { return vec![(part, None)] };
             let of_topic = messages.filter(|message| Some(message.channel) == id);
             let item = |message: Message<'_>| (Tick(u64::from(message.sequence)), message.data.to_vec());
@@ -367,7 +366,7 @@ impl Log {
         })
     }
 
-    /// The messages of a chunk; `None` if it cannot be read, and for a damaged part.
+    /// The messages of a chunk; `None` for an unreadable or damaged part.
     fn messages_in<'a>(
         &'a self,
         segment: &Segment,
@@ -393,7 +392,7 @@ impl Log {
     }
 }
 
-/// A message with its tick, `None` where the file is damaged, and the number of its part of the file.
+/// A message with its tick, or `None` at damage, and the number of its part of the file.
 type Item = (usize, Option<(Tick, Vec<u8>)>);
 
 /// Reads the recorded ticks of a log.
@@ -401,7 +400,7 @@ pub(crate) struct Ticks<C, I> {
     items: I,
     codecs: C,
     last: LoggedTick,
-    /// The differences of the next message are to the last tick.
+    /// True if the last tick can be the base of the next message's differences.
     has_base: bool,
 }
 
@@ -437,7 +436,7 @@ fn is_full(data: &[u8]) -> bool {
     })
 }
 
-/// Apply the message of the next tick to the last tick; false if the message does not fit.
+/// Apply the message of the next tick to the last tick. Returns false if the message does not fit.
 fn advance(codecs: &Codecs, last: &mut LoggedTick, data: &[u8]) -> bool {
     let (mut full, mut sound) = (false, true);
     (last.state, last.world, last.timing) = (None, None, None);

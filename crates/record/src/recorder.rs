@@ -1,14 +1,14 @@
 //! The run's side of the log: a bounded ring buffer, and a thread that writes its entries into the file.
 //!
-//! In a tick the recorder copies three records into memory that was allocated before the first tick. It allocates
-//! nothing, and in a real-time run it never waits: if the ring is full, the tick is counted as lost, and the count is
-//! recorded with the next tick that has room. In a run in fast clock the recorder waits instead, and loses no tick.
+//! In a tick the recorder copies three records into memory that was allocated before the first tick. It does
+//! not allocate, and in a real-time run it never waits: if the ring is full, the tick is counted as lost, and
+//! the next recorded tick has the count. In a run in fast clock the recorder waits instead, and loses no tick.
 //!
-//! The writer thread ends at the first error. The ring then has no reader, and the recorder returns at once from every
-//! call. [`Recorder::finish`] returns the error: a full disk ends the log, never the run.
+//! The writer thread ends at the first error. The ring then has no reader, and every call of the recorder
+//! returns at once. [`Recorder::finish`] returns the error: a full disk ends the log, never the run.
 //!
-//! Start a recorder before the thread of the ticks gets its real-time priority: the writer inherits the priority of the
-//! calling thread.
+//! Start a recorder before the thread of the ticks gets its real-time priority, because the writer inherits the
+//! priority of the calling thread.
 
 use std::{
     path::{Path, PathBuf},
@@ -35,10 +35,10 @@ use crate::{
     writer::{FULL_SET, LogWriter, TickRecord, Timing, Written},
 };
 
-/// Capacity of the ring, ticks: 40 s of real time. In fast clock, while the cell is at rest, a tick is shorter than the
-/// time that the writer takes for it; a run that has to wait for the writer goes on with cold caches.
+/// Capacity of the ring, ticks: 40 s of real time. In fast clock, while the cell is at rest, the writer takes
+/// longer for a tick than the run; a run that has to wait for the writer continues with cold caches.
 const RING: usize = 1024;
-/// Capacity of the ring of states, which are written once a second.
+/// Capacity of the ring of states, which are written once per second.
 const STATE_RING: usize = 64;
 /// Capacity of the ring of notes.
 const NOTE_RING: usize = 1024;
@@ -54,13 +54,13 @@ const OPERATOR_RING: usize = 256;
 /// Behaviour when the ring is full.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Pace {
-    /// The run waits: for runs in fast clock.
+    /// For runs in fast clock: the run waits.
     Wait,
-    /// The tick is not recorded, but counted: for runs in real time.
+    /// For runs in real time: the tick is counted, but not recorded.
     Drop,
 }
 
-/// The first part of a text that fits, in whole characters.
+/// The longest beginning of a text that fits, in whole characters.
 fn clipped<const N: usize>(text: &str) -> [u8; N] {
     let mut end = text.len().min(N);
     while !text.is_char_boundary(end) {
@@ -98,7 +98,7 @@ pub struct Summary {
     pub lost: Lost,
     /// Size of the file, bytes.
     pub bytes: u64,
-    /// Number of logs of this run that ended before because of their size.
+    /// Number of logs of this run that ended earlier because of their size.
     pub earlier: usize,
 }
 
@@ -106,13 +106,13 @@ impl Recorder {
     /// Claim a file, creating its directory if necessary, and start the writer.
     ///
     /// # Errors
-    /// As [`LogFile::claim`] and [`Recorder::start_in`].
+    /// The errors of [`LogFile::claim`] and [`Recorder::start_in`].
     pub fn start(path: &Path, pace: Pace, setup: Setup) -> Result<Self, RecordError> {
         Self::start_in(LogFile::claim(path)?, pace, setup, None, None)
     }
 
-    /// Empty the file and start the writer. A tap gets the same messages as the file. With a limit, the run writes
-    /// several logs one after the other.
+    /// Empty the file and start the writer. A tap receives the same messages as the file. With a limit, the run
+    /// writes several logs one after the other.
     ///
     /// # Errors
     /// [`RecordError`] if the file cannot be emptied, or its header cannot be written.
@@ -179,17 +179,17 @@ impl Recorder {
         })
     }
 
-    /// Record the cell; call it before [`Recorder::tick`] of the same tick.
+    /// Record the cell. Call it before [`Recorder::tick`] of the same tick.
     pub fn cell(&mut self, frame: &CellFrame) {
         if !has_room(&self.cells, self.pace) || self.cells.push(*frame).is_err() {
             self.lost.frames += 1;
         }
     }
 
-    /// Record a line for `/log` about an event; call it before [`Recorder::tick`] of the same tick.
+    /// Record a line for `/log` about an event. Call it before [`Recorder::tick`] of the same tick.
     ///
-    /// The writer takes a note only when it reaches the note's tick. So this call must not wait for room: it could wait
-    /// forever.
+    /// The writer reads a note only when it reaches the note's tick. This call must therefore not wait for
+    /// room: it could wait forever.
     pub fn note(&mut self, tick: Tick, level: Level, source: &str, code: &'static str, text: &str) {
         let note = Note { tick, level, source: clipped(source), code, text: clipped(text) };
         if !has_room(&self.notes, Pace::Drop) || self.notes.push(note).is_err() {
@@ -197,37 +197,37 @@ impl Recorder {
         }
     }
 
-    /// Record a file of the run, such as a reload of task data; call it before [`Recorder::tick`] of the tick from
-    /// which it is valid. The caller allocates the file outside the tick.
+    /// Record a file of the run, such as a reload of task data. Call it before [`Recorder::tick`] of the tick
+    /// from which it is valid. The caller allocates the file outside the tick.
     pub fn attach(&mut self, tick: Tick, attachment: Attachment) {
         if !has_room(&self.files, self.pace) || self.files.push((tick, attachment)).is_err() {
             self.lost.files += 1;
         }
     }
 
-    /// Record data for viewers; call it before [`Recorder::tick`] of the same tick.
+    /// Record data for viewers. Call it before [`Recorder::tick`] of the same tick.
     pub fn show(&mut self, tick: Tick, shown: Shown) {
         if !has_room(&self.shown, Pace::Drop) || self.shown.push((tick, shown)).is_err() {
             self.lost.shown += 1;
         }
     }
 
-    /// Record a request of an operator; call it before [`Recorder::tick`] of the first tick that sees it. The caller
-    /// allocates the text outside the tick.
+    /// Record an operator's request. Call it before [`Recorder::tick`] of the first tick with its effect. The
+    /// caller allocates the text outside the tick.
     pub fn operator(&mut self, line: OperatorLine) {
         if !has_room(&self.operators, Pace::Drop) || self.operators.push(line).is_err() {
             self.lost.operators += 1;
         }
     }
 
-    /// Record times of the tick; call it before [`Recorder::tick`] of the same tick. A run that never calls this writes
-    /// the same bytes each time.
+    /// Record times of the tick. Call it before [`Recorder::tick`] of the same tick. A run that never calls
+    /// this writes the same bytes each time.
     pub const fn timing(&mut self, timing: Timing) {
         self.timing = Some(timing);
     }
 
-    /// Record inputs and outputs of the processes in a tick. `state` is called for their states in the first tick, once
-    /// a second, and after a gap.
+    /// Record inputs and outputs of the processes in a tick. `state` is called for their states in the first
+    /// tick, once per second, and after a gap.
     pub fn tick(
         &mut self,
         tick: Tick,
@@ -241,7 +241,7 @@ impl Recorder {
             return;
         }
         let due = self.last_state.is_none_or(|last| tick.since(last) >= FULL_SET);
-        // The states are pushed first: when a tick is in the ring, its states are, too.
+        // The states are pushed first, so that the ring with a tick also has its states.
         if (due || self.gap > 0)
             && has_room(&self.states, self.pace)
             && self.states.push((tick, state())).is_ok()
@@ -260,7 +260,7 @@ impl Recorder {
         self.lost
     }
 
-    /// Number of ticks in the ring that the writer has not taken yet: more than a few only if the system does not
+    /// Number of ticks in the ring that the writer has not read. More than a few mean that the system does not
     /// schedule the writer.
     #[must_use]
     pub fn pending(&self) -> usize {
@@ -276,7 +276,8 @@ impl Recorder {
             ticks, states, cells, notes, files, operators, shown, lost, path, end: slot, thread, ..
         } = self;
         *slot.lock().unwrap_or_else(PoisonError::into_inner) = (end, lost);
-        // The writer finishes when the producers are gone; the ticks are dropped last, because it waits for them.
+        // The writer finishes when the producers are dropped. The ticks are dropped last, because it waits for
+        // them.
         drop((states, cells, notes, files, operators, shown));
         drop(ticks);
         let (Written { ticks, bytes }, earlier) = thread.join().map_err(|_| RecordError::Thread)??;

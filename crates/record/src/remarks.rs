@@ -23,9 +23,9 @@ pub struct Remark {
     /// Its source: a process, the cell, the recorder.
     pub source: String,
     pub text: String,
-    /// Source file of the decision table, or the code of an event such as `cell.dropped`; empty for neither.
+    /// Source file of the decision table, or the code of an event such as `cell.dropped`; empty without both.
     pub file: &'static str,
-    /// Line of the decision table in the source file; 0 for none.
+    /// Line of the decision table in the source file, or 0.
     pub line: u32,
 }
 
@@ -100,7 +100,7 @@ fn encounters(headers: &[HeaderPlace], before: &CommonMemory, after: &CommonMemo
     }
 }
 
-/// True if Prim has ordered T3I to start the link again, and T3I has not read the order yet: faults of the link are
+/// True if Prim has ordered T3I to restart the link, and T3I has not yet read the order. Faults of the link are
 /// then expected.
 #[must_use]
 pub fn is_restart_ordered(before: &CommonMemory) -> bool {
@@ -149,8 +149,8 @@ fn link(headers: &[HeaderPlace], before: &CommonMemory, after: &CommonMemory, sa
 /// The processes whose commands show the progress of the job; commands of the others are details.
 const FOLLOWED: [ProcessId; 3] = [ProcessId::Subtask, ProcessId::Emove, ProcessId::Pedestal];
 
-/// A command on its way down the ladder: `-> E-move: GRASP-OBJ LINKBAR1 at PFIXTURE`. Points to T3I are skipped: there
-/// is one per tick.
+/// A command on its way down the ladder: `-> E-move: GRASP-OBJ LINKBAR1 at PFIXTURE`. Points to T3I are
+/// skipped: there is one per tick.
 fn down(before: &CommonMemory, after: &CommonMemory, mut say: impl FnMut(Level, &str, String)) {
     for process in ProcessId::ALL.iter().copied().filter(|process| *process != ProcessId::T3i) {
         let Some(commander) = process.commander() else { continue };
@@ -173,8 +173,8 @@ fn failures(
     for process in ProcessId::ALL.iter().copied() {
         let (was, is) = (before.said(process).fault, after.said(process).fault);
         if is != was && !is.is_none() {
-            // T3I recovers from many faults of the link itself; Prim reports the others as errors. A fault during PAUSE
-            // is reported together with `done`.
+            // T3I recovers from many faults of the link itself; Prim reports the others as errors. A fault
+            // during PAUSE is reported together with `done`.
             let failed = after.said(process).lower == Lower::Error && !matches!(is, Fault::Link(_));
             let level = if failed { Level::Error } else { Level::Warning };
             let reason = format!("{}{}", is.text(), Detail::of(process, is, hws, after));
@@ -267,7 +267,7 @@ mod tests {
     }
 
     #[test]
-    fn a_command_after_an_interrupted_startup_says_that_nothing_is_told() {
+    fn command_after_an_interrupted_startup_reports_missing_updates() {
         let mut before = CommonMemory::default();
         before.task.connection = Connection::Interrupted;
         let mut after = before;
@@ -281,7 +281,7 @@ mod tests {
     }
 
     #[test]
-    fn a_reason_beside_done_is_a_warning() {
+    fn reason_with_done_is_a_warning() {
         let before = CommonMemory::default();
         let mut after = before;
         after.task.status.report = HwsReport::Finished;
@@ -294,7 +294,7 @@ mod tests {
     }
 
     #[test]
-    fn every_process_with_a_reason_is_heard() {
+    fn every_process_with_a_reason_is_reported() {
         let before = CommonMemory::default();
         let mut after = before;
         after.v_grip.status.reason = Reason::JawsStuck;
@@ -314,7 +314,7 @@ mod tests {
     }
 
     #[test]
-    fn what_the_robot_meets_is_told() {
+    fn sensor_events_of_the_robot_are_reported() {
         let mut before = CommonMemory::default();
         before.emove.prim.command = PrimVerb::GoUntil;
         before.emove.prim.sensor = Name10::new("TOUCH").ok();
@@ -338,7 +338,7 @@ mod tests {
     }
 
     #[test]
-    fn what_the_link_suffers_is_told() {
+    fn link_faults_are_reported() {
         let mut before = CommonMemory::default();
         before.t3i.status.link_running = true;
         before.t3i.status.counters.naks = 2;
@@ -359,7 +359,7 @@ mod tests {
     }
 
     #[test]
-    fn a_restart_that_prim_has_ordered_is_no_fault() {
+    fn restart_ordered_by_prim_is_not_a_fault() {
         let mut before = CommonMemory::default();
         before.t3i.status.link_running = true;
         before.prim.t3i.command = T3iVerb::Restart;

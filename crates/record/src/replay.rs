@@ -1,14 +1,14 @@
 //! Replay: executes the control processes again with the recorded inputs, and compares the outputs.
 //!
-//! The task data come from the log's attachments, the inputs from its ticks. Every output buffer of every tick is
-//! compared bit for bit, and so are the states of the processes where the log has them. The first difference ends the
-//! comparison, because later differences follow from it.
+//! The task data are those of the log's attachments, the inputs those of its ticks. Every output buffer of
+//! every tick is compared bit for bit, and so are the states of the processes where the log has them. The first
+//! difference ends the comparison, because it causes later differences.
 //!
-//! Missing ticks cannot be computed; the replay continues with the states recorded with the first tick after the gap.
-//! In the same way a replay can begin in the middle: states are recorded once a second. So all processors replay, each
-//! another stretch of the log: it begins with recorded states, and ends with the states with which the next one begins,
-//! which are compared like all others. A replay with other task data shows what they would have changed; it does not
-//! compare record numbers.
+//! Missing ticks cannot be computed; the replay continues with the states recorded with the first tick after
+//! the gap. Likewise, a replay can begin in the middle: states are recorded once per second. All processors
+//! therefore replay, each another stretch of the log. A stretch begins with recorded states and ends with those
+//! with which the next one begins; they are compared like all others. A replay with other task data shows their
+//! effect; it does not compare record numbers.
 
 use std::{
     collections::BTreeMap,
@@ -63,13 +63,13 @@ impl Options {
 #[derive(Clone, Debug)]
 pub struct ReplayReport {
     pub ticks: u64,
-    /// Ticks that could not be computed: those in gaps, and those at which the replay started again.
+    /// Number of ticks that could not be computed: those in gaps, and those from which the replay continued.
     pub skipped: u64,
-    /// The first difference; `None` if there is none.
+    /// The first difference, if any.
     pub first_difference: Option<Difference>,
     /// Digest of the output buffers of the computed ticks.
     pub digest: Digest,
-    /// Digest at the end of the run; `None` if the log has no end.
+    /// Digest at the end of the run; `None` if the log is incomplete.
     pub recorded_digest: Option<u64>,
     /// True if the log has its end.
     pub complete: bool,
@@ -79,7 +79,8 @@ pub struct ReplayReport {
 }
 
 impl ReplayReport {
-    /// True if every computed tick was the same, and also the digest if the log has one and no tick was skipped.
+    /// True if every computed tick was the same, and also the digest if the log has one and no tick was
+    /// skipped.
     #[must_use]
     pub fn is_same(&self) -> bool {
         let digests = self.recorded_digest.is_none_or(|recorded| recorded == self.digest.value());
@@ -97,8 +98,8 @@ impl ReplayReport {
 /// Replay a whole log with its own task data.
 ///
 /// # Errors
-/// [`ReplayError`] if the log cannot be read, is of another layout, or its task data do not load. A difference is not
-/// an error: it is in the report.
+/// [`ReplayError`] if the log is unreadable, has another layout, or its task data do not load. A difference is
+/// not an error, but part of the report.
 pub fn replay(path: &Path) -> Result<ReplayReport, ReplayError> {
     replay_with(path, &Options::default())
 }
@@ -106,10 +107,10 @@ pub fn replay(path: &Path) -> Result<ReplayReport, ReplayError> {
 /// Replay a log, or a part of it.
 ///
 /// # Errors
-/// As [`replay`]; [`ReplayError::Empty`] if the part contains no tick.
+/// The errors of [`replay`]; [`ReplayError::Empty`] if the part contains no tick.
 pub fn replay_with(path: &Path, options: &Options) -> Result<ReplayReport, ReplayError> {
     let started = Instant::now();
-    // It takes half as long as reading a log, and is made beside it; without a thread it is made later.
+    // It takes half as long as reading a log, and is made in parallel; without a thread it is made later.
     let _ = thread::Builder::new().spawn(layout::description);
     let log = Log::open(path)?;
     log.check_layout()?;
@@ -189,7 +190,7 @@ pub(crate) fn grown(first: Store, attachments: &[Attachment]) -> Result<Vec<Stor
     Ok(generations)
 }
 
-/// What a replay has come to, up to the first difference.
+/// Result of a replay up to the first difference.
 #[derive(Debug, PartialEq)]
 struct Replayed {
     ticks: u64,
@@ -198,7 +199,7 @@ struct Replayed {
     first_difference: Option<Difference>,
 }
 
-/// What the replay of a stretch has come to.
+/// Result of the replay of a stretch.
 #[derive(Default)]
 struct Stretch {
     /// Hashes of the output buffers of the computed ticks.
@@ -224,7 +225,7 @@ impl<'a> Stretches<'a> {
         Self { log, options, generations, codecs: Codecs::new(), comparison, length }
     }
 
-    /// Replay all stretches up to the first that differs, or cannot be computed.
+    /// Replay all stretches up to the first difference, or the first tick that cannot be computed.
     fn replay(&self) -> Result<Replayed, ReplayError> {
         let mut all = Replayed { ticks: 0, skipped: 0, digest: Digest::new(), first_difference: None };
         for stretch in self.in_all_processors() {
@@ -240,7 +241,7 @@ impl<'a> Stretches<'a> {
         Ok(all)
     }
 
-    /// The stretches in order, up to the first that differs or cannot be computed.
+    /// The stretches in order, up to the first difference, or the first tick that cannot be computed.
     fn in_all_processors(&self) -> impl Iterator<Item = Result<Stretch, ReplayError>> {
         let last = AtomicUsize::new(usize::MAX);
         let stretches = parallel::map(self.log.parts().div_ceil(self.length), |number| {
@@ -256,8 +257,8 @@ impl<'a> Stretches<'a> {
         stretches.into_iter().map_while(|stretch| stretch)
     }
 
-    /// Compute the ticks of a stretch up to the first that differs. It goes from the first recorded states in its parts
-    /// of the file to the first ones after them; the first stretch goes from the start of the run.
+    /// Compute the ticks of a stretch up to the first difference. It extends from the first recorded states in
+    /// its parts of the file to the first ones after them; the first stretch begins with the run.
     fn stretch(&self, number: usize) -> Result<Stretch, ReplayError> {
         let first = number.saturating_mul(self.length);
         let end = first.saturating_add(self.length);
@@ -298,9 +299,9 @@ impl<'a> Stretches<'a> {
 /// Computes recorded ticks again, and compares them.
 struct Replayer {
     ladder: Ladder,
-    /// Common memory after the last tick, and after the one before that, which the next tick overwrites.
+    /// Common memory after the last two ticks. The next tick overwrites the older one.
     halves: [CommonMemory; 2],
-    /// The last tick is in the second half.
+    /// True if the last tick is in the second half.
     in_second: bool,
     /// Byte image of common memory after the last tick.
     image: Vec<u8>,
@@ -324,7 +325,7 @@ impl Replayer {
         }
     }
 
-    /// Compute a tick again and compare it, or take the recorded values after a gap.
+    /// Compute a tick again and compare it, or copy the recorded values after a gap.
     fn step(&mut self, logged: &LoggedTick, stretches: &Stretches<'_>) -> Result<(), ReplayError> {
         let tick = logged.tick;
         self.stretch.skipped += tick.since(self.last.next());
@@ -350,7 +351,7 @@ impl Replayer {
         Ok(())
     }
 
-    /// Continue from the recorded values; without states the replay waits for the next tick that has them.
+    /// Continue with the recorded values. Without states the replay waits for the next tick that has them.
     fn take_over(&mut self, logged: &LoggedTick) -> Result<(), ReplayError> {
         let bad = |source| ReplayError::Inputs { tick: logged.tick.0, source };
         (self.last, self.has_states) = (logged.tick, logged.state.is_some());

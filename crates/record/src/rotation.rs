@@ -1,7 +1,7 @@
 //! Limits of a log: a run of months writes logs one after the other, and keeps the newest.
 //!
-//! Each of them has the head of the run, and begins with whole images and the states of all processes. So each can be
-//! read and replayed without those before it.
+//! Each of them has the head of the run, and begins with whole images and the states of all processes, so it
+//! can be read and replayed without the earlier ones.
 
 use std::{
     fs, io,
@@ -13,9 +13,9 @@ use crate::file::is_earlier;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct LogLimit {
-    /// Size, bytes, after which the run begins a new log. A log is larger by the end that it needs, and by a second.
+    /// Size, bytes, after which the run begins a new log. A log exceeds it by its end and by one second.
     pub bytes: u64,
-    /// Greatest number of earlier logs with the name of this one that are kept; the oldest are removed. `None` keeps
+    /// Greatest number of kept earlier logs with the name of this one; the oldest are removed. `None` keeps
     /// all.
     pub kept: Option<usize>,
 }

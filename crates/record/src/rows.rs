@@ -1,8 +1,9 @@
 //! The row channels: one per process, `/process/row`, with the row of a decision table that fired.
 //!
-//! A message has the row as text, the step in which it was looked up, the values of the state variables that its table
-//! asks for, the tick in which it fired, and the rows of other tables that fired beside it. A process that rests repeats its last row in its header:
-//! then `resting` is set. A message is written when anything but the tick changes.
+//! A message has the row as text, the step in which it was looked up, the values of the state variables in its
+//! table, the tick in which it fired, and the rows of other tables that fired in addition. A process at rest
+//! repeats its last row in its header, with `resting` set. A message is written when anything except the tick
+//! changes.
 
 use std::io::{Seek, Write};
 
@@ -34,7 +35,7 @@ struct Channel {
 
 const ROW: &str = "Row";
 
-/// The state variables that a table asks for, as text: `work Busy, clock Running`.
+/// The state variables of a table as text: `work Busy, clock Running`.
 #[must_use]
 pub fn values_text(table: &'static Table, values: Values) -> String {
     let asked: Vec<&str> = table.asked().map(|variable| variable.name).collect();
@@ -72,7 +73,7 @@ impl Rows {
         headers().into_iter().map(open).collect::<McapResult<_>>().map(Self)
     }
 
-    /// Write the rows that differ from the tick before, or all of them.
+    /// Write the rows that differ from the previous tick, or all of them.
     pub fn write<W: Write + Seek>(
         &mut self,
         output: &mut Output<W>,
@@ -109,7 +110,7 @@ fn timeless(header: &Header) -> Header {
     Header { stamp: Tick::BEFORE_START, basis, ..*header }
 }
 
-/// The message, but for the tick.
+/// The message without the tick.
 fn row_message(place: &HeaderPlace, header: &Header) -> Vec<u8> {
     let (table, conditions, action, next) = match place.fired(header) {
         Some(Fired { table, row, .. }) => {
@@ -175,7 +176,7 @@ mod tests {
     }
 
     #[test]
-    fn values_are_told_by_their_names() {
+    fn values_text_has_their_names() {
         let attend = TABLES[usize::from(number::ATTEND) - 1];
         let basis = attended(PrimOperator::Moves).basis.unwrap();
         assert_eq!(values_text(attend, basis.values), "course Continue, kind Motion, operator Moves");
@@ -207,7 +208,7 @@ mod tests {
     }
 
     #[test]
-    fn a_message_changes_with_values_and_rest_and_not_with_the_tick() {
+    fn row_message_is_independent_of_the_tick() {
         let place = prim();
         let (fired, other) = (attended(PrimOperator::Idle), attended(PrimOperator::Moves));
         let later =

@@ -1,8 +1,8 @@
 //! The moving cell: `/tf`, `/tf_static`, `/joint_states`, `/robot_description`, `/meshes`, `/names`, `/trail`, `/contacts`
 //! and `/camera`.
 //!
-//! Links are given relative to their parents in the URDF, so that description and transforms always agree in a viewer,
-//! and so that the position of a link that only turns does not change.
+//! Links are given relative to their parents in the URDF, so that description and transforms always agree in a
+//! viewer, and the position of a link that only turns does not change.
 
 use std::io::{Seek, Write};
 
@@ -21,13 +21,13 @@ use crate::{
     trail::Trail,
 };
 
-/// Steps of a metre, of a radian, and of the unit of a quaternion, in the log: 8 µm and 8 µrad are finer than any
-/// picture, and the rounded values compress well. The exact inputs of the controller are on `/replay`.
+/// Steps of a metre, of a radian, and of the unit of a quaternion, in the log: 8 µm and 8 µrad are finer than
+/// any picture, and the rounded values compress well. The exact inputs of the controller are on `/replay`.
 const STEP: f64 = 131_072.0;
 
-/// Topic of the links that move.
+/// Topic of the moving links.
 pub const TF: &str = "/tf";
-/// Topic of the links that do not.
+/// Topic of the fixed links.
 pub const TF_STATIC: &str = "/tf_static";
 
 /// Topic of the shapes of links: one message at the start of the log.
@@ -38,7 +38,7 @@ pub const NAMES: &str = "/names";
 /// Topic of the pictures of the wrist camera.
 pub const CAMERA: &str = "/camera";
 
-/// A frame at the tool point with the axes of the world: a view attached to it does not turn.
+/// A frame at the tool point with the axes of the world, so that a view attached to it does not turn.
 const TOOL_POINT: &str = "tool_point";
 /// The frame of fixed bodies.
 const WORLD: &str = "world";
@@ -106,8 +106,8 @@ impl Scene {
         })
     }
 
-    /// Write the links that moved since the frame before, or all that can move; before the first frame also the fixed
-    /// ones.
+    /// Write the links that have moved since the previous frame, or all that can move; before the first frame
+    /// also the fixed ones.
     pub fn write<W: Write + Seek>(
         &mut self,
         output: &mut Output<W>,
@@ -200,7 +200,7 @@ fn round(value: f64) -> f64 {
 }
 
 fn rounded(transform: &Transform) -> Transform {
-    // Both signs of a quaternion are the same orientation; one of them is written.
+    // Both signs of a quaternion are the same orientation, so only one of them is written.
     let sign = if transform.rotation[3] < 0.0 { -1.0 } else { 1.0 };
     Transform {
         position: transform.position.map(round),
@@ -220,7 +220,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_finer_than_a_step_is_no_movement() {
+    fn change_below_a_step_is_not_a_movement() {
         let place = Transform { position: [1.0, -1e-9, 0.0], ..Transform::IDENTITY };
         let moved = Transform { position: [1.0 + 1e-7, 1e-9, 0.0], ..Transform::IDENTITY };
         assert_eq!(rounded(&place), rounded(&moved));

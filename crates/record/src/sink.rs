@@ -1,15 +1,15 @@
-//! The file that a log is written to.
+//! The file to which a log is written.
 //!
-//! Flushed data are with the operating system and survive the end of the program. To survive a power failure they must
-//! be on the disk, which takes milliseconds. So a run in real time waits for the disk with every flush, once a second,
-//! in the thread of the log; a run in fast clock does not, because it can be repeated.
+//! Flushed data are in the operating system and survive the end of the program. To survive a power failure they
+//! must be on the disk, which takes milliseconds. A run in real time therefore waits for the disk with every
+//! flush, once per second, in the thread of the log. A run in fast clock does not, because it can be repeated.
 
 use std::{
     fs::File,
     io::{self, BufWriter, Seek, SeekFrom, Write},
 };
 
-/// Bytes that are collected before they go to the system: most chunks go in one piece.
+/// Size of the buffer, bytes. Most chunks are written in one piece.
 const BUFFER: usize = 64 * 1024;
 
 /// A file with a buffer before it.
@@ -18,7 +18,7 @@ pub struct Sink {
     durable: bool,
 }
 
-/// A file that must not be shorter than the data written to it: after a cut it would have zeros.
+/// A file that must not become shorter than the data written to it: after truncation it would contain zeros.
 struct Whole {
     file: File,
     /// Its least length, bytes.

@@ -1,14 +1,14 @@
-//! A further receiver of the messages of a log while it is written.
+//! Another receiver of the messages of a log while it is written.
 
-/// Gets the channels and messages of a log while it is written, in the writer's thread and in the order of their times.
-/// It ends with the log. The writer waits for it: a slow tap delays the log, but not the tick.
+/// Receives the channels and messages of a log while it is written, in the writer's thread and in the order of
+/// their times. It ends with the log. The writer waits for it: a slow tap delays the log, but not the tick.
 pub trait Tap: Send {
     fn channel(&mut self, id: u16, channel: &Channel<'_>);
 
     /// A message of a channel, with its time in nanoseconds since 1970.
     fn message(&mut self, channel: u16, time: u64, data: &[u8]);
 
-    /// All messages of a tick have been written, also if there are none; its time as above.
+    /// All messages of a tick have been written, possibly none; its time as above.
     fn tick(&mut self, time: u64) {
         let _ = time;
     }

@@ -22,7 +22,7 @@ pub const TRAIL: &str = "/trail";
 const TOOL: &str = "quick_change";
 /// Ticks from one point to the next.
 const STEP: u64 = 10;
-/// Ticks from one message to the next: a second, so that a reader finds one soon.
+/// Ticks from one message to the next: a second, so that a reader soon finds one.
 const MESSAGE: u64 = 25;
 /// Points of the line: those of 20 seconds.
 const POINTS: usize = 50;
@@ -61,7 +61,7 @@ impl Trail {
         (!self.chain.is_empty()).then_some(point)
     }
 
-    /// Add the tool point of a frame, and write the line once a second if it has become longer.
+    /// Add the tool point of a frame, and write the line once per second if it has become longer.
     pub fn note<W: Write + Seek>(&mut self, output: &mut Output<W>, frame: &CellFrame) -> McapResult<()> {
         let point = self.tool_point(frame).filter(|_| frame.tick.0.is_multiple_of(STEP));
         if let Some(point) = point {
@@ -99,7 +99,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_point_is_turned_and_then_moved() {
+    fn point_is_rotated_and_then_translated() {
         let half = std::f64::consts::FRAC_1_SQRT_2;
         let place = Transform { position: [1.0, 2.0, 3.0], rotation: [0.0, 0.0, half, half] };
         let there = moved(&place, [2.0, 0.0, 0.5]);

@@ -1,8 +1,8 @@
-//! The state of a run outside the buffers of the processes: the job, who commands, the robot controller, the parts and
-//! the places of the cell. Each has a channel with one message type.
+//! The state of a run outside the buffers of the processes: the job, the commander, the robot controller, the
+//! parts and the places of the cell. Each has a channel with one message type.
 //!
-//! A message has the whole state, so that a reader needs only the last one. It is written when the state changes, and
-//! repeated with the buffers.
+//! A message has the whole state, so that a reader needs only the last one. It is written when the state
+//! changes, and repeated with the buffers.
 
 use std::io::{Seek, Write};
 
@@ -248,8 +248,8 @@ impl Views {
         output.put(channel.id, tick, &channel.last)
     }
 
-    /// Write the last message of each channel again, unless it is of this tick or a later one. The lines of the job and
-    /// the places, which hardly ever change, are repeated only at the `start` of a log.
+    /// Write the last message of each channel again, unless it is of this tick or a later one. The lines of the
+    /// job and the places, which hardly ever change, are repeated only at the `start` of a log.
     pub fn repeat<W: Write + Seek>(&self, output: &mut Output<W>, tick: Tick, start: bool) -> McapResult<()> {
         let is_due = |channel: &Channel| !channel.last.is_empty() && channel.written < tick;
         let due = self
@@ -260,7 +260,7 @@ impl Views {
         due.into_iter().try_for_each(|(_, channel)| output.put(channel.id, tick, &channel.last))
     }
 
-    /// Take over the messages of the log before, for the next log of a run.
+    /// Copy the messages of the previous log to the next log of a run.
     pub fn continue_run(&mut self, ended: &mut Self) {
         for (channel, before) in self.0.iter_mut().zip(&mut ended.0) {
             channel.last = std::mem::take(&mut before.last);

@@ -1,4 +1,4 @@
-//! Content of a log, and how it is written to the file.
+//! Content of a log, and its output to the file.
 //!
 //! | channel | message | written |
 //! |---|---|---|
@@ -15,15 +15,15 @@
 //! | `/log` | `foxglove.Log` | when there is a remark |
 //! | `/operator` | `rcs.OperatorLine` | on a request of an operator |
 //!
-//! `/replay` alone is lossless: message *n* holds the difference of the images to those of message *n*-1, and once a
-//! second the whole images and the states after that tick, where a replay can start. The other channels have the same
-//! values for people; there a clock or a counter that changes in every tick does not count as a change (see
-//! [`crate::channels`]).
+//! Only `/replay` is lossless: message *n* has the difference of the images from those of message *n*-1, and
+//! once per second the whole images and the states after that tick, where a replay can start. The other
+//! channels have the same values for readers. There, a clock or a counter that changes in every tick is not a
+//! change (see [`crate::channels`]).
 //!
-//! Once a second of simulated time the open chunk is written out, and then a chunk with the messages of that second on
-//! `/replay`, of which the first has the whole images: a killed run loses a second. Buffers that do not change are
-//! repeated less often: each message costs sixteen bytes of index besides its own, and fifty unchanged buffers would be
-//! a fifth of a log.
+//! Once per second of simulated time the open chunk is written out, and then a chunk with the messages of that
+//! second on `/replay`, of which the first has the whole images: a killed run loses a second. Unchanged buffers
+//! are repeated less often: each message costs sixteen additional bytes of index, and fifty unchanged buffers
+//! would be a fifth of a log.
 
 use std::{
     collections::BTreeMap,
@@ -57,8 +57,8 @@ use crate::{
 pub const FULL_SET: u64 = 25;
 /// Full sets from one repetition of all buffers for people to the next: ten seconds.
 const REPETITION: u64 = 10;
-/// Uncompressed size at which a chunk is closed before its second is over, bytes: three times what a second
-/// of a moving cell takes.
+/// Uncompressed size at which a chunk is closed before its second is over, bytes: three times the size of a
+/// second of a moving cell.
 const CHUNK: u64 = 256 * 1024;
 /// Level of the compression. At level 6 a log is a twenty-sixth smaller, and a run takes a seventh more processor time.
 const COMPRESSION: u32 = 3;
@@ -67,11 +67,11 @@ const COMPRESSION: u32 = 3;
 #[derive(Clone, Copy, Debug)]
 pub struct TickRecord {
     pub tick: Tick,
-    /// Ticks before this one that did not fit into the ring.
+    /// Number of ticks before this one that did not fit into the ring.
     pub gap: u32,
     pub external: ExternalInputs,
     pub memory: CommonMemory,
-    /// Times of the tick; `None` in a run whose log must be the same bytes each time.
+    /// Times of the tick; `None` in a run whose log must have the same bytes each time.
     pub timing: Option<Timing>,
 }
 
@@ -97,13 +97,13 @@ pub struct LogWriter<W: Write + Seek> {
     ladder: LadderChannel,
     instruments: InstrumentsChannel,
     views: Views,
-    /// When the job began the last action of the workstation that `/log` has.
+    /// Begin of the last workstation action of the job on `/log`.
     action_began: u64,
     operator: OperatorChannel,
     last: Images,
     now: Images,
     before: CommonMemory,
-    /// The last tick, the command of the workstation in it, and true if all buffers were written.
+    /// The last tick, the workstation's command in it, and true if all buffers were written.
     ended: Option<(Tick, HwsCommand, bool)>,
     last_full: Option<Tick>,
     full_sets: u64,
@@ -122,18 +122,18 @@ impl<W: Write + Seek> LogWriter<W> {
         Self::create_with(sink, setup, None)
     }
 
-    /// Like [`LogWriter::create`]; a tap gets all channels and messages, too.
+    /// Like [`LogWriter::create`], with a tap for all channels and messages.
     ///
     /// # Errors
     /// Errors of `sink`.
     pub fn create_with(sink: W, setup: Setup, tap: Option<Box<dyn Tap>>) -> McapResult<Self> {
-        // A profile would promise a viewer that all channels follow its rules.
+        // A profile would promise viewers that all channels follow its rules.
         let options = WriteOptions::new()
             .profile("")
             .library(concat!("rcs-record ", env!("CARGO_PKG_VERSION")))
             .compression(Some(Compression::Zstd))
             .compression_level(COMPRESSION)
-            // In this thread: the file must not depend on how many cores there are.
+            // In this thread, so that the file does not depend on the number of cores.
             .compression_threads(0)
             .chunk_size(Some(CHUNK));
         let mut output = Output { mcap: options.create(sink)?, epoch: setup.epoch, tap };
@@ -179,7 +179,8 @@ impl<W: Write + Seek> LogWriter<W> {
         self.ticks > 0
     }
 
-    /// Continue the run of another log, which has this name now. The tap follows; it has the channels already.
+    /// Continue the run of another log, which now has this name. The tap, which already has the channels, is
+    /// passed on.
     pub(crate) fn continue_run<E: Write + Seek>(&mut self, ended: &mut LogWriter<E>, name: String) {
         self.output.tap = ended.output.tap.take();
         self.before = ended.before;
@@ -188,8 +189,8 @@ impl<W: Write + Seek> LogWriter<W> {
         self.earlier = Some(name);
     }
 
-    /// Write a tick. `state` holds the states after it, and is best given with the first tick, once a second,
-    /// and after a gap.
+    /// Write a tick. `state` has the states after it; give it with the first tick, once per second, and after a
+    /// gap.
     ///
     /// # Errors
     /// Errors of the sink.
@@ -248,7 +249,8 @@ impl<W: Write + Seek> LogWriter<W> {
         Ok(())
     }
 
-    /// Write the state after a tick for viewers, from the images of the tick: what has changed, or everything.
+    /// Write the changes of the state after a tick for viewers, or the whole state, from the images of the
+    /// tick.
     fn write_state(
         &mut self,
         tick: Tick,
@@ -264,7 +266,7 @@ impl<W: Write + Seek> LogWriter<W> {
         if all { self.views.repeat(output, tick, self.ticks == 0) } else { Ok(()) }
     }
 
-    /// Write everything once more in the last tick, so that lanes of states in a viewer last to the end.
+    /// Write the whole state once more in the last tick, so that state timelines in a viewer last to the end.
     fn write_last_state(&mut self) -> McapResult<()> {
         let Some((tick, hws, false)) = self.ended else { return Ok(()) };
         std::mem::swap(&mut self.last, &mut self.now);

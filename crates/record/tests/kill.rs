@@ -1,12 +1,11 @@
-//! A run that is killed with `kill -9` at ten random moments: what is left can be read and replayed, and of
-//! the ticks that the writer was given at most a second is missing.
+//! A run that is killed with `kill -9` at ten random moments. Its log can be read and replayed, and at most a
+//! second of the ticks that the writer had received is missing.
 //!
-//! The program is its own victim: started with an argument of ours it records a run in real time, twice as
-//! fast as a robot's, and says each tick on its standard output once it has handed it over, with how many of
-//! them wait for the writer. On a machine that has other things to do many may wait; none of them is the
-//! fault of the log, however slow the machine is.
+//! The test starts itself with an argument as the victim, which records a run in real time at twice the robot's
+//! speed. It prints each recorded tick on its standard output, with the number of ticks that wait for the
+//! writer. On a busy machine many may wait, which is not an error of the log.
 //!
-//! `cargo test --release -p record --test kill` prints the ten moments, and what was left.
+//! `cargo test --release -p record --test kill` prints the ten moments and the remaining ticks.
 
 #![expect(clippy::print_stdout, reason = "the figures of a campaign are printed")]
 
@@ -30,14 +29,14 @@ const VICTIM: &str = "--victim";
 const RUNS: u64 = 10;
 /// Length of a tick here.
 const PERIOD: Duration = Duration::from_millis(20);
-/// The second of ticks that is not yet flushed, and the tick that the writer has in hand.
+/// The unflushed second of ticks, and the tick that the writer is processing.
 const MOST_LOST: u64 = FULL_SET + 1;
 
 fn main() -> ExitCode {
     let mut arguments = env::args().skip(1);
     match arguments.next().as_deref() {
         Some(VICTIM) => record_until_killed(Path::new(&arguments.next().expect("a victim has a file"))),
-        // What `cargo test -- --list` asks, so that tools that list tests find none here.
+        // Answer to `cargo test -- --list`, so that tools that list tests find none here.
         Some("--list") => ExitCode::SUCCESS,
         _ => kill_ten(),
     }
@@ -53,7 +52,7 @@ fn record_until_killed(path: &Path) -> ExitCode {
         external.devices.resolvers.counts = [u32::try_from(tick.0 * 37 % 131_072).unwrap_or_default(); 6];
         ladder.step(tick, &before, &external, &TaskData::default(), &mut memory);
         recorder.tick(tick, &external, &memory, || ladder.state());
-        // The process that started this may be gone: then it is not killed either.
+        // Without its parent process, the program is not killed either.
         if writeln!(out, "{tick} {}", recorder.pending()).and_then(|()| out.flush()).is_err() {
             break;
         }
@@ -78,21 +77,21 @@ fn kill_ten() -> ExitCode {
     ExitCode::from(u8::from(survived < RUNS))
 }
 
-/// Record a run, and kill it so long after its first tick.
+/// Record a run, and kill it at a moment after its first tick.
 fn survives(path: &Path, moment: Duration) -> bool {
     let mut program = Command::new(env::current_exe().expect("a test has a path"));
     let mut child = program.arg(VICTIM).arg(path).stdout(Stdio::piped()).spawn().expect("it starts");
     let mut lines = BufReader::new(child.stdout.take().expect("a pipe")).lines();
     let begun = lines.next().is_some();
     thread::sleep(moment);
-    // On Unix this is SIGKILL: the program hears nothing of it.
+    // On Unix this is SIGKILL, which the program cannot handle.
     child.kill().expect("a child can be killed");
     let last = lines.map_while(Result::ok).filter_map(|line| Said::read(&line)).last().unwrap_or_default();
     child.wait().expect("a killed child ends");
     begun && judge(path, moment, &last)
 }
 
-/// What a victim said last.
+/// The last output of a victim.
 #[derive(Default)]
 struct Said {
     tick: u64,
@@ -101,14 +100,14 @@ struct Said {
 }
 
 impl Said {
-    /// A line; `None` for one that was not finished.
+    /// A line; `None` if it is incomplete.
     fn read(line: &str) -> Option<Self> {
         let (tick, pending) = line.split_once(' ')?;
         Some(Self { tick: tick.parse().ok()?, pending: pending.parse().ok()? })
     }
 }
 
-/// Is what is left of a log enough?
+/// True if the rest of a log is sufficient.
 fn judge(path: &Path, moment: Duration, last: &Said) -> bool {
     let log = match Log::open(path) {
         Ok(log) => log,

@@ -1,7 +1,7 @@
 //! Logs as a whole: written by the recorder, read back, damaged, replayed.
 //!
-//! The run is a ladder without task data on inputs that keep it busy: what counts here is that the log holds
-//! exactly what the ladder did.
+//! The run is a ladder without task data, with inputs that keep it busy. The tests check that the log has
+//! exactly the data of the ladder.
 
 use std::{
     fs,
@@ -56,7 +56,7 @@ fn setup() -> Setup {
     }
 }
 
-/// Inputs that move something in every tick, and give a command every hundred.
+/// Inputs that change in every tick, with a command every hundred ticks.
 fn inputs(tick: Tick) -> ExternalInputs {
     let mut external = ExternalInputs::default();
     let turn = u32::try_from(tick.0 * 37 % 131_072).unwrap();
@@ -69,7 +69,7 @@ fn inputs(tick: Tick) -> ExternalInputs {
     external
 }
 
-/// What a run records in `ticks` ticks.
+/// The data that a run records in `ticks` ticks.
 fn run(ticks: u64, mut each: impl FnMut(Tick, &ExternalInputs, &CommonMemory, LadderState)) -> u64 {
     let mut ladder = Ladder::default();
     let mut digest = rcs_core::digest::Digest::new();
@@ -83,7 +83,7 @@ fn run(ticks: u64, mut each: impl FnMut(Tick, &ExternalInputs, &CommonMemory, La
     digest.value()
 }
 
-/// A digest that has all its bits.
+/// A digest that uses all its bits.
 fn cell_digest(tick: Tick) -> u64 {
     u64::MAX - tick.0
 }
@@ -103,7 +103,7 @@ fn record_run(path: &Path, ticks: u64) -> record::Summary {
     recorder.finish(End { digest: Some(digest), result: "finished".into(), ..End::default() }).unwrap()
 }
 
-/// A directory with the log of a run of so many ticks, and its path.
+/// A directory with the log of a run of this number of ticks, and its path.
 fn recorded(ticks: u64) -> (Scratch, PathBuf) {
     let scratch = Scratch::new();
     let path = scratch.file("run.mcap");
@@ -112,7 +112,7 @@ fn recorded(ticks: u64) -> (Scratch, PathBuf) {
 }
 
 #[test]
-fn a_recorded_run_is_replayed_bit_for_bit() {
+fn recorded_run_replays_bit_for_bit() {
     let scratch = Scratch::new();
     let path = scratch.file("deep/down/run.mcap");
     let summary = record_run(&path, 1000);
@@ -152,7 +152,7 @@ fn a_recorded_run_is_replayed_bit_for_bit() {
 }
 
 #[test]
-fn the_same_run_writes_the_same_bytes() {
+fn equal_runs_write_equal_bytes() {
     let scratch = Scratch::new();
     let (first, second) = (scratch.file("1.mcap"), scratch.file("2.mcap"));
     record_run(&first, 200);
@@ -161,7 +161,7 @@ fn the_same_run_writes_the_same_bytes() {
 }
 
 #[test]
-fn a_log_that_was_cut_off_is_read_up_to_the_cut() {
+fn truncated_log_is_read_up_to_its_end() {
     let (_scratch, path) = recorded(300);
     let whole = fs::read(&path).unwrap();
     let mut most = 0;
@@ -185,7 +185,7 @@ fn a_log_that_was_cut_off_is_read_up_to_the_cut() {
 }
 
 #[test]
-fn a_replay_has_chunks_of_its_own() {
+fn replay_channel_has_its_own_chunks() {
     let (_scratch, path) = recorded(300);
     let summary = mcap::Summary::read(&fs::read(&path).unwrap()).unwrap().unwrap();
     let replay = summary.channels.values().find(|channel| channel.topic == "/replay").unwrap().id;
@@ -196,7 +196,7 @@ fn a_replay_has_chunks_of_its_own() {
 }
 
 #[test]
-fn a_byte_that_is_changed_anywhere_is_told_or_changes_nothing() {
+fn changed_byte_is_reported_or_harmless() {
     let (_scratch, path) = recorded(300);
     let sound = fs::read(&path).unwrap();
     let mut untold = 0;
@@ -214,7 +214,7 @@ fn a_byte_that_is_changed_anywhere_is_told_or_changes_nothing() {
     assert!(untold > 0, "an index that is wrong is not used");
 }
 
-/// A log once more, as another program writes it.
+/// A log rewritten as by another program.
 fn written_again(log: &[u8], options: mcap::WriteOptions) -> Vec<u8> {
     let mut writer = options.create(Cursor::new(Vec::new())).unwrap();
     let summary = mcap::Summary::read(log).unwrap().unwrap();
@@ -229,7 +229,7 @@ fn written_again(log: &[u8], options: mcap::WriteOptions) -> Vec<u8> {
 }
 
 #[test]
-fn a_log_that_another_program_has_written_again_is_read_whole() {
+fn log_rewritten_by_another_program_is_read_whole() {
     let (_scratch, path) = recorded(300);
     let recorded = fs::read(&path).unwrap();
     let new = mcap::WriteOptions::new;
@@ -268,7 +268,7 @@ fn with_lz4(bytes: &[u8]) -> Vec<u8> {
         let length = usize::try_from(u64::from_le_bytes(bytes[at + 1..at + 9].try_into().unwrap())).unwrap();
         let (opcode, body) = (bytes[at], &bytes[at + 9..at + 9 + length]);
         at += 9 + length;
-        // Only chunks, and what does not depend on their size: neither indexes nor summary.
+        // Only chunks, and data that do not depend on their size: neither indexes nor summary.
         let body = match opcode {
             mcap::records::op::CHUNK => {
                 let name = usize::try_from(u32::from_le_bytes(body[28..32].try_into().unwrap())).unwrap();
@@ -302,7 +302,7 @@ fn chunks_in_lz4_are_read_and_other_compressions_are_named() {
     let report = replay(&path).unwrap();
     assert!(report.is_same() && report.damage.is_none(), "{:?}", report.damage);
     assert_eq!((report.ticks, report.skipped), (300, 0));
-    // The same length as a name that no program knows.
+    // A name of the same length that no program knows.
     let place = packed.windows(3).position(|window| window == b"lz4").unwrap();
     let mut other = packed;
     other[place..place + 3].copy_from_slice(b"xyz");
@@ -312,7 +312,7 @@ fn chunks_in_lz4_are_read_and_other_compressions_are_named() {
 }
 
 #[test]
-fn a_file_with_several_runs_is_refused() {
+fn file_with_several_runs_is_refused() {
     let (_scratch, path) = recorded(10);
     let mut writer = mcap::Writer::new(Cursor::new(Vec::new())).unwrap();
     for job in ["linkbar", "clevis"] {
@@ -325,7 +325,7 @@ fn a_file_with_several_runs_is_refused() {
 }
 
 #[test]
-fn no_value_is_made_up_after_a_chunk_that_cannot_be_read_in_a_file_with_the_right_checksums() {
+fn unreadable_chunk_with_right_checksums_leaves_a_gap() {
     let (_scratch, path) = recorded(300);
     let recorded = fs::read(&path).unwrap();
     let expected: Vec<_> = Log::open(&path).unwrap().ticks().map(Result::unwrap).collect();
@@ -355,7 +355,7 @@ fn no_value_is_made_up_after_a_chunk_that_cannot_be_read_in_a_file_with_the_righ
     assert!(skipped > 0, "a chunk with ticks was among them");
 }
 
-/// Counts messages, and looks at their times.
+/// Counts messages, and checks their times.
 #[derive(Clone, Default)]
 struct Played(Arc<Mutex<(u64, u64)>>);
 
@@ -370,7 +370,7 @@ impl Tap for Played {
 }
 
 #[test]
-fn messages_are_played_in_the_order_of_their_times() {
+fn messages_are_played_in_time_order() {
     let (_scratch, path) = recorded(300);
     let mut tap = Played::default();
     Log::open(&path).unwrap().play(&mut tap, |_| {});
@@ -378,7 +378,8 @@ fn messages_are_played_in_the_order_of_their_times() {
     assert_eq!(tap.0.lock().unwrap().0, summary.stats.unwrap().message_count);
 }
 
-/// A log in memory, ticks changed by `change` before they are written, with gaps where it says no.
+/// A log in memory, whose ticks `change` modifies before they are written; it omits those for which it returns
+/// false.
 fn changed(ticks: u64, mut change: impl FnMut(&mut TickRecord) -> bool) -> Vec<u8> {
     let mut file = Cursor::new(Vec::new());
     let mut log = LogWriter::create(&mut file, setup()).unwrap();
@@ -421,7 +422,7 @@ fn a_difference_is_named() {
 }
 
 #[test]
-fn an_input_that_was_not_recorded_shows_as_a_difference() {
+fn unrecorded_input_causes_a_difference() {
     let scratch = Scratch::new();
     let path = scratch.file("run.mcap");
     let bytes = changed(300, |record| {
@@ -436,7 +437,7 @@ fn an_input_that_was_not_recorded_shows_as_a_difference() {
 }
 
 #[test]
-fn a_replay_goes_on_after_a_gap() {
+fn replay_continues_after_a_gap() {
     let scratch = Scratch::new();
     let path = scratch.file("run.mcap");
     fs::write(&path, changed(200, |record| !(60..=64).contains(&record.tick.0))).unwrap();
@@ -458,7 +459,7 @@ fn a_replay_goes_on_after_a_gap() {
 }
 
 #[test]
-fn a_log_of_another_layout_is_refused() {
+fn log_of_another_layout_is_refused() {
     let scratch = Scratch::new();
     let path = scratch.file("run.mcap");
     let mut file = Cursor::new(Vec::new());
@@ -474,7 +475,7 @@ fn a_log_of_another_layout_is_refused() {
 }
 
 #[test]
-fn files_that_are_no_logs_are_refused() {
+fn other_files_are_refused_as_logs() {
     let scratch = Scratch::new();
     let path = scratch.file("run.mcap");
     assert!(matches!(Log::open(&path), Err(ReadError::Unreadable { .. })));
@@ -488,7 +489,7 @@ fn files_that_are_no_logs_are_refused() {
     assert!(matches!(Log::open(&path), Err(ReadError::NotALog { .. })));
 }
 
-/// A disk with so many bytes left.
+/// A disk with this number of free bytes.
 struct Disk {
     bytes: Cursor<Vec<u8>>,
     left: usize,
@@ -515,7 +516,7 @@ impl Seek for Disk {
 }
 
 #[test]
-fn a_disk_that_fills_up_ends_the_log_wherever_it_happens() {
+fn full_disk_ends_the_log_at_any_byte() {
     let needed = changed(60, |_| true).len();
     let mut failed = 0;
     for left in (0..needed).step_by(needed / 50) {
@@ -537,7 +538,7 @@ fn a_disk_that_fills_up_ends_the_log_wherever_it_happens() {
 }
 
 #[test]
-fn a_removed_log_ends_the_log_and_not_the_run() {
+fn removed_log_does_not_end_the_run() {
     let scratch = Scratch::new();
     let path = scratch.file("run.mcap");
     let mut recorder = Recorder::start(&path, Pace::Wait, setup()).unwrap();
@@ -555,7 +556,7 @@ fn a_removed_log_ends_the_log_and_not_the_run() {
 }
 
 #[test]
-fn a_directory_that_vanishes_ends_the_log_and_not_the_run() {
+fn removed_directory_does_not_end_the_run() {
     let scratch = Scratch::new();
     let path = scratch.file("deep/down/run.mcap");
     let mut recorder = Recorder::start(&path, Pace::Wait, setup()).unwrap();
@@ -572,10 +573,10 @@ fn a_directory_that_vanishes_ends_the_log_and_not_the_run() {
     assert!(error.to_string().contains("run.mcap was removed during the run"), "{error}");
 }
 
-/// `/dev/full` takes nothing: the head of the log already finds no room.
+/// `/dev/full` is always full: even the head of the log has no room.
 #[cfg(target_os = "linux")]
 #[test]
-fn a_full_disk_is_told_before_the_run() {
+fn full_disk_is_reported_before_the_run() {
     let full = fs::File::options().write(true).open("/dev/full").unwrap();
     let error: RecordError = LogWriter::create(Sink::new(full, true), setup()).err().unwrap().into();
     assert!(error.to_string().contains("No space left on device"), "{error}");
@@ -590,14 +591,14 @@ fn a_device_is_no_log() {
 
 #[cfg(target_os = "linux")]
 #[test]
-fn a_directory_in_which_nothing_can_be_made_is_told_before_the_run() {
-    // Even an administrator makes no directory here.
+fn read_only_directory_is_reported_before_the_run() {
+    // Even an administrator cannot create a directory here.
     let error = Recorder::start(Path::new("/proc/runs/run.mcap"), Pace::Drop, setup()).err().unwrap();
     assert!(error.to_string().starts_with("the log /proc/runs/run.mcap cannot be created: "), "{error}");
 }
 
 #[test]
-fn times_and_the_fingerprint_of_the_cell_are_kept_beside_the_digest() {
+fn times_and_cell_digest_are_logged() {
     let scratch = Scratch::new();
     let path = scratch.file("run.mcap");
     let mut recorder = Recorder::start(&path, Pace::Wait, setup()).unwrap();
@@ -621,7 +622,7 @@ fn times_and_the_fingerprint_of_the_cell_are_kept_beside_the_digest() {
 }
 
 #[test]
-fn a_replay_can_begin_and_end_in_the_middle() {
+fn replay_can_begin_and_end_in_the_middle() {
     let scratch = Scratch::new();
     let path = scratch.file("run.mcap");
     fs::write(&path, changed(200, |_| true)).unwrap();
@@ -629,7 +630,7 @@ fn a_replay_can_begin_and_end_in_the_middle() {
         let options = Options { from: from.map(Tick), until: until.map(Tick), ..Options::default() };
         replay_with(&path, &options)
     };
-    // States are those after ticks 1, 26, 51 ...: the first tick that is computed is the one after them.
+    // States are those after ticks 1, 26, 51 ...; the first computed tick is the next one.
     for (from, until, ticks) in [
         (None, Some(40), 40),
         (Some(1), None, 200),
@@ -653,7 +654,7 @@ fn a_replay_can_begin_and_end_in_the_middle() {
 }
 
 #[test]
-fn a_golden_is_the_run_again() {
+fn golden_replays_like_the_run() {
     let scratch = Scratch::new();
     let (path, file) = (scratch.file("run.mcap"), scratch.file("run.golden"));
     fs::write(&path, changed(230, |_| true)).unwrap();
@@ -677,7 +678,7 @@ fn a_golden_is_the_run_again() {
         played.summary
     );
 
-    // Something else in tick 110 is noticed in its second.
+    // A change in tick 110 is detected in its second.
     let bytes = changed(230, |record| {
         record.memory.prim.status.distance += i32::from(record.tick.0 == 110);
         true
@@ -688,7 +689,7 @@ fn a_golden_is_the_run_again() {
 }
 
 #[test]
-fn a_golden_of_a_part_of_a_run_or_of_another_format_is_refused() {
+fn golden_of_a_partial_run_or_other_format_is_refused() {
     let scratch = Scratch::new();
     let path = scratch.file("run.mcap");
     fs::write(&path, changed(100, |record| record.tick.0 != 50)).unwrap();
@@ -705,7 +706,7 @@ fn a_golden_of_a_part_of_a_run_or_of_another_format_is_refused() {
 }
 
 #[test]
-fn a_file_that_cannot_be_made_is_told_before_the_run() {
+fn uncreatable_file_is_reported_before_the_run() {
     let scratch = Scratch::new();
     let in_the_way = scratch.file("file");
     fs::write(&in_the_way, "").unwrap();
@@ -714,7 +715,7 @@ fn a_file_that_cannot_be_made_is_told_before_the_run() {
 }
 
 #[test]
-fn a_run_in_real_time_never_waits_and_counts_what_it_lost() {
+fn real_time_run_never_waits_and_counts_lost_ticks() {
     let scratch = Scratch::new();
     let path = scratch.file("run.mcap");
     let mut recorder = Recorder::start(&path, Pace::Drop, setup()).unwrap();
@@ -736,7 +737,7 @@ fn a_run_in_real_time_never_waits_and_counts_what_it_lost() {
 }
 
 #[test]
-fn task_data_travel_in_their_order() {
+fn task_data_keep_their_order() {
     let source = |name: &str, text: &str| Source { name: name.into(), text: text.into() };
     let files = Attachment::task_data(&[source("z.blk", "1"), source("a/b.blk", "2")]);
     let names: Vec<&str> = files.iter().map(|file| file.name.as_str()).collect();

@@ -1,4 +1,4 @@
-//! A run into which task data were loaded while it went on: its log replays across the reload.
+//! A run into which task data were loaded while it was running: its log replays across the reload.
 
 use std::path::Path;
 
@@ -8,7 +8,7 @@ use rcs_core::{Plain, digest::Digest, name::Name16, tick::Tick};
 use record::{Attachment, End, Epoch, Pace, Recorder, ReplayError, Setup, replay};
 use taskdata::load::{Source, Store};
 
-/// Tick from which the reload counts.
+/// Tick from which the reload is valid.
 const RELOADED: u64 = 40;
 const TICKS: u64 = 80;
 
@@ -33,7 +33,7 @@ fn inputs(tick: u64) -> ExternalInputs {
     external
 }
 
-/// Records the run; `attach` says whether the reload goes into the log.
+/// Records the run; `attach` is true to write the reload to the log.
 fn record_run(path: &Path, attach: bool) -> Vec<(HwsReport, Reason)> {
     let before = Store::default();
     let (after, _) = before.with_blocks(home()).expect("the blocks are sound");
@@ -61,7 +61,7 @@ fn record_run(path: &Path, attach: bool) -> Vec<(HwsReport, Reason)> {
 }
 
 #[test]
-fn a_log_replays_across_a_reload() {
+fn log_replays_across_a_reload() {
     let directory = tempfile::tempdir().unwrap();
     let (with, without) = (directory.path().join("with.mcap"), directory.path().join("without.mcap"));
 

@@ -78,7 +78,7 @@ fn named<'v>(value: &'v Value, found: &mut Vec<(&'v str, &'v str)>) {
 }
 
 #[test]
-fn the_foxglove_layout_names_channels_and_fields_that_a_log_has() {
+fn foxglove_layout_names_existing_channels_and_fields() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../viewers/foxglove.json");
     let layout: Value = serde_json::from_str(&fs::read_to_string(path).unwrap()).unwrap();
     let log = log();
@@ -121,7 +121,7 @@ fn ticks(log: &[u8], topic: &str) -> Vec<u32> {
 }
 
 #[test]
-fn states_are_logged_on_change_and_everything_again_in_the_last_tick() {
+fn states_are_logged_on_change_and_in_the_last_tick() {
     let directory = tempfile::tempdir().unwrap();
     let path = directory.path().join("run.mcap");
     let mut recorder = Recorder::start(&path, Pace::Wait, Setup::default()).unwrap();

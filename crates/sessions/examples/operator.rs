@@ -20,7 +20,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         Ok([client.ask("tick")?, client.ask("dance")?])
     });
 
-    // The run: handles the received events between two ticks, without waiting.
+    // The run handles the received events between two ticks, without waiting.
     for tick in 1.. {
         while let Some(given) = listener.try_next() {
             println!("tick {tick}: {} from {}", given.event, given.source);

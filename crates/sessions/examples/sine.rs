@@ -1,6 +1,5 @@
-//! Sends one value over a WebSocket to Foxglove or Lichtblick, 25 times a second for ten seconds.
-//! Run `cargo run --release -p sessions --example sine`, open a connection to the address that it prints, and plot
-//! `/wave.height`.
+//! Sends one value over a WebSocket to Foxglove or Lichtblick, 25 times per second for ten seconds. Run `cargo
+//! run --release -p sessions --example sine`, connect to the printed address, and plot `/wave.height`.
 
 #![expect(clippy::print_stdout, reason = "an example prints what it does")]
 

@@ -6,7 +6,7 @@
 //! * [`operator`]: lines of text over a Unix socket, from the console of an operator or a script;
 //! * [`live`]: the messages of a log over WebSocket, to viewers.
 //!
-//! A run never waits for an operator or a viewer, and for a neighbour only in fast clock.
+//! A run never waits for an operator or a viewer, and waits for a neighbour only in fast clock.
 
 #![forbid(unsafe_code)]
 

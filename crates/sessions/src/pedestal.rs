@@ -6,7 +6,7 @@
 //! | event                                              | common memory                                                   |
 //! |----------------------------------------------------|-----------------------------------------------------------------|
 //! | it is connected and has written a status           | its buffers, with the stamp of the tick                         |
-//! | on the 40 ms grid its status is not there yet      | its last buffers, republished until the echo comes, 2 s at most |
+//! | on the 40 ms grid its status has not arrived       | its last buffers, republished until the echo, 2 s at most       |
 //! | it is not connected, or writes invalid data        | its last buffers with their old stamp: it is lost               |
 
 use interfaces::{OutsidePedestal, device::PedestalSensors, pedestal::PedestalCommand};
@@ -26,8 +26,8 @@ use neighbours::pedestal::{
     table::TableLayout,
 };
 
-/// Time limit for the echo of a command over a network on the 40 ms grid: 2 s, in ticks. In fast clock every tick waits
-/// for the answer.
+/// Time limit for the echo of a command over a network on the 40 ms grid: 2 s, in ticks. In fast clock every
+/// tick waits for the answer.
 const ECHO_TICKS: u64 = 50;
 
 /// A remark about the pedestal for the log.
@@ -37,7 +37,7 @@ pub enum Remark {
     /// The pedestal has connected or disconnected, or a connection was refused.
     Network(NetEvent),
     Refuses(String),
-    /// The pedestal's status cannot be decoded: it counts as not answering.
+    /// The pedestal's status cannot be decoded, which is treated as no answer.
     Garbled(Place, PedestalError),
     /// The pedestal is connected but does not echo a command.
     Silent(u32),
@@ -46,7 +46,6 @@ pub enum Remark {
 }
 
 impl Remark {
-    /// Short, stable name of the kind of remark.
     #[must_use]
     pub const fn code(&self) -> &'static str {
         match self {
@@ -75,22 +74,21 @@ impl std::fmt::Display for Remark {
     }
 }
 
-/// The controller's side. Allocates only for remarks.
+/// The controller's side. It allocates only for remarks.
 pub struct Agent {
     endpoint: Endpoint,
     sent: OutsidePedestal,
-    /// The pedestal's last verdict, and the mailgram number that it refers to.
+    /// The pedestal's last verdict, and the mailgram number to which it refers.
     refused: (Verdict, u16),
-    /// The mailbox that cannot be read, if there is one.
+    /// The unreadable mailbox, if any.
     garbled: Option<Place>,
-    /// Tick since which the last command has no echo.
+    /// Tick since which the echo of the last command is missing.
     waiting: Option<Tick>,
     silent: bool,
     remarks: Vec<Remark>,
 }
 
 impl Agent {
-    /// Creates the controller's side at an endpoint.
     #[must_use]
     pub fn new(endpoint: Endpoint) -> Self {
         Self {
@@ -115,8 +113,8 @@ impl Agent {
         std::mem::take(&mut self.remarks)
     }
 
-    /// Called between two ticks: sends the command in common memory and the sensor words that the tick `next` reads,
-    /// and receives the pedestal's statuses for that tick.
+    /// Called between two ticks. Sends the command in common memory and the sensor words that the tick `next`
+    /// reads, and receives the pedestal's statuses for that tick.
     pub fn exchange(&mut self, next: Tick, command: &PedestalCommand, sensors: &PedestalSensors) {
         self.put(PEDESTAL_COMMAND, &CommandLayout::encode(command));
         self.put(PEDESTAL_SENSORS, &SensorsLayout::encode(sensors));
@@ -154,8 +152,8 @@ impl Agent {
         }
     }
 
-    /// Reads the pedestal's four mailboxes, all or none. Returns false if the pedestal has not written a status yet; an
-    /// optional mailbox that it does not write counts as initial.
+    /// Reads the pedestal's four mailboxes, all or none. Returns false if the pedestal has not yet written a
+    /// status. An optional mailbox that it does not write has its initial value.
     fn receive(&mut self) -> Result<bool, (Place, PedestalError)> {
         let endpoint = &self.endpoint;
         let Some(status) = read(endpoint, PEDESTAL_STATUS, Status::decode)? else { return Ok(false) };
@@ -175,8 +173,8 @@ impl Agent {
         Ok(true)
     }
 
-    /// True if the pedestal echoes the last command or the time limit has not passed. Until the echo its status belongs
-    /// to an earlier command.
+    /// True if the pedestal echoes the last command or the time limit has not passed. Before the echo, its
+    /// status belongs to an earlier command.
     fn is_heard(&mut self, next: Tick, number: u32) -> bool {
         if number == 0 || self.sent.pedestal.status.echo == number || self.endpoint.clock() == ClockKind::Fast
         {
@@ -221,7 +219,7 @@ mod tests {
 
     /// The controller's side on the 40 ms grid, and a pedestal that writes what the test specifies.
     struct Bench {
-        /// Ends first, since an endpoint that is dropped waits for its session.
+        /// First, because a dropped endpoint waits for its session.
         session: TestSession,
         agent: Agent,
         tick: u64,
@@ -246,7 +244,7 @@ mod tests {
             self.write(&Status { status, ..Status::default() }.encode());
         }
 
-        /// Runs a tick with command `number`: returns whether the pedestal answers, and whether its outputs are
+        /// Runs a tick with command `number`. Returns whether the pedestal answers, and whether its outputs are
         /// republished.
         fn tick(&mut self, number: u32) -> (bool, bool) {
             self.tick += 1;
@@ -263,7 +261,7 @@ mod tests {
     }
 
     #[test]
-    fn a_late_status_leaves_the_last_one_standing_for_a_while() {
+    fn last_status_is_republished_until_the_time_limit() {
         let mut bench = Bench::connected();
         assert_eq!(bench.tick(0), (false, false), "it has written nothing yet");
         bench.report(0, PedestalReport::Idle);
@@ -282,7 +280,7 @@ mod tests {
     }
 
     #[test]
-    fn garbled_data_are_not_used() {
+    fn garbled_pedestal_data_are_ignored() {
         let mut bench = Bench::connected();
         let hand = GripOutputs::default();
         let mut orders = Mailbox::initialized(PEDESTAL_ORDERS);
@@ -314,7 +312,7 @@ mod tests {
     }
 
     #[test]
-    fn a_refusal_of_the_pedestal_is_reported_once() {
+    fn refusal_of_the_pedestal_is_reported_once() {
         let mut bench = Bench::connected();
         for grip_size in 0..3 {
             let status = PedestalStatus { grip_size, ..PedestalStatus::default() };
@@ -326,7 +324,7 @@ mod tests {
     }
 
     #[test]
-    fn one_that_goes_is_lost_and_its_orders_stand() {
+    fn disconnected_pedestal_is_lost_and_keeps_its_orders() {
         let mut bench = Bench::connected();
         bench.report(4, PedestalReport::Executing);
         assert_eq!(bench.tick(4), (true, false));

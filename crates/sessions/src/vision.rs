@@ -1,16 +1,16 @@
-//! READ-VISION-DATA and WRITE-VISION-REQUEST (IV.4.4, IX.4): the handshake with vision, once a tick.
+//! READ-VISION-DATA and WRITE-VISION-REQUEST (IV.4.4, IX.4): the handshake with vision, once per tick.
 //!
 //! | event                                          | effect                                                        |
 //! |------------------------------------------------|---------------------------------------------------------------|
-//! | E-move has a new request                       | written if `vision-ready-output` is 2, else as soon as it is  |
+//! | E-move has a new request                       | written once `vision-ready-output` is 2                       |
 //! | vision is not connected, or has connected again | "not ready" until it writes; an open request is written again |
 //! | a response while `vision-ready-input` is 2     | E-move reads it if it echoes the present request              |
-//! | a response to another request                  | not read: it would pass for the answer to the present request |
+//! | a response to another request                  | not read: E-move would take it for the answer                 |
 //! | a response while `vision-ready-input` is 1     | not read                                                      |
 //! | data that are not a response                   | not read; the ready words keep their values                   |
 //!
-//! If a response is not read, E-move keeps the earlier one, and waits at most until its time limit for vision. The
-//! mailbox is read every cycle (IX), and invalid data are reported once.
+//! If a response is not read, E-move keeps the earlier one, and waits at most until its time limit for vision.
+//! The mailbox is read in every cycle (IX), and invalid data are reported once.
 
 use std::fmt;
 
@@ -30,13 +30,13 @@ pub enum Remark {
     Network(NetEvent),
     /// The mailbox that vision has written cannot be decoded.
     Refused(VisionError),
-    /// It has answered another request than the present one.
+    /// Vision has answered another request than the present one.
     Stranger {
         echo: u16,
-        /// Number of the present request; 0 if there is none.
+        /// Number of the present request; 0 without one.
         expected: u16,
     },
-    /// It has written an answer while `vision-ready-input` is not ready.
+    /// Vision has written an answer while `vision-ready-input` is not ready.
     Unread {
         echo: u16,
     },
@@ -46,14 +46,13 @@ pub enum Remark {
         /// True if vision is connected but not ready.
         connected: bool,
     },
-    /// The picture has more parts than its mailbox holds: number of parts left out.
+    /// The picture has more parts than its mailbox holds; this is the number of omitted parts.
     Cropped(usize),
     /// A mailbox cannot hold the data.
     Mailbox(MailboxError),
 }
 
 impl Remark {
-    /// Stable short name of its kind.
     #[must_use]
     pub const fn code(&self) -> &'static str {
         match self {
@@ -108,7 +107,7 @@ pub struct Port {
     run: (u64, u64),
     /// E-move's present request; number 0 for none.
     wanted: VisionRequest,
-    /// The present request was written to the mailbox.
+    /// True if the present request was written to the mailbox.
     written: bool,
     /// `vision-ready-output`.
     output: Ready,
@@ -116,7 +115,7 @@ pub struct Port {
     response: VisionResponse,
     /// The last content of the response area.
     found: VisionResponse,
-    /// The error of reading the mailbox that was reported last.
+    /// The last reported error of reading the mailbox.
     refused: Option<VisionError>,
     waits: bool,
     remarks: Vec<Remark>,
@@ -159,8 +158,8 @@ impl Port {
         std::mem::take(&mut self.remarks)
     }
 
-    /// Call once per tick, after E-move and the cell: `wanted` is E-move's request. `picture` returns the parts in the
-    /// picture of the simulated camera; it is called in the tick in which the request is written.
+    /// Call once per tick, after E-move and the cell. `wanted` is E-move's request. `picture` returns the parts
+    /// in the picture of the simulated camera; it is called in the tick in which the request is written.
     pub fn step(&mut self, tick: u64, wanted: &VisionRequest, picture: impl FnOnce() -> Vec<Part>) {
         if wanted.number != self.wanted.number {
             (self.wanted, self.written, self.waits) = (*wanted, false, false);
@@ -188,13 +187,14 @@ impl Port {
         }
     }
 
-    /// True if there is a request that was not written, and that no vision system has answered before it disconnected.
+    /// True if a request was not written, and no vision system answered it before disconnecting.
     fn is_open(&self) -> bool {
         let answered = self.response.echo == self.wanted.number && is_final(&self.response);
         self.wanted.number != 0 && self.wanted.picture != Kind::None && !self.written && !answered
     }
 
-    /// Initialize the ready words and the response area as blocks 984-986 do. Keep the response that E-move has read.
+    /// Initialize the ready words and the response area like blocks 984-986. Keep the response that E-move has
+    /// read.
     fn initialize(&mut self) {
         self.output = Areas::INITIALIZED.output;
         self.found = Areas::INITIALIZED.response;
@@ -236,7 +236,7 @@ impl Port {
     fn take(&mut self, areas: &Areas) {
         let expected = if self.written { command_number(self.wanted.number) } else { 0 };
         let echo = command_number(areas.response.echo);
-        // A response that was there before is not new.
+        // An old response is not new.
         let news = areas.response != self.found && is_final(&areas.response);
         self.found = areas.response;
         if echo != expected || echo == 0 {
@@ -264,7 +264,7 @@ mod tests {
 
     /// A port, and the session at its other end.
     struct Bench {
-        /// Ends first, since an endpoint that is dropped waits for its session.
+        /// First, because a dropped endpoint waits for its session.
         session: Option<TestSession>,
         port: Port,
         response_box: Mailbox,
@@ -335,7 +335,7 @@ mod tests {
     }
 
     #[test]
-    fn a_request_is_sent_with_its_picture_and_its_answer_is_received() {
+    fn request_is_sent_with_its_picture_and_answered() {
         let mut bench = Bench::connected();
         bench.ask(65_539);
         let request = request::decode(&bench.outgoing(VISION_REQUEST)).unwrap();
@@ -352,7 +352,7 @@ mod tests {
     }
 
     #[test]
-    fn a_request_waits_until_vision_is_ready_for_it() {
+    fn request_waits_until_vision_is_ready() {
         let mut bench = Bench::new();
         bench.ask(4);
         bench.step();
@@ -378,7 +378,7 @@ mod tests {
     }
 
     #[test]
-    fn an_answer_is_read_only_while_vision_ready_input_is_set() {
+    fn answer_is_read_only_with_vision_ready_input_set() {
         let mut bench = Bench::connected();
         bench.ask(4);
         bench.say(&Areas { input: Ready::NotReady, ..answer(4) });
@@ -424,7 +424,7 @@ mod tests {
     }
 
     #[test]
-    fn a_successor_gets_the_unanswered_request() {
+    fn new_vision_system_gets_the_unanswered_request() {
         let mut bench = Bench::connected();
         bench.ask(4);
         bench.go();
@@ -449,7 +449,7 @@ mod tests {
     }
 
     #[test]
-    fn an_answer_that_nobody_asked_for_is_refused() {
+    fn unrequested_answer_is_refused() {
         let mut bench = Bench::connected();
         bench.say(&answer(4));
         bench.step();

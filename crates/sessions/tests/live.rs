@@ -1,4 +1,4 @@
-//! Tests a server and its clients over real sockets: who may connect, what is refused, who is disconnected.
+//! Tests a server and its clients over real sockets: admissions, refusals, and disconnections.
 
 use std::{
     io::{ErrorKind, Read, Write},
@@ -101,7 +101,7 @@ fn close_code(socket: &mut WebSocket<TcpStream>) -> CloseCode {
 }
 
 #[test]
-fn programs_and_listed_pages_may_connect_and_others_get_403() {
+fn unlisted_pages_get_status_403() {
     let origins = vec!["http://localhost:8080".parse().unwrap()];
     let (server, _tap) = serve(Options { origins, ..Options::default() });
     let with = |origin| try_connect(server.address(), origin, "foxglove.websocket.v1, foxglove.sdk.v1");
@@ -134,7 +134,7 @@ fn answer(address: SocketAddr, request: &str) -> String {
 }
 
 #[test]
-fn browser_gets_the_page_and_nothing_else() {
+fn browser_gets_only_the_page() {
     let page = Some("<title>run</title>".to_owned());
     let (server, _tap) = serve(Options { page, ..Options::default() });
     let get = |path: &str, host: &str| {
@@ -155,7 +155,7 @@ fn browser_gets_the_page_and_nothing_else() {
 }
 
 #[test]
-fn page_of_the_server_may_connect_and_pages_of_other_ports_may_not() {
+fn only_the_page_of_the_same_port_may_connect() {
     let (server, _tap) = serve(Options::default());
     let port = server.address().port();
     let own = format!("http://127.0.0.1:{port}");
@@ -167,7 +167,7 @@ fn page_of_the_server_may_connect_and_pages_of_other_ports_may_not() {
 }
 
 #[test]
-fn a_client_without_a_known_subprotocol_is_refused() {
+fn client_without_a_known_subprotocol_is_refused() {
     let (server, _tap) = serve(Options::default());
     for wrong in ["", "foxglove.websocket.v0", "graphql-ws"] {
         let (status, body) = try_connect(server.address(), None, wrong).map(|_| ()).unwrap_err();
@@ -195,7 +195,7 @@ fn one_time_messages_are_sent_to_each_new_subscriber() {
 }
 
 #[test]
-fn wrong_messages_are_answered_and_end_the_session_at_last() {
+fn too_many_wrong_messages_close_the_connection() {
     let (server, _tap) = serve(Options::default());
     let mut socket = connect(server.address());
     for wrong in [Message::text("{"), Message::binary(vec![77, 1, 2]), Message::text("{\"op\":\"fly\"}")] {
@@ -244,7 +244,7 @@ fn ends(stream: &mut TcpStream) {
 }
 
 #[test]
-fn an_invalid_handshake_ends_the_connection() {
+fn invalid_handshake_ends_the_connection() {
     let (server, _tap) = serve(Options::default());
     for wrong in [
         "GET / HTTP/1.1\r\n\r\n",
@@ -264,7 +264,7 @@ fn an_invalid_handshake_ends_the_connection() {
 }
 
 #[test]
-fn clients_are_counted_and_one_too_many_is_refused() {
+fn client_above_the_limit_is_refused() {
     let (server, _tap) = serve(Options::default());
     let mut clients: Vec<_> = (0..CLIENTS).map(|_| connect(server.address())).collect();
     let (status, body) = try_connect(server.address(), None, "foxglove.sdk.v1").map(|_| ()).unwrap_err();
@@ -279,14 +279,14 @@ fn clients_are_counted_and_one_too_many_is_refused() {
 }
 
 #[test]
-fn clients_that_do_not_read_are_disconnected_and_others_stay() {
+fn only_clients_that_do_not_read_are_disconnected() {
     let patience = Duration::from_millis(400);
     let (server, mut tap) = serve(Options { patience, ..Options::default() });
     let mut reader = connect(server.address());
     let subscribe = json!({ "op": "subscribe", "subscriptions": [{ "id": 1, "channelId": 1 }] });
     say(&mut reader, subscribe.clone());
     let mut silent: Vec<_> = (0..10).map(|_| connect(server.address())).collect();
-    // Half of these clients subscribe to nothing.
+    // Half of these clients have no subscription.
     silent.iter_mut().skip(5).for_each(|socket| say(socket, subscribe.clone()));
     let reading = thread::spawn(move || {
         let is_message = |message: &Message| message.is_binary() && message.len() > 9;
@@ -332,9 +332,9 @@ impl Write for Slow {
     }
 }
 
-/// The meshes of a run have 1.1 MB. Before the pings went between their pieces, the answer came after all of them.
+/// The meshes of a run have 1.1 MB. Without pings between their pieces, the answer arrived after all of them.
 #[test]
-fn a_viewer_that_reads_slowly_receives_large_messages_and_stays() {
+fn slow_viewer_receives_large_messages_and_stays() {
     let (sender, notices) = channel();
     let patience = Duration::from_secs(1);
     let (server, mut tap) = serve(Options { patience, notices: Some(sender), ..Options::default() });
@@ -368,7 +368,7 @@ fn a_viewer_that_reads_slowly_receives_large_messages_and_stays() {
 }
 
 #[test]
-fn a_viewer_that_stops_reading_is_disconnected_with_a_reason() {
+fn viewer_that_stops_reading_is_disconnected_with_a_reason() {
     let (sender, notices) = channel();
     let patience = Duration::from_millis(400);
     let (server, mut tap) = serve(Options { patience, notices: Some(sender), ..Options::default() });

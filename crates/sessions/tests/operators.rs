@@ -58,7 +58,7 @@ impl Bench {
 }
 
 #[test]
-fn a_request_reaches_the_run_and_is_answered() {
+fn request_reaches_the_run_and_is_answered() {
     let bench = Bench::new();
     let mut client = bench.client("console");
     assert_eq!(client.run(), "linkbar-1");
@@ -78,7 +78,7 @@ fn a_request_reaches_the_run_and_is_answered() {
 }
 
 #[test]
-fn a_silent_session_is_reported_once_until_it_answers() {
+fn silent_session_is_reported_once_until_it_answers() {
     let bench = Bench::new();
     let mut client = bench.client("console");
     bench.expect("console", Event::Connected);
@@ -90,7 +90,7 @@ fn a_silent_session_is_reported_once_until_it_answers() {
 }
 
 #[test]
-fn a_protocol_error_ends_only_its_session() {
+fn protocol_error_ends_only_its_session() {
     let bench = Bench::new();
     let mut good = bench.client("good");
     bench.expect("good", Event::Connected);
@@ -118,7 +118,7 @@ fn a_protocol_error_ends_only_its_session() {
 }
 
 #[test]
-fn sessions_with_one_name_get_different_ones() {
+fn sessions_with_equal_names_are_renamed() {
     let bench = Bench::new();
     let clients = ["send", "send", "send-2", "send"].map(|name| bench.client(name));
     let names = ["send", "send-2", "send-2-2", "send-3"];
@@ -128,7 +128,7 @@ fn sessions_with_one_name_get_different_ones() {
     }
     let [first, ..] = clients;
     drop(first);
-    // The name is free when the run has been told of the end.
+    // The name is free once the run has been notified of the end.
     loop {
         let given = bench.next();
         if given.event == Event::Disconnected {
@@ -153,11 +153,11 @@ fn next_line(bench: &Bench) -> Event {
 }
 
 #[test]
-fn a_request_is_late_when_its_sender_has_given_up() {
+fn request_is_late_after_its_sender_stopped_waiting() {
     let bench = Bench::new();
     let mut client = bench.client("console");
     client.send("PAUSE").unwrap();
-    // The run stands still for longer than the client waits.
+    // The run is suspended for longer than the client waits.
     std::thread::sleep(Duration::from_millis(1300));
     assert_eq!(next_line(&bench), Event::Late(Late::GivenUp, "PAUSE".into()));
     client.send_within(Duration::from_secs(9), "PAUSE").unwrap();
@@ -168,10 +168,10 @@ fn a_request_is_late_when_its_sender_has_given_up() {
 }
 
 #[test]
-fn requests_of_a_session_that_has_ended_are_late() {
+fn requests_of_an_ended_session_are_late() {
     let bench = Bench::new();
     let mut stream = UnixStream::connect(&bench.path).unwrap();
-    // More lines than the queue to the run holds, so that the session itself has not read them all.
+    // More lines than fit the queue to the run, so that the session has not read all of them.
     let lines: String = (1..=100).map(|number| format!("{number} @5000 PAUSE\n")).collect();
     stream.write_all(format!("hello killed\n{lines}").as_bytes()).unwrap();
     bench.expect("killed", Event::Connected);
@@ -183,7 +183,7 @@ fn requests_of_a_session_that_has_ended_are_late() {
 }
 
 #[test]
-fn a_client_that_waits_shows_that_it_is_there() {
+fn waiting_client_sends_keep_alive_lines() {
     let bench = Bench::new();
     let mut client = bench.client("console");
     bench.expect("console", Event::Connected);
@@ -202,14 +202,14 @@ fn a_client_that_waits_shows_that_it_is_there() {
 }
 
 #[test]
-fn a_client_that_takes_no_answers_does_not_hold_the_run_up() {
+fn client_that_reads_no_answers_does_not_delay_the_run() {
     let bench = Bench::new();
     let mut stream = UnixStream::connect(&bench.path).unwrap();
     stream.write_all(b"hello deaf\n").unwrap();
     bench.expect("deaf", Event::Connected);
     let started = Instant::now();
     loop {
-        // The session may already have been ended.
+        // The session may already have ended.
         let _ = stream.write_all(b"1 stop\n");
         let given = bench.next();
         if given.event == Event::Disconnected {
@@ -224,7 +224,7 @@ fn a_client_that_takes_no_answers_does_not_hold_the_run_up() {
 }
 
 #[test]
-fn a_ninth_client_is_refused_with_the_reason() {
+fn ninth_client_is_refused_with_the_reason() {
     let bench = Bench::new();
     let mut clients: Vec<_> = (0..8).map(|number| bench.client(&format!("c{number}"))).collect();
     let name: Name = "ninth".parse().unwrap();
@@ -238,7 +238,7 @@ fn a_ninth_client_is_refused_with_the_reason() {
 }
 
 #[test]
-fn a_run_that_ends_ends_its_sessions_and_its_socket() {
+fn ended_run_closes_its_sessions_and_socket() {
     let bench = Bench::new();
     let mut client = bench.client("console");
     let mode = std::fs::metadata(&bench.path).unwrap().permissions().mode();

@@ -13,7 +13,7 @@ use neighbours::{
 };
 use sessions::network::Role;
 
-/// The mailboxes of all neighbours: those of Table IX.1, and ours.
+/// The mailboxes of all neighbours: those of Table IX.1, and additional ones.
 fn mailboxes() -> String {
     let mut page = "| address | bytes | mailbox | written by |\n|---|---|---|---|\n".to_owned();
     for role in Role::ALL {
@@ -30,7 +30,7 @@ fn mailboxes() -> String {
     page
 }
 
-/// Put the generated tables between their marks; the marks that were not found.
+/// Put the generated tables between their marks. Returns the missing marks.
 fn generate(page: &str) -> (String, Vec<&'static str>) {
     const LAYOUTS: [(&str, Table); 14] = [
         ("workstation command", workstation::command::CommandLayout::TABLE),
@@ -63,7 +63,7 @@ fn generate(page: &str) -> (String, Vec<&'static str>) {
 }
 
 #[test]
-fn the_tables_of_the_page_are_those_of_the_code() {
+fn neighbour_tables_of_the_page_equal_the_code() {
     let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/neighbours.md");
     let page = fs::read_to_string(&file).expect("a page");
     let (generated, missing) = generate(&page);

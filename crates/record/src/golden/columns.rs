@@ -1,8 +1,8 @@
 //! Images of many ticks as columns: one column per field.
 //!
-//! A column is a list of changes: ticks since the change before, and the difference as a number (or, for names, frames
-//! on the line and payloads of larger unions, the new bytes). A field that never changes is an empty column; the noise
-//! of a converter is two small bytes a change, which compress to a few bits.
+//! A column is a list of changes: ticks since the previous change, and the difference as a number (or, for
+//! names, frames on the line and payloads of larger unions, the new bytes). A field that never changes is an
+//! empty column. The noise of a converter is two small bytes per change, which compress to a few bits.
 
 use rcs_core::{plain::StructSchema, reflect};
 
@@ -31,7 +31,7 @@ pub struct Columns {
 }
 
 impl Columns {
-    /// No images yet; the image before the first is zeros.
+    /// Empty columns. The image before the first is zeros.
     pub fn new(record: &'static StructSchema) -> Self {
         Self { columns: columns(record).into_iter().map(|column| (column, Vec::new())).collect(), tick: 0 }
     }
@@ -95,7 +95,7 @@ impl<'a> Reader<'a> {
     }
 }
 
-/// Apply the change that is due, and read when the next one is.
+/// Apply the due change, and read the time of the next one.
 fn change(column: &Column, due: &mut Option<u64>, rest: &mut &[u8], image: &mut [u8]) -> Option<()> {
     let Piece { offset, size, number } = column.piece;
     let field = image.get_mut(offset..offset + size)?;
@@ -108,7 +108,7 @@ fn change(column: &Column, due: &mut Option<u64>, rest: &mut &[u8], image: &mut 
         field.copy_from_slice(bytes);
         *rest = behind;
     }
-    // A gap of no ticks would never come due again.
+    // A gap of zero ticks would never be due again.
     *due = match rest.is_empty() {
         true => None,
         false => Some((*due)?.checked_add(take_varint(rest).filter(|gap| *gap > 0)?)?),
@@ -146,7 +146,7 @@ mod tests {
         }
 
         #[test]
-        fn damaged_columns_are_noticed_or_harmless(
+        fn damaged_columns_are_detected_or_harmless(
             bytes in prop::collection::vec(prop::collection::vec(any::<u8>(), 0..9), 0..300),
         ) {
             let mut reader = Reader::new(ExternalInputs::STRUCT, &bytes);
@@ -159,7 +159,7 @@ mod tests {
     }
 
     #[test]
-    fn a_field_that_never_changes_costs_nothing() {
+    fn constant_field_has_an_empty_column() {
         let mut columns = Columns::new(ExternalInputs::STRUCT);
         for _ in 0..1000 {
             columns.add(&vec![0; ExternalInputs::SIZE]);

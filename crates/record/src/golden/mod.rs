@@ -1,9 +1,9 @@
-//! A run as a small file to keep beside the source: its inputs, and fingerprints of its outputs.
+//! A run as a small file to keep with the source: its inputs, and fingerprints of its outputs.
 //!
-//! A log has every buffer of every tick; a golden can only tell whether the outputs are still the same. It has the
-//! inputs of the ladder, column by column (a column is a field: how many ticks until it changes, and by how much), the
-//! task data, and the digest of all output buffers after each second. Its replay finds the second in which the present
-//! program first differs, and writes a [`Summary`] as text; a person reviews its difference from the kept one.
+//! A log has every buffer of every tick; a golden can only show whether the outputs are still the same. It has
+//! the inputs of the ladder as one column per field (ticks until each change, and its amount), the task data,
+//! and the digest of all output buffers after each second. Its replay finds the second in which the present
+//! program first differs, and writes a [`Summary`] as text for review against the kept one.
 //!
 //! ```text
 //!  run --log--> golden::from_log --> NAME.golden, NAME.txt    once, by a command
@@ -44,9 +44,9 @@ use crate::{
 
 /// First bytes of the file; the last one is the version of the format.
 const MAGIC: [u8; 8] = *b"RCSGOLD\x01";
-/// Level of the compression: it is written once and read a thousand times.
+/// Level of the compression, since a golden is written once and read a thousand times.
 const COMPRESSION: i32 = 19;
-/// Most bytes of an unpacked golden: a day of running is less.
+/// Greatest size of an unpacked golden, bytes: a day of running is less.
 const LARGEST: usize = 1 << 30;
 /// Largest file of a golden, bytes.
 const FILE: u64 = 1 << 28;
@@ -66,7 +66,7 @@ struct Content {
     files: Vec<File>,
     #[prost(uint64, tag = "4")]
     ticks: u64,
-    /// The inputs, a column a field.
+    /// The inputs, one column per field.
     #[prost(bytes = "vec", repeated, tag = "5")]
     columns: Vec<Vec<u8>>,
     /// Digest of all ticks so far, after each second and after the last tick.
@@ -82,11 +82,11 @@ struct File {
     text: String,
 }
 
-/// A run with only what a replay needs.
+/// A run with only the data for a replay.
 #[derive(Clone, PartialEq)]
 pub struct Golden(Content);
 
-/// Why a golden cannot be made, read or replayed.
+/// Reasons why a golden cannot be made, read or replayed.
 #[derive(Debug, thiserror::Error)]
 pub enum GoldenError {
     /// The file cannot be read or written.
@@ -100,7 +100,7 @@ pub enum GoldenError {
         "the golden was made with layout {found}, this program has layout {expected}: make it again from a run"
     )]
     OtherLayout { expected: String, found: String },
-    /// The log does not hold the whole run.
+    /// The log does not have the whole run.
     #[error("the log cannot become a golden: {0}")]
     NotWhole(&'static str),
     /// The inputs of a tick do not fit the layout.
@@ -117,7 +117,7 @@ pub enum GoldenError {
 #[derive(Clone, Debug)]
 pub struct Played {
     pub ticks: u64,
-    /// First and last tick of the first second in which the output buffers differed; `None` if they never did.
+    /// First and last tick of the first second in which the output buffers differed, if they did.
     pub difference: Option<(u64, u64)>,
     /// Digest of all output buffers of all ticks.
     pub digest: Digest,
@@ -266,8 +266,8 @@ impl Golden {
 /// Run the present program on the inputs of a golden, with the task data of the golden.
 ///
 /// # Errors
-/// [`GoldenError`] if its inputs are damaged or its task data do not load. A difference is not an error: it is in the
-/// result.
+/// [`GoldenError`] if its inputs are damaged or its task data do not load. A difference is not an error, but
+/// part of the result.
 pub fn replay(golden: &Golden) -> Result<Played, GoldenError> {
     replay_with(golden, &golden.data()?)
 }
@@ -275,7 +275,7 @@ pub fn replay(golden: &Golden) -> Result<Played, GoldenError> {
 /// Run the present program on the inputs of a golden, with other task data: one store per generation.
 ///
 /// # Errors
-/// As [`replay`].
+/// The errors of [`replay`].
 pub fn replay_with(golden: &Golden, data: &[Store]) -> Result<Played, GoldenError> {
     let started = Instant::now();
     let (mut ladder, mut memory, mut digest) = (Ladder::default(), CommonMemory::default(), Digest::new());

@@ -1,8 +1,8 @@
-//! The summary of a run as text for review: commands with their durations, failures, and how often each row of each
-//! decision table fired.
+//! The summary of a run as text for review: commands with their durations, failures, and the number of firings
+//! of each row of each decision table.
 //!
-//! A digest only detects a change of behaviour; here it can be read: a row that fires less often, a command that takes
-//! longer, a new failure.
+//! A digest only detects a change of behaviour. The summary makes it readable: a row that fires less often, a
+//! command that takes longer, a new failure.
 
 use std::{collections::BTreeMap, fmt::Write as _};
 
@@ -20,7 +20,7 @@ use crate::{
     remarks::remarks,
 };
 
-/// Warnings and errors that are written out; the others are counted.
+/// Number of warnings and errors that are written out; further ones are counted.
 const TROUBLES: usize = 30;
 
 /// A command of the workstation controller.
@@ -39,7 +39,7 @@ pub struct Summary {
     image: Vec<u8>,
     commands: Vec<Command>,
     troubles: Vec<String>,
-    /// How often a row fired, by position of the process, number of the table, row.
+    /// Number of firings of each row, by position of the process, number of the table, row.
     rows: BTreeMap<(usize, u8, u8), u64>,
     ticks: u64,
 }
@@ -156,7 +156,7 @@ mod tests {
     use rcs_core::name::Name16;
 
     #[test]
-    fn a_run_of_one_command_that_fails() {
+    fn summary_of_one_failed_command() {
         let run = [("job".to_owned(), "try".to_owned())].into();
         let mut summary = Summary::new(&run);
         let mut external = ExternalInputs::default();

@@ -16,9 +16,9 @@
 //! |                          | text, and an optional field for what each carries, number code + 2.  |
 //! |                          | The enum is in a nested message: a variant and its field are alike   |
 //!
-//! The wrapping message gives each enum its own scope: protobuf forbids two enums of one scope to share a variant. A
-//! field of a union is named after its variant, so that a reader finds `goal.at_a_place.x` under the path that
-//! [`crate::layout`] gives it.
+//! The wrapping message gives each enum its own scope: protobuf forbids equal variants of two enums in one
+//! scope. A field of a union is named after its variant, so that a reader finds `goal.at_a_place.x` under its
+//! path in [`crate::layout`].
 
 use prost::Message as _;
 use prost_types::{
@@ -112,7 +112,8 @@ pub fn repeated(field: FieldDescriptorProto) -> FieldDescriptorProto {
     FieldDescriptorProto { label: Some(Label::Repeated.into()), ..field }
 }
 
-/// The field as an optional one. Messages and repeated fields need no mark: they are absent or empty if not written.
+/// The field as an optional one. Messages and repeated fields need no mark: they are absent or empty if not
+/// written.
 #[must_use]
 pub fn optional(field: FieldDescriptorProto) -> FieldDescriptorProto {
     let absent_anyway = field.r#type() == Type::Message || field.label() == Label::Repeated;
@@ -302,7 +303,7 @@ mod tests {
     }
 
     #[test]
-    fn a_command_has_its_fields_and_enums() {
+    fn command_has_its_fields_and_enums() {
         let file = decoded(EmoveCommand::STRUCT);
         let command = &file.message_type[0];
         assert_eq!(command.name(), "EmoveCommand");
@@ -314,7 +315,7 @@ mod tests {
     }
 
     #[test]
-    fn every_type_is_there_and_every_identifier_is_legal() {
+    fn every_type_exists_and_every_identifier_is_legal() {
         for record in [CommonMemory::STRUCT, ExternalInputs::STRUCT, Order::STRUCT] {
             let file = decoded(record);
             for message in &file.message_type {
@@ -346,7 +347,7 @@ mod tests {
         }
     }
 
-    /// Messages are distinguished by name only, so two records, or a record and an enum, must not share a name.
+    /// Messages are distinguished only by name, so two records, or a record and an enum, must not share a name.
     #[test]
     fn names_are_not_shared() {
         fn walk(schema: &'static Schema, seen: &mut BTreeMap<&'static str, String>) {
@@ -389,7 +390,7 @@ mod tests {
     }
 
     #[test]
-    fn what_can_be_absent_is_optional() {
+    fn options_are_optional_fields() {
         let file = decoded(Order::STRUCT);
         let expected = [
             ("number", 1, "TYPE_UINT32", "optional"),
@@ -406,7 +407,7 @@ mod tests {
     }
 
     #[test]
-    fn a_union_is_its_kind_and_a_field_for_what_a_variant_carries() {
+    fn union_has_a_kind_and_payload_fields() {
         let file = decoded(Order::STRUCT);
         let goal = file.message_type.iter().find(|message| message.name() == "Goal").unwrap();
         let expected = [
@@ -421,7 +422,7 @@ mod tests {
     }
 
     #[test]
-    fn texts_that_are_alike_get_their_code() {
+    fn equal_identifiers_get_their_code() {
         const fn variant(code: u8, text: &'static str) -> VariantSchema {
             VariantSchema { code, name: "", text, doc: "" }
         }

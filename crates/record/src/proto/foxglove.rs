@@ -23,13 +23,13 @@ pub enum Level {
     Debug = 1,
     #[default]
     Info = 2,
-    /// An unusual event without harm so far.
+    /// An unusual event without damage so far.
     Warning = 3,
     Error = 4,
 }
 
 impl Level {
-    /// The level with a code; an unknown code counts as an error.
+    /// The level with a code. An unknown code is an error.
     #[must_use]
     pub const fn from_code(code: u64) -> Self {
         match code {
@@ -184,7 +184,7 @@ pub struct Link {
     pub parent: String,
 }
 
-/// The transforms of a `FrameTransforms` message, without their time stamps; the first malformed one ends the list.
+/// The transforms of a `FrameTransforms` message, without their time stamps, up to the first malformed one.
 #[must_use]
 pub fn take_transforms(data: &[u8]) -> Vec<(Link, Transform)> {
     let transforms = wire::Fields(data).filter_map(|field| match field {
@@ -227,7 +227,7 @@ mod tests {
     use prost_types::{FileDescriptorSet, Timestamp};
 
     #[test]
-    fn descriptors_hold_what_they_name() {
+    fn descriptors_contain_all_named_types() {
         for (bytes, root) in [
             (frame_transforms_descriptor(), "FrameTransforms"),
             (log_descriptor(), "Log"),

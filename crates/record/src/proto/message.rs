@@ -159,7 +159,7 @@ mod tests {
     }
 
     #[test]
-    fn a_value_that_is_absent_is_not_written() {
+    fn absent_value_is_not_written() {
         let expected: &[&[u8]] = &[
             &[0x1A, 0x00],             // seats[0]
             &[0x1A, 0x00],             // seats[1]
@@ -169,7 +169,7 @@ mod tests {
     }
 
     #[test]
-    fn a_value_that_is_there_is_written_even_if_it_is_zero() {
+    fn present_zero_is_written() {
         let order = Order {
             number: Some(0),
             from: Some(Inner { at: -2 }),

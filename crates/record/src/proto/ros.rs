@@ -1,5 +1,5 @@
-//! Two ROS 2 messages in CDR: `sensor_msgs/msg/JointState`, which moves a robot description and gives curves by joint
-//! name, and `std_msgs/msg/String`, which contains the description.
+//! Two ROS 2 messages in CDR: `sensor_msgs/msg/JointState`, which moves a robot description and provides curves
+//! by joint name, and `std_msgs/msg/String`, which contains the description.
 //!
 //! CDR here is little-endian with the four-byte header of XCDR1; every number is aligned to its size, counted from the
 //! end of the header.
@@ -97,7 +97,7 @@ mod tests {
     }
 
     #[test]
-    fn a_joint_state_to_the_byte() {
+    fn joint_state_has_the_expected_bytes() {
         let mut out = Vec::new();
         joint_state(2_000_000_003, &["base".into()], &[0.5], &mut out);
         let expected: &[&[u8]] = &[

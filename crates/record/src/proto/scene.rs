@@ -224,7 +224,7 @@ mod tests {
     }
 
     #[test]
-    fn the_descriptors_hold_all_types_that_they_name() {
+    fn scene_descriptors_contain_all_named_types() {
         let set = FileDescriptorSet::decode(descriptor().as_slice()).unwrap();
         let names: Vec<String> = set
             .file
@@ -242,7 +242,7 @@ mod tests {
     }
 
     #[test]
-    fn a_model_and_a_text_are_where_viewers_look_for_them() {
+    fn model_and_text_have_the_fields_of_the_schema() {
         let mut out = Vec::new();
         let entity = Entity::new("arm", "upper_arm", Primitive::Model(b"glTF"));
         put_entity(1_000_000_002, &entity, &mut out);

@@ -1,7 +1,7 @@
-//! Messages of structs: one definition gives the fields, their protobuf descriptors and the encoding.
+//! Messages of structs: one definition for the fields, their protobuf descriptors and the encoding.
 //!
-//! The messages of buffers have the schema of their records ([`super::descriptor`]). Those here have texts and lists of any
-//! length, which a record cannot have.
+//! The messages of buffers have the schema of their records ([`super::descriptor`]). Those here have texts and
+//! lists of any length, which a record cannot contain.
 
 use prost_types::{DescriptorProto, FieldDescriptorProto, field_descriptor_proto::Type};
 
@@ -11,7 +11,7 @@ use super::{
 };
 
 pub trait Value {
-    /// Descriptor of a field of this type. Messages that it needs are added to `messages`.
+    /// Descriptor of a field of this type. Messages that it requires are added to `messages`.
     fn describe(name: &str, number: i32, messages: &mut Vec<DescriptorProto>) -> FieldDescriptorProto;
 
     fn put(&self, number: u32, out: &mut Vec<u8>);

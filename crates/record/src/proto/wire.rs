@@ -1,7 +1,7 @@
 //! The part of the protobuf wire format that a log uses.
 //!
-//! Zero values are written, too: readers that treat an absent field as missing would otherwise interrupt a curve at
-//! zero.
+//! Zero values are written too: readers that treat an absent field as missing would otherwise interrupt a curve
+//! at zero.
 
 const VARINT: u64 = 0;
 /// Wire type of eight bytes.
@@ -20,9 +20,9 @@ pub fn put_varint(mut value: u64, out: &mut Vec<u8>) {
     out.push(value as u8);
 }
 
-/// Take a number from the front of `bytes`; `None` if it has no end or does not fit in 64 bits.
+/// Take a number from the front of `bytes`; `None` if it is incomplete or does not fit in 64 bits.
 pub fn take_varint(bytes: &mut &[u8]) -> Option<u64> {
-    // Most are of one byte.
+    // Most numbers have one byte.
     if let [byte @ 0..=0x7F, rest @ ..] = *bytes {
         *bytes = rest;
         return Some(u64::from(*byte));
@@ -105,7 +105,7 @@ pub fn nested(field: u32, out: &mut Vec<u8>, body: impl FnOnce(&mut Vec<u8>)) {
     }
 }
 
-/// Fields of a message, in the order of the wire; ends at the first malformed one.
+/// Fields of a message, in the order of the wire, up to the first malformed one.
 pub struct Fields<'a>(pub &'a [u8]);
 
 /// The value of a field on the wire.
@@ -139,7 +139,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn numbers_are_those_of_the_protobuf_documentation() {
+    fn varints_equal_those_of_the_protobuf_documentation() {
         let mut out = Vec::new();
         unsigned(1, 150, &mut out);
         assert_eq!(out, [0x08, 0x96, 0x01]);

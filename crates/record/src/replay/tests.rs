@@ -15,10 +15,10 @@ use crate::{
 /// Ticks of the runs: more than twelve parts of a log.
 const TICKS: u64 = 310;
 
-/// What differs between a log and the run, and what of it is replayed.
+/// Differences between a log and the run, and the replayed part.
 #[derive(Clone, Debug)]
 struct Case {
-    /// Ticks that are missing, from one of them on.
+    /// Missing ticks, from one of them on.
     gap: (u64, u64),
     /// A second without recorded states.
     without_states: u64,

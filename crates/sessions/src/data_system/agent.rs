@@ -1,20 +1,21 @@
 //! The controller's side of a Data System in another process.
 //!
-//! It runs on a separate thread, which may wait for the disk and the network. A command goes into the mailbox, and the
-//! status that answers it is received with the pulse of the same exchange, or of a later one. Updates are kept on the
-//! disk until they are answered ([`Outbox`]). Updates that an earlier run could not send follow the next STARTUP,
-//! before Task gets its status, so that the data base gets all updates in their order.
+//! It runs on a separate thread, which may wait for the disk and the network. A command is written to the
+//! mailbox; the status that answers it is received with the pulse of the same exchange, or of a later one.
+//! Updates are kept on the disk until they are answered ([`Outbox`]). Pending updates of an earlier run follow
+//! the next STARTUP, before Task receives its status, so that the database receives all updates in their order.
 //!
-//! On the line the agent numbers the commands itself, because updates sent after STARTUP have no number of Task:
+//! On the line the agent numbers the commands itself, because updates sent after STARTUP have no number of
+//! Task:
 //!
 //! | command sent                             | command-id#     | status that answers it                              |
 //! |------------------------------------------|-----------------|-----------------------------------------------------|
-//! | another command than before              | the next number | one with this number, written afterwards            |
+//! | another command                          | the next number | one with this number, written afterwards            |
 //! | the same, because it has no answer yet   | the same        | one to any of its repetitions: they are one command |
-//! | the same, because Task commands it again | the next number | one with this number: a repeated answer counts once |
+//! | the same, because Task commands it again | the next number | one with this number: repeated answers are ignored  |
 //!
-//! A server that does not answer within the time limit of the clock counts as silent, and so does one whose answer is
-//! not a valid status. Task then gets no answer, and repeats the command (V.4.1).
+//! A server that does not answer within the time limit of the clock is silent, and so is one whose answer is
+//! not a valid status. Task then receives no answer, and repeats the command (V.4.1).
 
 use std::{
     fmt, thread,
@@ -34,16 +35,16 @@ use neighbours::{
 use super::outbox::Outbox;
 use crate::network::{Endpoint, NetEvent, Presence, StopHandle, clock::answer_limit};
 
-/// Time between two checks for the answer of the server.
+/// Time between two checks for the server's answer.
 const PAUSE: Duration = Duration::from_millis(5);
 
 /// A remark about the Data System for the log.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Remark {
-    /// It has connected or disconnected, or a connection was refused.
+    /// The Data System has connected or disconnected, or a connection was refused.
     Network(NetEvent),
-    /// Its status cannot be read; reported once for each time a command is sent.
+    /// Its status cannot be read. This is reported once per sent command.
     Garbled(StatusError),
     /// It is connected, but does not answer.
     Silent {
@@ -54,7 +55,6 @@ pub enum Remark {
 }
 
 impl Remark {
-    /// Stable short name of its kind.
     #[must_use]
     pub const fn code(&self) -> &'static str {
         match self {
@@ -89,19 +89,19 @@ pub struct Agent {
     outbox: Outbox,
     patience: Duration,
     exchanges: u64,
-    /// command-id# of the command that was sent last; 0 before the first.
+    /// command-id# of the last sent command; 0 before the first.
     command_id: u16,
-    /// The last command has no answer yet.
+    /// True while the last command has no answer.
     open: bool,
-    /// Mailgram number of the status in the mailbox when the command was first sent: that status answers an earlier
-    /// command.
+    /// Mailgram number of the status in the mailbox when the command was first sent. That status answers an
+    /// earlier command.
     before: u16,
     remarks: Vec<Remark>,
 }
 
 impl Agent {
-    /// Works with an endpoint, and keeps updates in an outbox. The time limit for an answer is that of the network for
-    /// a pulse: 10 s on the 40 ms grid, 60 s in fast clock.
+    /// An agent at an endpoint, with its outbox. The time limit for an answer is that of the network for a
+    /// pulse: 10 s on the 40 ms grid, 60 s in fast clock.
     #[must_use]
     pub fn new(endpoint: Endpoint, outbox: Outbox) -> Self {
         let patience = answer_limit(endpoint.clock());
@@ -117,30 +117,28 @@ impl Agent {
         }
     }
 
-    /// Sets the time limit for an answer.
     #[must_use]
     pub const fn with_patience(mut self, patience: Duration) -> Self {
         self.patience = patience;
         self
     }
 
-    /// A handle with which another thread ends all waiting for the rest of the run; then there are no answers.
+    /// A handle with which another thread ends all waiting for the rest of the run. No answers follow.
     #[must_use]
     pub fn stop_handle(&self) -> StopHandle {
         self.endpoint.stop_handle()
     }
 
-    /// The remarks since the last call.
     pub fn remarks(&mut self) -> Vec<Remark> {
         std::mem::take(&mut self.remarks)
     }
 
-    /// Called between commands: checks whether a server is connected.
+    /// Called between commands. Checks whether a server is connected.
     pub fn idle(&mut self) {
         self.exchange();
     }
 
-    /// Execute a command; `None` if there is no answer. The answer has Task's number of the command.
+    /// Execute a command; `None` if it is not answered. The answer has Task's number of the command.
     pub fn execute(&mut self, bytes: &[u8]) -> Option<Answer> {
         let (command_id, transaction) = match command::decode(bytes) {
             Ok(received) => (received.command_id, received.transaction),
@@ -154,20 +152,18 @@ impl Agent {
         Some(Answer { status: Status { command_id, ..answer.status }, ..answer })
     }
 
-    /// Executes STARTUP, then sends the stored updates.
     fn start_up(&mut self, bytes: &[u8]) -> Option<Answer> {
         let answer = self.ask(bytes)?;
         if answer.status.summary != Summary::Done {
             return Some(answer);
         }
-        // A refused update of an earlier run is reported, but does not prevent this run from starting.
+        // A refused update of an earlier run is reported, but does not prevent the start of this run.
         let told = self.tell_all()?;
         let why =
             told.filter(|told| told.status.summary != Summary::Done).map_or(String::new(), |told| told.why);
         Some(Answer { why, ..answer })
     }
 
-    /// Stores an update, then sends all stored updates.
     fn update(&mut self, bytes: &[u8]) -> Option<Answer> {
         let kept = bytes.try_into().map_err(|_| format!("{DML} bytes were expected, found {}", bytes.len()));
         let kept: Result<_, String> =
@@ -178,7 +174,7 @@ impl Agent {
         }
     }
 
-    /// Send all stored updates, the oldest first. Returns the last answer, if there were any updates; `None` if an
+    /// Send all stored updates, the oldest first. Returns the last answer, if there were updates; `None` if an
     /// update is not answered.
     #[expect(clippy::option_option, reason = "no answer differs from nothing to tell")]
     fn tell_all(&mut self) -> Option<Option<Answer>> {
@@ -211,15 +207,15 @@ impl Agent {
         self.exchanges += 1;
         let presence = self.endpoint.exchange(self.exchanges);
         if presence.new {
-            // Another server counts its mailgrams from the beginning.
+            // Another server numbers its mailgrams from the beginning.
             self.before = 0;
         }
         self.remarks.extend(std::iter::from_fn(|| self.endpoint.event()).map(Remark::Network));
         presence
     }
 
-    /// Send a command and wait for its status; `None` if no Data System is connected, if there is no answer, or if the
-    /// run is to end.
+    /// Send a command and wait for its status. `None` without a Data System or an answer, or if the run is to
+    /// end.
     fn ask(&mut self, bytes: &[u8]) -> Option<Answer> {
         if let Err(error) = self.send(bytes) {
             return Some(refused(error.to_string()));
@@ -254,7 +250,7 @@ impl Agent {
         }
     }
 
-    /// Write a command into the mailbox, with the next number; a repetition of an unanswered command keeps its
+    /// Write a command to the mailbox, with the next number. A repetition of an unanswered command keeps its
     /// number.
     fn send(&mut self, bytes: &[u8]) -> Result<(), MailboxError> {
         let mut bytes = bytes.to_vec();
@@ -269,7 +265,7 @@ impl Agent {
         Ok(())
     }
 
-    /// The status that has been written since the command was sent.
+    /// The status written since the command was sent.
     fn written(&self) -> Option<Result<Status, StatusError>> {
         let mailbox = self.endpoint.incoming(DATA_SYSTEM_STATUS);
         let fresh = mailbox.mailgram() != 0 && mailbox.mailgram() != self.before;

@@ -1,5 +1,5 @@
-//! The right of one program to write into a database. SQLite locks a database for a statement only, and two controllers
-//! in one database end each other's sessions.
+//! The exclusive right of one program to write to a database. SQLite locks a database only for a statement, and
+//! two controllers in one database end each other's sessions.
 
 use std::{
     fs::{self, File, OpenOptions, TryLockError},
@@ -11,7 +11,7 @@ use std::{
 /// Suffix of the file that is locked, after the name of the database.
 const SUFFIX: &str = "lock";
 
-/// The right, until it is dropped. The system takes it back from a program that ends in any way.
+/// The right, until it is dropped. The system withdraws it from a program that ends in any way.
 #[derive(Debug)]
 pub struct Alone {
     path: PathBuf,
@@ -19,17 +19,17 @@ pub struct Alone {
 }
 
 impl Alone {
-    /// Takes the right for an existing file; `None` if another program has it.
+    /// Takes the right for an existing file; `None` if another program holds it.
     ///
     /// # Errors
-    /// Errors of the file that is locked, beside the database.
+    /// Errors of the locked file next to the database.
     pub fn take(database: &Path) -> io::Result<Option<Self>> {
-        // One file for all links to the database.
+        // All links to the database share one file.
         let path = fs::canonicalize(database)?.with_added_extension(SUFFIX);
         loop {
             let file = OpenOptions::new().create(true).append(true).open(&path)?;
             match file.try_lock() {
-                // The program before may have removed the file in the meantime.
+                // The previous program may meanwhile have removed the file.
                 Ok(()) if is_at(&file, &path)? => return Ok(Some(Self { path, _lock: file })),
                 Ok(()) => {}
                 Err(TryLockError::WouldBlock) => return Ok(None),
@@ -41,7 +41,7 @@ impl Alone {
 
 impl Drop for Alone {
     fn drop(&mut self) {
-        // A file that stays does no harm.
+        // A remaining file is harmless.
         let _ = fs::remove_file(&self.path);
     }
 }

@@ -1,4 +1,4 @@
-//! The items in memory answer like those of the database.
+//! Compares the answers of items in memory with those of the database.
 
 use proptest::prelude::*;
 
@@ -33,7 +33,7 @@ enum Step {
 
 proptest! {
     #[test]
-    fn books_answer_like_the_database(
+    fn items_in_memory_answer_like_the_database(
         steps in prop::collection::vec(
             (any::<bool>(), prop_oneof![
                 (0_u8..3).prop_map(Step::Session),

@@ -1,8 +1,8 @@
 //! The Data System's database, and keepers that may wait for the disk and the network.
 //!
-//! A tick must not wait for either: [`Threaded`] is a keeper on a thread, with the database in this process ([`Store`])
-//! or with a server in another process ([`Agent`]). For the latter, updates wait on the controller's disk until they are
-//! answered ([`Outbox`]).
+//! A tick must not wait for either: [`Threaded`] is a keeper on a thread, with the database in this process
+//! ([`Store`]) or with a server in another process ([`Agent`]). With a server, updates stay on the controller's
+//! disk until they are answered ([`Outbox`]).
 
 mod agent;
 mod alone;
@@ -24,14 +24,14 @@ pub use thread::{Pace, Threaded};
 /// The controller's end of a Data System on a thread.
 pub type DataSystem = neighbours::data_system::DataSystem<Threaded>;
 
-/// A Data System with a database in this process, which answers a command after `answer_ticks` ticks, or later.
+/// A Data System with a database in this process, which answers a command after at least `answer_ticks` ticks.
 #[must_use]
 pub fn here(store: Store, answer_ticks: u64, pace: Pace) -> DataSystem {
     DataSystem::new(Threaded::here(store, pace), answer_ticks)
 }
 
-/// A Data System in another process. In a run that waits, its answers take effect after as many ticks as those of a
-/// server in this process, so that both runs are the same; on the grid they take effect when they arrive.
+/// A Data System in another process. In a run that waits, its answers take effect after as many ticks as those
+/// of a server in this process, so that both runs are equal. On the grid they take effect on arrival.
 #[must_use]
 pub fn elsewhere(agent: Agent, pace: Pace) -> DataSystem {
     let ticks = if pace == Pace::Wait { ANSWER_TICKS } else { 0 };

@@ -1,12 +1,12 @@
-//! Updates that the Data System has not answered yet, on the controller's disk.
+//! Unanswered updates for the Data System, on the controller's disk.
 //!
-//! An update is kept here before it is sent, under a new number, and deleted when the Data System has answered it. If
-//! the run is killed in between, the next run sends it with the same number, and the Data System counts it once. The
-//! file is an SQLite data base, whose journal is flushed to the disk before anything is sent.
+//! An update is stored here under a new number before it is sent, and deleted when the Data System has answered
+//! it. If the run is killed in between, the next run sends it with the same number, and the Data System
+//! executes it once. The file is an SQLite database whose journal is flushed to the disk before an update is
+//! sent.
 //!
-//! File and journal have reserved space: a log on the same disk that fills it does not keep an update from being
-//! stored. The file has free pages, and the write-ahead journal is written again from its start when
-//! [`CHECKPOINT`] pages of it are used.
+//! File and journal have reserved space: updates can be stored even if a log fills the disk. The file has free
+//! pages, and the write-ahead journal is overwritten from its start when [`CHECKPOINT`] pages of it are used.
 
 use std::path::{Path, PathBuf};
 
@@ -16,9 +16,9 @@ use rusqlite::{Connection, ErrorCode, params};
 /// Application ID in the file of the outbox: "RCSO".
 const APPLICATION_ID: i32 = 0x5243_534F;
 
-/// Bytes that are reserved in the file: some hundred updates.
+/// Reserved bytes in the file, for some hundred updates.
 const RESERVE: u32 = 256 * 1024;
-/// Pages of the journal after which it is taken into the file: much less than what is reserved.
+/// Pages of the journal after which they are copied to the file: much less than the reserved space.
 const CHECKPOINT: u32 = 16;
 
 const TABLES: &str = "
@@ -83,7 +83,8 @@ impl Outbox {
         Ok(Self { connection, file: file.to_owned() })
     }
 
-    /// Store an update; returns its number. An update equal to the last one stored is a repetition and has its number.
+    /// Store an update and return its number. An update equal to the last stored one is a repetition and has
+    /// its number.
     ///
     /// # Errors
     /// [`OutboxError`]; the update is then not stored.
@@ -133,7 +134,6 @@ impl Outbox {
     }
 }
 
-/// An error of SQLite with the file.
 fn failure(file: &Path, source: rusqlite::Error) -> OutboxError {
     let file = file.to_owned();
     match source.sqlite_error_code() {
@@ -142,14 +142,14 @@ fn failure(file: &Path, source: rusqlite::Error) -> OutboxError {
     }
 }
 
-/// Write [`RESERVE`] bytes and delete them: their pages stay in the file and in the journal.
+/// Write [`RESERVE`] bytes and delete them. Their pages stay in the file and in the journal.
 fn reserve(connection: &mut Connection) -> rusqlite::Result<()> {
     connection.pragma_update(None, "journal_mode", "wal")?;
     let transaction = connection.transaction()?;
     transaction.execute("INSERT INTO reserve (bytes) VALUES (zeroblob(?1))", params![RESERVE])?;
     transaction.commit()?;
     connection.execute("DELETE FROM reserve", [])?;
-    // The journal keeps its length, and begins from its start again.
+    // The journal keeps its length, and is overwritten from its start.
     connection.query_row("PRAGMA wal_checkpoint(RESTART)", [], |_| Ok(()))?;
     connection.pragma_update(None, "wal_autocheckpoint", CHECKPOINT)
 }
@@ -184,7 +184,7 @@ mod tests {
     }
 
     #[test]
-    fn an_update_that_is_asked_again_keeps_its_number() {
+    fn repeated_update_keeps_its_number() {
         let place = tempfile::tempdir().unwrap();
         let mut outbox = Outbox::open(&place.path().join("outbox")).unwrap();
         let mut again = update(1);
@@ -193,7 +193,7 @@ mod tests {
         assert_eq!(outbox.pending().unwrap().len(), 1);
     }
 
-    /// No file grows, so that a full disk does not matter.
+    /// The files do not grow, so a full disk does not matter.
     #[test]
     fn updates_are_stored_in_reserved_space() {
         let place = tempfile::tempdir().unwrap();
@@ -214,7 +214,7 @@ mod tests {
     }
 
     #[test]
-    fn an_error_names_the_outbox() {
+    fn error_names_the_outbox() {
         let full =
             rusqlite::Error::SqliteFailure(rusqlite::ffi::Error::new(rusqlite::ffi::SQLITE_FULL), None);
         let text = failure(Path::new("runs/data-system.outbox"), full).to_string();
@@ -222,7 +222,7 @@ mod tests {
     }
 
     #[test]
-    fn files_of_others_are_left_alone() {
+    fn files_of_other_programs_are_refused() {
         let place = tempfile::tempdir().unwrap();
         let file = place.path().join("items.db");
         drop(super::super::Store::open(&file).unwrap());

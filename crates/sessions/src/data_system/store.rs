@@ -1,15 +1,15 @@
-//! The data base: items, devices, storage positions, and where every item has been, in one SQLite file.
+//! The database: items, devices, storage positions, and the past places of every item, in one SQLite file.
 //!
-//! The number identifies an item: a blank that has been machined keeps its number and changes its name. Items without a
-//! number are identified by name. A report of a known position changes nothing, so that a report that is sent twice
-//! counts once.
+//! The number identifies an item: a machined blank keeps its number and changes its name. Items without a
+//! number are identified by name. A report of a known position changes nothing, so a repeated report has no
+//! further effect.
 //!
 //! ```sql
 //! SELECT * FROM whereabouts WHERE number = '17';   -- where it is
 //! SELECT * FROM history WHERE number = '17';       -- where it has been
 //! ```
 //!
-//! The file has a write-ahead journal: an answered report is not lost if the program is killed.
+//! The file has a write-ahead journal, so answered reports survive the end of a killed program.
 
 use std::{
     io,
@@ -21,7 +21,7 @@ use rusqlite::{Connection, OptionalExtension as _, Row, TransactionBehavior, par
 
 use super::alone::Alone;
 
-/// Application ID in the file of the data base: "RCS2".
+/// Application ID in the file of the database: "RCS2".
 const APPLICATION_ID: i32 = 0x5243_5332;
 const VERSION: i32 = 2;
 
@@ -81,7 +81,7 @@ const TABLES: &str = "
         ORDER BY report.id;
 ";
 
-/// A place where an item has been.
+/// A past place of an item.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Visit {
     /// Time of the report, UTC, in the format of ISO 8601.
@@ -93,7 +93,6 @@ pub struct Visit {
     pub sector: u8,
 }
 
-/// Why the data base cannot be used.
 #[derive(Debug, thiserror::Error)]
 pub enum StoreError {
     #[error("{}: {source}", .file.display())]
@@ -101,13 +100,13 @@ pub enum StoreError {
     /// The file belongs to another program.
     #[error("{}: a data base of items was expected, this one belongs to another program", .file.display())]
     Foreign { file: PathBuf },
-    /// Another program writes into the file.
+    /// Another program writes to the file.
     #[error(
         "{}: another run or Data System uses this database: end it, or name another database",
         .file.display()
     )]
     InUse { file: PathBuf },
-    /// The file that shows who uses the database cannot be locked.
+    /// The file that marks the user of the database cannot be locked.
     #[error("{}: the file beside it that shows who uses it cannot be locked: {source}", .file.display())]
     Lock { file: PathBuf, source: io::Error },
     #[error("{}: tables of version {VERSION} were expected, found version {found}", .file.display())]
@@ -121,12 +120,12 @@ pub enum StoreError {
 #[derive(Debug)]
 pub struct Store {
     connection: Connection,
-    /// Held by a program that writes. Given back after the connection is closed.
+    /// Held by a writing program, and released after the connection is closed.
     _alone: Option<Alone>,
 }
 
 impl Store {
-    /// A data base in memory, which is lost at the end of the program.
+    /// A database in memory, which is lost at the end of the program.
     ///
     /// # Errors
     /// [`StoreError::Sqlite`].
@@ -137,20 +136,20 @@ impl Store {
         Self::with_tables(connection, &file)
     }
 
-    /// Open the data base in a file; creates the file if it does not exist.
+    /// Open the database in a file, or create the file.
     ///
     /// # Errors
-    /// [`StoreError`] if the file cannot be opened or is not a data base of items.
+    /// [`StoreError`] if the file cannot be opened or is not a database of items.
     pub fn open(file: &Path) -> Result<Self, StoreError> {
         let connection =
             Connection::open(file).map_err(|source| StoreError::Sqlite { file: file.to_owned(), source })?;
         Self::with_tables(connection, file)
     }
 
-    /// Open the data base in a file for a program that writes into it; creates the file if it does not exist.
+    /// Open the database in a file, or create the file, for a writing program.
     ///
     /// # Errors
-    /// As [`Self::open`], and [`StoreError::InUse`] if another program writes into it.
+    /// The errors of [`Self::open`], and [`StoreError::InUse`] if another program writes to it.
     pub fn open_alone(file: &Path) -> Result<Self, StoreError> {
         let connection =
             Connection::open(file).map_err(|source| StoreError::Sqlite { file: file.to_owned(), source })?;
@@ -188,7 +187,7 @@ impl Store {
             let transaction =
                 connection.transaction_with_behavior(TransactionBehavior::Immediate).map_err(failed)?;
             if number(&transaction, "application_id")? == APPLICATION_ID {
-                // Another process has created the tables in the meantime.
+                // Another process has meanwhile created the tables.
                 transaction.commit().map_err(failed)?;
                 return Self::with_tables(connection, file);
             }
@@ -199,7 +198,7 @@ impl Store {
             transaction.commit().map_err(failed)?;
         }
         connection.pragma_update(None, "foreign_keys", true).map_err(failed)?;
-        // With a write-ahead journal no reader delays a report; answered reports survive a power cut.
+        // With a write-ahead journal, readers do not delay reports. Answered reports survive a power cut.
         connection.pragma_update(None, "journal_mode", "wal").map_err(failed)?;
         connection.pragma_update(None, "synchronous", "full").map_err(failed)?;
         Ok(Self { connection, _alone: None })
@@ -347,7 +346,7 @@ mod tests {
     }
 
     #[test]
-    fn an_item_keeps_its_number_and_its_past() {
+    fn item_keeps_its_number_and_history() {
         let mut store = Store::in_memory().unwrap();
         assert!(store.report("H_ROBOT", Said::default(), &item("17", "LINKBAR1_BH", "UNIT_1", 4)).unwrap());
         assert!(store.report("H_ROBOT", Said::default(), &item("17", "LINKBAR1", "PFIXTURE", 0)).unwrap());
@@ -375,7 +374,7 @@ mod tests {
     }
 
     #[test]
-    fn a_report_that_is_sent_twice_counts_once() {
+    fn repeated_report_is_stored_once() {
         let mut store = Store::in_memory().unwrap();
         assert!(store.report("H_ROBOT", Said::default(), &item("17", "A", "UNIT_1", 1)).unwrap());
         assert!(!store.report("H_ROBOT", Said::default(), &item("17", "A", "UNIT_1", 1)).unwrap());
@@ -383,7 +382,7 @@ mod tests {
     }
 
     #[test]
-    fn a_numbered_message_is_executed_once() {
+    fn numbered_message_is_executed_once() {
         let mut store = Store::in_memory().unwrap();
         let said = |number| Said { number, statement: "A is at UNIT_1" };
         assert!(store.report("H_ROBOT", said(7), &item("17", "A", "UNIT_1", 1)).unwrap());
@@ -402,7 +401,7 @@ mod tests {
     }
 
     #[test]
-    fn a_file_of_the_first_version_is_taken_over() {
+    fn file_of_the_first_version_is_converted() {
         let place = tempfile::tempdir().unwrap();
         let file = place.path().join("items.db");
         let old = Connection::open(&file).unwrap();
@@ -423,7 +422,7 @@ mod tests {
     }
 
     #[test]
-    fn a_second_writer_is_refused_and_a_reader_is_not() {
+    fn second_writer_is_refused_but_a_reader_is_not() {
         let place = tempfile::tempdir().unwrap();
         let (file, link) = (place.path().join("items.db"), place.path().join("link.db"));
         let first = Store::open_alone(&file).unwrap();
@@ -439,7 +438,7 @@ mod tests {
     }
 
     #[test]
-    fn a_file_is_there_again_and_other_files_are_refused() {
+    fn reopened_file_keeps_its_items_and_others_are_refused() {
         let place = tempfile::tempdir().unwrap();
         let file = place.path().join("items.db");
         Store::open(&file)
@@ -463,7 +462,7 @@ mod tests {
     }
 
     #[test]
-    fn a_restarted_server_knows_its_clients_and_their_messages() {
+    fn restarted_server_knows_its_clients_and_messages() {
         let place = tempfile::tempdir().unwrap();
         let file = place.path().join("items.db");
         let mut server = Server::new(Store::open(&file).unwrap());

@@ -61,7 +61,7 @@ impl Client {
 }
 
 #[test]
-fn an_answer_takes_its_time_and_is_given_once() {
+fn answer_is_delayed_and_given_once() {
     let mut client = Client::new(10, Pace::Wait);
     client.write(DataBaseVerb::Abort);
     let busy = (0..10).filter(|_| client.step().report == DataBaseReport::Executing).count();
@@ -71,7 +71,7 @@ fn an_answer_takes_its_time_and_is_given_once() {
 }
 
 #[test]
-fn a_command_from_before_the_start_is_not_executed() {
+fn command_before_the_start_is_not_executed() {
     let mut system = here(Store::in_memory().unwrap(), 0, Pace::Wait);
     let command = DataBaseCommand { number: 9, command: DataBaseVerb::Abort, ..DataBaseCommand::default() };
     for tick in 1..10 {
@@ -114,7 +114,7 @@ fn a_refusal_says_why() {
 }
 
 #[test]
-fn a_command_that_overtakes_another_gets_its_own_answer() {
+fn overtaking_command_gets_its_own_answer() {
     let mut client = Client::new(5, Pace::Wait);
     client.write(DataBaseVerb::Startup);
     client.step();
@@ -123,7 +123,7 @@ fn a_command_that_overtakes_another_gets_its_own_answer() {
 }
 
 #[test]
-fn a_data_system_in_memory_answers_like_one_with_a_thread_and_so_does_its_copy() {
+fn copied_in_memory_data_system_answers_like_a_threaded_one() {
     let mut threaded = here(Store::in_memory().unwrap(), 3, Pace::Wait);
     let mut in_memory = InMemory::in_memory(3);
     let mut command = DataBaseCommand {

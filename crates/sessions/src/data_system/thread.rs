@@ -1,8 +1,8 @@
 //! The keeper of a Data System on a separate thread: the disk must not delay a tick.
 //!
-//! A run in fast clock waits for the thread when an answer is due, so that its ticks are the same in every run; a run on
-//! the 40 ms grid takes the answer when it has come. A run that has ended does not wait for a server in another process,
-//! which may not answer for a long time.
+//! A run in fast clock waits for the thread when an answer is due, so that its ticks are the same in every run.
+//! A run on the 40 ms grid uses the answer once it has arrived. At its end a run does not wait for a server in
+//! another process, which may not answer for a long time.
 
 use std::{
     sync::mpsc::{Receiver, RecvTimeoutError, Sender, TryRecvError, channel},
@@ -18,8 +18,8 @@ use super::{
 };
 use crate::network::StopHandle;
 
-/// A run that waits for the server considers it dead after this time, which is long for a disk. An agent has its own
-/// time limit.
+/// Time after which a waiting run considers the server dead; it is long for a disk. An agent has its own time
+/// limit.
 const PATIENCE: Duration = Duration::from_secs(30);
 
 /// Time between two checks for a server while no command is in progress.
@@ -28,9 +28,9 @@ const IDLE: Duration = Duration::from_millis(500);
 /// Whether a run waits for the server.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Pace {
-    /// The tick waits for an answer that is due: for runs in fast clock.
+    /// For runs in fast clock: the tick waits for an answer that is due.
     Wait,
-    /// The answer takes effect in the tick in which it has come: for runs on the grid.
+    /// For runs on the grid: the answer takes effect in the tick of its arrival.
     Poll,
 }
 
@@ -51,7 +51,6 @@ enum Response {
     Looked,
 }
 
-/// The server that the thread asks.
 enum Place {
     Here(Box<Server<Store>>),
     Elsewhere(Box<Agent>),
@@ -67,7 +66,7 @@ impl Place {
             (Self::Elsewhere(agent), Request::Execute(id, bytes)) => {
                 agent.execute(&bytes).map_or(Response::Silent(id), |answer| Response::Executed(id, answer))
             }
-            // The items are available only in the process that keeps them.
+            // Only the process that keeps the items can list them.
             (Self::Elsewhere(_), Request::Items) => Response::Items(Ok(Vec::new())),
             (_, Request::Look) => {
                 self.idle();
@@ -76,14 +75,13 @@ impl Place {
         }
     }
 
-    /// Work to do while there are no requests.
+    /// Work while no request is pending.
     fn idle(&mut self) {
         if let Self::Elsewhere(agent) = self {
             agent.idle();
         }
     }
 
-    /// The remarks since the last call.
     fn remarks(&mut self) -> Vec<Remark> {
         match self {
             Self::Here(_) => Vec::new(),
@@ -96,7 +94,7 @@ impl Place {
 pub struct Threaded {
     pace: Pace,
     remarks: Receiver<Remark>,
-    /// Ends the wait for a server in another process; `None` if the server is in this process.
+    /// Ends the wait for a server in another process, if there is one.
     stop_handle: Option<StopHandle>,
     requests: Option<Sender<Request>>,
     responses: Receiver<Response>,
@@ -129,7 +127,7 @@ impl Threaded {
                     }
                     Err(RecvTimeoutError::Disconnected) => return,
                 };
-                // Before the answer, so that a tick that has waited for the answer has the remarks as well.
+                // Before the answer, so that a tick that has waited for the answer also has the remarks.
                 let told = place.remarks().into_iter().all(|remark| tell.send(remark).is_ok());
                 if !told || response.is_some_and(|response| outgoing.send(response).is_err()) {
                     return;
@@ -139,9 +137,9 @@ impl Threaded {
         Self { pace, remarks, stop_handle: None, requests: Some(requests), responses, thread: Some(thread) }
     }
 
-    /// Check for a server in another process, and wait for the result if the run waits for answers. Otherwise the thread
-    /// reports a server that connected last before the first tick only after [`IDLE`], which is many ticks in fast
-    /// clock.
+    /// Check for a server in another process. If the run waits for answers, also wait for the result: otherwise
+    /// the thread would report a server that connected just before the first tick only after [`IDLE`], which is
+    /// many ticks in fast clock.
     pub fn look(&self) {
         if self.pace == Pace::Poll || self.stop_handle.is_none() || !self.send(Request::Look) {
             return;
@@ -158,7 +156,7 @@ impl Threaded {
         self.requests.as_ref().is_some_and(|requests| requests.send(request).is_ok())
     }
 
-    /// The next response of the thread; `None` if there is none yet.
+    /// The next response of the thread, if any.
     fn response(&self) -> Result<Option<Response>, Dead> {
         match self.pace {
             Pace::Poll => match self.responses.try_recv() {
@@ -214,19 +212,20 @@ impl Keeper for Threaded {
 impl Drop for Threaded {
     fn drop(&mut self) {
         if let Some(stop_handle) = &self.stop_handle {
-            // Updates that are not answered yet stay in the outbox.
+            // Unanswered updates stay in the outbox.
             stop_handle.stop();
         }
-        // Closing the channel of requests ends the thread, which closes the database, so that no journal is left.
+        // Closing the channel of requests ends the thread, which closes the database, so that it leaves no
+        // journal.
         self.requests = None;
         let Some(thread) = self.thread.take() else { return };
         let ended = Instant::now();
-        // A disk could block the thread indefinitely; the end of a run must not depend on it.
+        // A disk could block the thread indefinitely. The end of a run must not depend on it.
         while !thread.is_finished() && ended.elapsed() < PATIENCE {
             thread::sleep(Duration::from_millis(1));
         }
         if thread.is_finished() {
-            // The thread returns nothing, and a panic in it was reported.
+            // The thread has no result, and a panic in it was reported.
             let _ = thread.join();
         }
     }

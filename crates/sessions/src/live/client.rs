@@ -1,7 +1,7 @@
 //! The thread of a client: reads its messages, and sends the queued ones.
 //!
-//! A client stays as long as it reads, however slowly. It reads if it answers a ping, sends anything, or takes bytes
-//! after it has taken none for a while.
+//! A client stays connected as long as it reads, however slowly. Evidence of reading is an answer to a ping,
+//! any other message, or a successful write after a blocked one.
 
 use std::{
     io::{self, ErrorKind},
@@ -28,17 +28,17 @@ use crate::live::{
     silence::Silence,
 };
 
-/// Sleep of a thread with nothing to do: a quarter of a tick.
+/// Sleep of an idle thread: a quarter of a tick.
 const IDLE: Duration = Duration::from_millis(10);
-/// Interval between pings. The answer shows how old the next messages of the client can be.
+/// Interval between pings. The answer limits the age of the client's next messages.
 const PING: Duration = Duration::from_millis(500);
-/// Interval between pings of a client that operates the run: its answers are the operator's signs of life.
+/// Interval between pings of a client that operates the run. Its answers show that the operator is present.
 const PING_OPERATOR: Duration = ALIVE;
-/// Greatest age of a request: its sender then no longer waits, or its way is stalled.
+/// Greatest age of a request. The sender of an older one no longer waits, or its connection is stalled.
 const REQUEST_AGE: Duration = Duration::from_secs(2);
 /// Time limit for closing a connection.
 const CLOSING_LIMIT: Duration = Duration::from_millis(500);
-/// Time after a disconnection during which the client can still read its reason. The feed continues meanwhile.
+/// Time after a disconnection during which the client can still read its reason. The feed meanwhile continues.
 const LATE_READER: Duration = Duration::from_secs(30);
 /// Interval between reports of the number of dropped messages.
 const COUNT: Duration = Duration::from_secs(5);
@@ -50,7 +50,7 @@ const WRITES: usize = 512;
 #[derive(Debug)]
 enum End {
     Gone,
-    /// The client has read nothing for this time.
+    /// The client has not read for this time.
     Silent(Duration),
     /// The server closes the session with a code and a reason.
     Told(CloseCode, String),
@@ -81,12 +81,11 @@ pub struct Client {
     queue: Arc<Queue>,
     outgoing: Outgoing,
     session: Session,
-    /// Access to the run for requests.
     access: Option<Access>,
     /// The operator session with the run; `None` before the first request.
     operator: Option<Operator>,
     name: Name,
-    /// Time after which a client that reads nothing is disconnected, and the present time without reading.
+    /// Time without reading after which a client is disconnected, and the present time without reading.
     patience: Duration,
     silence: Silence,
     /// Receives the reason when the server disconnects the client.
@@ -97,7 +96,7 @@ pub struct Client {
     ping: (u64, Instant),
     /// Number of the last answered ping, and the time of its answer.
     pong: (u64, Instant),
-    /// Number of dropped messages that was last sent to the client, and the time of sending.
+    /// Number of dropped messages last sent to the client, and the time of sending.
     dropped: (u64, Instant),
 }
 
@@ -131,7 +130,7 @@ impl Client {
         }
     }
 
-    /// Serves the client until it disconnects or the feed is over. `first` holds the first messages to send.
+    /// Serves the client until it disconnects or the feed is over. `first` holds its first messages.
     pub fn run(mut self, mut first: Vec<String>) {
         first.extend(self.session.services());
         let (code, reason, limit) = match self.serve(first) {
@@ -145,7 +144,7 @@ impl Client {
         if code != CloseCode::Away
             && let Some(notices) = &self.notices
         {
-            // Without a receiver, nobody wants to know.
+            // A missing receiver means that nobody wants the notices.
             let _ = notices.send(format!("{} is disconnected: {reason}", self.name));
         }
         self.close(code, reason, limit);
@@ -155,7 +154,7 @@ impl Client {
         self.socket.get_mut().never_wait()?;
         first.into_iter().for_each(|text| self.outgoing.reply(Message::text(text)));
         loop {
-            // A client that takes no output may still have answered a ping.
+            // A client with blocked output may still have answered a ping.
             let has_read = self.outgoing.takes_replies() && self.listen()?;
             let is_busy = self.flush()? && self.speak()?;
             self.look_after()?;
@@ -189,7 +188,7 @@ impl Client {
             for action in actions {
                 self.act(action)?;
             }
-            // Send the answers before more requests are read, so that they do not accumulate.
+            // Send the answers before reading more requests, so that they do not accumulate.
             if !self.outgoing.takes_replies() {
                 return Ok(false);
             }
@@ -216,8 +215,8 @@ impl Client {
         Ok(())
     }
 
-    /// Sends a request to the run as an operator, and waits for the answer, which the run gives between two ticks. The
-    /// client has sent the request after the last ping that it has answered: so old can it be.
+    /// Sends a request to the run as an operator, and waits for the answer, which the run gives between two
+    /// ticks. The request is at most as old as the last ping that the client has answered.
     fn ask(&mut self, line: &str) -> Result<String, String> {
         let access = self.access.as_ref().ok_or("this run accepts no requests")?;
         let mut operator = match self.operator.take() {
@@ -227,7 +226,7 @@ impl Client {
         let answered = Duration::from_millis(self.pong.0);
         let age = self.began.elapsed().saturating_sub(answered);
         let answer = operator.ask_within(REQUEST_AGE.saturating_sub(age), line);
-        // After any other error the session has ended: the next request begins a new one.
+        // After any other error the session has ended, and the next request begins a new one.
         if matches!(answer, Ok(_) | Err(ClientError::Line { .. } | ClientError::Silent)) {
             self.operator = Some(operator);
         }
@@ -251,7 +250,7 @@ impl Client {
         self.flush()
     }
 
-    /// Sends a ping; returns false if the client does not take it at once.
+    /// Sends a ping. Returns false if the write would block.
     fn check_reading(&mut self) -> Result<bool, End> {
         self.outgoing.pinged();
         let number = u64::try_from(self.began.elapsed().as_millis()).unwrap_or(u64::MAX);
@@ -291,24 +290,24 @@ impl Client {
         Ok(())
     }
 
-    /// Records the answer to a ping: the client has read everything up to it.
+    /// Records the answer to a ping: the client has read everything before it.
     fn answered(&mut self, number: &[u8]) {
         let number = number.try_into().map_or(0, u64::from_le_bytes);
         if (self.pong.0..=self.ping.0).contains(&number) && number != self.pong.0 {
             self.pong = (number, Instant::now());
             if let Some(operator) = &mut self.operator {
-                // The next request finds out if the session has ended.
+                // The next request detects the end of the session.
                 let _ = operator.keep_alive();
             }
         }
     }
 
-    /// Writes a message; returns false if the client does not take it at once.
+    /// Writes a message. Returns false if the write would block.
     fn write(&mut self, message: Message) -> Result<bool, End> {
         taken(self.socket.write(message))
     }
 
-    /// Flushes; returns true if the client has taken everything.
+    /// Flushes. Returns true if everything is written.
     fn flush(&mut self) -> Result<bool, End> {
         taken(self.socket.flush())
     }
@@ -320,7 +319,7 @@ impl Client {
         while reason.len() > 123 {
             reason.pop();
         }
-        // It gets no more messages.
+        // It receives no more messages.
         self.feed.leave(&self.queue);
         let (now, soon) = (Instant::now(), Instant::now() + CLOSING_LIMIT);
         let until = now + limit;
@@ -342,7 +341,7 @@ impl Drop for Client {
     }
 }
 
-/// Returns false if the write would block; the message is kept.
+/// Returns false if the write would block; the message is then kept.
 fn taken(written: tungstenite::Result<()>) -> Result<bool, End> {
     match written {
         Ok(()) => Ok(true),

@@ -1,7 +1,7 @@
 //! Requests of a viewer to a run: requests of an operator as services, and the velocity knob as a parameter.
 //!
-//! This module does not act on the robot. A request is a line for the run's operator socket (crate `operator`), and the
-//! run checks it like those of a console. It needs the token that the run has printed.
+//! This module does not control the robot. A request is a line for the run's operator socket (crate
+//! `operator`), and the run checks it like those of a console. It requires the token that the run has printed.
 
 use std::{
     path::PathBuf,
@@ -18,7 +18,7 @@ use serde_json::{Value, json};
 pub struct Knob(Arc<AtomicU16>);
 
 impl Knob {
-    /// Set the position of the knob. This does not wait.
+    /// Set the position of the knob, without waiting.
     pub fn set(&self, velocity: u16) {
         self.0.store(velocity, Ordering::Relaxed);
     }
@@ -49,7 +49,7 @@ impl Token {
         crate::live::protocol::random_word().map(Self)
     }
 
-    /// The token as text, to show to the person who may command.
+    /// The token as text, to show to the operator.
     #[must_use]
     pub fn reveal(&self) -> &str {
         &self.0
@@ -73,11 +73,11 @@ impl std::fmt::Debug for Token {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Service {
     pub name: &'static str,
-    /// The line for the run; `None` if the viewer gives it.
+    /// The line for the run; `None` if the viewer supplies it.
     pub line: Option<&'static str>,
 }
 
-/// The services; the position in the list, from 1, is the number of the service.
+/// The services. A service's number is its position in the list, from 1.
 pub const SERVICES: [Service; 9] = [
     Service { name: "/operator/status", line: Some("status") },
     Service { name: "/operator/stop", line: Some("stop") },
@@ -135,7 +135,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_token_is_right_or_wrong_and_not_printed() {
+    fn token_is_compared_and_not_printed() {
         let token = Token::random().unwrap();
         let text = token.reveal().to_owned();
         assert_eq!(text.len(), 32);

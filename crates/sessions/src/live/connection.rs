@@ -11,9 +11,9 @@ use std::{
 pub struct Connection {
     stream: TcpStream,
     until: Option<Instant>,
-    /// The last write found no room.
+    /// True if the last write was blocked.
     is_full: bool,
-    /// A write found room after one that found none: the client has read.
+    /// True if a write has succeeded after a blocked one, which shows that the client has read.
     has_drained: bool,
 }
 
@@ -25,13 +25,13 @@ impl Connection {
         Ok(Self { stream, until: Some(Instant::now() + handshake), is_full: false, has_drained: false })
     }
 
-    /// Reads and writes never wait from now on: the handshake is over.
+    /// Ends the handshake: reads and writes never wait from now on.
     pub fn never_wait(&mut self) -> io::Result<()> {
         self.until = None;
         self.stream.set_nonblocking(true)
     }
 
-    /// Returns true if a write found room after one that found none, since the last call: the client has read.
+    /// Returns true if a write has succeeded after a blocked one since the last call: the client has read.
     pub fn has_drained(&mut self) -> bool {
         mem::take(&mut self.has_drained)
     }

@@ -1,8 +1,9 @@
 //! The messages for clients: channels, the newest message of each, those of the last minute, and a queue per client.
 //!
-//! A client that subscribes receives the newest message of the channel at once, with the present time, even if that
-//! message was sent only once, at the start of the run. For transforms it receives those of all links. A client that has
-//! asked for the past receives the state at its beginning instead, and all messages since then with their times.
+//! A client that subscribes receives the newest message of the channel at once, with the present time, even if
+//! that message was sent only once, at the start of the run. For transforms it receives those of all links. A
+//! client that has requested the past instead receives the state at its beginning, and all later messages with
+//! their times.
 
 use std::{
     collections::{BTreeMap, VecDeque},
@@ -21,9 +22,9 @@ pub const QUEUE: usize = 4096;
 /// Greatest number of bytes in a client's queue; a single longer message is accepted.
 pub const QUEUE_BYTES: usize = 8 << 20;
 
-/// The past that is kept for clients that connect later, seconds of the run.
+/// The past kept for clients that connect later, seconds of the run.
 pub const PAST_S: u64 = 60;
-/// Greatest number of bytes of the past. The linkbar needs a third of it. Above it, a channel keeps less.
+/// Greatest number of bytes of the past. The linkbar needs a third of it. Channels keep less above it.
 pub const PAST_BYTES: usize = 16 << 20;
 
 const NS_PER_S: u64 = 1_000_000_000;
@@ -61,12 +62,13 @@ struct Past {
     messages: VecDeque<(u64, Arc<[u8]>)>,
     /// The newest data before these messages.
     before: Newest,
-    /// Nothing is kept: the messages are differences, which nobody can read without all messages before.
+    /// True if no past is kept: the messages are differences, which are unreadable without all earlier
+    /// messages.
     is_off: bool,
 }
 
 impl Past {
-    /// Add a message, and remove those that are too old, or for which there is no room.
+    /// Add a message, and remove those that are too old or exceed the space.
     fn add(&mut self, time: u64, data: &Arc<[u8]>, bytes: &mut usize) {
         if self.is_off {
             return;
@@ -122,13 +124,13 @@ impl Newest {
 }
 
 impl Feed {
-    /// The tap that the log writes to. Dropping it ends the feed.
+    /// The tap to which the log writes. Dropping it ends the feed.
     #[must_use]
     pub fn tap(&self) -> Box<dyn Tap> {
         Box::new(Tapped(self.clone()))
     }
 
-    /// Adds a client; returns its queue and the channels to advertise to it first.
+    /// Adds a client. Returns its queue and the first channels to advertise to it.
     #[must_use]
     pub fn join(&self) -> (Arc<Queue>, String) {
         let mut inner = lock(&self.0);
@@ -138,7 +140,6 @@ impl Feed {
         (queue, protocol::advertise(inner.channels.values().map(|known| known.advertised.as_str())))
     }
 
-    /// Removes a client that has disconnected.
     pub fn leave(&self, queue: &Arc<Queue>) {
         lock(&self.0).queues.retain(|known| !Arc::ptr_eq(known, queue));
     }
@@ -149,8 +150,8 @@ impl Feed {
         lock(&self.0).channels.contains_key(&channel)
     }
 
-    /// Sends the messages of a channel to a client: from now on, beginning with the newest one, or from `past_s` seconds
-    /// ago on, beginning with the state at that time.
+    /// Sends the messages of a channel to a client: from now on, beginning with the newest one, or from
+    /// `past_s` seconds ago on, beginning with the state at that time.
     pub fn subscribe(&self, queue: &Queue, channel: u16, subscription: u32, past_s: u64) {
         let inner = lock(&self.0);
         let mut waiting = lock(&queue.0);
@@ -324,7 +325,7 @@ impl Queue {
         })
     }
 
-    /// Stops sending the messages of a channel, and removes those in the queue.
+    /// Stops sending the messages of a channel, and removes them from the queue.
     pub fn unsubscribe(&self, channel: u16) {
         let mut waiting = lock(&self.0);
         let Some(subscription) = waiting.subscriptions.remove(&channel) else { return };
@@ -368,7 +369,7 @@ mod tests {
     }
 
     #[test]
-    fn a_subscriber_gets_the_newest_message_at_once_and_the_rest_with_their_time() {
+    fn subscriber_gets_the_newest_message_at_once() {
         let feed = Feed::default();
         let mut tap = feed.tap();
         tap.channel(1, &TEXT);
@@ -398,7 +399,7 @@ mod tests {
     }
 
     #[test]
-    fn a_full_queue_drops_the_oldest_message_but_no_unique_one() {
+    fn full_queue_drops_the_oldest_repeatable_message() {
         let feed = Feed::default();
         let mut tap = feed.tap();
         tap.channel(1, &TEXT);
@@ -426,7 +427,7 @@ mod tests {
     const S: u64 = NS_PER_S;
 
     #[test]
-    fn late_client_gets_the_state_before_and_the_messages_since_then() {
+    fn late_client_gets_the_earlier_state_and_later_messages() {
         let feed = Feed::default();
         let mut tap = feed.tap();
         tap.channel(1, &TEXT);
@@ -447,7 +448,7 @@ mod tests {
     }
 
     #[test]
-    fn past_is_bounded_in_bytes_and_its_beginning_stays_known() {
+    fn past_is_bounded_in_bytes_and_keeps_its_first_state() {
         let feed = Feed::default();
         let mut tap = feed.tap();
         tap.channel(1, &TEXT);

@@ -1,4 +1,4 @@
-//! Keeps the newest pose of each link, from messages that contain only the links that have moved.
+//! Keeps the newest pose of each link, from messages that contain only the moved links.
 //!
 //! `foxglove.FrameTransforms` has transforms as field 1; field 3 of a transform, `child_frame_id`, names its link. A
 //! viewer that connects during the run needs the transforms of all links.
@@ -20,7 +20,6 @@ pub struct Frames {
 }
 
 impl Frames {
-    /// Takes the transforms of a message.
     pub fn add(&mut self, message: &[u8]) {
         for field in Fields(message) {
             let (1, Value::Bytes(transform)) = field else { continue };
@@ -43,7 +42,6 @@ impl Frames {
     }
 }
 
-/// Name of the link of a transform.
 fn link(transform: &[u8]) -> Option<&[u8]> {
     Fields(transform).find_map(|field| match field {
         (3, Value::Bytes(link)) => Some(link),
@@ -57,7 +55,7 @@ mod tests {
     use record::{Transform, proto::foxglove};
 
     #[test]
-    fn the_newest_place_of_each_link_stays() {
+    fn newest_pose_of_each_link_is_kept() {
         let place = |x: f64| Transform { position: [x, 0.0, 0.0], ..Transform::IDENTITY };
         let mut frames = Frames::default();
         let message = |links: &[(&str, f64)]| {

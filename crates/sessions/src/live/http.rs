@@ -1,7 +1,7 @@
-//! The first request of a connection: a browser asks for the page, a viewer for a WebSocket.
+//! The first request of a connection: a browser requests the page, a viewer a WebSocket.
 //!
-//! Only `GET /` has a page. Its name must be one of this machine: a page of another site that has its own name resolve
-//! to this machine (DNS rebinding) gets nothing.
+//! Only `GET /` has a page. Its host name must be one of this machine, so that a page of another site whose
+//! name resolves to this machine (DNS rebinding) receives nothing.
 
 use std::io::{Read, Write};
 
@@ -16,15 +16,15 @@ use tungstenite::{
 const LONGEST: usize = 16 * 1024;
 /// Names of this machine in the header `Host`.
 const HERE: [&str; 3] = ["127.0.0.1", "localhost", "[::1]"];
-/// Headers of every answer. A page in a frame could be made to look like something else.
+/// Headers of every answer. They prevent frames, in which a page can be disguised.
 const HEADERS: &str = "Connection: close\r\nCache-Control: no-store\r\nX-Content-Type-Options: nosniff\r\n\
                        Referrer-Policy: no-referrer\r\nCross-Origin-Resource-Policy: same-origin\r\n\
                        Content-Security-Policy: frame-ancestors 'none'\r\n";
 
-/// A refusal: the status, and the reason for the person who asked.
+/// A refusal: the status, and the reason for the user.
 pub type Refusal = (StatusCode, String);
 
-/// A request, and bytes that the client has sent after it.
+/// A request, and the bytes that followed it.
 pub struct First {
     pub request: Request,
     pub rest: Vec<u8>,
@@ -74,7 +74,7 @@ pub fn is_upgrade(headers: &HeaderMap) -> bool {
 /// Checks a request for the page.
 ///
 /// # Errors
-/// A refusal if the address is another one, or the name is not one of this machine.
+/// A refusal if the address is another one, or the host is not this machine.
 pub fn check(request: &Request, has_page: bool) -> Result<(), Refusal> {
     if host(request.headers()).is_none() {
         let why = "this page has the name 127.0.0.1 or localhost: open it under one of them\n";
@@ -90,7 +90,7 @@ pub fn check(request: &Request, has_page: bool) -> Result<(), Refusal> {
     }
 }
 
-/// The header `Host` of a request, if it names this machine, at any port: a tunnel may have another one.
+/// The header `Host` of a request, if it names this machine, at any port, since a tunnel may have another one.
 pub fn host(headers: &HeaderMap) -> Option<&str> {
     let host = headers.get(header::HOST)?.to_str().ok()?;
     let name = match host.rsplit_once(':') {
@@ -100,7 +100,7 @@ pub fn host(headers: &HeaderMap) -> Option<&str> {
     HERE.iter().any(|here| here.eq_ignore_ascii_case(name)).then_some(host)
 }
 
-/// Answers with the page. A client that does not read is not waited for beyond the time limits of `stream`.
+/// Answers with the page. It waits for a client that does not read only up to the time limits of `stream`.
 pub fn send_page(stream: &mut impl Write, page: &str) {
     send(stream, StatusCode::OK, "text/html; charset=utf-8", "", page);
 }
@@ -111,12 +111,12 @@ pub fn send_refusal(stream: &mut impl Write, (status, why): &Refusal) {
 }
 
 fn send(stream: &mut impl Write, status: StatusCode, kind: &str, extra: &str, body: &str) {
-    // In one piece: some clients take the body of a refusal only if it arrives with the head.
+    // In one piece: some clients read the body of a refusal only if it arrives with the head.
     let answer = format!(
         "HTTP/1.1 {status}\r\nContent-Type: {kind}\r\nContent-Length: {}\r\n{extra}{HEADERS}\r\n{body}",
         body.len()
     );
-    // A client that has disconnected gets no answer.
+    // A client that has disconnected receives no answer.
     let _ = stream.write_all(answer.as_bytes());
     let _ = stream.flush();
 }

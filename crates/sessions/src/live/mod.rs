@@ -11,8 +11,8 @@
 //! * `http`: the first request of a connection, and the page for browsers;
 //! * [`server`]: listens on this machine, with one thread per client.
 //!
-//! The run never waits for a client. A full queue drops its oldest messages and counts them. A client that reads nothing
-//! for five seconds is disconnected, with the reason; one that reads slowly stays.
+//! The run never waits for a client. A full queue drops its oldest messages and counts them. A client that does
+//! not read for five seconds is disconnected, with the reason; one that reads slowly stays.
 
 #![cfg_attr(
     not(test),

@@ -8,27 +8,27 @@ use crate::live::{
     protocol::ServerInfo,
 };
 
-/// Time after which a client that reads nothing is disconnected.
+/// Time without reading after which a client is disconnected.
 pub const PATIENCE: Duration = Duration::from_secs(5);
 
-/// Receives a sentence for each client that the server disconnects, with the name of the client and the reason.
+/// Receives a sentence per disconnected client, with the name of the client and the reason.
 pub type Notices = Sender<String>;
 
 #[derive(Clone, Debug)]
 pub struct Options {
-    /// Origins of web pages that may connect, besides Foxglove's.
+    /// Origins of web pages that may connect, in addition to Foxglove's.
     pub origins: Vec<Origin>,
-    /// The web page, which connects to this server; `None` if there is none.
+    /// The web page that connects to this server, if any.
     pub page: Option<String>,
     /// The first message to clients.
     pub info: ServerInfo,
-    /// Time after which a client that reads nothing is disconnected.
+    /// Time without reading after which a client is disconnected.
     pub patience: Duration,
-    /// The velocity knob; `None` if there is none.
+    /// The velocity knob, if any.
     pub knob: Option<Knob>,
     /// Access for requests; `None` if the run accepts none.
     pub access: Option<Access>,
-    /// Receives the reasons of disconnects; `None` if nobody wants to know.
+    /// Receives the reasons of disconnects, if set.
     pub notices: Option<Notices>,
 }
 

@@ -1,7 +1,7 @@
 //! Origins of the web pages that may connect.
 //!
-//! A browser sends the origin of the page with each WebSocket request. Without a check, any page open on the machine
-//! could watch and command the robot.
+//! A browser sends the origin of the page with each WebSocket request. Without a check, any page open on the
+//! machine could watch and command the robot.
 
 use std::{fmt, str::FromStr};
 
@@ -9,13 +9,11 @@ use std::{fmt, str::FromStr};
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Origin(String);
 
-/// Error of a text that is not an origin.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("SCHEME://HOST or SCHEME://HOST:PORT was expected, such as http://localhost:8080; found {0}")]
 pub struct OriginError(String);
 
 impl Origin {
-    /// The origin of Foxglove in the browser.
     #[must_use]
     pub fn foxglove() -> Self {
         Self("https://app.foxglove.dev".to_owned())
@@ -58,7 +56,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn an_origin_is_scheme_host_and_port() {
+    fn origin_has_scheme_host_and_port() {
         for good in ["http://localhost:8080", "https://app.foxglove.dev", "file://", "http://[::1]:80"] {
             assert_eq!(good.parse::<Origin>().map(|origin| origin.to_string()).as_deref(), Ok(good));
         }

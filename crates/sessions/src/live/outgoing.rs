@@ -1,7 +1,7 @@
-//! The order of frames to a client: large messages go in pieces, and a ping is due after each piece.
+//! The order of frames to a client: large messages are split into pieces, and a ping follows each piece.
 //!
-//! The answer to a ping shows that the client has read everything before it. A slow client reads a message of a
-//! megabyte for seconds; the pings between its pieces show that it reads.
+//! The answer to a ping shows that the client has read everything before it. A slow client takes seconds to
+//! read a message of a megabyte; the pings between its pieces show that it reads.
 
 use std::collections::VecDeque;
 
@@ -26,27 +26,27 @@ const REPLIES: usize = 16;
 /// Frames that wait for a client.
 #[derive(Debug, Default)]
 pub struct Outgoing {
-    /// The rest of a message of which pieces have been sent.
+    /// The rest of a partly sent message.
     rest: Option<Bytes>,
-    /// Messages that come before the queue.
+    /// Messages that precede the queue.
     replies: VecDeque<Message>,
     /// Number of bytes since the last ping.
     unchecked: usize,
 }
 
 impl Outgoing {
-    /// Adds a reply. It goes before the messages of the queue.
+    /// Adds a reply. It precedes the messages of the queue.
     pub fn reply(&mut self, message: Message) {
         self.replies.push_back(message);
     }
 
-    /// Returns false if so many replies wait that the client must read first.
+    /// Returns false if so many replies are waiting that the client must read first.
     #[must_use]
     pub fn takes_replies(&self) -> bool {
         self.replies.len() < REPLIES
     }
 
-    /// Returns true if no message has been started or waits, except in the queue.
+    /// Returns true if no message is partly sent or waiting, except in the queue.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.rest.is_none() && self.replies.is_empty()
@@ -58,7 +58,6 @@ impl Outgoing {
         self.unchecked >= PIECE
     }
 
-    /// Records that a ping was written.
     pub const fn pinged(&mut self) {
         self.unchecked = 0;
     }
@@ -104,7 +103,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_large_message_goes_in_pieces_with_a_ping_after_each() {
+    fn large_message_is_split_with_a_ping_after_each_piece() {
         let (mut outgoing, queue) = (Outgoing::default(), Queue::default());
         let text = "x".repeat(2 * PIECE + 1);
         outgoing.reply(Message::text(text.as_str()));

@@ -12,7 +12,7 @@ use serde_json::{Value, json};
 
 /// The subprotocols, the preferred one first.
 pub const SUBPROTOCOLS: [&str; 2] = ["foxglove.sdk.v1", "foxglove.websocket.v1"];
-/// Schema encodings that are binary; JSON contains these schemas as base64.
+/// Binary schema encodings, which JSON contains as base64.
 const BINARY_SCHEMAS: [&str; 2] = ["protobuf", "flatbuffer"];
 
 /// Operation codes of binary messages to the client.
@@ -39,7 +39,7 @@ pub enum Request {
         /// The client's numbers of the subscriptions.
         subscription_ids: Vec<u32>,
     },
-    /// Ask for the values of parameters.
+    /// Read the values of parameters.
     #[serde(rename_all = "camelCase")]
     GetParameters {
         /// Names of the parameters; an empty list means all.
@@ -115,7 +115,7 @@ pub fn service_response(service: u32, call: u32, payload: &Value) -> Vec<u8> {
     bytes
 }
 
-/// The message that a service call failed.
+/// The message for a failed service call.
 #[must_use]
 pub fn service_failure(service: u32, call: u32, why: &str) -> String {
     json!({ "op": "serviceCallFailure", "serviceId": service, "callId": call, "message": why }).to_string()
@@ -167,7 +167,7 @@ pub fn random_word() -> Result<String, NoRandom> {
     Ok(HEXLOWER.encode(&bits))
 }
 
-/// Facts about the server: the first message to a client.
+/// Facts about the server, for the first message to a client.
 #[derive(Clone, Debug, Default, Serialize)]
 #[serde(rename_all = "camelCase")]
 pub struct ServerInfo {
@@ -270,7 +270,7 @@ mod tests {
     }
 
     #[test]
-    fn a_call_is_read_and_answered() {
+    fn service_call_is_parsed_and_answered() {
         let call = [&[2, 7, 0, 0, 0, 9, 1, 0, 0, 4, 0, 0, 0][..], b"json{}"].concat();
         let expected =
             ServiceCall { service: 7, call: 265, encoding: "json".into(), payload: b"{}".to_vec() };
@@ -297,7 +297,7 @@ mod tests {
     }
 
     #[test]
-    fn server_info_and_advertise_are_as_the_protocol_has_them() {
+    fn server_info_and_advertise_follow_the_protocol() {
         let info = ServerInfo { name: "linkbar".into(), capabilities: vec!["time"], ..Default::default() };
         let read: Value = serde_json::from_str(&info.encode()).unwrap();
         assert_eq!((&read["op"], &read["capabilities"][0]), (&"serverInfo".into(), &"time".into()));

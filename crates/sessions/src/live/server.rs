@@ -33,12 +33,12 @@ pub const CLIENTS: usize = 16;
 /// Greatest length of a client's message, bytes.
 pub const MESSAGE: usize = 64 * 1024;
 const HANDSHAKE: Duration = Duration::from_secs(3);
-/// Time at the end in which clients can still read.
+/// Time at the end during which clients can still read.
 const LAST: Duration = Duration::from_secs(2);
 /// Pause after a connection that could not be accepted.
 const AGAIN: Duration = Duration::from_millis(100);
 
-/// A bound port on 127.0.0.1. Clients that connect wait until a [`Server`] starts.
+/// A bound port on 127.0.0.1. Clients that connect wait for the start of a [`Server`].
 #[derive(Debug)]
 pub struct Port(TcpListener);
 
@@ -120,7 +120,7 @@ struct Accept {
     feed: Feed,
     stop: Arc<AtomicBool>,
     open: Arc<AtomicUsize>,
-    /// Number of viewers so far. Requests for the page do not count.
+    /// Number of viewers so far, without requests for the page.
     viewers: Arc<AtomicU64>,
 }
 
@@ -133,8 +133,8 @@ impl Accept {
             }
             match accepted {
                 Ok((stream, _)) => self.admit(stream),
-                // The client has already disconnected, or no more files can be opened: the server continues in both
-                // cases.
+                // The client has already disconnected, or no more files can be opened. The server continues in
+                // both cases.
                 Err(_) => thread::sleep(AGAIN),
             }
         }
@@ -164,7 +164,6 @@ impl Drop for Open {
     }
 }
 
-/// Refuses a client because too many are connected.
 fn refuse(mut stream: TcpStream) {
     let why = format!("{CLIENTS} viewers are connected: close one first\n");
     // The answer is small and usually fits; otherwise the client gets none.

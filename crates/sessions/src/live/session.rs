@@ -1,6 +1,6 @@
-//! The session of one client, without I/O: its requests and the actions that follow.
+//! The session of one client, without I/O: its requests and the resulting actions.
 //!
-//! The answer to an invalid message is a status, and nothing changes; after too many, the client is disconnected.
+//! An invalid message is answered with a status and has no other effect. Too many disconnect the client.
 
 use std::collections::BTreeMap;
 
@@ -21,9 +21,10 @@ pub const MISTAKES: u32 = 32;
 pub const VELOCITY: &str = "/operator/velocity";
 /// The parameter for the token. Its value shows only whether the token was accepted.
 pub const TOKEN: &str = "/operator/token";
-/// The parameter that says whether the run accepts requests of this client: [`ACCESS_WORDS`].
+/// The parameter for this client's access to the run: [`ACCESS_WORDS`].
 pub const ACCESS: &str = "/operator/access";
-/// The values of [`ACCESS`]: the run accepts no requests; requests need the token; the client has given the token.
+/// The values of [`ACCESS`]: the run accepts no requests; requests require the token; the client has given the
+/// token.
 pub const ACCESS_WORDS: [&str; 3] = ["none", "token", "granted"];
 /// The parameter for the name under which the run knows the client as an operator.
 pub const NAME: &str = "/viewer/name";
@@ -38,7 +39,7 @@ const NO_REQUESTS: &str =
 /// Answer to a request without a valid token.
 const NO_TOKEN: &str = "the token that the run has printed was expected";
 
-/// An action that follows from a client's message.
+/// An action that results from a client's message.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Action {
     Text(String),
@@ -58,7 +59,7 @@ pub enum Action {
     Ask {
         /// The line for the operator's socket.
         line: String,
-        /// The client's request that the answer belongs to.
+        /// The client's request to which the answer belongs.
         reply: Reply,
     },
     /// Disconnect the client, with this reason.
@@ -82,7 +83,7 @@ pub enum Reply {
 
 #[derive(Clone, Debug, Default)]
 pub struct Rights {
-    /// The velocity knob; `None` if a log is played.
+    /// The velocity knob; `None` for a log.
     pub knob: Option<Knob>,
     /// The token that a request must contain; `None` if the run accepts no requests.
     pub token: Option<Token>,
@@ -100,7 +101,7 @@ pub struct Session {
     has_token: bool,
     /// Seconds of the past with which a subscription begins.
     past_s: u64,
-    /// The knob position sent last; `None` if the client has not subscribed to it.
+    /// The last sent knob position; `None` if the client has not subscribed to it.
     knob: Option<u16>,
     mistakes: u32,
 }
@@ -115,7 +116,6 @@ struct Payload {
 }
 
 impl Session {
-    /// The session of a new client.
     #[must_use]
     pub fn new(rights: Rights) -> Self {
         Self { rights, ..Self::default() }
@@ -197,7 +197,7 @@ impl Session {
         (seen != now).then(|| self.parameters(&[VELOCITY.to_owned()], None))
     }
 
-    /// The message with the parameters of the given names; an empty list means all.
+    /// The message with the named parameters; an empty list means all.
     fn parameters(&self, names: &[String], id: Option<&str>) -> String {
         let knob = self.rights.knob.as_ref().map(|knob| (VELOCITY, json!(knob.get())));
         let accepted = if self.has_token { "accepted" } else { "" };
@@ -264,7 +264,7 @@ impl Session {
         }
     }
 
-    /// The line for the run that a call stands for, or why the call is refused.
+    /// The line for the run that corresponds to a call, or the reason why the call is refused.
     fn line(&self, asked: &ServiceCall) -> Result<String, String> {
         let token = self.rights.token.as_ref().ok_or(NO_REQUESTS)?;
         let wanted =
@@ -317,7 +317,7 @@ impl Session {
         self.counted(why).map_or_else(|| vec![status], |close| vec![close])
     }
 
-    /// Counts an invalid message; returns the action to disconnect after too many.
+    /// Counts an invalid message. Returns the action to disconnect after too many.
     fn counted(&mut self, why: &str) -> Option<Action> {
         self.mistakes = self.mistakes.saturating_add(1);
         let close = || Action::Close(format!("{MISTAKES} wrong messages, at last: {why}"));
@@ -365,7 +365,7 @@ mod tests {
     }
 
     #[test]
-    fn a_channel_is_subscribed_once_and_unsubscribed() {
+    fn channel_is_subscribed_once_and_unsubscribed() {
         let mut session = Session::default();
         let subscribed = [Action::Subscribe { channel: 1, subscription: 7, past_s: 0 }];
         assert_eq!(subscribe(&mut session, 7, 1), subscribed);
@@ -379,7 +379,7 @@ mod tests {
     }
 
     #[test]
-    fn channels_that_are_not_there_are_refused() {
+    fn unknown_channels_are_refused() {
         let mut session = Session::default();
         for channel in [0, 601, 65_537, u64::MAX] {
             assert!(status_of(&subscribe(&mut session, 1, channel)).contains("there is no channel"));
@@ -396,7 +396,7 @@ mod tests {
     }
 
     #[test]
-    fn invalid_messages_are_answered_and_finally_end_the_session() {
+    fn too_many_invalid_messages_end_the_session() {
         let mut session = Session::default();
         let wrong = ["", "{", "[]", "null", r#"{"op":1}"#, r#"{"op":"fly"}"#, "{\"op\":\"subscribe\"}\u{7}"];
         for text in wrong {
@@ -461,7 +461,7 @@ mod tests {
     }
 
     #[test]
-    fn a_run_without_operators_takes_no_calls() {
+    fn run_without_operators_refuses_calls() {
         let mut session = Session::new(Rights { knob: Some(Knob::default()), ..Rights::default() });
         assert_eq!(session.services(), None);
         assert!(failure_of(&call(&mut session, 4, &json!({ "token": "" }))).contains("accepts no requests"));
@@ -475,7 +475,7 @@ mod tests {
     }
 
     #[test]
-    fn the_knob_is_turned_by_a_client_with_the_token() {
+    fn client_with_the_token_sets_the_knob() {
         let (mut session, token, knob) = permitted();
         assert!(status_of(&set(&mut session, VELOCITY, json!(5))).contains("set it as the parameter"));
         assert!(status_of(&set(&mut session, SECRET, json!("wrong"))).contains("the token"));
@@ -512,7 +512,7 @@ mod tests {
     }
 
     #[test]
-    fn client_knows_whether_it_may_command() {
+    fn access_parameter_reports_the_permission() {
         let mut watching = Session::new(Rights { name: "viewer-2".into(), ..Rights::default() });
         assert_eq!(value_of(&mut watching, ACCESS), "none");
         assert_eq!(value_of(&mut watching, NAME), "viewer-2");
@@ -523,7 +523,7 @@ mod tests {
     }
 
     #[test]
-    fn client_without_a_token_asks_for_the_past() {
+    fn client_without_a_token_can_read_the_past() {
         let mut session = Session::default();
         assert_eq!(value_of(&mut session, PAST), 0);
         for wrong in [json!(61), json!(-1), json!(0.5), json!("60"), json!(null)] {

@@ -1,12 +1,12 @@
-//! Measures for how long a client has read nothing.
+//! Measures the time for which a client has not read.
 
 use std::time::{Duration, Instant};
 
-/// Greatest time that counts between two looks. In a longer gap this program did not run: it was stopped, or the
-/// machine was busy. The client is not to blame for that.
+/// Greatest time that is added between two checks. A longer gap means that this program was stopped, or the
+/// machine was busy, which is not the client's fault.
 const GAP: Duration = Duration::from_millis(100);
 
-/// The time for which a client has read nothing while this program was running.
+/// The time for which a client has not read while this program was running.
 #[derive(Debug)]
 pub struct Silence {
     looked: Instant,
@@ -23,7 +23,7 @@ impl Silence {
         self.silent = Duration::ZERO;
     }
 
-    /// The time for which the client has read nothing. Call it often.
+    /// The time for which the client has not read. Call it often.
     pub fn length(&mut self, now: Instant) -> Duration {
         self.silent = self.silent.saturating_add(now.saturating_duration_since(self.looked).min(GAP));
         self.looked = now;
@@ -36,7 +36,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn time_in_which_the_program_was_stopped_does_not_count() {
+    fn silence_excludes_time_of_a_stopped_program() {
         let begin = Instant::now();
         let mut silence = Silence::new(begin);
         let at = |milliseconds| begin + Duration::from_millis(milliseconds);

@@ -1,8 +1,9 @@
 //! The accept queue: connections that have not yet sent a hello.
 //!
-//! It is short, so that unknown clients cost the run little. When it is full, the oldest connection without a hello is
-//! closed after a minimum time: clients that send nothing, or only single bytes, cannot block other clients. A refused
-//! connection keeps its slot for the same time, so that no client can guess quickly or fill the log.
+//! It is short, so that unknown clients cost the run little. When it is full, the oldest connection without a
+//! hello is closed after a minimum time: clients that send nothing, or single bytes, cannot block other
+//! clients. A refused connection keeps its slot for the same time, so that clients can neither guess quickly
+//! nor fill the log.
 
 use std::{
     io,
@@ -36,14 +37,15 @@ struct Waiting {
     stream: UnixStream,
 }
 
-/// A slot, released on drop, unless another connection has it by then.
+/// A slot, released on drop, unless another connection has already taken it.
 pub(super) struct Slot<'a> {
     queue: &'a AcceptQueue,
     ticket: u64,
 }
 
 impl AcceptQueue {
-    /// Give a connection a slot, if necessary that of the oldest one. Returns its ticket; `None` if no slot is free.
+    /// Give a connection a slot, if necessary that of the oldest one. Returns its ticket, or `None` without a
+    /// free slot.
     ///
     /// # Errors
     /// If the system has no descriptor left.
@@ -89,13 +91,13 @@ mod tests {
         UnixStream::pair().unwrap()
     }
 
-    /// Let all have been there for so much longer.
+    /// Let all connections age by a time.
     fn wait(queue: &AcceptQueue, time: Duration) {
         locked(&queue.inner).slots.iter_mut().flatten().for_each(|waiting| waiting.since -= time);
     }
 
     #[test]
-    fn the_connection_that_has_waited_longest_makes_room() {
+    fn oldest_connection_is_closed_for_a_new_one() {
         let queue = AcceptQueue::default();
         let mut silent: Vec<_> = (0..SLOTS)
             .map(|_| {
@@ -114,7 +116,7 @@ mod tests {
     }
 
     #[test]
-    fn a_slot_is_freed_by_its_own_ticket() {
+    fn slot_is_released_only_by_its_own_ticket() {
         let queue = AcceptQueue::default();
         let tickets: Vec<_> = (0..SLOTS).filter_map(|_| queue.enter(&connection().0).unwrap()).collect();
         drop(queue.slot(tickets[3]));

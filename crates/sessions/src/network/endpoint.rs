@@ -1,11 +1,11 @@
 //! The tick's side of the mailboxes of one neighbour.
 //!
-//! [`Endpoint::exchange`] copies, once a tick, the mailboxes that the controller has written to the network's side, and
-//! those that the neighbour has written back. On the 40 ms grid it takes a lock only if it is free, and otherwise tries
-//! again in the next tick; it does not wait and does not allocate. In fast clock it waits for the neighbour's answer to
-//! the pulse of the tick.
+//! Once per tick, [`Endpoint::exchange`] copies the controller's written mailboxes to the network's side, and
+//! those that the neighbour has written back. On the 40 ms grid it takes a lock only if it is free, and
+//! otherwise tries again in the next tick; it neither waits nor allocates. In fast clock it waits for the
+//! neighbour's answer to the pulse of the tick.
 //!
-//! A neighbour connects and disconnects at any time. When it connects, the mailboxes that it writes are
+//! A neighbour connects and disconnects at any time. On connection, the mailboxes that it writes are
 //! initialized (IX), and all that it reads are sent.
 
 use std::{
@@ -26,7 +26,7 @@ use neighbours::mailbox::{Mailbox, Place};
 
 /// Time between two checks for an interruption while a tick waits for a neighbour.
 const LOOK: Duration = Duration::from_millis(50);
-/// How long the end of a run waits until its last session has sent the disconnect reason.
+/// Time for which the end of a run waits for its last session to send the disconnect reason.
 const CLOSING_LIMIT: Duration = Duration::from_secs(2);
 
 /// The tick's side.
@@ -34,24 +34,24 @@ pub struct Endpoint {
     shared: Arc<Shared>,
     outgoing: Vec<Mailbox>,
     incoming: Vec<Mailbox>,
-    /// Number of the last session that the tick has seen.
+    /// Number of the last session known to the tick.
     session: u32,
     events: (Sender<NetEvent>, Receiver<NetEvent>),
-    /// Set when the run is to end: the tick then no longer waits for a neighbour.
+    /// Set when the run is to end. The tick then no longer waits for a neighbour.
     interrupted: Arc<AtomicBool>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Presence {
     pub connected: bool,
-    /// It has connected since the last exchange: its mailboxes were initialized.
+    /// True if the neighbour has connected since the last exchange, so that its mailboxes were initialized.
     pub new: bool,
-    /// It has been connected at some time, if only between two exchanges.
+    /// True if the neighbour has been connected at some time, if only between two exchanges.
     pub was_connected: bool,
 }
 
 impl Endpoint {
-    /// The mailboxes of a neighbour, initialized; it is not connected yet.
+    /// The initialized mailboxes of a neighbour, which is not yet connected.
     ///
     /// # Errors
     /// If the system has no descriptor left.
@@ -66,8 +66,8 @@ impl Endpoint {
         })
     }
 
-    /// Do not wait for the neighbour once `interrupted` is set: an exchange then takes the mailboxes that have arrived
-    /// so far.
+    /// Do not wait for the neighbour once `interrupted` is set. An exchange then uses the mailboxes that have
+    /// arrived.
     #[must_use]
     pub fn until(mut self, interrupted: Arc<AtomicBool>) -> Self {
         self.interrupted = interrupted;
@@ -120,12 +120,12 @@ impl Endpoint {
         mailbox.unwrap_or_else(|| panic!("{place} does not come from {}", self.shared.role))
     }
 
-    /// The next event since the last call, the oldest first.
+    /// The oldest event that has not been returned.
     pub fn event(&self) -> Option<NetEvent> {
         self.events.1.try_recv().ok()
     }
 
-    /// Call once per tick: pass the written mailboxes to the network, and take those that have arrived. In fast clock
+    /// Call once per tick: pass the written mailboxes to the network, and fetch the arrived ones. In fast clock
     /// this waits for a connected neighbour.
     pub fn exchange(&mut self, tick: u64) -> Presence {
         let session = self.shared.session.load(Ordering::Acquire);
@@ -151,20 +151,21 @@ impl Endpoint {
         }
         let now = self.shared.session.load(Ordering::Acquire);
         if now != session && now != 0 {
-            // A session that has begun meanwhile counts from the next tick on.
+            // A session that has meanwhile begun is valid from the next tick on.
             self.incoming.iter_mut().for_each(Mailbox::initialize);
         }
-        // A neighbour that has answered the pulse counts as connected, even if it has disconnected since, so
-        // that a run ends in the same tick every time. After an interruption, when the tick has not waited for
-        // the answer, the session decides.
+        // A neighbour that has answered the pulse is treated as connected, even if it has disconnected since,
+        // so that a run ends in the same tick every time. After an interruption, when the tick has not waited
+        // for the answer, the session decides.
         let asked = waits && !self.is_interrupted();
         let connected = answered || (!asked && session != 0 && now == session);
         let connected = connected && !self.shared.is_over();
         Presence { connected, new, was_connected: self.shared.sessions.load(Ordering::Acquire) != 0 }
     }
 
-    /// Wait until the neighbour has answered the pulse or has disconnected, the endpoint was stopped, or the run is to
-    /// end; returns true if it has answered. A neighbour that does not answer in time loses its session.
+    /// Wait until the neighbour has answered the pulse or has disconnected, the endpoint was stopped, or the
+    /// run is to end. Returns true if it has answered. A neighbour that does not answer in time loses its
+    /// session.
     fn wait(&self, tick: u64, session: u32) -> bool {
         let mut answered = locked(&self.shared.answered);
         while *answered < tick
@@ -172,7 +173,7 @@ impl Endpoint {
             && !self.shared.is_over()
             && !self.is_interrupted()
         {
-            // A signal does not wake this thread: check for an interruption at intervals.
+            // A signal does not wake this thread, so it checks for an interruption at intervals.
             let look = self.shared.changed.wait_timeout(answered, LOOK);
             (answered, _) = look.unwrap_or_else(PoisonError::into_inner);
         }
@@ -180,7 +181,7 @@ impl Endpoint {
     }
 }
 
-/// Use a shared mailbox; if it is locked and the tick does not wait, skip it in this tick.
+/// Use a shared mailbox. If it is locked and the tick does not wait, skip it in this tick.
 fn with(shared: &Mutex<Mailbox>, waits: bool, look: impl FnOnce(&mut Mailbox)) {
     if waits {
         look(&mut locked(shared));
@@ -196,14 +197,13 @@ fn with(shared: &Mutex<Mailbox>, waits: bool, look: impl FnOnce(&mut Mailbox)) {
 impl Drop for Endpoint {
     fn drop(&mut self) {
         self.shared.end();
-        // Wait until the session has sent the disconnect reason.
         let connected = |_: &mut u64| self.shared.session.load(Ordering::Acquire) != 0;
         let answered = locked(&self.shared.answered);
         drop(self.shared.changed.wait_timeout_while(answered, CLOSING_LIMIT, connected));
     }
 }
 
-/// Stops an endpoint, even while a thread waits in it: its neighbour counts as disconnected, and no other is admitted.
+/// Stops an endpoint, even while a thread waits in it. Its neighbour is disconnected, and no other is admitted.
 #[derive(Clone)]
 pub struct StopHandle {
     shared: Arc<Shared>,

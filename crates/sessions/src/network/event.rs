@@ -10,14 +10,14 @@ pub enum Disconnect {
     Closed,
     /// The connection broke, with the error.
     Lost(String),
-    /// The controller has closed the connection: no pulse was answered for this time.
+    /// The controller has closed the connection, because no pulse was answered for this time.
     Silent(Duration),
-    /// The controller has closed the connection: the neighbour has broken the protocol, with the reason.
+    /// The controller has closed the connection, because the neighbour has violated the protocol in this way.
     Violation(String),
 }
 
 impl Disconnect {
-    /// True if the controller has ended the session, not the neighbour or the line.
+    /// True if the controller has ended the session.
     #[must_use]
     pub const fn is_by_controller(&self) -> bool {
         matches!(self, Self::Silent(_) | Self::Violation(_))

@@ -1,6 +1,6 @@
-//! The controller accepts connections: one thread waits at a socket, and another one serves each connection.
+//! The controller accepts connections: one thread waits at a socket, and one thread serves each connection.
 //!
-//! The socket admits processes of the same user. All others are refused with a reason, and the controller gets an event.
+//! The socket admits processes of the same user. All others are refused with a reason, which is also an event.
 
 use std::{io, sync::Arc};
 
@@ -35,7 +35,7 @@ impl Listener {
         Self::with_operators(address, endpoints, None)
     }
 
-    /// As [`Listener::start`], and for operators as well.
+    /// Like [`Listener::start`], but also for operators.
     ///
     /// # Errors
     /// [`ListenError`].
@@ -45,7 +45,7 @@ impl Listener {
         operators: Option<Operators>,
     ) -> Result<Self, ListenError> {
         let handles: Vec<_> = endpoints.into_iter().map(Endpoint::handle).collect();
-        // Without endpoints there are only operators, which need the real clock.
+        // Without endpoints there are only operators, which require the real clock.
         let clock = handles.first().map_or(ClockKind::Real, |handle| handle.clock());
         let server = Arc::new(Server::new(handles, operators, clock));
         let started = Acceptor::start(address.path(), "network", move |stream| server.enter(stream));
@@ -96,9 +96,10 @@ mod tests {
         Peer::connect_within(answer_limit(ClockKind::Fast) / 2, &address, Role::Workstation).unwrap();
     }
 
-    /// All attempts are refused, the run gets a limited number of events, and another client is admitted soon.
+    /// All attempts are refused, the run receives a limited number of events, and another client is admitted
+    /// soon.
     #[test]
-    fn a_client_that_tries_again_and_again_fills_no_log_and_locks_no_other_out() {
+    fn repeated_attempts_neither_fill_the_log_nor_block_others() {
         let place = tempfile::tempdir().unwrap();
         let address = Address::from(place.path().join("rcs.sock"));
         let endpoint = endpoint(ClockKind::Real);
@@ -113,8 +114,8 @@ mod tests {
         let events = std::iter::from_fn(|| endpoint.event());
         let told =
             u32::try_from(events.filter(|event| matches!(event, NetEvent::Refused(_))).count()).unwrap();
-        // In each interval of `SAFE`: an event for each slot, and one for the full queue. Time passes after the
-        // loop as well.
+        // One event per slot and interval of `SAFE`, and one for the full queue. Time also passes after the
+        // loop.
         let most = (started.elapsed().as_secs_f64() / SAFE.as_secs_f64()).ceil() as u32 + 1;
         assert!(told <= most * (SLOTS as u32 + 1), "{told} of {tried} in {most} s");
     }

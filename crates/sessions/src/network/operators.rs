@@ -1,4 +1,4 @@
-//! Operators at the socket of the network (IV): a role of its own, whose connections carry lines in the place of
+//! Operators at the socket of the network (IV): a separate role, whose connections carry lines instead of
 //! mailboxes. Gateways of other machines use it.
 //!
 //! The hello is that of a neighbour with the role [`Role::Operator`](super::Role). After the welcome the connection
@@ -15,7 +15,7 @@ use super::NetEvent;
 /// Begins a session of the run over a stream. The bytes were received from the stream after the hello.
 type Enter = Box<dyn Fn(UnixStream, Vec<u8>) -> io::Result<()> + Send + Sync>;
 
-/// How operators of a network reach a run.
+/// Access of a network's operators to a run.
 #[derive(Clone)]
 pub struct Operators {
     enter: Arc<OnceLock<Enter>>,
@@ -23,7 +23,7 @@ pub struct Operators {
 }
 
 impl Operators {
-    /// Creates the access for operators, who are refused until the run is [open](Self::open).
+    /// Creates the access. Operators are refused until the run is [open](Self::open).
     #[must_use]
     pub fn new(events: Sender<NetEvent>) -> Self {
         Self { enter: Arc::default(), events }
@@ -35,7 +35,7 @@ impl Operators {
         let _ = self.enter.set(Box::new(enter));
     }
 
-    /// Refuses operators while the run has not begun; the error is the reason.
+    /// Refuses operators before the run has begun. The error is the reason.
     pub(super) fn check_open(&self) -> Result<(), &'static str> {
         self.enter.get().map(|_| ()).ok_or("the run has not begun: connect again when it has")
     }

@@ -17,10 +17,10 @@ use sockets::Line;
 
 /// Time between two attempts to connect.
 const PAUSE: Duration = Duration::from_millis(50);
-/// How long the end of a connection may take.
+/// Time limit for the end of a connection.
 const CLOSING_LIMIT: Duration = Duration::from_secs(1);
 
-/// Why a connection cannot be made, or ends.
+/// The reason why a connection cannot be made, or ends.
 #[derive(Debug, thiserror::Error)]
 pub enum PeerError {
     /// No controller listens at the address, or the connection broke.
@@ -29,7 +29,7 @@ pub enum PeerError {
     /// The other side is not a controller, or breaks the protocol.
     #[error("{address}: {source}")]
     Session { address: Address, source: SessionError },
-    /// Nothing was received for this time.
+    /// No data were received for this time.
     #[error("nothing has come from the controller for {} s", .0.as_secs())]
     Silent(Duration),
     /// The controller has closed the connection without a reason.
@@ -44,7 +44,7 @@ pub enum PeerError {
 }
 
 impl PeerError {
-    /// True if a later attempt may succeed: there is no controller, or it has just ended.
+    /// True if a later attempt may succeed: the controller is missing, or has just ended.
     #[must_use]
     pub fn is_passing(&self) -> bool {
         match self {
@@ -58,7 +58,7 @@ impl PeerError {
 
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Received {
-    /// A mailgram has been received and stored in its mailbox.
+    /// A mailgram was received and stored in its mailbox.
     Mailgram(Place),
     /// The pulse of a tick, all of whose mailboxes have been received. Answer it with [`Peer::pulse`].
     Pulse(u64),
@@ -68,7 +68,7 @@ struct Connection {
     address: Address,
     line: Line,
     session: Session,
-    /// The controller has not closed the connection.
+    /// True until the controller closes the connection.
     is_open: bool,
 }
 
@@ -97,7 +97,7 @@ impl Peer {
         Self::connect_within(Duration::ZERO, address, role)
     }
 
-    /// Connect; try again for a while if there is no controller.
+    /// Connect, with repeated attempts for a while if no controller answers.
     ///
     /// # Errors
     /// The last [`PeerError`].
@@ -180,7 +180,7 @@ impl Peer {
         }
     }
 
-    /// Why the controller has closed the connection: read the rest up to its reason.
+    /// The reason why the controller has closed the connection, after the remaining data.
     fn reason(&mut self) -> PeerError {
         loop {
             if let Err(error) = self.receive() {
@@ -254,7 +254,7 @@ fn broken(address: &Address) -> impl FnOnce(SessionError) -> PeerError {
     }
 }
 
-/// The other side has closed the connection, maybe with bytes in transit.
+/// True if the other side has closed the connection, perhaps with bytes in transit.
 fn is_end(error: &io::Error) -> bool {
     use io::ErrorKind::{BrokenPipe, ConnectionReset, UnexpectedEof};
     matches!(error.kind(), BrokenPipe | ConnectionReset | UnexpectedEof)

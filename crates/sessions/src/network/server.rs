@@ -1,4 +1,4 @@
-//! The controller's end of connections: each is served by its own thread, from the hello to its end.
+//! The controller's end of connections. One thread serves each, from the hello to its end.
 
 use std::{
     fmt, io,
@@ -84,7 +84,7 @@ impl Server {
                 }
             }
             Err(why) => {
-                // Send the reason, unless the session is closed already.
+                // Send the reason, unless the session is already closed.
                 connection.session.close(&why);
                 connection.finish();
                 self.refused(why);
@@ -95,7 +95,7 @@ impl Server {
         }
     }
 
-    /// Admit a client in the role that its hello names; the error is the reason for refusing it.
+    /// Admit a client in the role that its hello names. The error is the reason of a refusal.
     fn admit(&self, role: Role) -> Result<Admitted<'_>, String> {
         if role == Role::Operator {
             let operators = self.operators.as_ref();
@@ -116,7 +116,7 @@ enum Admitted<'a> {
 }
 
 impl Connection {
-    /// Receive until the other side is admitted; the error is the reason for refusing it.
+    /// Receive until the other side is admitted. The error is the reason of a refusal.
     fn greet<'a>(&mut self, server: &'a Server) -> Result<Admitted<'a>, String> {
         self.line.check_user().map_err(said)?;
         loop {
@@ -136,13 +136,13 @@ impl Connection {
         }
     }
 
-    /// Pass received bytes to the session; false if the other side has closed the connection.
+    /// Pass received bytes to the session. Returns false if the other side has closed the connection.
     fn receive(&mut self, now: Instant) -> io::Result<bool> {
         let session = &mut self.session;
         self.line.receive(|bytes| session.receive(bytes, now))
     }
 
-    /// Send the welcome to an operator, and give its connection to the run.
+    /// Send the welcome to an operator, and pass its connection to the run.
     fn hand_over(mut self, operators: &Operators) -> io::Result<()> {
         let until = Instant::now() + SAFE;
         self.line.send(self.session.output())?;
@@ -154,7 +154,7 @@ impl Connection {
         operators.enter(self.line.into_stream()?, unread)
     }
 
-    /// Run the session until it ends; returns why it has ended.
+    /// Run the session until it ends. Returns the reason.
     fn run(&mut self, link: &mut Link) -> Disconnect {
         loop {
             match self.turn(link) {
@@ -174,7 +174,7 @@ impl Connection {
     fn turn(&mut self, link: &mut Link) -> Result<(), Disconnect> {
         let lost = |error: io::Error| Disconnect::Lost(error.to_string());
         let now = Instant::now();
-        // A neighbour that reads slowly gets the latest values only.
+        // A neighbour that reads slowly receives only the latest values.
         if self.line.is_flushed() {
             link.collect(|outgoing| match outgoing {
                 Outgoing::Mailbox(mailbox) => self.session.send(mailbox),

@@ -32,17 +32,19 @@ pub(super) struct Shared {
     pub sessions: AtomicU32,
     /// The latest tick whose mailboxes were written.
     pub pulse: AtomicU64,
-    /// The last pulse that the neighbour has answered. In a mutex, because a tick may wait for a change of it.
+    /// The last pulse that the neighbour has answered. It is in a mutex, because a tick may wait for its
+    /// change.
     pub answered: Mutex<u64>,
     /// Notified when `answered`, `session` or `over` changes.
     pub changed: Condvar,
-    /// The run is over: no other session begins.
+    /// True if the run is over, so that no other session begins.
     pub over: AtomicBool,
     /// Event descriptor that wakes the thread of the session.
     wake: OwnedFd,
 }
 
-/// Lock a mutex, also after a panic in another thread: the data behind the locks of the network are always consistent.
+/// Lock a mutex, even after a panic in another thread: the data in the locks of the network are always
+/// consistent.
 pub(super) fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
@@ -69,7 +71,7 @@ impl Shared {
         })
     }
 
-    /// Wake the thread of the session, if there is one. Does not block or allocate.
+    /// Wake the thread of the session, if any. Neither blocks nor allocates.
     pub fn wake(&self) {
         // The write fails only if the counter is full, and then the thread wakes anyway.
         let _ = rustix::io::write(&self.wake, &1_u64.to_ne_bytes());
@@ -103,7 +105,7 @@ impl fmt::Debug for EndpointHandle {
     }
 }
 
-/// Why a neighbour gets no session.
+/// Why a neighbour is refused a session.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum AttachError {
     #[error("{0} is connected already")]
@@ -156,8 +158,8 @@ impl EndpointHandle {
             locked(mailbox).initialize();
         }
         *answered = 0;
-        // Read before the session is stored: a tick that sees the session waits for the answer to its own pulse,
-        // which must still be sent.
+        // Read before the session is stored: a tick that sees the session waits for the answer to its own
+        // pulse, which must still be sent.
         let pulse = self.shared.pulse.load(Ordering::Acquire);
         let number = self.shared.sessions.fetch_add(1, Ordering::AcqRel).wrapping_add(1).max(1);
         self.shared.session.store(number, Ordering::Release);
@@ -171,14 +173,14 @@ impl EndpointHandle {
     }
 
     pub(crate) fn detach(&self, why: Disconnect) {
-        // Before the change, so that a tick that sees no session also finds the reason.
+        // Before the change, so that a tick without a session also finds the reason.
         self.tell(NetEvent::Disconnected(self.shared.role, why));
         let _answered = locked(&self.shared.answered);
         self.shared.session.store(0, Ordering::Release);
         self.shared.changed.notify_all();
     }
 
-    /// Store a mailbox that has come from the neighbour; `used` is the used part of its bytes.
+    /// Store a mailbox from the neighbour; `used` is the used part of its bytes.
     ///
     /// # Errors
     /// [`MailboxError`] if the mailbox cannot hold it.
@@ -199,7 +201,7 @@ impl EndpointHandle {
     }
 }
 
-/// What the session sends to the neighbour.
+/// Data that the session sends to the neighbour.
 pub(super) enum Outgoing<'a> {
     Mailbox(&'a Mailbox),
     /// The pulse of a tick.
@@ -214,7 +216,7 @@ pub(super) struct Link {
 }
 
 impl Link {
-    /// Descriptor that is readable when there is something to send or the run is over.
+    /// Descriptor that is readable when data are to be sent or the run is over.
     pub fn wake(&self) -> BorrowedFd<'_> {
         self.handle.shared.wake.as_fd()
     }
@@ -224,12 +226,12 @@ impl Link {
         self.handle.shared.is_over()
     }
 
-    /// Send what is new: mailboxes, then the pulse.
+    /// Send changed mailboxes, then the pulse.
     pub fn collect(&mut self, mut send: impl FnMut(Outgoing<'_>)) {
         let shared = &self.handle.shared;
         // If this fails, the thread only wakes once more than necessary.
         let _ = rustix::io::read(&shared.wake, &mut [0; 8]);
-        // The pulse first: the mailboxes, read after it, hold all that its tick has written.
+        // The pulse first: the mailboxes, read after it, contain everything that its tick has written.
         let tick = shared.pulse.load(Ordering::Acquire);
         for (mailbox, sent) in shared.outgoing.iter().zip(&mut self.sent) {
             let mailbox = locked(mailbox);

@@ -13,7 +13,7 @@ use crate::operator::{
     protocol::{self, Answer, Lines, Name, PATIENCE, ProtocolError, TEXT},
 };
 
-/// Time between two signs of life, well below the time after which a run ends motion by hand.
+/// Time between two keep-alive lines, well below the time after which a run ends motion by hand.
 pub const ALIVE: Duration = Duration::from_millis(100);
 
 /// Time limit for the answer to a load, which the run gives when all boards have checked the block.
@@ -87,7 +87,7 @@ impl Client {
             name: String::new(),
             clock: Estimate::new(RunTime::default(), Instant::now()),
         };
-        // A run that refuses at once can already have closed the connection; its reason can still be read.
+        // A run that refuses at once may already have closed the connection. Its reason can still be read.
         let sent = client.write(&format!("hello {name}\n"));
         let said = client.wait_for_line(Instant::now() + PATIENCE);
         let line = said.map_err(|error| sent.err().unwrap_or(error))?;
@@ -105,14 +105,14 @@ impl Client {
         &self.run
     }
 
-    /// Name of the session, which no other session of the run has: the requested name, with a number if it was taken.
+    /// Name of the session, unique in the run: the requested name, with a number if it was taken.
     #[must_use]
     pub fn name(&self) -> &str {
         &self.name
     }
 
-    /// Sends a request; returns its number, which the answer repeats. The run carries it out within [`PATIENCE`] or
-    /// discards it.
+    /// Sends a request. Returns its number, which the answer repeats. The run executes it within [`PATIENCE`]
+    /// or discards it.
     ///
     /// # Errors
     /// [`ClientError`] if the line is invalid or the connection is lost.
@@ -120,10 +120,11 @@ impl Client {
         self.send_within(PATIENCE, line)
     }
 
-    /// Like [`Client::send`], for a request that is discarded unless the run carries it out within the time `left`.
+    /// Like [`Client::send`], for a request that is discarded unless the run executes it within the time
+    /// `left`.
     ///
     /// # Errors
-    /// As [`Client::send`].
+    /// The errors of [`Client::send`].
     pub fn send_within(&mut self, left: Duration, line: &str) -> Result<u32, ClientError> {
         let line = line.trim();
         if line.is_empty() || line.len() > TEXT || line.chars().any(char::is_control) {
@@ -135,8 +136,8 @@ impl Client {
         Ok(self.number)
     }
 
-    /// Sends an empty line, which shows that the operator is still present. A session that commands motion by hand must
-    /// send something every [`SILENCE`](protocol::SILENCE), or the run ends the motion.
+    /// Sends an empty line, which shows that the operator is still present. A session that commands motion by
+    /// hand must send a line at least every [`SILENCE`](protocol::SILENCE), or the run ends the motion.
     ///
     /// # Errors
     /// [`ClientError`] if the connection is lost.
@@ -144,7 +145,7 @@ impl Client {
         self.write("\n")
     }
 
-    /// Stays connected for a time, and shows meanwhile that the operator is still present.
+    /// Stays connected for a time, and sends keep-alive lines meanwhile.
     ///
     /// # Errors
     /// [`ClientError`] if the connection is lost.
@@ -177,15 +178,15 @@ impl Client {
     /// Sends a request and waits for its answer.
     ///
     /// # Errors
-    /// [`ClientError`] if there is no answer. A refusal by the run is not an error; it is the inner result.
+    /// [`ClientError`] if no answer arrives. A refusal by the run is not an error; it is the inner result.
     pub fn ask(&mut self, line: &str) -> Result<Result<String, String>, ClientError> {
         self.ask_within(PATIENCE, line)
     }
 
-    /// Like [`Client::ask`], for a request that is discarded unless the run carries it out within the time `left`.
+    /// Like [`Client::ask`], for a request that is discarded unless the run executes it within the time `left`.
     ///
     /// # Errors
-    /// As [`Client::ask`].
+    /// The errors of [`Client::ask`].
     pub fn ask_within(&mut self, left: Duration, line: &str) -> Result<Result<String, String>, ClientError> {
         let number = self.send_within(left, line)?;
         let patience = if line.trim_start().starts_with("load ") { LOAD_PATIENCE } else { PATIENCE };
@@ -214,7 +215,7 @@ impl Client {
         Ok(self.stream.write_all(line.as_bytes())?)
     }
 
-    /// Reads the bytes that have arrived; returns false at the end of the session.
+    /// Reads the arrived bytes. Returns false at the end of the session.
     fn read(&mut self) -> io::Result<bool> {
         let mut bytes = [0; 512];
         let count = self.stream.read(&mut bytes)?;

@@ -1,9 +1,10 @@
 //! The clock of a run, by which it judges the time limits of requests.
 //!
-//! Clocks of different machines cannot be compared. So each line of the run carries the time of its own clock, and a
-//! client names the limit of a request in the same clock: the time of the last line, plus the time since it has read
-//! that line, plus the time for which it waits. A delay of that line makes the limit earlier than meant, never later. A
-//! request that is delayed on its way, or in a run that stands still, is past its limit when it arrives.
+//! Clocks of different machines cannot be compared. Each line of the run therefore carries the time of the
+//! run's clock, and a client specifies the limit of a request in the same clock: the time of the last line,
+//! plus the time since it was read, plus the time for which the client waits. A delay of that line makes the
+//! limit too early, never too late. A request that is delayed in transit, or in a suspended run, has passed its
+//! limit when it arrives.
 
 use std::time::{Duration, Instant};
 
@@ -49,11 +50,11 @@ fn since_boot() -> Duration {
     Duration::new(time.tv_sec.unsigned_abs(), u32::try_from(time.tv_nsec).unwrap_or_default())
 }
 
-/// Age after which a client takes a new estimate in any case, since the two clocks drift.
+/// Age after which a client replaces its estimate in any case, since the two clocks drift.
 const DRIFT: Duration = Duration::from_secs(60);
 
-/// A client's estimate of the run's clock: a time that it has read, and when. It is never ahead of the run's clock but
-/// for the drift between two estimates.
+/// A client's estimate of the run's clock: a received time, and when it was read. It is never ahead of the
+/// run's clock except for the drift between two estimates.
 #[derive(Clone, Copy, Debug)]
 pub struct Estimate {
     time: RunTime,
@@ -73,7 +74,7 @@ impl Estimate {
         self.time.after(now.saturating_duration_since(self.read))
     }
 
-    /// Takes another line into account: the estimate with the smaller delay is the later one.
+    /// Takes another line into account. The estimate with the smaller delay is the later one.
     pub fn hear(&mut self, time: RunTime, read: Instant) {
         if time >= self.at(read) || read.saturating_duration_since(self.read) > DRIFT {
             *self = Self { time, read };
@@ -86,24 +87,24 @@ mod tests {
     use super::*;
 
     #[test]
-    fn an_estimate_is_never_later_than_the_clock_of_the_run() {
+    fn estimate_is_never_ahead_of_the_run_clock() {
         let start = Instant::now();
         let at = |millis: u64| start + Duration::from_millis(millis);
-        // The run said 100 when its clock showed 100; the line took 30 ms, so that the client reads it at 130.
+        // The run sent 100 when its clock showed 100. The line took 30 ms, so the client reads it at 130.
         let mut estimate = Estimate::new(RunTime(100), at(130));
         assert_eq!(estimate.at(at(200)), RunTime(170));
-        // A line that was delayed by 5 s does not make it worse, one that was quicker makes it better.
+        // A line with a delay of 5 s leaves the estimate unchanged; a faster one improves it.
         estimate.hear(RunTime(300), at(5300));
         assert_eq!(estimate.at(at(5300)), RunTime(5270));
         estimate.hear(RunTime(5310), at(5320));
         assert_eq!(estimate.at(at(5400)), RunTime(5390));
-        // After a minute the last line counts.
+        // After a minute the last line is used.
         estimate.hear(RunTime(80_000), at(80_050));
         assert_eq!(estimate.at(at(80_060)), RunTime(80_010));
     }
 
     #[test]
-    fn the_clock_of_a_run_goes_forward() {
+    fn run_clock_is_monotonic() {
         let clock = RunClock::start();
         let first = clock.now();
         std::thread::sleep(Duration::from_millis(5));

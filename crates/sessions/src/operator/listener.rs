@@ -36,11 +36,11 @@ const HELLO: Duration = Duration::from_secs(2);
 pub struct Given {
     pub source: Name,
     pub event: Event,
-    /// The request, if the event is one.
+    /// The request, if the event has one.
     request: Option<Received>,
 }
 
-/// A request as a session has received it.
+/// A received request.
 #[derive(Debug)]
 struct Received {
     number: u32,
@@ -51,7 +51,8 @@ struct Received {
 }
 
 impl Given {
-    /// Answers the request, if the event is one. Does not wait: a session that does not read its answers is ended.
+    /// Answers the request, if the event has one, without waiting. A session that does not read its answers is
+    /// ended.
     pub fn answer(self, verdict: Result<String, String>) {
         let Some(Received { number, stream, clock, .. }) = self.request else { return };
         let line = format!("{}\n", Answer { number, time: clock.now(), verdict });
@@ -60,7 +61,7 @@ impl Given {
         }
     }
 
-    /// Marks a request as late if nobody waits for it at this moment.
+    /// Marks a request as late if its sender no longer waits.
     #[must_use]
     pub fn judged(mut self) -> Self {
         if let (Event::Line(text), Some(received)) = (&self.event, &self.request) {
@@ -74,11 +75,11 @@ impl Given {
     }
 }
 
-/// False if the other end of a stream is closed, also while lines of it have not been read yet.
+/// False if the other end of a stream is closed, even while lines of it are unread.
 fn is_open(stream: &UnixStream) -> bool {
     let mut ends = [PollFd::new(stream, PollFlags::RDHUP)];
     let at_once = Timespec { tv_sec: 0, tv_nsec: 0 };
-    // An interrupted call says nothing: the session reports its end itself.
+    // An interrupted call has no result. The session reports its end itself.
     let polled = poll(&mut ends, Some(&at_once));
     let [end] = ends;
     polled.is_err() || !end.revents().intersects(PollFlags::RDHUP | PollFlags::HUP | PollFlags::ERR)
@@ -95,7 +96,7 @@ pub struct Listener {
 type Streams = Mutex<Vec<Arc<UnixStream>>>;
 
 impl Listener {
-    /// Listens at a path, with access for this user only. Its directory must belong to this user alone.
+    /// Listens at a path, with access only for this user, who must be the only owner of its directory.
     ///
     /// # Errors
     /// The error of the operating system if the socket or the thread cannot be created.
@@ -122,8 +123,8 @@ impl Listener {
         Entrance { sessions: Arc::clone(&self.sessions) }
     }
 
-    /// Returns the next event if there is one. A request that comes too late for its sender is marked as such. Does not
-    /// wait.
+    /// Returns the next event, if any, without waiting. A request whose sender no longer waits is marked as
+    /// late.
     #[must_use]
     pub fn try_next(&self) -> Option<Given> {
         self.events.try_recv().ok().map(Given::judged)
@@ -157,15 +158,15 @@ fn end(stream: &UnixStream) {
     let _ = stream.shutdown(std::net::Shutdown::Both);
 }
 
-/// Opens sessions for operators that were authenticated by other means than their user, for example by a certificate.
+/// Opens sessions for operators that were authenticated other than by their user, for example by a certificate.
 #[derive(Clone)]
 pub struct Entrance {
     sessions: Arc<Sessions>,
 }
 
 impl Entrance {
-    /// Begins a session over a stream; `unread` was received from it already. The run sees its name with the prefix
-    /// `netN.`, N counted from 1, so that it is known as a session from the network.
+    /// Begins a session over a stream from which `unread` was already received. The run sees its name with the
+    /// prefix `netN.`, N counted from 1, which marks sessions from the network.
     ///
     /// # Errors
     /// The error of the operating system, or an error if the run is over.
@@ -181,7 +182,7 @@ impl Entrance {
 struct Sessions {
     run: String,
     clock: RunClock,
-    /// Names of the sessions that have begun, until the run has been told of their end.
+    /// Names of the sessions that have begun, until their end was reported to the run.
     names: Mutex<Vec<Name>>,
     sender: SyncSender<Given>,
     stop: AtomicBool,
@@ -225,7 +226,7 @@ impl Sessions {
 }
 
 impl Sessions {
-    /// Gives a session the name that it asks for, with a number if another session has it.
+    /// Gives a session the requested name, with a number if another session has it.
     fn take_name(&self, asked: Name) -> Name {
         let mut names = self.names.lock().unwrap_or_else(PoisonError::into_inner);
         let name = asked.unlike(|name| names.contains(name));
@@ -243,7 +244,7 @@ fn refusal(why: &str) -> String {
     format!("{}\n", Answer { number: 0, time: RunTime::default(), verdict: Err(why.to_owned()) })
 }
 
-/// A session, which runs in its own thread.
+/// A session in its own thread.
 struct Session {
     stream: Arc<UnixStream>,
     lines: Lines,
@@ -272,7 +273,7 @@ impl Session {
                 let _ = self.give(&name, Event::Disconnected, None);
                 ended
             });
-            // The run learns of the end before another session can have the name.
+            // The run is notified of the end before another session can have the name.
             self.sessions.free_name(&name);
             ended
         });
@@ -319,7 +320,7 @@ impl Session {
         }
     }
 
-    /// Reads the next line. Calls `silent` whenever nothing has arrived within the time limit.
+    /// Reads the next line. Calls `silent` whenever the time limit passes without data.
     fn line(&mut self, mut silent: impl FnMut() -> Result<(), End>) -> Result<String, End> {
         let mut bytes = [0; 512];
         loop {

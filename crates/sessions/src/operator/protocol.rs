@@ -26,11 +26,11 @@ pub const LINE: usize = 260;
 pub const TEXT: usize = 224;
 /// First word of the run's first line, and the version of the protocol.
 pub const GREETING: &str = "rcs-operator 2";
-/// A session that commands motion by hand must send something within this time, or the motion ends.
+/// Longest silence of a session that commands motion by hand. After it, the motion ends.
 pub const SILENCE: Duration = Duration::from_millis(250);
 /// Time for which a client waits for an answer. The run answers between two ticks, and a second has 25.
 pub const PATIENCE: Duration = Duration::from_secs(1);
-/// Greatest time from now to the limit of a request: nobody waits longer.
+/// Greatest time from now to the limit of a request.
 pub const LONGEST: Duration = Duration::from_secs(10);
 /// Greatest length of a name, bytes.
 const NAME: usize = 24;
@@ -92,20 +92,20 @@ impl FromStr for Name {
     }
 }
 
-/// Why a request comes too late for its sender.
+/// Why a request is too late for its sender.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Late {
-    /// Its time limit is over: the sender has given up.
+    /// Its time limit is over, so its sender no longer waits.
     GivenUp,
     Ended,
-    /// It names no time limit, or none that the run can use; so nobody knows whether its sender still waits.
+    /// It has no usable time limit, so it is unknown whether its sender still waits.
     Unlimited,
 }
 
 impl Late {
     const ALL: [Self; 3] = [Self::GivenUp, Self::Ended, Self::Unlimited];
 
-    /// Begin of the text of such a request in a log; no line of a session begins with it.
+    /// Beginning of the text of such a request in a log. Lines of a session cannot begin like it.
     const fn mark(self) -> &'static str {
         match self {
             Self::GivenUp => "(given up) ",
@@ -138,7 +138,7 @@ pub enum Event {
     Connected,
     /// The session has sent a line.
     Line(String),
-    /// The session has sent a line, but its sender no longer waits for it.
+    /// The session has sent a line whose sender no longer waits.
     Late(Late, String),
     /// Nothing has arrived for [`SILENCE`].
     Silent,
@@ -146,7 +146,7 @@ pub enum Event {
 }
 
 impl Event {
-    /// The line that the session has sent, if the event is one.
+    /// The line that the session has sent, if the event has one.
     #[must_use]
     pub fn line(&self) -> Option<&str> {
         match self {
@@ -156,7 +156,7 @@ impl Event {
     }
 }
 
-/// Log texts of the events that are not lines; no line of a session begins like these.
+/// Log texts of the events without a line. Lines of a session cannot begin like these.
 const CONNECTED: &str = "(connected)";
 const SILENT: &str = "(silent)";
 const DISCONNECTED: &str = "(disconnected)";
@@ -188,9 +188,9 @@ impl From<&str> for Event {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Answer {
     pub number: u32,
-    /// The run's clock when it has answered.
+    /// The run's clock at the time of the answer.
     pub time: RunTime,
-    /// Tick and text if the request was executed, else the reason of the refusal.
+    /// Tick and text if the request was executed, otherwise the reason of the refusal.
     pub verdict: Result<String, String>,
 }
 
@@ -211,7 +211,7 @@ impl fmt::Display for Answer {
     }
 }
 
-/// End of an answer that was too long for a line; the log has all of it.
+/// End of an answer that was too long for a line. The log has all of it.
 const CUT: &str = "...";
 
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -222,7 +222,7 @@ pub enum ProtocolError {
     /// The name of the session is not allowed.
     #[error(transparent)]
     Name(#[from] NameError),
-    /// A request has no number or no text, or a limit that is not a number.
+    /// A request lacks its number or text, or its limit is not a number.
     #[error("a number and a line were expected, as in `7 stop` or `8 @15230 PAUSE`; found {0:?}")]
     NoRequest(String),
     /// A line is too long or does not end.
@@ -236,7 +236,7 @@ pub enum ProtocolError {
     NoAnswer(String),
 }
 
-/// Parses the first line of a session; returns its name.
+/// Parses the first line of a session, and returns its name.
 ///
 /// # Errors
 /// [`ProtocolError`] if the line is not `hello NAME`, or the name is not allowed.
@@ -255,8 +255,8 @@ pub struct Request<'a> {
 }
 
 impl Request<'_> {
-    /// Why the request comes too late at a time of the run's clock; `None` if its sender waits. `is_open` is false if
-    /// its session has ended.
+    /// Why the request is too late at a time of the run's clock; `None` if its sender waits. `is_open` is false
+    /// if its session has ended.
     #[must_use]
     pub fn late(&self, now: RunTime, is_open: bool) -> Option<Late> {
         match self.limit {
@@ -269,7 +269,7 @@ impl Request<'_> {
     }
 }
 
-/// Parses a request; returns `None` for an empty line.
+/// Parses a request. Returns `None` for an empty line.
 ///
 /// # Errors
 /// [`ProtocolError::NoRequest`] if number or text is missing, or the limit is not a number.
@@ -293,11 +293,11 @@ pub fn request(line: &str) -> Result<Option<Request<'_>>, ProtocolError> {
     parse().map(Some).ok_or_else(|| ProtocolError::NoRequest(line.to_owned()))
 }
 
-/// The first line of the run in a session.
+/// The run's first line in a session.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Greeting {
     pub run: String,
-    /// Name of the session; no other one has it.
+    /// Name of the session, which is unique in the run.
     pub name: Name,
     pub time: RunTime,
 }
@@ -308,7 +308,7 @@ impl fmt::Display for Greeting {
     }
 }
 
-/// Parses the first line of the run; `None` if it is another line.
+/// Parses the run's first line; `None` for another line.
 #[must_use]
 pub fn greeting(line: &str) -> Option<Greeting> {
     let mut words = line.strip_prefix(GREETING)?.split_whitespace();
@@ -348,10 +348,10 @@ impl Lines {
         self.bytes.extend_from_slice(bytes);
     }
 
-    /// Returns the next complete line without its line feed; `None` if there is none yet.
+    /// Returns the next complete line without its line feed, if any.
     ///
     /// # Errors
-    /// [`ProtocolError::TooLong`] or [`ProtocolError::NoText`]; the rest of the stream cannot be read then.
+    /// [`ProtocolError::TooLong`] or [`ProtocolError::NoText`]. The rest of the stream is then unreadable.
     pub fn next_line(&mut self) -> Result<Option<String>, ProtocolError> {
         let end = self.bytes.iter().position(|byte| *byte == b'\n');
         if end.unwrap_or(self.bytes.len()) > LINE {
@@ -418,7 +418,7 @@ mod tests {
     }
 
     #[test]
-    fn answers_come_back_on_one_line() {
+    fn answer_has_one_line() {
         for verdict in [Ok("tick 7".to_owned()), Err("no".to_owned()), Ok(String::new())] {
             let given = Answer { number: 9, time: RunTime(77), verdict };
             assert_eq!(answer(&given.to_string()).as_ref(), Ok(&given));
@@ -431,7 +431,7 @@ mod tests {
     }
 
     #[test]
-    fn a_greeting_names_run_session_and_time() {
+    fn greeting_has_run_session_and_time() {
         let sent = Greeting { run: "linkbar-1".into(), name: Name("send-2".into()), time: RunTime(40) };
         assert_eq!(sent.to_string(), "rcs-operator 2 linkbar-1 send-2 @40");
         assert_eq!(greeting(&sent.to_string()), Some(sent));
@@ -441,7 +441,7 @@ mod tests {
     }
 
     #[test]
-    fn a_request_is_late_after_its_limit_and_with_its_session() {
+    fn request_is_late_after_its_limit_or_session() {
         let request = |limit| Request { number: 1, limit, text: "PAUSE" };
         let limited = request(Some(RunTime(5000)));
         assert_eq!(limited.late(RunTime(4000), true), None);
@@ -454,7 +454,7 @@ mod tests {
     }
 
     #[test]
-    fn a_taken_name_gets_a_number() {
+    fn taken_name_gets_a_number() {
         let name = |text: &str| Name(text.to_owned());
         let taken = [name("send"), name("send-2"), name("a23456789012345678901234")];
         let unlike = |text: &str| name(text).unlike(|name| taken.contains(name));
@@ -464,7 +464,7 @@ mod tests {
     }
 
     #[test]
-    fn events_stand_in_a_log_and_come_back() {
+    fn events_round_trip_through_a_log() {
         let late = Late::ALL.map(|late| Event::Late(late, "PAUSE".into()));
         let others = [Event::Connected, Event::Line("stop".into()), Event::Silent, Event::Disconnected];
         for event in others.into_iter().chain(late) {
@@ -473,7 +473,7 @@ mod tests {
     }
 
     #[test]
-    fn a_stream_is_cut_wherever_it_is_torn() {
+    fn torn_stream_is_split_into_lines() {
         let mut lines = Lines::default();
         for byte in b"hello a\r\n\n7 stop\n" {
             lines.push(&[*byte]);

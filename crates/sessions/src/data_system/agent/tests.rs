@@ -1,7 +1,7 @@
 //! An agent and a simulated Data System, without a network between them.
 //!
-//! In fast clock an exchange ends when the server has answered its pulse, and all that the server wrote before has
-//! arrived. With a time limit of zero an agent checks once, so that the results do not depend on the computer's clock.
+//! In fast clock an exchange ends when the server has answered its pulse and all its earlier data have arrived.
+//! With a time limit of zero an agent checks once, so that the results do not depend on the computer's clock.
 
 use std::{
     path::Path,
@@ -33,8 +33,8 @@ type Written = Vec<Vec<u8>>;
 /// Change made to a status before it is sent.
 type Garble = fn(&mut Vec<u8>);
 
-/// A server on a thread, until the run is over or the connection ends; `answer` gets the number of the
-/// mailgram that it has read, from 1, and the command in it.
+/// A server on a thread, until the run is over or the connection ends. `answer` receives the number of the
+/// mailgram read, from 1, and its command.
 fn serve(
     handle: &EndpointHandle,
     mut answer: impl FnMut(usize, &[u8]) -> Written + Send + 'static,
@@ -109,7 +109,7 @@ fn pending(agent: &Agent) -> usize {
 }
 
 #[test]
-fn a_command_that_is_lost_is_sent_again_under_its_number() {
+fn lost_command_is_repeated_with_its_number() {
     let place = tempfile::tempdir().unwrap();
     let (mut agent, handle) = agent(place.path(), ClockKind::Fast);
     let (tell, heard) = mpsc::channel();
@@ -132,7 +132,7 @@ fn a_command_that_is_lost_is_sent_again_under_its_number() {
 }
 
 #[test]
-fn a_late_answer_to_the_first_sending_counts_and_counts_once() {
+fn late_answer_is_accepted_once() {
     let place = tempfile::tempdir().unwrap();
     let (mut agent, handle) = agent(place.path(), ClockKind::Fast);
     let server = serve(&handle, |_, _| Vec::new());
@@ -148,9 +148,9 @@ fn a_late_answer_to_the_first_sending_counts_and_counts_once() {
     server.join().unwrap();
 }
 
-/// An update after STARTUP was taken as done if STARTUP was answered twice.
+/// In an earlier version, a repeated answer to STARTUP marked the next update as done.
 #[test]
-fn a_repeated_answer_does_not_answer_the_next_request() {
+fn repeated_answer_does_not_answer_the_next_request() {
     let place = tempfile::tempdir().unwrap();
     let (mut agent, handle) = agent(place.path(), ClockKind::Fast);
     let kept = update(1, "UNIT_1");
@@ -183,7 +183,7 @@ fn answers_to_other_commands_and_partial_answers_are_ignored() {
         let (mut agent, handle) = agent(place.path(), ClockKind::Fast);
         let server = serve(&handle, move |_, bytes| vec![status(id(bytes).wrapping_add(offset), summary)]);
         for number in 1..5 {
-            // In the second half each command is another one, so that the number answered too early is used.
+            // In the second half each command differs, so that the number answered too early is used.
             let position = if number < 3 { "UNIT_1" } else { "UNIT_2" };
             assert_eq!(agent.execute(&update(number, position)), None);
         }
@@ -194,7 +194,7 @@ fn answers_to_other_commands_and_partial_answers_are_ignored() {
 }
 
 #[test]
-fn a_garbled_status_is_ignored_and_reported_with_its_content() {
+fn garbled_status_is_ignored_and_reported_with_its_content() {
     let right = |bytes: &[u8]| done(bytes).remove(0);
     let garbles: [(&str, Garble); 6] = [
         ("a status of 14 bytes was expected, found 13", |status| status.truncate(13)),
@@ -228,7 +228,7 @@ fn a_garbled_status_is_ignored_and_reported_with_its_content() {
 }
 
 #[test]
-fn a_garbled_status_is_reported_once_and_the_wait_continues() {
+fn garbled_status_is_reported_once_during_the_wait() {
     let place = tempfile::tempdir().unwrap();
     let (agent, handle) = agent(place.path(), ClockKind::Fast);
     let mut agent = agent.with_patience(Duration::MAX);
@@ -251,7 +251,7 @@ fn a_garbled_status_is_reported_once_and_the_wait_continues() {
 }
 
 #[test]
-fn another_server_is_heard_though_it_counts_its_mailgrams_from_the_beginning() {
+fn new_server_with_restarted_numbers_is_read() {
     let place = tempfile::tempdir().unwrap();
     let (mut agent, handle) = agent(place.path(), ClockKind::Fast);
     for number in 1..4 {
@@ -264,7 +264,7 @@ fn another_server_is_heard_though_it_counts_its_mailgrams_from_the_beginning() {
 }
 
 #[test]
-fn whoever_waits_for_a_silent_server_stops_when_the_endpoint_is_stopped() {
+fn stopped_endpoint_ends_the_wait_for_a_silent_server() {
     for clock in [ClockKind::Fast, ClockKind::Real] {
         let place = tempfile::tempdir().unwrap();
         let (agent, handle) = agent(place.path(), clock);
@@ -282,9 +282,9 @@ fn whoever_waits_for_a_silent_server_stops_when_the_endpoint_is_stopped() {
     }
 }
 
-/// The agent has no time limit: only the end of the run ends its wait.
+/// The agent has no time limit, so only the end of the run ends its wait.
 #[test]
-fn a_run_that_is_interrupted_waits_for_no_silent_server() {
+fn interrupted_run_does_not_wait_for_a_silent_server() {
     for (clock, pace) in [(ClockKind::Fast, Pace::Wait), (ClockKind::Real, Pace::Poll)] {
         let place = tempfile::tempdir().unwrap();
         let flag = Arc::new(AtomicBool::new(false));
@@ -311,7 +311,7 @@ fn a_run_that_is_interrupted_waits_for_no_silent_server() {
 }
 
 #[test]
-fn task_gets_no_answer_of_a_silent_server_and_retries() {
+fn task_retries_with_a_silent_server() {
     let place = tempfile::tempdir().unwrap();
     let (agent, handle) = agent(place.path(), ClockKind::Fast);
     let server = serve(&handle, |read, bytes| if read == 1 { Vec::new() } else { done(bytes) });

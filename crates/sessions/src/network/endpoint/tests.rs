@@ -27,7 +27,7 @@ pub(crate) struct TestSession {
 
 impl Drop for TestSession {
     fn drop(&mut self) {
-        // An endpoint whose session goes on waits for its disconnect reason.
+        // An endpoint with an open session waits for its disconnect reason.
         if self.link.handle.is_connected() {
             self.link.handle.detach(Disconnect::Closed);
         }
@@ -105,7 +105,7 @@ fn lost() -> Disconnect {
 }
 
 #[test]
-fn in_fast_clock_the_tick_waits_for_its_neighbours() {
+fn tick_in_fast_clock_waits_for_its_neighbours() {
     let (mut endpoint, mut session) = connected(Role::Workstation, ClockKind::Fast);
     let neighbour = thread::spawn(move || {
         // Answers each pulse with a command that contains its number.
@@ -126,7 +126,7 @@ fn in_fast_clock_the_tick_waits_for_its_neighbours() {
 }
 
 #[test]
-fn on_the_grid_no_neighbour_is_waited_for() {
+fn tick_on_the_grid_does_not_wait() {
     let (mut endpoint, session) = connected(Role::Workstation, ClockKind::Real);
     assert_eq!(endpoint.exchange(1), Presence { connected: true, new: true, was_connected: true });
     assert_eq!(endpoint.exchange(2), Presence { connected: true, new: false, was_connected: true });
@@ -137,7 +137,7 @@ fn on_the_grid_no_neighbour_is_waited_for() {
 }
 
 #[test]
-fn a_mailbox_that_is_locked_is_left_for_the_next_tick() {
+fn locked_mailbox_is_skipped_until_the_next_tick() {
     let (mut endpoint, session) = connected(Role::Workstation, ClockKind::Real);
     endpoint.exchange(1);
     session.deliver(&written(HWSC_COMMAND, b"go"));
@@ -152,7 +152,7 @@ fn a_mailbox_that_is_locked_is_left_for_the_next_tick() {
 }
 
 #[test]
-fn a_neighbour_that_connects_again_finds_its_mailboxes_initialized_and_gets_all_that_is_for_it() {
+fn reconnected_neighbour_gets_initialized_mailboxes_and_all_data() {
     let (mut endpoint, session) = connected(Role::Workstation, ClockKind::Real);
     session.deliver(&written(HWSC_COMMAND, b"go"));
     endpoint.outgoing(HWSC_STATUS).write(b"status").unwrap();
@@ -173,7 +173,7 @@ fn a_neighbour_that_connects_again_finds_its_mailboxes_initialized_and_gets_all_
 }
 
 #[test]
-fn an_ended_run_informs_its_neighbour_and_refuses_others() {
+fn ended_run_informs_its_neighbour_and_refuses_others() {
     let (endpoint, mut session) = connected(Role::Workstation, ClockKind::Fast);
     let handle = endpoint.handle();
     let neighbour = thread::spawn(move || while session.next() != Sent::Over {});
@@ -185,7 +185,7 @@ fn an_ended_run_informs_its_neighbour_and_refuses_others() {
 }
 
 #[test]
-fn a_waiting_tick_continues_when_the_neighbour_disconnects() {
+fn disconnection_ends_the_wait_of_a_tick() {
     let (mut endpoint, mut session) = connected(Role::Workstation, ClockKind::Fast);
     let neighbour = thread::spawn(move || {
         session.pulse();
@@ -196,9 +196,9 @@ fn a_waiting_tick_continues_when_the_neighbour_disconnects() {
     assert!(!endpoint.exchange(2).connected);
 }
 
-/// After an interruption it is not known whether the neighbour would have answered: it counts as connected.
+/// After an interruption it is unknown whether the neighbour would have answered: it is treated as connected.
 #[test]
-fn a_waiting_tick_continues_when_the_run_ends() {
+fn end_of_the_run_ends_the_wait_of_a_tick() {
     let interrupted = Arc::new(AtomicBool::new(false));
     let (endpoint, mut session) = connected(Role::Workstation, ClockKind::Fast);
     let mut endpoint = endpoint.until(Arc::clone(&interrupted));
@@ -214,9 +214,9 @@ fn a_waiting_tick_continues_when_the_run_ends() {
     silent.join().unwrap().end(lost());
 }
 
-/// A run ends when its workstation controller, once connected, is no longer connected.
+/// A run ends when its workstation controller is no longer connected.
 #[test]
-fn a_neighbour_that_connects_and_disconnects_between_two_ticks_was_connected() {
+fn connection_between_two_ticks_is_recorded() {
     let mut endpoint = Endpoint::new(Role::Workstation, ClockKind::Fast).unwrap();
     assert!(!endpoint.exchange(1).was_connected);
     TestSession::begin(&endpoint.handle()).end(lost());
@@ -224,7 +224,7 @@ fn a_neighbour_that_connects_and_disconnects_between_two_ticks_was_connected() {
 }
 
 #[test]
-fn a_stopped_endpoint_has_no_neighbour_and_waits_for_none() {
+fn stopped_endpoint_has_no_neighbour_and_does_not_wait() {
     for clock in [ClockKind::Fast, ClockKind::Real] {
         let (mut endpoint, mut session) = connected(Role::DataSystem, clock);
         let stop = endpoint.stop_handle();
