@@ -2,7 +2,7 @@
 
 use couplers::{InWords, OutWords};
 use interfaces::{
-    device::{Connection, DeviceInputs, DeviceOutputs, FieldHealth},
+    device::{DeviceInputs, DeviceOutputs, FieldHealth, GroupHealth},
     point::{Group, Input},
 };
 
@@ -24,17 +24,17 @@ pub struct Seen<'w> {
 
 impl Seen<'_> {
     /// The connection of a point that is stale after so many ms.
-    fn connection(&self, stale_ms: u16) -> Connection {
+    fn connection(&self, stale_ms: u16) -> GroupHealth {
         match self.age_ms {
             Some(age) if age <= u32::from(stale_ms) => {
                 if self.is_tripped {
-                    Connection::Tripped
+                    GroupHealth::Tripped
                 } else {
-                    Connection::Fresh
+                    GroupHealth::Fresh
                 }
             }
-            Some(age) if age <= LOST_MS => Connection::Stale,
-            Some(_) | None => Connection::Lost,
+            Some(age) if age <= LOST_MS => GroupHealth::Stale,
+            Some(_) | None => GroupHealth::Lost,
         }
     }
 }
@@ -63,7 +63,7 @@ impl Mapping {
         if health.resolvers.is_old() {
             inputs.resolvers.valid = false;
         }
-        if health.any != Connection::Fresh {
+        if health.any != GroupHealth::Fresh {
             inputs.joystick.velocity = 0;
         }
         inputs.field = health;
@@ -116,7 +116,7 @@ impl Mapping {
 impl InPoint {
     fn apply(&self, devices: &[Seen<'_>], inputs: &mut DeviceInputs, health: &mut FieldHealth) {
         let (connection, raw) = match self.from {
-            Origin::Fixed(value) => (Connection::Fresh, value),
+            Origin::Fixed(value) => (GroupHealth::Fresh, value),
             Origin::Slot(slot) => {
                 let Some(seen) = devices.get(slot.device) else { return };
                 (seen.connection(self.stale_ms), slot.get(&seen.words.words))
@@ -145,7 +145,7 @@ impl InPoint {
     }
 
     /// A group is as old as the oldest of its points.
-    fn note(&self, connection: Connection, health: &mut FieldHealth) {
+    fn note(&self, connection: GroupHealth, health: &mut FieldHealth) {
         health.any = health.any.max(connection);
         let group = match self.group {
             Group::Grip => &mut health.grip,

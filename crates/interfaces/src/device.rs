@@ -247,9 +247,9 @@ pub struct MotorCommand {
     pub steps: i32,
 }
 
-/// Connection of the controller with devices behind field I/O, from best to worst (extension).
+/// Health of a group of devices behind field I/O, from best to worst (extension).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Plain)]
-pub enum Connection {
+pub enum GroupHealth {
     /// Current words, or no field I/O.
     Fresh,
     /// Current words; the outputs are safe until an operator releases them.
@@ -260,7 +260,7 @@ pub enum Connection {
     Lost,
 }
 
-impl Connection {
+impl GroupHealth {
     /// True if the words are older than permitted.
     #[must_use]
     pub const fn is_old(self) -> bool {
@@ -272,23 +272,23 @@ impl Connection {
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct FieldHealth {
     /// Parts gripper, and the potentiometer of all grippers.
-    pub grip: Connection,
+    pub grip: GroupHealth,
     /// Quick change.
-    pub quick_change: Connection,
+    pub quick_change: GroupHealth,
     /// Holsters.
-    pub holsters: Connection,
+    pub holsters: GroupHealth,
     /// Force sensor.
-    pub force: Connection,
+    pub force: GroupHealth,
     /// Hand of the pedestal.
-    pub hand: Connection,
+    pub hand: GroupHealth,
     /// Rotary table.
-    pub table: Connection,
+    pub table: GroupHealth,
     /// Joystick box.
-    pub joystick: Connection,
+    pub joystick: GroupHealth,
     /// Resolvers.
-    pub resolvers: Connection,
+    pub resolvers: GroupHealth,
     /// The worst of all devices.
-    pub any: Connection,
+    pub any: GroupHealth,
 }
 
 /// All words that the controller reads from its devices in a tick.

@@ -1,7 +1,7 @@
 //! Couplers in simulated time, with sensors and valves of the test instead of a cell.
 
 use diagnostics::Source;
-use interfaces::device::{Connection, KNOB_FULL, valve};
+use interfaces::device::{GroupHealth, KNOB_FULL, valve};
 
 use super::*;
 
@@ -61,7 +61,7 @@ fn words_pass_the_couplers_without_delay() {
         let (valves, inputs) = bench.step(&outputs, "");
         assert_eq!((valves.grip, valves.tool_grip), (outputs.grip, outputs.tool_grip), "tick {tick}");
         assert_eq!(inputs.grip.potentiometer, sensors(tick).grip.potentiometer, "tick {tick}");
-        assert_eq!(inputs.field.any, Connection::Fresh);
+        assert_eq!(inputs.field.any, GroupHealth::Fresh);
     }
     assert!(bench.codes().is_empty());
     assert_eq!(bench.field.status(), "arm 8 ms, fixture 8 ms, pedestal 8 ms");
@@ -73,9 +73,9 @@ fn short_cut_keeps_the_inputs_and_goes_unnoticed() {
     bench.steps(10, &closing(), "");
     let (valves, inputs) = bench.step(&closing(), "arm");
     assert_eq!(valves.grip, closing().grip, "the watchdog has not fired");
-    assert_eq!((inputs.grip.potentiometer, inputs.field.any), (1010, Connection::Fresh));
+    assert_eq!((inputs.grip.potentiometer, inputs.field.any), (1010, GroupHealth::Fresh));
     let (_, inputs) = bench.steps(3, &closing(), "");
-    assert_eq!((inputs.grip.potentiometer, inputs.field.any), (1014, Connection::Fresh));
+    assert_eq!((inputs.grip.potentiometer, inputs.field.any), (1014, GroupHealth::Fresh));
     assert!(bench.codes().is_empty());
 }
 
@@ -85,10 +85,10 @@ fn cut_of_a_fifth_of_a_second_is_stale_and_comes_back() {
     bench.steps(10, &closing(), "");
     let (valves, inputs) = bench.steps(5, &closing(), "arm");
     assert_eq!(valves.grip, closing().grip, "the watchdog has not fired");
-    assert_eq!((inputs.field.grip, inputs.field.hand), (Connection::Stale, Connection::Fresh));
+    assert_eq!((inputs.field.grip, inputs.field.hand), (GroupHealth::Stale, GroupHealth::Fresh));
     assert_eq!((inputs.grip.potentiometer, inputs.joystick.velocity), (1010, 0), "held, and the knob at 0");
     let (_, inputs) = bench.steps(10, &closing(), "");
-    assert_eq!((inputs.field.any, inputs.grip.potentiometer), (Connection::Fresh, 1025));
+    assert_eq!((inputs.field.any, inputs.grip.potentiometer), (GroupHealth::Fresh, 1025));
     assert_eq!(bench.codes(), ["io.stale", "io.back"]);
 }
 
@@ -98,16 +98,16 @@ fn long_cut_makes_the_outputs_safe_until_a_release() {
     bench.steps(10, &closing(), "");
     let (valves, inputs) = bench.steps(50, &closing(), "arm");
     assert_eq!((valves.grip.bits, valves.tool_grip.close), (0, false), "the watchdog has fired");
-    assert_eq!(inputs.field.grip, Connection::Lost);
+    assert_eq!(inputs.field.grip, GroupHealth::Lost);
     let (valves, inputs) = bench.steps(25, &closing(), "");
-    assert_eq!((valves.grip.bits, inputs.field.grip), (0, Connection::Tripped));
+    assert_eq!((valves.grip.bits, inputs.field.grip), (0, GroupHealth::Tripped));
     assert!(bench.field.release("arm") && !bench.field.release("leg"));
     let (valves, _) = bench.steps(2, &closing(), "");
     assert_eq!(valves.grip.bits, 0, "not while an output is asked for that may not be on at rest");
     let at_rest = DeviceOutputs { grip: Default::default(), ..closing() };
     assert!(bench.field.release("arm"));
     let (valves, inputs) = bench.steps(2, &at_rest, "");
-    assert!(valves.tool_grip.close && inputs.field.any == Connection::Fresh);
+    assert!(valves.tool_grip.close && inputs.field.any == GroupHealth::Fresh);
     assert_eq!(bench.codes(), ["io.stale", "io.tripped", "io.refused", "io.released"]);
 }
 

@@ -109,16 +109,16 @@ fn old_words_keep_their_values_and_mark_their_group() {
     let health = late.field;
     assert_eq!(
         (health.grip, health.force, health.any),
-        (Connection::Stale, Connection::Stale, Connection::Stale)
+        (GroupHealth::Stale, GroupHealth::Stale, GroupHealth::Stale)
     );
-    assert_eq!((health.holsters, health.hand), (Connection::Fresh, Connection::Fresh));
+    assert_eq!((health.holsters, health.hand), (GroupHealth::Fresh, GroupHealth::Fresh));
     let force = carried(&mapping, &inputs, [81, 7, 7]).field;
     assert_eq!(
         (force.force, force.grip, force.any),
-        (Connection::Stale, Connection::Fresh, Connection::Stale)
+        (GroupHealth::Stale, GroupHealth::Fresh, GroupHealth::Stale)
     );
     let fixture = carried(&mapping, &inputs, [7, 1001, 7]);
-    assert_eq!((fixture.field.holsters, fixture.field.grip), (Connection::Lost, Connection::Fresh));
+    assert_eq!((fixture.field.holsters, fixture.field.grip), (GroupHealth::Lost, GroupHealth::Fresh));
     assert_eq!(fixture.joystick.velocity, 0, "the robot ramps to rest whichever device is old");
 }
 
@@ -131,8 +131,8 @@ fn tripped_device_is_reported_while_its_words_are_new() {
     devices[1].age_ms = None;
     let mut inputs = DeviceInputs::default();
     mapping.apply(&devices, &mut inputs);
-    assert_eq!((inputs.field.grip, inputs.field.holsters), (Connection::Tripped, Connection::Lost));
-    assert_eq!(inputs.field.any, Connection::Lost);
+    assert_eq!((inputs.field.grip, inputs.field.holsters), (GroupHealth::Tripped, GroupHealth::Lost));
+    assert_eq!(inputs.field.any, GroupHealth::Lost);
 }
 
 #[test]

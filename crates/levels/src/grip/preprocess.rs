@@ -6,7 +6,7 @@
 
 use interfaces::{
     GripOutputs,
-    device::{Connection, GripSensors},
+    device::{GripSensors, GroupHealth},
     grip::{Felt, GripCommand},
     process::Inputs,
 };
@@ -205,11 +205,11 @@ impl State {
     }
 
     /// Whether the sensors agree with the calibration.
-    fn sensors(&self, connection: Connection, measured: &Measured) -> Sensors {
+    fn sensors(&self, connection: GroupHealth, measured: &Measured) -> Sensors {
         match (&self.calibration, &self.sensed) {
-            _ if connection == Connection::Stale => Sensors::Stale,
-            _ if connection == Connection::Lost => Sensors::Lost,
-            _ if connection == Connection::Tripped => Sensors::Tripped,
+            _ if connection == GroupHealth::Stale => Sensors::Stale,
+            _ if connection == GroupHealth::Lost => Sensors::Lost,
+            _ if connection == GroupHealth::Tripped => Sensors::Tripped,
             (Some(_), Some(sensed)) if presence::is_plausible(&sensed.last, measured) => Sensors::Plausible,
             _ => Sensors::Implausible,
         }

@@ -2,7 +2,7 @@
 
 use interfaces::{
     CommonMemory, Reason,
-    device::{Connection, DeviceInputs, GripSensors},
+    device::{DeviceInputs, GripSensors, GroupHealth},
     grip::GripCommand,
 };
 
@@ -25,7 +25,7 @@ pub trait Servoed {
     /// The sensor words, and whether their gripper is attached.
     fn sensors(devices: &DeviceInputs) -> (Attachment, GripSensors);
     /// The connection with the devices of the gripper.
-    fn connection(devices: &DeviceInputs) -> Connection;
+    fn connection(devices: &DeviceInputs) -> GroupHealth;
 }
 
 /// The parts gripper, end effector 1, on the quick change (III.3.6).
@@ -47,7 +47,7 @@ impl Servoed for PartsGripper {
         (if attached { Attachment::Attached } else { Attachment::Detached }, devices.grip)
     }
 
-    fn connection(devices: &DeviceInputs) -> Connection {
+    fn connection(devices: &DeviceInputs) -> GroupHealth {
         devices.field.grip
     }
 }

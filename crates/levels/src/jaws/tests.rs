@@ -3,7 +3,7 @@
 use geometry::units::hundredths;
 use interfaces::{
     CommonMemory, ExternalInputs, JawsOutputs, Reason,
-    device::{Connection, JawValves},
+    device::{GroupHealth, JawValves},
     grip::Felt,
     jaws::{JawsCommand, JawsReport, JawsVerb},
     process::Process,
@@ -315,14 +315,14 @@ fn late_device_only_delays_a_command() {
     bench.world.object = Some(2.0);
     bench.send(order(JawsVerb::Grasp, 2.0));
     bench.wait(3);
-    bench.external.devices.field.grip = Connection::Stale;
+    bench.external.devices.field.grip = GroupHealth::Stale;
     let outputs = bench.wait(LIMIT_TICKS as u32 + 10);
     assert_eq!((outputs.status.report, outputs.status.felt), (JawsReport::Executing, Felt::NotKnown));
     assert!(outputs.valves.close, "the air stays as it is");
-    bench.external.devices.field.grip = Connection::Fresh;
+    bench.external.devices.field.grip = GroupHealth::Fresh;
     assert_eq!(bench.finish(), CLOSED);
     for (connection, reason) in
-        [(Connection::Lost, Reason::DeviceSilent), (Connection::Tripped, Reason::DeviceTripped)]
+        [(GroupHealth::Lost, Reason::DeviceSilent), (GroupHealth::Tripped, Reason::DeviceTripped)]
     {
         bench.external.devices.field.grip = connection;
         assert_eq!(bench.execute(order(JawsVerb::Release, 3.0)), (JawsReport::Stuck, reason));

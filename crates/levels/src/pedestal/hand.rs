@@ -2,7 +2,7 @@
 
 use interfaces::{
     CommonMemory, Reason,
-    device::{Connection, DeviceInputs, GripSensors},
+    device::{DeviceInputs, GripSensors, GroupHealth},
     grip::GripCommand,
 };
 
@@ -41,7 +41,7 @@ impl Servoed for PedestalHand {
         (Attachment::Attached, sensors)
     }
 
-    fn connection(devices: &DeviceInputs) -> Connection {
+    fn connection(devices: &DeviceInputs) -> GroupHealth {
         devices.field.hand
     }
 }

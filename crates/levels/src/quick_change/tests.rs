@@ -2,7 +2,7 @@
 
 use interfaces::{
     CommonMemory, ExternalInputs, QuickChangeOutputs, Reason,
-    device::{Connection, QuickChangeSensors, QuickChangeValves},
+    device::{GroupHealth, QuickChangeSensors, QuickChangeValves},
     quick_change::{QuickChangeCommand, QuickChangeReport, QuickChangeStatus, QuickChangeVerb, RingPosition},
 };
 use proptest::prelude::*;
@@ -126,15 +126,15 @@ fn ring_turns_only_while_its_device_answers() {
         let half = bench.world.place;
         // The readings do not change.
         bench.world.claim = Some(bench.world.sensors());
-        bench.external.devices.field.quick_change = Connection::Stale;
+        bench.external.devices.field.quick_change = GroupHealth::Stale;
         let status = bench.wait(40).status;
         assert_eq!((status.report, bench.valves()), (QuickChangeReport::Executing, SHUT));
         assert!((bench.world.place - half).abs() < 0.2, "the ring stays half turned");
-        bench.external.devices.field.quick_change = Connection::Fresh;
+        bench.external.devices.field.quick_change = GroupHealth::Fresh;
         bench.world.claim = None;
         assert_eq!(bench.finish(), done, "the time of the ring has not advanced");
         for (connection, reason) in
-            [(Connection::Lost, Reason::DeviceSilent), (Connection::Tripped, Reason::DeviceTripped)]
+            [(GroupHealth::Lost, Reason::DeviceSilent), (GroupHealth::Tripped, Reason::DeviceTripped)]
         {
             let mut bench = Bench::at(place);
             bench.step();

@@ -5,7 +5,7 @@ mod ends;
 
 use interfaces::{
     Reason,
-    device::{Connection, valve},
+    device::{GroupHealth, valve},
     grip::{Felt, GripReport, GripVerb},
 };
 use proptest::prelude::*;
@@ -696,14 +696,14 @@ fn stale_readings_turn_the_valves_off() {
     let calibration = bench.memory.grip.calibration;
     bench.command(GripVerb::Position, 4.0, 0);
     bench.wait(5);
-    bench.external.devices.field.grip = Connection::Stale;
+    bench.external.devices.field.grip = GroupHealth::Stale;
     let outputs = bench.wait(20);
     assert_eq!((outputs.valves.bits, outputs.status.report), (0, GripReport::Executing));
     assert_eq!((outputs.status.felt, outputs.calibration), (Felt::NotKnown, calibration));
-    bench.external.devices.field.grip = Connection::Fresh;
+    bench.external.devices.field.grip = GroupHealth::Fresh;
     assert_eq!(bench.finish().status.report, GripReport::Done);
     for (connection, expected) in
-        [(Connection::Lost, Reason::DeviceSilent), (Connection::Tripped, Reason::DeviceTripped)]
+        [(GroupHealth::Lost, Reason::DeviceSilent), (GroupHealth::Tripped, Reason::DeviceTripped)]
     {
         bench.external.devices.field.grip = connection;
         bench.command(GripVerb::CloseGrip, 1.0, 10);

@@ -12,7 +12,7 @@ pub mod valves;
 pub use crate::variables::{Addressee, Attachment};
 use interfaces::{
     Reason,
-    device::Connection,
+    device::GroupHealth,
     grip::Felt,
     jaws::{JawsReport, JawsVerb},
 };
@@ -87,7 +87,7 @@ pub struct Situation {
     /// The position of the fingers relative to the commanded size.
     pub size: Size,
     /// The connection with the gripper.
-    pub connection: Connection,
+    pub connection: GroupHealth,
 }
 
 /// The results of preprocess in a tick.

@@ -16,7 +16,7 @@ pub mod record_pose;
 pub mod robot_init;
 
 use geometry::frame::Frame;
-use interfaces::{Reason, device::Connection, prim::PrimVerb, t3i::ReportCheck};
+use interfaces::{Reason, device::GroupHealth, prim::PrimVerb, t3i::ReportCheck};
 use rcs_core::{Actions, Plain, Variables, commands, handshake::Arrival};
 
 use super::goals;
@@ -236,7 +236,7 @@ pub struct Devices {
     /// Whether the command needs a commanded position.
     pub position: Position,
     /// The connection with the worst of all devices.
-    pub connection: Connection,
+    pub connection: GroupHealth,
 }
 
 /// The state variables of a tick, for the tables of the commands.

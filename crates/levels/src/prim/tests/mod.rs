@@ -15,7 +15,7 @@ use geometry::{
 };
 use interfaces::{
     ChangingPose, CommonMemory, ExternalInputs, PrimOutputs, Reason,
-    device::{Connection, ForceSensor},
+    device::{ForceSensor, GroupHealth},
     pose_range,
     prim::{PrimCommand, PrimReport, PrimStatus, PrimVerb},
     process::Process,
@@ -567,12 +567,12 @@ fn restored_prim_continues_identically() {
 #[test]
 fn lost_or_tripped_device_stops_the_robot() {
     for (connection, reason) in
-        [(Connection::Lost, Reason::DeviceSilent), (Connection::Tripped, Reason::DeviceTripped)]
+        [(GroupHealth::Lost, Reason::DeviceSilent), (GroupHealth::Tripped, Reason::DeviceTripped)]
     {
         let mut rig = Rig::initialized();
         rig.command(PrimVerb::GotoPt, 3);
         rig.wait(30);
-        rig.external.devices.field.any = Connection::Stale;
+        rig.external.devices.field.any = GroupHealth::Stale;
         rig.external.devices.joystick.velocity = 0;
         rig.wait(60);
         assert_eq!(rig.report(), PrimReport::Executing, "Prim waits for a late device");
@@ -581,7 +581,7 @@ fn lost_or_tripped_device_stops_the_robot() {
         rig.wait(60);
         assert!(rig.at_rest());
         assert_eq!(rig.run(PrimVerb::Pause, 0), PrimReport::Done);
-        rig.external.devices.field.any = Connection::Fresh;
+        rig.external.devices.field.any = GroupHealth::Fresh;
         rig.external.devices.joystick.velocity = 1000;
         assert_eq!(rig.run(PrimVerb::GotoPt, 3), PrimReport::Done);
         rig.check_path(&start());

@@ -8,7 +8,7 @@ pub mod qc_unlock;
 pub use crate::variables::Clock;
 use interfaces::{
     Reason,
-    device::Connection,
+    device::GroupHealth,
     quick_change::{QuickChangeReport, QuickChangeVerb, RingPosition},
 };
 use rcs_core::{Actions, Plain, Variables, commands, handshake::Arrival};
@@ -57,7 +57,7 @@ pub struct Situation {
     /// Time of the command.
     pub clock: Clock,
     /// The connection with the quick change.
-    pub connection: Connection,
+    pub connection: GroupHealth,
 }
 
 /// The results of preprocess in a tick.
