@@ -30,15 +30,15 @@ pub enum Evidence {
     Unsensed,
     /// The robot is not at the goal.
     Elsewhere,
-    /// The robot still moves.
+    /// The robot is still moving.
     Moving,
     /// The object is not held.
     NotHeld,
     /// The object is held in another grip.
     OtherGrip,
-    /// Something is still held.
+    /// An object is still held.
     StillHeld,
-    /// Something unknown is held.
+    /// An unidentified object is held.
     Unknown,
     /// The sensors do not show whether something is held.
     NotKnown,
@@ -75,7 +75,7 @@ pub enum Evidence {
 pub enum Reading {
     /// They may be older than the end of the command.
     Awaited,
-    /// They are newer.
+    /// They are newer than the end of the command.
     Newest,
 }
 
@@ -84,7 +84,7 @@ pub enum Reading {
 pub struct Claim {
     /// The goal of the command, compared with the sensors.
     pub evidence: Evidence,
-    /// How new the readings are.
+    /// The age of the readings.
     pub reading: Reading,
 }
 

@@ -32,13 +32,13 @@ use crate::{halt::Halt, rows::Rows};
 /// Progress of the current command.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Outcome {
-    /// Nothing was commanded yet.
+    /// No command has arrived yet.
     Idle,
-    /// Under way.
+    /// The command is in execution.
     Executing,
-    /// Finished.
+    /// The command is done.
     Done,
-    /// Failed.
+    /// The command has failed.
     Error,
     /// Given up because the operator took the robot.
     Joystick,
@@ -61,13 +61,13 @@ impl Outcome {
 /// Use of the tables of the current command.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain, Actions)]
 pub enum Course {
-    /// Leave everything as it is.
+    /// Do not consult the tables.
     Rest,
     /// Report that the command was not executed, because the process was restarted.
     Refuse,
     /// Consult the tables, from the first step.
     Begin,
-    /// Consult the tables.
+    /// Consult the tables from the current step.
     Continue,
 }
 
@@ -100,7 +100,7 @@ decision_table! {
 pub enum Asked {
     /// It is not: the current command continues.
     Before,
-    /// Yes.
+    /// It is new.
     Now,
 }
 
@@ -124,9 +124,7 @@ pub enum Work {
 /// A row that has given an order to a process below.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub struct LastOrder {
-    /// Its table.
     pub table: u8,
-    /// Its number.
     pub row: u8,
     /// The state variables of its table in that tick, as one number.
     pub variables: u64,
@@ -145,15 +143,11 @@ pub trait Ending: Sized {
 /// The current command of a process and its progress.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct Execution {
-    /// Echo and adoption.
     pub receiver: Receiver,
-    /// How far it has come.
     pub outcome: Outcome,
-    /// Why it failed.
     pub reason: Reason,
     /// The part of its goal without a sensor, when it ended.
     pub unconfirmed: Unconfirmed,
-    /// The rows for the header.
     pub rows: Rows,
     /// The command is new and neither accepted nor refused yet.
     pub waiting: bool,

@@ -37,7 +37,7 @@ pub enum Intake {
 /// Whether the new command itself stops the processes below.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Kind {
-    /// No.
+    /// It does not stop them.
     Other,
     /// Its own table sends a pause down and waits for it.
     Pause,
@@ -76,7 +76,7 @@ pub enum Below {
     AtRest,
     /// They were commanded to pause and are coming to rest.
     Pausing,
-    /// Something else.
+    /// They execute another command.
     UnderWay,
 }
 
@@ -104,11 +104,11 @@ impl Below {
 /// The state variables of [`HALT`].
 #[derive(Clone, Copy, Debug, Variables)]
 pub struct Replaced {
-    /// The command.
+    /// The state of the command.
     pub intake: Intake,
     /// Whether the command itself stops the processes below.
     pub kind: Kind,
-    /// The process above.
+    /// The process that commands this one.
     pub above: Above,
     /// The joystick box.
     pub joystick: BoxState,
@@ -168,7 +168,7 @@ pub enum Order {
 /// Progress of the command since its last order, apart from the state variables: points of a route, for example.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Advance {
-    /// Nothing.
+    /// It has not advanced.
     None,
     /// It has advanced.
     Made,
@@ -177,7 +177,7 @@ pub enum Advance {
 /// The state variables of [`EFFECT`].
 #[derive(Clone, Copy, Debug, Variables)]
 pub struct Fired {
-    /// What it orders.
+    /// The order that it gives.
     pub order: Order,
     /// Progress of the command since its last order.
     pub advance: Advance,

@@ -6,11 +6,11 @@ use rcs_core::{Plain, name::Name16};
 /// Whether the object of the command is held (V.3.1).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Held {
-    /// The gripper holds nothing.
+    /// The gripper holds no object.
     Nothing,
-    /// It holds the object of the command.
+    /// The gripper holds the object of the command.
     Right,
-    /// It holds another object.
+    /// The gripper holds another object.
     Other,
     /// The gripper holds an unidentified object.
     Something,

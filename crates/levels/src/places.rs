@@ -51,7 +51,7 @@ pub fn is_in_mbd(point: LocptId, data: &TaskData<'_>) -> bool {
 /// The first entry missing in the task data: a state variable of the tables ACCEPT.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Missing {
-    /// Nothing: all was found.
+    /// No entry is missing.
     Nothing,
     /// The location is missing, or only an owner of others.
     Location,
@@ -61,13 +61,13 @@ pub enum Missing {
     ObjectName,
     /// An array of the object at the location.
     Array,
-    /// The sector.
+    /// The sector of the array.
     Sector,
     /// The grip of the object.
     Grip,
     /// The grip movetable of object, grip and location.
     GripMovetable,
-    /// The holster of a gripper.
+    /// The holster of the gripper.
     Holster,
 }
 

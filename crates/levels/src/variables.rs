@@ -7,7 +7,7 @@ use rcs_core::Plain;
 pub enum Attachment {
     /// It is attached and the quick change is locked.
     Attached,
-    /// It is not.
+    /// It is not attached, or the quick change is not locked.
     Detached,
 }
 
@@ -16,15 +16,15 @@ pub enum Attachment {
 pub enum Addressee {
     /// That of this process, or the command names none.
     This,
-    /// Another one.
+    /// Another gripper.
     Other,
 }
 
 /// The time of a command, or of a motion for which it waits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Clock {
-    /// Within its limit.
+    /// The time limit is not over.
     Running,
-    /// Over its limit.
+    /// The time limit is over.
     Expired,
 }
