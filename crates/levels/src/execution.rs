@@ -124,7 +124,9 @@ pub enum Work {
 /// A row that has given an order to a process below.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub struct LastOrder {
+    /// Its table.
     pub table: u8,
+    /// Its number.
     pub row: u8,
     /// The state variables of its table in that tick, as one number.
     pub variables: u64,
@@ -143,11 +145,15 @@ pub trait Ending: Sized {
 /// The current command of a process and its progress.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct Execution {
+    /// Echo and adoption.
     pub receiver: Receiver,
+    /// How far it has come.
     pub outcome: Outcome,
+    /// Why it failed.
     pub reason: Reason,
     /// The part of its goal without a sensor, when it ended.
     pub unconfirmed: Unconfirmed,
+    /// The rows for the header.
     pub rows: Rows,
     /// The command is new and neither accepted nor refused yet.
     pub waiting: bool,

@@ -47,6 +47,7 @@ use self::{
 /// The commanded motion of the tool frame.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct PrimMotion {
+    /// The commanded frame.
     pub at: FrameData,
     /// Goal of the last order; the commanded frame after a halt.
     pub goal: FrameData,
