@@ -256,7 +256,7 @@ fn five_boards_give_the_bits_of_one() {
 }
 
 #[test]
-fn blocks_that_are_loaded_in_the_middle_reach_every_board() {
+fn loaded_blocks_reach_every_board() {
     const HIGH: &str = "BLOCK# 990 OFFSET 21000
    0 -5022 1136    0 -7145 -983
    3000 -7145 -983  -pose- ... HIGH-POS
@@ -345,7 +345,7 @@ fn boards_are_killed_many_times_in_a_row() {
 }
 
 #[test]
-fn a_board_that_pauses_is_waited_for() {
+fn paused_board_is_awaited() {
     const TICKS: &[&str] = &["--ticks", "100"];
     let bench = Bench::new("pauses");
     // In fast clock the run ends after the last tick; in real time the robot ramps down after it.
@@ -378,7 +378,7 @@ fn a_board_that_pauses_is_waited_for() {
 }
 
 #[test]
-fn a_board_that_hangs_is_lost() {
+fn hung_board_is_lost() {
     let bench = Bench::new("hangs");
     let moves = shows(|memory| memory.emove.status.report == StatusReport::Executing);
     let ended = strike(&bench, (2, Signal::STOP), moves, |_| true);
@@ -476,7 +476,7 @@ fn boards_are_started_by_hand_and_strangers_are_refused() {
 }
 
 #[test]
-fn a_board_that_was_started_by_hand_can_be_replaced_by_hand() {
+fn manually_started_board_is_replaced_manually() {
     let bench = Bench::new("replace");
     let mut running = bench.start("linkbar", "manual", &[]);
     let data = root().join("data");

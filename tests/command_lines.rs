@@ -72,7 +72,7 @@ fn a_program_runs_in_an_empty_directory() {
 }
 
 #[test]
-fn a_directory_that_is_named_must_be_there() {
+fn named_directory_must_exist() {
     let scratch = Scratch::new("named");
     let run = in_directory(rcs_run(), &scratch.file("."), &["--data", "elsewhere"]);
     assert_eq!(run.status.code(), Some(2));
@@ -166,7 +166,7 @@ fn a_copy_of_the_data_can_be_changed() {
 }
 
 #[test]
-fn each_program_says_its_version() {
+fn each_program_prints_its_version() {
     for program in [rcs_run(), rcs_log(), rcs_console(), rcs_cell(), rcs_neighbour()] {
         let said = text(&in_directory(program, root(), &["--version"]).stdout);
         assert!(said.contains(env!("CARGO_PKG_VERSION")), "{said}");

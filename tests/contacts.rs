@@ -30,7 +30,7 @@ fn met<'a>(outcome: &'a Outcome, mover: &str, obstacle: &str) -> &'a Value {
 }
 
 #[test]
-fn a_via_point_that_is_too_low_leads_into_the_tray() {
+fn low_via_point_leads_into_the_tray() {
     let outcome = run_into("linkbar", "low-via", Scratch::with_a_low_via_point);
     let first = &contacts(&outcome)[0]["obstacle"];
     assert!(first.as_str().is_some_and(|name| name.starts_with("pot_")), "{:?}", contacts(&outcome));
@@ -121,7 +121,7 @@ const NEEDS: [Need; 8] = [
 ];
 
 #[test]
-fn no_contact_is_permitted_that_no_job_needs() {
+fn every_permitted_contact_is_needed_by_a_job() {
     let cell = fs::read_to_string(root().join("data/cell.toml")).expect("the cell is described");
     let entry = |at: usize| {
         let end = cell[at..].find("\nwhy = ").map(|why| at + why + 1).expect("an entry has a reason");

@@ -129,7 +129,7 @@ fn an_interrupted_insertion_into_an_occupied_drum_never_finishes() {
 }
 
 #[test]
-fn a_tool_that_is_put_into_the_drum_during_an_interruption_is_noticed() {
+fn tool_added_to_the_drum_during_an_interruption_is_detected() {
     let text = format!(
         "** tray UNIT_2 1 ENDMILL-1 0 0 0\n\
          == MOVE ENDMILL-1 +1 UNIT_2 1 +1 TOOL-SAFE 0 -- 0\n\
@@ -143,7 +143,7 @@ fn a_tool_that_is_put_into_the_drum_during_an_interruption_is_noticed() {
 }
 
 #[test]
-fn an_interrupted_insertion_into_a_free_drum_is_finished_when_it_is_sent_again() {
+fn repeated_command_finishes_an_interrupted_insertion_into_a_free_drum() {
     for ticks in [3, 60, 190, 300, 500, 700] {
         let text = format!(
             "** tray UNIT_2 1 ENDMILL-1 0 0 0\n\

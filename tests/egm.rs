@@ -49,7 +49,7 @@ fn linkbar_and_clevis_are_finished_and_the_speeds_take_the_lag_away() {
 }
 
 #[test]
-fn a_bad_network_costs_accuracy_and_no_job() {
+fn bad_network_reduces_accuracy_and_fails_no_job() {
     for network in ["loss=20", "jitter=20", "loss=10,jitter=20,double=10,reorder=10,delay=5"] {
         let robot = format!("egm:sim,{network}");
         let (rms, most) = error_mm(&finished(&["linkbar", "--robot", &robot, "--log", "none"]));
@@ -178,7 +178,7 @@ fn a_robot_that_has_ended_egm_is_lost() {
 }
 
 #[test]
-fn the_same_seed_is_the_same_run_and_its_log_replays_to_the_bit() {
+fn equal_seeds_give_equal_runs_and_the_log_replays() {
     let folder = tempfile::tempdir().expect("a folder");
     let log = folder.path().join("egm.mcap");
     let log = log.to_str().expect("a path in UTF-8");
@@ -217,7 +217,7 @@ fn drive_peer() -> (i32, Value, Value) {
 }
 
 #[test]
-fn a_robot_written_from_the_schema_alone_is_driven() {
+fn robot_written_from_the_schema_alone_executes_a_job() {
     let python = Command::new("python3").arg("--version").output();
     if !python.is_ok_and(|output| output.status.success()) {
         eprintln!("left out: python3 is not there");

@@ -148,7 +148,7 @@ endings! {
     a_drifting_force_sensor: "tool-change", "force-drift" => Well;
     a_noisy_cell: "linkbar", "noisy-cell" => Well;
     lost_hydraulics: "linkbar", "hydraulics-lost" => Failing(3, "power", "T3", "the hydraulics have lost their pressure");
-    a_pulled_cable: "linkbar", "cable-pulled" => Failing(3, "robot-controller", "T3", "the T3 controller shows WD1");
+    pulled_cable_is_explained: "linkbar", "cable-pulled" => Failing(3, "robot-controller", "T3", "the T3 controller shows WD1");
     an_absent_host: "linkbar", "host-absent" => Failing(3, "robot-controller", "T3", "the T3 controller shows WD1");
 }
 
@@ -194,7 +194,7 @@ fn linkbar_with(fault: &str, ticks: [u32; 4]) -> Outcome {
 }
 
 #[test]
-fn a_linkbar_survives_an_answer_that_is_lost_damaged_or_late_and_a_silence() {
+fn linkbar_survives_lost_damaged_and_late_answers_and_a_silence() {
     let undisturbed = run("linkbar", 1, "line-undisturbed", |_| {});
     let end = |outcome: &Outcome| {
         let parts = outcome.result["parts"].as_array().cloned().unwrap_or_default();
@@ -276,7 +276,7 @@ fn with_reflectance(reflectance: f64) -> Outcome {
 }
 
 #[test]
-fn a_dark_blank_and_a_shiny_one_are_found_with_another_exposure() {
+fn dark_and_shiny_blanks_are_found_with_another_exposure() {
     for reflectance in [0.08, 0.95] {
         let outcome = with_reflectance(reflectance);
         assert_eq!(outcome.status, Some(0), "{reflectance}: {}", outcome.last_words);

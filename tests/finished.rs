@@ -24,7 +24,7 @@ fn job(name: &str, text: &str) -> Outcome {
 }
 
 #[test]
-fn a_part_in_another_sector_than_the_command_said_has_not_arrived() {
+fn part_in_another_sector_has_not_arrived() {
     // During the run the sectors of the tray are taught again, 5.2 in off their places.
     let taught = fs::read_to_string(whole_system_tests::root().join("data/movetables.blk"))
         .expect("the movetables can be read");
@@ -49,7 +49,7 @@ fn a_part_in_another_sector_than_the_command_said_has_not_arrived() {
 }
 
 #[test]
-fn a_part_that_slid_in_the_fingers_lies_away_from_its_place() {
+fn part_that_slipped_in_the_fingers_is_off_its_place() {
     // A grip force of two pounds yields when the part rubs.
     let outcome = run("linkbar", 1, "finished-force", |scratch| {
         let weak = "-obj-  LINKBAR1         2     0300   0060   2 ";
@@ -68,7 +68,7 @@ fn tolerances_are_in_the_cell_description() {
 }
 
 #[test]
-fn a_part_that_was_pushed_out_of_the_fingers_is_named_with_where_it_lies() {
+fn part_pushed_out_of_the_fingers_is_named_with_its_place() {
     // The jaws push it out of fingers that close with little force. Its final place depends on the seed.
     let job = "** tray UNIT_1 4 LINKBAR1_BH\n\
                ** vise partial PFIXTURE\n\
@@ -121,7 +121,7 @@ fn a_clevis_is_not_machined_twice_on_the_same_side() {
 }
 
 #[test]
-fn a_command_that_has_to_fail_is_marked() {
+fn command_expected_to_fail_is_marked() {
     let failing = "** after 60 estop terminals\n== MOVE -- +0 -- 0 +0 SAFE 0 -- 0{mark}\n\
                    ** wait 100\n** release terminals\n** panel fault-reset\n** panel hydraulics enable\n\
                    ** panel manual on\n** panel align\n** panel auto\n** panel cycle-start\n** wait 25\n\

@@ -112,7 +112,7 @@ fn a_run_with_a_private_and_emptied_tmp_is_found() {
 
 /// The first processes of two containers have the same number.
 #[test]
-fn runs_in_separate_pid_namespaces_have_names_of_their_own() {
+fn runs_in_separate_pid_namespaces_have_different_names() {
     let apart = ["--pid", "--fork", "--mount-proc", "--kill-child=TERM"];
     if !may_unshare(&apart) {
         return;
@@ -138,7 +138,7 @@ fn runs_in_separate_pid_namespaces_have_names_of_their_own() {
 }
 
 #[test]
-fn a_name_in_use_is_refused_and_the_log_of_before_stays() {
+fn name_in_use_is_refused_and_its_log_is_kept() {
     let (runs, place) = (Runs::new(), tempdir().unwrap());
     let log = place.path().join("run.mcap");
     let run = ["linkbar", "--clock", "real", "--run", "taken", "--log", log.to_str().unwrap()];
@@ -155,7 +155,7 @@ fn a_name_in_use_is_refused_and_the_log_of_before_stays() {
 }
 
 #[test]
-fn the_status_describes_a_run_that_waits_and_one_that_ends() {
+fn status_describes_waiting_and_ending_runs() {
     let (runs, place) = (Runs::new(), tempdir().unwrap());
     let address = format!("unix:{}", place.path().join("socket").display());
     let waits = ["--clock", "real", "--log", "none", "--network", &address, "--outside", "workstation"];

@@ -38,7 +38,7 @@ fn replayed(scenario: &Scenario) -> String {
 }
 
 #[test]
-fn every_golden_run_is_what_it_was() {
+fn every_golden_run_replays_unchanged() {
     let all = scenarios();
     let next = AtomicUsize::new(0);
     let work = || {
@@ -63,7 +63,7 @@ fn every_golden_run_is_what_it_was() {
 }
 
 #[test]
-fn no_golden_is_without_a_scenario() {
+fn every_golden_has_a_scenario() {
     let known: Vec<_> = scenarios().iter().flat_map(|s| [s.golden(), s.text()]).collect();
     for entry in fs::read_dir(directory()).expect("the directory can be read") {
         let path = entry.expect("an entry can be read").path();

@@ -75,7 +75,7 @@ fn the_brush_is_taken_from_its_bracket_and_returned() {
 }
 
 #[test]
-fn a_shift_is_all_of_them_in_a_row() {
+fn shift_finishes_all_jobs_in_a_row() {
     assert_ends_well("shift", 1, &[LINKBAR, CLEVIS, TURNED_PART, TOOL_CHANGE]);
 }
 
@@ -136,7 +136,7 @@ fn a_pedestal_that_cannot_turn_so_far_is_reported() {
 }
 
 #[test]
-fn a_tool_that_the_drum_holds_is_not_torn_out() {
+fn tool_held_by_the_drum_is_not_torn_out() {
     assert_fails_for("tool-change.job", "held-tool", Reason::Detected, |scratch| {
         scratch.job_with("tool-change.job", "** drum release", "%");
     });
@@ -162,7 +162,7 @@ BLOCK# 991 OFFSET 21000
 ";
 
 #[test]
-fn blocks_that_are_loaded_in_the_middle_count_from_the_next_command_on() {
+fn loaded_blocks_take_effect_with_the_next_command() {
     let job = "== MOVE -- +0 -- 0 +0 SAFE 0 -- 0\n\
                ** after 50 load high.blk\n\
                == MOVE -- +0 -- 0 +0 HOME 0 -- 0\n\

@@ -69,7 +69,7 @@ fn the_same_seed_gives_the_same_run_and_the_same_log() {
 }
 
 #[test]
-fn another_seed_is_another_run_that_finishes_too() {
+fn run_with_another_seed_differs_and_finishes() {
     let other = run("linkbar", SEED + 1, "seed", |_| {});
     assert_finished(&other);
     assert_ne!(other.digest(), linkbar().digest());

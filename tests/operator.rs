@@ -261,7 +261,7 @@ fn boards_are_stopped_executed_and_started_again() {
 /// `<=` and DB-DONE (IV.2.6, IV.3.2): values are written into suspended processes. The log contains the old and the
 /// new value, and gives the same run on one board and on five.
 #[test]
-fn values_are_written_while_their_processes_stand() {
+fn values_are_written_into_suspended_processes() {
     let cell = Cell::start(TO_SAFE_AND_HOME, |config| config);
     let mut client = cell.client("anna");
     wait_ticks(&mut client, 150);
@@ -357,7 +357,7 @@ fn load_during_a_run(boards: Boards) {
 
 /// `run JOB`: a job of the data directory replaces the rest of the waiting one; the log contains its text.
 #[test]
-fn another_job_is_played_in_the_place_of_the_rest() {
+fn another_job_replaces_the_rest_of_the_waiting_one() {
     let place = tempfile::tempdir().unwrap();
     let data = place.path().join("data");
     copy(&root().join("data"), &data);
@@ -409,7 +409,7 @@ fn ask_until_refused(client: &mut Client, line: &str, why: &str) {
 }
 
 #[test]
-fn a_job_on_stand_by_begins_when_it_may_and_one_that_nobody_attends_ends_with_its_failure() {
+fn stand_by_job_starts_when_permitted_and_ends_with_its_failure_if_unattended() {
     let cell =
         Cell::start("== MOVE -- 0 -- 0 0 SAFE 0 -- 0\n", |config| RunConfig { stand_by: true, ..config });
     let mut client = cell.client("anna");
@@ -594,7 +594,7 @@ fn sessions_of_one_name_do_not_command_at_the_same_time() {
 
 /// A request without a limit, or after its limit, is executed only if it is a stop.
 #[test]
-fn only_a_stop_is_carried_out_when_nobody_waits_for_it() {
+fn expired_request_is_executed_only_if_it_stops() {
     let cell = Cell::start(TO_SAFE_AND_HOME, |config| config);
     let mut client = cell.client("anna");
     let mut script = UnixStream::connect(operator_socket(&cell.name)).unwrap();
@@ -669,7 +669,7 @@ fn a_command_to_a_stopped_run_is_discarded_on_resume() {
 }
 
 #[test]
-fn an_emergency_stop_is_in_the_status_and_keeps_the_job_from_going_on() {
+fn emergency_stop_is_in_the_status_and_blocks_the_job() {
     let cell = Cell::start(TO_SAFE_AND_HOME, |config| config);
     let mut client = cell.client("anna");
     wait_ticks(&mut client, 150);
@@ -727,7 +727,7 @@ fn stand_by_without_a_possible_operator_is_refused() {
 }
 
 #[test]
-fn a_run_may_take_no_operator() {
+fn run_can_exclude_operators() {
     for change in [
         (|config| RunConfig { operator: OperatorAccess::None, ..config }) as fn(RunConfig) -> RunConfig,
         |config| RunConfig { clock: ClockKind::Fast, ticks: None, ..config },

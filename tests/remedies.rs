@@ -240,7 +240,7 @@ fn turns(memory: &CommonMemory) -> bool {
 
 /// The remedy "switch the frame at the joystick box off".
 #[test]
-fn joystick_that_is_on_is_switched_off() {
+fn active_joystick_is_switched_off() {
     let mut it = Operated::start(TO_SAFE);
     it.wait(50).please(&["joystick frame WORLD", "joystick stick 0 1 1"]).until_it_waits();
     assert_eq!(it.memory().task.status.reason, Reason::JoystickOn);
@@ -626,7 +626,7 @@ fn stuck_open(valves: &[&str], from: u64, until: u64) -> String {
 /// The remedy "take the object away, and put it back at the command's source location": the gripper opens during the
 /// motion, and the blank falls to the floor.
 #[test]
-fn object_that_was_lost_on_the_way_is_fetched_again_from_its_source() {
+fn lost_object_is_fetched_again_from_its_source() {
     let faults = stuck_open(&["grip.open-coarse", "grip.supply"], 1700, 1760);
     let mut it = Operated::with_faults(&format!("{TO_VISE}** vise close PFIXTURE\n{LEAVE}"), &faults);
     it.fails(Reason::ObjectLost);
@@ -648,7 +648,7 @@ fn object_at_the_edge_of_its_tray_is_moved_to_the_middle() {
 /// The remedy "take the object out of the pedestal, and put it back at its place": the hand opens while the table
 /// turns. The first place of the part is the tray, from which the whole job starts again.
 #[test]
-fn object_that_the_pedestal_has_lost_is_delivered_again() {
+fn object_lost_by_the_pedestal_is_delivered_again() {
     let faults = stuck_open(&["pedestal.open-coarse", "pedestal.supply"], 5700, 5760);
     let mut it = Operated::with_faults(&clevis(), &faults);
     it.fails(Reason::HandLost);
@@ -670,7 +670,7 @@ fn hand_of_the_pedestal_calibrates_after_its_potentiometer_is_repaired() {
 
 /// The remedy "put the gripper into its holster": the v-gripper is missing when the shaft is fetched.
 #[test]
-fn gripper_that_is_missing_is_fetched_after_it_was_hung_in_its_holster() {
+fn missing_gripper_is_fetched_after_its_return_to_the_holster() {
     let mut it = Operated::start(SHAFT);
     it.cell().hang_gripper(2, None).unwrap();
     it.fails(Reason::HolsterEmpty);
@@ -692,7 +692,7 @@ fn gripper_is_put_away_after_its_holster_was_emptied() {
 
 /// Reasons with the scenario of their remedy; other reasons share the text.
 const SCENARIOS: &[(Reason, &str)] = &[
-    (Reason::JoystickOn, "joystick_that_is_on_is_switched_off"),
+    (Reason::JoystickOn, "active_joystick_is_switched_off"),
     (Reason::LinkOff, "a_disabled_link_restarts_with_hold"),
     (Reason::AlreadyHolding, "gripper_that_holds_another_object_places_it_first"),
     (Reason::HeldElsewhere, "object_held_in_mid_air_is_placed_with_transfer"),
@@ -712,10 +712,10 @@ const SCENARIOS: &[(Reason, &str)] = &[
     (Reason::NotNearDrum, "wrong_command_is_replaced_by_the_right_one"),
     (Reason::ReleaseNotEnded, "release_without_air_is_completed_by_the_command_sent_again"),
     (Reason::OffPath, "robot_off_its_path_continues_after_a_pause_that_adopts_its_position"),
-    (Reason::ObjectLost, "object_that_was_lost_on_the_way_is_fetched_again_from_its_source"),
+    (Reason::ObjectLost, "lost_object_is_fetched_again_from_its_source"),
     (Reason::AtTrayEdge, "object_at_the_edge_of_its_tray_is_moved_to_the_middle"),
-    (Reason::HandLost, "object_that_the_pedestal_has_lost_is_delivered_again"),
-    (Reason::HolsterEmpty, "gripper_that_is_missing_is_fetched_after_it_was_hung_in_its_holster"),
+    (Reason::HandLost, "object_lost_by_the_pedestal_is_delivered_again"),
+    (Reason::HolsterEmpty, "missing_gripper_is_fetched_after_its_return_to_the_holster"),
     (Reason::HolsterOccupied, "gripper_is_put_away_after_its_holster_was_emptied"),
     (Reason::HandNotCalibrated, "hand_of_the_pedestal_calibrates_after_its_potentiometer_is_repaired"),
 ];

@@ -60,7 +60,7 @@ fn a_value_that_no_longer_changes_is_a_difference() {
 }
 
 #[test]
-fn a_missing_field_and_a_new_one_are_differences_unless_they_are_meant() {
+fn missing_and_new_fields_are_differences_unless_declared() {
     let was = ["1 prim.old 1", "1 prim.same 2", "4 prim.old 9"];
     let is = ["1 prim.same 2", "1 prim.new 3", "5 prim.new 4"];
     let text = differences(&was, &is, "");
@@ -74,7 +74,7 @@ fn a_missing_field_and_a_new_one_are_differences_unless_they_are_meant() {
 }
 
 #[test]
-fn a_field_that_both_versions_have_is_compared_even_if_an_entry_says_added() {
+fn field_of_both_versions_is_compared_despite_an_added_entry() {
     let added = r#"added = [{ path = "prim.*", reason = "for the screen" }]"#;
     let text = differences(&["1 prim.same 2"], &["1 prim.same 3", "1 prim.new 4"], added);
     assert_eq!(text, "  tick 1       prim.same: was \"2\", is \"3\"; differs in 9 ticks\n");
@@ -118,7 +118,7 @@ fn a_star_inside_a_path_is_one_segment() {
 }
 
 #[test]
-fn a_value_may_have_another_text_in_the_fields_that_are_named() {
+fn declared_fields_may_have_another_text() {
     let was = ["1 task.reason ", "1 prim.reason ", "1 prim.pose 0", "4 prim.pose 12"];
     let is = ["1 task.reason none", "1 prim.reason none", "1 prim.pose none", "4 prim.pose record 12"];
     let renames = r#"
@@ -135,7 +135,7 @@ fn a_value_may_have_another_text_in_the_fields_that_are_named() {
 }
 
 #[test]
-fn a_field_that_is_absent_at_first_takes_the_rules_of_an_absent_one() {
+fn initially_absent_field_follows_the_rules_of_absent_fields() {
     let (was, is) = (["1 a.object ", "3 a.object PIN", "5 a.object "], ["3 a.object PIN", "5 a.object -"]);
     let renames = r#"value = [{ path = "a.object", old = "", new = "-" }]"#;
     assert_eq!(differences(&was, &is, renames), "");
@@ -177,7 +177,7 @@ fn rows_are_learned_up_to_the_first_difference() {
 }
 
 #[test]
-fn a_process_that_is_gone_is_a_difference() {
+fn removed_process_is_a_difference() {
     let text = differences(&["1 grip.fired open 1"], &["1 jaw.fired open 1"], "");
     assert_eq!(text.lines().count(), 2, "{text}");
     let renames = r#"renamed = [{ old = "grip.*", new = "jaw.*" }]"#;
@@ -209,7 +209,7 @@ fn invalid_traces_are_refused() {
 }
 
 #[test]
-fn renames_that_say_too_much_are_refused() {
+fn invalid_renames_are_refused() {
     let stars = r#"renamed = [{ old = "a", new = "b.*" }]"#;
     assert!(matches!(Renames::parse(stars), Err(CompareError::Stars { .. })));
     let no_reason = r#"dropped = [{ path = "a" }]"#;

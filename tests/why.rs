@@ -45,7 +45,7 @@ fn assert_explained(outcome: &Outcome, first: &str, commanders: &[&str], said: &
 }
 
 #[test]
-fn a_missing_part() {
+fn missing_part_is_explained() {
     let outcome = run("linkbar.job", 1, "why-missing", |scratch: &Scratch| {
         scratch.job_with("linkbar.job", "** tray UNIT_1 4 LINKBAR1_BH", "%");
     });
@@ -63,7 +63,7 @@ fn a_missing_part() {
 }
 
 #[test]
-fn a_tool_that_the_drum_holds() {
+fn tool_held_by_the_drum_is_explained() {
     let outcome = run("tool-change.job", 1, "why-held", |scratch: &Scratch| {
         scratch.job_with("tool-change.job", "** drum release", "%");
     });
@@ -76,7 +76,7 @@ fn a_tool_that_the_drum_holds() {
 }
 
 #[test]
-fn a_drum_that_is_too_tight() {
+fn tight_drum_is_explained() {
     let outcome = run("tool-change", 1, "why-tight", |scratch: &Scratch| {
         scratch.data_with("cell.toml", "insertion_force = 30.0", "insertion_force = 95.0");
     });
@@ -89,7 +89,7 @@ fn a_drum_that_is_too_tight() {
 }
 
 #[test]
-fn a_pulled_cable() {
+fn pulled_cable_is_explained() {
     let plan = root().join("data/faults/cable-pulled.toml");
     let plan = plan.to_str().expect("a path in UTF-8");
     let outcome = run_with("linkbar", 1, "why-cable", &["--faults", plan], |_| {});
@@ -106,7 +106,7 @@ fn a_pulled_cable() {
 }
 
 #[test]
-fn a_condition_that_never_comes() {
+fn missing_sensor_condition_is_explained() {
     let outcome = run("tool-change.job", 1, "why-threshold", |scratch: &Scratch| {
         scratch.data_with("guarded.blk", "HOL-R-SEAT   seated   1", "HOL-R-SEAT   beam     8");
         scratch.job_with("tool-change.job", "== ACQUIRE-TOOL", "== ACQUIRE-TOOL");
@@ -126,7 +126,7 @@ fn a_condition_that_never_comes() {
 }
 
 #[test]
-fn a_run_that_no_process_failed() {
+fn run_without_failed_process_is_explained() {
     let outcome = run("linkbar.job", 1, "why-vise", |scratch: &Scratch| {
         scratch.job_with("linkbar.job", "% Close vise\n** vise close PFIXTURE", "%");
     });

@@ -155,7 +155,7 @@ fn books(file: &Path) -> (String, usize) {
 }
 
 #[test]
-fn items_are_kept_by_another_process_and_not_a_bit_of_the_run_changes() {
+fn external_data_system_stores_the_items_without_changing_the_run() {
     let program = rcs_neighbour();
     let scratch = Scratch::new("items");
     let job = scratch.file("fetch.job");
@@ -205,7 +205,7 @@ fn a_data_system_that_connects_last_is_connected_in_the_first_tick() {
 }
 
 #[test]
-fn a_data_system_that_is_killed_and_started_again_hears_the_update_once() {
+fn restarted_data_system_receives_the_update_once() {
     for fate in [Fate::DiesBefore, Fate::DiesAfter] {
         let scratch = Scratch::new(&format!("{fate:?}"));
         let file = scratch.file("items.db");
@@ -252,7 +252,7 @@ fn a_killed_controller_sends_pending_updates_after_its_next_startup() {
 }
 
 #[test]
-fn a_data_system_that_refuses_or_dawdles_hears_the_update_once() {
+fn refusing_or_slow_data_system_receives_the_update_once() {
     for fate in [Fate::Refuses, Fate::Dawdles] {
         let scratch = Scratch::new(&format!("{fate:?}"));
         let file = scratch.file("items.db");

@@ -154,7 +154,7 @@ fn an_unreset_emergency_stop_is_a_failure_on_the_grid_too() {
 }
 
 #[test]
-fn a_robot_that_is_switched_off_is_a_lost_link() {
+fn robot_without_power_is_a_lost_link() {
     let (controller, mut workstation) = start("off");
     assert_eq!(workstation.carry_out(&bare(1, "PAUSE")).0, "finished");
     workstation.in_cell("panel power off");

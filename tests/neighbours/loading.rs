@@ -92,7 +92,7 @@ fn load_and_move(cell: &Cell, workstation: &mut Workstation) {
 }
 
 #[test]
-fn a_block_that_the_workstation_controller_loads_counts_from_the_next_command_on() {
+fn block_loaded_by_the_workstation_takes_effect_with_the_next_command() {
     let without = Cell::new("without").play(&[], |_, workstation| {
         finishes(workstation, &bare(1, "PAUSE"));
         // As many ticks as the load takes.

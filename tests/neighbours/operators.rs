@@ -157,7 +157,7 @@ fn carry(mut from: UnixStream, mut to: UnixStream, stalls: &AtomicBool) {
 
 /// The run cannot measure the delay of a request with its own clock; the request's limit serves for that.
 #[test]
-fn a_command_that_a_stalled_line_delays_is_discarded() {
+fn command_delayed_by_a_stalled_line_is_discarded() {
     let scratch = Scratch::new("stalled");
     let (log, job) = (scratch.file("log.mcap"), scratch.file("safe.job"));
     fs::write(&job, JOB).expect("a job can be written");
@@ -194,7 +194,7 @@ fn a_run_reports_who_may_operate_it() {
 }
 
 #[test]
-fn options_that_let_nobody_in_are_refused() {
+fn options_that_exclude_every_operator_are_refused() {
     let start = |arguments: &[&str]| {
         let output = Command::new(rcs_run()).args(arguments).current_dir(root()).output();
         let output = output.expect("rcs-run can be started");

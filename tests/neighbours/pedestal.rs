@@ -237,7 +237,7 @@ fn start_pedestal(program: &Path, controller: &Controller) -> (Child, Arc<Atomic
 }
 
 #[test]
-fn a_pedestal_in_another_process_changes_not_a_bit() {
+fn external_pedestal_changes_no_bit() {
     // Rebuilt before the controller waits for it.
     let (program, alone) = (rcs_neighbour(), computed_alone("clevis", &[]));
     for boards in ["one", "split"] {
@@ -285,7 +285,7 @@ fn every_failure_of_the_pedestal_ends_the_command_without_a_drop() {
 
 /// A pedestal is killed with SIGKILL, and another one replaces it.
 #[test]
-fn a_pedestal_that_is_killed_and_started_again_turns_the_next_part() {
+fn restarted_pedestal_turns_the_next_part() {
     let program = rcs_neighbour();
     let controller = Controller::start("killed-pedestal", "workstation,pedestal", &["--json"]);
     let (mut killed, _) = start_pedestal(program, &controller);

@@ -93,7 +93,7 @@ fn a_run_can_be_ended_while_a_tick_waits_for_a_neighbour() {
 }
 
 #[test]
-fn a_run_ends_as_asked_for_while_it_waits_for_an_answer() {
+fn waiting_run_ends_on_request() {
     for clock in ["fast", "real"] {
         let (tell, heard) = channel();
         let (controller, mut workstation, data_system) = start(clock, move |mut peer| {
@@ -155,7 +155,7 @@ fn connect_after(first: Option<&'static [u8]>) -> (Ended, Receiver<Vec<u8>>) {
 }
 
 #[test]
-fn a_command_that_is_lost_is_heard_again() {
+fn lost_command_is_repeated() {
     let (ended, heard) = connect_after(None);
     let silent = "the Data System has not answered command 1 for 10 s";
     assert!(ended.page.contains(silent), "{}", ended.page);

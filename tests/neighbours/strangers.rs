@@ -38,7 +38,7 @@ fn addresses_and_keys_of_other_machines_are_refused_with_the_new_way() {
 }
 
 #[test]
-fn there_is_one_workstation_controller() {
+fn second_workstation_controller_is_refused() {
     let controller = Controller::start("one", "workstation", &["--clock", "real"]);
     let mut first = controller.connect(Role::Workstation);
     first.receive().expect("it is admitted");

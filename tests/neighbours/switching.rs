@@ -74,7 +74,7 @@ fn the_workstation_commands_between_lines_of_the_job() {
 
 /// The job hands over only between commands.
 #[test]
-fn a_workstation_that_goes_amid_a_command_ends_the_run() {
+fn workstation_leaving_during_a_command_ends_the_run() {
     let controller = start("amid", &[hand_over(), go("SAFE")], "workstation", &[]);
     let mut workstation = Workstation::connect(&controller);
     let number = u32::from(workstation.status().echo) + 1;

@@ -35,7 +35,7 @@ fn start(program: &Path, address: &str, words: &[&str]) -> Child {
 }
 
 #[test]
-fn a_shift_with_everybody_elsewhere_has_the_same_bits_and_items() {
+fn shift_with_external_neighbours_has_the_same_bits_and_items() {
     let ((bits, known), program) = (shift_alone(), rcs_neighbour());
     assert!(!known.is_empty(), "a shift has items");
     let scratch = Scratch::new("everybody");

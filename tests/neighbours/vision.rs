@@ -96,7 +96,7 @@ fn jobs_have_the_same_bits_with_vision_in_another_process() {
 
 /// All answers of E-move's table (V.2.1 LOCATE-OBJ). Picture 1 is the fast flood, 2 the precise one.
 #[test]
-fn pictures_that_fail_are_taken_again_and_given_up() {
+fn failed_pictures_are_repeated_and_given_up() {
     for (faults, reason) in [
         ("1-3:camera-blind", "vision sees no object"),
         ("1-3:not-recognised", "vision sees no object"),
@@ -293,7 +293,7 @@ fn fetch(number: u32) -> HwsCommand {
 /// In fast clock with an idle workstation controller, time stops until the next vision system connects: it finds the
 /// unanswered request.
 #[test]
-fn vision_that_is_killed_in_the_middle_and_started_again_answers() {
+fn restarted_vision_answers_the_pending_request() {
     for fate in [Fate::Answers, Fate::DiesAtOnce, Fate::DiesInTheMiddle] {
         let controller = Controller::start("vision-dies", "workstation,vision", &[]);
         let mut vision = serve(controller.connect(Role::Vision), fate);

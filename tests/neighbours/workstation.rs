@@ -139,7 +139,7 @@ fn command_that_fails_its_check_is_refused_with_the_reason_of_a_job_line() {
 /// Every mailgram with a line for the cell is answered with its number, and with a sentence if refused. Refused lines
 /// open no file.
 #[test]
-fn lines_for_the_cell_are_refused_by_their_number_and_their_words() {
+fn refusals_of_cell_lines_name_number_and_reason() {
     const LOAD: &str = "load OFFSET BLOCK was expected, such as load 21000 610; load FILE is for the controller's \
                         own jobs";
     let controller = Controller::start("lines", "workstation", &[]);
@@ -192,7 +192,7 @@ fn lines_for_the_cell_are_refused_by_their_number_and_their_words() {
 }
 
 #[test]
-fn a_command_that_task_does_not_know_fails_and_the_next_one_is_carried_out() {
+fn unknown_command_fails_and_the_next_one_is_executed() {
     let controller = Controller::start("unknown", "workstation", &["--json"]);
     let mut workstation = Workstation::connect(&controller);
     let outcome = workstation.carry_out(&bare(1, "FROBNICATE"));
@@ -240,7 +240,7 @@ fn a_reconnected_workstation_controller_continues_from_the_echo() {
 
 /// An invalid frame of a neighbour ends the connection with a reason.
 #[test]
-fn a_line_that_talks_nonsense_is_closed() {
+fn connection_with_invalid_frames_is_closed() {
     let controller = Controller::start("nonsense", "workstation", &["--clock", "real"]);
     let mut workstation = Workstation::connect(&controller);
     let mut status = neighbours::mailbox::Mailbox::initialized(neighbours::mailbox::HWSC_STATUS);

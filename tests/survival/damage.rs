@@ -103,7 +103,7 @@ fn another_user_cannot_open_or_block_a_run() {
 }
 
 #[test]
-fn a_program_that_stopped_with_the_lock_holds_no_run_up() {
+fn stopped_program_with_the_lock_blocks_no_run() {
     let scratch = Scratch::new("stopped");
     let tmp = scratch.file("");
     let arguments = job("linkbar");

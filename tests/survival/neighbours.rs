@@ -10,7 +10,7 @@ use whole_system_tests::{
 };
 
 #[test]
-fn two_runs_side_by_side_do_not_meet() {
+fn parallel_runs_do_not_interfere() {
     let scratch = Scratch::new("beside");
     let start = |log| Running::start(&scratch.file(""), "linkbar", &["--ticks", "2000", "--log", log]);
     // Names of equal length, as the log contains the command line.
@@ -28,7 +28,7 @@ fn two_runs_side_by_side_do_not_meet() {
 
 /// Needs the right to become another user; otherwise it is skipped.
 #[test]
-fn another_user_runs_beside_and_after_the_first() {
+fn another_user_runs_in_parallel_and_after_the_first() {
     let scratch = Scratch::new("users");
     if !may_become_nobody(&scratch.file("")) {
         eprintln!("no right to become another user: none to try");
@@ -64,7 +64,7 @@ fn another_user_runs_beside_and_after_the_first() {
 }
 
 #[test]
-fn a_run_is_seen_by_its_status() {
+fn status_shows_a_run() {
     let scratch = Scratch::new("status");
     let mut run = Running::start(&scratch.file(""), "linkbar", &["--clock", "real", "--log", "none"]);
     drop(run.attach());

@@ -67,7 +67,7 @@ fn the_robot_holds_and_resumes_and_the_log_replays() {
 }
 
 #[test]
-fn a_run_that_is_to_stop_ends_with_status_3() {
+fn overrun_policy_stop_ends_the_run_with_status_3() {
     let scratch = Scratch::new("stops");
     let ended = stopped_for_a_second(&scratch.file(""), &["--overrun", "stop:5", "--log", "none"]);
     assert_eq!(ended.status, Some(3), "{}", ended.said);

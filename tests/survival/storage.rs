@@ -42,7 +42,7 @@ fn without_shared_memory_the_run_continues_unobserved() {
 }
 
 #[test]
-fn memory_that_is_taken_while_a_run_begins_is_missed_in_words() {
+fn memory_lost_during_the_start_is_reported() {
     let scratch = Scratch::new("race");
     // Enough for the start, and taken by another process once the first object exists.
     let fills = "mount -t tmpfs -o size=2200k tmpfs /dev/shm && \
@@ -63,7 +63,7 @@ fn memory_that_is_taken_while_a_run_begins_is_missed_in_words() {
 }
 
 #[test]
-fn a_directory_that_is_not_ours_is_not_used() {
+fn directory_of_another_user_is_not_used() {
     let scratch = Scratch::new("not-ours");
     let place = scratch.file(&format!("rcs-runs-{}", geteuid().as_raw()));
     fs::write(&place, "in the way").expect("a file can be written");
@@ -124,7 +124,7 @@ fn a_full_disk_ends_the_log_and_not_the_run() {
 }
 
 #[test]
-fn a_log_that_is_cut_from_outside_does_not_end_the_run_and_is_missed() {
+fn truncated_log_is_reported_and_does_not_end_the_run() {
     let scratch = Scratch::new("cut-log");
     let more = ["--clock", "real", "--ticks", "100", "--log", "run.mcap"];
     let mut run = Running::start(&scratch.file(""), "linkbar", &more);
@@ -144,7 +144,7 @@ fn a_log_that_is_cut_from_outside_does_not_end_the_run_and_is_missed() {
 }
 
 #[test]
-fn a_log_that_is_removed_does_not_end_the_run_and_is_missed() {
+fn removed_log_is_reported_and_does_not_end_the_run() {
     let scratch = Scratch::new("removed");
     let more = ["--clock", "real", "--ticks", "100", "--log", "logs/run.mcap"];
     let mut run = Running::start(&scratch.file(""), "linkbar", &more);

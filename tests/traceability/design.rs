@@ -121,7 +121,7 @@ fn missing_tests(text: &str, sources: &Sources) -> Vec<String> {
 }
 
 #[test]
-fn every_file_and_test_that_a_rule_names_is_there() {
+fn files_and_tests_named_by_rules_exist() {
     let sources = Sources::read();
     let (mut wrong, mut count) = (Vec::new(), 0);
     let directories = ["docs", "docs/design"].map(|directory| fs::read_dir(root().join(directory)));
@@ -143,7 +143,7 @@ fn every_file_and_test_that_a_rule_names_is_there() {
 }
 
 #[test]
-fn a_reference_that_leads_nowhere_is_found() {
+fn broken_reference_is_detected() {
     let sources = Sources::read();
     let page = "\
 Text with `no/reference.rs` in it.
@@ -152,7 +152,7 @@ Text with `no/reference.rs` in it.
 - test: `levels::execution::tests::outcome_stays_until_a_new_number`
 - test: `levels::execution::tests::no_such_test` (what is not: no test)
 - test: `tests/traceability/design.rs:
-  a_reference_that_leads_nowhere_is_found`, and `no_test_of_this_name`
+  broken_reference_is_detected`, and `no_test_of_this_name`
 
   `tests/behind_the_list.rs`
 - test: nobody has thought of one

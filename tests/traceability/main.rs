@@ -162,7 +162,7 @@ impl Interfaces {
 }
 
 #[test]
-fn everything_that_the_page_names_is_in_the_code() {
+fn names_of_the_page_are_in_the_code() {
     let all = Interfaces::new().everything();
     let page = page();
     for line in &page.lines {
@@ -182,7 +182,7 @@ fn everything_that_the_page_names_is_in_the_code() {
 }
 
 #[test]
-fn everything_that_the_interfaces_have_is_on_the_page_once() {
+fn each_name_of_the_interfaces_is_on_the_page_once() {
     let page = page();
     let named: BTreeSet<&str> = page.lines.iter().filter_map(|line| line.code.as_deref()).collect();
     let beyond = |code: &str| {
@@ -213,7 +213,7 @@ fn start_of(code: &str) -> &str {
 }
 
 #[test]
-fn a_command_or_a_status_is_named_as_the_code_has_it() {
+fn commands_and_statuses_have_the_names_of_the_code() {
     let (interfaces, page) = (Interfaces::new(), page());
     let matches = |line: &Line, code: &str| {
         let variant = interfaces.variant(code);
@@ -260,7 +260,7 @@ fn the_mailboxes_are_those_of_the_neighbours() {
 }
 
 #[test]
-fn every_test_that_the_page_names_is_there() {
+fn tests_named_by_the_page_exist() {
     let sources = Sources::read();
     let is_test = |name: &str| sources.files().any(|(_, text)| sources::has_test(text, name));
     let page = page();
@@ -276,7 +276,7 @@ fn every_test_that_the_page_names_is_there() {
 }
 
 #[test]
-fn the_figures_are_right_and_the_sections_are_those_of_the_interfaces() {
+fn figures_and_sections_match_the_interfaces() {
     let page = page();
     let figures: Vec<_> = ["commands", "variables", "statuses"]
         .iter()

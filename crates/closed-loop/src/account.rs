@@ -287,7 +287,7 @@ mod tests {
     }
 
     #[test]
-    fn a_reset_stop_is_not_a_cause_of_a_later_failure_but_a_collision_is() {
+    fn collision_explains_a_later_failure_and_a_reset_stop_does_not() {
         let mut alarms = Alarms::default();
         alarms.line(Tick(4), "cell", "cell.emergency", "the E-stop was pressed");
         alarms.line(Tick(5), "cell", "fault.begins", "no failure");

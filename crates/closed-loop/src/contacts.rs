@@ -431,7 +431,7 @@ mod tests {
     }
 
     #[test]
-    fn a_contact_that_trembles_is_one() {
+    fn trembling_contact_is_one_collision() {
         let mut check = new_check();
         play(&mut check, &[(0.01, MOVE), (-0.01, MOVE), (0.01, MOVE), (-0.06, MOVE), (0.01, MOVE)]);
         assert_eq!(check.collisions().len(), 2);
@@ -462,7 +462,7 @@ mod tests {
     }
 
     #[test]
-    fn the_nearest_miss_is_of_a_body_that_may_never_be_touched() {
+    fn nearest_miss_is_the_smallest_distance_without_contact() {
         let mut check = new_check();
         assert_eq!(check.margin(), MARGIN);
         let mut pass = |tick: u64, distance: f64| {
@@ -480,7 +480,7 @@ mod tests {
     }
 
     #[test]
-    fn a_robot_that_is_led_through_something_is_stuck() {
+    fn robot_moved_deep_into_an_obstacle_is_stuck() {
         let mut check = new_check();
         check.look(Tick(1), &[contact("BLANK", Kind::HeldPart, 2.0)], MOVE);
         assert!(!check.is_stuck(), "a part gives way");

@@ -317,7 +317,7 @@ mod tests {
     }
 
     #[test]
-    fn an_older_failure_of_a_lower_process_that_has_passed_is_not_blamed() {
+    fn past_failure_of_a_lower_process_is_not_the_cause() {
         let watch = watched(&[
             |memory| memory.grip.status.reason = Reason::GraspMissed,
             |memory| memory.grip.status.reason = Reason::None,
@@ -389,7 +389,7 @@ mod tests {
     }
 
     #[test]
-    fn a_table_that_is_stuck_explains_the_error_of_the_pedestal() {
+    fn stuck_table_explains_the_error_of_the_pedestal() {
         let watch = watched(&[
             |memory| {
                 memory.pedestal.table = TableCommand { number: 1, command: TableVerb::Turn, angle: -300 }

@@ -170,7 +170,7 @@ mod tests {
     }
 
     #[test]
-    fn an_inserted_reload_does_not_wait_for_a_command_but_for_a_queued_reload() {
+    fn inserted_reload_waits_only_for_a_queued_reload() {
         let mut generations = new_generations(1);
         assert!(!generations.insert(Vec::new()), "there is no new one");
         assert!(generations.insert(empty(2)));

@@ -77,7 +77,7 @@ mod tests {
     use interfaces::device::joystick_frame;
 
     #[test]
-    fn the_lower_knob_counts_a_moved_stick_takes_precedence_and_switches_add_up() {
+    fn combined_boxes_use_lower_knob_moved_stick_and_all_switches() {
         let job =
             JoystickBox { velocity: 700, hold: 1, frame: joystick_frame::WORLD, x: 5, ..Default::default() };
         assert_eq!(combined(&Given::default().joystick, job), job, "nobody has done anything");

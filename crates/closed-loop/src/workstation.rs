@@ -296,7 +296,7 @@ mod tests {
     }
 
     #[test]
-    fn the_drum_gets_its_tool_and_works_its_fingers() {
+    fn drum_receives_its_tool_and_moves_its_fingers() {
         let mut bench = Bench::new();
         bench.play("** drum tool ENDMILL-1").unwrap();
         assert!(bench.workstation.cell.drum_closed());
@@ -318,7 +318,7 @@ mod tests {
     ];
 
     #[test]
-    fn an_emergency_stop_is_pressed_and_the_robot_started_again() {
+    fn robot_restarts_after_an_emergency_stop() {
         let mut bench = Bench::new();
         bench.play("** estop pedestal").unwrap();
         let said = bench.workstation.emergency().unwrap();
@@ -347,7 +347,7 @@ mod tests {
     }
 
     #[test]
-    fn hands_at_the_joystick_box_are_seen_in_its_words() {
+    fn joystick_box_words_show_the_actions_at_it() {
         let mut bench = Bench::new();
         let frames = [
             ("WORLD", joystick_frame::WORLD),

@@ -43,7 +43,7 @@ fn the_robot_moves_to_a_location_and_back() {
 }
 
 #[test]
-fn a_command_that_is_done_already_is_done_at_once() {
+fn completed_command_finishes_at_once() {
     let mut rig = Rig::new();
     rig.command("PAUSE", "");
     assert_eq!(rig.finish(ProcessId::ALL, 2000), FINISHED);
@@ -303,7 +303,7 @@ fn held_processes_are_not_lost_and_resume() {
 }
 
 #[test]
-fn a_held_process_is_stepped_once_a_press() {
+fn held_process_is_stepped_once_per_press() {
     let mut rig = Rig::new();
     rig.command("PAUSE", "");
     assert_eq!(rig.finish(ProcessId::ALL, 2000), FINISHED);
@@ -501,7 +501,7 @@ fn a_process_is_written_before_it_is_stepped() {
 
 /// `.R` on board 2 (IV.3.3 step 2): E-move, while pausing, sends Prim ROBOT-INIT and pauses again.
 #[test]
-fn the_link_is_initialized_when_a_person_asks_for_it() {
+fn operator_initializes_the_link() {
     let mut rig = Rig::new();
     rig.command("PAUSE", "");
     assert_eq!(rig.finish(ProcessId::ALL, 2000), FINISHED);
@@ -644,7 +644,7 @@ fn a_lost_process_below_is_an_error() {
 /// Its processes run in another ladder in lock step: the outputs are bit-identical to those with an internal
 /// pedestal.
 #[test]
-fn a_pedestal_of_another_system_is_adopted_and_lost_when_it_does_not_answer() {
+fn external_pedestal_is_adopted_and_lost_without_answers() {
     let pedestal = [ProcessId::Pedestal, ProcessId::Hand, ProcessId::RotaryTable];
     let (mut inside, mut outside, mut station) = (Rig::new(), Rig::new(), Ladder::default());
     let mut station_before = CommonMemory::default();
@@ -686,7 +686,7 @@ fn a_pedestal_of_another_system_is_adopted_and_lost_when_it_does_not_answer() {
 }
 
 #[test]
-fn grip_reports_how_fast_the_fingers_move() {
+fn grip_reports_the_velocity_of_the_fingers() {
     let (mut process, mut memory, mut outputs) =
         (Grip::default(), CommonMemory::default(), GripOutputs::default());
     let (mut external, mut cell) = (ExternalInputs::default(), ideal());

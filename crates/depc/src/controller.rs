@@ -528,7 +528,7 @@ mod tests {
     }
 
     #[test]
-    fn after_a_cancel_of_the_host_the_program_can_come_to_the_function_again() {
+    fn program_restarts_the_function_after_a_cancel_of_the_host() {
         let (mut controller, mut robot) = running();
         controller.step(&line(&[0x18]), &mut robot);
         assert_eq!(controller.step(&line(&[0x05]), &mut robot).tx.length, 0);
@@ -561,7 +561,7 @@ mod tests {
     }
 
     #[test]
-    fn a_robot_s_own_warning_is_shown_until_it_is_gone_and_the_host_begins_again() {
+    fn own_warning_of_the_robot_is_shown_until_the_host_restarts() {
         let (mut controller, mut robot) =
             (Controller::new(Limits::NBS), Complaining { complaint: None, stopped: 0 });
         controller.step(&ControllerInputs { start: true, ..well() }, &mut robot);

@@ -69,7 +69,7 @@ mod tests {
     use super::Error;
 
     #[test]
-    fn each_error_says_what_was_expected_and_what_was_found() {
+    fn each_error_names_expected_and_actual_value() {
         for (error, words) in [
             (Error::OutOfRange { axis: 1, inches: 400.0 }, ["Y", "400.00", "327.67"]),
             (Error::NotFinite, ["not", "a", "position"]),

@@ -127,7 +127,7 @@ mod tests {
     }
 
     #[test]
-    fn a_frame_that_is_offered_again_takes_the_place_of_no_other() {
+    fn repeated_frame_replaces_no_other_frame() {
         let mut exact = ExactFrames::default();
         for part in [1.0, 2.0].into_iter().chain([2.0; MOST_FRAMES]) {
             exact.offer(&WireFrame::from_frame(&tool(part)), &tool(part));

@@ -185,7 +185,7 @@ mod tests {
         WireFrame { tool: [0, -7145, -1483], wrist_to_tool: [0, -2123, -2119], tool_to_finger: [3000, 0, 0] };
 
     #[test]
-    fn between_is_a_matter_of_each_word() {
+    fn position_is_between_if_each_word_is() {
         let (before, last) = (plate([10, 0, 0, 17_990, 9000, 0]), plate([14, 0, 0, -17_990, 9000, 0]));
         for (words, between) in [
             ([10, 0, 0, 17_990, 9000, 0], true),
@@ -235,7 +235,7 @@ mod tests {
     }
 
     #[test]
-    fn angles_run_on_and_go_back_where_the_word_ends() {
+    fn angles_continue_and_step_back_at_the_end_of_the_word() {
         assert_eq!(angle_word(-17_900, 17_900), 18_100);
         assert_eq!(angle_word(17_900, -17_900), -18_100);
         assert_eq!(angle_word(-3_000, 32_700), -3_000);
@@ -271,7 +271,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn words_come_back(words: [i16; 6], e in 0_i16..=18_000) {
+        fn words_survive_conversion_to_a_frame(words: [i16; 6], e in 0_i16..=18_000) {
             let mut here = plate(words);
             here.words[4] = e;
             prop_assert_eq!(Plate::from_frame(&here.to_frame(), &here), Ok(here));

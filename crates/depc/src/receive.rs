@@ -280,7 +280,7 @@ mod tests {
     }
 
     #[test]
-    fn a_frame_in_three_ticks_is_none() {
+    fn frame_over_three_ticks_is_discarded() {
         // It has lost a byte, and the host's restart happens to be that byte.
         let mut frame = [0; 16];
         DataCommand { function: NO_FUNCTION, plate: Plate { words: [1, 2, 3, 4, 9000, 0x055F] } }
@@ -293,7 +293,7 @@ mod tests {
     }
 
     #[test]
-    fn a_frame_that_does_not_end_is_answered_in_the_next_tick() {
+    fn incomplete_frame_is_answered_in_the_next_tick() {
         let mut receiver = CommandReceiver::default();
         assert_eq!(tick(&mut receiver, &command()[..15]), None);
         assert_eq!(tick(&mut receiver, &[]), Some(Command::Undecipherable));
@@ -357,7 +357,7 @@ mod tests {
     }
 
     #[test]
-    fn more_than_the_board_holds_is_a_fault() {
+    fn bytes_beyond_the_capacity_of_the_board_are_a_fault() {
         let mut receiver = CommandReceiver::default();
         receiver.accept(&bytes(&[0x03; 60]));
         receiver.accept(&bytes(&[0x03; 60]));
@@ -405,7 +405,7 @@ mod tests {
     }
 
     #[test]
-    fn a_report_that_stops_is_dropped() {
+    fn incomplete_report_is_dropped() {
         let mut receiver = ReplyReceiver::default();
         assert_eq!(all(&mut receiver, &report()[..9]), []);
         assert!(receiver.idle());

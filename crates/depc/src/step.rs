@@ -262,7 +262,7 @@ mod tests {
 
     /// D needs no more than the limit, and R, which turns with both D and the tool, slightly more.
     #[test]
-    fn a_pole_is_left_also_where_only_r_is_over_the_limit() {
+    fn pole_is_left_if_only_r_exceeds_the_limit() {
         let from = Plate { words: [1009, 2021, 2990, 13_308, 18_000, 7560] };
         let goal = tool([1010, 2020, 2990, 13_537, 17_996, 7793]);
         let way = walk(from, &goal, 3);

@@ -141,7 +141,7 @@ mod tests {
     }
 
     #[test]
-    fn a_robot_that_lags_on_the_path_is_at_no_distance_within_the_lag() {
+    fn robot_on_its_path_within_the_lag_has_no_distance() {
         let track = track(20);
         for (x, lag, expected) in
             [(8.0, 0, 0.0), (7.6, 0, 0.0), (6.9, 80, 0.0), (6.0, 80, 0.8), (6.0, 160, 0.0), (8.5, 200, 0.5)]

@@ -166,7 +166,7 @@ mod tests {
     }
 
     #[test]
-    fn a_trajectory_that_is_missing_is_named_by_its_ends() {
+    fn missing_trajectory_is_named_by_its_ends() {
         let mut memory = CommonMemory::default();
         let from = RobotPlace { site: named("BENCH"), ..RobotPlace::default() };
         memory.emove.estimates.place = Some(from);
@@ -202,7 +202,7 @@ mod tests {
     }
 
     #[test]
-    fn a_reason_that_emove_reports_has_the_detail_of_emove() {
+    fn reason_of_emove_has_the_detail_of_emove() {
         let mut memory = CommonMemory::default();
         let from = RobotPlace { site: named("BENCH"), ..RobotPlace::default() };
         memory.emove.estimates.place = Some(from);

@@ -108,7 +108,7 @@ mod tests {
     }
 
     #[test]
-    fn static_arrays_are_told_apart_by_their_array() {
+    fn static_arrays_differ_by_their_array() {
         assert!(sector(0, 1, 1).has_location_of(&sector(0, 1, 2)));
         assert!(!sector(0, 1, 1).has_location_of(&sector(0, 2, 1)));
     }

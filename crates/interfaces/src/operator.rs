@@ -194,7 +194,7 @@ mod tests {
     use rcs_core::plain::Schema;
 
     #[test]
-    fn each_board_and_each_process_has_a_bit_of_its_own() {
+    fn each_board_and_each_process_has_its_own_bit() {
         let boards = BOARDS.map(board_bit);
         assert_eq!(boards.iter().fold(0, |all, bit| all + u32::from(*bit)), 0x1F);
         assert!(ProcessId::ALL.iter().all(|process| BOARDS.contains(&process.board())));
@@ -216,7 +216,7 @@ mod tests {
     }
 
     #[test]
-    fn without_the_pulse_every_board_stops() {
+    fn every_board_stops_without_the_pulse() {
         let stopped = |board| OperatorInputs { stopped: board_bit(board), ..OperatorInputs::default() };
         for board in BOARDS {
             assert!(stopped(board).is_stopped(board) && stopped(0).is_stopped(board));

@@ -122,7 +122,7 @@ mod tests {
     }
 
     #[test]
-    fn how_many_bytes_there_are_counts() {
+    fn number_of_bytes_changes_the_hash() {
         let all: Vec<u64> = (0..70).map(|length| of(&vec![0; length])).collect();
         for (a, first) in all.iter().enumerate() {
             assert!(all.iter().skip(a + 1).all(|second| second != first));
@@ -130,7 +130,7 @@ mod tests {
     }
 
     #[test]
-    fn is_the_same_on_every_machine() {
+    fn digest_is_equal_on_every_machine() {
         assert_eq!(Digest::new().to_string(), "cbf29ce484222325");
         // Computed from the module comment in another language.
         assert_eq!(of(b"the quick brown fox"), 0x34E8_6243_F9A9_069E);

@@ -215,13 +215,13 @@ mod tests {
     }
 
     #[test]
-    fn numbers_run_on_past_the_end_without_zero() {
+    fn numbers_wrap_around_without_zero() {
         let mut commander = Commander { number: u32::MAX, sent: Tick(1), started: true };
         assert_eq!(commander.send(Tick(2)), 1);
     }
 
     #[test]
-    fn a_restarted_commander_uses_no_number_that_is_under_way() {
+    fn restarted_commander_uses_no_number_in_transit() {
         let mut commander = Commander::default();
         commander.start_from(Tick(10), 0, 41);
         let under_way = commander.send(Tick(10));
@@ -236,7 +236,7 @@ mod tests {
     }
 
     #[test]
-    fn a_commander_that_waits_for_a_command_of_before_its_restart_is_not_lost() {
+    fn commander_waiting_for_an_earlier_command_is_not_lost() {
         let mut commander = Commander::default();
         commander.start_from(Tick(100), 45, 41);
         assert_eq!(commander.read(Tick(100), &header(99), 41, Lower::Done), Lower::Pending);

@@ -276,7 +276,7 @@ fn search(start: Start) -> Found {
 }
 
 #[test]
-fn between_processes_each_content_is_executed_once_and_each_status_is_about_its_command() {
+fn commands_between_processes_are_executed_once_with_their_own_status() {
     let found = search(Start::Buffer);
     assert!(found.wrong.is_none(), "{:#?}", found.wrong);
     assert_eq!((found.states, found.ticks), (292_636, 15_443_840), "the size that docs/evidence.md states");

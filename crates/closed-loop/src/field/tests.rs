@@ -80,7 +80,7 @@ fn short_cut_keeps_the_inputs_and_goes_unnoticed() {
 }
 
 #[test]
-fn cut_of_a_fifth_of_a_second_is_stale_and_comes_back() {
+fn cut_of_a_fifth_of_a_second_is_stale_and_recovers() {
     let mut bench = Bench::new();
     bench.steps(10, &closing(), "");
     let (valves, inputs) = bench.steps(5, &closing(), "arm");

@@ -297,7 +297,7 @@ mod tests {
     }
 
     #[test]
-    fn a_transfer_whose_object_lies_at_its_destination_alone_was_done_before() {
+    fn transfer_with_its_only_object_at_the_destination_was_done_before() {
         let (there, here) = (block("VISE", 0, false), block("TRAY", 2, false));
         assert!(is_done("TRANSFER", std::slice::from_ref(&there)));
         assert!(

@@ -139,7 +139,7 @@ fn a_part_in_another_sector_does_not_lie_at_its_place() {
 }
 
 #[test]
-fn a_part_that_a_person_takes_after_its_release_is_not_sensed() {
+fn part_taken_after_its_release_is_not_sensed() {
     let mut bench = Bench::new();
     let id = bench.put("LINKBAR1_BH", "UNIT_1", 4);
     bench.release(id);
@@ -169,7 +169,7 @@ fn a_part_released_away_from_its_goal_is_not_placed() {
 }
 
 #[test]
-fn a_part_next_to_one_that_a_person_has_put_down_is_not_sensed() {
+fn part_next_to_an_added_one_is_not_sensed() {
     let mut bench = Bench::new();
     let id = bench.put("LINKBAR1_BH", "UNIT_1", 4);
     bench.release(id);
@@ -194,7 +194,7 @@ fn a_part_next_to_one_that_a_person_has_put_down_is_not_sensed() {
 }
 
 #[test]
-fn a_part_that_was_grasped_off_its_place_for_an_unsensed_reason_is_placed_so() {
+fn part_grasped_off_its_place_keeps_the_unsensed_reason() {
     let mut bench = Bench::new();
     let id = bench.put("LINKBAR1_BH", "UNIT_1", 4);
     bench.release(id);
@@ -255,7 +255,7 @@ fn unconfirmed_grasp_force_covers_a_lost_part_and_no_misplaced_one() {
 
 /// An arm without pressure has pushed the part, and the camera finds it outside its sector.
 #[test]
-fn a_part_that_the_camera_has_found_outside_its_sector_is_located() {
+fn part_found_by_the_camera_outside_its_sector_is_located() {
     let mut bench = Bench::new();
     bench.put("LINKBAR1_BH", "UNIT_1", 4);
     let sector = bench.description().tray("UNIT_1").and_then(|tray| tray.sector(4)).expect("it is a sector");
@@ -275,7 +275,7 @@ fn a_part_that_the_camera_has_found_outside_its_sector_is_located() {
 }
 
 #[test]
-fn a_part_that_moves_before_its_picture_is_false_and_after_it_not_sensed() {
+fn part_moved_before_its_picture_is_false_and_after_it_not_sensed() {
     let mut bench = Bench::new();
     bench.put("LINKBAR1_BH", "UNIT_1", 4);
     let near = bench.description().tray("UNIT_1").and_then(|tray| tray.sector(4)).expect("it is a sector");

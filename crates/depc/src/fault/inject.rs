@@ -328,7 +328,7 @@ mod tests {
     }
 
     #[test]
-    fn the_other_direction_is_left_alone() {
+    fn other_direction_has_no_faults() {
         let mut line = injector(&[Rule::new(FaultKind::Drop).rate(ALWAYS).only(Direction::ToController)]);
         assert!(ten(&mut line, ABC).iter().all(|(bytes, _)| bytes == ABC));
         assert_eq!(line.carry(Direction::ToController, Tick(1), &bytes(ABC), true).0.length, 0);
@@ -374,7 +374,7 @@ mod tests {
     }
 
     #[test]
-    fn stall_holds_everything_and_lets_it_go_in_order() {
+    fn stall_holds_all_bytes_and_releases_them_in_order() {
         let mut line = injector(&[Rule::new(FaultKind::Stall).window(2, 6)]);
         let got = ten(&mut line, ABC);
         let lengths: Vec<_> = got.iter().map(|(bytes, _)| bytes.len()).collect();
@@ -405,7 +405,7 @@ mod tests {
     }
 
     #[test]
-    fn a_rate_is_kept_and_the_seed_decides() {
+    fn faults_follow_rate_and_seed() {
         let run = |seed| {
             let mut plan = Plan::new(seed);
             plan.add(Rule::new(FaultKind::Flip).rate(100_000)).unwrap();

@@ -427,7 +427,7 @@ mod tests {
     }
 
     #[test]
-    fn a_length_needs_a_rate_a_tick_or_a_delay() {
+    fn duration_needs_a_rate_one_tick_or_a_delay() {
         for rule in [
             Rule::new(Stall).rate(10).ticks(1000),
             Rule::new(CtsLow).at(5).ticks(7),
@@ -466,14 +466,14 @@ mod tests {
     }
 
     #[test]
-    fn a_plan_permits_at_least_one_fault_a_tick() {
+    fn plan_permits_at_least_one_fault_per_tick() {
         let most = |most| Plan::new(1).most_per_tick(most);
         assert_eq!(most(0), most(1));
         assert_ne!(most(1), most(2));
     }
 
     #[test]
-    fn a_plan_has_an_end() {
+    fn plan_has_a_maximum_number_of_rules() {
         let mut plan = Plan::new(1);
         for _ in 0..RULES {
             assert_eq!(plan.add(Rule::new(Flip).rate(1)), Ok(()));

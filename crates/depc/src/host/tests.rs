@@ -52,7 +52,7 @@ fn one_frame_is_outstanding() {
 }
 
 #[test]
-fn a_nak_brings_the_same_bytes_and_not_for_ever() {
+fn nak_repeats_the_same_bytes_up_to_the_limit() {
     let mut host = running();
     let other = Intent::Position(DataCommand { function: NO_FUNCTION, plate: Plate::default() });
     tick(&mut host, &[], &position(NO_FUNCTION));
@@ -109,7 +109,7 @@ fn without_an_answer_the_link_restarts_and_no_command_is_repeated() {
 }
 
 #[test]
-fn a_start_without_answer_is_tried_once_a_second_and_blamed_at_the_end_of_patience() {
+fn unanswered_start_is_repeated_once_per_second_until_the_time_limit() {
     let mut host = Host::new(ANSWER_TICKS);
     let mut sent = Vec::new();
     for number in 1..=u32::from(PATIENCE_TICKS) {
@@ -133,7 +133,7 @@ fn a_start_without_answer_is_tried_once_a_second_and_blamed_at_the_end_of_patien
 }
 
 #[test]
-fn a_patience_of_its_own_ends_a_silence() {
+fn configured_time_limit_ends_a_silence() {
     let mut host = running();
     host.set_patience(50);
     tick(&mut host, &[], &position(NO_FUNCTION));
@@ -150,7 +150,7 @@ fn a_patience_of_its_own_ends_a_silence() {
 }
 
 #[test]
-fn a_wrong_report_is_asked_for_again_at_once() {
+fn wrong_report_is_requested_again_at_once() {
     let mut host = running();
     assert_eq!(host.counters().checksum_errors, 0);
     assert_eq!(tick(&mut host, &[], &Intent::Restart).1, [0x05]);
@@ -162,7 +162,7 @@ fn a_wrong_report_is_asked_for_again_at_once() {
 }
 
 #[test]
-fn a_report_that_nobody_asked_for_is_an_error_of_depc() {
+fn unrequested_report_is_an_error_of_depc() {
     let mut host = running();
     tick(&mut host, &[], &position(NO_FUNCTION));
     assert_eq!(tick(&mut host, &report(), &Intent::Idle), (HostEvent::Lost, vec![0x05]));
@@ -230,7 +230,7 @@ fn dtr_is_watched() {
 }
 
 #[test]
-fn a_controller_without_dtr_is_blamed_after_three_times_the_time_for_an_answer() {
+fn controller_without_dtr_fails_after_three_answer_times() {
     let mut host = Host::new(ANSWER_TICKS);
     let blamed = (1..100).find(|_| {
         host.receive(&LinkBytes::default(), false);
@@ -296,7 +296,7 @@ fn unexpected_and_repeated_acks_have_no_effect() {
 }
 
 #[test]
-fn a_late_ack_within_the_time_is_one_and_after_it_none() {
+fn late_ack_is_valid_only_within_the_answer_time() {
     let mut host = running();
     tick(&mut host, &[], &position([1, 1]));
     tick(&mut host, &[], &Intent::Idle);
@@ -312,7 +312,7 @@ fn a_late_ack_within_the_time_is_one_and_after_it_none() {
 }
 
 #[test]
-fn an_ack_among_noise_is_one_and_wins_over_a_nak() {
+fn ack_among_noise_is_valid_and_precedes_a_nak() {
     for answer in [&[0x15, 0x06][..], &[0x06, 0x15], &[0x41, 0x06], &[0x06, 0x18]] {
         let mut host = running();
         tick(&mut host, &[], &position(NO_FUNCTION));
@@ -414,7 +414,7 @@ fn a_dtr_pulse_is_not_a_start() {
 }
 
 #[test]
-fn a_cancel_that_is_refused_and_acknowledged_in_one_tick_is_acknowledged() {
+fn cancel_with_nak_and_ack_in_one_tick_is_acknowledged() {
     let mut host = running();
     assert_eq!(tick(&mut host, &[], &Intent::Cancel).1, [0x18]);
     assert_eq!(tick(&mut host, &[0x15, 0x06], &Intent::Idle).1, []);
@@ -422,7 +422,7 @@ fn a_cancel_that_is_refused_and_acknowledged_in_one_tick_is_acknowledged() {
 }
 
 #[test]
-fn a_cancel_that_is_not_answered_is_blamed_at_the_end_of_patience() {
+fn unanswered_cancel_fails_at_the_time_limit() {
     let mut host = running();
     host.set_patience(30);
     tick(&mut host, &[], &Intent::Cancel);
@@ -437,7 +437,7 @@ fn a_cancel_that_is_not_answered_is_blamed_at_the_end_of_patience() {
 }
 
 #[test]
-fn a_function_that_begins_again_after_a_cancel_is_asked_for_its_report() {
+fn function_restarted_after_a_cancel_is_asked_for_its_report() {
     let mut host = running();
     tick(&mut host, &[], &Intent::Cancel);
     for _ in 0..20 {

@@ -253,7 +253,7 @@ mod tests {
     }
 
     #[test]
-    fn the_table_as_text_gives_the_row_that_fired() {
+    fn text_of_the_table_gives_the_row_that_fired() {
         for (step, situation) in all() {
             let values = Values { step: step.code(), variables: situation.code() };
             let row = CLOSE_DOOR.consult(values).unwrap().number;
@@ -281,7 +281,7 @@ mod tests {
     }
 
     #[test]
-    fn a_fired_row_names_the_values_that_it_found() {
+    fn fired_row_names_its_values() {
         let situation = Situation { door: Door::Stuck, lamp: Lamp::Dark };
         let values = Values { step: CloseDoorStep::Start.code(), variables: situation.code() };
         let row = CLOSE_DOOR.consult(values).unwrap();
