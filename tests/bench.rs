@@ -87,7 +87,7 @@ impl Running {
     /// Send a signal to its process.
     ///
     /// # Panics
-    /// If there is no such process.
+    /// If the process has ended.
     pub fn signal(&self, signal: Signal) {
         let pid = Pid::from_child(&self.child);
         kill_process(pid, signal).expect("the run can be sent a signal");

@@ -35,7 +35,6 @@ const PATIENCE: Duration = Duration::from_secs(120);
 /// again.
 const ATTEMPTS: u32 = 20;
 
-/// Output of a run.
 struct Ended {
     status: Option<i32>,
     result: Value,

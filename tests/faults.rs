@@ -345,7 +345,6 @@ const VALVES: [&str; 12] = [
     "pedestal.vent",
 ];
 
-/// One to three faults at random.
 fn schedule(numbers: &mut Numbers) -> String {
     let mut text = format!("seed = {}\n", numbers.below(1000));
     for _ in 0..=numbers.below(3) {

@@ -30,20 +30,17 @@ use crate::{
 /// The command that makes all goldens again.
 pub const COMMAND: &str = "cargo run --release -p whole-system-tests --bin goldens";
 
-/// A run and its expected end.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Scenario {
     pub name: String,
     /// Purpose, in one sentence.
     pub about: String,
-    /// A job of the data directory.
     pub job: String,
     #[serde(default = "one")]
     pub seed: u64,
     /// A fault plan of the data's directory `faults`.
     pub faults: Option<String>,
-    /// Exit status of `rcs-run`.
     #[serde(default)]
     pub status: i32,
     /// Required text of the last words; empty for a job that finishes.
@@ -70,7 +67,6 @@ pub struct Change {
     pub to: String,
 }
 
-/// An additional file.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct NewFile {
@@ -85,7 +81,6 @@ struct Scenarios {
     golden: Vec<Scenario>,
 }
 
-/// Reason why a golden could not be made.
 #[derive(Debug, thiserror::Error)]
 pub enum Failed {
     #[error("{}: {source}", path.display())]
@@ -96,13 +91,7 @@ pub enum Failed {
     Start(io::Error),
     /// The run did not end as expected.
     #[error("exit status {expected} and {says:?} were expected, {} came with {last_words:?}", status(.found))]
-    Ending {
-        expected: i32,
-        says: String,
-        found: Option<i32>,
-        /// The last line on standard error.
-        last_words: String,
-    },
+    Ending { expected: i32, says: String, found: Option<i32>, last_words: String },
     /// The log is not suitable for a golden.
     #[error(transparent)]
     Log(#[from] record::ReadError),
@@ -113,11 +102,7 @@ pub enum Failed {
     #[error("the replay differs from the run that it was made of, from tick {0} to {1}")]
     Difference(u64, u64),
     #[error("the run has no log that can be read: {source}; its last line is {last_line:?}")]
-    NoLog {
-        source: record::ReadError,
-        /// The last line on standard error.
-        last_line: String,
-    },
+    NoLog { source: record::ReadError, last_line: String },
     /// A trace needs all ticks.
     #[error("ticks are missing in the log before tick {0}")]
     Gap(Tick),
@@ -282,11 +267,9 @@ impl Run {
 pub struct Ending {
     /// `None` after a signal.
     pub status: Option<i32>,
-    /// The last line on standard error.
     pub last_line: String,
 }
 
-/// A golden that is not written yet.
 pub struct Made {
     files: (PathBuf, PathBuf),
     golden: Golden,

@@ -220,7 +220,6 @@ pub fn copy(from: &Path, to: &Path) {
     }
 }
 
-/// Output of a run.
 pub struct Outcome {
     pub status: Option<i32>,
     pub result: Value,

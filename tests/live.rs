@@ -29,7 +29,6 @@ const PATIENCE: Duration = Duration::from_secs(60);
 /// Topics that are sent once, at the start.
 const ONCE: [&str; 4] = ["/robot_description", "/tf_static", "/meshes", "/names"];
 
-/// Output of a run.
 #[derive(Clone, Default)]
 struct Said(Arc<Mutex<Vec<String>>>);
 

@@ -96,7 +96,6 @@ fn wait_for(client: &mut Client, text: &str) -> String {
     }
 }
 
-/// Wait for a number of ticks.
 fn wait_ticks(client: &mut Client, ticks: u64) {
     let tick = |client: &mut Client| {
         let status = client.ask("status").unwrap().unwrap();

@@ -63,7 +63,6 @@ impl Operated {
         self.run().memory()
     }
 
-    /// The cell, for an operator in it.
     fn cell(&mut self) -> &mut Cell {
         self.run.as_mut().unwrap().cell_mut()
     }
@@ -216,7 +215,6 @@ const SHAFT: &str = "** tray UNIT_2 7 SHAFT_BH
 ";
 /// The robot rests at HOME for 4 s, then moves to SAFE.
 const TO_SAFE: &str = "** wait 100\n== MOVE -- 0 -- 0 0 SAFE 0 -- 0\n";
-/// The blank is held at HOME.
 const TO_HOME: &str = "** tray UNIT_1 4 LINKBAR1_BH 0 0 0
 == MOVE LINKBAR1_BH +2 UNIT_1 4 +2 PFIXTURE 0 -- 0
 == MOVE -- +0 -- 0 +0 HOME 0 -- 0
@@ -383,7 +381,6 @@ fn tool_command_waits_for_the_command_before_it() {
     it.finishes();
 }
 
-/// TRANSFER to the pedestal is refused without motion.
 #[test]
 fn transfer_to_the_pedestal_is_refused_without_motion() {
     let mut it = Operated::start("** wait 10\n== MOVE -- 0 -- 0 0 SAFE 0 -- 0\n");
@@ -402,7 +399,6 @@ fn transfer_to_the_pedestal_is_refused_without_motion() {
     it.finishes();
 }
 
-/// The clevis up to REFIXTURE, and its rest.
 fn clevis() -> String {
     fs::read_to_string(root().join("data/jobs/clevis.job")).unwrap()
 }

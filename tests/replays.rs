@@ -28,7 +28,6 @@ const FAULTS: [(&str, f64); 7] = [
     ("stall", 5e-4),
 ];
 
-/// Pseudorandom numbers of a seed.
 struct Numbers(u64);
 
 impl Numbers {

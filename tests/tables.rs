@@ -12,7 +12,6 @@ use std::{
     path::{Path, PathBuf},
 };
 
-/// Widest line of a row, characters.
 pub const WIDEST: usize = 110;
 /// The word of a row without conditions.
 pub const OTHERWISE: &str = "otherwise";

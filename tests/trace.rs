@@ -44,7 +44,6 @@ pub const TICKS: &str = "ticks";
 pub const FIRED: &str = ".fired";
 /// Value of a field that does not exist in this tick, as it belongs to another variant of an enum with data.
 pub const ABSENT: &str = "-";
-/// First name of the outputs to the devices.
 const DEVICE: &str = "device";
 /// Fields of a header that are not written. The stamp is new in every tick, and `age` gives the age of the outputs.
 /// The deciding row is named by numbers, and `fired` names it. The step belongs to the row.
@@ -93,7 +92,6 @@ pub fn open(path: &Path) -> io::Result<impl BufRead + use<>> {
     Ok(BufReader::with_capacity(1 << 20, Decoder::new(File::open(path)?)?))
 }
 
-/// Writes a trace tick by tick.
 pub struct Tracer<W> {
     out: W,
     headers: Vec<HeaderPlace>,
@@ -246,7 +244,7 @@ fn changes(
     }
 }
 
-/// An option or an enum with data: `text` at `path` if the variant is another one, then what it carries.
+/// An option or an enum with data: `text` at `path` for a new variant, then its data.
 fn carried_changes(
     text: &str,
     carried: impl Fn(u8) -> Option<Schema>,

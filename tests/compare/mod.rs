@@ -32,12 +32,7 @@ pub enum CompareError {
     Toml(#[from] toml::de::Error),
     /// A rename has a star without a meaning.
     #[error("at most as many stars as in old = {old:?} were expected, found new = {new:?}")]
-    Stars {
-        /// The text in the old version.
-        old: String,
-        /// The text in the new version.
-        new: String,
-    },
+    Stars { old: String, new: String },
     #[error("the {0} trace: {1}")]
     Unreadable(&'static str, io::Error),
     /// The line is not part of a trace, or belongs to an earlier tick than the previous line.
@@ -45,7 +40,7 @@ pub enum CompareError {
     Line {
         /// The old or the new one.
         which: &'static str,
-        /// From 1.
+        /// Number of the line, from 1.
         line: usize,
         found: String,
     },
@@ -53,15 +48,9 @@ pub enum CompareError {
     NoEnd(&'static str),
     /// Two fields of the old version would become one of the new version.
     #[error("{first} and {second} of the old version both become {new}")]
-    Twice {
-        first: String,
-        second: String,
-        /// The path in the new version.
-        new: String,
-    },
+    Twice { first: String, second: String, new: String },
 }
 
-/// A field that differs.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Difference {
     /// First moment of the difference.
@@ -76,7 +65,6 @@ pub struct Difference {
     pub ticks: u64,
 }
 
-/// Result of a comparison of two traces.
 #[derive(Clone, Debug, Default)]
 pub struct Comparison {
     /// Differing fields, by their first difference.

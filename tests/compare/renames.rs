@@ -27,9 +27,7 @@ pub struct Renames {
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Renamed {
-    /// Its path in the old version.
     pub old: String,
-    /// Its path in the new version.
     pub new: String,
 }
 
@@ -47,15 +45,12 @@ pub struct Only {
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct NewText {
-    /// Path of the field in the new version.
     pub path: String,
-    /// The text in the old version.
     pub old: String,
     /// The text in the new version; [`ABSENT`] if the field does not exist in that tick.
     pub new: String,
 }
 
-/// An entry of [`Renames`], by position.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Rule {
     Renamed(usize),

@@ -17,9 +17,7 @@ use super::{
 pub struct Pair {
     /// The process's field of common memory in the new version.
     pub process: String,
-    /// Table and row of the old version.
     pub old: Row,
-    /// Table and row of the new version.
     pub new: Row,
 }
 
@@ -52,7 +50,6 @@ pub struct Seen {
     pub first: u64,
 }
 
-/// Pairs of rows of one scenario.
 pub type Pairs = BTreeMap<Pair, Seen>;
 
 /// Add a pair that fired in the ticks from `since` to `until` - 1.

@@ -36,7 +36,6 @@ enum Fate {
     DiesAfter,
     /// Its disk is full at that moment.
     Refuses,
-    /// It takes half a second.
     Dawdles,
 }
 

@@ -43,7 +43,6 @@ fn start_moving(name: &str) -> (Controller, Workstation) {
     (controller, workstation)
 }
 
-/// The last line on standard error.
 fn last_words(ended: &Ended) -> &str {
     ended.said.lines().last().unwrap_or_default()
 }

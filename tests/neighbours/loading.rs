@@ -20,7 +20,6 @@ struct Cell {
     scratch: Scratch,
 }
 
-/// Results of a run.
 struct Left {
     scratch: Scratch,
     digest: String,

@@ -303,7 +303,6 @@ fn restarted_pedestal_turns_the_next_part() {
     assert!(second.wait().expect("a child").success());
 }
 
-/// The message of a run without its pedestal.
 #[test]
 fn a_job_without_its_pedestal_is_refused_with_the_reason() {
     let scratch = Scratch::new("no-pedestal");

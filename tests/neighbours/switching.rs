@@ -72,7 +72,6 @@ fn the_workstation_commands_between_lines_of_the_job() {
     assert_eq!(verbs, expected);
 }
 
-/// The job hands over only between commands.
 #[test]
 fn workstation_leaving_during_a_command_ends_the_run() {
     let controller = start("amid", &[hand_over(), go("SAFE")], "workstation", &[]);

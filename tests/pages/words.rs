@@ -31,7 +31,6 @@ fn normalized(text: &str) -> String {
     words.fold(String::from(" "), |all, word| all + &word + " ")
 }
 
-/// The text without code in back quotes.
 fn without_code(text: &str) -> String {
     text.split('`').step_by(2).collect::<Vec<_>>().join("CODE")
 }

@@ -33,7 +33,6 @@ const QUESTIONS: [(&str, &[&str]); 6] = [
     ("golden", &["golden", "-o", "goldens"]),
 ];
 
-/// Damage some bytes.
 fn damage(chance: &mut Chance, bytes: &mut Vec<u8>) {
     for _ in 0..=chance.below(4) {
         let at = chance.place(bytes.len());

@@ -156,7 +156,6 @@ fn damage_while_it_starts(directory: &Path, boards: &str, chance: &mut Chance) -
     judge_damaged(&ended)
 }
 
-/// All rows about garbage in shared memory.
 pub fn rows(extent: Extent) -> Vec<Row> {
     let scratch = Scratch::new("memory");
     let place = scratch.file("");

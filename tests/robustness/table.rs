@@ -135,7 +135,6 @@ pub fn plain(rows: &[Row]) -> String {
     text
 }
 
-/// The rows as a table in Markdown.
 pub fn markdown(rows: &[Row]) -> String {
     let line = |cells: Vec<String>| format!("| {} |\n", cells.join(" | "));
     let mut text = line(heads());

@@ -243,7 +243,7 @@ fn measured<'a>(
 
 enum Fate {
     Killed,
-    /// Number of tests that reach it.
+    /// With the number of tests that reach it.
     Survived(usize),
 }
 

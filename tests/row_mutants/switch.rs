@@ -78,7 +78,6 @@ impl<'a> Head<'a> {
         Some(Self { name, decide, step, declares, situation, result })
     }
 
-    /// The type of the state variables.
     fn variables(&self) -> String {
         if !self.situation.starts_with("struct of ") {
             return self.situation.to_owned();

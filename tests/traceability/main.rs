@@ -104,7 +104,6 @@ fn page() -> Page {
     page
 }
 
-/// The types of the interfaces, by name.
 #[derive(Default)]
 struct Interfaces {
     enums: BTreeMap<&'static str, &'static EnumSchema>,

@@ -26,13 +26,10 @@ pub enum Kind {
     Collision,
     /// A part or a gripper was dropped, lost or torn off.
     Lost,
-    /// A device of the cell has failed.
     Device,
     /// The robot controller shows a warning or refuses a position.
     RobotController,
-    /// The link to the robot controller is lost.
     Link,
-    /// The robot is not at its commanded position.
     OffPath,
     Process,
     /// A command was reported as finished, but its goal was not reached.
@@ -121,7 +118,6 @@ pub struct Account {
     /// The cause in the world.
     #[serde(flatten)]
     pub first: Failure,
-    /// The later failures, in order.
     #[serde(default)]
     pub followed: Vec<Failure>,
 }

@@ -27,7 +27,6 @@ const FREE: f64 = 0.05;
 /// Smallest increase of depth that is treated as deeper, in.
 const DEEPER: f64 = 0.001;
 
-/// The commands that E-move and Subtask execute.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Commands {
     /// Empty for none.
@@ -67,15 +66,12 @@ impl fmt::Display for Commands {
 /// A forbidden contact. The field names are those of the JSON object.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Collision {
-    /// Link of the robot, or the carried part.
     pub mover: String,
     pub obstacle: String,
     pub depth_in: f64,
     /// Position of the greatest depth, world coordinates, in.
     pub position_in: [f64; 3],
-    /// First tick of the contact.
     pub tick: u64,
-    /// Duration of the contact.
     pub ticks: u64,
     /// Commands at the beginning of the contact.
     #[serde(rename = "command")]
@@ -104,7 +100,6 @@ impl fmt::Display for Collision {
     }
 }
 
-/// The beginning or the end of a collision.
 #[derive(Clone, Debug)]
 pub enum ContactEvent {
     /// A forbidden contact begins.
@@ -130,15 +125,12 @@ impl fmt::Display for ContactEvent {
 /// The smallest distance to an object that must not be touched.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct NearMiss {
-    /// Link of the robot, or the carried part.
     pub mover: String,
     pub obstacle: String,
     pub distance_in: f64,
-    /// Position, world coordinates, in.
     pub position_in: [f64; 3],
     /// Tick of the smallest distance.
     pub tick: u64,
-    /// Commands in that tick.
     #[serde(rename = "command")]
     pub commands: Commands,
 }
@@ -159,7 +151,6 @@ struct Allowance {
     free: bool,
 }
 
-/// Checks the contacts of a run.
 #[derive(Clone, Debug)]
 pub struct ContactCheck {
     permits: Permits,
@@ -199,7 +190,6 @@ impl ContactCheck {
         self.commands
     }
 
-    /// The state on which later checks depend.
     pub fn state(&self) -> impl fmt::Debug {
         (&self.allowed, &self.open, &self.commands)
     }

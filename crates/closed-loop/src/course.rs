@@ -54,7 +54,6 @@ pub trait Levels<Data: ?Sized> {
     }
 }
 
-/// A ladder and the results of its ticks.
 #[derive(Clone)]
 pub struct Course<L> {
     levels: L,

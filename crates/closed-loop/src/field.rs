@@ -32,7 +32,6 @@ const WORDS: usize = 256;
 /// First register of the outputs of an emulated coupler.
 const OUTPUTS: usize = 0x0800;
 
-/// A device that cannot be simulated.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum FieldError {
     /// The mapping is invalid for this device.
@@ -45,14 +44,12 @@ pub enum FieldError {
     NotReady { device: String },
 }
 
-/// An event of a device.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FieldEvent {
     pub device: String,
     pub what: Happened,
 }
 
-/// The kind of an event.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Happened {
     /// The device has not answered for this time, ms.
@@ -119,7 +116,6 @@ const fn cause(trip: Trip) -> &'static str {
     }
 }
 
-/// A device and its orders.
 #[derive(Clone, Debug)]
 struct Device {
     simulated: Simulated,
@@ -224,7 +220,6 @@ impl SimulatedField {
         std::mem::take(&mut self.events)
     }
 
-    /// The counters of each device.
     pub fn counters(&self) -> impl Iterator<Item = (&str, Counters)> {
         let counted = self.devices.iter().map(|device| device.simulated.report().counters);
         self.mapping.devices.iter().map(|planned| planned.name.as_str()).zip(counted)

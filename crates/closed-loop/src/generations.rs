@@ -72,7 +72,6 @@ impl Generations {
         usize::try_from(self.number).unwrap_or(usize::MAX)
     }
 
-    /// The state on which later ticks depend.
     #[must_use]
     pub const fn state(&self) -> (u32, u32, &VecDeque<u32>) {
         (self.number, self.inserted, &self.waiting)
@@ -112,7 +111,6 @@ impl Generations {
     }
 }
 
-/// True if a command is being executed.
 #[must_use]
 pub fn is_busy(memory: &CommonMemory) -> bool {
     memory.task.status.report == HwsReport::Executing

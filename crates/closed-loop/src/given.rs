@@ -16,7 +16,6 @@ pub struct Given {
     pub lag: Option<u16>,
     /// The operators' joystick box, which is combined with that of the cell.
     pub joystick: JoystickBox,
-    /// Entries at the terminals of the boards.
     pub terminals: OperatorInputs,
     /// Status of an external Data System; ignored if the loop has its own.
     pub data_base: DataBaseStatus,
@@ -38,7 +37,6 @@ impl Default for Given {
     }
 }
 
-/// Inputs from an external robot before a tick.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct RobotInputs {
     pub rx: LinkBytes,

@@ -69,9 +69,7 @@ pub use self::{
 pub struct ClosedLoop<L = Present, W: World = SimulatedWorkstation> {
     course: Course<L>,
     generations: Generations,
-    /// External inputs of the last tick.
     external: ExternalInputs,
-    /// Device words of the next tick.
     inputs: DeviceInputs,
     gate: Gate,
     /// The Data System; `None` for an external one.
@@ -85,9 +83,7 @@ pub struct ClosedLoop<L = Present, W: World = SimulatedWorkstation> {
 /// View of a command source, or an operator, after a tick.
 pub struct Desk<'a, W = SimulatedWorkstation> {
     pub tick: Tick,
-    /// Common memory after the tick.
     pub memory: &'a CommonMemory,
-    /// Device words of the next tick.
     pub inputs: &'a DeviceInputs,
     /// Task's end of the mailboxes; its status box contains the status of this tick.
     pub gate: &'a mut Gate,
@@ -272,7 +268,6 @@ impl<L, W: World> ClosedLoop<L, W> {
         &self.inputs
     }
 
-    /// The command of Task's next tick.
     #[must_use]
     pub const fn command(&self) -> &HwsCommand {
         self.gate.command()
@@ -288,7 +283,6 @@ impl<L, W: World> ClosedLoop<L, W> {
         &self.generations
     }
 
-    /// For the insertion of a reload.
     pub const fn generations_mut(&mut self) -> &mut Generations {
         &mut self.generations
     }

@@ -26,7 +26,6 @@ impl RobotLine {
         free
     }
 
-    /// Replace the fault plan now.
     pub fn replace_plan(&mut self, plan: &Plan) {
         self.plan = Some(Injector::new(plan));
     }

@@ -32,7 +32,6 @@ impl Present {
         &self.processes
     }
 
-    /// Restart a process, which loses its state.
     pub fn restart(&mut self, process: ProcessId) {
         self.ladder.restart(process);
     }

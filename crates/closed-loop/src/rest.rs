@@ -8,7 +8,6 @@ pub const AT_REST: u32 = 5;
 /// Ticks with the velocity knob at zero after which it is also treated as at rest: 3 s, longer than any ramp.
 pub const AT_LAST: u32 = 75;
 
-/// Observes the commanded frame after each tick.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct RestWatch {
     commanded: WireFrame,

@@ -144,7 +144,6 @@ impl<L> ClosedLoop<L> {
         &self.checks.line
     }
 
-    /// For the injection of faults.
     pub const fn line_mut(&mut self) -> &mut RobotLine {
         &mut self.checks.line
     }

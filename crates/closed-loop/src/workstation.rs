@@ -18,20 +18,16 @@ const SETTLING_LIMIT: u64 = 120_000 / TICK_MS;
 const NO_HAND_OVER: &str = "no workstation controller can connect to this run; \
                             --network ADDRESS --outside workstation --stand-alone lets one";
 
-/// An emergency that has stopped the robot.
 #[derive(Clone, Debug)]
 pub struct Emergency {
-    /// Tick of the loss of pressure.
     pub tick: Tick,
     /// Cause, position, and the state of the arm.
     pub droop: Droop,
 }
 
-/// The cell, with its emergencies and failures.
 #[derive(Clone)]
 pub struct SimulatedWorkstation {
     pub cell: Cell,
-    /// The couplers between controller and cell, if any.
     pub field: Option<Box<SimulatedField>>,
     state: WorkstationState,
 }

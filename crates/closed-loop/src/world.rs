@@ -10,13 +10,11 @@ use taskdata::files::TaskData;
 pub trait World: Workstation {
     /// The line to the robot, and the judges.
     type Checks: Clone;
-    /// The events of a tick.
     type Settled;
 
     /// Judges without history.
     fn checks(&self) -> Self::Checks;
 
-    /// The device words of the next tick.
     fn inputs(&self) -> DeviceInputs;
 
     /// Advance by a tick and judge it. Also returns the device words of the next tick.
@@ -30,13 +28,9 @@ pub trait World: Workstation {
 #[derive(Clone, Copy, Debug)]
 pub struct Turn<'a> {
     pub tick: Tick,
-    /// The command that Task has read.
     pub hws: &'a HwsCommand,
-    /// Common memory after the tick.
     pub memory: &'a CommonMemory,
-    /// The task data of the tick.
     pub data: &'a TaskData<'a>,
-    /// Outputs of the controller to its devices.
     pub outputs: &'a DeviceOutputs,
     /// Position of an external robot, as far as known.
     pub moved: Option<&'a Plate>,

@@ -66,7 +66,6 @@ pub struct Step {
     pub reached: bool,
 }
 
-/// A straight line of the tool.
 struct StraightLine<'a> {
     start: Frame,
     way: Vector,

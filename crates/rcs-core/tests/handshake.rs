@@ -16,11 +16,9 @@ use rcs_core::{
     tick::Tick,
 };
 
-/// Total number of commands.
 const COMMANDS: u8 = 5;
 /// All ages above the limit are equivalent.
 const OLD: u8 = 5;
-/// The present tick.
 const NOW: Tick = Tick(1000);
 
 /// The number from which a starting commander continues.
@@ -39,7 +37,6 @@ struct Written {
     content: u8,
 }
 
-/// Progress of a command.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 enum Report {
     #[default]
@@ -85,7 +82,6 @@ struct State {
     executed: u8,
 }
 
-/// Action of the commander in a tick.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Commanding {
     restarts: bool,
@@ -106,7 +102,6 @@ enum Receiving {
     Silent,
 }
 
-/// A tick.
 type Event = (Commanding, Receiving);
 
 const QUIET: Commanding = Commanding { restarts: false, sends: false, late: false };
@@ -219,7 +214,6 @@ impl State {
     }
 }
 
-/// All possible events of a tick.
 fn events(state: &State) -> Vec<Event> {
     let three = || (0_u8..8).map(|bits| (bits & 1 != 0, bits & 2 != 0, bits & 4 != 0));
     let steps = three().map(|(restarts, late, finishes)| Receiving::Steps { restarts, late, finishes });
@@ -250,7 +244,6 @@ fn way(known: &Known, mut state: State, last: Option<Event>) -> Vec<Event> {
     events
 }
 
-/// Search all states, breadth first.
 fn search(start: Start) -> Found {
     let mut known: Known = HashMap::from([(State::default(), None)]);
     let mut open = VecDeque::from([State::default()]);

@@ -44,7 +44,6 @@ fn text_of(attribute: &Attribute, name: &str) -> Option<String> {
     pair.path.is_ident(name).then(|| text.value())
 }
 
-/// The value of the attribute `#[text = "..."]`.
 pub fn text(attributes: &[Attribute]) -> Option<String> {
     attributes.iter().find_map(|attribute| text_of(attribute, "text"))
 }

@@ -6,7 +6,6 @@ use syn::{Data, DataEnum, DataStruct, DeriveInput, Error, Field, Fields, Ident, 
 
 use crate::names;
 
-/// Implement `Plain` and `Default`.
 pub fn derive(input: &DeriveInput) -> Result<TokenStream> {
     let name = &input.ident;
     if !input.generics.params.is_empty() {

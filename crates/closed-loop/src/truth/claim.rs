@@ -52,7 +52,6 @@ pub enum Claim {
     /// A part is where the robot released it, with the tool at this frame.
     Placed {
         object: Name16,
-        /// Tool frame at the release.
         goal: Frame,
     },
     /// A part lies at a location of the cell.
@@ -76,7 +75,6 @@ pub enum Claim {
     Touches,
     /// The commanded point is at rest, and the arm is behind it at most by the lag of its servos.
     RobotStops,
-    /// The fingers of the robot are at rest.
     FingersStill,
     /// Hand and table of the pedestal are at rest.
     PedestalStill,

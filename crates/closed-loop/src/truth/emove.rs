@@ -8,7 +8,6 @@ use super::{
     seen::Movement,
 };
 
-/// The claims of a finished command.
 pub fn claims(command: &EmoveCommand, scene: &Scene<'_>) -> Vec<Claim> {
     let data = scene.data;
     let (place, object) = (command.site.place(), command.object);

@@ -93,7 +93,6 @@ impl History {
         }
     }
 
-    /// The reason of a part's displacement.
     pub fn displaced(&self, id: u32) -> Option<NotSensed> {
         self.displaced.get(&id).copied()
     }

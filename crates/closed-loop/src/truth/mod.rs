@@ -44,14 +44,10 @@ pub use self::{claim::Claim, untruth::Untruth};
 /// A process whose confirmations are judged.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 pub enum Level {
-    /// Task (V.4).
     Task,
-    /// Subtask (V.3).
     Subtask,
-    /// E-move (V.2).
     #[serde(rename = "E-move")]
     Emove,
-    /// Prim (V.1).
     Prim,
 }
 
@@ -157,21 +153,15 @@ impl fmt::Display for Confirmation {
     }
 }
 
-/// Inputs of the judge after a tick.
 #[derive(Clone, Copy)]
 pub struct Scene<'a> {
     pub tick: Tick,
-    /// Task's command in this tick.
     pub hws: &'a HwsCommand,
-    /// Common memory after the tick.
     pub memory: &'a CommonMemory,
-    /// The task data of the tick.
     pub data: &'a TaskData<'a>,
-    /// The cell after the tick.
     pub cell: &'a Cell,
 }
 
-/// A command and its claims.
 #[derive(Clone, Debug, Default)]
 struct Order {
     number: u32,
@@ -198,7 +188,6 @@ pub struct TruthResult {
     pub not_sensed: Vec<Confirmation>,
 }
 
-/// Judges the confirmations of a run.
 #[derive(Clone, Debug, Default)]
 pub struct TruthCheck {
     levels: [Watched; 4],
@@ -315,7 +304,6 @@ fn finished(level: Level, scene: &Scene<'_>) -> Option<u32> {
     (is_finished && echo != 0).then_some(echo)
 }
 
-/// The unconfirmed part of a level's goal.
 const fn unconfirmed(level: Level, scene: &Scene<'_>) -> Unconfirmed {
     match level {
         Level::Task => scene.memory.task.status.unconfirmed,

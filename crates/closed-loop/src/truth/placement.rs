@@ -31,7 +31,6 @@ enum Goal {
     At(Option<Place>),
 }
 
-/// A part that a command has moved.
 #[derive(Clone, Debug)]
 struct Moved {
     goal: Goal,
@@ -47,7 +46,6 @@ struct Moved {
 struct InHand {
     /// Its position, world coordinates, in.
     at: [f64; 3],
-    /// Last tick in the hand.
     last: Tick,
 }
 

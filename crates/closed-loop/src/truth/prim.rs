@@ -7,7 +7,6 @@ use super::{
     claim::{Claim, at, pose},
 };
 
-/// The claims of a finished command.
 pub fn claims(command: &PrimCommand, scene: &Scene<'_>) -> Vec<Claim> {
     let data = scene.data;
     let goal = || {

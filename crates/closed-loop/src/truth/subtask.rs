@@ -7,7 +7,6 @@ use super::{
     claim::{Claim, at, grip_goal, holds, pose},
 };
 
-/// The claims of a finished command.
 pub fn claims(command: &SubtaskCommand, scene: &Scene<'_>) -> Vec<Claim> {
     let data = scene.data;
     let place = command.site.place();

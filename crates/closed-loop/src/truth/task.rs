@@ -11,7 +11,6 @@ use super::{
     claim::{Claim, at, grip_goal, holds},
 };
 
-/// The claims of a finished command.
 pub fn claims(command: &HwsCommand, scene: &Scene<'_>) -> Vec<Claim> {
     let object = command.object;
     let resolve = |name: Option<Name16>, sector: Option<i32>, object: Option<&Name16>| {

@@ -22,7 +22,6 @@ use super::{
 const DATA: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../data");
 const TICK: Tick = Tick(100);
 
-/// A cell and its task data.
 struct Bench {
     store: Store,
     cell: Cell,

@@ -23,7 +23,6 @@ pub fn store() -> &'static Store {
     })
 }
 
-/// The ideal cell before its first tick.
 pub fn ideal() -> Ideal {
     static IDEAL: OnceLock<Ideal> = OnceLock::new();
     let new = || {
@@ -90,7 +89,6 @@ impl Rig {
         }
     }
 
-    /// Joints commanded to the servos.
     pub fn command_of_servos(&self) -> Joints {
         self.cell.t3().arm().command()
     }

@@ -57,7 +57,6 @@ impl Counts {
     }
 }
 
-/// One direction.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 struct OneWay {
     numbers: Numbers,
@@ -134,7 +133,6 @@ impl Injector {
     }
 }
 
-/// One tick of one direction.
 struct Work<'a> {
     rules: &'a [Rule],
     direction: Direction,

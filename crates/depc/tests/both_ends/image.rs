@@ -11,7 +11,6 @@ use std::{
     sync::LazyLock,
 };
 
-/// A state as bytes.
 #[derive(Default)]
 pub struct Image(Vec<u8>);
 

@@ -22,7 +22,6 @@ const PATIENCE: u16 = RESTART_TICKS + 5;
 /// Delays of a late frame, ticks.
 const LATE: [u8; 3] = [1, 2, 3];
 
-/// Text of an error.
 pub type Wrong = &'static str;
 
 /// Kinds of disturbances; each is one fault.
@@ -42,9 +41,7 @@ pub enum Kind {
     DtrLow,
     Hold,
     Interrupt,
-    /// The user of the host restarts the link.
     Restart,
-    /// The user of the host ends the function.
     Cancel,
 }
 
@@ -112,7 +109,6 @@ pub enum Wanted {
     Cancel,
 }
 
-/// All events of a tick.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Event {
     pub wanted: Wanted,
@@ -123,7 +119,6 @@ pub struct Event {
     pub answer: Carried,
 }
 
-/// A tick without fault or action.
 pub const QUIET: Event = Event {
     wanted: Wanted::Next,
     dtr_low: false,
@@ -213,7 +208,6 @@ impl Robot for OnRing {
     }
 }
 
-/// Both ends and everything between them.
 #[derive(Clone)]
 pub struct State {
     host: Host,
@@ -415,7 +409,6 @@ impl State {
     }
 }
 
-/// All possible fates of a frame.
 fn carried(frame: &[u8], faults: u8, setting: &Setting, command: bool) -> Vec<Carried> {
     let mut all = vec![Carried::AsSent];
     if frame.is_empty() || faults == 0 {

@@ -64,7 +64,6 @@ pub struct Truth {
     pub late_commands: u64,
     /// Commands executed a second time, including their function.
     pub repeated: u64,
-    /// The controller took noise for a cancel.
     pub false_cancels: u64,
     pub velocity_warnings: u64,
     pub warnings: u64,

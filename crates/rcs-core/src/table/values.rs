@@ -196,7 +196,7 @@ mod tests {
         Open,
         /// Both switches detect the door.
         Shut,
-        /// The door is between its switches.
+        /// It stands between its switches.
         #[text = "half way"]
         Stuck,
     }

@@ -16,7 +16,6 @@ mod order;
 use self::order::Order;
 use crate::names;
 
-/// The list as written.
 pub struct Commands {
     attributes: Vec<Attribute>,
     vis: Visibility,

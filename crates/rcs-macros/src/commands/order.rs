@@ -307,7 +307,6 @@ mod tests {
         crate::commands::expand(list.parse()?).map(|tokens| tokens.to_string())
     }
 
-    /// The error message for an order.
     fn error(order: &str) -> String {
         expand(order).expect_err(order).to_string()
     }

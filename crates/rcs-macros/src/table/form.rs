@@ -206,7 +206,6 @@ impl Row {
 }
 
 impl Table {
-    /// All rows, each with its group.
     pub fn rows(&self) -> impl Iterator<Item = (&StepGroup, &Row)> {
         self.groups.iter().flat_map(|group| group.rows.iter().map(move |row| (group, row)))
     }
