@@ -1,4 +1,4 @@
-//! A workstation's command as the mailbox holds it: `cargo run --release -p neighbours --example mailgram`.
+//! A workstation's command in its mailbox: `cargo run --release -p neighbours --example mailgram`.
 
 #![expect(clippy::print_stdout, reason = "an example prints what it does")]
 

@@ -76,8 +76,8 @@ pub struct RangeError {
     pub found: i32,
 }
 
-/// Converts the controller's four-byte command number to the manual's two bytes. 1 follows 65535, because 0 means no
-/// command.
+/// Converts the controller's four-byte command number to the manual's two bytes. 1 follows 65535, because 0
+/// means no command.
 #[must_use]
 pub fn command_number(number: u32) -> u16 {
     let wrapped = number.checked_sub(1).map_or(0, |before| before % u32::from(u16::MAX) + 1);
@@ -95,7 +95,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn command_numbers_run_round_without_zero() {
+    fn command_numbers_wrap_around_without_zero() {
         let numbers = [0, 1, 65_535, 65_536, 131_070, 131_071].map(command_number);
         assert_eq!(numbers, [0, 1, 65_535, 1, 65_535, 1]);
         assert_eq!([1, 65_535].map(successor), [2, 1]);

@@ -9,8 +9,8 @@
 //! * [`vision`]: the areas of the vision mailbox (IX.4), which E-move reads and writes;
 //! * [`mod@line`]: the bytes between the controller and a neighbour: frames, pulses, and the protocol of both sides.
 //!
-//! This crate has no file, socket, thread or clock: `sessions` carries mailboxes to other processes, and keeps the items
-//! in a database.
+//! This crate has no file, socket, thread or clock. The crate `sessions` carries mailboxes to other processes,
+//! and keeps the items in a database.
 //!
 //! A level never uses a mailbox: Task's request to the Data System is a record of common memory
 //! ([`interfaces::DataBaseCommand`]), which this crate encodes.

@@ -1,8 +1,8 @@
 //! Mailboxes of the factory network (IX, Table IX.1).
 //!
-//! A mailbox is a piece of common memory of fixed size at a fixed address: its length, a mailgram number, a read and a
-//! write lock, and data. Figure IX.1, which gave order and sizes of the first four, is lost. CHOSEN here: four 16-bit
-//! words in the order in which the text names them, low byte first as in the processors of the boards.
+//! A mailbox is an area of common memory of fixed size at a fixed address: its length, a mailgram number, a
+//! read and a write lock, and data. Figure IX.1, which gave order and sizes of the first four, is lost. CHOSEN
+//! here: four 16-bit words in the order of the text, low byte first as in the processors of the boards.
 //!
 //! ```text
 //!   byte  0        2            4          6           8 ...
@@ -90,7 +90,7 @@ impl fmt::Display for Place {
 /// Size of the largest mailbox, bytes.
 pub const MAX_SIZE: usize = 4096;
 
-/// A mailbox: the data that a process writes into it, or has read from it. Writing and copying do not allocate.
+/// A mailbox: the data that a process writes or has read. Writing and copying do not allocate.
 #[derive(Debug)]
 pub struct Mailbox {
     place: Place,
@@ -98,8 +98,8 @@ pub struct Mailbox {
     bytes: [u8; MAX_SIZE],
 }
 
-/// `clone_from` copies only the bytes of this mailbox: most are far smaller than the largest, and are copied every
-/// tick.
+/// `clone_from` copies only the bytes of this mailbox: most are far smaller than the largest, and are copied in
+/// every tick.
 impl Clone for Mailbox {
     fn clone(&self) -> Self {
         Self { place: self.place, bytes: self.bytes }
@@ -124,7 +124,7 @@ impl PartialEq for Mailbox {
 impl Eq for Mailbox {}
 
 impl Mailbox {
-    /// A mailbox after initialization (IX): its length word, zeros, and no data.
+    /// An initialized mailbox (IX): its length word, zeros, and no data.
     #[must_use]
     pub fn initialized(place: Place) -> Self {
         let mut mailbox = Self { place, bytes: [0; MAX_SIZE] };
@@ -160,10 +160,11 @@ impl Mailbox {
         }
     }
 
-    /// Copies head and data received from the network, without the unused rest. After an error nothing has changed.
+    /// Copies head and data received from the network, without the unused rest. An error leaves the mailbox
+    /// unchanged.
     ///
     /// # Errors
-    /// [`MailboxError::Length`] if the length word is not the number of bytes, or more than the mailbox holds.
+    /// [`MailboxError::Length`] if the length word differs from the number of bytes, or exceeds the mailbox.
     pub fn receive(&mut self, used: &[u8]) -> Result<(), MailboxError> {
         let found = used.first_chunk().map_or(0, |word| u16::from_le_bytes(*word));
         let legal = (HEAD..=self.place.size).contains(&used.len()) && used.len() == usize::from(found);
@@ -186,7 +187,7 @@ impl Mailbox {
     /// number is 1, because 0 is the value after initialization.
     ///
     /// # Errors
-    /// [`MailboxError::TooLong`]; the mailbox stays as it was.
+    /// [`MailboxError::TooLong`]. The mailbox is then unchanged.
     pub fn write(&mut self, data: &[u8]) -> Result<(), MailboxError> {
         let room = self.place.size - HEAD;
         if data.len() > room {
@@ -222,7 +223,7 @@ impl Mailbox {
         u16::from_le_bytes([self.bytes[at], self.bytes[at + 1]])
     }
 
-    /// Sets the length word; `length` is at most the size of the mailbox, which fits into a word.
+    /// Sets the length word. `length` is at most the size of the mailbox, which fits into a word.
     fn set_length(&mut self, length: usize) {
         let length = u16::try_from(length).unwrap_or(u16::MAX);
         self.bytes[..2].copy_from_slice(&length.to_le_bytes());
@@ -256,7 +257,7 @@ mod tests {
     }
 
     #[test]
-    fn a_copy_does_not_depend_on_the_previous_contents() {
+    fn copy_does_not_depend_on_the_previous_contents() {
         let mut small = Mailbox::initialized(HWSC_STATUS);
         small.write(&[7; 248]).unwrap();
         for place in [HWSC_STATUS, HWSC_COMMAND, VISION_PICTURE] {
@@ -273,7 +274,7 @@ mod tests {
     }
 
     #[test]
-    fn the_mailgram_number_never_returns_to_zero() {
+    fn mailgram_number_never_returns_to_zero() {
         let mut mailbox = Mailbox::initialized(PEDESTAL_STATUS);
         for _ in 0..=u32::from(u16::MAX) {
             mailbox.write(&[]).unwrap();
@@ -295,7 +296,7 @@ mod tests {
     }
 
     #[test]
-    fn network_messages_are_taken_whole_or_discarded() {
+    fn network_messages_are_stored_whole_or_discarded() {
         let mut sent = Mailbox::initialized(HWSC_STATUS);
         sent.write(&[1, 2, 3]).unwrap();
         let mut mailbox = Mailbox::initialized(HWSC_STATUS);
@@ -309,7 +310,7 @@ mod tests {
     }
 
     #[test]
-    fn an_image_of_another_size_or_length_is_refused() {
+    fn image_of_another_size_or_length_is_refused() {
         assert_eq!(
             Mailbox::from_image(HWSC_STATUS, &[0; 255]),
             Err(MailboxError::Size { mailbox: HWSC_STATUS, found: 255 })

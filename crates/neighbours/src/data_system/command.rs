@@ -18,11 +18,11 @@
 //! ```
 //!
 //! The manual gives the values of the 28-byte command and says that DSClen, TRNSlen and TYPEindc are changed
-//! for a DML command: the lengths follow by counting. Of TYPEindc it gives only the initial value, 0x55; CHOSEN:
-//! 0x55 is the first command of a connection (ABORT), 0x56 INITIATE, 0x57 STARTUP, 0x58 DML. Also CHOSEN:
-//! trans-id# is the number of an update, which is executed once, however often it is sent; 0 stands for no
-//! number. Numbers are stored low byte first, lengths of the protocol high byte first, as the values in the
-//! figure show.
+//! for a DML command. The lengths follow by counting. Of TYPEindc it gives only the initial value, 0x55;
+//! CHOSEN: 0x55 is the first command of a connection (ABORT), 0x56 INITIATE, 0x57 STARTUP, 0x58 DML. Also
+//! CHOSEN: trans-id# is the number of an update, which is executed once even if it is sent repeatedly; 0 means
+//! no number. Numbers are stored low byte first, lengths of the protocol high byte first, like the values in
+//! the figure.
 
 use std::ops::Range;
 
@@ -38,7 +38,7 @@ pub const STRING_AT: usize = 32;
 pub const CLIENT: &[u8; 8] = b"H_ROBOT ";
 /// `STORAGE-POS` and `DEVICE` of an item that the robot holds.
 pub const IN_HAND: &str = "H_ROBOT";
-/// `DEVICE` of every place of the workstation that is not the robot's hand (CHOSEN: the manual names no devices).
+/// `DEVICE` of all places of the workstation except the robot's hand (CHOSEN: the manual names no devices).
 pub const WORKSTATION: &str = "HWS";
 /// `ITEM-TYPE` of all items (CHOSEN: Task does not know types).
 pub const ITEM_TYPE: &str = "PART";
@@ -62,7 +62,6 @@ const TRANSACTION_LENGTH: usize = 18;
 const TYPE: usize = 20;
 const TRANSACTION_ID: usize = 26;
 
-/// A piece of the DML string.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Piece {
     /// A constant text, padded with blanks to the width.
@@ -71,7 +70,7 @@ enum Piece {
     Value(Value, usize),
 }
 
-/// A value that a command puts into the string (REPORT-ITEM, IX.2).
+/// A value in the string of a command (REPORT-ITEM, IX.2).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Value {
     ItemType,
@@ -122,7 +121,7 @@ const END: u8 = b'\'';
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
 pub enum Transaction {
-    /// End the connection, whatever its state.
+    /// End the connection in any state.
     Abort = 0x55,
     Initiate = 0x56,
     Startup = 0x57,
@@ -162,7 +161,7 @@ pub enum EncodeError {
     Sector(i32),
 }
 
-/// Encode a command: its bytes, and how many of them are used. Does not allocate.
+/// Encode a command. Returns the bytes and their number, without allocation.
 ///
 /// # Errors
 /// [`EncodeError`] if the fields of the buffer cannot hold it.
@@ -203,7 +202,7 @@ pub fn low_word(number: u32) -> u16 {
     u16::from_le_bytes([low, high])
 }
 
-/// Write a length field at `at`: the number of bytes behind it in a command of `command` bytes.
+/// Write a length field at `at`: the number of bytes after it in a command of `command` bytes.
 fn put_length(bytes: &mut [u8; DML], at: usize, command: usize) {
     let follows = u16::try_from(command - at - 2).unwrap_or(u16::MAX);
     bytes[at..at + 2].copy_from_slice(&follows.to_be_bytes());
@@ -248,7 +247,7 @@ fn widened(name: &Name10) -> Name16 {
     Name16::clipped(name.as_str())
 }
 
-/// A command as the server has read it.
+/// A command as decoded by the server.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Received<'a> {
     pub command_id: u16,
@@ -266,7 +265,7 @@ pub enum DecodeError {
     /// The size is neither of the two lengths.
     #[error("a command of {RECONFIGURATION} or {DML} bytes was expected, found {0}")]
     Size(usize),
-    /// A fixed field or a length has other bytes than expected.
+    /// A fixed field or a length has unexpected bytes.
     #[error("bytes {expected:02X?} were expected at {at}, found {found:02X?}")]
     Protocol {
         /// Offset, from 0.
@@ -354,7 +353,7 @@ mod tests {
     }
 
     #[test]
-    fn the_string_has_the_lengths_of_its_blocks() {
+    fn string_has_the_lengths_of_its_blocks() {
         let width = |piece: &Piece| match piece {
             Piece::Fixed(text, width) => {
                 assert!(text.len() <= *width, "{text}");
@@ -369,7 +368,7 @@ mod tests {
     }
 
     #[test]
-    fn a_reconfiguration_command_is_as_the_figure_has_it() {
+    fn reconfiguration_command_equals_the_figure() {
         let command =
             DataBaseCommand { number: 2, command: DataBaseVerb::Abort, ..DataBaseCommand::default() };
         let (bytes, length) = encode(&command).unwrap();
@@ -386,7 +385,7 @@ mod tests {
     }
 
     #[test]
-    fn an_update_is_as_the_figure_has_it() {
+    fn update_equals_the_figure() {
         let (bytes, length) = encode(&update("LINKBAR1", "17", "UNIT_1", 4)).unwrap();
         assert_eq!(length, 240);
         assert_eq!(&bytes[..8], &[0xA0, 0x82, 0x00, 0xEC, 0xB0, 0x0A, 0x03, 0x02]);
@@ -422,7 +421,7 @@ mod tests {
     }
 
     #[test]
-    fn the_first_byte_that_cannot_be_is_named() {
+    fn first_wrong_command_byte_is_named() {
         let (bytes, _) = encode(&update("LINKBAR1", "17", "UNIT_1", 4)).unwrap();
         assert_eq!(decode(&bytes[..239]), Err(DecodeError::Size(239)));
         let spoilt = |at: usize, byte: u8| {
@@ -444,7 +443,7 @@ mod tests {
         }
 
         #[test]
-        fn one_wrong_byte_is_noticed_or_reaches_a_value(at in 0_usize..240, byte in any::<u8>()) {
+        fn wrong_byte_is_detected_or_changes_a_value(at in 0_usize..240, byte in any::<u8>()) {
             let (good, _) = encode(&update("LINKBAR1", "17", "UNIT_1", 4)).unwrap();
             let mut bytes = good;
             bytes[at] = byte;

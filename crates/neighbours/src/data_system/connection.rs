@@ -1,4 +1,5 @@
-//! The controller's end of the Data System: mailboxes, the handshake with Task, and a [`Keeper`] that executes.
+//! The controller's end of the Data System: mailboxes, the handshake with Task, and the [`Keeper`] that
+//! executes commands.
 
 use std::fmt::Debug;
 
@@ -22,23 +23,23 @@ pub const ANSWER_TICKS: u64 = 25;
 
 /// Executes the commands of a Data System.
 pub trait Keeper {
-    /// Begin the command of this number; false if nobody executes it.
+    /// Begin the command of this number. Returns false if the keeper cannot execute it.
     fn execute(&mut self, id: u16, bytes: &[u8]) -> bool;
 
-    /// The reply to the command of this number, which was begun last.
+    /// The reply to the last begun command, which has this number.
     fn reply(&mut self, id: u16) -> Reply;
 
     /// The reported items, sorted by name and number.
     ///
     /// # Errors
-    /// A text that says why they cannot be listed.
+    /// The reason why they cannot be listed.
     fn items(&mut self) -> Result<Vec<Item>, String>;
 }
 
 #[derive(Clone, Debug)]
 pub enum Reply {
     Answer(Answer),
-    /// It has no answer: Task counts the ticks and repeats the command.
+    /// The command has no answer: Task counts the ticks and repeats the command.
     Silent,
     Pending,
     Dead,
@@ -66,13 +67,14 @@ impl Keeper for InMemory {
     }
 }
 
-/// The Data System's mailboxes, and the keeper behind them. With [`InMemory`] it is a value: a copy continues from the same
+/// The Data System's mailboxes and keeper. With [`InMemory`] it is a value: a copy continues from the same
 /// state.
 #[derive(Clone, Debug)]
 pub struct DataSystem<K = InMemory> {
     answer_ticks: u64,
     receiver: handshake::Receiver,
-    /// First tick in which the answer to the command in progress may take effect; `None` if no command is in progress.
+    /// First tick in which the answer to the command in progress may take effect; `None` without a command in
+    /// progress.
     due: Option<Tick>,
     status: DataBaseStatus,
     command_box: Mailbox,
@@ -88,15 +90,15 @@ impl DataSystem {
         Self::new(InMemory::default(), answer_ticks)
     }
 
-    /// Everything on which the answers after `tick` depend, for comparison: items, clients, the command in progress and
-    /// the ticks until its answer.
+    /// All data on which the answers after `tick` depend, for comparison: items, clients, the command in
+    /// progress and the ticks until its answer.
     pub fn state(&self, tick: Tick) -> impl Debug {
         (&self.keeper, self.status.report, self.due.map(|due| due.since(tick)))
     }
 }
 
 impl<K: Keeper> DataSystem<K> {
-    /// A Data System that answers a command after `answer_ticks` ticks, or later.
+    /// A Data System that answers a command after at least `answer_ticks` ticks.
     #[must_use]
     pub fn new(keeper: K, answer_ticks: u64) -> Self {
         Self {
@@ -132,12 +134,12 @@ impl<K: Keeper> DataSystem<K> {
         &self.status_box
     }
 
-    /// Why commands were refused, since the last call.
+    /// The reasons of refused commands since the last call.
     pub fn refusals(&mut self) -> Vec<String> {
         std::mem::take(&mut self.refusals)
     }
 
-    /// Call once per tick, after the controller: read the command that Task wrote in `tick`.
+    /// Call once per tick, after the controller. Reads the command that Task wrote in `tick`.
     pub fn step(&mut self, tick: Tick, command: &DataBaseCommand) {
         if self.receiver.observe(command.number) == Arrival::New {
             self.send(tick, command);
@@ -166,7 +168,7 @@ impl<K: Keeper> DataSystem<K> {
         }
     }
 
-    /// Take the answer to the command in progress, if it has arrived.
+    /// Process the answer to the command in progress, if it has arrived.
     fn receive(&mut self) {
         match self.keeper.reply(self.asked()) {
             Reply::Pending => return,
@@ -210,11 +212,11 @@ impl<K: Keeper> DataSystem<K> {
         self.refusals.push(why);
     }
 
-    /// The reported items, sorted by name and number. Empty if the server is in another process: only that process can
-    /// list them.
+    /// The reported items, sorted by name and number. Empty if the server is in another process, which alone
+    /// can list them.
     ///
     /// # Errors
-    /// A text that says why the database cannot list them.
+    /// The reason why the database cannot list them.
     pub fn items(&mut self) -> Result<Vec<Item>, String> {
         self.keeper.items()
     }

@@ -7,10 +7,10 @@
 //!   DataBaseStatus  <--status::decode--     14 bytes     <--Server--  result
 //! ```
 //!
-//! [`DataSystem`] is the controller's end, with a [`Keeper`] that executes the commands. The server takes the bytes of a
-//! command and returns those of a status. It accepts only valid bytes, a valid statement, and the steps of a connection
-//! in their order. It keeps the items in memory ([`Books`]), or in the database of the crate `sessions`, which also has
-//! keepers on a thread and in another process.
+//! [`DataSystem`] is the controller's end, with a [`Keeper`] that executes the commands. The server receives
+//! the bytes of a command and returns those of a status. It accepts only valid bytes, a valid statement, and
+//! the steps of a connection in their order. It keeps the items in memory ([`Books`]), or in the database of
+//! the crate `sessions`, which also has keepers on a thread and in another process.
 
 mod books;
 pub mod command;

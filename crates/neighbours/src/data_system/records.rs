@@ -2,10 +2,10 @@
 
 use std::fmt::Display;
 
-/// An item in the data base.
+/// An item in the database.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Item {
-    /// `ITEM_NBR`; empty if it has none.
+    /// `ITEM_NBR`; empty for an item without a number.
     pub number: String,
     /// `ITEM_NAME`.
     pub name: String,
@@ -30,7 +30,7 @@ pub trait Records {
     /// Error of reading or writing the records.
     type Error: Display;
 
-    /// State of a client's connection; 0 if the client is not known.
+    /// State of a client's connection; 0 for an unknown client.
     ///
     /// # Errors
     /// If the records cannot be read.
@@ -42,10 +42,10 @@ pub trait Records {
     /// If the records cannot be written.
     fn set_session(&mut self, client: &str, session: u8) -> Result<(), Self::Error>;
 
-    /// Store the position of an item that a client reports. Returns true if the position is new.
+    /// Store the position of an item reported by a client. Returns true if the position is new.
     ///
-    /// A statement with a number other than 0 counts once: repeated with the same number it changes nothing, even after
-    /// reports of other clients.
+    /// A statement with a number other than 0 is executed once. Repeated with the same number it changes
+    /// nothing, even after reports of other clients.
     ///
     /// # Errors
     /// If the records cannot be written; they are then unchanged.

@@ -1,8 +1,8 @@
-//! The server: bytes of a command in, bytes of a status out.
+//! The server: it converts the bytes of a command to the bytes of a status.
 //!
-//! It is strict about the order of a connection: it accepts an item only from a client that has connected by the steps
-//! of IV.4.2 (Abort, Initiate, Startup). A step that is repeated, because its answer was lost, counts as done. The
-//! state of a client is in the data base, so that a restarted server continues.
+//! It enforces the order of a connection: it accepts an item only from a client that has connected by the steps
+//! of IV.4.2 (Abort, Initiate, Startup). A repeated step, whose answer was lost, succeeds again. The state of a
+//! client is in the database, so that a restarted server continues.
 //!
 //! ```text
 //!            INITIATE              STARTUP
@@ -22,7 +22,7 @@ use super::{
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
 enum Session {
-    /// The client is not known.
+    /// The client is unknown.
     Closed = 0,
     Initiated = 1,
     Started = 2,
@@ -42,7 +42,7 @@ impl Session {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Answer {
     pub status: Status,
-    /// Why the command was refused, for the log; empty if it was executed.
+    /// The reason why the command was refused, for the log; empty if it was executed.
     pub why: String,
 }
 
@@ -105,7 +105,7 @@ impl<R: Records> Server<R> {
     }
 }
 
-/// The item of an update; the error says which value is empty or wrong.
+/// The item of an update. The error names the empty or wrong value.
 fn item(update: &Update<'_>) -> Result<Item, String> {
     let value = |column: Column| {
         let value = update.value(column).unwrap_or_default();
@@ -187,7 +187,7 @@ mod tests {
     const SEQUENCE: Summary = Summary::Refused(Refusal::Sequence);
 
     #[test]
-    fn an_item_is_where_it_was_last_reported() {
+    fn item_has_its_last_reported_position() {
         let mut client = Client::new();
         client.connect();
         for (serial, position, sector) in [("17", "UNIT_1", 4), ("18", "UNIT_1", 2), ("17", "H_ROBOT", 0)] {
@@ -199,7 +199,7 @@ mod tests {
     }
 
     #[test]
-    fn a_client_that_has_not_begun_is_refused() {
+    fn client_without_a_connection_is_refused() {
         let mut client = Client::new();
         let told = client.tell("LINKBAR1", "", "UNIT_1", 4);
         assert_eq!((told.status.summary, told.why.as_str()), (SEQUENCE, "Dml from a client that is Closed"));
@@ -215,7 +215,7 @@ mod tests {
     }
 
     #[test]
-    fn a_step_whose_answer_was_lost_can_be_asked_for_again() {
+    fn connection_step_can_be_repeated() {
         let mut client = Client::new();
         for verb in [DataBaseVerb::Initiate, DataBaseVerb::Startup, DataBaseVerb::Abort] {
             assert_eq!((client.ask(verb), client.ask(verb)), (Summary::Done, Summary::Done), "{verb}");
@@ -223,7 +223,7 @@ mod tests {
     }
 
     #[test]
-    fn unknown_items_and_places_are_refused() {
+    fn empty_items_and_places_are_refused() {
         let mut client = Client::new();
         client.connect();
         for (item, position, why) in

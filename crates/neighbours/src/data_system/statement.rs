@@ -4,8 +4,8 @@
 //! UPDATE EQUIP_ITEM_ACTION SET ( column, ... ) = ( 'value', ... ) WHERE ITEM_NBR = 'value'
 //! ```
 //!
-//! The parser ignores blanks between words, takes the columns in any order, and reports the place of an error. It
-//! removes trailing blanks from values.
+//! The parser ignores blanks between words, accepts the columns in any order, and reports the place of an
+//! error. It removes trailing blanks from values.
 
 use std::fmt;
 
@@ -65,7 +65,7 @@ pub struct StatementError {
     pub found: Found,
 }
 
-/// The text, or the number of values, found in place of the expected one.
+/// The text, or the number of values, found instead of the expected one.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Found {
     End,
@@ -213,7 +213,7 @@ mod tests {
                         WHERE ITEM_NBR ='17              '";
 
     #[test]
-    fn the_string_of_the_figure_is_read() {
+    fn string_of_the_figure_parses() {
         let update = parse(GOOD).unwrap();
         let values = Column::ALL.map(|column| update.value(column));
         assert_eq!(values, ["PART", "LINKBAR1", "HWS", "UNIT_1", "SECTOR-4"].map(Some));
@@ -231,7 +231,7 @@ mod tests {
     }
 
     #[test]
-    fn mistakes_are_reported_with_their_place() {
+    fn statement_errors_have_their_place() {
         let cases = [
             ("", "UPDATE expected at character 1, found the end"),
             ("DELETE ITEMS", "UPDATE expected at character 1, found DELETE"),
@@ -270,7 +270,7 @@ mod tests {
         }
 
         #[test]
-        fn no_change_of_a_good_one_panics(at in 0_usize..GOOD.len(), with in "\\PC{0,2}") {
+        fn changed_statement_does_not_panic(at in 0_usize..GOOD.len(), with in "\\PC{0,2}") {
             let text = format!("{}{with}{}", &GOOD[..at], &GOOD[at + 1..]);
             let _ = parse(&text);
         }

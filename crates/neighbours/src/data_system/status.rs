@@ -1,7 +1,7 @@
 //! The status of the Data System.
 //!
-//! Task extracts from it the server status and the summary status (IX.2); the manual does not give its bytes. CHOSEN,
-//! in the format of the command:
+//! Task extracts the server status and the summary status from it (IX.2). The manual does not give its bytes.
+//! CHOSEN, in the format of the command:
 //!
 //! ```text
 //!   A1 82 00 0A   number of bytes that follow, high byte first
@@ -36,9 +36,9 @@ pub enum Refusal {
     Sequence = 0x81,
     /// The string is not a statement that this server supports.
     Statement = 0x82,
-    /// The statement names no item or no place.
+    /// The statement lacks an item or a place.
     Value = 0x83,
-    /// The data base could not store the item.
+    /// The database could not store the item.
     Store = 0x84,
 }
 
@@ -157,7 +157,7 @@ mod tests {
     }
 
     #[test]
-    fn every_byte_that_cannot_be_is_named() {
+    fn every_wrong_status_byte_is_named() {
         let good = Status { command_id: 7, server: ServerStatus::Ready, summary: Summary::Done }.encode();
         let spoilt = |at: usize, byte: u8| {
             let mut bytes = good;

@@ -28,7 +28,7 @@ macro_rules! codes {
 }
 
 codes! {
-    /// A field that is not read; blanks are written.
+    /// An unused field, written as blanks.
     Unused<W> = W;
     /// An unsigned integer of two bytes.
     U16 = 2;
@@ -42,12 +42,11 @@ codes! {
     U64 = 8;
     /// 1 or 0, in two bytes.
     Flag = 2;
-    /// A number of a command: the controller counts with four bytes, the mailbox has two
-    /// ([`command_number`]).
+    /// The number of a command: four bytes in the controller, two in the mailbox ([`command_number`]).
     Number = 2;
-    /// A name of `W` characters, with blanks or zeros behind it.
+    /// A name of `W` characters, padded with blanks or zeros.
     Chars<W> = W;
-    /// A text of `W` printable characters; a longer text is cut off.
+    /// A text of `W` printable characters. A longer text is truncated.
     Text<W> = W;
     /// A value by its word, in `W` characters.
     Spelled<W> = W;
@@ -125,7 +124,7 @@ impl Codec<'_, Tick> for U64 {
     }
 }
 
-/// The value fits into one byte.
+/// For values of one byte.
 impl Codec<'_, u8> for U16 {
     fn put(value: &u8, to: &mut [u8]) {
         Self::put(&u16::from(*value), to);
@@ -188,7 +187,7 @@ fn characters(at: At, from: &[u8], legal: impl Fn(u8) -> bool) -> Result<&str, F
 
 fn put_text(text: &dyn fmt::Display, to: &mut [u8]) {
     to.fill(BLANK);
-    // An error only means that the text was cut off, as intended.
+    // An error only means that the text was truncated as intended.
     let _ = write!(Clipped { rest: to }, "{text}");
 }
 
@@ -268,12 +267,12 @@ impl<const W: usize, T: Plain> Codec<'_, T> for Coded<W> {
     }
 }
 
-/// A reason or another sentence, cut to the length of a field; formatting does not allocate.
+/// A reason or another sentence, truncated to the length of a field. Formatting does not allocate.
 #[derive(Clone, Copy, Debug)]
 pub struct Sentence<const W: usize>([u8; W]);
 
 impl<const W: usize> Sentence<W> {
-    /// Formats a value, cut to `W` characters.
+    /// Formats a value, truncated to `W` characters.
     #[must_use]
     pub fn of(shown: &dyn fmt::Display) -> Self {
         let mut bytes = [BLANK; W];
@@ -294,7 +293,7 @@ mod tests {
     const AT: At = At { field: "obj", byte: 40 };
 
     #[test]
-    fn zeros_after_a_name_are_blanks_and_invalid_bytes_are_named() {
+    fn name_padding_may_be_zeros_and_invalid_bytes_are_named() {
         let name = |bytes: &'static [u8; 4]| -> Result<Name<4>, FieldError> { Chars::<4>::take(AT, bytes) };
         assert_eq!(name(b"AB\0 ").unwrap().as_str(), "AB");
         assert!(name(b"\0\0\0\0").unwrap().is_empty());
@@ -306,7 +305,7 @@ mod tests {
     }
 
     #[test]
-    fn integers_that_do_not_fit_are_noticed_and_held_at_the_end_of_their_range() {
+    fn integers_out_of_range_are_detected_and_clamped() {
         let mut bytes = [0xA5; 2];
         let misfit = <I16 as Codec<'_, i32>>::misfit;
         assert_eq!((misfit(&-40_000), misfit(&-32_768)), (Some(-40_000), None));
@@ -325,7 +324,7 @@ mod tests {
     }
 
     #[test]
-    fn a_sentence_is_cut_to_its_field() {
+    fn sentence_is_truncated_to_its_field() {
         assert_eq!(Sentence::<6>::of(&"too long for it").as_str(), "too lo");
         assert_eq!(Sentence::<20>::of(&"é!").as_str(), "??!");
     }

@@ -1,9 +1,9 @@
-//! Layouts of mailbox data (V.4.2, VI.7.2, IX.4): one definition gives encoding, decoding and the table in
+//! Layouts of mailbox data (V.4.2, VI.7.2, IX.4): one definition for encoding, decoding and the table in
 //! docs/neighbours.md.
 //!
-//! [`layout!`](crate::layout!) lists the fields in their order: the manual's variable, the place of its value in a Rust
-//! record, its code, and its meaning. Offsets follow from the sizes. Integers are low byte first; texts are padded with
-//! blanks. Nothing here allocates but [`Table::markdown`].
+//! [`layout!`](crate::layout!) lists the fields in their order: the manual's variable, the place of its value
+//! in a Rust record, its code, and its meaning. Offsets follow from the sizes. Integers are low byte first;
+//! texts are padded with blanks. Only [`Table::markdown`] allocates.
 //!
 //! ```
 //! use neighbours::layout::{Chars, I16, Unused};
@@ -97,7 +97,7 @@ pub trait Width {
 
 /// Code of a value in [`Width::BYTES`] bytes.
 pub trait Codec<'a, T>: Width {
-    /// The value, if it does not fit; [`Codec::put`] then writes the nearest value that fits.
+    /// The value, if it is out of range; [`Codec::put`] then writes the nearest value in range.
     #[must_use]
     fn misfit(_value: &T) -> Option<i32> {
         None

@@ -1,4 +1,4 @@
-//! Where a controller can be reached.
+//! Addresses of controllers.
 
 use std::{
     fmt,
@@ -15,7 +15,7 @@ pub struct Address(PathBuf);
 #[error("unix:PATH was expected, found {found}{}", if *.is_remote { TO_OTHER_MACHINES } else { "" })]
 pub struct AddressError {
     found: String,
-    /// It is an address on a network, as earlier versions took it.
+    /// True for an address on a network, as in earlier versions.
     is_remote: bool,
 }
 
@@ -70,7 +70,7 @@ mod tests {
     }
 
     #[test]
-    fn addresses_on_a_network_are_refused_with_the_way_to_other_machines() {
+    fn network_addresses_are_refused_with_the_alternative() {
         for text in ["tcp:127.0.0.1:7400", "zenoh:t3", "zenoh:t3@tcp/10.0.0.1:7447", "tls/10.0.0.1:7447"] {
             let error = text.parse::<Address>().unwrap_err().to_string();
             assert_eq!(

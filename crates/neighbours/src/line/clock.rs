@@ -11,8 +11,8 @@ pub enum ClockKind {
     Fast = 1,
 }
 
-/// How long the controller waits for the answer to a pulse: 10 s on the 40 ms grid, where the robot goes on
-/// meanwhile; 60 s in fast clock, because the computer may be busy.
+/// Time limit of the controller for the answer to a pulse: 10 s on the 40 ms grid, where the robot meanwhile
+/// continues; 60 s in fast clock, because the computer may be busy.
 #[must_use]
 pub const fn answer_limit(clock: ClockKind) -> Duration {
     match clock {

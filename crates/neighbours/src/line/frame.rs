@@ -6,8 +6,8 @@
 //!         32 bits     `----------- the mailbox, head and data ----------------'
 //! ```
 //!
-//! All numbers are low byte first. The address is that of Table IX.1; `length` counts from its own first
-//! byte to the last of the data. Three addresses are not those of mailboxes:
+//! All numbers are low byte first. The address is that of Table IX.1; `length` counts the bytes from its own
+//! first byte to the last of the data. Three addresses do not belong to mailboxes:
 //!
 //! * 0, the **pulse**: its data are the number of a tick, 64 bits. The controller sends it after the
 //!   mailgrams of every tick, and the neighbour sends it back after its own;
@@ -32,10 +32,10 @@ pub struct Frame<'a> {
 }
 
 impl<'a> Frame<'a> {
-    /// The first frame of `bytes`; `None` as long as it is not complete.
+    /// The first frame of `bytes`, once it is complete.
     ///
     /// # Errors
-    /// [`FrameError::Length`]; after it no further frame can be found.
+    /// [`FrameError::Length`], after which no further frame can be found.
     pub fn first(bytes: &'a [u8]) -> Result<Option<Self>, FrameError> {
         let Some(&[a, b, c, d, low, high]) = bytes.first_chunk() else { return Ok(None) };
         let (address, found) = (u32::from_le_bytes([a, b, c, d]), u16::from_le_bytes([low, high]));
@@ -86,7 +86,7 @@ pub fn put_mailbox(out: &mut Vec<u8>, mailbox: &Mailbox) {
     out.extend_from_slice(mailbox.used());
 }
 
-/// Append a frame that is not a mailbox; data that a frame cannot hold are cut off.
+/// Append a frame that is not a mailbox. Data beyond the size of a frame are truncated.
 pub fn put(out: &mut Vec<u8>, address: u32, data: &[u8]) {
     let data = &data[..data.len().min(MAX_SIZE - HEAD)];
     let length = u16::try_from(HEAD + data.len()).unwrap_or(u16::MAX);
@@ -110,7 +110,7 @@ pub enum FrameError {
     /// A pulse without the number of a tick.
     #[error("the number of a tick was expected in a pulse, 8 bytes, found {0}")]
     Pulse(usize),
-    /// An address that is none of the sender's mailboxes.
+    /// An address that does not belong to the sender's mailboxes.
     #[error("the address of {} was expected, found {found:05X}", names(.expected))]
     Address { expected: &'static [Place], found: u32 },
 }
@@ -131,7 +131,7 @@ mod tests {
     }
 
     #[test]
-    fn a_mailgram_follows_its_address() {
+    fn mailgram_follows_its_address() {
         let mut mailbox = Mailbox::initialized(HWSC_COMMAND);
         mailbox.write(&[7, 8, 9]).unwrap();
         let mut bytes = Vec::new();
@@ -148,7 +148,7 @@ mod tests {
     }
 
     #[test]
-    fn a_pulse_has_the_number_of_its_tick() {
+    fn pulse_has_the_number_of_its_tick() {
         let bytes = pulse(0x0102);
         assert_eq!(bytes, [0, 0, 0, 0, 16, 0, 0, 0, 0, 0, 0, 0, 2, 1, 0, 0, 0, 0, 0, 0]);
         assert_eq!(Frame::first(&bytes).unwrap().unwrap().as_pulse(), Ok(Some(0x0102)));
@@ -162,7 +162,7 @@ mod tests {
     }
 
     #[test]
-    fn data_are_cut_to_the_size_of_a_frame() {
+    fn data_are_truncated_to_the_size_of_a_frame() {
         let mut bytes = Vec::new();
         put(&mut bytes, DISCONNECT, &[b'x'; MAX_SIZE]);
         let frame = Frame::first(&bytes).unwrap().unwrap();
@@ -173,7 +173,7 @@ mod tests {
     }
 
     #[test]
-    fn a_length_that_no_mailbox_has_is_refused_at_once() {
+    fn impossible_length_is_refused_at_once() {
         for (low, high, found) in [(7, 0, 7), (1, 16, 4097)] {
             let error = Frame::first(&[0, 0x60, 0x0F, 0, low, high]).unwrap_err();
             let text = format!("a length of 8 to 4096 was expected behind the address F6000, found {found}");

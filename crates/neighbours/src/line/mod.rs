@@ -1,12 +1,12 @@
 //! The line between the controller and a neighbour, as bytes: docs/neighbours.md "On the line".
 //!
-//! * [`role`]: which neighbours there are, and which mailboxes each has; [`clock`]: the clock of the run;
-//! * [`address`]: where the controller can be reached;
+//! * [`role`]: the neighbours and the mailboxes of each; [`clock`]: the clock of the run;
+//! * [`address`]: the addresses of controllers;
 //! * [`frame`]: a mailgram on the line, and the pulse for each tick;
 //! * [`session`]: the protocol of both sides, without sockets and clocks.
 //!
-//! The crate `sessions` moves these bytes through sockets for the controller and its neighbours, `rcs-gateway` between
-//! machines.
+//! The crate `sessions` moves these bytes through sockets for the controller and its neighbours, and
+//! `rcs-gateway` between machines.
 
 pub mod address;
 pub mod clock;

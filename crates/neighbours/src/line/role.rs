@@ -1,4 +1,4 @@
-//! The roles of clients that connect, and the mailboxes of each.
+//! The roles of connecting clients, and the mailboxes of each.
 
 use std::{fmt, str::FromStr};
 
@@ -56,7 +56,7 @@ impl Role {
             Self::Workstation => &[HWSC_STATUS, CELL_STATUS],
             Self::DataSystem => &[DATA_SYSTEM_COMMAND],
             Self::Pedestal => &[PEDESTAL_COMMAND, PEDESTAL_SENSORS],
-            // The picture first: a neighbour that reads the request then has the picture.
+            // The picture first, so that a neighbour that reads the request has the picture.
             Self::Vision => &[VISION_PICTURE, VISION_REQUEST],
             Self::Operator => &[],
         }
@@ -97,7 +97,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn words_and_numbers_come_back() {
+    fn role_words_and_numbers_round_trip() {
         for role in Role::ALL {
             assert_eq!(role.text().parse(), Ok(role));
             assert_eq!(Role::from_number(role as u16), Some(role));
@@ -110,7 +110,7 @@ mod tests {
     }
 
     #[test]
-    fn no_mailbox_has_two_writers() {
+    fn every_mailbox_has_one_writer() {
         let mut all: Vec<u32> = Role::ALL
             .iter()
             .flat_map(|role| role.to_controller().iter().chain(role.from_controller()))

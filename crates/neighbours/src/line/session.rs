@@ -17,9 +17,9 @@
 //!                                             close
 //! ```
 //!
-//! The caller moves bytes: received bytes go to [`Session::receive`], then [`Session::event`] is called until there is
-//! none, then [`Session::output`] is sent. [`Session::deadline`] says when [`Session::check_time`] is due. The socket
-//! (user) or TLS (certificate) below the session authenticates the peer.
+//! The caller moves bytes: it passes received bytes to [`Session::receive`], then calls [`Session::event`]
+//! until it returns `None`, then sends [`Session::output`]. [`Session::deadline`] is the time of the next
+//! [`Session::check_time`]. The socket (user) or TLS (certificate) below the session authenticates the peer.
 
 use std::{
     fmt,
@@ -40,14 +40,14 @@ pub const HELLO: usize = 8;
 const MARK: [u8; 4] = *b"RCS2";
 pub const VERSION: u16 = 3;
 
-/// How long a neighbour waits for hello and welcome; on the 40 ms grid, for the next byte as well.
+/// Time limit of a neighbour for hello and welcome; on the 40 ms grid also for the next byte.
 pub const NEIGHBOUR_LIMIT: Duration = Duration::from_secs(10);
 
 #[derive(Debug, PartialEq, Eq)]
 pub enum Event<'a> {
     /// At the controller: a neighbour asks for admission.
     Hello(Role),
-    /// At the neighbour: it is admitted.
+    /// At the neighbour: admission.
     Welcome(ClockKind),
     /// A mailbox has been received: its head and data.
     Mailgram(Place, &'a [u8]),
@@ -76,14 +76,14 @@ pub enum SessionError {
     /// The neighbour has answered a pulse that was never sent.
     #[error("an answer to a pulse up to {sent} was expected, found one to {found}")]
     Early {
-        /// Number of the last pulse that was sent.
+        /// Number of the last sent pulse.
         sent: u64,
         found: u64,
     },
     /// No hello or welcome was received in time.
     #[error("no hello within {} s", .0.as_secs())]
     NoHello(Duration),
-    /// Nothing was received for this time.
+    /// No data were received for this time.
     #[error("no answer for {} s", .0.as_secs())]
     Silent(Duration),
     /// The controller has closed the connection, with this reason.
@@ -91,7 +91,7 @@ pub enum SessionError {
     Reason(String),
 }
 
-/// Which side of the connection a session is.
+/// Side of the connection on which the session is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Side {
     Controller { clock: ClockKind, role: Option<Role> },
@@ -123,7 +123,7 @@ pub struct Session {
     read: usize,
     output: Vec<u8>,
     pulses: Pulses,
-    /// When it began, and when bytes were received last.
+    /// Begin of the session, and time of the last received bytes.
     began: Instant,
     heard: Instant,
 }
@@ -162,7 +162,7 @@ impl Session {
         }
     }
 
-    /// The controller's side. Its hello is in the output already.
+    /// The controller's side, with its hello in the output.
     #[must_use]
     pub fn controller(clock: ClockKind, now: Instant) -> Self {
         let mut session = Self::new(Side::Controller { clock, role: None }, now);
@@ -175,7 +175,7 @@ impl Session {
         Self::new(Side::Neighbour { role, clock: ClockKind::Real }, now)
     }
 
-    /// Add received bytes. The caller takes all events before it adds more.
+    /// Add received bytes. The caller must process all events before it adds more.
     pub fn receive(&mut self, bytes: &[u8], now: Instant) {
         if self.state == State::Closed {
             return;
@@ -188,11 +188,11 @@ impl Session {
         }
     }
 
-    /// The next event; `None` until more bytes have come.
+    /// The next event; `None` if more bytes are required.
     ///
     /// # Errors
-    /// [`SessionError`] once, if the other side has broken the protocol or closed the connection. The
-    /// session is closed then; the controller's has the reason in its output.
+    /// [`SessionError`] once, if the other side has violated the protocol or closed the connection. The session
+    /// is then closed, and the controller's output has the reason.
     pub fn event(&mut self, now: Instant) -> Result<Option<Event<'_>>, SessionError> {
         let step = match self.step(now) {
             Ok(step) => step,
@@ -245,13 +245,13 @@ impl Session {
                 *clock = found;
                 let number = *role as u16;
                 self.put_hello(number);
-                // The welcome may have come with the hello.
+                // The welcome may have arrived with the hello.
                 self.welcome(found)
             }
         }
     }
 
-    /// The controller has admitted the neighbour, or not.
+    /// Admission by the controller, or its refusal.
     fn welcome(&mut self, clock: ClockKind) -> Result<Option<Step>, SessionError> {
         let Some(frame) = Frame::first(&self.input[self.read..])? else { return Ok(None) };
         let (address, length) = (frame.address(), frame.bytes().len());
@@ -340,7 +340,7 @@ impl Session {
         error
     }
 
-    /// Time of the next check of the time limits; `None` if there is none.
+    /// Time of the next check of the time limits, if any.
     #[must_use]
     pub fn deadline(&self) -> Option<Instant> {
         self.limit().and_then(|(since, limit, _)| since.checked_add(limit))
@@ -357,7 +357,7 @@ impl Session {
             (State::Open, Side::Controller { clock, .. }) if self.pulses.answered < self.pulses.sent => {
                 Some((self.pulses.due, answer_limit(clock), SessionError::Silent))
             }
-            // In fast clock the controller may send nothing for any time.
+            // In fast clock the controller may be silent for any time.
             (State::Open, Side::Neighbour { clock: ClockKind::Real, .. }) => {
                 Some((self.heard, NEIGHBOUR_LIMIT, SessionError::Silent))
             }
@@ -378,7 +378,7 @@ impl Session {
         }
     }
 
-    /// Takes the received bytes that follow the admission and are not part of this protocol.
+    /// Returns the received bytes after the admission, which are not part of this protocol.
     pub fn take_unread(&mut self) -> Vec<u8> {
         let unread = self.input.split_off(self.read);
         self.input.clear();

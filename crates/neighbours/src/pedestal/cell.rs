@@ -1,5 +1,5 @@
-//! The devices of the pedestal in the simulated cell (CHOSEN: a real pedestal has its own devices, and neither reads
-//! nor writes these mailboxes).
+//! The devices of the pedestal in the simulated cell (CHOSEN: a real pedestal has its own devices, and does not
+//! use these mailboxes).
 
 use interfaces::device::{GripValves, MotorCommand, PedestalSensors};
 

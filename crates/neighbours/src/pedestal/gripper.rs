@@ -1,6 +1,6 @@
-//! The status of the pedestal's gripper for Diagnostics (IX.3). CHOSEN: the manual gives no layout. The gripper is
-//! nearly identical to the parts gripper (III.9.2), so the variables are those of Grip (VI.3.2): first the status, then
-//! the command that it belongs to.
+//! The status of the pedestal's gripper for Diagnostics (IX.3). CHOSEN: the manual gives no layout. The gripper
+//! is nearly identical to the parts gripper (III.9.2), so the variables are those of Grip (VI.3.2): first the
+//! status, then its command.
 
 use interfaces::{
     GripOutputs,

@@ -74,7 +74,7 @@ crate::layout! {
         "CHOSEN: 1: GRIP was ordered, and no opening since";
 }
 
-/// Removes the angle if it is not known.
+/// Removes an unknown angle.
 fn set_known(read: &mut Status<'_>, known: bool) {
     if !known {
         read.status.table_position = None;
@@ -82,7 +82,7 @@ fn set_known(read: &mut Status<'_>, known: bool) {
 }
 
 impl<'a> Status<'a> {
-    /// Encodes the status; a reason longer than [`REASON`] is cut off.
+    /// Encodes the status. A reason longer than [`REASON`] is truncated.
     #[must_use]
     pub fn encode(&self) -> [u8; StatusLayout::BYTES] {
         StatusLayout::encode(self)

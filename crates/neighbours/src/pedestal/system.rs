@@ -6,17 +6,17 @@
 //!                             | hand table
 //! ```
 //!
-//! A step is a tick of the controller: the pedestal runs once per pulse received, with its own cycle count.
+//! A step is a tick of the controller: the pedestal runs once per received pulse, with its own cycle count.
 //!
-//! When it connects to a controller, it adopts the number of the command in the mailbox without executing it (IX.1:
-//! numbers are synchronized): it reports *restarted* for this number, and executes the next one. So it does not execute
-//! a command that was abandoned while the connection was down. A pedestal that has just started uses the number to
-//! distinguish two cases:
+//! When it connects to a controller, it adopts the number of the command in the mailbox without executing it
+//! (IX.1: numbers are synchronized): it reports *restarted* for this number, and executes the next command.
+//! This prevents the execution of a command that was abandoned while the connection was down. A newly started
+//! pedestal distinguishes two cases by the number:
 //!
-//! | command number | what it means                             | hand and table                                            |
+//! | command number | meaning                                   | hand and table                                            |
 //! |----------------|-------------------------------------------|-----------------------------------------------------------|
 //! | 0              | the system is booted                      | calibrate at once (IV.5.1 steps 7 and 10)                 |
-//! | another        | this one replaces one that was killed     | stay as they are, since a part may be held, and calibrate |
+//! | another        | this one replaces one that was killed     | stay unchanged, since a part may be held, and calibrate   |
 //! |                |                                           | before the first command that moves them                  |
 
 use interfaces::{
@@ -40,7 +40,7 @@ use crate::{
     mailbox::{Mailbox, PEDESTAL_GRIPPER_STATUS, PEDESTAL_ORDERS, PEDESTAL_STATUS, PEDESTAL_TABLE_STATUS},
 };
 
-/// Command number that hand and table find in a replacement pedestal; they have not executed that command.
+/// Command number that hand and table receive in a replacement pedestal. They have not executed that command.
 const OF_THE_LAST_ONE: u32 = 1;
 
 pub struct System {
@@ -50,10 +50,10 @@ pub struct System {
     memory: Box<CommonMemory>,
     external: Box<ExternalInputs>,
     tick: Tick,
-    /// Mailgram number of the command mailbox read last.
+    /// Last read mailgram number of the command mailbox.
     read: u16,
     refused: Option<(Verdict, LayoutError)>,
-    /// The number in the command mailbox has not been adopted yet.
+    /// True until the number in the command mailbox is adopted.
     joining: bool,
     outgoing: [Mailbox; 4],
 }
@@ -77,13 +77,13 @@ impl Default for System {
 }
 
 impl System {
-    /// Called when a connection to a controller begins: the command in its mailbox must not be executed.
+    /// Called at the start of a connection to a controller. The command in its mailbox must not be executed.
     pub const fn join(&mut self) {
         (self.read, self.joining) = (0, true);
     }
 
-    /// Runs one tick on the mailboxes. If the command mailbox or the sensor words cannot be decoded, no process is
-    /// stepped, and the status says why.
+    /// Runs one tick on the mailboxes. If the command mailbox or the sensor words cannot be decoded, no process
+    /// is stepped, and the status has the reason.
     pub fn step(&mut self, command_box: &Mailbox, sensors_box: &Mailbox) {
         if command_box.mailgram() == 0 || sensors_box.mailgram() == 0 {
             return;
@@ -112,7 +112,7 @@ impl System {
         &self.memory.subtask.pedestal
     }
 
-    /// Why the last mailgram was refused, if it was.
+    /// The reason why the last mailgram was refused, if it was.
     #[must_use]
     pub fn refusal(&self) -> Option<&LayoutError> {
         self.refused.as_ref().map(|(_, why)| why)
@@ -128,7 +128,7 @@ impl System {
             Ok(command) => (Some(command.number), command),
             Err(error) => {
                 self.refused = Some((Verdict::NoCommand, error));
-                // The pedestal process refuses a command without a word for it, and echoes its number.
+                // The pedestal process refuses an unknown command, and echoes its number.
                 let number = command::number(mailbox.data());
                 (number, PedestalCommand { number: number.unwrap_or_default(), ..Default::default() })
             }
@@ -153,7 +153,7 @@ impl System {
         }
     }
 
-    /// Decodes the sensor words; false if they are invalid.
+    /// Decodes the sensor words. Returns false if they are invalid.
     fn read_sensors(&mut self, mailbox: &Mailbox) -> bool {
         let sensors = SensorsLayout::decode(mailbox.data());
         if matches!(self.refused, Some((Verdict::NoSensors, _))) {
@@ -166,7 +166,7 @@ impl System {
         sensors.is_ok()
     }
 
-    /// Runs a tick of the three processes: each reads the buffers of the previous tick.
+    /// Runs a tick of the three processes. Each reads the buffers of the previous tick.
     fn run(&mut self) {
         self.tick = self.tick.next();
         let before = *self.memory;

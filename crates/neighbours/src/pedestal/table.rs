@@ -1,5 +1,5 @@
-//! The status of the pedestal's rotary table for Diagnostics (IX.3). CHOSEN: the manual gives no layout, and says of
-//! the table process only that it exists.
+//! The status of the pedestal's rotary table for Diagnostics (IX.3). CHOSEN: the manual only mentions the table
+//! process, and gives no layout.
 
 use interfaces::{TableOutputs, pedestal::TableCommand};
 
@@ -33,7 +33,7 @@ crate::layout! {
         "potentiometer of the table at the + limit, counts; 0 if it is not known";
 }
 
-/// Removes the angle if it is not known.
+/// Removes an unknown angle.
 fn set_angle_known(read: &mut TableAndCommand, known: bool) {
     if !known {
         read.0.status.position = None;

@@ -42,7 +42,7 @@ fn row() -> Header {
 }
 
 #[test]
-fn a_command_is_at_its_bytes() {
+fn command_fields_are_at_their_bytes() {
     let expected = [
         &b"\x02\x01\x00\x00\x00\x00\x00\x00"[..],
         b"\x07\x00\x00\x00FLIP      ",
@@ -83,7 +83,7 @@ fn a_status_is_at_its_bytes() {
 }
 
 #[test]
-fn the_statuses_for_diagnostics_stand_at_their_bytes() {
+fn diagnostics_statuses_have_their_byte_layout() {
     let hand = GripOutputs {
         header: row(),
         status: GripStatus {
@@ -150,7 +150,7 @@ fn the_statuses_for_diagnostics_stand_at_their_bytes() {
 }
 
 #[test]
-fn the_words_of_the_devices_stand_at_their_bytes() {
+fn device_words_have_their_byte_layout() {
     let sensors = PedestalSensors {
         potentiometer: 0x0102,
         strain_left: 3,
@@ -228,23 +228,23 @@ proptest! {
         let _ = OrdersLayout::decode(&bytes);
     }
 
-    /// Changes one byte of a valid command: if the result decodes, encoding it gives the same bytes.
+    /// Changes one byte of a valid command. If the result decodes, encoding it gives the same bytes.
     #[test]
-    fn an_accepted_message_is_complete(at in any::<prop::sample::Index>(), byte in any::<u8>()) {
+    fn accepted_command_encodes_to_the_same_bytes(at in any::<prop::sample::Index>(), byte in any::<u8>()) {
         let mut bytes = CommandLayout::encode(&flip(7));
         let at = at.index(bytes.len());
         bytes[at] = byte;
         if let Ok(taken) = CommandLayout::decode(&bytes) {
-            // Zeros are accepted as padding of a text, too.
+            // Zeros are also accepted as padding of a text.
             let blank = bytes.map(|byte| if byte == 0 { b' ' } else { byte });
             prop_assert_eq!(CommandLayout::encode(&taken).map(|byte| if byte == 0 { b' ' } else { byte }), blank);
         }
     }
 
-    /// With arbitrary mailbox data and processes that join at any time, the pedestal continues and its output can be
-    /// decoded.
+    /// With arbitrary mailbox data and processes that join at any time, the pedestal continues and its output
+    /// can be decoded.
     #[test]
-    fn no_mailgram_stops_the_pedestal(
+    fn arbitrary_mailgrams_do_not_stop_the_pedestal(
         events in prop::collection::vec((0_u8..6, prop::collection::vec(any::<u8>(), 0..40)), 1..60),
     ) {
         let mut bench = Bench::default();
@@ -316,7 +316,7 @@ impl Bench {
 }
 
 #[test]
-fn a_booted_pedestal_calibrates_and_a_replacement_does_not_move() {
+fn only_a_booted_pedestal_calibrates_at_once() {
     let mut booted = Bench::joining(0);
     (0..3).for_each(|_| booted.tick());
     let (valves, motor) = booted.orders();
@@ -362,7 +362,7 @@ fn old_mailbox_contents_are_not_executed_after_a_repair() {
 }
 
 #[test]
-fn a_garbled_command_is_refused_by_its_number_and_the_next_one_is_taken() {
+fn garbled_command_is_refused_by_its_number() {
     let mut bench = Bench::joining(0);
     bench.tick();
     let mut bytes = CommandLayout::encode(&flip(5));
@@ -384,7 +384,7 @@ fn a_garbled_command_is_refused_by_its_number_and_the_next_one_is_taken() {
 }
 
 #[test]
-fn without_sensor_words_no_process_steps_and_the_status_has_the_reason() {
+fn invalid_sensor_words_stop_the_processes_with_a_reason() {
     let mut bench = Bench::joining(0);
     (0..3).for_each(|_| bench.tick());
     let before = bench.orders();

@@ -1,4 +1,5 @@
-//! The areas that vision writes (IX.4): the two ready words and the response. CHOSEN, Figure IX.3 is lost.
+//! The areas that vision writes (IX.4): the two ready words and the response. CHOSEN, since Figure IX.3 is
+//! lost.
 
 use interfaces::device::{VisionResponse, VisionStatus};
 
@@ -37,7 +38,7 @@ impl Codec<'_, Ready> for ReadyWord {
     }
 }
 
-/// Codec of the byte-count of a request or response area: always 12, the number of bytes behind it.
+/// Codec of the byte-count of a request or response area: always 12, the number of bytes after it.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct ByteCount;
 

@@ -1,9 +1,9 @@
 //! The NBS vision system and E-move (IX.4, V.2.1 LOCATE-OBJ).
 //!
-//! Vision has its own parallel interface, which the software uses like a slightly modified mailbox: a request area and
-//! a response area, the byte-count of each, and two words that say which of them may be used. Figure IX.3, with
-//! addresses and sizes, is lost. CHOSEN: two mailboxes, one each way, so that each has one writer; their data are the
-//! areas.
+//! Vision has its own parallel interface, which the software uses like a slightly modified mailbox: a request
+//! area and a response area, the byte-count of each, and two words that permit their use. Figure IX.3, with
+//! addresses and sizes, is lost. CHOSEN: two mailboxes, one per direction, so that each has one writer; their
+//! data are the areas.
 //!
 //! ```text
 //!   E-move --VisionRequest--> Port --request---> F8000 --> vision
@@ -11,13 +11,14 @@
 //!                             Port --picture---> F8400 --> vision, for the simulated cell only
 //! ```
 //!
-//! Vision writes both ready words: `vision-ready-input` is 2 while the response area does not change and may be read,
-//! `vision-ready-output` is 2 while a request may be written. The controller sets them only by initialization (blocks
-//! 984-986): input "ready", because the response area is empty, and output "not ready", because no vision system is
-//! connected yet. Vision establishes communications when it writes its mailbox the first time.
+//! Vision writes both ready words: `vision-ready-input` is 2 while the response area is stable and may be read,
+//! `vision-ready-output` is 2 while a request may be written. The controller sets them only by initialization
+//! (blocks 984-986): input "ready", because the response area is empty, and output "not ready", because no
+//! vision system is connected. Vision establishes communications when it writes its mailbox for the first time.
 //!
-//! The crate `sessions` has the controller's end: its `vision::Port` does the work of E-move's READ-VISION-DATA and WRITE-VISION-REQUEST (IV.4.4). E-move is independent of it:
-//! it reads the response as part of its device inputs, which are logged.
+//! The crate `sessions` has the controller's end: its `vision::Port` implements E-move's READ-VISION-DATA and
+//! WRITE-VISION-REQUEST (IV.4.4). E-move is independent of it: it reads the response as part of its device
+//! inputs, which are logged.
 
 pub mod areas;
 pub mod picture;
@@ -45,7 +46,7 @@ pub enum VisionError {
     /// Wrong size or field of a part.
     #[error("part {part}: {source}")]
     Part {
-        /// Which part, from 1.
+        /// Number of the part, from 1.
         part: usize,
         source: LayoutError,
     },

@@ -1,5 +1,6 @@
-//! The picture of the camera in the simulated cell: an extension for a vision system without a camera. A real vision
-//! system does not read it. All numbers are exactly those of the cell, so that every process computes the same answer.
+//! The picture of the camera in the simulated cell: an extension for a vision system without a camera. A real
+//! vision system does not read it. All numbers equal those of the cell exactly, so that every process computes
+//! the same answer.
 
 use super::VisionError;
 use crate::{
@@ -32,7 +33,7 @@ crate::layout! {
          those along the second edge first";
 }
 
-/// Bytes in front of the parts.
+/// Bytes before the parts.
 pub const HEAD: usize = HeadLayout::BYTES;
 pub const PART: usize = PartLayout::BYTES;
 pub const MAX_PARTS: usize = (VISION_PICTURE.size - MAILBOX_HEAD - HEAD) / PART;
@@ -130,14 +131,15 @@ pub struct Part {
     pub centre: [f64; 3],
     /// Directions and lengths of its edges.
     pub edges: [([f64; 3], f64); 2],
-    /// Share of the light that it reflects.
+    /// Reflected share of the light.
     pub reflectance: f64,
-    /// The points that are seen: bit n for the nth.
+    /// The visible points: bit n for the nth.
     pub seen: u128,
 }
 
 impl Picture {
-    /// Leave out the parts farthest from the optical axis, if there are more than the mailbox holds; returns how many.
+    /// Leave out the parts farthest from the optical axis, if the mailbox cannot hold all. Returns their
+    /// number.
     pub fn crop(&mut self) -> usize {
         let Some(excess) = self.parts.len().checked_sub(MAX_PARTS).filter(|excess| *excess > 0) else {
             return 0;
@@ -217,7 +219,7 @@ mod tests {
     }
 
     #[test]
-    fn a_crowd_is_cropped_to_the_size_of_the_mailbox() {
+    fn picture_is_cropped_to_the_size_of_the_mailbox() {
         let mut crowd = picture(MAX_PARTS + 3);
         crowd.parts.reverse();
         assert_eq!(crowd.crop(), 3);

@@ -57,7 +57,7 @@ crate::layout! {
     "text"     (text)     Text<TEXT>,  "the trouble, as a sentence";
 }
 
-/// Encodes a line; a text longer than [`TEXT`] is cut off.
+/// Encodes a line. A text longer than [`TEXT`] is truncated.
 #[must_use]
 pub fn encode_line(number: u16, line: &str) -> [u8; LineLayout::BYTES] {
     LineLayout::encode(&(number, line))
@@ -101,7 +101,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn lines_and_statuses_come_back() {
+    fn cell_lines_and_statuses_round_trip() {
         let bytes = encode_line(7, "vise close PFIXTURE");
         assert_eq!(&bytes[..24], b"\x07\x00vise close PFIXTURE   ");
         assert_eq!(decode_line(&bytes), Ok(CellLine { number: 7, text: Ok("vise close PFIXTURE") }));

@@ -1,5 +1,5 @@
-//! The command of the workstation controller (V.4.2). Texts are padded with blanks; zeros are accepted as padding, too
-//! (CHOSEN).
+//! The command of the workstation controller (V.4.2). Texts are padded with blanks; zeros are also accepted as
+//! padding (CHOSEN).
 
 use interfaces::HwsCommand;
 
@@ -126,7 +126,7 @@ pub(super) mod tests {
     }
 
     #[test]
-    fn a_number_beyond_two_bytes_runs_round_and_a_sector_does_not() {
+    fn only_the_command_number_wraps_around() {
         let bytes = encode(&transfer(65_536)).unwrap();
         assert_eq!(decode(&bytes).map(|command| command.number), Ok(1));
         let far = HwsCommand { source_sector: Some(40_000), ..transfer(1) };
@@ -166,7 +166,7 @@ pub(super) mod tests {
         }
 
         #[test]
-        fn one_wrong_byte_is_noticed_or_reaches_a_field(at in 20_usize..CommandLayout::BYTES, byte in any::<u8>()) {
+        fn wrong_byte_is_detected_or_changes_a_field(at in 20_usize..CommandLayout::BYTES, byte in any::<u8>()) {
             let good = encode(&transfer(7)).unwrap();
             let mut bytes = good;
             bytes[at] = byte;

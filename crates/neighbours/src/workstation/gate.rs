@@ -1,19 +1,21 @@
 //! Task's end of the workstation controller's mailboxes: READ-HWS-COMMAND, WRITE-HWS-STATUS and UPDATE-MAILGRAM?
 //! (Figure IV.1, IX.1).
 //!
-//! A command is executed once. Its number decides:
+//! A command is executed once, depending on its number:
 //!
 //! | number of the mailgram                    | result                                                               |
 //! |-------------------------------------------|----------------------------------------------------------------------|
 //! | the last one, and the same fields         | repeated: answered with the present status, not executed again       |
 //! | the last one, and other fields            | refused                                                              |
-//! | the one after the last                    | taken                                                                |
-//! | any other                                 | refused; taken if it is the first since the mailboxes were initialized |
+//! | the one after the last                    | accepted                                                             |
+//! | any other                                 | refused; accepted as the first since the mailboxes were initialized  |
 //!
-//! A command that is taken is checked against the task data first ([`Judge`]). One that does not pass is given to Task
-//! with that verdict, and Task refuses it: the status echoes its number with `error`, and says what is wrong with it.
+//! An accepted command is first checked against the task data ([`Judge`]). One that fails is passed to Task
+//! with that verdict, and Task refuses it: the status echoes its number with `error` and the error in the
+//! command.
 //!
-//! A workstation controller that (re)connects reads `command-#-echo` in the status and goes on from there (IX.1).
+//! A workstation controller that (re)connects reads `command-#-echo` in the status and continues after it
+//! (IX.1).
 
 use std::fmt;
 
@@ -74,11 +76,11 @@ impl fmt::Display for Refusal {
 
 /// Checks commands against the task data before Task reads them.
 pub trait Judge {
-    /// What is wrong with a command, as a sentence; `None` if it passes.
+    /// The error in a command, as a sentence; `None` if it passes.
     fn verdict(&self, command: &HwsCommand) -> Option<String>;
 }
 
-/// No command is checked: Task alone decides.
+/// Passes every command, so that Task alone decides.
 #[derive(Clone, Copy, Debug)]
 pub struct Unchecked;
 
@@ -88,18 +90,18 @@ impl Judge for Unchecked {
     }
 }
 
-/// Task's end of the two mailboxes. Does not allocate, unless a command does not pass its check.
+/// Task's end of the two mailboxes. It allocates only for a command that fails its check.
 #[derive(Clone, Debug)]
 pub struct Gate {
-    /// Mailgram number read last.
+    /// Last read mailgram number.
     read: u16,
     refused: Option<Refusal>,
     command: HwsCommand,
-    /// What is wrong with the command, if it does not pass its check.
+    /// The error in the command, if it fails its check.
     wrong: Option<String>,
-    /// No command was accepted since the mailboxes were initialized.
+    /// True if no command was accepted since the mailboxes were initialized.
     fresh: bool,
-    /// Task's last status, with the details of its reason at the tick in which it came.
+    /// Task's last status, with the details of its reason at the tick of its arrival.
     told: (HwsStatus, Detail),
     status_box: Mailbox,
 }
@@ -124,19 +126,19 @@ impl Gate {
         &self.command
     }
 
-    /// Why the last mailgram was refused, if it was.
+    /// The reason why the last mailgram was refused, if it was.
     #[must_use]
     pub const fn refused(&self) -> Option<&Refusal> {
         self.refused.as_ref()
     }
 
-    /// What is wrong with Task's command, if it did not pass its check.
+    /// The error in Task's command, if it failed its check.
     #[must_use]
     pub fn wrong(&self) -> Option<&str> {
         self.wrong.as_deref()
     }
 
-    /// The data of the mailbox, if they have not been read yet.
+    /// The unread data of the mailbox, if any.
     #[must_use]
     pub fn unread<'b>(&self, command_box: &'b Mailbox) -> Option<&'b [u8]> {
         (command_box.mailgram() != self.read).then(|| command_box.data())
@@ -148,19 +150,19 @@ impl Gate {
         &self.status_box
     }
 
-    /// Initializes the mailboxes (block 641, IX.1): the next command may have any number but the last. Task keeps its
-    /// command.
+    /// Initializes the mailboxes (block 641, IX.1). The next command may have any number except the last. Task
+    /// keeps its command.
     pub fn initialize(&mut self) {
         (self.read, self.refused, self.fresh) = (0, None, true);
         self.status_box.initialize();
     }
 
-    /// Skips the command in the mailbox: it was sent while the mailbox was not read, and must not be executed.
+    /// Skips the command in the mailbox. It was sent while the mailbox was not read, and must not be executed.
     pub fn pass_over(&mut self, command_box: &Mailbox) {
         self.read = command_box.mailgram();
     }
 
-    /// READ-HWS-COMMAND, called once per tick: reads the mailbox. Returns `Some` if a mailgram is refused.
+    /// READ-HWS-COMMAND, called once per tick. Reads the mailbox. Returns `Some` if a mailgram is refused.
     pub fn read(&mut self, command_box: &Mailbox, judge: &impl Judge) -> Option<Refusal> {
         debug_assert_eq!(command_box.place(), HWSC_COMMAND);
         let mailgram = command_box.mailgram();
@@ -191,8 +193,9 @@ impl Gate {
         Ok(())
     }
 
-    /// WRITE-HWS-STATUS and UPDATE-MAILGRAM?, called once per tick: writes Task's status into the mailbox if it has
-    /// changed, and returns true then. Names and distances of a reason are those of the tick in which the reason came.
+    /// WRITE-HWS-STATUS and UPDATE-MAILGRAM?, called once per tick. Writes Task's status to the mailbox if it
+    /// has changed, and then returns true. Names and distances of a reason are those of the tick of its
+    /// arrival.
     pub fn write(&mut self, memory: &CommonMemory, state: TaskState) -> bool {
         let task = memory.task.status;
         if task != self.told.0 {
@@ -224,7 +227,7 @@ mod tests {
 
     use super::{super::command::tests::transfer, *};
 
-    /// Lets no command pass that goes to VISE.
+    /// Rejects commands to VISE.
     struct Vise;
 
     impl Judge for Vise {
@@ -274,7 +277,7 @@ mod tests {
     }
 
     #[test]
-    fn a_refused_command_does_not_reach_task_and_the_status_has_the_reason() {
+    fn refused_command_does_not_reach_task() {
         let mut bench = Bench::new();
         bench.command(&transfer(7));
         let other = HwsCommand { source_sector: Some(1), ..transfer(7) };
@@ -301,7 +304,7 @@ mod tests {
     }
 
     #[test]
-    fn command_that_fails_its_check_reaches_task_and_status_gives_the_verdict() {
+    fn command_failing_its_check_reaches_task_with_the_verdict() {
         let mut bench = Bench::new();
         let wrong = HwsCommand { destination: Some(Name16::clipped("VISE")), ..transfer(7) };
         assert_eq!(bench.command(&wrong), None, "the mailgram is in order");
@@ -315,7 +318,7 @@ mod tests {
     }
 
     #[test]
-    fn a_repeated_command_is_answered_and_not_executed_again() {
+    fn repeated_command_is_answered_but_not_executed() {
         let mut bench = Bench::new();
         bench.command(&transfer(7));
         let before = bench.status(7, HwsReport::Finished).mailgram_echo;
@@ -326,7 +329,7 @@ mod tests {
     }
 
     #[test]
-    fn the_mailbox_is_written_when_there_is_news() {
+    fn mailbox_is_written_on_change() {
         let mut bench = Bench::new();
         let memory = CommonMemory::default();
         assert!(bench.gate.write(&memory, TaskState::Runs));
@@ -336,7 +339,7 @@ mod tests {
     }
 
     #[test]
-    fn the_distances_of_a_failure_are_those_of_its_tick() {
+    fn failure_distances_are_those_of_its_tick() {
         let mut bench = Bench::new();
         let mut memory = CommonMemory::default();
         let near = |inches| {
@@ -355,7 +358,7 @@ mod tests {
     }
 
     #[test]
-    fn after_initialization_numbers_are_synchronized() {
+    fn initialization_synchronizes_numbers() {
         let mut bench = Bench::new();
         bench.command(&transfer(7));
         bench.gate.initialize();

@@ -1,12 +1,12 @@
-//! The workstation controller (HWSC), emulated: plays a job.
+//! Emulator of the workstation controller (HWSC) that plays a job.
 //!
-//! A job is a list of steps: commands for Task, and actions of the workstation itself (vise, machining) between them.
-//! The emulator first sends PAUSE, as the startup sequence does (V.4.1), and then one step after the other: a command
-//! is over when Task answers its number with `finished`, an action when the workstation is no longer busy. A command
-//! that is not answered is sent once more, unchanged. An error, a lost Task, a fault of the workstation or a step that
-//! takes too long end the job with a [`JobFailure`]. With [`Hwsc::with_retries`] the emulator does what an operator
-//! does after an error: it sends PAUSE and the same command again. During an action of the workstation the operator may
-//! move the robot: a joystick box that is on ends only a command.
+//! A job is a list of steps: commands for Task, and actions of the workstation itself (vise, machining) between
+//! them. The emulator first sends PAUSE, like the startup sequence (V.4.1), and then one step after the other:
+//! a command ends when Task answers its number with `finished`, an action when the workstation is no longer
+//! busy. An unanswered command is sent once more, unchanged. An error, a lost Task, a fault of the workstation
+//! or a step beyond its time limit end the job with a [`JobFailure`]. With [`Hwsc::with_retries`] the emulator
+//! acts like an operator after an error: it sends PAUSE and the same command again. During an action of the
+//! workstation the operator may move the robot; the joystick box ends only a command.
 //!
 //! ```text
 //!           PAUSE           command finished, or workstation idle
@@ -17,21 +17,21 @@
 //!                     +---- error, a retry is left ----> PAUSE ----> Sent
 //! ```
 //!
-//! An emergency ([`Workstation::emergency`]) ends the job at once, unless the current or a later line of the job resets
-//! it with `** panel fault-reset`. Then a command that fails meanwhile is recorded as failed, and the job continues.
-//! The job fails if that command has not finished when it is sent again later.
+//! An emergency ([`Workstation::emergency`]) ends the job at once, unless the current or a later line of the
+//! job resets it with `** panel fault-reset`. A command that fails meanwhile is then recorded as failed, and
+//! the job continues. The job fails if no later repetition of that command has finished.
 //!
 //! A command whose line ends with `expect error` must fail: the job continues after the failure, and fails if the
 //! command finishes.
 //!
-//! An action that happens while the robot executes a command comes before that command in the job. It starts its number
-//! of ticks after the command is sent, whichever step is current then. The job ends only after all these actions have
-//! ended.
+//! An action during a command precedes that command in the job. It starts its number of ticks after the command
+//! is sent, whichever step is then current. The job ends only after all these actions have ended.
 //!
 //! An operator can stop the job, command the robot meanwhile, and continue the job ([`operator`]).
 //!
-//! The emulator uses only Task's mailboxes: it reads a [`Status`], and writes a command ([`Hwsc::mailgram`]). So it can
-//! run in the controller's process or in another one, and a real workstation controller can replace it.
+//! The emulator uses only Task's mailboxes: it reads a [`Status`], and writes a command ([`Hwsc::mailgram`]).
+//! It can therefore run in the controller's process or in another one, and a real workstation controller can
+//! replace it.
 
 mod operator;
 mod outcome;
@@ -57,16 +57,16 @@ pub trait Workstation {
     /// Begin an action; `line` is its line in the job, without the asterisks.
     ///
     /// # Errors
-    /// A sentence, if the workstation cannot do it.
+    /// A sentence with the reason, if the workstation cannot execute the action.
     fn begin(&mut self, action: &Action, line: &str) -> Result<(), String>;
 
     /// True while an action is in progress.
     fn busy(&self) -> bool;
 
-    /// The fault of the workstation as a sentence; `None` without a fault.
+    /// The fault of the workstation as a sentence, if any.
     fn fault(&self) -> Option<String>;
 
-    /// The emergency that has stopped the robot, as a sentence; `None` without an emergency.
+    /// The emergency that has stopped the robot, as a sentence, if any.
     fn emergency(&self) -> Option<String> {
         None
     }
@@ -75,7 +75,7 @@ pub trait Workstation {
 /// Time limit of a step, ticks: five minutes, three times the longest step of the linkbar job.
 pub const TIME_LIMIT: u64 = 5 * 60 * 1000 / TICK_MS;
 
-/// Ticks from the PAUSE after an error to the repeated command: the cause of the error may end in this time. An
+/// Ticks from the PAUSE after an error to the repeated command, in which the cause of the error may end. An
 /// operator would not be faster. CHOSEN: 1 s.
 pub const RETRY_TICKS: u64 = 1000 / TICK_MS;
 
@@ -90,9 +90,9 @@ pub struct Hwsc {
     command: HwsCommand,
     /// Time limit for the echo of a command, ticks.
     answer_ticks: u64,
-    /// The command has already been sent a second time.
+    /// True if the command has been sent a second time.
     repeated: bool,
-    /// The command has not been written into the mailbox yet.
+    /// True until the command is written to the mailbox.
     to_send: bool,
     begun_steps: Vec<BegunStep>,
     /// Index of the current step in `begun_steps`.
@@ -106,7 +106,7 @@ pub struct Hwsc {
     retries: u32,
     /// Retries of the current line so far.
     tried: u32,
-    /// The PAUSE before the current step, or before its retry, is in progress.
+    /// True while the PAUSE before the current step, or before its retry, is in progress.
     pausing: bool,
     retried: Vec<Retry>,
     intervention: Intervention,
@@ -149,22 +149,22 @@ impl Hwsc {
         }
     }
 
-    /// After a failed command, sends PAUSE and the same command again, up to this number of times per line. There is no
-    /// retry if the failure needs a person's action first ([`Reason::remedy`]).
+    /// After a failed command, sends PAUSE and the same command again, up to this number of times per line. A
+    /// failure that requires an operator's action first is not retried ([`Reason::remedy`]).
     #[must_use]
     pub const fn with_retries(mut self, retries: u32) -> Self {
         self.retries = retries;
         self
     }
 
-    /// The commands that were sent again, oldest first.
+    /// The repeated commands, oldest first.
     #[must_use]
     pub fn retried(&self) -> &[Retry] {
         &self.retried
     }
 
-    /// Sets the time limit for the echo of a command, ticks; after it the command is sent again. The default is the
-    /// three ticks of a neighbour in the same process; a network is slower.
+    /// Sets the time limit for the echo of a command, ticks, after which the command is repeated. The default
+    /// is the three ticks of a neighbour in the same process; a network is slower.
     #[must_use]
     pub const fn with_answer_ticks(mut self, ticks: u64) -> Self {
         self.answer_ticks = ticks;
@@ -190,13 +190,13 @@ impl Hwsc {
         &self.command
     }
 
-    /// The command to write into the mailbox now, if any; each command is returned once.
+    /// The command to write to the mailbox now, if any. Each command is returned once.
     pub fn mailgram(&mut self) -> Option<&HwsCommand> {
         std::mem::take(&mut self.to_send).then_some(&self.command)
     }
 
-    /// Number of the job's line that was begun last, 0 before the first, and the number of its lines. Commands of an
-    /// operator, PAUSE before a line and repetitions do not count.
+    /// Number of the job's last begun line, 0 before the first, and the number of its lines. Commands of an
+    /// operator, PAUSE before a line, and repetitions are not counted.
     #[must_use]
     pub fn place(&self) -> (usize, usize) {
         let lines = self.steps.len();
@@ -204,7 +204,7 @@ impl Hwsc {
         (begun.min(lines), lines)
     }
 
-    /// All steps begun so far, the first PAUSE included.
+    /// All begun steps, including the first PAUSE.
     #[must_use]
     pub fn begun_steps(&self) -> &[BegunStep] {
         &self.begun_steps
@@ -220,7 +220,7 @@ impl Hwsc {
         &self.progress
     }
 
-    /// Number of steps, the first PAUSE included.
+    /// Number of steps, including the first PAUSE.
     #[must_use]
     pub fn len(&self) -> usize {
         self.steps.len() + 1
@@ -232,8 +232,8 @@ impl Hwsc {
         false
     }
 
-    /// Called once per tick, after the controller: reads Task's status of `tick` and prepares the command for the next
-    /// tick.
+    /// Called once per tick, after the controller. Reads Task's status of `tick` and prepares the command for
+    /// the next tick.
     pub fn step(&mut self, tick: Tick, task: &Status<'_>, workstation: &mut impl Workstation) -> &Progress {
         if self.progress != Progress::Running {
             return &self.progress;
@@ -379,7 +379,7 @@ impl Hwsc {
 
     /// Evaluates Task's status for the last command.
     fn read(&self, tick: Tick, task: &Status<'_>) -> Lower {
-        // The mailbox carries the number in two bytes.
+        // The number has two bytes in the mailbox.
         let last = self.commander.number;
         let echo = if command_number(last) == task.echo { last } else { u32::from(task.echo) };
         let lost = task.task == TaskState::Lost;
@@ -426,7 +426,7 @@ impl Hwsc {
         self.steps.get(position.checked_sub(1)?)
     }
 
-    /// Hands the commands over to the workstation controller, whose line `** workstation` has begun. Do not call
+    /// Transfers the command to the workstation controller, whose line `** workstation` has begun. Do not call
     /// [`Self::step`] until [`Self::take_back`] or [`Self::refuse`].
     #[must_use]
     pub fn is_handed_over(&self) -> bool {
@@ -435,8 +435,9 @@ impl Hwsc {
         is_begun && self.step_at(self.current).is_some_and(hands_over)
     }
 
-    /// Takes over again after the workstation controller has disconnected: sends PAUSE, and continues with the next
-    /// line of the job. `commands` are the commands sent meanwhile, `last` is the number of the last one.
+    /// Resumes the command after the workstation controller has disconnected: sends PAUSE, and continues with
+    /// the next line of the job. `commands` are the intermediate commands, `last` is the number of the last
+    /// one.
     pub fn take_back(&mut self, tick: Tick, last: u32, commands: Vec<BegunStep>) {
         self.took(tick);
         self.finish(Outcome::Finished);
@@ -453,7 +454,7 @@ impl Hwsc {
     }
 }
 
-/// Text of the command sent first, and before every retry.
+/// Text of the command that is sent first, and before every retry.
 const PAUSE: &str = "PAUSE";
 
 /// The PAUSE command (V.4.1).

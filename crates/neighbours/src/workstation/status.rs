@@ -1,6 +1,6 @@
-//! The status to the workstation controller (V.4.2). Fields that are not in the manual are CHOSEN: the manual's status
-//! has neither an echo of the command number nor a word for failure. A refused mailgram does not change the fields
-//! before `verdict`: they still describe the command that Task has.
+//! The status to the workstation controller (V.4.2). Fields that are not in the manual are CHOSEN: the manual's
+//! status has neither an echo of the command number nor a word for failure. A refused mailgram does not change
+//! the fields before `verdict`: they still describe Task's command.
 
 use interfaces::{
     Detail, Reason, Unconfirmed,
@@ -22,7 +22,7 @@ pub const REASON: usize = 160;
 pub enum TaskState {
     /// Task runs.
     Runs,
-    /// Task's switch on the joystick box holds Task (III.3.3): it does not read its commands.
+    /// Task's switch on the joystick box holds Task (III.3.3), which then does not read its commands.
     Held,
     /// Task did not run in the last tick.
     Lost,
@@ -96,7 +96,7 @@ impl Codec<'_, ()> for Length {
 #[derive(Clone, Copy, Debug)]
 pub enum Why<'a> {
     Mailgram(&'a Refusal),
-    /// The command does not pass its check; what is wrong with it.
+    /// The command fails its check, for this reason.
     Command(&'a str),
     /// The reason of Task's status, with names and distances.
     Reason(Detail),
@@ -188,7 +188,7 @@ mod tests {
     }
 
     #[test]
-    fn a_reason_is_printed_with_its_names_and_without_its_remedy() {
+    fn reason_text_has_names_but_no_remedy() {
         let detail = Detail::Pair(Name10::clipped("BENCH"), Name16::clipped("VISE"));
         let failed = HwsStatus { reason: Reason::NoTrajectory, ..failed() };
         let bytes = encode(&failed, Why::Reason(detail), TaskState::Runs, 0);

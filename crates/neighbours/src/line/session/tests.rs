@@ -17,7 +17,7 @@ enum Seen {
     Error(SessionError),
 }
 
-/// All events that there are now.
+/// All present events.
 fn events(session: &mut Session, now: Instant) -> Vec<Seen> {
     let mut seen = Vec::new();
     loop {
@@ -32,7 +32,8 @@ fn events(session: &mut Session, now: Instant) -> Vec<Seen> {
     }
 }
 
-/// Passes the output of one side to the other in pieces of `pieces` bytes; returns the events of the other.
+/// Passes the output of one side to the other in pieces of `pieces` bytes. Returns the events of the other
+/// side.
 fn carry(from: &mut Session, to: &mut Session, pieces: usize, now: Instant) -> Vec<Seen> {
     let bytes = std::mem::take(from.output());
     let seen = bytes.chunks(pieces).flat_map(|piece| {
@@ -60,7 +61,7 @@ fn written(place: Place, data: &[u8]) -> Mailbox {
 }
 
 #[test]
-fn a_session_begins_with_these_bytes() {
+fn session_begins_with_the_specified_bytes() {
     let now = Instant::now();
     let mut controller = Session::controller(ClockKind::Fast, now);
     let mut neighbour = Session::neighbour(Role::Vision, now);
@@ -90,7 +91,7 @@ fn messages_before_admission_wait_for_it() {
 }
 
 #[test]
-fn a_refused_neighbour_gets_the_reason() {
+fn refused_neighbour_gets_the_reason() {
     let now = Instant::now();
     let mut controller = Session::controller(ClockKind::Real, now);
     let mut neighbour = Session::neighbour(Role::Workstation, now);
@@ -101,7 +102,7 @@ fn a_refused_neighbour_gets_the_reason() {
 }
 
 #[test]
-fn a_protocol_error_closes_the_session_with_a_reason() {
+fn protocol_error_closes_the_session_with_a_reason() {
     let frame = |address: u32, data: &[u8]| {
         let mut bytes = Vec::new();
         frame::put(&mut bytes, address, data);
@@ -136,7 +137,7 @@ fn a_protocol_error_closes_the_session_with_a_reason() {
 }
 
 #[test]
-fn an_invalid_hello_is_refused_at_its_first_wrong_byte() {
+fn invalid_hello_is_refused_at_its_first_wrong_byte() {
     let cases: [(&[u8], &str); 5] = [
         (b"GET / HTTP/1.1\r\n", "a hello was expected, found [47, 45, 54, 20]"),
         (b"R\x00", "a hello was expected, found [52, 00, 00, 00]"),
@@ -162,7 +163,7 @@ fn an_invalid_hello_is_refused_at_its_first_wrong_byte() {
 }
 
 #[test]
-fn a_neighbour_that_answers_no_pulse_is_silent_and_one_that_was_not_asked_is_not() {
+fn only_an_unanswered_pulse_makes_a_neighbour_silent() {
     let (mut controller, _, now) = open(Role::Workstation, ClockKind::Real);
     let limit = answer_limit(ClockKind::Real);
     assert_eq!((controller.deadline(), controller.check_time(now + limit * 9)), (None, Ok(())));
@@ -175,7 +176,7 @@ fn a_neighbour_that_answers_no_pulse_is_silent_and_one_that_was_not_asked_is_not
         controller.receive(&bytes, now);
         assert_eq!(events(controller, now), [Seen::Pulse(tick)]);
     };
-    // The neighbour is one tick late.
+    // The neighbour is late by one tick.
     answer(&mut controller, 7, now + limit - TICK);
     assert_eq!(controller.deadline(), Some(now + limit * 2 - TICK));
     answer(&mut controller, 8, now + limit);
@@ -189,7 +190,7 @@ fn a_neighbour_that_answers_no_pulse_is_silent_and_one_that_was_not_asked_is_not
 }
 
 #[test]
-fn the_time_for_a_hello_does_not_grow_with_bytes_that_come() {
+fn received_bytes_do_not_extend_the_hello_limit() {
     let now = Instant::now();
     let mut controller = Session::controller(ClockKind::Real, now);
     for (at, byte) in b"RCS2\x03\x00".iter().enumerate() {
@@ -202,7 +203,7 @@ fn the_time_for_a_hello_does_not_grow_with_bytes_that_come() {
 }
 
 #[test]
-fn a_neighbour_takes_a_controller_for_dead_on_the_grid_only() {
+fn neighbour_time_limit_applies_only_on_the_grid() {
     for clock in [ClockKind::Real, ClockKind::Fast] {
         let (_, mut neighbour, now) = open(Role::Pedestal, clock);
         let late = neighbour.check_time(now + NEIGHBOUR_LIMIT);
@@ -233,9 +234,9 @@ fn actions() -> impl Strategy<Value = Vec<Action>> {
 }
 
 proptest! {
-    /// However the line cuts the bytes, the same events come out, in the order in which they were sent.
+    /// The events, and their order, do not depend on the pieces in which bytes arrive.
     #[test]
-    fn events_do_not_depend_on_how_bytes_come(actions in actions(), pieces in 1_usize..5000) {
+    fn events_do_not_depend_on_the_pieces_of_bytes(actions in actions(), pieces in 1_usize..5000) {
         let (mut controller, mut neighbour, now) = open(Role::Vision, ClockKind::Fast);
         let mut expected = Vec::new();
         for action in actions {
@@ -254,10 +255,9 @@ proptest! {
         prop_assert_eq!(carry(&mut controller, &mut neighbour, pieces, now), expected);
     }
 
-    /// For any bytes there is at most one error, no event follows it, and the input does not grow beyond a
-    /// frame.
+    /// Any bytes cause at most one error, after which no event follows, and the input does not exceed a frame.
     #[test]
-    fn no_bytes_panic_or_fill_the_memory(
+    fn arbitrary_bytes_neither_panic_nor_exhaust_memory(
         opened in any::<bool>(),
         pieces in prop::collection::vec(prop::collection::vec(any::<u8>(), 0..200), 0..60),
     ) {
@@ -276,9 +276,9 @@ proptest! {
         prop_assert!(errors == 0 || errors == 1 && is_last, "{:?}", seen);
     }
 
-    /// The same at a neighbour, because another program may listen in place of the controller.
+    /// The same at a neighbour, because another program may listen instead of the controller.
     #[test]
-    fn no_bytes_panic_at_a_neighbour(bytes in prop::collection::vec(any::<u8>(), 0..300), front in 0_usize..3) {
+    fn arbitrary_bytes_do_not_panic_at_a_neighbour(bytes in prop::collection::vec(any::<u8>(), 0..300), front in 0_usize..3) {
         let now = Instant::now();
         let mut session = Session::neighbour(Role::DataSystem, now);
         let hello: &[u8] = &[&b"RCS2\x03\x00\x00\x00"[..], b"\x02\x00\x00\x00\x08\x00\0\0\0\0\0\0"].concat();

@@ -1,17 +1,18 @@
-//! Interventions of an operator in a job: stop it between two lines, command Task meanwhile, and continue it (IV.3).
+//! Interventions of an operator in a job: stop it between two lines, command Task, and continue it (IV.3).
 //!
 //! ```text
 //!            wait: at the end of the line; a command: at once;
-//!            a failure while an operator is there
+//!            a failure while an operator is connected
 //!   plays ────────────────────────────────────────────────────► waits ──┐ commands of the operator
 //!     ▲                                                           │ ▲───┘
-//!     └──── go: PAUSE, then the line that was interrupted ◄───────┤
-//!     └──── skip: PAUSE, then the line behind it ◄────────────────┘
+//!     └──── go: PAUSE, then the interrupted line ◄───────────────┤
+//!     └──── skip: PAUSE, then the line after it ◄────────────────┘
 //! ```
 //!
-//! There is one sequence of command numbers: commands of the operator and of the job take theirs from the same
-//! [`Commander`](rcs_core::handshake::Commander). While an operator is connected, the job waits instead of ending if a
-//! command fails, the joystick box is on, an emergency occurs, or the workstation refuses an action.
+//! Commands of the operator and of the job share one sequence of command numbers, that of the
+//! [`Commander`](rcs_core::handshake::Commander). While an operator is connected, the job waits instead of
+//! ending if a command fails, the joystick box is on, an emergency occurs, or the workstation refuses an
+//! action.
 
 use std::fmt;
 
@@ -26,7 +27,7 @@ use crate::workstation::status::Status;
 pub(super) struct Intervention {
     attended: bool,
     state: State,
-    /// Why the job waits, until it is reported.
+    /// The reason why the job waits, until it is reported.
     news: Option<WaitReason>,
 }
 
@@ -34,7 +35,7 @@ pub(super) struct Intervention {
 #[derive(Clone, Debug, PartialEq)]
 pub enum WaitReason {
     Commanded,
-    /// The operator has asked the job to wait.
+    /// The operator has requested the wait.
     Asked,
     Failed(JobFailure),
 }
@@ -57,14 +58,14 @@ impl fmt::Display for WaitReason {
 enum State {
     #[default]
     Plays,
-    /// The job runs, and will wait when the current line has ended.
+    /// The job runs, and will wait at the end of the current line.
     Asked,
     Waits {
-        /// Failure of the line, if it has failed.
+        /// Failure of the line, if any.
         failure: Option<JobFailure>,
-        /// The job waits before a line that has not been begun.
+        /// True if the job waits before a new line.
         before_line: bool,
-        /// Index of the operator's command in progress, among the steps begun.
+        /// Index of the operator's command in progress, among the begun steps.
         command: Option<usize>,
     },
 }
@@ -94,15 +95,15 @@ impl Hwsc {
         self
     }
 
-    /// Sets whether an operator is connected. When the operator disconnects, a job that waits because of a failed line
-    /// ends with that failure.
+    /// Sets whether an operator is connected. When the operator disconnects, a job that waits because of a
+    /// failed line ends with that failure.
     pub fn attend(&mut self, is_there: bool) {
         self.intervention.attended = is_there;
         if let (false, State::Waits { failure, .. }) = (is_there, &mut self.intervention.state)
             && let Some(failure) = failure.take()
         {
             self.progress = Progress::Failed(failure);
-            // A job that has ended waits for nobody.
+            // A job that has ended does not wait.
             self.intervention.state = State::Plays;
         }
     }
@@ -119,12 +120,12 @@ impl Hwsc {
         matches!(self.intervention.state, State::Waits { command: None, .. })
     }
 
-    /// True if the job waits for an operator before a line that has not been begun.
+    /// True if the job waits for an operator before a new line.
     pub(super) const fn waits_before_line(&self) -> bool {
         matches!(self.intervention.state, State::Waits { before_line: true, .. })
     }
 
-    /// The reason for which the job has begun to wait; each reason is returned once.
+    /// The reason why the job has begun to wait; each reason is returned once.
     pub fn operator_news(&mut self) -> Option<WaitReason> {
         self.intervention.news.take()
     }
@@ -141,8 +142,8 @@ impl Hwsc {
         Ok(())
     }
 
-    /// Continues the job with the line that was interrupted or has failed, after a PAUSE as after every interruption.
-    /// An action of the workstation that is still in progress is not started again.
+    /// Continues the job with the line that was interrupted or has failed, after a PAUSE as after every
+    /// interruption. An action of the workstation that is still in progress is not started again.
     ///
     /// # Errors
     /// [`OperatorError`].
@@ -150,8 +151,8 @@ impl Hwsc {
         self.resume(tick, false)
     }
 
-    /// Continues the job with the line after the one that was interrupted or has failed. The caller must make sure that
-    /// the cell is in the state that the skipped line would have produced.
+    /// Continues the job after the line that was interrupted or has failed. The caller must ensure that the
+    /// cell is in the state that the skipped line would have produced.
     ///
     /// # Errors
     /// [`OperatorError`].
@@ -159,8 +160,8 @@ impl Hwsc {
         self.resume(tick, true)
     }
 
-    /// Replaces the rest of the waiting job by other lines: sends PAUSE, then the first of them. Drops the job's
-    /// delayed actions and recorded failures.
+    /// Replaces the rest of the waiting job by other lines: sends PAUSE, then the first of them. Discards the
+    /// job's delayed actions and recorded failures.
     ///
     /// # Errors
     /// [`OperatorError`].
@@ -186,12 +187,12 @@ impl Hwsc {
         Ok(())
     }
 
-    /// An emulator without a job, for commands of an operator in place of a workstation controller. `last` is the
-    /// number of the last command of that controller.
+    /// An emulator without a job, for an operator's commands instead of those of a workstation controller.
+    /// `last` is the number of that controller's last command.
     #[must_use]
     pub fn stand_alone(last: u32, time_limit: u64) -> Self {
         let mut hwsc = Self::new(Vec::new(), time_limit);
-        // Task may not have echoed the last command yet; the next command takes the number after it.
+        // Task may not yet have echoed the last command. The next command has the number after it.
         (hwsc.commander.number, hwsc.commander.started) = (last, true);
         hwsc.attend(true);
         hwsc.wait_without_job();
@@ -208,7 +209,7 @@ impl Hwsc {
         self.intervention.state = State::Waits { failure: None, before_line: true, command: None };
     }
 
-    /// Sends a command of the operator; the job waits from now on.
+    /// Sends a command of the operator. The job waits from now on.
     ///
     /// # Errors
     /// [`OperatorError::Ended`].
@@ -263,7 +264,7 @@ impl Hwsc {
         self.pausing || self.current == 0 || matches!(line, Some(Step::Command(_)))
     }
 
-    /// Called at the end of a line: makes the job wait if the operator has asked for it; true if it waits.
+    /// Called at the end of a line. Makes the job wait on the operator's request, and then returns true.
     pub(super) fn waits_here(&mut self) -> bool {
         if !matches!(self.intervention.state, State::Asked) {
             return false;
@@ -273,7 +274,8 @@ impl Hwsc {
         true
     }
 
-    /// Called when the current line has failed: true if the job waits for an operator instead of ending.
+    /// Called when the current line has failed. Returns true if the job waits for an operator instead of
+    /// ending.
     pub(super) fn waits_for_operator(&mut self, failure: &JobFailure) -> bool {
         let can_be_mended = match failure {
             JobFailure::Command(_)
@@ -331,7 +333,7 @@ impl Hwsc {
         executes.map_or(Ok(()), |step| Err(OperatorError::Executes(step.text.clone())))
     }
 
-    /// Before the job sends PAUSE: it may replace a PAUSE of the operator that is executed, and no other command.
+    /// Before the job sends PAUSE, which may replace only a PAUSE of the operator in progress.
     fn replace_pause(&mut self, tick: Tick, command: Option<usize>) -> Result<(), OperatorError> {
         if command.is_some() && self.command.command == super::pause().command {
             self.end_operators(tick, command, Outcome::Interrupted);

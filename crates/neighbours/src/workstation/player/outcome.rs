@@ -1,4 +1,4 @@
-//! Outcome of a job: its steps, its retries, and why it failed.
+//! Outcome of a job: its steps, its retries, and the reason of its failure.
 
 use std::fmt;
 
@@ -40,19 +40,19 @@ pub struct BegunStep {
     pub outcome: Outcome,
     /// Part of the command's goal that no sensor confirms, if it has finished.
     pub unconfirmed: Unconfirmed,
-    /// Ticks from the start of the step to the tick in which its end was seen.
+    /// Ticks from the start of the step to the detection of its end.
     pub ticks: u64,
 }
 
 impl BegunStep {
-    /// How the step ended: the word of its outcome, and what is unconfirmed.
+    /// The ending of the step: the word of its outcome, and its unconfirmed goals.
     #[must_use]
     pub fn ending(&self) -> String {
         format!("{}{}", self.outcome.text(), self.unconfirmed.suffix())
     }
 }
 
-/// Why a job ended before its last step.
+/// The reason why a job ended before its last step.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum JobFailure {
     #[error("{}", .0.text())]
@@ -69,7 +69,7 @@ pub enum JobFailure {
     /// A command has finished although its line expects an error.
     #[error("finished, but its line expects an error")]
     Unexpected,
-    /// A command has failed, and no repetition of it has finished.
+    /// A command has failed, and none of its repetitions has finished.
     #[error("{why}; the command has not finished since (`expect error` marks a line that has to fail)")]
     Unfinished { line: String, tick: Tick, why: &'static str },
     /// A step has exceeded its time limit, ticks.
@@ -93,10 +93,10 @@ pub enum Progress {
     Failed(JobFailure),
 }
 
-/// A failed command that was sent again after a PAUSE.
+/// A failed command that was repeated after a PAUSE.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Retry {
-    /// The tick in which the failure was seen.
+    /// The tick in which the failure was detected.
     pub tick: Tick,
     pub line: String,
     pub reason: Reason,
@@ -118,7 +118,7 @@ impl fmt::Display for Retry {
 }
 
 impl JobFailure {
-    /// What a person has to do before the job can continue, if it is known. `None` if PAUSE and the same command may be
+    /// The operator's action before the job can continue, if known. `None` if PAUSE and the same command may be
     /// enough, or if the text of the failure already contains it.
     #[must_use]
     pub const fn remedy(&self) -> Option<&'static str> {

@@ -92,7 +92,7 @@ impl Hwsc {
         }
     }
 
-    /// Notes what no sensor confirms about the current step, if it is a command that has finished.
+    /// Records the unconfirmed goals of the current step, if it is a finished command.
     pub(super) fn confirm(&mut self, unconfirmed: Unconfirmed) {
         if let Some(step) = self.begun_steps.get_mut(self.entry).filter(|step| step.is_command) {
             step.unconfirmed = unconfirmed;

@@ -19,7 +19,7 @@ struct Task {
     left: u64,
     received: Vec<String>,
     fails_at: Option<usize>,
-    /// Number of commands, from `fails_at` on, that fail; 0 means one.
+    /// Number of failing commands, from `fails_at` on; 0 means one.
     failing: usize,
     /// Reason of the failures; `GraspMissed` if `None`.
     reason: Option<Reason>,
@@ -73,7 +73,7 @@ impl Task {
     }
 }
 
-/// Task's status as the emulator reads it when Task runs and nothing was refused.
+/// Task's status as the emulator reads it while Task runs and has refused no mailgram.
 fn answer(status: &HwsStatus) -> Status<'static> {
     Status {
         command: status.command,
@@ -173,7 +173,7 @@ fn play_on(hwsc: &mut Hwsc, task: &mut Task, vise: &mut Vise, from: u64) -> u64 
 }
 
 #[test]
-fn a_job_is_played_in_order_and_pause_comes_first() {
+fn job_is_played_in_order_after_a_pause() {
     let (partial, close) = (ViseOpening::Partial, ViseOpening::Close);
     let steps = vec![vise(partial), command("MOVE"), vise(close), command("MOVE")];
     let (mut hwsc, mut task, mut jaws) = (Hwsc::new(steps, 100), Task::default(), Vise::default());
@@ -194,7 +194,7 @@ fn a_job_is_played_in_order_and_pause_comes_first() {
             ("== MOVE", true, finished)
         ]
     );
-    // A command is written in one tick, read in the next, executed for four, and its end is seen in the
+    // A command is written in one tick, read in the next, executed for four, and its end is detected in the
     // tick that writes it.
     assert!(
         hwsc.begun_steps().iter().filter(|r| r.is_command).all(|r| r.ticks == 5),
@@ -209,7 +209,7 @@ fn a_job_is_played_in_order_and_pause_comes_first() {
 }
 
 #[test]
-fn a_line_is_put_before_the_next_one_and_a_command_in_the_place_of_the_next() {
+fn line_is_inserted_and_command_replaced() {
     let (partial, close) = (ViseOpening::Partial, ViseOpening::Close);
     let steps = vec![command("MOVE"), vise(partial), command("MOVE")];
     let (mut hwsc, mut task, mut jaws) = (Hwsc::new(steps, 100), Task::default(), Vise::default());
@@ -231,7 +231,7 @@ fn a_line_is_put_before_the_next_one_and_a_command_in_the_place_of_the_next() {
 }
 
 #[test]
-fn every_command_of_task_is_sent_as_the_job_has_it() {
+fn every_command_is_sent_as_in_the_job() {
     let steps: Vec<_> = TASK_COMMANDS.iter().map(|verb| command(verb)).collect();
     let (mut hwsc, mut task) = (Hwsc::new(steps, 100), Task::default());
     play(&mut hwsc, &mut task, &mut Vise::default());
@@ -240,7 +240,7 @@ fn every_command_of_task_is_sent_as_the_job_has_it() {
 }
 
 #[test]
-fn an_error_of_task_ends_the_job_with_its_reason_and_stops_commands() {
+fn error_of_task_ends_the_job_with_its_reason() {
     let steps = vec![command("MOVE"), command("ACQUIRE")];
     let mut task = Task { fails_at: Some(2), ..Task::default() };
     let mut hwsc = Hwsc::new(steps, 100);
@@ -255,8 +255,8 @@ fn an_error_of_task_ends_the_job_with_its_reason_and_stops_commands() {
 }
 
 #[test]
-fn a_command_that_fails_is_paused_and_sent_again() {
-    // A delayed action that has happened does not happen again.
+fn failed_command_is_repeated_after_a_pause() {
+    // A completed delayed action is not repeated.
     let steps = vec![later(1, ViseOpening::Open), command("MOVE"), command("ACQUIRE")];
     let mut task = Task { fails_at: Some(2), ..Task::default() };
     let (mut hwsc, mut jaws) = (Hwsc::new(steps, 100).with_retries(1), Vise::default());
@@ -277,7 +277,7 @@ fn a_command_that_fails_is_paused_and_sent_again() {
 
 /// A failed PAUSE does not prevent the retry: the command itself shows whether it can be executed.
 #[test]
-fn a_line_has_so_many_retries_and_the_next_line_has_as_many() {
+fn retries_are_counted_per_line() {
     let received = |failing: usize| {
         let mut task = Task { fails_at: Some(2), failing, ..Task::default() };
         let mut hwsc = Hwsc::new(vec![command("MOVE"), command("ACQUIRE")], 100).with_retries(2);
@@ -302,7 +302,7 @@ fn a_line_has_so_many_retries_and_the_next_line_has_as_many() {
 }
 
 #[test]
-fn failures_for_a_person_are_not_retried() {
+fn failures_with_a_remedy_are_not_retried() {
     for reason in Reason::ALL.iter().filter(|reason| reason.remedy().is_some()) {
         let mut task = Task { fails_at: Some(2), reason: Some(*reason), ..Task::default() };
         let mut hwsc = Hwsc::new(vec![command("MOVE")], 100).with_retries(3);
@@ -320,7 +320,7 @@ fn failures_for_a_person_are_not_retried() {
 }
 
 #[test]
-fn a_task_that_does_not_answer_is_asked_twice_and_then_lost() {
+fn unanswered_command_is_repeated_once_before_task_is_lost() {
     for (ticks, limit) in [(ECHO_LIMIT, 10), (20, 45)] {
         let mut task = Task { silent: true, ..Task::default() };
         let mut hwsc = Hwsc::new(vec![command("MOVE")], 100).with_answer_ticks(ticks);
@@ -332,7 +332,7 @@ fn a_task_that_does_not_answer_is_asked_twice_and_then_lost() {
 }
 
 #[test]
-fn a_command_that_was_lost_on_the_way_is_sent_again_and_executed_once() {
+fn lost_command_is_repeated_and_executed_once() {
     let mut task = Task { losing: 1, ..Task::default() };
     let mut hwsc = Hwsc::new(vec![command("MOVE")], 100);
     play(&mut hwsc, &mut task, &mut Vise::default());
@@ -341,7 +341,7 @@ fn a_command_that_was_lost_on_the_way_is_sent_again_and_executed_once() {
 }
 
 #[test]
-fn a_command_that_the_mailbox_refuses_ends_the_job_with_the_reason() {
+fn command_refused_by_the_mailbox_ends_the_job() {
     let mut hwsc = Hwsc::new(vec![command("MOVE")], 100);
     let refused =
         Status { verdict: 3, reason: "command 8 comes next, found 4", ..answer(&HwsStatus::default()) };
@@ -353,7 +353,7 @@ fn a_command_that_the_mailbox_refuses_ends_the_job_with_the_reason() {
 }
 
 #[test]
-fn a_workstation_gets_the_line_without_its_time() {
+fn workstation_gets_the_line_without_its_delay() {
     let mut later = later(2, ViseOpening::Open);
     later.text = "**  after 2   vise open  PFIXTURE".into();
     let mut jaws = Vise::default();
@@ -363,7 +363,7 @@ fn a_workstation_gets_the_line_without_its_time() {
 }
 
 #[test]
-fn time_runs_out_for_a_command_and_for_an_action() {
+fn commands_and_actions_have_a_time_limit() {
     let mut hwsc = Hwsc::new(vec![command("MOVE")], 3);
     play(&mut hwsc, &mut Task::default(), &mut Vise::default());
     assert_eq!(*hwsc.progress(), Progress::Failed(JobFailure::TimeLimit(3)));
@@ -374,7 +374,7 @@ fn time_runs_out_for_a_command_and_for_an_action() {
 }
 
 #[test]
-fn a_wait_takes_its_ticks_and_no_more() {
+fn wait_takes_exactly_its_ticks() {
     let step = Step::Workstation(Action::Wait { ticks: 30 });
     let wait = JobLine { step, text: "** wait 30".into(), line: 1, expects_error: false };
     let mut hwsc = Hwsc::new(vec![wait, command("MOVE")], 10);
@@ -384,7 +384,7 @@ fn a_wait_takes_its_ticks_and_no_more() {
 }
 
 #[test]
-fn later_actions_happen_during_the_command() {
+fn delayed_actions_happen_during_the_command() {
     let steps = vec![later(2, ViseOpening::Open), command("MOVE")];
     let (mut hwsc, mut task, mut jaws) = (Hwsc::new(steps, 100), Task::default(), Vise::default());
     let mut tick = 0;
@@ -400,7 +400,7 @@ fn later_actions_happen_during_the_command() {
 }
 
 #[test]
-fn a_job_waits_for_later_events() {
+fn job_waits_for_delayed_actions() {
     let steps = vec![later(90, ViseOpening::Open), command("MOVE")];
     let (mut hwsc, mut task, mut jaws) = (Hwsc::new(steps, 100), Task::default(), Vise::default());
     let last = play(&mut hwsc, &mut task, &mut jaws);
@@ -409,7 +409,7 @@ fn a_job_waits_for_later_events() {
 }
 
 #[test]
-fn the_operator_may_have_the_robot_between_commands_but_not_in_one() {
+fn joystick_ends_a_command_but_not_an_action() {
     let mut task = Task { joystick: true, ..Task::default() };
     let mut hwsc = Hwsc::new(vec![vise(ViseOpening::Open)], 100);
     hwsc.current = 1;
@@ -422,7 +422,7 @@ fn the_operator_may_have_the_robot_between_commands_but_not_in_one() {
 }
 
 #[test]
-fn an_impossible_workstation_action_ends_the_job() {
+fn impossible_workstation_action_ends_the_job() {
     let mut hwsc = Hwsc::new(vec![action(ViseOpening::Open, "TABLE")], 100);
     play(&mut hwsc, &mut Task::default(), &mut Vise::default());
     assert_eq!(
@@ -435,7 +435,7 @@ fn an_impossible_workstation_action_ends_the_job() {
     assert_eq!(*hwsc.progress(), Progress::Failed(JobFailure::Workstation("no oil pressure".into())));
 }
 #[test]
-fn an_emergency_ends_the_job_at_once_in_every_state() {
+fn emergency_ends_the_job_at_once_in_every_state() {
     for steps in [vec![command("MOVE")], vec![vise(ViseOpening::Open)], vec![]] {
         let mut jaws = Vise { emergency: Some("the hand is caught"), ..Vise::default() };
         let mut hwsc = Hwsc::new(steps, 100);
@@ -446,7 +446,7 @@ fn an_emergency_ends_the_job_at_once_in_every_state() {
 }
 
 #[test]
-fn a_job_that_resets_an_emergency_continues_without_the_failed_command() {
+fn job_that_resets_an_emergency_continues() {
     let reset =
         JobLine { step: Step::Workstation(RESET), text: "** reset".into(), line: 1, expects_error: false };
     let played = |last: &str| {
@@ -468,7 +468,7 @@ fn a_job_that_resets_an_emergency_continues_without_the_failed_command() {
 }
 
 #[test]
-fn a_command_that_has_to_fail_fails() {
+fn command_expected_to_fail_must_fail() {
     let played = |fails_at: Option<usize>, joystick: bool| {
         let expecting = JobLine { expects_error: true, ..command("MOVE") };
         let mut task = Task { fails_at, ..Task::default() };

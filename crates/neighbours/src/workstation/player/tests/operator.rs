@@ -58,7 +58,7 @@ impl Stage {
 }
 
 #[test]
-fn commands_of_an_operator_and_repetitions_do_not_advance_the_line_number() {
+fn only_new_lines_advance_the_line_number() {
     let mut stage = Stage::commands();
     assert_eq!(stage.hwsc.place(), (0, 2));
     stage.until(|stage| stage.task.received.len() == 2);
@@ -85,7 +85,7 @@ fn is_idle(stage: &Stage) -> bool {
 }
 
 #[test]
-fn a_command_takes_the_place_of_the_jobs_which_is_sent_again_after_pause() {
+fn operator_command_replaces_the_job_command_until_go() {
     let mut stage = Stage::commands();
     stage.until(|stage| stage.task.received.len() == 2);
     stage.order("TRANSFER");
@@ -113,7 +113,7 @@ fn a_command_takes_the_place_of_the_jobs_which_is_sent_again_after_pause() {
 }
 
 #[test]
-fn a_job_waits_between_two_lines_and_a_line_is_skipped() {
+fn waiting_job_can_skip_a_line() {
     let mut stage = Stage::commands();
     stage.until(|stage| stage.task.received.len() == 2);
     stage.hwsc.wait_for_operator().unwrap();
@@ -129,7 +129,7 @@ fn a_job_waits_between_two_lines_and_a_line_is_skipped() {
 }
 
 #[test]
-fn a_wait_is_cancelled_and_a_playing_job_cannot_be_resumed() {
+fn wait_can_be_cancelled_before_it_begins() {
     let mut stage = Stage::commands();
     stage.hwsc.wait_for_operator().unwrap();
     stage.go_on();
@@ -140,7 +140,7 @@ fn a_wait_is_cancelled_and_a_playing_job_cannot_be_resumed() {
 }
 
 #[test]
-fn a_failure_ends_the_job_only_if_no_operator_is_there() {
+fn failure_ends_the_job_only_without_an_operator() {
     let mut stage = Stage::commands();
     stage.task.fails_at = Some(2);
     stage.until(|stage| stage.hwsc.is_waiting());
@@ -155,14 +155,14 @@ fn a_failure_ends_the_job_only_if_no_operator_is_there() {
     stage.until(|stage| stage.hwsc.is_waiting());
     stage.hwsc.attend(false);
     assert_eq!(*stage.hwsc.progress(), Progress::Failed(JobFailure::Command(Reason::GraspMissed)));
-    // Another operator who connects is told the same by every answer.
+    // Every answer gives the same reason to another operator who connects.
     stage.hwsc.attend(true);
     assert!(!stage.hwsc.is_waiting());
     assert_eq!(stage.hwsc.go_on(Tick(stage.tick)), Err(OperatorError::Ended));
 }
 
 #[test]
-fn a_workstation_line_continues_while_the_operator_commands() {
+fn workstation_line_continues_during_operator_commands() {
     let steps = vec![vise(ViseOpening::Close), command("MOVE")];
     let mut stage = Stage::new(steps);
     stage.until(|stage| stage.jaws.told.len() == 1);
@@ -180,7 +180,7 @@ fn a_workstation_line_continues_while_the_operator_commands() {
 }
 
 #[test]
-fn a_second_command_of_the_operator_replaces_the_first_and_a_lost_one_is_sent_again() {
+fn second_operator_command_replaces_the_first() {
     let mut stage = Stage::commands();
     stage.until(|stage| stage.task.received.len() == 2);
     stage.order("TRANSFER");
@@ -193,7 +193,7 @@ fn a_second_command_of_the_operator_replaces_the_first_and_a_lost_one_is_sent_ag
 }
 
 #[test]
-fn a_job_that_waits_from_the_start_begins_when_it_may() {
+fn job_on_stand_by_begins_on_go() {
     let mut stage = Stage::commands();
     stage.hwsc.wait_for_operator().unwrap();
     for _ in 0..30 {
@@ -208,7 +208,7 @@ fn a_job_that_waits_from_the_start_begins_when_it_may() {
 }
 
 #[test]
-fn an_emergency_waits_for_the_operator() {
+fn job_waits_for_the_operator_in_an_emergency() {
     let mut stage = Stage::commands();
     stage.until(|stage| stage.task.received.len() == 2);
     stage.jaws.emergency = Some("the arm has no pressure");
@@ -220,7 +220,7 @@ fn an_emergency_waits_for_the_operator() {
 }
 
 #[test]
-fn other_lines_take_the_place_of_the_rest() {
+fn played_lines_replace_the_rest_of_the_job() {
     let mut stage = Stage::commands();
     assert_eq!(stage.hwsc.play(Tick(1), vec![command("POSITION")]), Err(OperatorError::Plays));
     stage.until(|stage| stage.received().contains("MOVE"));
@@ -235,7 +235,7 @@ fn other_lines_take_the_place_of_the_rest() {
 }
 
 #[test]
-fn a_job_continues_at_once_after_a_pause_of_the_operator() {
+fn job_continues_at_once_after_an_operator_pause() {
     for go_on in [Hwsc::go_on, Hwsc::skip] {
         let mut stage = Stage::commands();
         stage.until(|stage| stage.received().contains("MOVE"));
@@ -252,7 +252,7 @@ fn a_job_continues_at_once_after_a_pause_of_the_operator() {
 }
 
 #[test]
-fn without_a_job_the_emulator_waits_again() {
+fn emulator_without_a_job_waits_again() {
     let mut stage = Stage::commands();
     stage.hwsc = Hwsc::stand_alone(41, 100);
     for _ in 0..5 {
