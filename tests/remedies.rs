@@ -729,6 +729,7 @@ const ELSEWHERE: &[(Reason, &str)] = &[
         Reason::GripperGone,
         "in the cell a ring that opens takes the air from the fingers first: the object is lost before",
     ),
+    (Reason::DeviceTripped, "crates/closed-loop/src/field/tests.rs releases a tripped device"),
     (Reason::SentAway, "the levels send the robot away in every tick (task recovery)"),
 ];
 
