@@ -169,7 +169,7 @@ fn the_nearest_miss_of_a_good_run_is_reported() {
 /// A sensor of the holster does not respond. The guarded move then ends where the gripper rests on the holster or in
 /// its seat, without pressing.
 #[test]
-fn a_gripper_is_not_pressed_into_a_holster_that_does_not_see_it() {
+fn gripper_is_not_pressed_into_a_holster_with_a_dead_sensor() {
     for sensor in ["large-1", "small-2"] {
         let fault = format!("[[fault]]\nkind = \"off\"\nsensor = \"holster.right.{sensor}\"\n");
         let name = format!("unseen-{sensor}");

@@ -82,7 +82,7 @@ fn an_occupied_drum_is_emptied_and_the_insertion_finishes() {
 }
 
 #[test]
-fn acquire_tool_from_an_empty_drum_fails_with_a_remedy_that_works() {
+fn acquire_tool_from_an_empty_drum_fails_with_a_working_remedy() {
     let outcome = job("drum-empty", &format!("{ACQUIRE}\n"));
     assert_eq!(outcome.status, Some(1), "{}", outcome.last_words);
     let said = &outcome.last_words;

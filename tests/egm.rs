@@ -60,7 +60,7 @@ fn bad_network_reduces_accuracy_and_fails_no_job() {
 /// A silence below 3 ticks has no effect. After a longer one a robot that was at rest is at its commanded position:
 /// the link restarts by itself.
 #[test]
-fn a_silence_is_survived_below_three_ticks_and_where_the_robot_stood() {
+fn silence_is_tolerated_below_three_ticks_and_at_rest() {
     for (at, silence, interrupted) in [(MOVES, "0.1", 0), (STANDS, "0.5", 1), (STANDS, "5", 1)] {
         let robot = format!("egm:sim,silent-at={at},silent-for={silence},timeout=10");
         let result = finished(&["linkbar", "--robot", &robot, "--log", "none"]);
@@ -91,7 +91,7 @@ fn a_silence_ends_the_motion_and_the_repeated_command_continues_it() {
 /// Far behind its target in a motion, the robot is stopped while that is harmless: after 4 s of the job, not at its
 /// end.
 #[test]
-fn a_robot_that_falls_behind_is_stopped_while_the_distance_is_small() {
+fn robot_falling_behind_is_stopped_at_a_small_distance() {
     for (job, deviation) in [("turned-part", "6"), ("linkbar", "2"), ("tool-change", "9")] {
         let robot = format!("egm:sim,deviation={deviation}");
         let (status, result) = run(&[job, "--robot", &robot, "--log", "none"]);
@@ -170,7 +170,7 @@ fn refused_datagrams_are_counted_and_shown_before_the_first_message() {
 
 /// A robot whose program has ended is lost, with its reason.
 #[test]
-fn a_robot_that_has_ended_egm_is_lost() {
+fn robot_with_ended_egm_program_is_lost() {
     let robot = "egm:sim,silent-at=70,silent-for=2,timeout=1";
     let (status, result) = run(&["linkbar", "--robot", robot, "--log", "none"]);
     let text = result["failure"]["text"].as_str().expect("a reason");

@@ -91,7 +91,7 @@ fn terminal() -> (File, OwnedFd) {
 
 /// `tmux kill-session` with `rcs-run --console` in it. The run waits for its console, so both have ended.
 #[test]
-fn a_terminal_that_disappears_ends_console_and_run() {
+fn lost_terminal_ends_console_and_run() {
     assert!(rcs_console().is_file());
     let place = tempdir().unwrap();
     let log = place.path().join("run.mcap");

@@ -223,7 +223,7 @@ fn linkbar_survives_lost_damaged_and_late_answers_and_a_silence() {
 
 /// The id pins fail for 20 ticks while the fingers open or close on the blank.
 #[test]
-fn a_command_that_failed_is_sent_again_if_that_was_asked_for() {
+fn failed_command_is_repeated_on_request() {
     for at in [800, 1305] {
         let text =
             format!("[[fault]]\nkind = \"off\"\nsensor = \"quick-change.id\"\nat = {at}\nticks = 20\n");

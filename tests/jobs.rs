@@ -110,7 +110,7 @@ fn another_part_is_not_recognised() {
 }
 
 #[test]
-fn a_part_that_slips_out_of_the_fingers_is_lost() {
+fn part_slipping_out_of_the_fingers_is_lost() {
     assert_fails_for("clevis", "slips", Reason::ObjectLost, |scratch| {
         // Enough for its weight, which `check` requires, and not for the motion.
         scratch.data_with(
@@ -122,7 +122,7 @@ fn a_part_that_slips_out_of_the_fingers_is_lost() {
 }
 
 #[test]
-fn a_pedestal_that_cannot_turn_so_far_is_reported() {
+fn angle_beyond_the_pedestal_limit_is_reported() {
     assert_fails_for("clevis.job", "pedestal", Reason::TableLimit, |scratch| {
         let pedestal = "BLOCK# 1 OFFSET 22000\n\
             :S \"p-object\" <= LCLEVIS_IH\n\

@@ -85,7 +85,7 @@ fn a_jog_out_of_an_interrupted_move_is_undone_by_the_same_command() {
 }
 
 #[test]
-fn a_jog_that_was_not_recorded_ends_straight_at_a_resting_place() {
+fn unrecorded_jog_ends_straight_at_a_resting_place() {
     let hold = jog(&[
         "frame WORLD",
         "stick 500 0 20",

@@ -132,7 +132,7 @@ fn failed_run_ends_with_reason_then_part_then_commands() {
 }
 
 #[test]
-fn run_without_part_or_log_has_only_that_line() {
+fn run_without_part_and_log_prints_no_commands() {
     let scratch = Scratch::new("last-none");
     let output = run(&scratch, "--faults blank-missing --log none");
     assert_eq!(output.lines().last(), Some("No part is in the cell."), "{output}");

@@ -471,7 +471,7 @@ fn a_view_needs_a_log_and_a_port() {
 
 /// Ctrl-Z, a debugger or a full disk: the run is stopped for longer than a viewer may be silent.
 #[test]
-fn a_run_that_was_frozen_keeps_its_viewers() {
+fn frozen_run_keeps_its_viewers() {
     let arguments =
         ["linkbar", "--clock", "real", "--log", "run.mcap", "--live", "0", "--shared-memory", "off"];
     let directory = tempdir().unwrap();

@@ -574,7 +574,7 @@ fn a_centred_stick_or_one_without_frame_causes_no_later_motion() {
 }
 
 #[test]
-fn sessions_of_one_name_do_not_command_at_the_same_time() {
+fn sessions_with_equal_names_do_not_command_at_the_same_time() {
     let cell = Cell::start(TO_SAFE_AND_HOME, |config| config);
     let [mut first, mut second] = [(); 2].map(|()| cell.client("send"));
     assert_eq!([first.name(), second.name()], ["send", "send-2"]);

@@ -734,7 +734,7 @@ const ELSEWHERE: &[(Reason, &str)] = &[
 ];
 
 #[test]
-fn every_remedy_text_has_a_scenario_or_a_reason_for_none() {
+fn every_remedy_text_has_a_scenario_or_an_exemption() {
     let source = include_str!("remedies.rs");
     for (reason, scenario) in SCENARIOS {
         assert!(source.contains(&format!("#[test]\nfn {scenario}()")), "{reason:?}: no test {scenario}");

@@ -53,7 +53,7 @@ fn a_changed_value_is_a_difference_for_as_long_as_it_lasts() {
 }
 
 #[test]
-fn a_value_that_no_longer_changes_is_a_difference() {
+fn missing_change_of_a_value_is_a_difference() {
     let found = compared(&WAS, WAS.get(..4).expect("there are five"), "");
     assert_eq!(found.differences.len(), 1, "{found}");
     assert_eq!(found.differences.first().map(|d| (d.first, d.ticks)), Some((Moment::Tick(8), 2)));

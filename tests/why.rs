@@ -140,7 +140,7 @@ fn run_without_failed_process_is_explained() {
 }
 
 #[test]
-fn a_contact_leads_to_the_line_of_the_data_that_the_robot_followed() {
+fn contact_leads_to_the_data_line_of_the_motion() {
     let outcome = run_with("linkbar", 1, "why-contact", &["--unchecked"], Scratch::with_a_low_via_point);
     let (answer, text) = why(&outcome);
     let world = &answer["world"];
@@ -211,7 +211,7 @@ fn added_data_do_not_change_runs_that_do_not_use_them() {
 }
 
 #[test]
-fn a_missed_grasp_names_the_forms_of_its_object_among_files_with_the_same_lines() {
+fn missed_grasp_names_the_forms_of_its_object() {
     let outcome = run_with("hinge", 1, "why-hinge", &["--unchecked"], |scratch| {
         scratch.copy_data();
         let data = scratch.file("data");

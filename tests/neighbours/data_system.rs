@@ -186,7 +186,7 @@ fn external_data_system_stores_the_items_without_changing_the_run() {
 }
 
 #[test]
-fn a_data_system_that_connects_last_is_connected_in_the_first_tick() {
+fn last_connecting_data_system_is_connected_in_the_first_tick() {
     let scratch = Scratch::new("last");
     let (file, outbox) = (scratch.file("items.db"), scratch.file("outbox").display().to_string());
     let job = scratch.file("pause.job");

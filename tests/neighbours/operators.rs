@@ -185,7 +185,7 @@ fn command_delayed_by_a_stalled_line_is_discarded() {
 }
 
 #[test]
-fn a_run_reports_who_may_operate_it() {
+fn run_reports_its_permitted_operators() {
     for access in ["none", "owner"] {
         let cell = Cell::start(&format!("net-{access}"), "workstation", access);
         let why = cell.admission().expect_err("it is refused").to_string();

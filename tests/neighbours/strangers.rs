@@ -13,7 +13,7 @@ use super::bench::{Controller, PATIENCE};
 
 /// Address forms of earlier versions are refused with a sentence that names the gateway.
 #[test]
-fn addresses_and_keys_of_other_machines_are_refused_with_the_new_way() {
+fn addresses_and_keys_of_other_machines_are_refused_with_a_pointer_to_the_gateway() {
     let socket = format!("unix:{}", Scratch::new("removed").file("rcs.sock").display());
     let run = ["--outside", "workstation", "--network"];
     let [tcp, zenoh] = ["tcp:127.0.0.1:0", "zenoh:t3@tcp/127.0.0.1:7447"];

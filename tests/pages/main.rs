@@ -180,7 +180,7 @@ fn no_source_is_long() {
 }
 
 #[test]
-fn every_crate_has_an_example_that_its_page_names() {
+fn every_crate_page_names_an_example() {
     let crates = fs::read_dir(root().join("crates")).expect("the directory is there");
     let mut count = 0;
     for path in crates.map(|entry| entry.expect("it can be listed").path()) {

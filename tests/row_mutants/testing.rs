@@ -98,7 +98,7 @@ esac
 "#;
 
     #[test]
-    fn a_test_reports_the_changes_that_it_reaches_and_detects() {
+    fn test_reports_reached_and_detected_changes() {
         let directory = tempfile::tempdir().unwrap();
         let path = directory.path().join("program");
         fs::write(&path, SCRIPT).unwrap();

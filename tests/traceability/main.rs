@@ -195,7 +195,7 @@ fn each_name_of_the_interfaces_is_on_the_page_once() {
 }
 
 #[test]
-fn every_difference_is_that_of_a_name_on_the_page() {
+fn every_listed_difference_names_an_entry_of_the_page() {
     let page = page();
     assert!(!page.differences.is_empty());
     for [name, of, manual, here] in &page.differences {

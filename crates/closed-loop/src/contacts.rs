@@ -441,7 +441,7 @@ mod tests {
     }
 
     #[test]
-    fn the_next_command_may_leave_the_contact_of_the_last_one() {
+    fn next_command_may_start_in_the_contact_of_the_last_command() {
         let mut leaving = new_check();
         assert!(play(&mut leaving, &[(0.08, GRASP), (0.08, MOVE), (0.03, MOVE), (-0.5, MOVE)]).is_empty());
         let mut going_on = new_check();

@@ -153,7 +153,7 @@ mod tests {
     }
 
     #[test]
-    fn next_data_are_those_that_advance_puts_into_effect() {
+    fn next_equals_the_data_after_advance() {
         let mut generations = new_generations(2);
         let mut memory = CommonMemory::default();
         let is = |found: &Store, expected: &Store| std::ptr::eq(found, expected);

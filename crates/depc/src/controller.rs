@@ -462,7 +462,7 @@ mod tests {
     }
 
     #[test]
-    fn bytes_that_do_not_fit_into_a_tick_are_a_fault_of_the_transmitter() {
+    fn excess_bytes_of_a_tick_are_a_fault_of_the_transmitter() {
         let (mut controller, _) = running();
         let mut out = ControllerOutputs::default();
         let full = [0x06; LINK_BYTES];
@@ -513,7 +513,7 @@ mod tests {
     }
 
     #[test]
-    fn an_interrupt_during_a_command_leaves_the_robot_where_it_was() {
+    fn interrupt_during_a_command_causes_no_motion() {
         let (mut controller, mut robot) = running();
         let mut inputs = to([10, -6293, -636, -9000, 13500, 0], NO_FUNCTION);
         inputs.interrupt = true;

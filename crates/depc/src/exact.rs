@@ -100,7 +100,7 @@ mod tests {
     }
 
     #[test]
-    fn words_have_the_frame_that_they_were_rounded_from() {
+    fn words_give_the_frame_before_rounding() {
         let mut exact = ExactFrames::default();
         for part in 1..=6 {
             let tool = tool(f64::from(part));
@@ -115,7 +115,7 @@ mod tests {
     }
 
     #[test]
-    fn equal_words_are_one_frame_after_the_other() {
+    fn equal_words_give_successive_frames() {
         let mut exact = ExactFrames::default();
         let near = [tool(1.0), tool(1.000_1), tool(1.000_2)];
         near.iter().for_each(|tool| exact.offer(&WireFrame::from_frame(tool), tool));

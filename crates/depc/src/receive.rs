@@ -323,7 +323,7 @@ mod tests {
     }
 
     #[test]
-    fn repeated_restarts_are_one_also_after_a_command() {
+    fn repeated_restarts_are_one_restart_also_after_a_command() {
         let mut receiver = CommandReceiver::default();
         let mut line = command().to_vec();
         line.extend([0x05; 3]);

@@ -224,7 +224,7 @@ mod tests {
     }
 
     #[test]
-    fn a_long_way_is_cut_to_the_limit_and_stays_on_the_line() {
+    fn long_step_is_scaled_back_and_stays_on_the_line() {
         let goal = tool([0, -7293, -636, -9000, 13500, 0]);
         let way = walk(HOME, &goal, 18);
         assert_eq!(way.len(), 19);

@@ -173,7 +173,7 @@ mod tests {
     }
 
     #[test]
-    fn a_track_without_positions_has_no_distance_and_a_long_one_is_bounded() {
+    fn empty_track_has_no_distance_and_long_track_is_bounded() {
         assert_eq!(Track::default().distance(&at(0.0, 0.0), LAG_MS, 40, &T3), None);
         let track = track(60);
         let oldest = 0.4 * 29.0;

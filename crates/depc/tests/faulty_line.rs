@@ -29,7 +29,7 @@ fn one_fault_a_tick(seed: u64) -> Plan {
 }
 
 #[test]
-fn without_faults_a_command_goes_out_every_tick() {
+fn line_without_faults_carries_one_command_per_tick() {
     let mut session = Session::new(1, &Plan::new(1));
     session.tick();
     session.new_goal();

@@ -172,7 +172,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn holds_what_was_given() {
+    fn name_returns_its_text() {
         let name = Name10::new("LK-GRP-FX1").unwrap();
         assert_eq!(name.as_str(), "LK-GRP-FX1");
         assert_eq!(Name10::new("...").unwrap().to_string(), "...");
@@ -180,7 +180,7 @@ mod tests {
     }
 
     #[test]
-    fn says_what_is_wrong() {
+    fn invalid_names_are_refused_with_the_reason() {
         assert_eq!(Name10::new("TRNG-SECTORS"), Err(NameError::TooLong { allowed: 10, found: 12 }));
         assert_eq!(Name10::new("UNIT 1"), Err(NameError::BadCharacter { position: 4 }));
         assert_eq!(Name10::clipped("RELEASE-TOOL").as_str(), "RELEASE-TO");

@@ -279,7 +279,7 @@ fn commands_between_processes_are_executed_once_with_their_own_status() {
 /// is echoed. The receiver then ignores the second command, and the commander reads the status of the first. This is
 /// the shortest path.
 #[test]
-fn a_commander_that_follows_the_echo_gives_a_number_twice_after_a_restart_before_the_echo() {
+fn commander_following_the_echo_repeats_a_number_after_an_early_restart() {
     let sends = Commanding { sends: true, ..QUIET };
     let restarts = Commanding { restarts: true, ..sends };
     let wrong = "a status is believed that is about another command";

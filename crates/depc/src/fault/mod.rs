@@ -440,7 +440,7 @@ mod tests {
     }
 
     #[test]
-    fn a_fault_of_bytes_that_are_all_lost_is_refused_on_either_side() {
+    fn fault_of_dropped_bytes_is_refused_in_either_order() {
         let cut = Rule::new(Drop).window(10, 20);
         let flip = Rule::new(Flip).window(12, 14).only(Direction::ToHost);
         let mut plan = Plan::new(1);

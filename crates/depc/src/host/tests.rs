@@ -33,7 +33,7 @@ fn running() -> Host {
 }
 
 #[test]
-fn one_frame_per_tick_is_sustained() {
+fn one_frame_is_sent_per_tick() {
     let mut host = running();
     assert_eq!(tick(&mut host, &[], &position(NO_FUNCTION)).1, HOME_FRAME);
     for _ in 0..10 {
@@ -44,7 +44,7 @@ fn one_frame_per_tick_is_sustained() {
 }
 
 #[test]
-fn one_frame_is_outstanding() {
+fn at_most_one_frame_is_outstanding() {
     let mut host = running();
     tick(&mut host, &[], &position(NO_FUNCTION));
     assert_eq!(tick(&mut host, &[], &position(NO_FUNCTION)).1, []);

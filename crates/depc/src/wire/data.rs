@@ -73,7 +73,7 @@ mod tests {
     }
 
     #[test]
-    fn reads_what_it_wrote() {
+    fn written_frame_is_read_back() {
         assert_eq!(DataCommand::parse(&HOME), Ok(DataCommand { function: NO_FUNCTION, plate: PLATE }));
     }
 

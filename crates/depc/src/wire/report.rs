@@ -66,7 +66,7 @@ mod tests {
     }
 
     #[test]
-    fn reads_what_it_wrote() {
+    fn written_frame_is_read_back() {
         assert_eq!(Report::parse(&HOME).unwrap().plate.words, [0, -6296, -635, -9000, 13495, 0]);
     }
 

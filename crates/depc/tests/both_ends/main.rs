@@ -96,7 +96,7 @@ const START: Event = Event { panel: Panel::Start, ..QUIET };
 
 /// An answer has no number: the host assigns the answer of one command to the next, which is lost.
 #[test]
-fn an_answer_that_arrives_twice_hides_a_command_that_is_lost() {
+fn duplicated_answer_hides_a_lost_command() {
     let twice = Event { answer: Carried::Doubled(1), ..QUIET };
     let lost = Event { command: Carried::Lost, ..QUIET };
     let wrong = "an answer is believed that is not true";
@@ -106,7 +106,7 @@ fn an_answer_that_arrives_twice_hides_a_command_that_is_lost() {
 
 /// A command has no number either: the controller executes the copy if no other command arrives in between.
 #[test]
-fn a_command_that_arrives_twice_is_executed_twice_if_its_answer_is_lost() {
+fn duplicated_command_is_executed_twice_if_its_answer_is_lost() {
     let twice = Event { command: Carried::Doubled(1), answer: Carried::Lost, ..QUIET };
     let wrong = "a point is executed twice";
     let found = shortest(true, [Kind::CommandDoubled, Kind::AnswerLost]);

@@ -262,7 +262,7 @@ mod tests {
     }
 
     #[test]
-    fn camera_that_is_off_does_not_answer() {
+    fn switched_off_camera_does_not_answer() {
         let mut inputs = DeviceInputs::default();
         inputs.vision.echo = 7;
         let camera = Input::named("camera").unwrap();

@@ -311,7 +311,7 @@ mod tests {
     }
 
     #[test]
-    fn numbers_that_are_not_values_give_none() {
+    fn invalid_numbers_have_no_values() {
         for values in [Values { step: 2, variables: 0 }, Values { step: 0, variables: 6 }] {
             assert_eq!(CLOSE_DOOR.consult(values), None);
             assert_eq!(CLOSE_DOOR.values(values).count(), 0);
