@@ -210,7 +210,7 @@ pub fn assert_cleaned(directory: &Path, run: &RunName) {
 pub fn wait_for(what: &str, mut condition: impl FnMut() -> bool) {
     let started = Instant::now();
     while !condition() {
-        assert!(started.elapsed() < PATIENCE, "in vain waited for: {what}");
+        assert!(started.elapsed() < PATIENCE, "not in time: {what}");
         thread::sleep(Duration::from_millis(1));
     }
 }

@@ -323,7 +323,7 @@ fn a_killed_board_stops_the_robot_and_is_named() {
             assert!(ended.last_words().contains(words), "{words}: {}", ended.said);
         }
         if *held {
-            assert_eq!(ended.result["parts"][0]["held"], true, "what is held stays held");
+            assert_eq!(ended.result["parts"][0]["held"], true, "the part is still held");
         }
         bench.assert_log_replays();
         bench.assert_clean();

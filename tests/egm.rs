@@ -212,7 +212,7 @@ fn drive_peer() -> (i32, Value, Value) {
         "linkbar", "--robot", &robot, "--clock", "real", "--ticks", "400", "--wait", "20", "--log", "none",
     ]);
     let output = peer.wait_with_output().expect("it ends");
-    assert!(output.status.success(), "the peer refuses what it got");
+    assert!(output.status.success(), "the peer refuses its data");
     (status, result, serde_json::from_slice(&output.stdout).expect("one line of JSON"))
 }
 

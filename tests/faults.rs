@@ -29,7 +29,7 @@ fn in_place(job: &str, result: &Value) -> bool {
         "clevis" => &[("LCLEVIS", "UNIT_1", 2, 0.25)],
         "turned-part" => &[("SHAFT", "UNIT_2", 8, 0.25)],
         "tool-change" => &[("DRILL-2", "UNIT_2", 3, 0.25), ("ENDMILL-1", "TOOL-TRNS", 0, 0.15)],
-        other => panic!("nothing is known of {other}"),
+        other => panic!("unknown job {other}"),
     };
     expected.iter().all(|(name, location, sector, within)| {
         let parts = result["parts"].as_array().map_or(&[][..], Vec::as_slice);

@@ -35,7 +35,7 @@ fn hand(outcome: &Outcome) -> Frame {
     let last = log.ticks().last().expect("a run has ticks").expect("a sound tick");
     let memory: CommonMemory = from_bytes(&last.memory).expect("sound buffers");
     let pose = memory.prim.status.sensor_pose.and_then(|number| memory.changing_pose(number));
-    pose.expect("the resolvers tell").to_frame().expect("a pose is a frame")
+    pose.expect("the resolvers give a pose").to_frame().expect("a pose is a frame")
 }
 
 fn assert_at_home(outcome: &Outcome) {

@@ -146,7 +146,7 @@ fn interrupted_run_in_real_time_has_its_times_and_the_last_lines() {
         on_terminal(&scratch, &line).stdout(Stdio::piped()).spawn().expect("a shell can be started");
     // The blank has been delivered by then; the robot may already hold it.
     thread::sleep(Duration::from_millis(3700));
-    kill_process(Pid::from_child(&run), Signal::INT).expect("the run goes on");
+    kill_process(Pid::from_child(&run), Signal::INT).expect("the run has not ended");
     let mut output = String::new();
     run.stdout.take().expect("it is piped").read_to_string(&mut output).expect("text");
     run.wait().expect("the run ends");

@@ -184,7 +184,7 @@ fn viewers_of_both_subprotocols_get_the_messages_of_the_log() {
         for item in got {
             match item {
                 Got::Time(time) => {
-                    assert!(*time > now, "time goes on");
+                    assert!(*time > now, "time increases");
                     now = *time;
                 }
                 Got::Message(topic, time, data) => {

@@ -212,9 +212,7 @@ fn print_rows(found: &[(&String, &Comparison)], renames: &Renames, all: bool) {
     print!("\n{rows}");
     if all {
         println!("\n## Rows of this version that no header named\n");
-        println!(
-            "Of a row that did not fire nothing is proven. A header names one row a tick, so that a row may"
-        );
+        println!("A row that did not fire is not compared. A header names one row per tick, so a row may");
         println!("also have fired before another one of its process in the same tick.\n");
         println!("| process | table | rows |\n|---|---|---|");
         for (process, table, numbers) in rows.not_named() {

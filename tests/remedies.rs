@@ -128,7 +128,7 @@ impl Operated {
                 return self;
             }
         }
-        panic!("the job goes on at tick {}", self.tick());
+        panic!("the job continues at tick {}", self.tick());
     }
 
     /// Wait until the command fails for a reason.

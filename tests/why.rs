@@ -1,7 +1,7 @@
 //! `rcs-log why` on provoked failures: it must find the first cause, and report the commands before it with their
 //! rows, the sensed values, and the path of the failure up the ladder.
 
-#![expect(clippy::print_stdout, reason = "what it says is what it is for")]
+#![expect(clippy::print_stdout, reason = "its output is for readers")]
 
 use std::process::Command;
 

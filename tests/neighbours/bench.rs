@@ -158,7 +158,7 @@ impl Workstation {
 
     /// Let the next tick begin, and read to its end.
     pub fn tick(&mut self) {
-        self.read_tick().expect("the controller goes on");
+        self.read_tick().expect("the controller continues");
     }
 
     fn read_tick(&mut self) -> Result<(), PeerError> {

@@ -42,7 +42,7 @@ enum Fate {
 /// A Data System on a thread, which ends with the connection.
 fn serve(mut peer: Peer, file: PathBuf, fate: Fate) -> JoinHandle<()> {
     thread::spawn(move || {
-        let mut server = Server::new(Store::open(&file).expect("a data base"));
+        let mut server = Server::new(Store::open(&file).expect("a database"));
         let mut status_box = Mailbox::initialized(DATA_SYSTEM_STATUS);
         let mut read = 0;
         while let Ok(received) = peer.receive() {
@@ -146,7 +146,7 @@ fn fetch(number: u32) -> HwsCommand {
 
 /// The place of item 17, and the number of its changes.
 fn books(file: &Path) -> (String, usize) {
-    let store = Store::open(file).expect("a data base");
+    let store = Store::open(file).expect("a database");
     let items = store.items().expect("it can be read");
     let [item] = &items[..] else { panic!("{items:?}") };
     let history = store.history(&item.number).expect("it can be read");
@@ -243,7 +243,7 @@ fn a_killed_controller_sends_pending_updates_after_its_next_startup() {
         let scratch = shop.controller.kill();
         let mut shop = Shop::open(scratch, &file, Fate::Answers);
         let known = usize::from(fate == Fate::DiesAfter);
-        assert_eq!(Store::open(&file).expect("a data base").items().expect("it can be read").len(), known);
+        assert_eq!(Store::open(&file).expect("a database").items().expect("it can be read").len(), known);
         assert_eq!(shop.connect(2).0, "finished");
         assert_eq!(books(&file), ("17 at H_ROBOT".to_owned(), 1), "{fate:?}");
         assert_eq!(shop.end().status, Some(0));

@@ -62,7 +62,7 @@ fn a_neighbour_that_leaves_before_its_answer_ends_the_run_in_its_first_tick() {
         let mut peer = controller.connect(Role::Workstation);
         for answer in 0..=answers {
             let tick = loop {
-                if let Received::Pulse(tick) = peer.receive().expect("the controller goes on") {
+                if let Received::Pulse(tick) = peer.receive().expect("the controller continues") {
                     break tick;
                 }
             };

@@ -276,7 +276,7 @@ fn every_failure_of_the_pedestal_ends_the_command_without_a_drop() {
     let status = successor.memory().pedestal.status;
     assert_eq!((status.report, status.reason), (PedestalReport::Error, Reason::Restarted));
     assert_eq!(successor.memory().hand.valves.bits, 0);
-    assert!(opening.abs_diff(held) < 10, "the fingers stood at {held} counts, and stand at {opening}");
+    assert!(opening.abs_diff(held) < 10, "the fingers moved from {held} to {opening} counts");
     let ended = shop.end();
     assert_eq!(ended.status, Some(0), "{}", ended.said);
     let [part] = &ended.result["parts"].as_array().expect("parts")[..] else { panic!("{}", ended.result) };

@@ -13,7 +13,7 @@ use whole_system_tests::{Scratch, rcs_neighbour, root};
 use super::bench::{Controller, computed, computed_alone};
 
 fn items(file: &Path) -> Vec<Item> {
-    Store::open(file).expect("a data base").items().expect("items")
+    Store::open(file).expect("a database").items().expect("items")
 }
 
 /// [`computed`] of a shift with all neighbours in the controller's process, and the items of its Data System.

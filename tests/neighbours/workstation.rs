@@ -218,7 +218,7 @@ fn a_reconnected_workstation_controller_continues_from_the_echo() {
     let last = first.tick;
     drop(first);
     let mut second = Workstation::connect(&controller);
-    assert!(second.tick > last, "the ticks went on");
+    assert!(second.tick > last, "the ticks continued");
     assert_eq!((second.status().echo, second.status().verdict), (1, 0));
     // One that has lost its state and starts with number 1 again.
     second.send(&HwsCommand { source_sector: Some(1), ..bare(1, "PAUSE") });

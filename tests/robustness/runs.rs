@@ -65,6 +65,6 @@ pub fn assert_no_harm(directory: &Path, run: &RunName) {
     let next = Ended::run(directory, "linkbar", &["--ticks", "30", "--log", "none"]);
     assert_eq!((next.status, next.number("ticks")), (Some(0), 30), "the next run: {}", next.said);
     next.assert_shared();
-    assert_eq!(traces(run), Vec::<std::path::PathBuf>::new(), "the next run removes what is left");
+    assert_eq!(traces(run), Vec::<std::path::PathBuf>::new(), "the next run removes all remains");
     assert_cleaned(directory, run);
 }

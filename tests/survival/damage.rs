@@ -97,7 +97,7 @@ fn another_user_cannot_open_or_block_a_run() {
         }
     };
     let said = String::from_utf8_lossy(&output.stderr);
-    let attack = fs::read_to_string(scratch.file("attack.log")).expect("the attacker says what it does");
+    let attack = fs::read_to_string(scratch.file("attack.log")).expect("the attacker writes a log");
     assert!(!attack.contains("opened"), "{attack}");
     assert_eq!(output.status.code(), Some(0), "{said}\n{attack}");
 }

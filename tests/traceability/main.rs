@@ -90,7 +90,7 @@ fn page() -> Page {
                     "Commands" => "commands",
                     "Interface variables" => "variables",
                     "Status values" => "statuses",
-                    _ => panic!("{line} stands under {heading}"),
+                    _ => panic!("{line} is under {heading}"),
                 },
                 name: name.clone(),
                 of: of.clone(),

@@ -1,7 +1,7 @@
 //! Plays a job and forks it in the middle; in the copy the cable to the robot is cut. Run
 //! `cargo run --release -p closed-loop --example fork` in the root of the repository.
 
-#![expect(clippy::print_stdout, reason = "an example prints what it does")]
+#![expect(clippy::print_stdout, reason = "an example prints its results")]
 
 use std::{error::Error, path::Path, sync::Arc};
 

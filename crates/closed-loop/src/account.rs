@@ -58,7 +58,7 @@ impl Kind {
             Self::Process => "a process error",
             Self::FalseReport => "a false report",
             Self::Misplaced => "a misplaced part",
-            Self::Job => "a job that cannot go on",
+            Self::Job => "a job that cannot continue",
             Self::Program => "a failure of the program",
         }
     }

@@ -45,7 +45,7 @@ impl Failure {
 mod number {
     use super::{Deserialize, Tick};
 
-    #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde hands over a reference")]
+    #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes a reference")]
     pub fn serialize<S: serde::Serializer>(tick: &Tick, to: S) -> Result<S::Ok, S::Error> {
         to.serialize_u64(tick.0)
     }

@@ -322,7 +322,7 @@ mod tests {
         let refused = bench.play("** panel fault-reset").unwrap_err();
         assert_eq!(refused, "the E-stop near the pedestal is still in: release it first");
         bench.play("** release pedestal").unwrap();
-        assert!(bench.workstation.emergency().is_some(), "nothing comes back by itself");
+        assert!(bench.workstation.emergency().is_some(), "the emergency lasts until the restart");
         for (line, stage) in RESTART {
             bench.play(&format!("** panel {line}")).unwrap();
             assert_eq!(bench.workstation.cell.t3().stage(), stage, "{line}");

@@ -512,7 +512,7 @@ fn operator_initializes_the_link() {
     for _ in 0..100 {
         rig.step(ProcessId::ALL);
         seen |= rig.before.emove.prim.command == PrimVerb::RobotInit;
-        assert_eq!(rig.before.task.status.report, HwsReport::Finished, "what is done stays done");
+        assert_eq!(rig.before.task.status.report, HwsReport::Finished, "a finished command stays finished");
     }
     assert!(seen && rig.before.t3i.status.link_running);
     assert_eq!((restarts(&rig), rig.before.emove.prim.command), (before + 1, PrimVerb::Pause));
@@ -541,7 +541,7 @@ fn only_the_process_of_the_attached_gripper_is_stepped() {
             assert_eq!(rig.header(process).republished, id != own, "{process} with gripper {id}");
         }
         let outputs = rig.before.device_outputs();
-        assert_eq!((outputs.v_grip, outputs.tool_grip), Default::default(), "nothing was commanded");
+        assert_eq!((outputs.v_grip, outputs.tool_grip), Default::default(), "there was no command");
     }
     for _ in 0..50 {
         rig.step(ProcessId::ALL);

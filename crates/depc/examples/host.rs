@@ -4,7 +4,7 @@
 //! `cargo run --release -p depc --example host /tmp/t3` in another. With a real robot, connect the host's DSR with
 //! the controller's DTR; a pseudo-terminal has no modem lines.
 
-#![expect(clippy::print_stdout, reason = "an example prints what it does")]
+#![expect(clippy::print_stdout, reason = "an example prints its results")]
 
 use std::{
     env,
@@ -41,7 +41,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         let ready = port.read_data_set_ready().unwrap_or(true);
         if host.receive(&rx, ready) == HostEvent::Started {
             let start = Position::reported(host.position(), &T3);
-            println!("the robot stands at {:.2?} in", start.tool().position.as_slice());
+            println!("the robot is at {:.2?} in", start.tool().position.as_slice());
             let mut above = start.tool();
             above.position += Vector::new(0.0, 0.0, 2.0);
             goals = vec![start.tool(), above];

@@ -1,7 +1,7 @@
 //! The control processes from the lowest to the highest: board, buffer size and external inputs.
 //! `cargo run --release -p interfaces --example ladder`.
 
-#![expect(clippy::print_stdout, reason = "an example prints what it does")]
+#![expect(clippy::print_stdout, reason = "an example prints its results")]
 
 use interfaces::{CommonMemory, ExternalInputs, ProcessId};
 use rcs_core::Plain;

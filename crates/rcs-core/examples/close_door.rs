@@ -1,7 +1,7 @@
 //! Two processes and their buffers: a commander sends CLOSE-DOOR, and its subordinate decides by its table.
 //! `cargo run -p rcs-core --example close_door`.
 
-#![expect(clippy::print_stdout, reason = "an example prints what it does")]
+#![expect(clippy::print_stdout, reason = "an example prints its results")]
 
 use door::{Action, Door, Outputs, Report};
 use rcs_core::{

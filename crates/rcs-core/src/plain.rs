@@ -216,11 +216,11 @@ impl fmt::Display for DecodeError {
     #[inline]
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::TooShort => f.write_str("the bytes end before the record does"),
-            Self::BadName => f.write_str("a name holds bytes that no name can have"),
+            Self::TooShort => f.write_str("the record has more bytes"),
+            Self::BadName => f.write_str("a name contains invalid bytes"),
             Self::BadFlag(found) => write!(f, "a flag is 0 or 1, found {found}"),
-            Self::BadFill(found) => write!(f, "a byte that carries nothing is 0, found {found}"),
-            Self::BadCode { of, found } => write!(f, "{found} is the code of no {of}"),
+            Self::BadFill(found) => write!(f, "an unused byte must be 0, found {found}"),
+            Self::BadCode { of, found } => write!(f, "{of} has no variant with code {found}"),
         }
     }
 }

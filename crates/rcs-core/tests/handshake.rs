@@ -139,7 +139,7 @@ impl State {
         let believed = matches!(reading, Lower::Done | Lower::Executing | Lower::Error);
         // A commander that has not sent a command since its start acts on no status.
         if believed && commander.started && status.about != before.written[0].content {
-            return Err("a status is believed that is about another command");
+            return Err("a status of another command is accepted");
         }
         let mut written = before.written[0];
         if event.sends {
@@ -282,6 +282,6 @@ fn commands_between_processes_are_executed_once_with_their_own_status() {
 fn commander_following_the_echo_repeats_a_number_after_an_early_restart() {
     let sends = Commanding { sends: true, ..QUIET };
     let restarts = Commanding { restarts: true, ..sends };
-    let wrong = "a status is believed that is about another command";
+    let wrong = "a status of another command is accepted";
     assert_eq!(search(Start::Echo).wrong, Some((vec![(sends, STEP), (restarts, STEP)], wrong)));
 }

@@ -187,7 +187,7 @@ fn part_next_to_an_added_one_is_not_sensed() {
     let frame = bench.cell.part_frame(id).expect("it is in the cell");
     let above = Frame { position: frame.position + Vector::new(0.0, 0.0, 3.0), ..frame };
     let put = WorkstationAction::Put { part: "LINKBAR1".into(), frame: above };
-    bench.cell.workstation(&put).expect("nothing is in the way");
+    bench.cell.workstation(&put).expect("the place is free");
     bench.history.note_changed(Tick(1), [other]);
     assert_eq!(bench.not_sensed(&placed), Some(NotSensed::Occupied));
 }
@@ -247,7 +247,7 @@ fn an_unconfirmed_place_in_the_fingers_covers_its_consequences() {
 #[test]
 fn unconfirmed_grasp_force_covers_a_lost_part_and_no_misplaced_one() {
     let held = Claim::Holds { object: name("SHAFT"), place: Vec::new(), unseen: true };
-    assert!(held.is_covered(Unconfirmed::GraspForce, false), "nothing is held");
+    assert!(held.is_covered(Unconfirmed::GraspForce, false), "the fingers are empty");
     assert!(!held.is_covered(Unconfirmed::GraspForce, true), "it is held elsewhere");
     assert!(!Claim::HoldsNothing.is_covered(Unconfirmed::GraspForce, false));
 }
@@ -279,7 +279,7 @@ fn part_moved_before_its_picture_is_false_and_after_it_not_sensed() {
     bench.put("LINKBAR1_BH", "UNIT_1", 4);
     let near = bench.description().tray("UNIT_1").and_then(|tray| tray.sector(4)).expect("it is a sector");
     let claim = Claim::Located { object: name("LINKBAR1_BH"), near };
-    assert_eq!(bench.not_sensed(&claim), None, "nothing was located");
+    assert_eq!(bench.not_sensed(&claim), None, "no part was located");
     let away = Claim::Located { object: name("LINKBAR1"), near };
     bench.memory.emove.estimates.located = Some(interfaces::emove::Located {
         object: name("LINKBAR1"),

@@ -348,7 +348,7 @@ impl fmt::Display for Refusal {
         match self {
             Self::NoDirection => f.write_str("expected at least one direction, found none"),
             Self::Never => f.write_str(
-                "expected a rate, a tick or a range of ticks, found none of them: the fault would never happen",
+                "expected a rate, a tick or a range of ticks, found none of them: the fault would never occur",
             ),
             Self::Rate { millionths } => {
                 write!(f, "expected a rate of 0.000001 to 1, found {millionths} millionths")
@@ -358,27 +358,27 @@ impl fmt::Display for Refusal {
             }
             Self::NoLength { kind } => write!(
                 f,
-                "`ticks` says how long a delay, a stall or cts-low takes; {} takes no time",
+                "`ticks` is the duration of a delay, a stall or cts-low; {} has no duration",
                 kind.text()
             ),
             Self::TwoLengths { kind } => write!(
                 f,
-                "a range of ticks without a rate says already how long the {} takes: leave `ticks` out, or give a \
-                 rate or a single tick",
+                "a range of ticks without a rate already gives the duration of {}: omit `ticks`, or give a rate or a \
+                 single tick",
                 kind.text()
             ),
             Self::TooLong { found } => write!(f, "expected 1 to {MOST_TICKS} ticks, found {found}"),
             Self::NoByte { kind } => {
-                write!(f, "`byte` says what is inserted; {} inserts nothing", kind.text())
+                write!(f, "`byte` is the byte to insert; {} inserts none", kind.text())
             }
             Self::Hidden { kind, by } => write!(
                 f,
-                "fault {by} drops every byte in these ticks and nothing is left to {}: put them into other ticks",
+                "fault {by} drops every byte in these ticks, so {} can never occur: use other ticks for one of them",
                 kind.text()
             ),
             Self::Hides { kind, number } => write!(
                 f,
-                "this drops every byte that fault {number} ({}) could act on: put them into other ticks",
+                "this drops every byte on which fault {number} ({}) could act: use other ticks for one of them",
                 kind.text()
             ),
             Self::TooMany => write!(f, "expected at most {RULES} faults"),

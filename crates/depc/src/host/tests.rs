@@ -67,7 +67,7 @@ fn nak_repeats_the_same_bytes_up_to_the_limit() {
 #[test]
 fn unsent_bytes_of_the_port_are_lost_and_reported() {
     let mut host = running();
-    assert_eq!(host.unsent(), HostEvent::None, "nothing was on the line");
+    assert_eq!(host.unsent(), HostEvent::None, "the line was empty");
     tick(&mut host, &[], &position([7, 9]));
     assert_eq!(host.unsent(), HostEvent::Lost);
     assert_eq!((host.fault(), host.lost_function()), (LinkFault::NotTransmitted, [7, 9]));

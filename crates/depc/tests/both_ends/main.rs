@@ -99,7 +99,7 @@ const START: Event = Event { panel: Panel::Start, ..QUIET };
 fn duplicated_answer_hides_a_lost_command() {
     let twice = Event { answer: Carried::Doubled(1), ..QUIET };
     let lost = Event { command: Carried::Lost, ..QUIET };
-    let wrong = "an answer is believed that is not true";
+    let wrong = "a false answer is accepted";
     let found = shortest(true, [Kind::AnswerDoubled, Kind::CommandLost]);
     assert_eq!(found, Some((vec![START, twice, lost, QUIET], wrong)));
 }

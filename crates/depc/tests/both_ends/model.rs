@@ -263,8 +263,8 @@ impl State {
         let event = self.host.receive(&arrived, self.dtr && !dtr_low);
         let is_true = self.host.position().words[0] == self.robot.at;
         match event {
-            HostEvent::Acknowledged if !is_true => return Err("an answer is believed that is not true"),
-            HostEvent::Started if !is_true => return Err("a report is believed that is not true"),
+            HostEvent::Acknowledged if !is_true => return Err("a false answer is accepted"),
+            HostEvent::Started if !is_true => return Err("a false report is accepted"),
             HostEvent::Started => self.host.forgive(),
             HostEvent::Acknowledged | HostEvent::Lost | HostEvent::None => {}
         }
