@@ -130,7 +130,7 @@ fn a_part_in_the_vise_is_released_only_at_its_destination() {
     let begin = "** tray UNIT_1 4 LINKBAR1_BH\n** vise partial PFIXTURE\n\
                  == MOVE LINKBAR1_BH +2 UNIT_1 4 +2 PFIXTURE 0 -- 0\n** vise close PFIXTURE\n";
     let away = jog(&["frame WORLD", "stick 0 100 40"]);
-    // The box controls the robot in the first five ticks of the motion to it.
+    // The box took the robot over in the first five ticks of this motion.
     let back = jog(&["frame WORLD", "stick 0 -100 35"]);
     let position = "== POSITION H-LINKBAR1_BH +1 PFIXTURE 0 +0 -- 0 -- 0\n";
     let again = position.replace('\n', " expect error\n");

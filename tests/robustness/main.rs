@@ -43,7 +43,7 @@ use crate::{
 /// Treat logs, shared memory, readers, signals and disks badly, and count how the programs take it
 #[derive(Parser)]
 struct Arguments {
-    /// What is tried; everything if nothing is named
+    /// Parts to try; all if none is named
     #[arg(value_enum)]
     parts: Vec<Part>,
     /// Try a few cases of each row, as the ordinary tests do

@@ -7,7 +7,7 @@
 //! |--------------------------------------------|---------------------------------------|-------------------|
 //! | number, flag, name, enum, array of bytes   | one                                   | `7`, `"HOME"`     |
 //! | record, other array                        | those of its fields, of its elements  |                   |
-//! | option of what is one leaf                 | one                                   | `none`, `7`       |
+//! | option of a value with one leaf            | one                                   | `none`, `7`       |
 //! | other option                               | `x` for the flag, those of the value  | `none`, `some`    |
 //! | union whose variants carry at most a leaf  | one                                   | `"candle" 7`      |
 //! | other union                                | `x` for the variant, `x.variant` ...  | `"candle"`        |

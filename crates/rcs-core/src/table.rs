@@ -184,7 +184,7 @@
 //! | `JOYSTICK by joystick` | consulted by this method of the process's state, which can withhold the command |
 //! | `ACCEPT(request)` | a row decides with the variables `seen.request`, or the next table is consulted |
 //! | `LINK(situation in link)` | the same, with the step `state.link` instead of that of the command |
-//! | `ORDERED(subordinates -> situation.work)` | what it passes on becomes `seen.situation.work` |
+//! | `ORDERED(subordinates -> situation.work)` | the passed value becomes `seen.situation.work` |
 //! | `ORDERED(subordinates -> situation)` | the same for each table with a `struct of` state variables |
 //!
 //! `after` may say `EFFECT(advance)`: `seen.advance` is true if the command has advanced since its last order.
