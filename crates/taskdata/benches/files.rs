@@ -1,9 +1,9 @@
 //! Times of a load and of look-ups with 100,000 records of task data in one file, and in all files at once.
 //!
-//! The time of a load ends when the data are ready, before the memory is freed. Look-ups are timed warm (the same few
-//! records again and again), cold (all records in an order that no cache can predict; together they are several times
-//! as large as the caches of a core), and with the caches emptied. They allocate nothing: that part of the crate is
-//! built without `alloc`.
+//! The time of a load ends when the data are ready, before the memory is freed. Look-ups are timed warm (the
+//! same few records repeatedly), cold (all records in an order that no cache can predict; together they are
+//! several times as large as the caches of a core), and with the caches emptied. They do not allocate: that
+//! part of the crate is built without `alloc`.
 
 use std::{fmt::Write, hint::black_box, time::Duration};
 
@@ -17,14 +17,13 @@ use taskdata::{
 
 /// Number of records in each of the files that grow with the number of parts.
 const RECORDS: u32 = 100_000;
-/// Number of bytes that are written to empty the caches, and number of look-ups that are then timed together.
+/// Number of bytes written to empty the caches.
 const DIRT: usize = 64 << 20;
 const AT_A_TIME: usize = 250;
 /// Number of lines in a block, and of blocks at an offset.
 const LINES: usize = 16;
 const BLOCKS: usize = 1000;
 
-/// Blocks with the given lines in them, from an offset on.
 fn blocks(offset: usize, lines: impl Iterator<Item = String>) -> Source {
     let mut text = String::new();
     for (i, line) in lines.enumerate() {
@@ -66,7 +65,7 @@ fn sources() -> Vec<Source> {
     ]
 }
 
-/// For each file, texts that give it 100,000 records, and the other files only the records that these need.
+/// For each file, texts that give it 100,000 records, and the other files only the records that it needs.
 fn one_file_each() -> Vec<(&'static str, Vec<Source>)> {
     let pose = |name: &str| format!("3800 -4400 0 6800 -4400 0 6800 -1400 0 -pose- ... {name}");
     let all = || 0..RECORDS;
@@ -138,7 +137,7 @@ fn load(c: &mut Criterion, sources: &[Source]) {
     load.finish();
 }
 
-/// The names of all parts with even or with odd numbers, each far from the one before.
+/// The names of all parts with even or with odd numbers, each far from the previous one.
 fn shuffled(parity: u32) -> Vec<Name16> {
     // 7919 and 100,000 have no common divisor: every name occurs.
     let numbers = (0..RECORDS).map(|i| i * 7919 % RECORDS).filter(|i| i % 2 == parity);
@@ -152,7 +151,7 @@ fn processor_time() -> Duration {
 
 /// Time a look-up by name, which returns a number from the record found.
 fn look_up(c: &mut Criterion, what: &str, names: &[Name16], find: impl Fn(&Name16) -> u32) {
-    // Each look-up depends on the one before, as in a tick: otherwise the processor overlaps several.
+    // Each look-up depends on the previous one, as in a tick. Otherwise the processor overlaps several.
     let nothing = black_box(0);
     let chain = |names: &[Name16], times: u64| {
         let mut position = 0;

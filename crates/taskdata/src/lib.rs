@@ -3,9 +3,9 @@
 //! Programmers write *forms*; a form becomes records of *files* (POSE, MOVTAB, LOCPT …), and the control processes look
 //! the records up by number or by name while they run (II.2.4). This crate has two halves:
 //!
-//! * [`files`]: the records, and [`files::TaskData`]: slices of the records, and their indexes. It uses no heap and no
-//!   standard library, and the time of a look-up does not grow with the number of records. The control processes use
-//!   only this half.
+//! * [`files`]: the records, and [`files::TaskData`]: slices of the records, and their indexes. It uses neither
+//!   heap nor standard library, and the time of a look-up does not grow with the number of records. The control
+//!   processes use only this half.
 //! * `load` (feature `load`): reads the blocks of a data directory, checks every form against all others and
 //!   against the arm, reports all errors at once, and builds the files and their indexes.
 

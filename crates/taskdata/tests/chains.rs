@@ -98,7 +98,7 @@ fn clevis_seat(height: f64) -> [f64; 3] {
 }
 
 #[test]
-fn the_clevis_blank_is_released_before_its_seat() {
+fn clevis_blank_is_released_before_its_seat() {
     let store = load();
     let data = store.view();
     let tray = at(&data, "UNIT_1", 3, "LCLEVIS_BH").frame;
@@ -115,7 +115,7 @@ fn the_clevis_blank_is_released_before_its_seat() {
 }
 
 #[test]
-fn the_half_done_clevis_returns_turned_around() {
+fn half_done_clevis_returns_turned_around() {
     let store = load();
     let data = store.view();
     let vise = at(&data, "PFIXTURE", 0, "LCLEVIS_IH").frame;
@@ -148,7 +148,7 @@ fn the_half_done_clevis_returns_turned_around() {
 }
 
 #[test]
-fn the_finished_clevis_is_released_just_above_the_tray() {
+fn finished_clevis_is_released_just_above_the_tray() {
     let store = load();
     let data = store.view();
     let vise = at(&data, "PFIXTURE", 0, "LCLEVIS").frame;
@@ -161,7 +161,7 @@ fn the_finished_clevis_is_released_just_above_the_tray() {
 }
 
 #[test]
-fn the_turned_part_is_upright_in_its_nest_and_lies_in_its_cradle() {
+fn turned_part_is_upright_in_its_nest_and_flat_in_its_cradle() {
     let store = load();
     let data = store.view();
     for sector in [7, 8] {
@@ -186,7 +186,7 @@ fn the_turned_part_is_upright_in_its_nest_and_lies_in_its_cradle() {
 }
 
 #[test]
-fn holsters_drum_and_pedestal_are_where_the_cell_has_them() {
+fn holsters_drum_and_pedestal_agree_with_the_cell() {
     let store = load();
     let data = store.view();
     let cell = cell();

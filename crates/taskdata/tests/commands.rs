@@ -24,7 +24,7 @@ fn said(store: &Store, block: u32, line: usize) -> String {
 }
 
 #[test]
-fn the_lines_that_chapter_four_names_are_there() {
+fn lines_of_chapter_four_exist() {
     let store = store();
     let named = [(863, 3), (863, 12), (667, 0), (667, 1), (667, 10)];
     let found = named.map(|(block, line)| said(&store, block, line));
@@ -57,7 +57,7 @@ fn invalid_commands_are_not_loaded() {
 }
 
 #[test]
-fn a_wrong_command_is_reported_at_its_line() {
+fn wrong_command_is_reported_at_its_line() {
     let with = |line: &str| {
         let text = format!("BLOCK# 870 OFFSET 16000\n{line}\n");
         store().with_blocks(vec![Source { name: "more.blk".into(), text: text.into() }])

@@ -38,14 +38,14 @@ fn seen_from(outer: &Frame, inner: &Frame) -> Frame {
 }
 
 #[test]
-fn only_the_printed_pose_is_warned_of() {
+fn only_the_printed_pose_causes_a_warning() {
     let (_, report) = load();
     let warnings: Vec<&str> = report.warnings().map(|w| w.message()).collect();
     assert_eq!(warnings, [""; 0], "TOOL-TRNS is off square, which the data accept");
 }
 
 #[test]
-fn sectors_are_where_the_cell_has_them() {
+fn sectors_agree_with_the_cell() {
     let (store, _) = load();
     let data = store.view();
     let unit_1 = [[-61.25, -0.25], [-61.25, 10.25], [-50.75, -0.25], [-50.75, 10.25]];
@@ -62,7 +62,7 @@ fn numbers<const N: usize>(value: &toml::Value) -> [f64; N] {
 }
 
 #[test]
-fn the_cell_and_the_data_agree() {
+fn cell_and_task_data_agree() {
     let (store, _) = load();
     let data = store.view();
     let text = std::fs::read_to_string(data_directory().join("cell.toml")).unwrap();
@@ -84,7 +84,7 @@ fn the_cell_and_the_data_agree() {
 }
 
 #[test]
-fn the_blank_is_picked_tilted_and_is_upright_in_the_vise() {
+fn blank_is_picked_tilted_and_is_upright_in_the_vise() {
     let (store, _) = load();
     let data = store.view();
     let blank = name("LINKBAR1_BH");
@@ -97,7 +97,7 @@ fn the_blank_is_picked_tilted_and_is_upright_in_the_vise() {
     assert_near(&placed, [68.15, -43.81, -3.0], 1e-9);
     assert!((placed.x().z - radians(300).sin()).abs() < 1e-12);
 
-    // The gripper holds the bar as it was in the tray; after the motion to the vise the two tilts cancel.
+    // The gripper holds the bar as it was in the tray. After the motion to the vise the two tilts cancel.
     let bar = placed.compose(&seen_from(&pick, &sector.frame));
     let in_vise = seen_from(&vise.frame, &bar);
     assert!(in_vise.distance(&Frame::identity()).radians < 1e-12, "{in_vise:?}");
@@ -109,7 +109,7 @@ fn the_blank_is_picked_tilted_and_is_upright_in_the_vise() {
 }
 
 #[test]
-fn the_finished_part_is_released_just_above_the_tray() {
+fn finished_part_is_released_just_above_the_tray() {
     let (store, _) = load();
     let data = store.view();
     let part = name("LINKBAR1");
@@ -138,7 +138,7 @@ fn hold_and_seat_differ_as_documented() {
 }
 
 #[test]
-fn the_camera_is_directly_above_the_sector() {
+fn camera_is_directly_above_the_sector() {
     let (store, _) = load();
     let data = store.view();
     let sector = at(&data, "UNIT_1", 1, "LINKBAR1_BH");
@@ -195,7 +195,7 @@ fn every_leg_of_the_linkbar_has_its_paths() {
 }
 
 #[test]
-fn parameters_of_the_linkbar_are_those_of_the_figures() {
+fn linkbar_parameters_equal_those_of_the_figures() {
     let (store, _) = load();
     let data = store.view();
     let (_, grip) = data.object(&name("LINKBAR1_BH"), 2).unwrap();
@@ -210,7 +210,7 @@ fn parameters_of_the_linkbar_are_those_of_the_figures() {
 }
 
 #[test]
-fn the_job_has_the_six_commands_of_figure_viii_4() {
+fn job_has_the_six_commands_of_figure_viii_4() {
     let (store, _) = load();
     let (job, report) =
         Job::load(&data_directory().join("jobs/linkbar.job"), &store).unwrap_or_else(|r| panic!("{r}"));

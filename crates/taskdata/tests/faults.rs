@@ -1,4 +1,4 @@
-//! Task data with errors are used; each error concerns the commands that use the wrong datum.
+//! Task data with errors are used. Each error concerns the commands that use the wrong datum.
 
 use std::path::Path;
 
@@ -24,7 +24,7 @@ fn command(text: &str, store: &Store) -> HwsCommand {
 }
 
 #[test]
-fn unknown_name_in_the_block_of_an_object_concerns_its_commands_only() {
+fn unknown_name_in_an_object_block_concerns_its_commands() {
     let store = spoilt("objects/linkbar.blk", "LK-GRP-FX1", "LK-GPR-FX1");
     assert!(store.faults().next().is_some());
     let of = |text: &str| store.faults_of(&command(text, &store), &[]);

@@ -1,4 +1,4 @@
-//! The forms of the manual's figures can be read as they are printed, and the project's data agree with the figures.
+//! The forms of the manual's figures can be read as printed, and the project's data agree with the figures.
 
 use std::{collections::BTreeMap, path::Path};
 
@@ -10,7 +10,7 @@ use taskdata::load::{
     source::{blocks, places_in_blocks, read_blocks_under},
 };
 
-/// Blocks of [`FIGURES`] that print a block a second time (Figures VIII.7 and VIII.10), and the block that they repeat.
+/// Blocks of [`FIGURES`] that repeat another block (Figures VIII.7 and VIII.10), and the repeated block.
 const REPEATED: [(u32, u32); 2] = [(802, 702), (811, 711)];
 
 const FIGURES: &str = include_str!("figures.blk");
@@ -81,7 +81,7 @@ fn kind(entry: &Entry) -> &'static str {
 }
 
 #[test]
-fn every_figure_is_read_without_complaint() {
+fn every_figure_is_read_without_findings() {
     let mut count: BTreeMap<&str, usize> = BTreeMap::new();
     let mut loads = 0;
     for (_, block) in parsed(&figures()) {
@@ -111,7 +111,7 @@ fn every_figure_is_read_without_complaint() {
 }
 
 #[test]
-fn the_data_are_the_figures_but_for_the_readings_that_are_marked() {
+fn data_equal_the_figures_except_for_marked_readings() {
     let data =
         block_words(&read_blocks_under(Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../data"))).0);
     let mut differences = Vec::new();
@@ -134,7 +134,7 @@ fn the_data_are_the_figures_but_for_the_readings_that_are_marked() {
     );
 }
 
-/// The source of each block, from the first remark in it; empty if there is none.
+/// The source of each block, from the first remark in it; empty without a remark.
 fn origins(source: &Source) -> Vec<(BlockNumber, String)> {
     let (blocks, _) = blocks(0, source);
     let said = |start: u32| {
@@ -145,7 +145,7 @@ fn origins(source: &Source) -> Vec<(BlockNumber, String)> {
 }
 
 #[test]
-fn every_block_of_the_data_says_where_it_comes_from() {
+fn every_block_of_the_data_names_its_source() {
     // The figures of each block, according to the remark above it.
     let mut figure_of: BTreeMap<BlockNumber, Vec<&str>> = BTreeMap::new();
     let printed = figures();
@@ -172,7 +172,7 @@ fn every_block_of_the_data_says_where_it_comes_from() {
 }
 
 #[test]
-fn negative_numbers_leading_zeros_and_signs_are_read() {
+fn negative_numbers_leading_zeros_and_signs_parse() {
     let Entry::Pose(pose) = &parsed(&figures())[0].1.entries[0] else { panic!("Figure VII.1 comes first") };
     assert_eq!(pose.points, [[6497, -2366, 1569], [9495, -2475, 1595], [9523, -1460, -1228]]);
     let all = parsed(&figures());

@@ -1,4 +1,4 @@
-//! Loading blocks into data that are in use: record numbers stay, values are new, and an error changes nothing.
+//! Loading blocks into data in use: record numbers stay, values are new, and an error changes nothing.
 
 use proptest::prelude::*;
 use rcs_core::name::Name16;
@@ -53,7 +53,7 @@ fn numbers(data: &TaskData<'_>) -> Vec<Option<u32>> {
 }
 
 #[test]
-fn a_replaced_record_keeps_its_number_and_derived_ones_are_new() {
+fn replaced_record_keeps_its_number_and_updates_derived_ones() {
     let base = loaded(BASE);
     let next = with(
         &base,
@@ -80,14 +80,14 @@ BLOCK# 2 OFFSET 20000
     assert_eq!((at(&old), at(&new)), ((67.75, 40), (65.5, 20)));
     assert_eq!(next.place(next.origins().poses[0]), "more.blk, block 610 (offset 21000), line 0");
     assert_eq!(next.place(next.origins().poses[1]), "base.blk, block 600 (offset 21000), line 1");
-    // The first generation has not changed, and the second is the base of a third.
+    // The first generation is unchanged, and the second is the base of a third.
     assert_eq!(at(&base.view()), (67.75, 40));
     let third = with(&next, "BLOCK# 610 OFFSET 21000\n 1 t -75 0 0 -mtb- IN").unwrap();
     assert_eq!(at(&third.view()), (65.25, 20));
 }
 
 #[test]
-fn an_object_that_moves_to_another_place_leaves_the_old_one() {
+fn object_assigned_to_another_place_leaves_the_old_one() {
     let base = loaded(BASE);
     let next = with(&base, "BLOCK# 2 OFFSET 20000\n -o-loc- PART lpt G\n").unwrap();
     let count = |store: &Store| {
@@ -100,7 +100,7 @@ fn an_object_that_moves_to_another_place_leaves_the_old_one() {
 }
 
 #[test]
-fn an_error_anywhere_leaves_everything_as_it_was() {
+fn error_leaves_the_data_unchanged() {
     let base = loaded(BASE);
     let first =
         |text| with(&base, text).expect_err("an error was expected").lines().next().unwrap().to_owned();
@@ -121,7 +121,7 @@ fn an_error_anywhere_leaves_everything_as_it_was() {
 }
 
 #[test]
-fn a_directory_may_name_blocks_that_are_loaded_already() {
+fn directory_may_name_loaded_blocks() {
     let base = loaded(BASE);
     assert!(with(&base, "BLOCK# 2 OFFSET 20000\n 1 load 3 load\nBLOCK# 3 OFFSET 20000\n FDEF\n").is_ok());
     let missing = with(&base, "BLOCK# 2 OFFSET 20000\n 7 load\n").expect_err("there is no block 7");
@@ -155,7 +155,7 @@ fn once<V: std::fmt::Debug + Copy + 'static>(
 proptest! {
     /// For any blocks loaded, every name keeps its number and has the values that were loaded last.
     #[test]
-    fn names_keep_their_numbers_and_their_last_message(
+    fn names_keep_their_numbers_and_last_values(
         reloads in prop::collection::vec((once(0..30, -200..0), once(0..30, 0_u8..10)), 1..4),
     ) {
         let all: Vec<(u8, i32)> = (0..10).map(|n| (n, -i32::from(n))).collect();

@@ -6,7 +6,7 @@ use taskdata::{
     load::{Source, Store},
 };
 
-/// A drum to insert into, and two holsters with one owner.
+/// A tool drum, and two holsters with one owner.
 const CELL: &str = "BLOCK# 600 OFFSET 21000
  5500 -2400 1500 8500 -2400 1500 8500 600 1500 -pose- ... T-P
  3800 -4400 -400 6800 -4400 -400 6800 -1400 -400 -pose- ... R-P
@@ -26,7 +26,7 @@ fn load(text: &str) -> Result<Store, String> {
     Store::from_sources(vec![source]).map(|(store, _)| store).map_err(|report| report.to_string())
 }
 
-/// The errors of `lines` after the cell, one line for each: message and help.
+/// The errors of `lines` after the cell, one line each: message and help.
 fn said(lines: &str) -> Vec<String> {
     let text = format!("{CELL}BLOCK# 602 OFFSET 21000\n{lines}\n");
     let report = load(&text).expect_err("an error was expected");
@@ -73,7 +73,7 @@ fn sensors_and_relative_moves_are_found_by_name_and_location() {
 }
 
 #[test]
-fn a_relative_move_names_its_object() {
+fn relative_move_names_its_object() {
     assert_eq!(
         said("  -rel- INS-IN lpt TOOL-TRNS 4 10 8 0 IN INS-FY"),
         ["no sensor is named INS-FY", "help: the nearest known name is INS-FX"]
@@ -98,7 +98,7 @@ fn a_relative_move_names_its_object() {
 }
 
 #[test]
-fn a_sensor_can_trip_and_does_not_always_hold() {
+fn sensor_can_trip_and_is_not_always_true() {
     assert_eq!(
         said("  -sen- A fx 0 0"),
         [
@@ -124,7 +124,7 @@ fn a_sensor_can_trip_and_does_not_always_hold() {
 }
 
 #[test]
-fn a_misspelt_prefix_is_not_a_sensor() {
+fn misspelt_prefix_is_not_a_sensor() {
     assert_eq!(
         said("  -rel- INS-IN lpt TOOL-TRNS 4 10 8 0 IN\n  -rle- INS-FAR lpt TOOL-TRNS 4 10 8 0 IN"),
         [
@@ -134,7 +134,7 @@ fn a_misspelt_prefix_is_not_a_sensor() {
     );
 }
 
-/// The warnings of `lines` after the cell, one line for each: message and help.
+/// The warnings of `lines` after the cell, one line each: message and help.
 fn warned(lines: &str) -> Vec<String> {
     let text = format!("{CELL}BLOCK# 602 OFFSET 21000\n{lines}\n");
     let source = Source { name: "try.blk".to_owned(), text: text.into() };
@@ -146,7 +146,7 @@ fn warned(lines: &str) -> Vec<String> {
 }
 
 #[test]
-fn a_guarded_move_is_slow_enough_to_stop() {
+fn guarded_move_is_slow_enough_to_stop() {
     assert_eq!(
         warned("  -rel- INS-IN lpt TOOL-TRNS 4 2 8 0 IN INS-FX"),
         [
@@ -167,7 +167,7 @@ fn a_guarded_move_is_slow_enough_to_stop() {
 }
 
 #[test]
-fn relative_moves_are_those_that_commands_look_for() {
+fn relative_moves_equal_those_of_commands() {
     assert_eq!(
         said("  -rel- INS-IN lpt TOOL-TRNS 4 1 8 0 IN"),
         [
@@ -186,7 +186,7 @@ fn relative_moves_are_those_that_commands_look_for() {
 }
 
 #[test]
-fn relative_moves_are_tried_from_where_they_lead() {
+fn relative_moves_are_checked_from_their_start() {
     let far = "  1 t 0 0 -1500 -mtb- SLIDE   1 t 2500 0 0 -mtb- FAR\n";
     // The slide leads down to the height of the shoulder, from where the arm reaches farther.
     let slide = "  -rel- REL-SLIDE lpt TOOL-TRNS 4 1 8 0 SLIDE INS-FX\n";

@@ -84,7 +84,7 @@ fn resolver_electronics() {
 }
 
 #[test]
-fn a_command_that_has_to_fail() {
+fn command_that_must_fail_is_accepted() {
     let steps = |text: &str| {
         let source = Source { name: "try.job".into(), text: text.into() };
         Job::from_source(source, &store()).map(|(job, _)| job.steps).map_err(|report| report.to_string())
@@ -193,7 +193,7 @@ fn emergency_stops_and_the_panel_of_the_robot_controller() {
     }
 }
 
-/// All lines of words that begin with these.
+/// All lines that begin with these words.
 fn lines_from(words: &[&'static str]) -> Vec<String> {
     let Some(lists) = following(words) else { return vec![words.join(" ")] };
     let next = lists.iter().flat_map(|list| list.variants);
@@ -201,13 +201,13 @@ fn lines_from(words: &[&'static str]) -> Vec<String> {
 }
 
 #[test]
-fn lines_of_the_grammar_are_lines_of_a_job_and_in_its_description() {
+fn grammar_lines_are_job_lines_and_documented() {
     let page = include_str!("../../../data/README.md");
     let verbs = LineVerb::ALL.iter().map(|verb| verb.text()).filter(|verb| following(&[verb]).is_some());
     let lines: Vec<String> = verbs.flat_map(|verb| lines_from(&[verb])).collect();
     assert!(lines.len() > 60, "{}", lines.len());
     for line in lines {
-        // Names and numbers that some words need.
+        // Names and numbers that some words require.
         let endings = ["", " 1", " 1 1 1", " PFIXTURE", " LINKBAR1"];
         let read = endings.iter().any(|ending| load(&format!("** {line}{ending}")).is_ok());
         assert!(read, "{line}: {:?}", load(&format!("** {line}")));
@@ -218,7 +218,7 @@ fn lines_of_the_grammar_are_lines_of_a_job_and_in_its_description() {
 }
 
 #[test]
-fn after_a_restart_the_robot_may_go_from_home() {
+fn path_after_a_restart_may_begin_at_home() {
     let there = "== MOVE -- +0 -- 0 +0 SAFE 0 -- 0";
     let on = "== MOVE -- +0 -- 0 +0 PFIXTURE 0 -- 0";
     let said = load(&format!("{there}\n{on}")).expect_err("no trajectory leads from SAFE to PFIXTURE");
@@ -227,7 +227,7 @@ fn after_a_restart_the_robot_may_go_from_home() {
 }
 
 #[test]
-fn events_during_a_command_are_listed_before_it() {
+fn events_during_a_command_precede_it() {
     let steps = load("** after 50 joystick hold PRIM\n== MOVE -- +0 -- 0 +0 HOME 0 -- 0").unwrap();
     let held = Workstation::Joystick(BoxAction::Hold(Stepped::Prim.bit()));
     assert_eq!(steps[0], Step::After { ticks: 50, action: held });
@@ -235,7 +235,7 @@ fn events_during_a_command_are_listed_before_it() {
 }
 
 #[test]
-fn every_mistake_has_its_message() {
+fn every_job_error_has_its_message() {
     for (line, message, help) in [
         (
             "** vice open PFIXTURE",
@@ -365,7 +365,7 @@ fn every_mistake_has_its_message() {
 }
 
 #[test]
-fn a_serial_number_may_follow_the_nine_fields() {
+fn serial_number_may_follow_the_nine_fields() {
     let serial = |line: &str| match load(line).unwrap_or_else(|report| panic!("{report}"))[..] {
         [Step::Command(command)] => command.serial,
         ref other => panic!("{line}: {other:?}"),

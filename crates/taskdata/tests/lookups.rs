@@ -83,7 +83,7 @@ BLOCK# 1 OFFSET 20000
 ";
 
 #[test]
-fn printed_arrays_fall_inside_the_tray_and_count_left_to_right_top_to_bottom() {
+fn printed_arrays_fit_the_tray_and_count_by_rows() {
     let store = store(CELL);
     let data = store.view();
     let corner = data.resolve_location::<16, 16>(&name("A"), None, None).unwrap().frame;
@@ -111,7 +111,7 @@ fn printed_arrays_fall_inside_the_tray_and_count_left_to_right_top_to_bottom() {
 }
 
 #[test]
-fn a_sector_that_is_not_there_is_named_with_those_that_are() {
+fn unknown_sector_is_reported_with_the_known_ones() {
     let store = store(CELL);
     let data = store.view();
     let at = |location, sector, object: Option<&str>| {
@@ -139,12 +139,12 @@ fn a_sector_that_is_not_there_is_named_with_those_that_are() {
     ));
 }
 
-/// All ways to name tray A in a grip form, the most exact first.
+/// All names of tray A in a grip form, the most exact first.
 const PREFERENCE: [&str; 4] = ["lpt A", "arr SECTORS", "own BOTH", "$$$"];
 
 proptest! {
     #[test]
-    fn the_most_exact_entry_wins(present in 1_u8..16) {
+    fn most_exact_entry_has_priority(present in 1_u8..16) {
         let entries: String = PREFERENCE.iter().enumerate().filter(|(i, _)| present & (1 << i) != 0)
             .map(|(i, at)| format!("-grip- BAR 2 {at} G{i}\n")).collect();
         let tables: String = (0..4).map(|i| format!("1 t -{}0 0 0 ---- 2 to -300 0 -mtb- G{i}\n", i + 1)).collect();
@@ -161,13 +161,13 @@ proptest! {
     }
 
     #[test]
-    fn no_text_makes_the_loader_panic(text in "[ -~\n]{0,400}") {
+    fn loader_does_not_panic_for_any_text(text in "[ -~\n]{0,400}") {
         let _ = Store::from_sources(vec![source(&text)]);
         let _ = Store::from_sources(vec![source(&format!("BLOCK# 1 OFFSET 20000\n{text}"))]);
     }
 
     #[test]
-    fn no_order_of_words_makes_the_loader_panic(words in prop::collection::vec(0_usize..36, 0..80)) {
+    fn loader_does_not_panic_for_any_order_of_words(words in prop::collection::vec(0_usize..36, 0..80)) {
         let known = ["-pose-", "----", "-mtb-", "-pt-", "-arr-", "-ar-", "-own-", "-m-", "-traj", "-ppt", "-obj-", "-o-loc-",
             "-grip-", "-vu-", "-appr", "-dept", ":S", ":R", ">FILE", "<=", "OBJ-GRIPS", "\"object\"", "load", "stop", "lpt",
             "arr", "own", "$$$", "obj", "1", "2", "-300", "99999999999", "A", "BAR", "\n"];
@@ -180,13 +180,13 @@ proptest! {
     }
 
     #[test]
-    fn no_job_line_makes_the_reader_panic(text in "(==|\\*\\*) [ -~\n]{0,120}") {
+    fn reader_does_not_panic_for_any_job_line(text in "(==|\\*\\*) [ -~\n]{0,120}") {
         let _ = Job::from_source(source(&text), &store(CELL));
     }
 }
 
 #[test]
-fn trajectories_go_through_owners_and_forward_only() {
+fn trajectories_apply_to_owners_and_forward_only() {
     let store = store(&format!(
         "{CELL}
 BLOCK# 850 OFFSET 21000
@@ -216,7 +216,7 @@ fn said(text: &str) -> Vec<String> {
 }
 
 #[test]
-fn a_corner_of_a_tray_may_be_vertical_and_a_via_point_may_not() {
+fn tray_corner_may_be_vertical_but_a_via_point_may_not() {
     let via = "BLOCK# 850 OFFSET 21000\n -traj F-A lpt F lpt A -ppt 4 100 8 300 pos B-P";
     assert_eq!(said(CELL), Vec::<String>::new());
     assert_eq!(
@@ -240,7 +240,7 @@ fn a_file_has_an_end() {
 }
 
 #[test]
-fn an_owner_by_pose_replaces_its_location_points() {
+fn owner_by_pose_replaces_its_location_points() {
     let store = store(&format!(
         "{CELL}\nBLOCK# 850 OFFSET 21000\n-traj FIX-B own FIX lpt B -ppt 4 100 8 300 lpt F\n"
     ));
@@ -250,7 +250,7 @@ fn an_owner_by_pose_replaces_its_location_points() {
 }
 
 #[test]
-fn a_static_array_starts_at_its_own_pose() {
+fn static_array_starts_at_its_own_pose() {
     let store = store(
         "BLOCK# 1 OFFSET 21000
  3800 -4400 -400  6800 -4400 -400  6800 -1400 -400 -pose- ... F-P

@@ -1,4 +1,4 @@
-//! Tests of the task data, in one program: each program takes a while to link.
+//! Tests of the task data, in one program, because each program takes a while to link.
 
 mod chains;
 mod commands;

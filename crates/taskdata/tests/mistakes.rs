@@ -1,4 +1,4 @@
-//! One mistake gives one message: the texts for the most frequent mistakes.
+//! One error gives one message: the texts for the most frequent errors.
 //!
 //! Each case changes one piece of correct data, those of the linkbar and the clevis (tests/sound), and compares
 //! the whole report of the load.
@@ -43,7 +43,7 @@ fn job_said(line: &str) -> String {
 }
 
 #[test]
-fn an_unknown_name_has_a_nearest() {
+fn unknown_name_is_reported_with_the_nearest() {
     let said = said("objects/linkbar.blk", r#"PFIXTURE      LK-GRP-FX1"#, r#"PFIXTURE      LK-GPR-FX1"#);
     let expected = r#"
 error: objects/linkbar.blk: block 260 (offset 20000), line 7, column 53: no movetable is named LK-GPR-FX1
@@ -67,7 +67,7 @@ error: movetables.blk: block 435 (offset 21000), line 7, column 50: a movetable 
 }
 
 #[test]
-fn names_are_ten_characters_long() {
+fn name_beyond_ten_characters_is_reported() {
     let said =
         said("locations.blk", r#"  -arr-  TRNG-SCTRS     2    2"#, r#"  -arr-  TRNG-SECTORS   2    2"#);
     let expected = r#"
@@ -94,7 +94,7 @@ error: objects/linkbar.blk: block 269 (offset 20000), line 11, column 19: vel-ma
 }
 
 #[test]
-fn an_approach_ends_with_a_stop() {
+fn approach_without_a_stop_is_reported() {
     let said = said(
         "objects/linkbar.blk",
         r#"  -ppt     05      05      40      050    stop
@@ -112,7 +112,7 @@ error: objects/linkbar.blk: block 265 (offset 20000), line 6, column 1: an appro
 }
 
 #[test]
-fn a_movetable_has_eight_lines() {
+fn movetable_beyond_eight_lines_is_reported() {
     let said = said(
         "movetables.blk",
         r#"    1    rw       0        0   1000      -mtb-   D/A+10rwz"#,
@@ -176,7 +176,7 @@ warning: objects/linkbar.blk: block 251 (offset 20000), line 17, column 3: block
 }
 
 #[test]
-fn a_comment_ends_in_its_block() {
+fn comment_must_end_in_its_block() {
     let said =
         said("objects/clevis.blk", r#"loc-type     "loc-name"             )"#, r#"loc-type     "loc-name""#);
     let expected = r#"
@@ -221,7 +221,7 @@ error: poses.blk: block 612 (offset 21000), line 3, column 4: pose UT-1-P: out o
 }
 
 #[test]
-fn a_pose_is_within_the_joint_limits() {
+fn pose_beyond_joint_limits_is_reported() {
     let said = said(
         "poses.blk",
         r#"       0    -4279     2521
@@ -241,7 +241,7 @@ error: poses.blk: block 620 (offset 21000), line 3, column 8: pose HOM-SAF-1: sh
 }
 
 #[test]
-fn a_grip_is_within_reach_at_every_sector() {
+fn grip_out_of_reach_at_a_sector_is_reported() {
     let said = said(
         "movetables.blk",
         r#"    1    t      -20        0    210      ----"#,
@@ -265,7 +265,7 @@ error: objects/linkbar.blk: block 260 (offset 20000), line 11, column 9: grip 2 
 }
 
 #[test]
-fn vertical_targets_are_warned_of() {
+fn vertical_targets_cause_a_warning() {
     let said = said(
         "movetables.blk",
         r#"    2    to    -300        0      0      -mtb-   LK-GRP-1
@@ -291,7 +291,7 @@ warning: objects/linkbar.blk: block 260 (offset 20000), line 11, column 9: grip 
 }
 
 #[test]
-fn a_trajectory_goes_somewhere() {
+fn empty_trajectory_is_reported() {
     let said = said(
         "trajectories.blk",
         r#"-traj   HOME-PFIX       lpt     HOME    lpt    PFIXTURE"#,
@@ -322,7 +322,7 @@ error: objects/linkbar.blk: block 260 (offset 20000), line 11, column 32: type o
 }
 
 #[test]
-fn a_directory_names_blocks_that_are_there() {
+fn directory_with_a_missing_block_is_reported() {
     let said = said("objects/linkbar.blk", r#"  256 load ( o-loc"#, r#"  257 load ( o-loc"#);
     let expected = r#"
 error: objects/linkbar.blk: block 251 (offset 20000), line 6, column 3: there is no block 257 (offset 20000)
@@ -334,7 +334,7 @@ error: objects/linkbar.blk: block 251 (offset 20000), line 6, column 3: there is
 }
 
 #[test]
-fn an_unused_entry_of_a_directory_is_reported_once() {
+fn unused_directory_entry_is_reported_once() {
     let said = said("objects/linkbar.blk", "253 load ( object    )", "");
     let expected = r#"
 error: objects/linkbar.blk: line 22, column 1: block 253 (offset 20000) is loaded by no directory block; LINKBAR1_BH and 1 more name that are asked for stand there
@@ -346,7 +346,7 @@ error: objects/linkbar.blk: line 22, column 1: block 253 (offset 20000) is loade
 }
 
 #[test]
-fn a_block_that_is_given_twice_names_both_places() {
+fn duplicate_block_is_reported_with_both_places() {
     let said = said("objects/linkbar.blk", "BLOCK# 254 OFFSET 20000", "BLOCK# 253 OFFSET 20000");
     assert!(said.contains("there is no block 254 (offset 20000)"), "{said}");
     assert!(said.contains("is given twice; its header is in objects/linkbar.blk, line "), "{said}");
@@ -354,7 +354,7 @@ fn a_block_that_is_given_twice_names_both_places() {
 }
 
 #[test]
-fn a_missing_field_is_blamed_on_its_entry() {
+fn missing_field_is_reported_at_its_entry() {
     let said = said(
         "objects/linkbar.blk",
         "LINKBAR1_BH      2     0300   0060   30     0350",
@@ -383,7 +383,7 @@ fn tabs_are_reported_once_per_file() {
 }
 
 #[test]
-fn a_record_of_show_mode_is_complete() {
+fn incomplete_show_mode_record_is_reported() {
     let said = said(
         "objects/clevis.blk",
         r#"         ped-force            <= 50
@@ -401,7 +401,7 @@ error: objects/clevis.blk: block 457 (offset 20000), line 5, column 10: PED-PARA
 }
 
 #[test]
-fn a_compiling_word_is_spelt_right() {
+fn misspelt_compiling_word_is_reported() {
     let said = said("objects/linkbar.blk", r#" -grip- S-LINKBAR1_BH"#, r#" -grp- S-LINKBAR1_BH"#);
     let expected = r#"
 error: objects/linkbar.blk: block 261 (offset 20000), line 7, column 2: a compiling word or a number was expected, -grp- found
@@ -425,7 +425,7 @@ error: objects/clevis.blk: line 59, column 1: the blocks of an offset are number
 }
 
 #[test]
-fn a_full_file_names_its_declaration() {
+fn full_file_names_its_declaration() {
     let said =
         said("directory.blk", "BLOCK# 905 OFFSET 21000\n", "BLOCK# 905 OFFSET 21000\n-file- MOVTAB 20\n");
     let expected = r#"
@@ -438,7 +438,7 @@ error: directory.blk: block 905 (offset 21000), line 0, column 8: FILE FULL: MOV
 }
 
 #[test]
-fn a_sector_lies_in_its_tray() {
+fn sector_outside_its_tray_is_reported() {
     let said = said("locations.blk", "SECTORS        2    2     2 ", "SECTORS        2    2     3 ");
     let expected = r#"
 error: locations.blk: block 702 (offset 21000), line 5, column 10: sector 5 of SECTORS is 5.25 in outside its tray
@@ -450,7 +450,7 @@ error: locations.blk: block 702 (offset 21000), line 5, column 10: sector 5 of S
 }
 
 #[test]
-fn a_trajectory_leads_from_one_location_to_another() {
+fn unusable_trajectory_is_reported() {
     let said = said(
         "trajectories.blk",
         "-traj   HOME-PFIX       lpt     HOME    lpt    PFIXTURE",
@@ -466,7 +466,7 @@ warning: trajectories.blk: block 853 (offset 21000), line 5, column 33: no comma
 }
 
 #[test]
-fn objects_differ_in_more_than_their_vision_ids() {
+fn objects_differing_only_in_vision_ids_are_reported() {
     let more = "BLOCK# 1 OFFSET 22000
 -obj- ONE 1 300 60 30 350   -obj- TWO 1 300 60 30 350
 -grip- ONE 1 lpt UNIT_1 LK-GRP-1
@@ -485,7 +485,7 @@ fn objects_differ_in_more_than_their_vision_ids() {
 }
 
 #[test]
-fn commands_are_not_task_data() {
+fn commands_in_task_data_are_reported() {
     let said = said(
         "objects/linkbar.blk",
         r#"  -obj-  S-LINKBAR1_BH"#,
@@ -502,7 +502,7 @@ error: objects/linkbar.blk: block 254 (offset 20000), line 7, column 3: a comman
 }
 
 #[test]
-fn a_grip_is_listed_in_an_object_form() {
+fn grip_without_an_object_form_is_reported() {
     let said = said("objects/linkbar.blk", r#" -grip- H-LINKBAR1_BH    1"#, r#" -grip- H-LINKBAR1_BH    2"#);
     let expected = r#"
 error: objects/linkbar.blk: block 261 (offset 20000), line 5, column 9: H-LINKBAR1_BH has no grip 2 in an object form
@@ -514,7 +514,7 @@ error: objects/linkbar.blk: block 261 (offset 20000), line 5, column 9: H-LINKBA
 }
 
 #[test]
-fn a_job_is_checked_against_the_data() {
+fn job_is_checked_against_the_data() {
     for (line, expected) in [
         (
             r#"== TRANSFER LCLEVIS +1 UNIT_2 1 +1 UNIT_2 2 HOME 0"#,

@@ -265,7 +265,7 @@ fn read(text: &str) -> Vec<Entry> {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(1000))]
     #[test]
-    fn every_form_is_read_as_what_was_printed(entry in entry()) {
+    fn every_printed_form_reads_back(entry in entry()) {
         let lines = print::form(&entry);
         prop_assert!(lines.len() <= BLOCK_LINES && lines.iter().all(|line| line.len() <= BLOCK_COLUMNS), "{lines:#?}");
         let text = format!("BLOCK# 1 OFFSET 20000\n{}\n", lines.join("\n"));
@@ -286,7 +286,7 @@ proptest! {
 }
 
 #[test]
-fn a_form_looks_as_the_manual_prints_it() {
+fn printed_form_equals_that_of_the_manual() {
     let text = "BLOCK# 1 OFFSET 20000
   -appr obj LINKBAR1 2 lpt UNIT_2
   -ppt 5 30 40 150 mtb A/D-5

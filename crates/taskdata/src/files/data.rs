@@ -18,8 +18,8 @@ use super::{
 
 /// The task data of a run: a view of the files and their indexes, as cheap to copy as a few pointers.
 ///
-/// `load::Store` builds it outside the tick, and it does not change: blocks that are loaded while the robot runs
-/// make a new generation (docs/design/ownership.md "Reload").
+/// `load::Store` builds it outside the tick, and it does not change: blocks that are loaded while the robot
+/// runs create a new generation (docs/design/ownership.md "Reload").
 #[derive(Clone, Copy, Debug, Default)]
 pub struct TaskData<'a> {
     pub poses: &'a [PoseRecord],
@@ -48,7 +48,7 @@ pub struct TaskData<'a> {
     pub indexes: Indexes<'a>,
 }
 
-/// The indexes of all files, each with its key, and its answer if it has one.
+/// The indexes of all files, with their keys and answers.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Indexes<'a> {
     pub poses: Index<'a>,
@@ -164,7 +164,7 @@ impl<'a> TaskData<'a> {
         id.of(self.traj_paras)
     }
 
-    /// The points of a path in their order; none if the path is null.
+    /// The points of a path in their order; empty for a null path.
     #[must_use]
     pub fn path(&self, id: PathId) -> &'a [PathPoint] {
         id.of(self.paths).and_then(|path| run(self.path_points, path.first, path.count)).unwrap_or_default()

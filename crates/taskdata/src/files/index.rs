@@ -1,17 +1,17 @@
-//! Indexes: every look-up that is not by record number reads one pilot and one slot, for any number of records.
+//! Indexes: a look-up other than by record number reads one pilot and one slot, for any number of records.
 //!
-//! A key is three integers: usually a name, and a grip and a location packed into one integer. Keys of records that
-//! belong to an object contain the object's name, so that the object need not be looked up first. The index is a
-//! perfect hash table, which the loader builds once: a hash selects one of many small buckets, the *pilot* of the
-//! bucket, one byte, is mixed into the hash, and the result selects the slot. The loader chooses the pilots so that no
-//! two keys share a slot, and a look-up needs no search: the pilots of 100,000 keys (33 kB) stay in the processor's
-//! cache, and the slot is one read of half a cache line. A slot contains the record number and, where look-ups need
-//! only one field of the record (the movetable of a grip, the path of an approach), also that field, so that the record
-//! itself need not be read.
+//! A key is three integers: usually a name, and a grip and a location packed into one integer. Keys of records
+//! that belong to an object contain the object's name, which saves a look-up of the object. The index is a
+//! perfect hash table, which the loader builds once: a hash selects one of many small buckets, the *pilot* of
+//! the bucket, one byte, is mixed into the hash, and the result selects the slot. The loader chooses the pilots
+//! so that no two keys share a slot. A look-up therefore needs no search: the pilots of 100,000 keys (33 kB)
+//! stay in the processor's cache, and the slot is one read of half a cache line. A slot contains the record
+//! number and, where look-ups need only one field of the record (the movetable of a grip, the path of an
+//! approach), also that field, so that the record itself need not be read.
 //!
-//! An entry that is valid at a location is looked up at several in turn: the location point, the array on it, the
-//! owners, the wild card. All such entries of one name and grip are in one slot of a [`PlaceIndex`]: one cache line
-//! shows which of the locations have an entry.
+//! An entry that is valid at a location is looked up at several in turn: the location point, the array on it,
+//! the owners, the wild card. All such entries of one name and grip are in one slot of a [`PlaceIndex`], so
+//! that one cache line shows the locations with an entry.
 
 use interfaces::record_number::ObjectId;
 use rcs_core::name::Name;
@@ -24,10 +24,10 @@ use super::{
 /// The key of a look-up.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Key {
-    /// A name, or one or two references. Two integers, because one of 128 bits would be aligned to 16 bytes and
-    /// double the size of a [`Slot`].
+    /// A name, or one or two references. It is two integers, because one of 128 bits would be aligned to 16
+    /// bytes and double the size of a [`Slot`].
     pub(crate) main: [u64; 2],
-    /// Grip, location or direction; 0 if there is none.
+    /// Grip, location or direction, or 0.
     pub(crate) rest: u64,
 }
 
@@ -51,8 +51,7 @@ pub struct Index<'a> {
     pub(crate) pilots: &'a [u8],
     /// The slots, some of them empty.
     pub(crate) slots: &'a [Slot],
-    /// For each key that several records share: their count, then their numbers, in the order in which they were
-    /// entered.
+    /// For each key that several records share: their count, then their numbers, in the order of their entry.
     pub(crate) numbers: &'a [u32],
     pub(crate) seed: u64,
     pub(crate) keys: usize,
@@ -64,7 +63,6 @@ fn product(a: u64, b: u64) -> (u64, u64) {
     (low(product >> 64), low(product))
 }
 
-/// The lower 64 bits.
 fn low(value: u128) -> u64 {
     u64::try_from(value & u128::from(u64::MAX)).unwrap_or(0)
 }
@@ -105,7 +103,7 @@ impl<'a> Index<'a> {
         slot_at(self.pilots, self.slots, self.seed, key).filter(|slot| slot.key == key && slot.number > 0)
     }
 
-    /// The record number of a key; that of the first, if several records share it.
+    /// The record number of a key; the first number, if several records share it.
     #[must_use]
     pub fn find(&self, key: Key) -> Option<u32> {
         self.slot(key).map(|slot| slot.number)
@@ -117,8 +115,7 @@ impl<'a> Index<'a> {
         self.slot(key).map(|slot| slot.answer)
     }
 
-    /// The numbers of all records with a key, in the order in which they were entered; only for an index without
-    /// answers.
+    /// The numbers of all records with a key, in the order of their entry. Only for an index without answers.
     #[must_use]
     pub fn all(&self, key: Key) -> &'a [u32] {
         match self.slot(key) {
@@ -133,7 +130,6 @@ impl<'a> Index<'a> {
         self.keys
     }
 
-    /// True if there is no key.
     #[must_use]
     pub const fn is_empty(&self) -> bool {
         self.keys == 0
@@ -148,7 +144,7 @@ pub(crate) const CROWDED: u32 = u32::MAX;
 /// An entry that is valid at a location.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct EntryAt {
-    /// The location, packed; 0 if there is no entry.
+    /// The location, packed; 0 without an entry.
     pub(crate) at: u32,
     pub(crate) number: u32,
     /// The field of the record that look-ups need.
@@ -181,7 +177,8 @@ impl Group {
     }
 }
 
-/// A reference packed into 32 bits, never 0; `None` for no reference, or a record number above those of a file.
+/// A reference packed into 32 bits, never 0; `None` for no reference, or a record number beyond those of a
+/// file.
 pub(crate) fn packed(at: Reference) -> Option<u32> {
     let kind = u32::from(at.kind.code());
     let known = kind > 0 && kind < 16 && at.number < 1 << 28 && (at.number > 0 || at.kind == RefType::Any);
@@ -200,7 +197,7 @@ pub struct PlaceIndex<'a> {
 }
 
 impl<'a> PlaceIndex<'a> {
-    /// The entry for the first location that has one: the `exact` ones in turn, the `owners`, the wild card. The
+    /// The entry for the first location with one: the `exact` ones in turn, the `owners`, the wild card. The
     /// location in the key is ignored.
     pub(crate) fn first(
         &self,
@@ -222,7 +219,7 @@ impl<'a> PlaceIndex<'a> {
                 return Some(*entry);
             }
         }
-        // Most entries name a location point or the wild card: then the owners of the point need not be read.
+        // Most entries name a location point or the wild card, so the owners of the point need not be read.
         if group.names(RefType::Owner)
             && let Some(entry) = owners.find_map(|at| group.entry(at))
         {
@@ -309,7 +306,7 @@ pub fn object_key(object: ObjectId) -> Key {
     Key { main: [0, u64::from(object.number())], rest: 0 }
 }
 
-/// The key of a grip of an object. `None` for a grip number beyond -128 to 127, which no form has.
+/// The key of a grip of an object; `None` for a grip number beyond -128 to 127, which forms cannot have.
 #[must_use]
 pub fn grip_key<const N: usize>(object: &Name<N>, grip: i32) -> Option<Key> {
     Some(Key { main: name_bits(object), rest: grip_bits(grip)? })
@@ -355,14 +352,14 @@ mod tests {
 
     proptest! {
         #[test]
-        fn the_same_text_has_the_same_key_in_every_width(a in "[!-~]{1,10}", b in "[!-~]{1,10}") {
+        fn key_does_not_depend_on_the_name_width(a in "[!-~]{1,10}", b in "[!-~]{1,10}") {
             let key = |t: &str| name_key(&Name10::new(t).unwrap());
             prop_assert_eq!(key(&a) == key(&b), a == b);
             prop_assert_eq!(key(&a), name_key(&Name16::new(&a).unwrap()));
         }
 
         #[test]
-        fn approaches_that_differ_have_keys_that_differ(
+        fn different_approaches_have_different_keys(
             d in 0_usize..2, s in (0_u8..9, "[AB]{1,2}"), g in -128..128, p in (0_u8..9, 0_u32..2),
             e in 0_usize..2, t in (0_u8..9, "[AB]{1,2}"), h in -128..128, q in (0_u8..9, 0_u32..2),
         ) {
@@ -381,7 +378,7 @@ mod tests {
         }
 
         #[test]
-        fn names_and_grips_at_locations_that_differ_have_keys_that_differ(
+        fn different_grips_at_locations_have_different_keys(
             a in "[AB]{1,10}", s in (0_u8..9, any::<u32>()), g in -128..128,
             b in "[AB]{1,10}", t in (0_u8..9, any::<u32>()), h in -128..128,
         ) {
@@ -400,7 +397,7 @@ mod tests {
     }
 
     #[test]
-    fn no_form_has_a_grip_of_three_digits() {
+    fn grip_of_three_digits_has_no_key() {
         let name = Name10::new("BAR").unwrap();
         assert_eq!((grip_key(&name, 128), grip_at_key(&name, -129, Reference::ANY)), (None, None));
         assert!(grip_key(&name, -128).is_some());

@@ -1,9 +1,9 @@
 //! From the location and the sector of a command to a frame (VII.3 to VII.5, V.4.2).
 //!
-//! A name can be a location point, an owner, an array, or a location point and an owner at once (UNIT_1: the corner of
-//! a tray, and the owner of the arrays that divide that tray). Without a sector the name means the location point;
-//! sectors are counted in the array that is assigned to the object at that owner, left to right and top to bottom seen
-//! from the robot (VII.4).
+//! A name can be a location point, an owner, an array, or a location point and an owner at once (UNIT_1: the
+//! corner of a tray, and the owner of the arrays that divide the tray). Without a sector the name means the
+//! location point. Sectors are counted in the array that is assigned to the object at that owner, left to right
+//! and top to bottom as seen from the robot (VII.4).
 
 use core::fmt;
 
@@ -43,14 +43,14 @@ impl Location {
     }
 }
 
-/// Why a location of a command, or a grip at it, is not known.
+/// Why a location of a command, or a grip at it, is unknown.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LookupError {
     /// No location point, owner or array has the name.
     UnknownLocation { name: Name16 },
     /// No object form has the name.
     UnknownObject { name: Name16 },
-    /// A sector of an owner with several arrays needs an object, which says how the tray is divided.
+    /// A sector of an owner with several arrays requires an object, which selects the array.
     ObjectNeeded { location: Name16, sector: i32 },
     /// No object location form assigns the object to a member of the owner (VII.7.3).
     NotAssigned { object: Name16, location: Name16 },
@@ -60,7 +60,7 @@ pub enum LookupError {
     SectorRange {
         location: Name16,
         array: Name10,
-        /// The sector that was requested; `None` if none was.
+        /// The requested sector, if any.
         sector: Option<i32>,
         /// The last sector; the first is 1.
         last: i32,
@@ -222,7 +222,7 @@ impl<'a> TaskData<'a> {
     ) -> Result<Location, LookupError> {
         let location = wide(name);
         let array = self.array(id).ok_or(LookupError::UnknownLocation { name: location })?;
-        // An array without a pose of its own is known only through its owners (VII.4).
+        // An array without its own pose is known only through its owners (VII.4).
         let base = self.pose(array.pose).ok_or(LookupError::UnknownLocation { name: location })?;
         let frame = sector
             .and_then(|sector| self.sector_frame(array, &base.frame, sector))
@@ -235,8 +235,8 @@ impl<'a> TaskData<'a> {
         })
     }
 
-    /// The frame of a sector: the base with the offset of the first sector, then one column step for each column and
-    /// one row step for each row before it. `None` if the array has no such sector.
+    /// The frame of a sector: the base with the offset of the first sector, then one column step per column and
+    /// one row step per row before it. `None` if the array has no such sector.
     #[must_use]
     pub fn sector_frame(&self, array: &Array, base: &Frame, sector: i32) -> Option<Frame> {
         if sector < 1 || sector > array.sectors() {
@@ -251,16 +251,16 @@ impl<'a> TaskData<'a> {
         Some(repeat(repeat(first, array.column_step, column), array.row_step, row))
     }
 
-    /// The steps that lead from a sector out of its array, in the axes of the sector, in: to where a next column or row
-    /// would be. `None` where there is one. The base is that of [`sector_frame`](Self::sector_frame); columns and rows
-    /// stand across each other.
+    /// The steps that lead from a sector out of its array, in the axes of the sector, in: to the place of a
+    /// next column or row. `None` in a direction with a neighbour. The base is that of
+    /// [`sector_frame`](Self::sector_frame); columns and rows are perpendicular.
     #[must_use]
     pub fn steps_out(&self, array: &Array, base: &Frame, sector: &Frame) -> [Option<Vector>; 4] {
         let first = self.moved(base, array.offset);
         let from_first = first.rotation.inverse() * (sector.position - first.position);
         let out = |step: MovtabId, count: i32| {
             let step = self.moved(&Frame::identity(), step).position;
-            // NaN for a step of zero: no comparison holds then.
+            // NaN for a step of zero, for which every comparison is false.
             let steps = from_first.dot(&step) / step.dot(&step);
             let last = f64::from(count.saturating_sub(1));
             [(steps < 0.5).then_some(-step), (steps > last - 0.5).then_some(step)]
@@ -270,8 +270,8 @@ impl<'a> TaskData<'a> {
         [left, right, top, bottom]
     }
 
-    /// The place of a location and an object, for a process that gets both but not the sector: below Task the sector is
-    /// only a goal pose (V.3.2, V.2.2).
+    /// The place of a location and an object, for a process that receives both but not the sector: below Task
+    /// the sector is only a goal pose (V.3.2, V.2.2).
     ///
     /// If an object location form assigns the object to an array there, the place has the array; otherwise it is the
     /// location point. `None` if the name is unknown.
@@ -300,7 +300,7 @@ impl<'a> TaskData<'a> {
         Self::exact(place).into_iter().filter(|r| r.number != 0).chain(self.owners(place))
     }
 
-    /// The location point of a place, and the array on it, with number 0 if there is none.
+    /// The location point of a place, and the array on it, or number 0.
     pub(super) const fn exact(place: &Place) -> [Reference; 2] {
         [Reference::location_point(place.locpt), Reference::array(place.array)]
     }
@@ -308,7 +308,8 @@ impl<'a> TaskData<'a> {
     /// The owners of a place: of its location point, of the pose of the location point, or of a static array.
     pub(super) fn owners(&self, place: &Place) -> impl Iterator<Item = Reference> + Clone + use<'a> {
         let (data, place) = (*self, *place);
-        // The owners of an array on a tray are left out: they include other trays that are divided in the same way.
+        // The owners of an array on a tray are omitted: they include other trays that are divided in the same
+        // way.
         let array = if place.locpt.is_null() { place.array } else { ArrayId::NULL };
         // The record of the location point is read only if the other owners have no entry.
         (0..3)

@@ -1,8 +1,8 @@
 //! Grips, views, approaches, departs and trajectories at a place (VII.6, VII.7).
 //!
-//! One rule applies to all: the entry for the exact location point has priority, then the one for the array on it, then
-//! the one for an owner, then the wild card `$$$` (VII.7.5). A trajectory needs an entry for both of its ends and has
-//! no wild card; it is used only in its direction, from start to end.
+//! One rule applies to all: the entry for the exact location point has priority, then the one for the array on
+//! it, then the one for an owner, then the wild card `$$$` (VII.7.5). A trajectory needs an entry for both of
+//! its ends and has no wild card; it is used only from start to end.
 
 use geometry::frame::Frame;
 use interfaces::{
@@ -174,7 +174,7 @@ impl<'a> TaskData<'a> {
         }
     }
 
-    /// Name of an object for messages; empty if there is none.
+    /// Name of an object for messages, or an empty name.
     #[must_use]
     pub fn object_name(&self, id: ObjectId) -> Name16 {
         self.object_record(id).map_or(Name16::EMPTY, |record| record.name)

@@ -19,7 +19,7 @@ pub struct PoseRecord {
     pub pose: Pose,
     /// Movetable that corrects the pose, null for `...`.
     pub movetable: MovtabId,
-    /// Effective frame: from the points, made square (X kept), with the movetable applied. World, inches.
+    /// Effective frame: from the points, made orthogonal (X kept), with the movetable applied. World, inches.
     pub frame: Frame,
 }
 
@@ -49,10 +49,10 @@ pub struct Array {
     pub dimensions: i32,
     /// Elements in the first dimension: the columns, left to right.
     pub columns: i32,
-    /// Elements in the second dimension: the rows, top to bottom; 1 if there is one dimension.
+    /// Elements in the second dimension: the rows, top to bottom; 1 for one dimension.
     pub rows: i32,
     pub column_step: MovtabId,
-    /// Offset from row to row, null if there is one dimension.
+    /// Offset from row to row; null for one dimension.
     pub row_step: MovtabId,
     /// The form's `# pres`, kept as entered.
     pub present: i32,

@@ -1,4 +1,4 @@
-//! What a name in a form refers to (VII.4 to VII.7).
+//! References of names in forms (VII.4 to VII.7).
 
 use interfaces::record_number::{ArrayId, LocptId, ObjectId, OwnerId, PoseId};
 use rcs_core::Plain;

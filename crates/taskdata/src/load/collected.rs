@@ -1,8 +1,8 @@
-//! The entries of a load, by form, in the order in which they were entered.
+//! The entries of a load, by form, in the order of their entry.
 //!
-//! The position of an entry gives its record number. So in the next generation of the data newer entries take the
-//! positions of those that they replace, and the others are appended (docs/design/ownership.md "Reload"): existing
-//! records keep their numbers.
+//! The position of an entry gives its record number. In the next generation of the data, newer entries
+//! therefore take the positions of those that they replace, and the others are appended
+//! (docs/design/ownership.md "Reload"): existing records keep their numbers.
 
 use std::{
     collections::{HashMap, HashSet},
@@ -60,9 +60,9 @@ impl Collected {
         }
     }
 
-    /// These entries, those with the key of a `newer` one replaced by it, and the other newer ones appended. Nothing is
-    /// removed, except locations of an object: newer object location entries replace all earlier ones of the object,
-    /// because an object that has moved to other trays is no longer in the old ones.
+    /// These entries, with those of equal keys replaced by `newer` ones, and the other newer ones appended. No
+    /// entry is removed, except locations of an object: newer object location entries replace all earlier ones
+    /// of the object, because an object that has moved to other trays is no longer in the old ones.
     ///
     /// If `newer` has a key twice, the first replaces the entry, and the second is appended, so that linking finds the
     /// duplicate.
@@ -98,7 +98,7 @@ const fn typed(typed: &Typed) -> (u8, rcs_core::name::Name16) {
     (typed.kind.code(), typed.name.name)
 }
 
-/// Put each newer entry in the place of the entry with the same key, or at the end.
+/// Replace entries by newer ones with the same key, and append the others.
 fn replace<T, K: Eq + Hash>(entries: &mut Vec<T>, newer: Vec<T>, key: impl Fn(&T) -> K) {
     if newer.is_empty() {
         return;

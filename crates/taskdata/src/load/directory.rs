@@ -1,5 +1,5 @@
-//! Selection of the blocks to load: directory blocks, from the block with which the manual's boot begins (IV.2.10 steps
-//! 9 and 10).
+//! Selection of the blocks to load by directory blocks, from the first block of the manual's boot (IV.2.10
+//! steps 9 and 10).
 //!
 //! The boot loads blocks 905 and 906 at offset 21000 (system data) and block 0 at offset 20000 (objects); these name
 //! further blocks with `n load` or `offset n OLOAD`, and so on. An area without such a root has no directory, and all
@@ -153,7 +153,7 @@ fn contents(blocks: &[Block<'_>]) -> impl Iterator<Item = Content> + use<> {
         let open = problems.has_errors();
         let mut parsed = parse(&words, block.number, block.header, &mut problems);
         if open {
-            // Words in the open comment make no entries; the comment is reported already.
+            // Words in the open comment make no entries. The comment is already reported.
             let hidden = block.lines.iter().flat_map(|line| line.text.split_whitespace());
             parsed.broken.extend(hidden.map(str::to_owned));
         }
@@ -166,7 +166,7 @@ fn contents(blocks: &[Block<'_>]) -> impl Iterator<Item = Content> + use<> {
 }
 
 struct Loader<'b, 'p> {
-    /// The blocks; the contents of loaded blocks have been taken out.
+    /// The blocks, without the contents of loaded blocks.
     all: FxHashMap<BlockNumber, Content>,
     known: &'b BTreeSet<BlockNumber>,
     read: Read,
@@ -178,8 +178,8 @@ impl Loader<'_, '_> {
         let roots: Vec<BlockNumber> = ROOTS.into_iter().filter(|root| self.all.contains_key(root)).collect();
         let directed: BTreeSet<u32> = roots.iter().map(|root| root.offset).collect();
         let undirected = order.iter().copied().filter(|block| !directed.contains(&block.offset));
-        // A stack of blocks to load, the next one on top: a block is read where it is named, as in FORTH, but without
-        // recursion, and a directory that names itself causes no endless loop.
+        // A stack of blocks to load, the next one on top. A block is read where it is named, as in FORTH, but
+        // without recursion, and a directory that names itself causes no endless loop.
         let mut open: Vec<(BlockNumber, Option<At>)> =
             roots.into_iter().chain(undirected).map(|b| (b, None)).collect();
         open.reverse();
@@ -189,7 +189,7 @@ impl Loader<'_, '_> {
         }
     }
 
-    /// Load a block, unless it is loaded already; returns the lines that name further blocks.
+    /// Load a block, unless it is already loaded. Returns the lines that name further blocks.
     fn load(&mut self, number: BlockNumber, named: Option<At>) -> Vec<LoadLine> {
         let Some(block) = self.all.get_mut(&number) else {
             let line = named.filter(|_| !self.known.contains(&number));

@@ -1,4 +1,4 @@
-//! Entries of the forms before their names are looked up: one for each record or group of records.
+//! Entries of the forms before their names are looked up: one per record or group of records.
 
 use diagnostics::{At, BlockNumber};
 use geometry::movetable::MovetableLine;
@@ -63,7 +63,7 @@ pub struct ArrayEntry {
     pub dimensions: i32,
     /// Elements in the first dimension.
     pub columns: i32,
-    /// Elements in the second dimension, 1 if there is none.
+    /// Elements in the second dimension, or 1.
     pub rows: i32,
     /// Offset in the first dimension.
     pub column_step: Named<10>,

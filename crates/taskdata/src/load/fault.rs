@@ -1,9 +1,9 @@
 //! Errors of task data that are used nevertheless, and the commands that each error concerns.
 //!
-//! An error of a record that is loaded concerns the commands that use the record. Any other error may have left out
-//! entries of its block. If the block names objects, it concerns the commands for these objects. Otherwise it concerns
-//! the commands that name something in that block, or use a record whose line does.
-//! If no names can be told, it concerns all commands that use task data.
+//! An error of a loaded record concerns the commands that use the record. Any other error may have removed
+//! entries of its block. If the block names objects, the error concerns the commands for these objects.
+//! Otherwise it concerns the commands that name something in that block, or use a record whose line does. If no
+//! names are known, it concerns all commands that use task data.
 
 use diagnostics::{At, Diagnostic, Source};
 use interfaces::HwsCommand;
@@ -15,7 +15,7 @@ use super::{Store, source::blocks, verdict::is_bare};
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Fault {
     pub place: String,
-    /// One sentence: what was found and what was expected.
+    /// The finding and the expectation, in one sentence.
     pub message: String,
     scope: Scope,
 }

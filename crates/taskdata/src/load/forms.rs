@@ -127,7 +127,7 @@ fn movetable_entry(p: &mut Parser<'_, '_>) -> Result<Entry, Skip> {
             return Err(p.expected("---- or -mtb- after the values of a line"));
         }
     }
-    // Most movetables have one line, and there are many movetables.
+    // Most movetables, which are numerous, have one line.
     lines.shrink_to_fit();
     let name = p.name("name of the movetable")?;
     if let Some(at) = ninth {
@@ -171,12 +171,12 @@ pub fn point_at(p: &mut Parser<'_, '_>, what: &str) -> Result<PointAt, Skip> {
     })
 }
 
-/// `-arr-` (VII.4): an array of one dimension leaves out the fields of the second (Figure VII.5, TL-SECTORS).
+/// `-arr-` (VII.4): an array of one dimension omits the fields of the second (Figure VII.5, TL-SECTORS).
 pub fn array(p: &mut Parser<'_, '_>) -> Result<Entry, Skip> {
     let name = p.name("name of the array")?;
     let word = p.peek();
     let dimensions = p.integer("number of dimensions", 1..=2)?;
-    // With a wrong number of dimensions the meaning of the rest is not known.
+    // With a wrong number of dimensions the meaning of the rest is unknown.
     if word.is_some_and(|word| word.text.parse() != Ok(dimensions)) {
         return Err(Skip);
     }
@@ -221,7 +221,7 @@ fn points(p: &mut Parser<'_, '_>) -> Result<Vec<PointEntry>, Skip> {
         let target = if p.take_if("stop").is_some() { None } else { Some(p.typed("path point", POINTS)?) };
         points.push(PointEntry { para, target, at: word.at.to(p.last_at()) });
     }
-    // Most paths have one or two points, and there are many paths.
+    // Most paths, which are numerous, have one or two points.
     points.shrink_to_fit();
     Ok(points)
 }

@@ -1,6 +1,7 @@
-//! Forms that the manual does not have: sensors of guarded moves, and the relative moves of holsters and tool drum.
+//! Forms that are not in the manual: sensors of guarded moves, and the relative moves of holsters and tool
+//! drum.
 //!
-//! In the manual both are code (V.1.1, V.3.1); here they are data, like everything that depends on the cell. The forms
+//! In the manual both are code (V.1.1, V.3.1). Here they are data, like all dependences on the cell. The forms
 //! have the style of the manual:
 //!
 //! ```text
@@ -32,7 +33,7 @@ pub enum Beginning {
     After(&'static str),
 }
 
-/// A relative move that a command of E-move looks for.
+/// A relative move that a command of E-move looks up.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct KnownMove {
     /// Its name in the task data.
@@ -46,7 +47,7 @@ const fn known(name: &'static str, from: Beginning, guarded: bool) -> KnownMove 
     KnownMove { name, from, guarded }
 }
 
-/// All relative moves that commands look for (V.2.1), in the order in which a command makes them.
+/// All relative moves that commands look up (V.2.1), in the order in which a command makes them.
 pub const RELATIVE_MOVES: &[KnownMove] = &[
     known("QCD-DOWN", Beginning::Location, true),
     known("QCD-SEAT", Beginning::After("QCD-DOWN"), true),
@@ -68,7 +69,7 @@ pub const RELATIVE_MOVES: &[KnownMove] = &[
     known("REM-OUT", Beginning::Location, true),
 ];
 
-/// The relative move with a name, if a command looks for it.
+/// The relative move with a name, if a command looks it up.
 #[must_use]
 pub fn relative_move_named(name: &str) -> Option<&'static KnownMove> {
     RELATIVE_MOVES.iter().find(|known| known.name == name)

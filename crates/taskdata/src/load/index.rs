@@ -1,8 +1,9 @@
 //! Building of the indexes of the files; [`crate::files::index`] describes the search.
 //!
-//! The keys are put into buckets of about three. Each bucket gets a pilot, the fullest bucket first, while most slots
-//! are free: the first of 256 pilots that maps all keys of the bucket to free slots. If there is none, which for
-//! 100,000 keys happens less than once in a million times, the build starts again with another seed.
+//! The keys are put into buckets of about three. Each bucket gets a pilot, the fullest bucket first, while most
+//! slots are free: the first of 256 pilots that maps all keys of the bucket to free slots. Without such a
+//! pilot, which for 100,000 keys happens less than once in a million times, the build starts again with another
+//! seed.
 
 use crate::files::{
     Index,
@@ -20,7 +21,7 @@ pub(super) struct Pair {
     pub key: Key,
     /// Number of the record from 1.
     pub number: u32,
-    /// The field of the record that look-ups need; 0 in an index whose keys records may share.
+    /// The field of the record that look-ups need; 0 in an index with shared keys.
     pub answer: u32,
 }
 
@@ -58,12 +59,12 @@ impl<C: Cells> Table<C> {
         if pairs.is_empty() {
             return Self::default();
         }
-        // One fifth of the slots stays free: fewer would cost time here, more would cost cache.
+        // One fifth of the slots stays free. Fewer would cost time here, more would cost cache.
         let slots = pairs.len() + pairs.len() / 4 + 1;
         (0..).find_map(|seed| Self::placed(pairs, slots, seed)).unwrap_or_default()
     }
 
-    /// The table with this seed; `None` if there is no pilot for a bucket.
+    /// The table with this seed; `None` if a bucket has no pilot.
     fn placed(pairs: &[Pair], slots: usize, seed: u64) -> Option<Self> {
         let buckets = pairs.len() / KEYS_A_BUCKET + 1;
         let hashes: Vec<u64> = pairs.iter().map(|pair| hash_of(C::key(pair), seed)).collect();
@@ -80,7 +81,7 @@ impl<C: Cells> Table<C> {
         Some(table)
     }
 
-    /// Put the keys of a bucket, in which equal keys are neighbours, into slots; returns its pilot.
+    /// Put the keys of a bucket, in which equal keys are neighbours, into slots. Returns its pilot.
     fn place(&mut self, pairs: &[Pair], keys: &[Spread], taken: &mut Taken) -> Option<u8> {
         let mut places = [Place::default(); FULLEST];
         let mut count = 0;
@@ -290,7 +291,7 @@ fn spread(hashes: &[u64], buckets: usize) -> (Vec<Spread>, Vec<u32>) {
     (spread, begins)
 }
 
-/// The buckets, the fullest first; `begins`: the position where each begins.
+/// The buckets, the fullest first; `begins` has the position where each begins.
 fn fullest_first(begins: &[u32]) -> Vec<u32> {
     let emptiness = |range: &[u32]| match *range {
         [begin, end] => FULLEST.saturating_sub(long(end.saturating_sub(begin))),
@@ -367,7 +368,7 @@ mod tests {
         }
 
         #[test]
-        fn the_first_location_with_an_entry_is_found(
+        fn first_location_with_an_entry_is_found(
             entries in prop::collection::btree_set((0_u64..6, 0_u64..3, 0_usize..9), 0..60),
             object in 0_u64..6, grip in 0_u64..3, at in 0_usize..3, owners in prop::collection::vec(3_usize..8, 0..3),
         ) {
@@ -396,7 +397,7 @@ mod tests {
         }
 
         #[test]
-        fn answers_for_a_key_of_one_record(keys in prop::collection::btree_set(0_u64..500, 0..300)) {
+        fn key_of_one_record_has_an_answer(keys in prop::collection::btree_set(0_u64..500, 0..300)) {
             let pairs = keys.iter().zip(1..).map(|(&main, number)| {
                 Pair { key: key(main, 0), number, answer: number + 7 }
             });
@@ -410,7 +411,7 @@ mod tests {
     }
 
     #[test]
-    fn a_key_of_many_records_needs_one_slot() {
+    fn key_of_many_records_needs_one_slot() {
         let index = OwnedIndex::new(&numbered(&[key(5, 1); 1000]));
         let view = index.view();
         assert_eq!((view.len(), view.all(key(5, 1)).len(), view.find(key(5, 0))), (1, 1000, None));
@@ -426,7 +427,7 @@ mod tests {
     }
 
     #[test]
-    fn an_empty_index_finds_no_record() {
+    fn empty_index_finds_no_record() {
         let index = OwnedIndex::new(&[]);
         assert_eq!(
             (index.view().find(key(0, 0)), index.view().len(), index.view().is_empty()),
@@ -436,7 +437,7 @@ mod tests {
     }
 
     #[test]
-    fn a_hundred_thousand_names_have_their_slots_at_the_first_try() {
+    fn hundred_thousand_names_need_one_seed() {
         for stem in ["PART", "M", "A-LONG-ONE"] {
             let key = |i: u32| {
                 crate::files::index::name_key(&rcs_core::name::Name16::clipped(&format!("{stem}{i}")))

@@ -17,7 +17,7 @@ pub struct Word<'a> {
     pub first: bool,
 }
 
-/// True for a separator of words. A tab separates words as well; the tab itself is reported as an error of the block.
+/// True for a separator of words. A tab also separates words, but is reported as an error of the block.
 const fn is_blank(byte: u8) -> bool {
     matches!(byte, b' ' | b'\t')
 }
@@ -43,7 +43,7 @@ pub fn words_of_line<'a>(line: &SourceLine<'a>) -> Vec<Word<'a>> {
 /// Number of words per line for which space is reserved.
 const WORDS_A_LINE: usize = 8;
 
-/// The words of a block. A comment that is not closed in its block is an error.
+/// The words of a block. An unclosed comment is an error.
 pub fn words<'a>(block: &Block<'a>, problems: &mut Problems) -> Vec<Word<'a>> {
     let mut words = Vec::with_capacity(block.lines.len().saturating_mul(WORDS_A_LINE));
     let mut open = None;
@@ -61,7 +61,7 @@ pub fn words<'a>(block: &Block<'a>, problems: &mut Problems) -> Vec<Word<'a>> {
     words
 }
 
-/// Add the words of a line; `open` is the beginning of a comment in parentheses that is not closed yet.
+/// Add the words of a line; `open` is the beginning of an unclosed comment in parentheses.
 fn scan<'a>(line: &SourceLine<'a>, open: &mut Option<At>, words: &mut Vec<Word<'a>>) {
     let bytes = line.text.as_bytes();
     let mut first = true;
@@ -131,7 +131,7 @@ mod tests {
     }
 
     #[test]
-    fn an_open_comment_is_an_error() {
+    fn open_comment_is_an_error() {
         let (found, bad) = texts("A ( B\nC");
         assert_eq!(found, ["A"]);
         assert!(bad);

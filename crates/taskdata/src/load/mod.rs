@@ -51,12 +51,12 @@ impl Store {
     /// Load all files `*.blk` under a data directory.
     ///
     /// # Errors
-    /// The report, if it has an error; it has every error of the data.
+    /// The report with every error of the data, if it has one.
     pub fn load(directory: &Path) -> Result<(Self, Diagnostics), Box<Diagnostics>> {
         Self::load_part(directory).map_err(|(_, report)| report)
     }
 
-    /// As [`Store::load`], but if there are errors, also return the readable part of the data, for checks of jobs.
+    /// Like [`Store::load`], but with the readable part of data with errors, for checks of jobs.
     ///
     /// # Errors
     /// The readable part, and the report.
@@ -67,23 +67,24 @@ impl Store {
         Self::default().loaded_with(sources, problems)
     }
 
-    /// As [`Store::load`], but data with errors are used, too: [`Store::faults_of`] tells which errors concern a command.
+    /// Like [`Store::load`], but data with errors are also used: [`Store::faults_of`] lists the errors that
+    /// concern a command.
     #[must_use]
     pub fn load_with_faults(directory: &Path) -> (Self, Diagnostics) {
         Self::load_part(directory).unwrap_or_else(|(part, report)| (part.store, *report))
     }
 
-    /// As [`Store::load_with_faults`], with texts that were read elsewhere.
+    /// Like [`Store::load_with_faults`], for texts from another source.
     #[must_use]
     pub fn from_sources_with_faults(sources: Vec<Source>) -> (Self, Diagnostics) {
         let loaded = Self::default().loaded_with(sources, Problems::default());
         loaded.unwrap_or_else(|(part, report)| (part.store, *report))
     }
 
-    /// Load texts that were read elsewhere, such as the attachments of a log.
+    /// Load texts from another source, such as the attachments of a log.
     ///
     /// # Errors
-    /// The report, if it has an error; it has every error of the data.
+    /// The report with every error of the data, if it has one.
     pub fn from_sources(sources: Vec<Source>) -> Result<(Self, Diagnostics), Box<Diagnostics>> {
         Self::default().with_blocks(sources)
     }
@@ -92,16 +93,16 @@ impl Store {
     /// (docs/design/ownership.md "Reload").
     ///
     /// An entry with the key of an existing entry (a pose of the same name, the same grip of the same object at
-    /// the same location …) replaces it and keeps its record number; other entries are appended. Nothing is
+    /// the same location …) replaces it and keeps its record number; other entries are appended. No entry is
     /// removed, except the locations of an object, which its newer object location entries replace together.
     /// Paths, their points and their parameters, which have no names, and object locations get new numbers.
     ///
-    /// All blocks of the texts are loaded, as by `load` at a terminal, unless the texts have a root directory
-    /// block; a directory may also name blocks that these data have. The whole new generation is checked, not
-    /// only the new part.
+    /// All blocks of the texts are loaded, like by `load` at a terminal, unless the texts have a root directory
+    /// block. A directory may also name blocks of these data. The whole new generation is checked, not only the
+    /// new part.
     ///
     /// # Errors
-    /// The report, if it has an error that these data do not have; then there is no new generation.
+    /// The report, if it has an error that these data lack. The new generation is then not made.
     pub fn with_blocks(&self, texts: Vec<Source>) -> Result<(Self, Diagnostics), Box<Diagnostics>> {
         let (part, report) = match self.loaded_with(texts, Problems::default()) {
             Ok(loaded) => return Ok(loaded),
@@ -117,7 +118,7 @@ impl Store {
         }
     }
 
-    /// The next generation; `problems` has the errors of files that could not be read.
+    /// The next generation; `problems` has the errors of unreadable files.
     fn loaded_with(
         &self,
         texts: Vec<Source>,
@@ -130,10 +131,10 @@ impl Store {
         linked.reported(self.sources.len())
     }
 
-    /// As [`Store::with_blocks`], but without the check that the arm can reach the targets.
+    /// Like [`Store::with_blocks`], but without the check that the arm can reach the targets.
     ///
     /// # Errors
-    /// The report, if it has an error; then there is no new generation.
+    /// The report, if it has an error. The new generation is then not made.
     pub fn with_blocks_untried(&self, texts: Vec<Source>) -> Result<(Self, Diagnostics), Box<Diagnostics>> {
         let linked = self.linked(texts, Problems::default());
         linked.reported(self.sources.len()).map_err(|(_, report)| report)
@@ -192,13 +193,13 @@ impl Linked {
 #[derive(Clone, Debug)]
 pub struct Part {
     store: Store,
-    /// Words of entries that could not be read or are not loaded, and unknown names.
+    /// Words of entries that are unreadable or not loaded, and unknown names.
     unread: HashSet<String>,
 }
 
 impl Part {
-    /// True if an unknown name is probably a misspelt form of `near`, the nearest known one. Any other name may be in
-    /// an entry that could not be read.
+    /// True if an unknown name is probably a misspelling of `near`, the nearest known one. Any other name may
+    /// be in an unreadable entry.
     fn is_slip(&self, name: &str, near: Option<&str>) -> bool {
         near.is_some() && !self.unread.iter().any(|word| word.starts_with(name))
     }

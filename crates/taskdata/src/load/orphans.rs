@@ -1,6 +1,6 @@
-//! Blocks that no directory loads (orphans), and directory lines that name no existing block. All effects of one wrong
-//! or missing number are reported in one message: if only an orphan defines a name, an entry that uses the name is not
-//! reported as wrong.
+//! Blocks that no directory loads (orphans), and directory lines that name no existing block. All effects of
+//! one wrong or missing number are reported in one message: an entry is not reported for a name that only an
+//! orphan defines.
 
 use std::collections::{BTreeMap, HashMap, HashSet};
 
@@ -9,7 +9,7 @@ use os_io::text::amount;
 
 use super::{entries::LoadLine, parse::Parsed, print, source::LAST_BLOCK};
 
-/// Greatest edit distance at which a number is taken for a misspelt form of another.
+/// Greatest edit distance at which a number is treated as a misspelling of another.
 const SLIP: usize = 2;
 
 /// A block that is not loaded.
@@ -32,14 +32,14 @@ pub(super) struct Orphans {
     list: Vec<Orphan>,
     /// Words of the orphans' entries, with the position in `list` of the first orphan that has the word.
     words: HashMap<String, usize>,
-    /// Lines that name a block that does not exist.
+    /// Lines that name a missing block.
     pub(super) missing: Vec<LoadLine>,
-    /// Lines that name a block that is loaded already.
+    /// Lines that name an already loaded block.
     pub(super) again: Vec<LoadLine>,
     /// Loaded directory blocks, and the blocks that they name.
     pub(super) directories: BTreeMap<BlockNumber, Vec<BlockNumber>>,
-    /// A file could not be read, which may contain any name and any block. An unknown name is then reported only if it
-    /// is probably a misspelt form of a known one.
+    /// True if a file could not be read, which may contain any name and any block. An unknown name is then
+    /// reported only if it is probably a misspelling of a known one.
     pub(super) incomplete: bool,
 }
 
@@ -58,8 +58,8 @@ impl Orphans {
         self.list.push(orphan);
     }
 
-    /// True if a block is missing although all files were read: unknown names may be in it, and are reported when the
-    /// block exists again.
+    /// True if a block is missing although all files were read. Unknown names may be in it, and are reported
+    /// when the block exists again.
     pub(super) fn lack_blocks(&self) -> bool {
         !self.incomplete && !self.missing.is_empty()
     }
@@ -69,7 +69,7 @@ impl Orphans {
         self.words.keys()
     }
 
-    /// True if an orphan has a name that is looked up.
+    /// True if an orphan has this name.
     pub(super) fn have(&mut self, name: &str) -> bool {
         let orphan = self.words.get(name).and_then(|&position| self.list.get_mut(position));
         if let Some(orphan) = orphan {
@@ -118,8 +118,8 @@ impl Orphans {
         }
     }
 
-    /// Mark orphans that another orphan names as reported with it. Returns the numbers of the naming orphans, and how
-    /// many others each one stands for.
+    /// Mark orphans that another orphan names as reported with it. Returns the numbers of the naming orphans,
+    /// and the number of others that each one represents.
     fn gather(&mut self) -> BTreeMap<BlockNumber, usize> {
         let named: HashSet<BlockNumber> =
             self.list.iter().flat_map(|orphan| &orphan.loads).map(|line| line.block).collect();
@@ -150,12 +150,12 @@ impl Orphans {
         below
     }
 
-    /// Report a line that names a block that does not exist.
+    /// Report a line that names a missing block.
     fn missing(&mut self, line: LoadLine, problems: &mut Problems) {
         if self.incomplete {
             return;
         }
-        // It may be a block whose header cannot be read or whose number is not allowed, which is reported already.
+        // Its header may be unreadable, or its number invalid, which is already reported.
         let unreadable = |o: &Orphan| {
             o.number.offset == BlockNumber::UNREADABLE
                 || o.number.offset == line.block.offset && o.number.number > LAST_BLOCK
@@ -185,7 +185,7 @@ impl Orphans {
         }
     }
 
-    /// Report a line that names a block that is loaded already.
+    /// Report a line that names an already loaded block.
     fn again(&mut self, line: LoadLine, problems: &mut Problems) {
         let message = format!("{} is loaded already", line.block);
         match self.meant(line.block).filter(|orphan| orphan.first.is_none()) {
@@ -203,7 +203,7 @@ impl Orphans {
         }
     }
 
-    /// The orphan whose number is probably meant by a wrong number.
+    /// The orphan that a wrong number probably means.
     fn meant(&mut self, number: BlockNumber) -> Option<&mut Orphan> {
         let wanted = number.number.to_string();
         let slip = |orphan: &Orphan| distance(&wanted, &orphan.number.number.to_string());
@@ -214,8 +214,8 @@ impl Orphans {
         near.min_by_key(|orphan| slip(orphan))
     }
 
-    /// The loaded directory block that should name an orphan: the last one before it, else the one that names the
-    /// nearest number. For an orphan that is itself a directory, one that names directories.
+    /// The loaded directory block that should name an orphan: the last one before it, or else the one that
+    /// names the nearest number. For an orphan that is itself a directory, one that names directories.
     fn directory_of(&self, orphan: &Orphan) -> Option<BlockNumber> {
         let is_directory = |block: &BlockNumber| self.directories.contains_key(block);
         let fits = |(directory, named): &(&BlockNumber, &Vec<BlockNumber>)| {

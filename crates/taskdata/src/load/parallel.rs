@@ -9,11 +9,11 @@ use std::{
     thread, vec,
 };
 
-/// The results of `work` on `0..count`, in this order. Each processor takes the next piece when it has finished one;
+/// The results of `work` on `0..count`, in this order. Each processor takes the next piece after finishing one;
 /// a single piece runs in the thread of the caller.
 ///
 /// # Panics
-/// If `work` does.
+/// If `work` panics.
 pub fn map<T: Send>(count: usize, work: impl Fn(usize) -> T + Sync) -> Vec<T> {
     let threads = thread::available_parallelism().map_or(1, NonZero::get).min(count);
     if threads <= 1 {
@@ -45,7 +45,8 @@ pub fn map<T: Send>(count: usize, work: impl Fn(usize) -> T + Sync) -> Vec<T> {
     done.into_iter().map(|(_, result)| result).collect()
 }
 
-/// As [`map`], for `count` items in pieces of at most `size`: `work` gets the range of positions of a piece.
+/// Like [`map`], for `count` items in pieces of at most `size`; `work` receives the range of positions of a
+/// piece.
 pub(super) fn map_pieces<T: Send>(
     count: usize,
     size: usize,

@@ -1,8 +1,9 @@
 //! From words to entries: the compiling words of chapter VII.
 //!
-//! A form is read as in FORTH, word by word, without regard to columns: a compiling word takes the words after it
-//! (`-pt-`, `-obj-` …), or the numbers before it (`-pose-`, `-mtb-`). After an error the rest of the entry is skipped
-//! up to the next compiling word or the next line that begins with a number, so that one error gives one message.
+//! A form is read as in FORTH, word by word, regardless of columns. A compiling word takes the words after it
+//! (`-pt-`, `-obj-` …), or the numbers before it (`-pose-`, `-mtb-`). After an error the rest of the entry is
+//! skipped up to the next compiling word or the next line that begins with a number, so that one error gives
+//! one message.
 
 use diagnostics::{At, BlockNumber, Problems, nearest};
 
@@ -20,7 +21,7 @@ pub struct Parsed {
     pub entries: Vec<Entry>,
     /// Lines that name blocks to load.
     pub loads: Vec<LoadLine>,
-    /// Names in entries that could not be read: a use of one of them is not a second error.
+    /// Names in unreadable entries, whose use is not a second error.
     pub broken: Vec<String>,
 }
 
@@ -62,7 +63,8 @@ impl<'a> Parser<'a, '_> {
         }
         self.next += 1;
         match word.text {
-            // Forms are always loaded into empty files, so there is nothing to erase; FDEF only chooses a vocabulary.
+            // Forms are always loaded into empty files, so ERASE-MOVTAB has no effect; FDEF only selects a
+            // vocabulary.
             "ERASE-MOVTAB" | "FDEF" => Ok(None),
             "-pt-" => forms::point_at(self, "location point").map(|e| Some(Entry::Locpt(e))),
             "-ar-" => forms::point_at(self, "array").map(|e| Some(Entry::ArrayAt(e))),

@@ -67,7 +67,7 @@ pub const BEGINNINGS: &[&str] = &[
     "==",
 ];
 
-/// The rest of the entry cannot be read; the problem is reported already.
+/// The rest of the entry is unreadable, which is already reported.
 #[derive(Clone, Copy, Debug)]
 pub struct Skip;
 
@@ -75,7 +75,7 @@ pub struct Skip;
 pub struct Parser<'a, 'p> {
     pub(super) words: &'p [Word<'a>],
     pub(super) next: usize,
-    /// The first word of the entry that is read.
+    /// The first word of the present entry.
     pub(super) start: usize,
     pub(super) block: BlockNumber,
     pub(super) end: At,
@@ -121,7 +121,7 @@ impl<'a> Parser<'a, '_> {
         if self.peek()?.text == text { self.take() } else { None }
     }
 
-    /// Report an error of the entry, which can still be read to its end.
+    /// Report an error of an entry that is still readable to its end.
     pub fn flaw(&mut self, code: &'static str, at: At, message: impl Into<String>, help: Option<String>) {
         self.flawed = true;
         self.problems.push(Severity::Error, code, at, message.into(), help);
@@ -132,7 +132,7 @@ impl<'a> Parser<'a, '_> {
         let start = self.words.get(self.start).map_or(self.end, |w| w.at);
         let (at, found) = match self.peek() {
             Some(word) if !self.is_next_entry(word) => (word.at, format!("{} found", word.text)),
-            // The missing part belongs to the entry before.
+            // The missing part belongs to the previous entry.
             _ => (start.to(self.last_at()), "the entry ends before it".to_owned()),
         };
         self.problems.error("form.expected", at, format!("{what} was expected, {found}"));
@@ -186,7 +186,7 @@ impl<'a> Parser<'a, '_> {
             read => read,
         };
         let name = read.unwrap_or_else(|error| {
-            // The wrong character is reported already, as an error of the block.
+            // The wrong character is already reported, as an error of the block.
             if !word.text.is_ascii() {
                 self.flawed = true;
                 return Name::clipped("?");
@@ -218,7 +218,7 @@ impl<'a> Parser<'a, '_> {
         Ok(found)
     }
 
-    /// A type and a name; after `$$$` there is no name.
+    /// A type and a name; `$$$` has no name.
     pub fn typed(&mut self, what: &str, allowed: &[RefType]) -> Result<Typed, Skip> {
         let (kind, at) = self.kind(format_args!("type of {what}"), allowed)?;
         if kind == RefType::Any {
@@ -255,8 +255,8 @@ impl<'a> Parser<'a, '_> {
         result
     }
 
-    /// Skip an entry whose compiling word comes after its numbers: up to `word` and the `names` words after it, but not
-    /// into the next entry that begins with a compiling word.
+    /// Skip an entry whose compiling word follows its numbers: up to `word` and the `names` words after it, but
+    /// not into the next entry that begins with a compiling word.
     pub fn skip_past(&mut self, word: &str, names: usize) {
         while let Some(next) = self.peek() {
             if BEGINNINGS.contains(&next.text) {
@@ -276,7 +276,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_compiling_word_is_one() {
+    fn every_beginning_is_a_compiling_word() {
         assert!(COMPILING_WORDS.iter().all(|word| is_compiling_word(word)));
         assert!(BEGINNINGS.iter().all(|word| is_compiling_word(word)));
         assert!(

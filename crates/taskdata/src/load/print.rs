@@ -1,8 +1,8 @@
-//! Prints entries as forms: the text from which the entry can be read again.
+//! Prints entries as forms, from which they can be read again.
 //!
-//! The form is the manual's, with one line for each part that has a compiling word of its own (`-ppt`, `-m-`, `----`).
-//! A form with more lines than a block has is printed without line breaks between its parts, which always fits if the
-//! entry came from a block: an entry cannot be in two blocks.
+//! The form is the manual's, with one line for each part with its own compiling word (`-ppt`, `-m-`, `----`). A
+//! form with more lines than a block is printed without line breaks between its parts. This always fits for an
+//! entry of a block, since an entry cannot be in two blocks.
 
 use super::{
     entries::{
@@ -27,9 +27,8 @@ pub fn form(entry: &Entry) -> Vec<String> {
     if lines.len() <= BLOCK_LINES { lines } else { filled(&parts.concat()) }
 }
 
-/// Blocks with the forms of all entries, from block `first` at `offset` on; after block 999 the next is 0 at the
-/// next offset. An entry whose form has more lines than a block is put into a block of its own, which cannot be
-/// loaded.
+/// Blocks with the forms of all entries, from block `first` at `offset` on. Block 999 is followed by block 0 of
+/// the next offset. An entry whose form has more lines than a block gets its own block, which cannot be loaded.
 #[must_use]
 pub fn blocks<'e>(entries: impl IntoIterator<Item = &'e Entry>, offset: u32, first: u32) -> String {
     let (mut offset, mut number) = (offset, first);
@@ -131,7 +130,7 @@ fn movetable(e: &MovetableEntry) -> Vec<Vec<String>> {
         .collect()
 }
 
-/// The values that the coordinate system has (Table VII.1).
+/// The values of the coordinate system (Table VII.1).
 fn values(line: &MovetableLine) -> &[i32] {
     let count = match line.system {
         System::None | System::World | System::Tool => 3,

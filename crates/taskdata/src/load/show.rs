@@ -83,7 +83,7 @@ fn settings_of<const N: usize>(
     let value_of = |name: &str| settings.iter().find(|(v, _)| v.text == name).map(|(_, value)| *value);
     let missing: Vec<&str> = known().filter(|k| value_of(k).is_none()).collect();
     let Some(object) = value_of(name_variable).filter(|_| missing.is_empty()) else {
-        // If a variable is misspelt or set twice, another is missing as well: report only one of the errors.
+        // If a variable is misspelt or set twice, another is missing too; only one of the errors is reported.
         if !misspelt {
             p.flaw("show.missing", file.at, format!("{} needs {}", file.text, missing.join(", ")), None);
         }

@@ -1,9 +1,9 @@
-//! Text files with blocks in them: the "disk" (IV.2.7).
+//! Text files that contain blocks: the "disk" (IV.2.7).
 //!
-//! A file contains blocks, each with a header `BLOCK# 619 OFFSET 21000` and at most 16 lines of 64 columns. There are
-//! two extensions of the manual's disk. A line that begins with `%%` is a remark on the file: it is not a line of a
-//! block and may have any length, so that data can be explained without changing their block. And the line numbers 0 to
-//! 15 of a block that was copied from a listing are left out.
+//! A file contains blocks, each with a header `BLOCK# 619 OFFSET 21000` and at most 16 lines of 64 columns.
+//! There are two extensions of the manual's disk. A line that begins with `%%` is a remark on the file: it does
+//! not belong to a block and may have any length, so that remarks do not change the blocks. The line numbers 0
+//! to 15 of a block copied from a listing are ignored.
 
 use std::{collections::BTreeSet, fs, io, os::unix::fs::MetadataExt as _, path::Path};
 
@@ -130,7 +130,7 @@ fn header_number(line: &str) -> Option<BlockNumber> {
     Some(BlockNumber { offset: offset.parse().ok()?, number: number.parse().ok()? })
 }
 
-/// The blocks of a source, and their errors. Blocks with errors are kept as far as they can be read.
+/// The blocks of a source, and their errors. Blocks with errors are kept as far as they are readable.
 #[must_use]
 pub fn blocks(index: usize, source: &Source) -> (Vec<Block<'_>>, Vec<(At, BlockFault)>) {
     let mut found: Vec<Block<'_>> = Vec::new();
@@ -139,7 +139,7 @@ pub fn blocks(index: usize, source: &Source) -> (Vec<Block<'_>>, Vec<(At, BlockF
     for (start, text) in lines_of(&source.text) {
         let at = At { source: short(index), start: short(start), length: short(text.len()) };
         let printable = |b: u8| (b' '..=b'~').contains(&b);
-        // Without a branch for each byte this is much faster than a search for the first one.
+        // Without a branch per byte this is much faster than a search for the first one.
         let plain = text.bytes().fold(true, |all, b| all & printable(b));
         if !plain
             && !text.starts_with(REMARK)
@@ -207,7 +207,7 @@ fn settle(block: &mut Block<'_>, faults: &mut Vec<(At, BlockFault)>) {
         }
     }
     if let Some(line) = block.lines.iter().skip(BLOCK_LINES).find(|line| !line.text.trim().is_empty()) {
-        // The lines are kept, so that their contents are checked as well.
+        // The lines are kept, so that their contents are also checked.
         faults.push((line.at, BlockFault::TooManyLines));
     }
     for line in &block.lines {
@@ -227,7 +227,7 @@ fn settle(block: &mut Block<'_>, faults: &mut Vec<(At, BlockFault)>) {
 /// Width of a line number with its blanks, ` 4 `.
 const LISTING_WIDTH: usize = 3;
 
-/// True if every line begins with its own number in two columns, as in the listings of the manual. A form cannot
+/// True if every line begins with its own number in two columns, like the listings of the manual. A form cannot
 /// look like this: the numbers of a movetable's lines begin at 1.
 fn is_listing(lines: &[SourceLine<'_>]) -> bool {
     if lines.first().is_none_or(|line| !line.text.starts_with(" 0")) {
@@ -288,7 +288,7 @@ mod tests {
     }
 
     #[test]
-    fn a_listing_is_read_without_its_line_numbers() {
+    fn listing_is_read_without_its_line_numbers() {
         let listing = source("BLOCK# 435 OFFSET 21000\n 0\n 1   1    t        0\n 2\n 3 x\n");
         let texts: Vec<&str> = blocks(0, &listing).0[0].lines.iter().map(|l| l.text).collect();
         assert_eq!(texts, ["", "  1    t        0", "", "x"]);
@@ -297,7 +297,7 @@ mod tests {
     }
 
     #[test]
-    fn faults_are_found_where_they_are() {
+    fn block_faults_have_their_places() {
         let wide = "x".repeat(65);
         let text = format!(
             "stray\nBLOCK# one OFFSET 21000\nBLOCK# 1 OFFSET 21000\n{wide}\n{}caf\u{e9}\n",

@@ -19,11 +19,12 @@ use super::{
     source::places_in_blocks,
 };
 
-/// Greatest number of records in a file (SPECNOTES.md, Task data); with more, the error is the manual's FILE FULL.
+/// Greatest number of records in a file (SPECNOTES.md, Task data). Beyond it, the error is the manual's FILE
+/// FULL.
 pub const FILE_RECORDS: usize = 100_000;
 
-/// Names of the files, for declarations. The manual has no names for the files of the object location form and of
-/// the approach/depart form, and not the last two files: these four names are of this project.
+/// Names of the files, for declarations. The manual has no names for the files of the object location form and
+/// of the approach/depart form, and lacks the last two files: these four names are of this project.
 pub const FILE_NAMES: [&str; 18] = [
     "POSE",
     "MOVTAB",
@@ -131,7 +132,7 @@ pub struct Store {
     pub(super) origins: Origins,
     pub(super) commands: Commands,
     pub(super) faults: Vec<Fault>,
-    /// Errors that other checks have found.
+    /// Errors found by other checks.
     pub(super) found: Vec<Fault>,
 }
 
@@ -184,8 +185,8 @@ impl Store {
         }
     }
 
-    /// The files of blocks that were read, for a log: those of the first load, then those of each
-    /// [`Store::with_blocks`] in turn.
+    /// The files of read blocks, for a log: those of the first load, then those of each [`Store::with_blocks`]
+    /// in turn.
     #[must_use]
     pub fn sources(&self) -> &[Source] {
         &self.sources
@@ -203,7 +204,7 @@ impl Store {
         places_in_blocks(&self.sources)
     }
 
-    /// A place in the texts as words: file, block and line; "?" if the text is not known.
+    /// A place in the texts as words: file, block and line; "?" for an unknown text.
     #[must_use]
     pub fn place(&self, at: At) -> String {
         self.places().words(at)

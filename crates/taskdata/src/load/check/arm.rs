@@ -27,7 +27,7 @@ pub(super) struct Fault {
     pub help: String,
 }
 
-/// Try a frame: the error says which joint is beyond its limit and by how much, or how far out of reach the frame is.
+/// Try a frame. The error names the joint beyond its limit and the excess, or the distance out of reach.
 pub(super) fn fault(frame: &Frame) -> Option<Fault> {
     let joints = match T3.inverse(frame, &HOME_JOINTS) {
         Ok(joints) => T3.within_limits(&joints),

@@ -12,10 +12,9 @@ use super::{
     Findings, Origins, origin,
 };
 
-/// Time from the moment when a sensor's condition becomes true to the halt of the robot, s
-/// (docs/design/motion.md "Guarded speed").
+/// Time from the sensor's condition to the halt of the robot, s (docs/design/motion.md "Guarded speed").
 const HALT: f64 = 0.2;
-/// Increase of the force while the tool moves on against a hard object, lb/in: stiffness of the arm (ASSUMED).
+/// Increase of the force while the tool presses against a hard object, lb/in: stiffness of the arm (ASSUMED).
 const STIFFNESS: f64 = 2000.0;
 /// Lever arm from the tool point to the middle of the force sensor, in (ASSUMED, `data/cell.toml`).
 const LEVER: f64 = 8.0;
@@ -33,7 +32,7 @@ fn overload(source: SensorSource) -> f64 {
     }
 }
 
-/// Increase of the reading until the robot stops, lb or in lb for each in/s of speed.
+/// Increase of the reading until the robot stops, lb or in lb per in/s of speed.
 fn growth(source: SensorSource) -> f64 {
     let force = HALT * STIFFNESS;
     if source == SensorSource::My { force * LEVER } else { force }

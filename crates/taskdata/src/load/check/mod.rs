@@ -26,7 +26,8 @@ use super::origins::Origins;
 
 pub(super) use reach::check as reach;
 
-/// All checks except that of the reach; if not `whole`, because names are missing, only the checks of single objects.
+/// All checks except that of the reach; only the checks of single objects unless `whole`, because names are
+/// missing.
 pub(super) fn check(data: &TaskData<'_>, origins: &Origins, whole: bool, problems: &mut Problems) {
     let mut findings = Findings::default();
     if whole {
@@ -49,7 +50,7 @@ struct Finding {
     at: At,
     message: String,
     help: String,
-    /// Number of further locations; `None` if the error of the entry does not depend on a location.
+    /// Number of further locations; `None` for an error that does not depend on a location.
     more: Option<usize>,
 }
 
@@ -85,7 +86,6 @@ impl Findings {
         self.add(Finding { severity: Severity::Error, code, at, message, help, more: None });
     }
 
-    /// Append findings that were made elsewhere.
     fn merge(&mut self, later: Self) {
         for finding in later.list {
             self.add(finding);
@@ -177,7 +177,7 @@ fn locations_of_member(data: &TaskData<'_>, owner: OwnerId, member: Reference) -
 }
 
 /// The locations at which an object can be and an entry applies: the sectors and location points to which the
-/// object is assigned, or, if there are none, the locations that the entry names.
+/// object is assigned, or else the locations that the entry names.
 fn locations_of(data: &TaskData<'_>, object: ObjectId, at: Reference) -> Vec<Location> {
     let mut found = Vec::new();
     for assigned in data.object_locations(object) {
@@ -192,7 +192,7 @@ fn locations_of(data: &TaskData<'_>, object: ObjectId, at: Reference) -> Vec<Loc
         .retain(|location| at.kind == RefType::Any || data.aliases(&location.place).any(|alias| alias == at));
     if found.is_empty() && at.kind != RefType::Array {
         let mut named = locations(data, at);
-        // At an owner of arrays an object that is not assigned to any of them is at the location point.
+        // At an owner of arrays, an unassigned object is at the location point.
         named.retain(|location| location.sector.is_none());
         found = named;
     }

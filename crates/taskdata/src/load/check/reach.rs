@@ -1,12 +1,12 @@
 //! Checks that the arm reaches every target of a command: reach, joint limits, angle from vertical.
 //!
 //! Targets are location points, objects in their sectors with each of their grips, views, and the points of the
-//! approaches, departs, trajectories and relative moves there. A base pose is not itself a target: if a target derived
-//! from it cannot be reached, and neither can the pose, the error names the pose, because the mistake is in the pose.
+//! approaches, departs, trajectories and relative moves there. A base pose is not itself a target. If neither a
+//! derived target nor the pose can be reached, the error names the pose, because it is the cause.
 //!
-//! There is a warning if the gripper axis is within 2 degrees of vertical: the Euler angles of the link are singular
-//! there (VIII introduction). The corners of trays are taught with a vertical gripper, but the robot does not move to
-//! them (VIII.3), so they are not checked.
+//! There is a warning if the gripper axis is within 2 degrees of vertical, where the Euler angles of the link
+//! are singular (VIII introduction). The corners of trays are taught with a vertical gripper, but are not
+//! checked, because the robot does not move to them (VIII.3).
 //!
 //! The wild card `$$$` is tried at the locations to which the object is assigned (VII.7.3).
 
@@ -34,7 +34,7 @@ use super::{
 /// Number of entries that one processor tries at a time.
 const ENTRIES_AT_A_TIME: usize = 512;
 
-/// Try all targets; the data must have been linked without error.
+/// Try all targets of data that were linked without error.
 pub(crate) fn check(data: &TaskData<'_>, origins: &Origins, problems: &mut Problems) {
     let mut findings = Findings::default();
     let reach = Reach::new(data, origins, &mut findings);
@@ -63,7 +63,7 @@ fn spread(count: usize, entry: impl Fn(usize, &mut Findings) + Sync) -> Findings
     findings
 }
 
-/// Makes the text for a target; called only if the target has a problem.
+/// Makes the text for a target. It is called only for a target with a problem.
 type What<'a> = &'a dyn Fn() -> String;
 
 struct Reach<'a> {
@@ -128,7 +128,7 @@ impl<'a> Reach<'a> {
         }
     }
 
-    /// Try a target that is derived from a pose; true if it can be reached. Warns near the vertical.
+    /// Try a target that is derived from a pose. Returns true if it can be reached. Warns near the vertical.
     fn target(&self, what: What<'_>, frame: &Frame, at: At, base: PoseId, findings: &mut Findings) -> bool {
         let reached = self.reached(what, frame, at, base, findings);
         if reached {
@@ -137,7 +137,7 @@ impl<'a> Reach<'a> {
         reached
     }
 
-    /// Try a frame that is derived from a pose; true if it can be reached.
+    /// Try a frame that is derived from a pose. Returns true if it can be reached.
     fn reached(&self, what: What<'_>, frame: &Frame, at: At, base: PoseId, findings: &mut Findings) -> bool {
         let Some(found) = fault(frame) else { return true };
         match self.data.pose(base).and_then(|pose| Some((pose.name, fault(&pose.frame)?))) {
@@ -168,7 +168,7 @@ impl<'a> Reach<'a> {
         match points.next() {
             Some(start) => {
                 self.follow(record.path, &start.frame, &what, false, findings);
-                // From the other starts only points that are relative to the start are different.
+                // For the other starts, only points relative to the start differ.
                 if self.relative_starts.contains_key(&(record.start.kind.code(), record.start.number)) {
                     points.for_each(|start| self.follow(record.path, &start.frame, &what, false, findings));
                 }
@@ -181,7 +181,8 @@ impl<'a> Reach<'a> {
         }
     }
 
-    /// Try the points of a path. All its movetables refer to `reference` if `fixed`, else each to the point before it.
+    /// Try the points of a path. All its movetables refer to `reference` if `fixed`, otherwise each to the
+    /// previous point.
     fn follow(&self, path: PathId, reference: &Frame, what: What<'_>, fixed: bool, findings: &mut Findings) {
         let data = self.data;
         let first = path.of(data.paths).map_or(0, |p| usize::try_from(p.first).unwrap_or(0));
@@ -193,7 +194,7 @@ impl<'a> Reach<'a> {
             let at = origin(&self.origins.path_points, first + i);
             let what = || format!("{}, {}", what(), self.point_name(point));
             match point.target {
-                // There is already a warning for a vertical reference; its points need no warning of their own.
+                // A vertical reference already has a warning; its points need no warning of their own.
                 Target::Movetable(_) if upright() => {
                     if let Some(fault) = fault(&frame) {
                         findings.error(fault.code, at, format!("{}: {}", what(), fault.message), fault.help);
@@ -205,7 +206,8 @@ impl<'a> Reach<'a> {
                 Target::Pose(id) => {
                     self.target(&what, &frame, at, id, findings);
                 }
-                // Its reach is checked with the location points; here the robot moves to it even if it is a corner.
+                // Its reach is checked with the location points. The robot moves to it here even if it is a
+                // corner.
                 Target::LocationPoint(_) => vertical(&what, &frame, at, findings),
                 Target::Stop => {}
             }

@@ -1,12 +1,12 @@
-//! Finds trajectories that no command can use: another entry is always found first, or both ends are one location
-//! (VII.6).
+//! Finds trajectories that no command can use: another entry is always found first, or both ends are one
+//! location (VII.6).
 
 use crate::files::{ArrayId, LocptId, OwnerId, Place, RefType, Reference, TaskData, TrajId};
 use interfaces::location::LocationKind;
 
 use super::{Findings, Origins, at_point, origin, owners_of};
 
-/// Greatest number of places of an end that are tried; an end with more counts as reachable.
+/// Greatest number of places of an end that are tried. An end with more places is treated as reachable.
 const TRIED: usize = 64;
 
 /// Report each trajectory that no look-up finds.

@@ -1,5 +1,5 @@
-//! Checks of the numbers of object forms: openings in order, a tray grip that an object form has, a flip angle that is
-//! not 0 (VII.7.1, VII.7.2, VII.7.4).
+//! Checks of the numbers of object forms: openings in order, tray grips with an object form, flip angles other
+//! than 0 (VII.7.1, VII.7.2, VII.7.4).
 
 use crate::files::TaskData;
 

@@ -6,8 +6,8 @@ use crate::files::{ArrayId, RefType, Reference, TaskData};
 
 use super::{Findings, Origins, at_point, origin, owners_of};
 
-/// Length of the sides of a tray, inches. The manual gives no size: all three printed arrays fill a square of 21.00
-/// with equal margins (VIII.6; SPECNOTES).
+/// Length of the sides of a tray, inches. The manual gives no size. All three printed arrays fill a square of
+/// 21.00 with equal margins (VIII.6; SPECNOTES).
 const TRAY: f64 = 21.0;
 /// Tolerance for rounding of the integers of a form, inches.
 const ROUNDING: f64 = 0.01;

@@ -20,7 +20,7 @@ pub struct Offset {
 pub enum Drum {
     Grip,
     Release,
-    /// A tool is put into it.
+    /// A tool is inserted into the drum.
     Tool(Name16),
 }
 
@@ -38,7 +38,7 @@ pub enum Workstation {
     Vise {
         opening: ViseOpening,
         location: Location,
-        /// Program of the vise from now on; `None` keeps the last one.
+        /// Program of the vise from now on; `None` keeps the present one.
         program: Option<Name16>,
     },
     /// A part is machined in a vise or a nest.
@@ -51,7 +51,7 @@ pub enum Workstation {
     Drum(Drum),
     Joystick(BoxAction),
     Press(EStop),
-    /// An emergency stop is pulled out again.
+    /// An emergency stop is released.
     Release(EStop),
     /// An action at the robot controller's panel.
     Panel(Key),
@@ -68,6 +68,6 @@ pub enum Workstation {
         /// Duration, ticks.
         ticks: u32,
     },
-    /// Hand the command over to the workstation controller until it disconnects (IV.4.1).
+    /// Transfer the command to the workstation controller until it disconnects (IV.4.1).
     HandOver,
 }

@@ -58,7 +58,6 @@ impl Field {
         !self.name.is_empty()
     }
 
-    /// The name, if there is one.
     pub(super) fn named(&self) -> Option<Name16> {
         self.given().then_some(self.name)
     }

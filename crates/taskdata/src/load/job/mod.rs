@@ -1,10 +1,11 @@
 //! Job files: commands of the workstation controller, and actions of the workstation between them.
 //!
-//! A job is a text of lines. `==` begins a Task command with the nine fields of Figure VIII.4, which are the variables
-//! of V.4.2 without the serial number (SPECNOTES.md, contradiction 25): object, source grip, location and sector,
-//! destination grip, location and sector, end-at location and sector; `--` is a null field. A serial number may follow:
-//! `#17` (an extension), and `expect error` for a command that has to fail (an extension). The manual has no other
-//! lines: vise, trays and machine belong to the HWSC, not to the robot. Lines that begin with `**` are such actions:
+//! A job is a text of lines. `==` begins a Task command with the nine fields of Figure VIII.4, which are the
+//! variables of V.4.2 without the serial number (SPECNOTES.md, contradiction 25): object, source grip, location
+//! and sector, destination grip, location and sector, end-at location and sector; `--` is a null field. A
+//! serial number may follow: `#17` (an extension), and `expect error` for a command that must fail (an
+//! extension). The manual has no other lines: vise, trays and machine belong to the HWSC, not to the robot.
+//! Lines that begin with `**` are such actions:
 //!
 //! ```text
 //! ** tray UNIT_1 4 LINKBAR1_BH            a part is delivered into a sector, at a random position (seed of the run)
@@ -78,8 +79,8 @@ pub struct JobLine {
     pub text: String,
     /// Number of the line in the file, from 1.
     pub line: u32,
-    /// True if the line ends with `expect error`: its command must end with an error, or the blocks that it loads
-    /// must not fit the cell.
+    /// True if the line ends with `expect error`: its command must end with an error, or the blocks that it
+    /// loads must not fit the cell.
     pub expects_error: bool,
 }
 
@@ -98,7 +99,7 @@ impl Job {
     /// Read a job file and check it against the task data.
     ///
     /// # Errors
-    /// The report, if it has an error; it has every error of the job.
+    /// The report with every error of the job, if it has one.
     pub fn load(path: &Path, store: &Store) -> Result<(Self, Diagnostics), Box<Diagnostics>> {
         match read(path, &path.display().to_string()) {
             Ok(source) => Self::from_source(source, store).and_then(Self::with_a_line),
@@ -130,7 +131,7 @@ impl Job {
         Diagnostics::of_file(problems, &source)
     }
 
-    /// The job and its report; a job without lines is an error.
+    /// The job and its report. A job without lines is an error.
     fn with_a_line((job, report): (Self, Diagnostics)) -> Result<(Self, Diagnostics), Box<Diagnostics>> {
         if !job.steps.is_empty() {
             return Ok((job, report));
@@ -141,7 +142,7 @@ impl Job {
         Err(Box::new(report.with(Diagnostics::new(problems, Places::in_lines(sources), 0, Vec::new()))))
     }
 
-    /// Check a job that was read elsewhere, such as the attachment of a log.
+    /// Check a job from another source, such as the attachment of a log.
     ///
     /// # Errors
     /// The report, if it has an error.
@@ -167,7 +168,7 @@ impl Job {
         self.reloads.get(usize::try_from(number).ok()?.checked_sub(1)?)
     }
 
-    /// The text that the job was read from.
+    /// The text of the job.
     #[must_use]
     pub const fn source(&self) -> &Source {
         &self.source

@@ -1,7 +1,8 @@
-//! A line that does not come from a job: another process or an operator sends it during the run.
+//! A line from another process or an operator during the run, instead of from a job.
 //!
-//! Its meaning depends only on its words and the task data; the run itself handles `load OFFSET BLOCK` earlier. Reading
-//! it opens no file, because that could take any time, and would reveal to the connected system which files exist.
+//! Its meaning depends only on its words and the task data; the run itself handles `load OFFSET BLOCK` earlier.
+//! Parsing it opens no file, because that could take any time, and would reveal to the connected system which
+//! files exist.
 
 use std::fmt;
 
@@ -29,9 +30,9 @@ pub enum OwnLineError {
     Wait,
     /// `after` is possible only in a job: it counts the ticks of the job.
     After,
-    /// `workstation` is possible only in a job, which hands the command over.
+    /// `workstation` is possible only in a job, which transfers the command.
     HandOver,
-    /// It cannot be read, or has unknown names; the message.
+    /// The line is unreadable, or has unknown names; the message.
     Unreadable(String),
 }
 
@@ -57,8 +58,8 @@ impl std::error::Error for OwnLineError {}
 /// The name of such a line in messages.
 const SOURCE: &str = "the line";
 
-/// Read a command as in a job, with or without `==` before it. PAUSE, STARTUP and SHUTDOWN need no fields. The position
-/// of the robot and the object that it holds are not known here, and not checked.
+/// Read a command as in a job, with or without `==` before it. PAUSE, STARTUP and SHUTDOWN need no fields. The
+/// position of the robot and the held object are unknown here, and not checked.
 ///
 /// # Errors
 /// [`OwnLineError`].
@@ -66,7 +67,7 @@ pub fn own_command(text: &str, store: &Store) -> Result<JobLine, OwnLineError> {
     reported_command(text, store).map_err(|report| unreadable(&report))
 }
 
-/// As [`own_command`], with the places in the text and the remedies of all findings.
+/// Like [`own_command`], with the places in the text and the remedies of all findings.
 ///
 /// # Errors
 /// The report.
@@ -136,7 +137,7 @@ mod tests {
     use std::path::Path;
 
     #[test]
-    fn words_of_a_job_are_refused_elsewhere() {
+    fn job_words_are_refused_outside_a_job() {
         let Ok((store, _)) = Store::load(Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../data")))
         else {
             panic!("the shipped data do not load")

@@ -42,7 +42,7 @@ impl Reader<'_, '_> {
                 let x = self.within(fields, "x of the stick", -FULL, STICK_FORM)?;
                 let y = self.within(fields, "y of the stick", -FULL, STICK_FORM)?;
                 let ticks = match (x, y) {
-                    // A stick that is released needs no time.
+                    // A released stick needs no time.
                     (0, 0) => self.number_from(fields, 0, "a number of ticks", STICK_FORM)?,
                     _ => self.ticks(fields, STICK_FORM)?,
                 };

@@ -18,18 +18,17 @@ use super::{
     fields::{Field, Fields, Number},
 };
 
-/// Reads the lines of a job in their order.
 pub(super) struct Reader<'s, 'p> {
     data: TaskData<'s>,
-    /// The readable part, if the data have errors: a missing name may be in the rest.
+    /// The readable part of data with errors. A missing name may be in the rest.
     part: Option<&'s Part>,
     /// The task data after each line that loads blocks, in the order of the lines.
     reloads: std::vec::IntoIter<TaskData<'s>>,
     loaded: u32,
     pub(super) problems: &'p mut Problems,
-    /// What is known of the robot before the next command.
+    /// The known state of the robot before the next command.
     before: Before,
-    /// The last line with `after` that no command has followed yet.
+    /// The last line with `after` that no command has followed.
     pub(super) after: Option<At>,
 }
 
@@ -44,13 +43,13 @@ impl<'s, 'p> Reader<'s, 'p> {
         Self { part: Some(part), ..self }
     }
 
-    /// Something other than a command moves the robot: position and held object are then unknown.
+    /// Discard position and held object, which are unknown after a motion without a command.
     pub(super) fn forget(&mut self) {
         self.before = Before::unknown();
     }
 
-    /// A line loads blocks: from here on names are looked up in the new task data. Returns the number of the reload,
-    /// from 1; `None` if the blocks could not be loaded, which is reported already.
+    /// A line loads blocks: from here on names are looked up in the new task data. Returns the number of the
+    /// reload, from 1; `None` if the blocks could not be loaded, which is already reported.
     pub(super) fn reload(&mut self) -> Option<u32> {
         self.data = self.reloads.next()?;
         self.loaded += 1;
@@ -59,7 +58,7 @@ impl<'s, 'p> Reader<'s, 'p> {
 }
 
 impl Reader<'_, '_> {
-    /// Report errors that are known only after the last line.
+    /// Report errors that become known after the last line.
     pub(super) fn end(&mut self) {
         if let Some(at) = self.after {
             self.problems.error_help(
@@ -71,7 +70,7 @@ impl Reader<'_, '_> {
         }
     }
 
-    /// The step of line `number`; `None` if it has none, or if it cannot be read, which is reported.
+    /// The step of line `number`; `None` for a line without a step, or an unreadable one, which is reported.
     pub(super) fn line(&mut self, number: u32, line: &SourceLine<'_>) -> Option<JobLine> {
         let words = words_of_line(line);
         let first = words.first()?;
@@ -117,7 +116,7 @@ impl Reader<'_, '_> {
         None
     }
 
-    /// `None` if a word is left, which is reported.
+    /// Returns `None` if a word is left, which is reported.
     pub(super) fn end_of_line(&mut self, fields: &mut Fields<'_, '_>) -> Option<()> {
         let Some(extra) = fields.take() else { return Some(()) };
         self.problems.error("job.fields", extra.at, format!("the line should end before {}", extra.text));
@@ -224,7 +223,7 @@ impl Reader<'_, '_> {
         Some(command)
     }
 
-    /// What is wrong with a command. Task data with errors only tell which names are probably misspelt.
+    /// The errors of a command. Data with errors only show which names are probably misspelt.
     fn judge(&mut self, command: &HwsCommand, fails: bool) -> Vec<Finding> {
         if let Some(part) = self.part {
             let mut findings = verdict::names_of(command, &self.data);
@@ -264,7 +263,7 @@ impl Reader<'_, '_> {
         self.problems.error_help("name.unknown", at, format!("no {what} is named {name}"), help);
     }
 
-    /// True if the object is known; otherwise it is reported.
+    /// True if the object is known. An unknown one is reported.
     pub(super) fn object(&mut self, field: Field) -> bool {
         find_object(&self.data, &field.name).map_err(|unfound| self.unfound(unfound, field, field.at)).is_ok()
     }
@@ -286,7 +285,7 @@ impl Reader<'_, '_> {
         found.map_err(|unfound| self.unfound(unfound, field, sector.at)).ok()
     }
 
-    /// Report a name that the task data do not have, unless an entry that could not be read may have it.
+    /// Report a name that the task data lack, unless an unreadable entry may have it.
     fn unfound(&mut self, unfound: Unfound, field: Field, sector: At) {
         let Unfound { code, message, help, near, is_sector } = unfound;
         if self.part.is_none_or(|part| part.is_slip(field.name.as_str(), near.as_deref())) {
@@ -296,7 +295,7 @@ impl Reader<'_, '_> {
     }
 }
 
-/// Help text if a command does not have the right fields.
+/// Help text for a command with wrong fields.
 const NINE_FIELDS: &str = "a command has nine fields: object, grip, location, sector, grip, location, sector, end-at, sector; -- is null";
 
 /// Greatest number in a job line.

@@ -35,8 +35,7 @@ impl Reader<'_, '_> {
         }
     }
 
-    /// Read a line that is not in a job. Lines that use the job's ticks, its files or its next command are not
-    /// possible then.
+    /// Read a line that is not in a job. It cannot use the job's ticks, files or next command.
     pub(super) fn own_line(&mut self, fields: &mut Fields<'_, '_>) -> Option<Workstation> {
         let known: Vec<Verb> = Verb::ALL.iter().copied().filter(|verb| !verb.is_of_job()).collect();
         let texts: Vec<&str> = known.iter().map(|verb| verb.text()).collect();

@@ -1,5 +1,5 @@
-//! Look-ups of declared names, without reports of unknown ones, so that they can run on all processors at once. Entries
-//! with an unknown name are linked again one by one, with reports.
+//! Look-ups of declared names that do not report unknown ones, so that they can run on all processors at once.
+//! Entries with an unknown name are linked again one by one, with reports.
 
 use geometry::frame::Frame;
 
@@ -28,7 +28,7 @@ fn is_null(name: &Named<10>) -> bool {
     name.name.bytes().strip_prefix(NULL_NAME.as_bytes()).is_some_and(|rest| rest.starts_with(&[0]))
 }
 
-/// The files and indexes that are built already.
+/// The files and indexes built so far.
 #[derive(Clone, Copy)]
 pub(super) struct Known<'l> {
     pub(super) files: &'l Files,
@@ -95,7 +95,7 @@ impl Known<'_> {
         self.has_grip(&entry.object, entry.grip).then_some(record)
     }
 
-    /// The subject that is approached or departed from, and its location.
+    /// The subject of an approach or depart, and its location.
     pub(super) fn subject(&self, entry: &ApprDeptEntry) -> Option<(Reference, Reference)> {
         let subject = self.reference(&entry.subject)?;
         let at = entry.place.as_ref().map_or(Some(subject), |place| self.reference(place))?;

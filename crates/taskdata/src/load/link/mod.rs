@@ -33,8 +33,8 @@ use super::{
 
 use known::Known;
 
-/// Greatest number of unknown names for which the nearest known one is searched: the search would take hours if all
-/// names were unknown.
+/// Greatest number of unknown names for which the nearest known one is searched. The search would take hours if
+/// all names were unknown.
 const NEAREST_FOR: usize = 200;
 
 /// Links the entries of a load.
@@ -52,8 +52,8 @@ pub(super) struct Linker<'a> {
     asked: BTreeMap<(String, String), (At, usize)>,
 }
 
-/// Make files and indexes from entries; reports problems. `broken` are the names in entries that could not be read;
-/// `orphans` has those in blocks that are not loaded. The last element of the result is the list of unknown names.
+/// Make files and indexes from entries, and report problems. `broken` has the names in unreadable entries,
+/// `orphans` those in blocks that are not loaded. The last element of the result is the list of unknown names.
 pub(super) fn link(
     entries: &Collected,
     broken: &HashSet<String>,
@@ -90,7 +90,7 @@ struct Keyed {
 }
 
 impl Keyed {
-    /// No keys yet, with space for about `records` records.
+    /// An empty list, with space for about `records` records.
     fn with_capacity(what: &'static str, records: usize) -> Self {
         Self { what, keys: Vec::with_capacity(records), ats: Vec::with_capacity(records) }
     }
@@ -116,7 +116,7 @@ impl Keyed {
     }
 }
 
-/// The key of a grip; the form has checked its number, so that there is one.
+/// The key of a grip. It exists, because the form has checked its number.
 fn sure(key: Option<Key>) -> Key {
     key.unwrap_or_default()
 }
@@ -137,7 +137,7 @@ impl Linker<'_> {
         })
     }
 
-    /// As [`Linker::indexed`], for entries that are valid at locations.
+    /// Like [`Linker::indexed`], for entries that are valid at locations.
     fn indexed_at<const N: usize>(&mut self, lists: [Keyed; N]) -> [(OwnedPlaceIndex, Vec<At>); N] {
         let make =
             |i: usize| lists.get(i).map_or_else(OwnedPlaceIndex::default, |l| OwnedPlaceIndex::new(&l.keys));
@@ -149,7 +149,7 @@ impl Linker<'_> {
         })
     }
 
-    /// Report each record that has the key of an earlier one; `shared`: for each such key, the record numbers.
+    /// Report each record with the key of an earlier one; `shared` has the record numbers of each such key.
     fn twice<'n>(&mut self, what: &str, ats: &[At], shared: impl Iterator<Item = &'n [u32]>) {
         let at = |n: &u32| {
             let position = usize::try_from(n.saturating_sub(1)).ok();
@@ -167,7 +167,7 @@ impl Linker<'_> {
         for null in all.movetables.iter().filter(|e| e.name.name.as_str() == NULL_NAME) {
             self.problems.error("name.null", null.name.at, "... is the null movetable and cannot be defined");
         }
-        // An object has one form entry for each grip; its name is declared by the first.
+        // An object has one form entry per grip. The first declares its name.
         let mut seen = FxHashSet::with_capacity_and_hasher(all.objects.len(), Default::default());
         let objects: Vec<Named<16>> =
             all.objects.iter().map(|e| e.name).filter(|name| seen.insert(name.name)).collect();
@@ -215,7 +215,7 @@ impl Linker<'_> {
         }
         let wanted = name.name.as_str();
         self.unknown += 1;
-        // Its definition, perhaps misspelt, may be in an entry that could not be read, which is reported already.
+        // Its definition, perhaps misspelt, may be in an unreadable entry, which is already reported.
         if self.has_elsewhere(wanted) {
             return None;
         }
@@ -258,7 +258,7 @@ impl Linker<'_> {
         names
     }
 
-    /// True if a name is in an entry that could not be read or is not loaded, which is reported already.
+    /// True if a name is in an entry that is unreadable or not loaded, which is already reported.
     fn has_elsewhere(&mut self, name: &str) -> bool {
         let longer = |broken: &String| broken.len() > name.len() && broken.starts_with(name);
         self.broken.contains(name)

@@ -161,7 +161,7 @@ impl Linker<'_> {
         keyed
     }
 
-    /// The subject that is approached or departed from, and its location.
+    /// The subject of an approach or depart, and its location.
     fn subject(&mut self, entry: &ApprDeptEntry) -> Option<(Reference, Reference)> {
         let subject = self.reference(entry.subject);
         let at = entry.place.map_or(subject, |place| self.reference(place));

@@ -52,7 +52,7 @@ impl Linker<'_> {
         }
     }
 
-    /// A pose with its effective frame; points that are not square are corrected.
+    /// A pose with its effective frame. Points that are not orthogonal are corrected.
     fn pose_record(&mut self, entry: &PoseEntry) -> PoseRecord {
         let [wrist, tool, finger] = entry.points;
         let pose = Pose { wrist, tool, finger };
@@ -161,7 +161,7 @@ impl Linker<'_> {
         self.files.owners.push(Owner { name: entry.name.name, first, count });
     }
 
-    /// Add the points of a path and their parameters; equal parameters share a record.
+    /// Add the points of a path and their parameters. Equal parameters share a record.
     pub(super) fn path(&mut self, entries: &[PointEntry]) -> PathId {
         let first = number(self.files.path_points.len());
         for entry in entries {
@@ -192,7 +192,7 @@ impl Linker<'_> {
         }
     }
 
-    /// The record of parameters; equal parameters share a record.
+    /// The record of parameters. Equal parameters share a record.
     pub(super) fn para(&mut self, para: TrajPara) -> TrajParaId {
         let next = TrajParaId::at(self.files.traj_paras.len());
         let id = *self.paras.entry([para.acc_fac, para.vel_max, para.smooth, para.brk_dst]).or_insert(next);

@@ -1,9 +1,9 @@
-//! The verdict on a command to Task, before it is sent (V.4.1, V.4.2): whether the task data have what it names and
-//! needs, and whether its path exists.
+//! The verdict on a command to Task, before it is sent (V.4.1, V.4.2): whether the task data have its names and
+//! its required records, and whether its path exists.
 //!
-//! There is one verdict, with one text, for a line of a job, a request of an operator, a block of commands, a command in
-//! the mailbox of a workstation controller and `rcs-run check --explain`. It covers what follows from the command and
-//! the task data alone. What depends on the cell, such as an object that is lost, only Task decides.
+//! There is one verdict, with one text, for a line of a job, a request of an operator, a block of commands, a
+//! command in the mailbox of a workstation controller and `rcs-run check --explain`. It depends only on the
+//! command and the task data. Conditions of the cell, such as a lost object, are decided by Task alone.
 //!
 //! * `names`: object, locations, sectors and grips exist;
 //! * `needs`: the fields that the command uses, and the records that it needs;
@@ -61,17 +61,17 @@ pub enum Field {
     EndAtSector,
 }
 
-/// Something that is wrong with a command.
+/// An error in a command.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Finding {
     pub field: Field,
     /// Stable short name of the kind of problem.
     pub code: &'static str,
-    /// One sentence: what was found and what was expected.
+    /// The finding and the expectation, in one sentence.
     pub message: String,
-    /// What to do, or the nearest known name.
+    /// The remedy, or the nearest known name.
     pub help: Option<String>,
-    /// The name that the task data do not have, and the nearest known one, if it is such a finding.
+    /// For an unknown name: the name, and the nearest known one.
     pub(super) unknown: Option<(Name16, Option<String>)>,
 }
 
@@ -81,12 +81,12 @@ pub(super) enum Held {
     #[default]
     Nothing,
     Object(Name16),
-    /// Not known, after actions of the operator or a failed command.
+    /// Unknown after actions of the operator or a failed command.
     Unknown,
 }
 
-/// What is known of the robot between two commands. The default is the start of a job: the robot holds nothing, and its
-/// location is not known.
+/// The known state of the robot between two commands. The default is the start of a job: the robot holds
+/// nothing, and its location is unknown.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Before {
     held: Held,
@@ -94,7 +94,7 @@ pub struct Before {
 }
 
 impl Before {
-    /// Nothing is known. The verdict is then the same wherever the robot is, and whatever it holds.
+    /// A completely unknown state. The verdict is then independent of the robot's location and load.
     #[must_use]
     pub const fn unknown() -> Self {
         Self { held: Held::Unknown, at: None }
@@ -103,20 +103,20 @@ impl Before {
 
 #[derive(Clone, Debug)]
 pub struct Verdict {
-    /// What is wrong, in the order of the fields; empty if the command passes.
+    /// The errors, in the order of the fields; empty if the command passes.
     pub findings: Vec<Finding>,
-    /// What is known of the robot after the command.
+    /// The known state of the robot after the command.
     pub after: Before,
 }
 
 impl Verdict {
-    /// The verdict on a command. A command that passes costs no allocation.
+    /// The verdict on a command. It does not allocate for a command that passes.
     #[must_use]
     pub fn of(command: &HwsCommand, data: &TaskData<'_>, before: Before) -> Self {
         Self::judge(command, data, before, false)
     }
 
-    /// The verdict on a command that has to fail: it may lack fields and records.
+    /// The verdict on a command that must fail. It may lack fields and records.
     pub(super) fn of_failing(command: &HwsCommand, data: &TaskData<'_>, before: Before) -> Self {
         Self::judge(command, data, before, true)
     }
@@ -143,7 +143,7 @@ impl Verdict {
         Self { findings, after: Before { held, at } }
     }
 
-    /// True if nothing is wrong with the command.
+    /// True if the command has no error.
     #[must_use]
     pub const fn passes(&self) -> bool {
         self.findings.is_empty()
@@ -155,7 +155,7 @@ pub(super) fn is_bare(command: &HwsCommand) -> bool {
     verb_of(&command.command).is_some_and(|verb| BARE.contains(&verb))
 }
 
-/// Only the names of a command, for task data that have errors.
+/// Only the names of a command, for task data with errors.
 pub(super) fn names_of(command: &HwsCommand, data: &TaskData<'_>) -> Vec<Finding> {
     let mut findings = Vec::new();
     match verb_of(&command.command) {
@@ -173,7 +173,7 @@ pub fn in_words(findings: &[Finding]) -> String {
     findings.iter().map(words).collect::<Vec<_>>().join("; ")
 }
 
-/// A message, with its help if that is the nearest known name.
+/// A message with its help, if that is the nearest known name.
 pub(super) fn with_nearest(message: &str, help: Option<&str>) -> String {
     match help.filter(|help| help.starts_with("the nearest ")) {
         Some(nearest) => format!("{message} ({nearest})"),
@@ -181,7 +181,7 @@ pub(super) fn with_nearest(message: &str, help: Option<&str>) -> String {
     }
 }
 
-/// The command that a word means: all of the word, or its first ten characters, which are what all processes below
+/// The command that a word means: the whole word, or its first ten characters, which all lower processes
 /// compare (SPECNOTES.md, contradiction 22).
 fn verb_of(word: &Name16) -> Option<&'static str> {
     let means = |known: &&&str| word.as_str() == **known || word.as_str() == Name10::clipped(known).as_str();

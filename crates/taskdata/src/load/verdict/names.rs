@@ -11,7 +11,7 @@ use super::{
 };
 use crate::files::{Location, LookupError, TaskData};
 
-/// A name that the task data do not have.
+/// A name that the task data lack.
 pub(in crate::load) struct Unfound {
     pub code: &'static str,
     pub message: String,
@@ -73,7 +73,7 @@ impl Unfound {
     }
 }
 
-/// Check all names; `None` if the object is unknown, so that nothing else can be checked.
+/// Check all names; `None` for an unknown object, which prevents further checks.
 pub(super) fn look_up(
     command: &HwsCommand,
     data: &TaskData<'_>,
@@ -94,7 +94,7 @@ pub(super) fn look_up(
     })
 }
 
-/// Check the names alone, without the grips.
+/// Check only the names, without the grips.
 pub(super) fn names(command: &HwsCommand, data: &TaskData<'_>, findings: &mut Vec<Finding>) {
     if let Some(object) = &command.object
         && let Err(unfound) = find_object(data, object)
@@ -177,7 +177,7 @@ impl Names<'_, '_> {
         Some(Visit { location, object: object.map(|object| (object, named.grip)), field })
     }
 
-    /// True if an object has a grip at a location; otherwise it is reported.
+    /// True if an object has a grip at a location. A missing grip is reported.
     fn has_grip(&mut self, object: &Name16, grip: i32, location: &Location, field: Field) -> bool {
         let data = self.data;
         let (message, help) = if data.object(object, grip).is_none() {

@@ -92,7 +92,7 @@ impl Needs<'_, '_> {
         }
     }
 
-    /// Report what is missing; returns the held object after the command.
+    /// Report missing data. Returns the held object after the command.
     pub(super) fn check(&mut self, held: Held) -> Held {
         self.fields();
         self.sectors();
@@ -105,7 +105,7 @@ impl Needs<'_, '_> {
         match self.verb {
             "TRANSFER" | "POSITION" | "RELEASE-TOOL" => Held::Nothing,
             "ACQUIRE" | "REFIXTURE" | "ACQUIRE-TOOL" | "REMOVE-TOOL" => taken,
-            // That it was not held is reported.
+            // It is already reported that the object was not held.
             "INSERT-TOOL" if object.is_some() && held == Held::Nothing => taken,
             "MOVE" if object.is_some() => taken,
             _ => held,
@@ -116,7 +116,7 @@ impl Needs<'_, '_> {
         self.findings.push(finding(field, "job.needs", message, Some(help.into())));
     }
 
-    /// Check that the object and the locations that the verb needs are given.
+    /// Check that the command has the object and the locations that the verb needs.
     fn fields(&mut self) {
         let (verb, command) = (self.verb, self.command);
         let takes = self.is(&["TRANSFER", "REFIXTURE", "ACQUIRE"]);
@@ -173,7 +173,7 @@ impl Needs<'_, '_> {
         }
     }
 
-    /// Check that a grip is given: +0 is not a grip.
+    /// Check that the command has a grip; +0 is not a grip.
     fn grips(&mut self) {
         let Some(object) = self.command.object else { return };
         for place in self.gripped().into_iter().flatten().filter(|place| place.grip == 0) {
@@ -195,7 +195,7 @@ impl Needs<'_, '_> {
             }
             return;
         }
-        // A grip that no object form has is reported already, and so is +0.
+        // A grip without an object form is already reported, and so is +0.
         if [from, to].iter().any(|grip| data.object(&object, *grip).is_none()) {
             return;
         }

@@ -1,7 +1,7 @@
-//! The path of the robot through a command: from each location to the next there must be a trajectory and an approach.
+//! The path of the robot through a command: each location must have a trajectory and an approach to the next.
 //!
-//! The path of a command to and from the Active Pedestal is not checked, and of the commands at the tool drum only the
-//! way to the end-at location; the check continues at the end of the command.
+//! The path of a command to and from the Active Pedestal is not checked. For commands at the tool drum, only
+//! the path to the end-at location is checked. The check continues at the end of the command.
 
 use rcs_core::name::Name16;
 
@@ -11,7 +11,7 @@ use super::{
 };
 use crate::files::{Location, RefType, TaskData};
 
-/// A location that a command leads to.
+/// A location of a command.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Visit {
     pub location: Location,
@@ -27,17 +27,17 @@ pub(super) struct Visits {
     pub end_at: Option<Visit>,
 }
 
-/// Where the robot is between two commands: the location, with object and grip number of the motion to it.
+/// Location of the robot between two commands, with object and grip number of the motion to it.
 #[derive(Clone, Copy, Debug)]
 pub struct Standing {
     location: Location,
     object: Option<(Name16, i32)>,
 }
 
-/// The path of the robot, from where it is.
+/// The path of the robot from its present location.
 pub(super) struct Route<'c, 'd> {
     pub data: &'c TaskData<'d>,
-    /// Where the robot is; `None` if it is not known.
+    /// Location of the robot, if known.
     pub last: Option<Standing>,
     pub findings: &'c mut Vec<Finding>,
 }
@@ -70,7 +70,7 @@ impl Route<'_, '_> {
                 }
             }
             "ACQUIRE" => self.go(source),
-            // POSITION goes to an object at its location, or to a location (SPECNOTES.md, contradiction 24).
+            // POSITION moves to an object at its location, or to a location (SPECNOTES.md, contradiction 24).
             "POSITION" => self.go(source.or(destination)),
             "RELEASE-TOOL" | "REMOVE-TOOL" => {
                 self.last = self.at_the_drum();
@@ -81,8 +81,8 @@ impl Route<'_, '_> {
         }
     }
 
-    /// The transfer location of the drum, where the tool commands end (V.2.1); `None` if the task data lack it, which
-    /// is reported with the relative moves there.
+    /// The transfer location of the drum, where the tool commands end (V.2.1); `None` if the task data lack it,
+    /// which is reported with the relative moves there.
     fn at_the_drum(&self) -> Option<Standing> {
         let location = self.data.resolve_location::<16, 16>(&Name16::clipped(DRUM), None, None).ok()?;
         Some(Standing { location, object: None })
@@ -124,7 +124,7 @@ impl Route<'_, '_> {
         self.last = Some(Standing { location, object });
     }
 
-    /// Check the path to the place of the camera, if vision has to locate the object.
+    /// Check the path to the place of the camera, if vision must locate the object.
     fn view(&mut self, visit: &Visit, verb: &str) {
         let (data, place) = (self.data, &visit.location.place);
         let Some((object, _)) = visit.object.filter(|_| matches!(verb, "TRANSFER" | "MOVE" | "ACQUIRE"))

@@ -13,7 +13,7 @@ fn store() -> Store {
     Store::load(data).map_or_else(|report| panic!("{report}"), |(store, _)| store)
 }
 
-/// The command of a job line that is not checked, as a mailbox delivers it.
+/// The command of an unchecked job line, as a mailbox delivers it.
 fn command(fields: &str) -> HwsCommand {
     let words: Vec<&str> = fields.split_whitespace().collect();
     let name = |at: usize| Some(words[at]).filter(|word| *word != "--").map(Name16::clipped);
@@ -64,7 +64,7 @@ fn commands_from_line_request_and_mailbox_get_the_same_text() {
         assert!(found.contains(expected), "{fields}: {found}");
         let request = own_command(fields, &store).unwrap_err().to_string();
         assert_eq!(request, found, "{fields}");
-        // A line of a job that follows an action of the operator, which leaves open what is held.
+        // A line of a job after an action of the operator, which makes the held object unknown.
         let text = format!("** joystick frame OFF\n== {fields}\n");
         let source = Source { name: "try.job".into(), text: text.into() };
         let report = Job::from_source(source, &store).unwrap_err();
@@ -74,7 +74,7 @@ fn commands_from_line_request_and_mailbox_get_the_same_text() {
 }
 
 #[test]
-fn sound_commands_pass_as_line_request_and_mailbox() {
+fn valid_commands_pass_as_line_request_and_mailbox() {
     let store = store();
     for fields in [
         "MOVE LINKBAR1_BH +2 UNIT_1 4 +2 PFIXTURE 0 -- 0",
@@ -89,7 +89,7 @@ fn sound_commands_pass_as_line_request_and_mailbox() {
 }
 
 #[test]
-fn fields_of_pause_do_not_matter() {
+fn fields_of_pause_are_ignored() {
     let store = store();
     for verb in ["PAUSE", "STARTUP", "SHUTDOWN"] {
         assert_eq!(verdict(&format!("{verb} NOTHING 9 NOWHERE 9 9 NOWHERE 9 NOWHERE 9"), &store), "");
