@@ -51,8 +51,8 @@ pub const TOOL_CENTRE: f64 = T3.yaw_to_plate + T3.plate_to_tool / 2.0;
 /// An arm without pressure is at rest if no joint is faster than this, rad/s: a damped joint only approaches its end
 /// position.
 const AT_REST: f64 = 0.2 * (core::f64::consts::PI / 180.0);
-/// Full friction from this speed on, in/s; below it is proportional to speed, so that a sticking contact creeps more
-/// slowly than an arm that counts as at rest.
+/// Full friction from this speed on, in/s. Below it, friction is proportional to speed, so that a sticking
+/// contact creeps more slowly than an arm at rest.
 const STICKING: f64 = 0.1;
 /// Longest step of the servo equation, s.
 const STEP_S: f64 = 0.0025;
@@ -95,7 +95,7 @@ pub struct Arm {
     joints: Joints,
     command: Ramp,
     pressure: bool,
-    /// Shoulder angle at the shot pin, which is extended while there is no pressure, rad.
+    /// Shoulder angle at the shot pin, which is extended without pressure, rad.
     pin: f64,
     /// Rates of the joints in the last step without pressure, rad/s.
     rates: [f64; 6],
@@ -349,7 +349,7 @@ mod tests {
     }
 
     #[test]
-    fn it_lags_by_the_time_constant_and_comes_to_rest_at_the_command() {
+    fn arm_lags_by_the_time_constant_and_reaches_its_command() {
         let (mut arm, mut target) = (arm(), HOME_JOINTS);
         // A ramp of 5 degrees/s: the lag is speed times time constant.
         for _ in 0..50 {
@@ -366,7 +366,7 @@ mod tests {
     }
 
     #[test]
-    fn no_joint_is_faster_than_its_servo() {
+    fn joint_speed_is_limited_by_its_servo() {
         let (mut arm, mut target) = (arm(), HOME_JOINTS);
         target[0] += 1.0;
         arm.reach(target, 0.0);
@@ -375,7 +375,7 @@ mod tests {
     }
 
     #[test]
-    fn a_held_command_stops_and_later_reaches_its_goal() {
+    fn held_command_stops_and_later_reaches_its_goal() {
         let mut arm = arm();
         let mut goal = HOME_JOINTS;
         goal[0] += 0.1;
@@ -391,7 +391,7 @@ mod tests {
     }
 
     #[test]
-    fn the_joint_torques_at_home_equal_the_weights() {
+    fn joint_torques_at_home_equal_the_weights() {
         let arm = arm();
         let chain = Chain::new(&HOME_JOINTS);
         let loads = weights(&chain, &arm.actuators.hydraulics);
@@ -405,7 +405,7 @@ mod tests {
     }
 
     #[test]
-    fn without_pressure_every_joint_gives_way_to_its_weight() {
+    fn joints_without_pressure_sag_under_their_weight() {
         let mut arm = arm();
         arm.set_pressure(false);
         assert!(!arm.has_sagged());
@@ -420,7 +420,7 @@ mod tests {
     }
 
     #[test]
-    fn the_shot_pin_stops_the_shoulder_and_the_rest_hangs() {
+    fn shot_pin_stops_only_the_shoulder() {
         let mut arm = arm();
         arm.set_pressure(false);
         sag(&mut arm, 60.0);
@@ -443,7 +443,7 @@ mod tests {
     }
 
     #[test]
-    fn pressure_lifts_the_hand_by_the_ten_inches_of_the_manual() {
+    fn pressure_lifts_the_hand_by_ten_inches() {
         // After seconds, and after a night: III.6 says about ten inches, IV.3.3 several.
         for (seconds, inches) in [(2.0, 12.7), (5.0, 12.2), (20.0, 10.8), (300.0, 7.4)] {
             let mut arm = arm();
@@ -459,7 +459,7 @@ mod tests {
     }
 
     #[test]
-    fn an_arm_that_lies_on_something_lies_still() {
+    fn arm_on_an_obstacle_comes_to_rest() {
         let mut arm = arm();
         arm.set_pressure(false);
         // A floor 2 in below the tool point, 2000 lb/in.

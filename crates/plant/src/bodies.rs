@@ -106,7 +106,7 @@ pub fn body_boxes(cell: &CellDescription, gripper: &Gripper) -> [(Frame, Inches)
     [(body, size), (left, ear), (right, ear)]
 }
 
-/// Frame, in the tool frame, and size of the body of a hand behind its fingers, in.
+/// Frame, in the tool frame, and size of the body of a hand above its fingers, in.
 #[must_use]
 pub fn palm(gripper: &Gripper) -> (Frame, Inches) {
     let middle = Inches::new(-gripper.fingers[0] - gripper.body[0] / 2.0, 0.0, 0.0);

@@ -229,8 +229,8 @@ impl Changer {
     /// out of the cell. Returns the gripper.
     ///
     /// # Errors
-    /// [`WorkstationError`] if there is no such gripper or holster, the quick change has the gripper, or another one is
-    /// in the holster; the state is unchanged.
+    /// [`WorkstationError`] if the gripper or holster does not exist, the quick change has the gripper, or
+    /// another one is in the holster. The state is then unchanged.
     pub(crate) fn hang(&mut self, id: u8, holster: Option<usize>) -> Result<Hand, WorkstationError> {
         let mut hands = ROBOT_HANDS.into_iter().zip(0..);
         let named = hands.find(|(hand, _)| hand.end_effector_id() == Some(id));

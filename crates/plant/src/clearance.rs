@@ -1,10 +1,11 @@
 //! Collision check of the robot: each tick arm, gripper, and the carried part are checked against everything else in
 //! the cell, and against the arm itself.
 //!
-//! The simulated arm follows its path even through contact, as a hydraulic arm would, so collisions must be computed
-//! from geometry. The cell description lists permitted contacts ([`crate::description::Permits`]). Of the pairs that
-//! are not always permitted, the check keeps, each tick, those that touch or are nearer than a margin, with their depth
-//! and direction. The caller, who knows the present command, decides which are permitted.
+//! The simulated arm follows its path even through contact, like a hydraulic arm, so collisions must be
+//! computed from geometry. The cell description lists permitted contacts ([`crate::description::Permits`]). Of
+//! the pairs that are not always permitted, the check keeps, each tick, those that touch or are nearer than a
+//! margin, with their depth and direction. The caller knows the present command and decides which are
+//! permitted.
 
 use std::{borrow::Cow, collections::BTreeSet};
 
@@ -231,7 +232,7 @@ mod tests {
     }
 
     #[test]
-    fn a_contact_is_reported_when_it_begins() {
+    fn contact_is_reported_when_it_begins() {
         let (mut clearance, table) = (Clearance::default(), table());
         let mut check = |z: Real| clearance.check(&Permits::default(), &hand(z), [&table].into_iter());
         assert!(check(0.151).is_empty());
@@ -272,7 +273,7 @@ mod tests {
     }
 
     #[test]
-    fn of_the_pieces_of_a_thing_the_deepest_counts() {
+    fn deepest_piece_of_a_body_is_reported() {
         let low = Body { pose: Pose::translation(0.0, 0.0, -0.001), ..table() };
         let mut clearance = Clearance::default();
         let begun = clearance.check(&Permits::default(), &hand(0.14), [&low, &table(), &low].into_iter());
@@ -280,7 +281,7 @@ mod tests {
     }
 
     #[test]
-    fn neighbours_in_the_arm_do_not_collide() {
+    fn adjacent_links_do_not_collide() {
         let link = |chain| Body { chain, kind: Kind::Arm, ..table() };
         let mut clearance = Clearance::default();
         let mut met = |mover: u8, obstacle: u8| {

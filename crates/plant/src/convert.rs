@@ -84,7 +84,7 @@ mod tests {
     }
 
     #[test]
-    fn an_inch_is_exactly_25_4_mm() {
+    fn inch_is_exactly_25_4_mm() {
         assert_eq!(metres(1.0), 0.0254);
         assert!((newtons(1.0) - KILOGRAMS_PER_POUND * GRAVITY).abs() < 1e-12);
     }

@@ -518,7 +518,7 @@ mod tests {
     const TEXT: &str = include_str!("../../../data/cell.toml");
 
     #[test]
-    fn the_cell_of_the_project_is_sound() {
+    fn shipped_cell_has_no_errors() {
         let cell = CellDescription::from_toml(TEXT).unwrap();
         assert_eq!(cell.part("LINKBAR1_BH").unwrap().vision_id, 17);
         let sector = cell.tray("UNIT_1").unwrap().sector(4).unwrap();
@@ -531,7 +531,7 @@ mod tests {
     }
 
     #[test]
-    fn the_hydraulics_of_the_project_are_those_of_the_t3() {
+    fn shipped_hydraulics_equal_those_of_the_t3() {
         let cell = CellDescription::from_toml(TEXT).unwrap();
         assert_eq!(Actuators::from(&cell.robot), Actuators::default());
     }

@@ -5,12 +5,12 @@
 //! Closed fingers, or another tool, stop it with a hundred pounds. The fingers centre a tool when they close and hold
 //! it more strongly than the robot: the robot's hold slides first.
 //!
-//! Detents and obstacles are one spring along X. Its far end, the anchor, slides along when the force reaches its
-//! limit; so a tool comes to rest completely, and a force sensor reads a steady value.
+//! Detents and obstacles are one spring along X. Its far end, the anchor, slides when the force reaches its
+//! limit, so that a tool comes to rest completely, and a force sensor reads a steady value.
 //!
-//! The strike plate stands beside the tool. Its front stops the fingertips of an open gripper; its shoulders stop open
-//! fingers that slide to the right (tool -Z) or come from there and are over the tool. They are ordinary bodies, and
-//! the fingers deflect on their springs.
+//! The strike plate is next to the tool. Its front stops the fingertips of an open gripper; its shoulders stop
+//! open fingers that slide to the right (tool -Z) or arrive from there and are over the tool. They are ordinary
+//! bodies, and the fingers deflect on their springs.
 
 use geometry::frame::{Frame, Rotation, Vector};
 use rapier3d_f64::math::Real;
@@ -27,7 +27,7 @@ use crate::{
 const STIFFNESS: Real = 1.0e5;
 /// Damping of detents and obstacles, N·s/m: about critical for a tool of 6 lb.
 const DAMPING: Real = 1.0e3;
-/// Greatest distance from the axis at which a tool counts as in front of the drum, in.
+/// Greatest distance from the axis at which a tool is in front of the drum, in.
 const BESIDE: f64 = 2.0;
 
 /// Position of a tool in the drum or in front of it.
@@ -223,7 +223,7 @@ mod tests {
     }
 
     #[test]
-    fn detents_resist_going_in_and_less_coming_out() {
+    fn detents_resist_insertion_more_than_removal() {
         let mut drum = drum();
         drum.admit(0, &before(&drum, 1.0));
         assert_eq!(push(&mut drum, 1.0, 0.35), 0.0);
@@ -235,7 +235,7 @@ mod tests {
     }
 
     #[test]
-    fn beyond_its_place_and_against_closed_fingers_it_is_stopped() {
+    fn tool_is_stopped_at_its_place_and_by_closed_fingers() {
         let mut drum = drum();
         drum.admit(0, &before(&drum, 1.0));
         assert!((push(&mut drum, 1.0, -0.2) + 100.0).abs() < 1e-6, "the bottom");
@@ -247,7 +247,7 @@ mod tests {
     }
 
     #[test]
-    fn a_tool_is_centred_with_the_roll_that_it_has() {
+    fn tool_is_centred_without_a_change_of_roll() {
         let drum = drum();
         let turn = geometry::frame::rotation_by(&Vector::new(0.7, 0.0, 0.0));
         let tool = drum.place(&drum.frame.turned(&turn));

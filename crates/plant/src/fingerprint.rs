@@ -254,7 +254,7 @@ mod tests {
     }
 
     #[test]
-    fn all_that_can_change_is_in_it() {
+    fn fingerprint_covers_every_field_of_the_state() {
         let expected: [&[u8]; 9] = [
             &0.5_f64.to_le_bytes(),
             &[3, 0, 0, 0, 0, 0, 0, 0],

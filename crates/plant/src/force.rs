@@ -76,14 +76,14 @@ mod tests {
     }
 
     #[test]
-    fn the_weight_turns_with_the_robot() {
+    fn measured_weight_turns_with_the_robot() {
         assert_eq!(reading(&Wrench::default(), Vector::x()), [2058, 2068, 2078 + 320, 2088], "pointing down");
         // With the tool level, 20 lb act along tool -Z at 4 in from the sensor, and bend it about +Y.
         assert_eq!(reading(&Wrench::default(), -Vector::z()), [2058 - 320, 2068, 2078, 2088 + 320]);
     }
 
     #[test]
-    fn a_push_on_the_fingers_has_its_axis_and_its_lever() {
+    fn push_on_the_fingers_has_its_axis_and_lever() {
         let free = reading(&Wrench::default(), Vector::x());
         let push = |point: [f64; 3], force: [f64; 3]| {
             let load = Wrench::at(&Vector::from(point), Vector::from(force), Vector::zeros());
@@ -96,7 +96,7 @@ mod tests {
     }
 
     #[test]
-    fn beyond_its_range_it_saturates() {
+    fn force_sensor_saturates_beyond_its_range() {
         let load = Wrench::at(&Vector::zeros(), Vector::new(-500.0, 0.0, 500.0), Vector::zeros());
         assert_eq!(reading(&load, Vector::x()), [4095, 2068, 0, 0]);
     }

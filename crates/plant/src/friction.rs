@@ -86,7 +86,7 @@ mod tests {
     const BAR: Rubbed = Rubbed { mass: 0.2, inertia: 1.8e-4, reach: 0.0425, arm: 0.005 };
 
     #[test]
-    fn a_body_that_friction_can_stop_stays() {
+    fn body_within_friction_stays() {
         // Gravity for 2.5 ms needs 0.0049 N·s at the middle: 0.042 at the touched area, mostly as a moment.
         let fall = Motion { along: 0.0, across: -0.0245, turn: 0.0 };
         assert_eq!(BAR.after(&fall, 0.05), None);
@@ -94,7 +94,7 @@ mod tests {
     }
 
     #[test]
-    fn a_bar_that_is_held_at_its_end_droops_and_hardly_slides() {
+    fn bar_held_at_its_end_droops_and_hardly_slides() {
         let fall = Motion { along: 0.0, across: -0.0245, turn: 0.0 };
         let left = BAR.after(&fall, 0.03).unwrap();
         let point = left.across + left.turn * BAR.reach;
@@ -102,7 +102,7 @@ mod tests {
     }
 
     #[test]
-    fn without_a_lever_friction_is_coulomb_s() {
+    fn friction_without_a_lever_is_coulomb_friction() {
         let block = Rubbed { mass: 2.0, inertia: 1.0, reach: 0.0, arm: 0.1 };
         let left = block.after(&Motion { along: 3.0, across: -4.0, turn: 0.0 }, 1.0).unwrap();
         assert!((libm::hypot(left.along, left.across) - (5.0 - 0.5)).abs() < 1e-9, "{left:?}");

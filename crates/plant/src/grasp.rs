@@ -14,12 +14,12 @@ use crate::{
 
 /// Least force of a finger that holds a part, lb.
 const LEAST_FORCE: f64 = 0.25;
-/// Greatest distance between a pad and a face that still counts as touching, m.
+/// Greatest distance between a pad and a face in contact, m.
 const TOUCHING: Real = 1e-4;
 /// Parts whose centres are farther than this from the fingertips, and their own radius, are not between the fingers, m.
 const REACH: Real = 0.2;
 
-/// What a pair of fingers does with the part between them.
+/// Action of a pair of fingers on the part between them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Grasp {
     /// They hold nothing, as before.
@@ -30,8 +30,8 @@ pub enum Grasp {
     Release,
 }
 
-/// The decision after the air has moved the fingers; `stop` is the opening at which a part stops them, in, and `None`
-/// if there is none between them.
+/// The decision after the air has moved the fingers; `stop` is the opening at which a part between them stops
+/// them, in.
 #[must_use]
 pub fn decide(holds: bool, stop: Option<f64>, air: &Air) -> Grasp {
     let presses = air.force() >= LEAST_FORCE;

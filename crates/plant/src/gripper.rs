@@ -93,8 +93,8 @@ impl Air {
         self.speed
     }
 
-    /// True if the fingers did not move in the last step, and this supply neither moves them nor changes their force.
-    /// Fingers that press with their whole force follow the sway of a part: that is no motion.
+    /// True if the fingers did not move in the last step, and this supply neither moves them nor changes their
+    /// force. Fingers that press with their whole force follow the sway of a part, which is not a motion.
     #[must_use]
     pub fn stands(&self, supply: &Supply) -> bool {
         let presses = supply.flow < 0.0 && self.force >= self.greatest_force;
@@ -285,8 +285,8 @@ impl Gripper {
         }
     }
 
-    /// Move the fingers kinematically with the hand while they hold nothing and nothing is near them: springs without a
-    /// load are not computed. Otherwise the springs move the fingers.
+    /// Move empty fingers kinematically with the hand if no body is near them: springs without a load are not
+    /// computed. Otherwise the springs move the fingers.
     pub fn carry_fingers(&self, world: &mut PhysicsWorld) {
         let hand = &world.bodies[self.hand];
         let travel = (hand.next_position().translation - hand.position().translation).length();
@@ -462,7 +462,7 @@ mod tests {
     }
 
     #[test]
-    fn open_ports_take_the_force_and_leave_the_fingers() {
+    fn open_ports_remove_the_force_but_not_the_fingers() {
         let mut air = air();
         run(&mut air, 0.5, valve::SUPPLY | valve::CLOSE_MEDIUM, None);
         assert!(air.force() > 40.0, "closed on its stop");
@@ -471,7 +471,7 @@ mod tests {
     }
 
     #[test]
-    fn fingers_that_lose_their_part_close_on() {
+    fn fingers_close_further_after_losing_their_part() {
         let mut air = air();
         run(&mut air, 0.7, valve::SUPPLY | valve::OPEN_MEDIUM, None);
         run(&mut air, 0.475, valve::SUPPLY | valve::CLOSE_MEDIUM, Some(0.625));

@@ -364,12 +364,12 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_excess_over_a_limit_has_its_sign() {
+    fn excess_over_a_limit_is_signed() {
         assert_eq!((beyond(3.0, 2.0), beyond(-3.0, 2.0), beyond(1.0, 2.0)), (1.0, -1.0, 0.0));
     }
 
     #[test]
-    fn a_turn_leaves_its_point_where_it_is() {
+    fn rotation_keeps_its_centre() {
         let point = Vector::new(1.0, 2.0, 3.0);
         let turned = about(point, Vector::new(0.3, -0.2, 0.9), Pose::from_translation(point));
         assert!((turned.translation - point).length() < 1e-15);

@@ -253,7 +253,7 @@ mod tests {
     }
 
     #[test]
-    fn large_sensors_see_the_height_and_small_ones_the_seat() {
+    fn large_sensors_detect_the_height_and_small_ones_the_seat() {
         assert_eq!(seen(0.55, 0.0), 0);
         assert_eq!(seen(0.45, 0.0), 0b0011);
         assert_eq!(seen(0.0, 0.0), 0b0011);
@@ -263,7 +263,7 @@ mod tests {
     }
 
     #[test]
-    fn a_gripper_lands_on_the_cheeks_or_misses_them() {
+    fn gripper_lands_on_the_cheeks_or_misses_them() {
         let holster = holster();
         let at = |up: f64, aside: f64, roll: f64| {
             let gripper = holster
@@ -285,7 +285,7 @@ mod tests {
     }
 
     #[test]
-    fn the_detent_draws_to_the_seat_and_the_lips_hold_down() {
+    fn detent_draws_to_the_seat_and_lips_hold_down() {
         let holster = holster();
         assert_eq!([holster.slide(1.30), holster.slide(1.42), holster.slide(1.7)], [1.30, 1.5, 1.5]);
         let held = |up, forward| {
@@ -298,7 +298,7 @@ mod tests {
     }
 
     #[test]
-    fn a_gripper_in_its_holster_touches_only_its_supports() {
+    fn gripper_in_its_holster_touches_only_its_supports() {
         let cell = cell();
         let holster = holster();
         let [thick, ..] = cell.holsters.ears;

@@ -52,7 +52,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn flows_add_up_while_the_supply_is_on() {
+    fn flows_add_up_with_supply() {
         let bits = valve::OPEN_COARSE | valve::OPEN_FINE | valve::CLOSE_MEDIUM;
         assert_eq!(Supply::of_bits(valve::SUPPLY | bits), Supply { flow: 3.25, vent: false });
         assert_eq!(Supply::of_bits(bits), Supply::default());

@@ -153,7 +153,7 @@ mod tests {
     }
 
     #[test]
-    fn switches_stay_and_the_stick_goes_back() {
+    fn switches_stay_and_the_stick_returns() {
         let mut joystick = Joystick::default();
         joystick.act(BoxAction::Frame(joystick_frame::WORLD));
         joystick.act(BoxAction::Velocity(5000));
@@ -178,7 +178,7 @@ mod tests {
     }
 
     #[test]
-    fn a_new_deflection_replaces_the_old_one_and_its_time() {
+    fn new_deflection_replaces_the_old_one() {
         let mut joystick = Joystick::default();
         joystick.act(BoxAction::Stick { x: 0, y: 300, ticks: 250 });
         assert_eq!(deflections(&mut joystick), [(0, 300)]);
@@ -190,7 +190,7 @@ mod tests {
     }
 
     #[test]
-    fn a_stick_at_the_centre_stops_at_once() {
+    fn stick_at_the_centre_stops_at_once() {
         for ticks in [0, 1, 500] {
             let mut joystick = Joystick::default();
             joystick.act(BoxAction::Stick { x: 0, y: 300, ticks: 250 });
@@ -201,7 +201,7 @@ mod tests {
     }
 
     #[test]
-    fn a_frame_that_is_switched_off_releases_stick_and_buttons() {
+    fn frame_switch_off_releases_stick_and_buttons() {
         let mut joystick = Joystick::default();
         joystick.act(BoxAction::Frame(joystick_frame::WORLD));
         joystick.act(BoxAction::Stick { x: 0, y: 300, ticks: 250 });
@@ -236,7 +236,7 @@ mod tests {
     }
 
     #[test]
-    fn steps_are_presses_with_pauses_between() {
+    fn single_steps_have_pauses_between_them() {
         let mut joystick = Joystick::default();
         joystick.act(BoxAction::Hold(single_step::PRIM | single_step::TASK));
         joystick.act(BoxAction::Free(single_step::TASK));

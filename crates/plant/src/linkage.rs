@@ -117,7 +117,7 @@ mod tests {
     use proptest::prelude::*;
 
     #[test]
-    fn the_last_link_is_the_end_plate() {
+    fn last_link_is_the_end_plate() {
         let joints = [-1.0, 0.7, -1.2, 0.3, 0.2, -0.4];
         let chain = Chain::new(&joints);
         let plate = chain.frames()[END_PLATE].shifted(Vector::new(T3.yaw_to_plate, 0.0, 0.0));

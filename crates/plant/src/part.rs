@@ -198,7 +198,7 @@ mod tests {
     use crate::description::Shape;
 
     #[test]
-    fn a_part_has_its_sizes_along_the_vise() {
+    fn part_sizes_are_along_the_vise_axes() {
         let kind = PartType {
             name: "P".into(),
             size: [1.0, 2.0, 3.0],
@@ -217,7 +217,7 @@ mod tests {
     }
 
     #[test]
-    fn a_crossing_body_breaks_the_beam() {
+    fn crossing_body_breaks_the_beam() {
         let half = Vector::new(0.01, 0.01, 0.05);
         let across = |z: Real| {
             segment_meets_box(Vector::new(0.0, -0.1, z), Vector::new(0.0, 0.1, z), &Pose::IDENTITY, half)

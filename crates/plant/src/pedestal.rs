@@ -145,7 +145,7 @@ impl Table {
         libm::round(self.position + self.offset) as i32
     }
 
-    /// Readings of the table, and those of the hand on it.
+    /// Readings of the table and of its hand.
     pub fn sensors(&self, hand: GripSensors, noise: &mut Noise) -> PedestalSensors {
         PedestalSensors {
             potentiometer: hand.potentiometer,
@@ -258,7 +258,7 @@ mod tests {
     }
 
     #[test]
-    fn a_turn_takes_its_time_and_ends_on_its_step() {
+    fn table_turn_takes_time_and_ends_on_its_step() {
         let mut table = table();
         let start = table.motor_angle();
         order(&mut table, MotorOrder::Turn, -4_321);
@@ -271,7 +271,7 @@ mod tests {
     }
 
     #[test]
-    fn the_same_number_is_one_order() {
+    fn repeated_number_is_one_order() {
         let mut table = table();
         let command = MotorCommand { number: 7, order: MotorOrder::Turn, steps: 100 };
         table.order(&command);
@@ -283,7 +283,7 @@ mod tests {
     }
 
     #[test]
-    fn the_switches_stop_the_motor_and_let_it_run_back() {
+    fn limit_switches_stop_the_motor_but_permit_the_return() {
         let mut table = table();
         order(&mut table, MotorOrder::Turn, 1_000_000);
         run(&mut table);
@@ -303,7 +303,7 @@ mod tests {
     }
 
     #[test]
-    fn a_motor_angle_of_183_5_turns_the_table_by_180() {
+    fn motor_angle_of_183_5_turns_the_table_by_180() {
         let mut table = table();
         let here = table.angle();
         order(&mut table, MotorOrder::Turn, -18_350);

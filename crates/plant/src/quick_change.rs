@@ -114,7 +114,7 @@ mod tests {
     }
 
     #[test]
-    fn the_ring_moves_with_port_and_air_and_is_seen_at_its_ends() {
+    fn ring_moves_with_port_and_air_and_is_sensed_at_its_ends() {
         let mut ring = Ring::new(&description(), true);
         let unlock = QuickChangeValves { unlock: true, port: true, lock: false };
         ring.advance(10.0, &QuickChangeValves { port: false, ..unlock });

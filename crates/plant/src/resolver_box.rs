@@ -1,8 +1,8 @@
 //! The resolver electronics (III.3.2) and its reset (IV.3.3 step 11, a to q): a button for each joint sets the reading
 //! of the joint to that of HOME, while the MANUAL/AUTO switch is at MANUAL.
 //!
-//! The address switches and the button of a joint are one action here. The electronics cannot tell whether the robot is
-//! at HOME: elsewhere the reset makes the readings wrong (CHOSEN).
+//! The address switches and the button of a joint are one action here. The electronics cannot detect whether
+//! the robot is at HOME: elsewhere the reset makes the readings wrong (CHOSEN).
 
 use geometry::kinematics::HOME_JOINTS;
 use interfaces::{
@@ -25,7 +25,7 @@ pub enum ResolverRefusal {
     NoJoint(u8),
 }
 
-/// The electronics: its switch, and what it adds to each resolver.
+/// The electronics: its switch, and the offset that it adds to each resolver.
 #[derive(Clone, Debug, Default, Deserialize, Serialize)]
 pub struct ResolverBox {
     manual: bool,
@@ -86,7 +86,7 @@ mod tests {
     }
 
     #[test]
-    fn a_button_sets_the_reading_of_its_joint_to_that_of_home() {
+    fn button_sets_its_joint_reading_to_that_of_home() {
         for offset in [200, RESOLVER_COUNTS - 200] {
             let mut electronics = ResolverBox::default();
             let home = at_home(0).counts;

@@ -153,8 +153,8 @@ impl Room {
         })
     }
 
-    /// Close the jaws of the vise on the part between them: one that nothing else holds moves to its seat, to which the
-    /// robot has pushed it. `tool` is the tool frame of the robot. Returns what is in the jaws.
+    /// Close the jaws of the vise on the part between them. A part held by nothing else moves to its seat, to
+    /// which the robot has pushed it. `tool` is the tool frame of the robot. Returns the part in the jaws.
     pub fn clamp(&self, layout: &mut Layout, tool: &Frame) -> Option<Clamped> {
         layout.jaws = self.jaws(layout.program, Jaws::Open);
         let index = self.in_vise(layout);
@@ -270,7 +270,7 @@ mod tests {
     }
 
     #[test]
-    fn a_lowered_part_stands_in_its_nest() {
+    fn lowered_part_is_in_its_nest() {
         let description = cell();
         let room = Room::new(&description);
         for nest in &description.nest {
@@ -290,7 +290,7 @@ mod tests {
 
     /// A running cell and the room report the same positions and contacts.
     #[test]
-    fn the_room_and_the_cell_agree() {
+    fn room_and_cell_agree() {
         let description = cell();
         let room = Room::new(&description);
         for joints in [

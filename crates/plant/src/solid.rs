@@ -139,7 +139,7 @@ mod tests {
     }
 
     #[test]
-    fn a_cylinder_lies_along_its_axis() {
+    fn cylinder_lies_along_its_axis() {
         let tool = Solid::of(&kind(Shape::CylinderX, [3.30, 1.75, 1.75]));
         let (shape, turn) = tool.shape();
         let aabb = shape.compute_aabb(&turn);

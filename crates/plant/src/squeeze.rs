@@ -4,9 +4,9 @@
 //! nearly parallel one turns towards the pads; clipped to the pad, it gives the width at which the pads stop, the point
 //! and area where friction acts, and the pose in which the box lies flush.
 //!
-//! A cylinder that lies between the pads touches each along a line, which counts as a narrow strip. Pads with V-grooves
-//! (the v-gripper) touch it along two lines, and align its axis with that of the grooves. A cylinder that stands
-//! between the pads counts as its bounding box.
+//! A cylinder that lies between the pads touches each along a line, which is treated as a narrow strip. Pads
+//! with V-grooves (the v-gripper) touch it along two lines, and align its axis with that of the grooves. A
+//! cylinder that stands between the pads is treated as its bounding box.
 
 use rapier3d_f64::math::{Pose, Real, Rotation, Vector};
 
@@ -209,7 +209,7 @@ mod tests {
     }
 
     #[test]
-    fn a_cylinder_is_as_wide_as_thick_and_is_laid_level() {
+    fn gripped_cylinder_has_its_diameter_and_is_levelled() {
         let askew = Pose::new(Vector::new(metres(-1.0), 0.001, 0.0), Vector::new(0.1, 0.0, 0.0));
         let held = squeeze(&askew, &shaft(), &FINGERS).unwrap();
         assert!((inches(held.width) - 1.5).abs() < 1e-9 && held.centre == 0.001);
@@ -219,7 +219,7 @@ mod tests {
     }
 
     #[test]
-    fn a_groove_centres_a_cylinder_that_it_catches() {
+    fn groove_centres_its_cylinder() {
         let grooved = Pads { groove: Some(metres(-0.60)), ..FINGERS };
         let at = |x: Real| Pose::new(Vector::new(metres(x), 0.0, 0.0), Vector::new(0.05, 0.05, 0.0));
         let held = squeeze(&at(-0.4), &shaft(), &grooved).unwrap();
@@ -230,14 +230,14 @@ mod tests {
     }
 
     #[test]
-    fn a_cylinder_that_stands_across_is_a_box() {
+    fn standing_cylinder_is_a_box() {
         let across = Pose::new(Vector::ZERO, Vector::new(core::f64::consts::FRAC_PI_2, 0.0, 0.0));
         let held = squeeze(&across, &shaft(), &FINGERS).unwrap();
         assert!((inches(held.width) - 4.0).abs() < 1e-9);
     }
 
     #[test]
-    fn fingers_cover_what_the_manual_lets_stand_out() {
+    fn fingers_cover_the_area_of_the_manual() {
         // Picked as in LK-GRP-1: finger centre 2.10 in from the centroid, tips 0.20 above the tray (VIII.9.5).
         let part = Pose::from_translation(Vector::new(metres(0.20 - 0.3125), metres(0.1), metres(-2.10)));
         let held = squeeze(&part, &bar(), &FINGERS).unwrap();
@@ -249,7 +249,7 @@ mod tests {
     }
 
     #[test]
-    fn a_face_that_is_nearly_parallel_is_drawn_flush() {
+    fn nearly_parallel_face_is_drawn_flush() {
         let turned = Pose::new(Vector::ZERO, Vector::new(0.05, 0.0, 0.0));
         let held = squeeze(&turned, &bar(), &FINGERS).unwrap();
         assert!((inches(held.width) - 0.625).abs() < 1e-9);
@@ -257,7 +257,7 @@ mod tests {
     }
 
     #[test]
-    fn a_box_on_its_edges_is_wider_and_is_not_turned() {
+    fn box_on_its_edges_is_wider_and_is_not_turned() {
         let turned = Pose::new(Vector::ZERO, Vector::new(0.0, 0.0, core::f64::consts::FRAC_PI_4));
         let held = squeeze(&turned, &bar(), &FINGERS).unwrap();
         assert!((inches(held.width) - 0.625 * libm::sqrt(2.0)).abs() < 1e-9);

@@ -272,7 +272,7 @@ mod tests {
     use crate::CellDescription;
 
     #[test]
-    fn a_deeper_step_leaves_the_material_around_and_below_it() {
+    fn deeper_step_leaves_the_material_around_and_below_it() {
         let mut cell = CellDescription::from_toml(include_str!("../../../data/cell.toml")).unwrap();
         let step =
             |name: &str| cell.vise.program.iter().find(|program| program.name == name).unwrap().clone();

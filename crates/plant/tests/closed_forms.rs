@@ -57,7 +57,7 @@ fn slid(rig: &Rig, degrees: f64, from: &Frame) -> (f64, f64, f64) {
 
 /// A block on an incline stands as long as tan a < mu: here mu = 0.30, a = 16.70 degrees.
 #[test]
-fn a_block_on_an_incline_stands_below_the_angle_of_friction() {
+fn block_on_an_incline_stays_below_the_friction_angle() {
     for degrees in [5.0, 12.0, 16.0, 16.5] {
         assert!(libm::tan(f64::to_radians(degrees)) < FRICTION);
         let mut rig = on_slope(degrees, 5.0);
@@ -70,9 +70,9 @@ fn a_block_on_an_incline_stands_below_the_angle_of_friction() {
     }
 }
 
-/// Beyond that angle the block slides with a = g (sin a - mu cos a), whatever its weight.
+/// Beyond that angle the block slides with a = g (sin a - mu cos a), independent of its weight.
 #[test]
-fn a_block_on_an_incline_slides_as_friction_lets_it() {
+fn block_on_an_incline_slides_with_friction() {
     for (degrees, weight) in [(18.0, 5.0), (25.0, 0.5), (25.0, 5.0), (25.0, 50.0), (40.0, 5.0)] {
         let angle = f64::to_radians(degrees);
         let acceleration = GRAVITY * (libm::sin(angle) - FRICTION * libm::cos(angle));
@@ -94,7 +94,7 @@ fn a_block_on_an_incline_slides_as_friction_lets_it() {
 
 /// A falling part: z = h - g t²/2 until t = sqrt(2h/g), then it is at rest; nothing bounces in this cell.
 #[test]
-fn a_falling_part_lands_when_it_should() {
+fn falling_part_lands_at_the_computed_time() {
     let top = SLOPE[2] + 2.0 + 1.0;
     for height in [2.0, 10.0, 40.0] {
         let mut rig = Rig::new(&with_slope(0.0, 5.0), 1);
@@ -141,7 +141,7 @@ fn grip_block(weight: f64, force: f64) -> (Rig, Frame) {
 /// beyond: the load is its weight; the rounded words of the lifting motion add up to 2 % in jolts. The air adds force
 /// tick by tick, so F is the final force of the fingers, and the tested weights are on both sides of the limit.
 #[test]
-fn a_gripped_part_slips_at_twice_force_times_friction() {
+fn gripped_part_slips_at_twice_force_times_friction() {
     let friction = description().gripper.parts.friction;
     for force in [20.0, 45.0, 70.0] {
         let (mut held, mut lost) = (0, 0);
@@ -166,7 +166,7 @@ fn a_gripped_part_slips_at_twice_force_times_friction() {
 /// A bar on its edge falls to the side of its middle: on the ledge the middle is behind the edge by 0.0375 in at a
 /// height of 2.00 in, so the bar stands up to atan(0.0375 / 2) = 1.074 degrees (cell proposal, §2).
 #[test]
-fn a_bar_on_the_ledge_tips_where_its_middle_passes_the_edge() {
+fn bar_on_the_ledge_tips_when_its_middle_passes_the_edge() {
     let critical = libm::atan2(0.0375, 2.0).to_degrees();
     assert!((critical - 1.074).abs() < 1e-3);
     let fixture = PFIX.to_frame().unwrap();
@@ -187,7 +187,7 @@ fn a_bar_on_the_ledge_tips_where_its_middle_passes_the_edge() {
 /// The arm's stiffness takes up the over-travel of the seat move: at rest the bar is pressed against the back of the
 /// notch with F = k x, and does not move; k = 2000 lb/in, x = 0.015 in give 30 lb.
 #[test]
-fn the_pressed_bar_takes_stiffness_times_over_travel() {
+fn pressed_bar_force_is_stiffness_times_over_travel() {
     let mut rig = Rig::new(&description(), 1);
     let square = rotation_from_x_y(&Vector::x(), &Vector::y()).unwrap();
     let frame = Frame { position: Vector::new(0.0375, 0.152, -1.2499), rotation: square };

@@ -35,12 +35,12 @@ fn said(from: &str, to: &str) -> [String; 2] {
 }
 
 #[test]
-fn the_description_of_the_project_has_no_faults() {
+fn shipped_description_has_no_faults() {
     assert!(faults(&[]).1.is_empty());
 }
 
 #[test]
-fn a_misspelt_key_is_one_fault_and_the_right_one_is_named() {
+fn misspelt_key_is_one_fault_with_the_right_name() {
     let (underlined, message, nearest) = only("servo_lag_s = ", "servo_lags = ");
     assert_eq!(underlined, "servo_lags");
     assert!(message.starts_with("robot has no key servo_lags; expected one of servo_lag_s, "), "{message}");
@@ -48,14 +48,14 @@ fn a_misspelt_key_is_one_fault_and_the_right_one_is_named() {
 }
 
 #[test]
-fn an_unknown_key_is_a_fault_in_a_complete_file() {
+fn unknown_key_is_a_fault_in_a_complete_file() {
     let (underlined, message, nearest) = only("jaw_speed = 2.0", "colour = 3\njaw_speed = 2.0");
     assert_eq!((underlined.as_str(), nearest), ("colour", None));
     assert!(message.starts_with("gripper has no key colour; expected one of weight, jaw_speed"), "{message}");
 }
 
 #[test]
-fn a_missing_key_is_reported_at_its_table() {
+fn missing_key_is_reported_at_its_table() {
     let told =
         said("stiffness = 2000.0                             # lb/in at the fingers, all of the arm", "# lb");
     assert_eq!(told, ["robot", "robot has no key stiffness, which it needs"]);
@@ -64,7 +64,7 @@ fn a_missing_key_is_reported_at_its_table() {
 }
 
 #[test]
-fn a_value_of_another_kind_is_underlined() {
+fn value_of_another_kind_is_underlined() {
     let told = said("radius = 3.0", "radius = \"3.0\"");
     assert_eq!(told, ["\"3.0\"", "quick_change.radius: expected a number, found \"3.0\""]);
     let told = said("substeps = 16 ", "substeps = 16.5 ");
@@ -81,7 +81,7 @@ fn a_value_of_another_kind_is_underlined() {
 }
 
 #[test]
-fn an_unknown_word_is_reported_with_the_nearest_valid_one() {
+fn unknown_word_is_reported_with_the_nearest_valid_one() {
     let (underlined, message, nearest) = only("mounted = \"parts\"", "mounted = \"part\"");
     assert_eq!(underlined, "\"part\"");
     assert_eq!(message, "quick_change.mounted: expected one of none, parts, v, tool, found \"part\"");
@@ -89,7 +89,7 @@ fn an_unknown_word_is_reported_with_the_nearest_valid_one() {
 }
 
 #[test]
-fn a_value_out_of_range_is_reported_with_the_range() {
+fn value_out_of_range_is_reported_with_the_range() {
     let told = said("start = [-90.0, 45.0,", "start = [-90.0, 145.0,");
     assert_eq!(
         told,
@@ -110,7 +110,7 @@ fn a_value_out_of_range_is_reported_with_the_range() {
 }
 
 #[test]
-fn a_duplicate_name_is_reported_at_its_second_place() {
+fn duplicate_name_is_reported_at_its_second_place() {
     let told = said("name = \"LINKBAR1\"", "name = \"LINKBAR1_BH\"");
     assert_eq!(
         told,
@@ -122,7 +122,7 @@ fn a_duplicate_name_is_reported_at_its_second_place() {
 }
 
 #[test]
-fn a_part_that_fits_no_tray_is_reported() {
+fn part_without_a_fitting_tray_is_reported() {
     let told = said("size = [1.73, 2.56, 4.00]", "size = [1.73, 2.56, 24.00]");
     assert_eq!(told[0], "[1.73, 2.56, 24.00]");
     assert!(
@@ -133,7 +133,7 @@ fn a_part_that_fits_no_tray_is_reported() {
 }
 
 #[test]
-fn names_in_the_list_of_contacts_and_in_nests_must_be_known() {
+fn unknown_names_in_contacts_and_nests_are_reported() {
     let (underlined, message, nearest) =
         only("obstacle = [\"strike_plates\"]", "obstacle = [\"strike_plats\"]");
     assert_eq!(underlined, "\"strike_plats\"");
@@ -206,7 +206,7 @@ fn values_relative_to_an_unreadable_value_are_not_judged() {
 }
 
 #[test]
-fn a_box_around_the_robot_at_the_start_is_reported() {
+fn box_around_the_robot_at_the_start_is_reported() {
     let text = TEXT.replacen("centre = [-23.26, -63.90, -36.0]", "centre = [0.0, -63.90, -16.0]", 1);
     let description = CellDescription::from_toml(&text).expect("its numbers are sound");
     let error = Cell::new(&description, 1).err().expect("the robot stands in the table").to_string();

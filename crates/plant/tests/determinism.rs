@@ -25,7 +25,7 @@ fn ten_runs_have_the_same_digests_in_every_tick() {
 }
 
 #[test]
-fn a_tick_in_which_something_moves_has_another_digest() {
+fn motion_in_a_tick_changes_the_digest() {
     let tape = tape(scenes::clamping(7));
     let still = tape.digests.windows(2).filter(|pair| pair[0] == pair[1]).count();
     assert_eq!(still, 0, "the noise of the sensors goes on in every tick");
@@ -88,12 +88,12 @@ fn saved_and_copied_cells_continue(rig: Rig, seed: u64, every: usize) {
 }
 
 #[test]
-fn a_cell_restored_during_gripping_and_clamping_continues_bit_for_bit() {
+fn cell_restored_during_gripping_continues_bit_for_bit() {
     saved_and_copied_cells_continue(scenes::clamping(5), 5, 50);
 }
 
 #[test]
-fn a_cell_restored_with_a_tool_in_the_drum_continues_bit_for_bit() {
+fn cell_restored_with_a_tool_in_the_drum_continues_bit_for_bit() {
     saved_and_copied_cells_continue(scenes::drumming(5), 5, 50);
 }
 

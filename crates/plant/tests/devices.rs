@@ -55,7 +55,7 @@ fn data_commands_move_the_arm() {
 }
 
 #[test]
-fn the_cell_follows_a_robot_elsewhere() {
+fn cell_follows_a_robot_outside() {
     let mut cell = Cell::new(&description(), 1).unwrap();
     let home = Plate::from_frame(&T3.forward_plate(&cell.joints()), &Plate::default()).unwrap();
     let outputs = DeviceOutputs::default();
@@ -80,7 +80,7 @@ fn the_cell_follows_a_robot_elsewhere() {
 }
 
 #[test]
-fn a_leap_is_a_warning_and_the_operator_answers() {
+fn jump_causes_a_warning_for_the_operator() {
     let mut cell = Cell::new(&description(), 1).unwrap();
     let mut outputs = DeviceOutputs::default();
     let mut plate = Report::parse(cell.step(&outputs).link_rx.as_slice()).unwrap().plate;
@@ -153,7 +153,7 @@ fn look(
 }
 
 #[test]
-fn the_camera_finds_a_blank_and_its_angle() {
+fn camera_finds_a_blank_and_its_angle() {
     let mut rig = Rig::new(&description(), 5);
     rig.place("LINKBAR1_BH", 4, 1.4, -1.1, 25.0);
     rig.go(UNIT_V1.to_frame().unwrap(), 10.0);
@@ -174,7 +174,7 @@ fn the_camera_finds_a_blank_and_its_angle() {
 }
 
 #[test]
-fn an_empty_sector_shows_no_part() {
+fn empty_sector_shows_no_part() {
     let mut rig = Rig::new(&description(), 5);
     rig.place("LINKBAR1_BH", 1, 0.0, 0.0, 0.0);
     rig.go(UNIT_V1.to_frame().unwrap(), 10.0);
@@ -205,13 +205,13 @@ fn run(seed: u64) -> Vec<u8> {
 }
 
 #[test]
-fn the_same_seed_gives_the_same_bits() {
+fn equal_seeds_give_equal_bits() {
     assert_eq!(run(11), run(11));
     assert_ne!(run(11), run(12));
 }
 
 #[test]
-fn a_part_is_put_where_there_is_room() {
+fn part_is_placed_only_on_free_space() {
     let mut rig = Rig::new(&description(), 1);
     rig.place("LINKBAR1_BH", 4, 0.0, 0.0, 0.0);
     let place = |part: &str, unit: &str, sector| WorkstationAction::Place {
@@ -236,7 +236,7 @@ fn a_part_is_put_where_there_is_room() {
 }
 
 #[test]
-fn running_into_a_tray_is_reported() {
+fn collision_with_a_tray_is_reported() {
     let mut rig = Rig::new(&description(), 1);
     rig.go(UNIT_V1.to_frame().unwrap(), 10.0);
     rig.go(rig.grip_frame(4, 0.0, 0.0, 0.0, 5.0), 10.0);
@@ -253,7 +253,7 @@ fn running_into_a_tray_is_reported() {
 }
 
 #[test]
-fn every_link_that_moves_is_in_the_urdf() {
+fn every_moving_link_is_in_the_urdf() {
     let mut rig = Rig::new(&description(), 1);
     rig.place("LINKBAR1_BH", 4, 0.0, 0.0, 0.0);
     let urdf = rig.cell.scene(&[]).urdf();

@@ -111,7 +111,7 @@ fn removed() -> Rig {
 }
 
 #[test]
-fn a_tool_is_taken_out_of_the_drum_against_its_detents() {
+fn tool_is_removed_from_the_drum_against_its_detents() {
     let mut rig = before_drum();
     rig.cell.workstation(&WorkstationAction::DrumTool { part: "MILL".into() }).unwrap();
     rig.ticks(10);
@@ -129,7 +129,7 @@ fn a_tool_is_taken_out_of_the_drum_against_its_detents() {
 }
 
 #[test]
-fn closed_drum_fingers_do_not_give_the_tool_back() {
+fn closed_drum_fingers_keep_the_tool() {
     let mut rig = before_drum();
     rig.cell.workstation(&WorkstationAction::DrumTool { part: "MILL".into() }).unwrap();
     acquire(&mut rig);
@@ -141,7 +141,7 @@ fn closed_drum_fingers_do_not_give_the_tool_back() {
 }
 
 #[test]
-fn a_tool_goes_in_with_force_and_stays_when_the_drum_has_it() {
+fn tool_inserted_with_force_stays_in_the_closed_drum() {
     let mut rig = removed();
     let (_, forces) = until(&mut rig, (-2.0, 0.0), (0.0, 0.0), 0.5, |[x, ..]| x < -60.0);
     assert!((-40.0..-15.0).contains(&forces[0]), "{forces:?}");
@@ -158,7 +158,7 @@ fn a_tool_goes_in_with_force_and_stays_when_the_drum_has_it() {
 }
 
 #[test]
-fn a_tool_that_only_the_detents_keep_stays_too() {
+fn tool_stays_in_the_detents_of_an_open_drum() {
     let mut rig = removed();
     until(&mut rig, (-2.0, 0.0), (0.0, 0.0), 0.5, |[x, ..]| x < -60.0);
     rig.ticks(20);
@@ -169,7 +169,7 @@ fn a_tool_that_only_the_detents_keep_stays_too() {
 }
 
 #[test]
-fn an_empty_drum_grips_no_tool() {
+fn empty_drum_grips_no_tool() {
     let mut rig = removed();
     let error = rig.cell.workstation(&WorkstationAction::DrumGrip).unwrap_err();
     assert!(matches!(error, WorkstationError::NothingToGrip), "{error}");
@@ -177,7 +177,7 @@ fn an_empty_drum_grips_no_tool() {
 }
 
 #[test]
-fn the_drum_grips_only_a_tool_in_its_place() {
+fn drum_grips_only_a_tool_in_its_place() {
     let mut rig = removed();
     until(&mut rig, (-2.0, 0.0), (-0.40, 0.0), 0.5, |_| false);
     rig.ticks(20);
@@ -188,7 +188,7 @@ fn the_drum_grips_only_a_tool_in_its_place() {
 }
 
 #[test]
-fn a_tool_released_before_the_drum_falls() {
+fn tool_released_before_the_drum_falls() {
     let mut rig = removed();
     until(&mut rig, (-2.0, 0.0), (-0.60, 0.0), 0.5, |_| false);
     jaws(&mut rig, true);
@@ -202,7 +202,7 @@ fn a_tool_released_before_the_drum_falls() {
 }
 
 #[test]
-fn the_force_sensor_measures_weights_and_torques() {
+fn force_sensor_measures_weights_and_torques() {
     let mut rig = removed();
     let held = rig.inputs.force;
     jaws(&mut rig, true);

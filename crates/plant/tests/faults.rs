@@ -1,4 +1,4 @@
-//! Faults in the cell, with arm and valves driven directly: what they change, and what they do not.
+//! Faults in the cell, with arm and valves driven directly: their effects and limits.
 
 use crate::rig::{Rig, description};
 use diagnostics::Source;
@@ -47,7 +47,7 @@ fn lost_air_keeps_the_grip_closed() {
 }
 
 #[test]
-fn a_fault_begins_and_ends_when_its_plan_says() {
+fn fault_begins_and_ends_as_planned() {
     let mut cell = cell(
         "[[fault]]\nkind = \"off\"\nsensor = \"resolvers\"\nfrom = 3\nuntil = 6\n\
          [[fault]]\nkind = \"stuck\"\nsensor = \"quick-change.id\"\nvalue = 2\n",
@@ -100,7 +100,7 @@ fn a_stuck_vise_is_reported() {
 }
 
 #[test]
-fn a_moved_pedestal_takes_its_stand_and_its_hand_along() {
+fn moved_pedestal_carries_its_stand_and_hand() {
     let moved = cell("[[fault]]\nkind = \"pedestal-moved\"\nx = 0.5\ny = -0.25\nangle = 2\n");
     let there = Cell::new(&description(), 1).unwrap().pedestal();
     let away = moved.pedestal().position - there.position;
@@ -110,7 +110,7 @@ fn a_moved_pedestal_takes_its_stand_and_its_hand_along() {
 }
 
 #[test]
-fn a_camera_without_power_is_silent_and_a_blind_one_finds_no_part() {
+fn camera_without_power_is_silent_and_blind_camera_finds_no_part() {
     let ask = |text: &str| {
         let mut cell = cell(text);
         let mut outputs = DeviceOutputs::default();
@@ -126,7 +126,7 @@ fn a_camera_without_power_is_silent_and_a_blind_one_finds_no_part() {
 }
 
 #[test]
-fn a_restored_cell_keeps_its_faults() {
+fn restored_cell_keeps_its_faults() {
     let text = "[[fault]]\nkind = \"pedestal-moved\"\nx = 0.5\n\
         [[fault]]\nkind = \"intermittent\"\nsensor = \"beam.1\"\nrate = 0.2\n\
         [[fault]]\nkind = \"slow\"\nsensor = \"grip.potentiometer\"\nby = 4\n";
@@ -154,7 +154,7 @@ fn shown(seed: u64) -> String {
 }
 
 #[test]
-fn the_same_seed_gives_the_same_faults() {
+fn equal_seeds_give_equal_cell_faults() {
     let first = shown(1);
     assert_eq!(first, shown(1));
     assert_ne!(first, shown(2));

@@ -33,7 +33,7 @@ fn clevis(position: Vector) -> Frame {
 }
 
 #[test]
-fn a_program_opens_the_vise_for_its_parts() {
+fn program_opens_the_vise_for_its_parts() {
     let mut rig = Rig::new(&description(), 1);
     assert!((rig.cell.vise_opening() - 0.80).abs() < 1e-9, "LINKBAR is on at the start");
     program(&mut rig, "CLEVIS").unwrap();
@@ -54,7 +54,7 @@ fn a_program_opens_the_vise_for_its_parts() {
 }
 
 #[test]
-fn a_clevis_is_clamped_and_machined_in_its_step() {
+fn clevis_is_clamped_and_machined_in_its_step() {
     let mut rig = Rig::new(&description(), 1);
     program(&mut rig, "CLEVIS").unwrap();
     rig.vise(WorkstationAction::VisePartial);
@@ -72,7 +72,7 @@ fn a_clevis_is_clamped_and_machined_in_its_step() {
 }
 
 #[test]
-fn a_clevis_that_is_not_at_the_back_is_not_machined() {
+fn clevis_away_from_the_back_is_not_machined() {
     let mut rig = Rig::new(&description(), 1);
     program(&mut rig, "CLEVIS").unwrap();
     rig.vise(WorkstationAction::VisePartial);
@@ -95,7 +95,7 @@ fn a_clevis_that_is_not_at_the_back_is_not_machined() {
 }
 
 #[test]
-fn a_bar_stops_the_jaw_whatever_program_is_on() {
+fn bar_stops_the_jaw_in_every_program() {
     let mut rig = Rig::new(&description(), 1);
     put(&mut rig, "LINKBAR1_BH", clevis(Vector::new(0.096, 0.152, -1.249)));
     program(&mut rig, "CLEVIS").unwrap();
@@ -106,7 +106,7 @@ fn a_bar_stops_the_jaw_whatever_program_is_on() {
 }
 
 #[test]
-fn a_cylinder_lies_still_in_its_cradle_and_stands_still_in_its_nest() {
+fn cylinder_is_at_rest_in_cradle_and_nest() {
     let mut rig = Rig::new(&description(), 1);
     place(&mut rig, "SHAFT_BH", "UNIT_2", 7).unwrap();
     place(&mut rig, "SHAFT", "UNIT_2", 8).unwrap();
@@ -131,7 +131,7 @@ fn a_cylinder_lies_still_in_its_cradle_and_stands_still_in_its_nest() {
 }
 
 #[test]
-fn a_shaft_is_machined_where_it_stands() {
+fn shaft_is_machined_in_its_nest() {
     let mut rig = Rig::new(&description(), 1);
     let empty = machine(&mut rig, "SHAFT_BH", "SHAFT", "V-VFIXTURE").unwrap_err();
     assert_eq!(empty.to_string(), "SHAFT_BH is to be machined, but nothing is at V-VFIXTURE");
@@ -145,7 +145,7 @@ fn a_shaft_is_machined_where_it_stands() {
 }
 
 #[test]
-fn a_part_that_leans_in_its_nest_is_not_machined() {
+fn leaning_part_in_its_nest_is_not_machined() {
     let mut rig = Rig::new(&description(), 1);
     let upright = rotation_from_x_y(&Vector::x(), &Vector::y()).unwrap();
     let lean = rotation_by(&Vector::new(0.0, 0.07, 0.0));
@@ -156,7 +156,7 @@ fn a_part_that_leans_in_its_nest_is_not_machined() {
 }
 
 #[test]
-fn a_part_with_nests_goes_only_there() {
+fn part_with_nests_is_accepted_only_there() {
     let mut rig = Rig::new(&description(), 1);
     let nowhere = place(&mut rig, "SHAFT_BH", "UNIT_1", 4).unwrap_err();
     let text = "no place for SHAFT_BH in sector 4 of UNIT_1; the cell description has UNIT_2 7, UNIT_2 8, V-VFIXTURE";

@@ -11,7 +11,7 @@ fn in_fingers(rig: &Rig) -> Vector {
 }
 
 #[test]
-fn closing_fingers_draw_a_part_to_their_middle_and_square() {
+fn closing_fingers_centre_and_align_a_part() {
     let mut rig = Rig::new(&description(), 1);
     rig.place("LINKBAR1_BH", 4, 0.0, 0.4, 3.0);
     rig.pick(0.0, 0.0, 0.0, 30.0);
@@ -23,7 +23,7 @@ fn closing_fingers_draw_a_part_to_their_middle_and_square() {
 }
 
 #[test]
-fn a_held_part_does_not_creep() {
+fn held_part_does_not_creep() {
     let mut rig = Rig::new(&description(), 1);
     rig.place("LINKBAR1_BH", 4, 0.0, 0.0, 0.0);
     rig.pick(0.0, 0.0, 0.0, 30.0);
@@ -64,7 +64,7 @@ fn lift_block(weight: f64, force: f64) -> Rig {
 }
 
 #[test]
-fn friction_decides_which_part_can_be_lifted() {
+fn friction_limits_the_lifted_weight() {
     // Two pads of 30 lb at 0.30 carry 18 lb.
     let rig = lift_block(15.0, 30.0);
     assert!(rig.part().held && rig.part().position[2] > -12.5, "{:?} {:?}", rig.part(), rig.log);
@@ -83,7 +83,7 @@ fn friction_decides_which_part_can_be_lifted() {
 }
 
 #[test]
-fn a_bar_that_is_gripped_at_its_end_droops_if_it_is_gripped_too_softly() {
+fn bar_gripped_softly_at_its_end_droops() {
     // 0.44 lb at 1.67 in from the pads needs 0.73 in.lb; two pads of 4 lb give 0.48 in.lb, of 30 lb 3.6.
     for (force, droops) in [(4.0, true), (30.0, false)] {
         let mut rig = Rig::new(&description(), 1);
@@ -114,7 +114,7 @@ fn vented_fingers_let_go() {
 }
 
 #[test]
-fn a_carried_part_that_is_pushed_against_a_wall_slips() {
+fn carried_part_pushed_against_a_wall_slips() {
     let mut rig = Rig::new(&description(), 1);
     rig.place("LINKBAR1_BH", 4, 0.0, 0.0, 0.0);
     rig.pick(0.0, 0.0, 0.0, 30.0);
@@ -132,7 +132,7 @@ fn a_carried_part_that_is_pushed_against_a_wall_slips() {
 }
 
 #[test]
-fn another_size_of_bar_is_a_matter_of_data() {
+fn bar_of_another_size_needs_only_data() {
     let text = format!(
         "{}\n[[part]]\nname = \"LINKBAR2_BH\"\nsize = [1.0, 1.0, 5.0]\nweight = 1.4\nvision_id = 21\n",
         rig::CELL

@@ -9,7 +9,7 @@ use geometry::{
 use interfaces::device::DeviceOutputs;
 use plant::{Cell, CellDescription, CellEvent, Cut, Droop, EStop, Key, WorkstationAction, t3::Stage};
 
-/// Ticks within which an arm comes to rest, whatever it falls on.
+/// Ticks within which an arm comes to rest on any obstacle.
 const LONGEST: u32 = 3000;
 
 /// SAFE of the cell proposal, degrees.
@@ -62,7 +62,7 @@ fn contacts(rig: &Rig) -> Vec<&CellEvent> {
 }
 
 #[test]
-fn from_home_and_safe_the_arm_touches_no_body() {
+fn sagging_arm_at_home_or_safe_touches_no_body() {
     for start in [description().robot.start, SAFE] {
         let mut rig = Rig::new(&starting_at(start), 1);
         let droop = stop(&mut rig, EStop::ControlPanel);
@@ -77,7 +77,7 @@ fn from_home_and_safe_the_arm_touches_no_body() {
 }
 
 #[test]
-fn a_sagging_arm_over_the_vise_hits_it_and_reports_the_part() {
+fn sagging_arm_over_the_vise_reports_its_contact() {
     let mut rig = Rig::new(&description(), 1);
     rig.place("LINKBAR1_BH", 4, 0.0, 0.0, 0.0);
     rig.vise(WorkstationAction::VisePartial);
@@ -96,7 +96,7 @@ fn a_sagging_arm_over_the_vise_hits_it_and_reports_the_part() {
 }
 
 #[test]
-fn the_fingers_keep_their_part_while_it_sinks() {
+fn fingers_keep_their_part_during_sagging() {
     let mut rig = Rig::new(&description(), 1);
     rig.place("LINKBAR1_BH", 4, 0.0, 0.0, 0.0);
     rig.pick(0.0, 0.0, 0.0, 40.0);
@@ -108,7 +108,7 @@ fn the_fingers_keep_their_part_while_it_sinks() {
 }
 
 #[test]
-fn a_sagging_arm_over_a_tray_hits_its_contents() {
+fn sagging_arm_over_a_tray_hits_its_contents() {
     let mut rig = Rig::new(&description(), 1);
     rig.go(UNIT_V1.to_frame().unwrap(), 10.0);
     rig.go_and_stop(rig.grip_frame(4, 0.0, 0.0, 0.0, 4.0), 10.0);
@@ -123,7 +123,7 @@ fn a_sagging_arm_over_a_tray_hits_its_contents() {
 }
 
 #[test]
-fn a_sagging_arm_does_not_pass_through_its_support() {
+fn sagging_arm_does_not_pass_through_its_support() {
     let mut rig = Rig::new(&description(), 1);
     rig.go_and_stop(FIX_V1.to_frame().unwrap(), 10.0);
     rig.go_and_stop(Rig::fixture(&FX1, 4.0, 0.0), 10.0);
@@ -134,7 +134,7 @@ fn a_sagging_arm_does_not_pass_through_its_support() {
 }
 
 #[test]
-fn pressure_lifts_it_by_about_ten_inches() {
+fn pressure_lifts_the_arm_by_about_ten_inches() {
     let mut rig = Rig::new(&description(), 1);
     rig.cell.press(Key::Press(EStop::TeachPendant)).unwrap();
     rig.ticks(500);
@@ -150,7 +150,7 @@ fn pressure_lifts_it_by_about_ten_inches() {
 }
 
 #[test]
-fn an_emergency_stop_ends_the_link_and_the_start_up_brings_it_back() {
+fn start_up_restores_the_link_after_an_emergency_stop() {
     for site in EStop::ALL.iter().copied() {
         let mut rig = Rig::new(&description(), 1);
         rig.tick();
@@ -174,7 +174,7 @@ fn an_emergency_stop_ends_the_link_and_the_start_up_brings_it_back() {
 }
 
 #[test]
-fn a_failure_of_the_hydraulics_is_a_fault_until_it_is_repaired() {
+fn hydraulics_failure_is_a_fault_until_repair() {
     let mut rig = Rig::new(&description(), 1);
     rig.ticks(5);
     rig.cell.fail_hydraulics();
@@ -202,7 +202,7 @@ fn the_same_droop_twice() {
 }
 
 #[test]
-fn an_arm_without_pressure_is_not_led() {
+fn arm_without_pressure_refuses_external_motion() {
     let mut cell = Cell::new(&description(), 1).unwrap();
     cell.press(Key::Press(EStop::Terminals)).unwrap();
     let refused = cell.drive(&T3.forward_plate(&cell.joints())).unwrap_err();

@@ -32,7 +32,7 @@ fn machine(from: &str, to: &str) -> Action {
 }
 
 #[test]
-fn the_ideal_cell_and_the_cell_refuse_the_same_actions() {
+fn ideal_cell_and_cell_refuse_the_same_actions() {
     let actions = [
         place("LINKBAR1_BH", 4),
         place("LINKBAR1_BH", 4),
@@ -57,7 +57,7 @@ fn the_ideal_cell_and_the_cell_refuse_the_same_actions() {
 }
 
 #[test]
-fn a_part_in_the_closed_jaws_is_machined_if_it_is_the_right_one() {
+fn only_the_expected_part_in_the_jaws_is_machined() {
     let frame = upright(Vector::new(0.096, 0.16, -1.249), 0.0);
     let actions = [
         Action::Put { part: "LINKBAR1_BH".into(), frame },

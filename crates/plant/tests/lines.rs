@@ -10,7 +10,7 @@ use plant::fault::text::parse_line;
 use session::Session;
 
 #[test]
-fn the_link_survives_every_example() {
+fn link_survives_every_example() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../data/faults");
     let mut examples = 0;
     for entry in fs::read_dir(&folder).unwrap() {

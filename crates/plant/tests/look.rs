@@ -141,7 +141,7 @@ fn skin(body: &Body) -> Vec<Vector> {
 }
 
 #[test]
-fn looks_cover_all_that_collides() {
+fn looks_cover_all_collision_shapes() {
     let description = description();
     let cell = cell(&description);
     let frames = frames(&cell);
@@ -216,7 +216,7 @@ fn parts_of(glb: &[u8]) -> (serde_json::Value, &[u8]) {
 }
 
 #[test]
-fn files_are_gltf_with_y_up_and_unit_normals() {
+fn mesh_files_are_gltf_with_y_up_and_unit_normals() {
     let description = description();
     for model in Scene::new(&description, []).models() {
         let glb = model.glb();
@@ -254,7 +254,7 @@ fn files_are_gltf_with_y_up_and_unit_normals() {
 }
 
 #[test]
-fn looks_are_small_and_the_same_each_time() {
+fn looks_are_small_and_deterministic() {
     let description = description();
     let scene = Scene::new(&description, (1..).zip(&description.part));
     let made = scene.models();
@@ -266,7 +266,7 @@ fn looks_are_small_and_the_same_each_time() {
 }
 
 #[test]
-fn the_shapes_of_a_link_have_colours_of_its_mesh() {
+fn link_shapes_have_colours_of_their_mesh() {
     let description = description();
     let scene = Scene::new(&description, (1..).zip(&description.part));
     let models = scene.models();

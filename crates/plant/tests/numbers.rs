@@ -46,7 +46,7 @@ fn runs(text: &str) -> Result<(), String> {
 }
 
 #[test]
-fn every_number_is_refused_in_words_or_runs() {
+fn every_number_is_refused_with_a_message_or_runs() {
     let text = fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/../../data/cell.toml")).unwrap();
     let numbers = numbers(&text);
     assert!(numbers.len() > 200, "{} numbers", numbers.len());

@@ -53,7 +53,7 @@ fn part(rig: &Rig) -> Frame {
 }
 
 #[test]
-fn the_fingers_move_across_the_radial_line_at_2135() {
+fn pedestal_fingers_move_across_the_radial_line_at_2135() {
     let mut rig = Rig::new(&description(), 1);
     rig.table_square();
     assert_eq!(rig.inputs.pedestal.motor_counter, -2_135 * TABLE_STEPS_PER_TENTH);
@@ -84,7 +84,7 @@ fn sensors_measure_opening_force_angle_and_limits() {
 }
 
 #[test]
-fn the_hand_holds_a_part_and_turns_it() {
+fn pedestal_hand_holds_and_turns_a_part() {
     let mut rig = with_clevis();
     let free = rig.inputs.pedestal;
     rig.pedestal_close(50.0);
@@ -110,7 +110,7 @@ fn the_hand_holds_a_part_and_turns_it() {
 }
 
 #[test]
-fn a_part_is_regripped_from_the_other_side() {
+fn part_is_regripped_from_the_other_side() {
     let mut rig = with_clevis();
     rig.pedestal_close(50.0);
     come(&mut rig);
@@ -145,7 +145,7 @@ fn a_part_is_regripped_from_the_other_side() {
 }
 
 #[test]
-fn a_hand_takes_a_part_askew_without_a_jolt() {
+fn hand_grips_a_tilted_part_without_a_jolt() {
     let mut rig = with_clevis();
     rig.pedestal_close(50.0);
     rig.go(at_part(15.0, 6.0), 10.0);
@@ -169,7 +169,7 @@ fn a_hand_takes_a_part_askew_without_a_jolt() {
 }
 
 #[test]
-fn two_hands_that_pull_apart_slide_and_do_not_burst() {
+fn part_slides_between_two_pulling_hands() {
     let mut rig = with_clevis();
     rig.pedestal_close(8.0);
     come(&mut rig);
@@ -203,7 +203,7 @@ fn what_nothing_holds_falls() {
 }
 
 #[test]
-fn the_robot_that_runs_into_the_hand_is_reported() {
+fn collision_of_the_robot_with_the_hand_is_reported() {
     let mut rig = Rig::new(&description(), 1);
     rig.table_square();
     rig.go(at_part(10.0, 0.0), 10.0);

@@ -65,7 +65,7 @@ fn attach(rig: &mut Rig, holster: &Pose) {
 }
 
 #[test]
-fn at_the_start_the_parts_gripper_is_on_and_the_others_hang_in_their_holsters() {
+fn parts_gripper_is_on_the_robot_at_the_start() {
     let rig = Rig::new(&description(), 1);
     let quick_change = rig.inputs.quick_change;
     assert_eq!(quick_change.end_effector_id, 1);
@@ -75,7 +75,7 @@ fn at_the_start_the_parts_gripper_is_on_and_the_others_hang_in_their_holsters() 
 }
 
 #[test]
-fn detaching_leaves_the_gripper_in_its_seat() {
+fn detached_gripper_stays_in_its_seat() {
     let mut rig = over_right(0.35);
     assert_eq!(rig.inputs.holsters.right, 0b0011, "the large sensors see the ears");
     rig.outputs.quick_change = UNLOCK;
@@ -103,7 +103,7 @@ fn detaching_leaves_the_gripper_in_its_seat() {
 }
 
 #[test]
-fn any_gripper_can_be_attached_and_used() {
+fn every_gripper_can_be_attached_and_used() {
     let mut rig = detach();
     for (holster, id) in [(HOL_L, 2), (HOL_C, 3), (HOL_R, 1)] {
         attach(&mut rig, &holster);
@@ -136,7 +136,7 @@ fn any_gripper_can_be_attached_and_used() {
 }
 
 #[test]
-fn a_plate_that_is_not_home_is_not_caught() {
+fn plate_above_its_seat_is_not_locked() {
     for (what, up, forward, roll, pins) in [
         ("too high", 0.10, 1.5, 0.0_f64, 2),
         ("too far back", 0.0, 1.42, 0.0, 2),
@@ -157,7 +157,7 @@ fn a_plate_that_is_not_home_is_not_caught() {
 }
 
 #[test]
-fn a_ring_locked_too_early_catches_no_gripper() {
+fn ring_locked_too_early_catches_no_gripper() {
     let mut rig = detach();
     air(&mut rig, LOCK);
     rig.go(over(&HOL_L, 14.0, 1.5), 10.0);
@@ -167,7 +167,7 @@ fn a_ring_locked_too_early_catches_no_gripper() {
 }
 
 #[test]
-fn the_ring_does_not_move_without_the_port() {
+fn ring_does_not_move_without_the_port() {
     let mut rig = over_right(0.35);
     air(&mut rig, QuickChangeValves { port: false, ..UNLOCK });
     assert!(rig.inputs.quick_change.locked);
@@ -177,7 +177,7 @@ fn the_ring_does_not_move_without_the_port() {
 }
 
 #[test]
-fn a_gripper_that_is_unlocked_in_the_air_falls_to_the_floor() {
+fn gripper_unlocked_in_the_air_falls_to_the_floor() {
     for up in [0.7, 5.0] {
         let mut rig = over_right(up);
         air(&mut rig, UNLOCK);
@@ -191,7 +191,7 @@ fn a_gripper_that_is_unlocked_in_the_air_falls_to_the_floor() {
 }
 
 #[test]
-fn a_gripper_released_over_a_full_holster_falls() {
+fn gripper_released_over_a_full_holster_falls() {
     let mut rig = Rig::new(&description(), 1);
     rig.go(HOL_V1.to_frame().unwrap(), 10.0);
     rig.go_and_stop(over(&HOL_L, 5.0, 0.0), 10.0);
@@ -208,7 +208,7 @@ fn a_gripper_released_over_a_full_holster_falls() {
 }
 
 #[test]
-fn lifting_out_of_the_seat_tears_the_gripper_off() {
+fn lifting_out_of_the_seat_detaches_the_gripper() {
     let mut rig = detach();
     rig.go(over(&HOL_L, 14.0, 1.5), 10.0);
     rig.go_and_stop(over(&HOL_L, 0.0, 1.5), 2.0);
@@ -221,7 +221,7 @@ fn lifting_out_of_the_seat_tears_the_gripper_off() {
 }
 
 #[test]
-fn a_robot_that_lifts_before_the_seat_leaves_the_gripper_there() {
+fn early_lift_leaves_the_gripper_before_its_seat() {
     let mut rig = over_right(0.35);
     air(&mut rig, UNLOCK);
     rig.go_and_stop(over(&HOL_R, 0.35, 0.8), 1.0);
@@ -230,7 +230,7 @@ fn a_robot_that_lifts_before_the_seat_leaves_the_gripper_there() {
 }
 
 #[test]
-fn a_part_is_lost_when_the_air_is_cut() {
+fn part_is_lost_when_the_air_is_cut() {
     let mut rig = Rig::new(&description(), 1);
     rig.place("LINKBAR1_BH", 4, 0.0, 0.0, 0.0);
     rig.pick(0.0, 0.0, 0.0, 30.0);
@@ -243,7 +243,7 @@ fn a_part_is_lost_when_the_air_is_cut() {
 
 /// A person takes the v-gripper, which the robot does not carry, out of its holster, and hangs it in one.
 #[test]
-fn a_gripper_goes_only_into_an_empty_holster_and_only_off_the_robot() {
+fn only_a_detached_gripper_fits_an_empty_holster() {
     let mut rig = Rig::new(&description(), 1);
     assert_eq!(rig.inputs.holsters.left, FULL);
     rig.cell.hang_gripper(2, None).unwrap();

@@ -34,7 +34,7 @@ fn creep(rig: &mut Rig) -> f64 {
 }
 
 #[test]
-fn a_bar_gripped_at_its_end_stays_with_the_force_of_the_job_and_more() {
+fn bar_gripped_at_its_end_stays_with_the_force_of_the_job() {
     for (force, angle) in [(30.0, 0.0), (45.0, 40.0), (60.0, -75.0)] {
         let mut rig = Rig::new(&description(), 1);
         rig.place("LINKBAR1_BH", 4, 0.0, 0.0, angle);
@@ -45,7 +45,7 @@ fn a_bar_gripped_at_its_end_stays_with_the_force_of_the_job_and_more() {
 }
 
 #[test]
-fn a_bar_held_level_and_upright_stays() {
+fn bar_held_level_or_upright_stays() {
     let mut rig = Rig::new(&description(), 1);
     rig.place("LINKBAR1_BH", 4, 0.0, 0.0, 0.0);
     rig.pick(0.0, 0.0, 0.0, 30.0);
@@ -62,7 +62,7 @@ fn a_bar_held_level_and_upright_stays() {
 }
 
 #[test]
-fn a_block_near_the_limit_of_friction_stays() {
+fn block_near_the_limit_of_friction_stays() {
     // 2 x 50 lb x 0.30 carry 30 lb: this is 0.9 of it.
     let mut rig = Rig::new(&with_block(27.0), 1);
     rig.place("BLOCK", 4, 0.0, 0.0, 0.0);
@@ -79,7 +79,7 @@ fn a_block_near_the_limit_of_friction_stays() {
 }
 
 #[test]
-fn a_shaft_in_the_grooves_of_the_v_gripper_stays() {
+fn shaft_in_the_grooves_of_the_v_gripper_stays() {
     let text = CELL.replace("mounted = \"parts\"", "mounted = \"v\"");
     let mut rig = Rig::new(&CellDescription::from_toml(&text).unwrap(), 1);
     let placement = plant::Placement::At { x: 0.0, y: 0.0, angle: 0.0 };
@@ -103,7 +103,7 @@ fn a_shaft_in_the_grooves_of_the_v_gripper_stays() {
 }
 
 #[test]
-fn a_tool_in_the_tool_gripper_and_one_in_the_drum_stay() {
+fn tools_in_tool_gripper_and_drum_stay() {
     let mut rig = scenes::drumming(1);
     let before = rig.part_frame();
     rig.ticks(MINUTE);
@@ -116,7 +116,7 @@ fn a_tool_in_the_tool_gripper_and_one_in_the_drum_stay() {
 }
 
 #[test]
-fn a_part_in_the_pedestal_s_hand_stays() {
+fn part_in_the_pedestal_hand_stays() {
     let mut rig = Rig::new(&description(), 1);
     rig.table_square();
     rig.pedestal_open(4.0);
@@ -173,7 +173,7 @@ fn piles_of_five_neither_sink_nor_creep() {
 }
 
 #[test]
-fn the_arm_at_rest_is_within_a_hundredth_of_an_inch_of_its_command() {
+fn arm_at_rest_is_within_0_01_in_of_its_command() {
     let mut rig = Rig::new(&description(), 1);
     rig.place("LINKBAR1_BH", 4, 0.0, 0.0, 0.0);
     rig.pick(0.0, 0.0, 0.0, 30.0);

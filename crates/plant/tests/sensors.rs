@@ -25,7 +25,7 @@ fn along_tool(rig: &mut Rig) -> f64 {
 }
 
 #[test]
-fn a_force_without_calibration_is_misjudged() {
+fn force_without_calibration_is_wrong() {
     let mut rig = with_tool_gripper(3.0);
     rig.ticks(10);
     // Nothing touches the gripper. The drum's guarded moves stop at 25 lb against the tool: with the raw reading they
@@ -114,7 +114,7 @@ fn at_unit(reflectance: f64) -> Rig {
 }
 
 #[test]
-fn a_dark_part_and_a_shiny_one_need_their_own_exposure() {
+fn dark_and_shiny_parts_need_different_exposures() {
     for (reflectance, expected) in [
         (0.5, [VisionStatus::Done, VisionStatus::NotRecognised, VisionStatus::Done]),
         (0.08, [VisionStatus::NothingSeen, VisionStatus::Done, VisionStatus::NothingSeen]),
@@ -129,17 +129,17 @@ fn a_dark_part_and_a_shiny_one_need_their_own_exposure() {
 }
 
 #[test]
-fn a_part_that_another_hides_is_not_recognised() {
+fn hidden_part_is_not_recognised() {
     let mut rig = at_unit(0.5);
     rig.place("LINKBAR1_BH", 4, 0.0, 0.0, 0.0);
     assert_eq!(look(&mut rig, 1, 0, [0.0; 2]).recognised, Some(17));
-    // A clevis blank beside the bar, so near that both are one blob.
+    // A clevis blank so near to the bar that both are one blob.
     rig.place("LCLEVIS_BH", 4, 0.0, -1.61, 0.0);
     assert_eq!(look(&mut rig, 2, 0, [0.0; 2]).status, VisionStatus::NotRecognised);
 }
 
 #[test]
-fn of_several_parts_the_nearest_to_the_middle_is_meant() {
+fn nearest_part_to_the_middle_is_selected() {
     let mut rig = at_unit(0.5);
     rig.place("LINKBAR1_BH", 4, 0.0, 1.5, 0.0);
     rig.place("LCLEVIS_BH", 4, 0.0, -3.0, 0.0);

@@ -29,14 +29,14 @@ fn compare(description: &CellDescription, scene: Rig) -> f64 {
 }
 
 #[test]
-fn a_part_is_taken_carried_and_clamped_as_in_small_steps() {
+fn large_steps_grip_carry_and_clamp_like_small_steps() {
     let apart = compare(&description(), scenes::clamping(1));
     assert!(apart > 0.0, "no long step was taken");
     assert!(apart < ALIKE, "{apart} in");
 }
 
 #[test]
-fn a_tool_is_carried_as_in_small_steps() {
+fn large_steps_carry_a_tool_like_small_steps() {
     let mut scene = scenes::with_tool_in_hand(1);
     for via in [scenes::TOOL_SAFE, scenes::TOOL_V1, FIX_V1] {
         scene.go(via.to_frame().unwrap(), 10.0);

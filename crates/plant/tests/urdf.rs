@@ -55,7 +55,7 @@ fn links_and_joints_are_one_tree_with_unique_names() {
 }
 
 #[test]
-fn every_moving_joint_has_an_axis_and_limits_within_which_it_is() {
+fn every_moving_joint_is_within_its_limits() {
     let cell = cell();
     let text = cell.scene(&[]).urdf();
     let document = Document::parse(&text).expect("it is XML");
@@ -83,7 +83,7 @@ fn every_moving_joint_has_an_axis_and_limits_within_which_it_is() {
 }
 
 #[test]
-fn everything_that_can_be_run_into_is_in_the_picture() {
+fn every_collision_shape_is_in_the_picture() {
     let text = cell().scene(&[]).urdf();
     let document = Document::parse(&text).expect("it is XML");
     let shapes = |link: &str| {

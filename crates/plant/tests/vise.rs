@@ -27,7 +27,7 @@ fn machine(rig: &mut Rig) -> Result<(), WorkstationError> {
 }
 
 #[test]
-fn a_bar_on_the_ledge_stands_if_it_leans_less_than_a_degree() {
+fn bar_leaning_less_than_a_degree_stays_on_the_ledge() {
     for (lean, stands) in [(0.0, true), (0.6, true), (1.5, false), (3.0, false)] {
         let mut rig = Rig::new(&description(), 1);
         put(&mut rig, upright(Vector::new(0.0375, 0.16, -1.249), lean));
@@ -102,7 +102,7 @@ fn machining_to_a_smaller_part_keeps_it_seated_and_clamped() {
 }
 
 #[test]
-fn a_clamped_bar_takes_the_robot_s_push() {
+fn clamped_bar_resists_the_robot_push() {
     let mut rig = Rig::new(&description(), 1);
     put(&mut rig, upright(Vector::new(0.0375, 0.152, -1.249), 0.0));
     rig.vise(WorkstationAction::ViseClose);
@@ -119,7 +119,7 @@ fn a_clamped_bar_takes_the_robot_s_push() {
 }
 
 #[test]
-fn a_crash_forces_a_bar_out_of_the_vise() {
+fn collision_forces_a_bar_out_of_the_vise() {
     let mut rig = Rig::new(&description(), 1);
     put(&mut rig, upright(Vector::new(0.0375, 0.152, -1.249), 0.0));
     rig.vise(WorkstationAction::ViseClose);
@@ -131,7 +131,7 @@ fn a_crash_forces_a_bar_out_of_the_vise() {
 }
 
 #[test]
-fn a_body_at_rest_does_not_creep() {
+fn body_at_rest_does_not_creep() {
     let mut rig = Rig::new(&description(), 1);
     put(&mut rig, upright(Vector::new(0.0375, 0.16, -1.249), 0.0));
     rig.ticks(50);
@@ -142,7 +142,7 @@ fn a_body_at_rest_does_not_creep() {
 }
 
 #[test]
-fn a_stack_of_five_is_stable_and_hardly_sinks() {
+fn stack_of_five_is_stable_and_hardly_sinks() {
     let mut rig = Rig::new(&description(), 1);
     let sector = description().tray("UNIT_1").unwrap().sector(4).unwrap();
     for layer in 0..5 {

@@ -63,8 +63,8 @@ impl Analysis {
         self.noise = Noise::new(seed, Stream::Camera);
     }
 
-    /// Fingerprint of the entries of a cell on which the answers depend, besides seed and pictures: the camera, and the
-    /// parts with a vision id. Two analyses with the same fingerprint give the same answers.
+    /// Fingerprint of the entries of a cell on which the answers depend, in addition to seed and pictures: the
+    /// camera, and the parts with a vision id. Two analyses with the same fingerprint give the same answers.
     ///
     /// # Panics
     /// If a description cannot be serialised, which is a fault of this crate.
@@ -142,7 +142,8 @@ impl Analysis {
         answer
     }
 
-    /// Result of a second picture besides the centroid: the angle, and whether the part is the one asked for.
+    /// Result of a second picture in addition to the centroid: the angle, and whether the part is the requested
+    /// one.
     fn recognise(
         &mut self,
         blob: &[&Subject],
@@ -275,7 +276,7 @@ mod tests {
     }
 
     #[test]
-    fn the_optical_axis_points_at_the_place() {
+    fn optical_axis_points_at_the_place() {
         let place = straight_down(Vector::new(-50.75, 10.25, -16.55));
         let camera = optics().frame(&gr_pic().apply(&place));
         let seen = camera.inverse().compose(&place);
@@ -285,7 +286,7 @@ mod tests {
     }
 
     #[test]
-    fn the_flood_is_coarse_and_the_second_picture_exact() {
+    fn flood_picture_is_coarse_and_second_picture_exact() {
         let flood = ask(Picture::FastFlood, 2, &[bar(1.5, -0.75, 0.6)]);
         assert_eq!((flood.status, flood.recognised), (VisionStatus::Done, None));
         assert!((flood.y - 150).abs() <= 6 && (flood.z + 75).abs() <= 6, "{flood:?}");
@@ -298,7 +299,7 @@ mod tests {
     }
 
     #[test]
-    fn an_empty_picture_and_an_unknown_part_are_distinguished() {
+    fn empty_picture_and_unknown_part_are_distinguished() {
         assert_eq!(ask(Picture::FastFlood, 2, &[]).status, VisionStatus::NothingSeen);
         assert_eq!(ask(Picture::FastFlood, 2, &[bar(7.0, 0.0, 0.0)]).status, VisionStatus::NothingSeen);
         let stranger = seen(&before(), Vector::new(0.625, 2.0, 2.0), 0.5);
@@ -306,7 +307,7 @@ mod tests {
     }
 
     #[test]
-    fn the_part_nearest_to_the_axis_is_meant() {
+    fn part_nearest_to_the_axis_is_selected() {
         let near = ask(Picture::FastFlood, 2, &[bar(3.0, 0.0, 0.0), bar(-1.0, 0.0, 0.0)]);
         assert!((near.y + 100).abs() <= 6, "{near:?}");
     }
@@ -317,7 +318,7 @@ mod tests {
     }
 
     #[test]
-    fn a_bar_cut_by_the_edge_is_found_off_its_middle_and_unrecognised() {
+    fn bar_cut_by_the_edge_is_found_but_not_recognised() {
         // Its far third is outside the picture.
         let cut = bar(0.0, 4.6, 0.0);
         let flood = ask(Picture::FastFlood, 2, &[bar(0.0, 4.6, 0.0)]);
@@ -328,7 +329,7 @@ mod tests {
     }
 
     #[test]
-    fn parts_that_touch_are_one_blob_and_apart_they_are_two() {
+    fn touching_parts_are_one_blob() {
         let pair = |gap: f64| {
             let half = (0.625 + gap) / 2.0;
             [bar(half, 0.0, 0.0), bar(-half, 0.0, 0.0)]
@@ -340,7 +341,7 @@ mod tests {
     }
 
     #[test]
-    fn each_variation_shows_its_own_range_of_light() {
+    fn variations_show_different_ranges_of_light() {
         let bar = |reflectance| seen(&before(), Vector::new(0.625, 0.625, 4.0), reflectance);
         let ask = |picture, reflectance, variation| vary(picture, 2, &[bar(reflectance)], variation).status;
         let (flood, precise) = (Picture::FastFlood, Picture::Precise);
@@ -371,7 +372,7 @@ mod tests {
     }
 
     #[test]
-    fn the_fingerprint_changes_exactly_with_the_answers() {
+    fn fingerprint_changes_only_with_the_answers() {
         let known = Analysis::fingerprint(&cell());
         let changed = |change: fn(&mut CellDescription)| {
             let mut cell = cell();

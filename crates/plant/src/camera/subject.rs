@@ -146,14 +146,14 @@ mod tests {
     }
 
     #[test]
-    fn a_face_that_is_all_seen_has_its_middle_and_its_lengths() {
+    fn visible_face_has_its_middle_and_lengths() {
         let subject = plate(1.0, -2.0, |_| true);
         assert_eq!((subject.share(), subject.lengths()), (1.0, [4.0, 2.0]));
         assert_eq!(subject.centroid(), Vector::new(20.0, 1.0, -2.0));
     }
 
     #[test]
-    fn an_occluded_end_shifts_the_centre_and_shortens_the_face() {
+    fn occluded_end_shifts_the_centre_and_shortens_the_face() {
         let subject = plate(0.0, 0.0, |point| point.y < 0.7);
         let [long, wide] = subject.lengths();
         assert!((long - 4.0 * 6.0 / 9.0).abs() < 1e-12 && wide == 2.0, "{long} {wide}");
@@ -165,7 +165,7 @@ mod tests {
     }
 
     #[test]
-    fn a_subject_round_trips_through_its_raster() {
+    fn subject_round_trips_through_its_raster() {
         let subject = plate(1.0, -2.0, |point| point.y + 2.0 * point.z < -3.0);
         assert!((0.2..0.8).contains(&subject.share()), "{}", subject.share());
         let again = Subject::from_raster(*subject.face(), subject.reflectance(), subject.raster());
@@ -174,7 +174,7 @@ mod tests {
     }
 
     #[test]
-    fn neighbours_are_one_blob_if_no_gap_is_seen_between_them() {
+    fn neighbours_without_a_visible_gap_are_one_blob() {
         let subject = plate(0.0, 0.0, |_| true);
         assert!(subject.touches(&plate(3.9, 0.0, |_| true), 0.05));
         assert!(!subject.touches(&plate(4.4, 0.0, |_| true), 0.05));

@@ -53,8 +53,8 @@ impl Cell {
     /// out of the cell, as a person does.
     ///
     /// # Errors
-    /// [`WorkstationError`] if there is no such gripper or holster, the quick change has the gripper, or another one is
-    /// in the holster; the state is unchanged.
+    /// [`WorkstationError`] if the gripper or holster does not exist, the quick change has the gripper, or
+    /// another one is in the holster. The state is then unchanged.
     pub fn hang_gripper(&mut self, id: u8, holster: Option<usize>) -> Result<(), WorkstationError> {
         let hand = self.changer.hang(id, holster)?;
         let (gripper, world) = self.hand_at_work(hand);

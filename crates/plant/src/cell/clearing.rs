@@ -23,7 +23,7 @@ impl Cell {
         self.events.extend(begun.into_iter().map(CellEvent::Contact));
     }
 
-    /// The robot and what it carries.
+    /// The robot and its load.
     pub(super) fn movers(&self) -> Vec<Body> {
         let mut movers = Vec::from(self.arm_bodies());
         movers.extend(self.worn_bodies());

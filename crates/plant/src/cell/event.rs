@@ -29,7 +29,7 @@ pub enum CellError {
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 #[non_exhaustive]
 pub enum CellEvent {
-    /// The robot, or what it carries, has begun to touch a body that it may never touch, or deeper than any command
+    /// The robot, or its load, has begun to touch a body that it may never touch, or deeper than any command
     /// permits. Contacts that only some commands permit are checked where the commands are known:
     /// [`Cell::contacts`](super::Cell::contacts).
     Contact(Contact),
@@ -52,7 +52,7 @@ pub enum CellEvent {
     Fell { part: String },
     /// The T3 controller shows a warning.
     Warning(#[serde(with = "crate::image::record")] Warning),
-    /// An arm without pressure has come to rest.
+    /// An arm without pressure is at rest.
     Sagged(Droop),
     /// The lamps of the T3 controller have changed.
     Lamps(Lamps),

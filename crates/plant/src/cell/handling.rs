@@ -28,9 +28,9 @@ use crate::{
 const SLIP: f64 = 0.02;
 /// Ticks after which the vise reports a jaw that does not move (2 s).
 const JAW_PATIENCE: u32 = 50;
-/// Greatest penetration of a part into a clamping face at which it still counts as between the jaws, m.
+/// Greatest penetration of a part into a clamping face at which it is still between the jaws, m.
 const OUTSIDE: Real = 2e-3;
-/// A part also counts as in a step of the jaws if it covers this fraction of the largest area that it covers in any
+/// A part is also in a step of the jaws if it covers this fraction of the largest area that it covers in any
 /// step.
 const WELL: Real = 0.25;
 /// Stiffness of the springs between fingers and part: a bar sags by only 0.01 mm, and friction does not jolt it.
@@ -350,7 +350,7 @@ impl Cell {
         }
     }
 
-    /// Report parts that have come to lie on the floor.
+    /// Report parts that have fallen to the floor.
     pub(super) fn note_falls(&mut self) {
         for index in 0..self.parts.len() {
             let on_floor = self.part_state(index).location == "floor";

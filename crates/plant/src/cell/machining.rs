@@ -145,7 +145,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_part_that_is_turned_round_shows_its_other_side() {
+    fn reversed_part_shows_its_other_side() {
         let at = |along_x: f64| {
             let rotation = geometry::frame::rotation_from_x_y(&Inches::new(along_x, 0.03, 0.0), &Inches::z());
             front(&Frame { position: Inches::zeros(), rotation: rotation.unwrap() })
@@ -154,7 +154,7 @@ mod tests {
     }
 
     #[test]
-    fn a_cylinder_may_be_turned_about_its_axis_and_upside_down() {
+    fn cylinder_orientation_ignores_rotation_about_its_axis() {
         use geometry::frame::rotation_by;
         let at = |turn: Inches| Frame { position: Inches::zeros(), rotation: rotation_by(&turn) };
         assert!(askew(&at(Inches::new(0.0, 0.0, 1.0)), Shape::CylinderZ) < 1e-7);

@@ -273,8 +273,8 @@ impl Cell {
         self.faults.add(faults, seed);
     }
 
-    /// Forget the faults that are over: they have no effect any more, and [`Cell::faults`] does not list them. Call it
-    /// only if none is added later, because their random numbers depend on how many there are.
+    /// Discard the faults that are over: they have no more effect, and [`Cell::faults`] no longer lists them.
+    /// Call it only if none is added later, because their random numbers depend on how many there are.
     pub fn forget_past_faults(&mut self) {
         self.faults.forget_past();
     }

@@ -204,7 +204,7 @@ mod tests {
     }
 
     #[test]
-    fn a_name_that_the_cell_does_not_have_is_blamed_with_the_nearest() {
+    fn unknown_name_is_reported_with_the_nearest_of_the_cell() {
         let cell = cell();
         let blamed = |action: WorkstationAction| {
             let error = cell.admits(&action).expect_err("it names what there is not");

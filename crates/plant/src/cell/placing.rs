@@ -12,7 +12,7 @@ use crate::{
     part::{Part, PartState},
 };
 
-/// A part up to this height above a tray's floor counts as in the tray, in (ASSUMED: tall tools).
+/// Greatest height above a tray's floor at which a part is in the tray, in (ASSUMED: tall tools).
 const IN_TRAY: f64 = 10.0;
 /// A part whose centre is nearer than this to that of a nest's seat is in the nest, in.
 const IN_NEST: f64 = 1.0;

@@ -28,8 +28,8 @@ use crate::{
 const NEAR: Real = 0.004;
 /// Least distance of the fingers from anything in a long step, m.
 const SLACK: Real = 0.001;
-/// Farther than this from hand, fingers and held part, m, nothing can be reached within a tick: the shipped arm moves
-/// by less with all joints at their greatest speeds.
+/// Distance from hand, fingers and held part beyond which no body is within reach in a tick, m. The shipped arm
+/// moves by less with all joints at their greatest speeds.
 const REACH: Real = 0.5;
 
 /// Data that determine the steps of a tick.

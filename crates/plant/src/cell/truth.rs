@@ -116,7 +116,8 @@ impl Cell {
     /// Move a free part to a frame, world, in.
     ///
     /// # Errors
-    /// [`WorkstationError`] if there is no such part, it is held, or the place is occupied; the state is unchanged.
+    /// [`WorkstationError`] if the part does not exist or is held, or the place is occupied. The state is then
+    /// unchanged.
     pub fn move_part(&mut self, id: u32, frame: &Frame) -> Result<(), WorkstationError> {
         let index = self.index_of(id).ok_or(WorkstationError::NoSuchPart { id })?;
         if self.is_had(index) {

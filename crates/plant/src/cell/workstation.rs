@@ -1,4 +1,4 @@
-//! Workstation actions besides those of the robot: put down and remove parts, operate the vise, machine parts.
+//! Actions of the workstation itself: put down and remove parts, operate the vise, machine parts.
 
 use geometry::{frame::Frame, units::Length};
 use interfaces::station::{BoxAction, Key, ResolverKey, TableKey};
@@ -92,7 +92,7 @@ pub enum WorkstationError {
         /// Number of sectors of the unit.
         sectors: usize,
     },
-    /// The part needs a nest, and there is none.
+    /// The part requires a nest, which is missing.
     #[error("no place for {part} in sector {sector} of {unit}; the cell description has {}", places(.known))]
     NoNest {
         part: String,
@@ -116,15 +116,15 @@ pub enum WorkstationError {
         /// All locations where something can be machined.
         known: Vec<String>,
     },
-    /// There is no gripper with this end effector id.
+    /// No gripper has this end effector id.
     #[error("no gripper has the end effector id {id}; the grippers have 1 to 3")]
     NoSuchGripper { id: u8 },
-    /// There is no holster with this number.
+    /// No holster has this number.
     #[error("no holster has the number {number}; the holsters have 0 to 2")]
     NoSuchHolster { number: usize },
     #[error("{part} cannot be put there: {by} is in the way")]
     Occupied { part: String, by: String },
-    /// There is no part of that number.
+    /// No part has this number.
     #[error("there is no part number {id} in the cell")]
     NoSuchPart { id: u32 },
     /// A held part cannot be removed.

@@ -246,7 +246,7 @@ mod tests {
     }
 
     #[test]
-    fn a_pattern_is_a_name_a_group_or_has_one_star() {
+    fn pattern_is_a_name_a_group_or_has_one_star() {
         let (name, kind) = ("UNIT_1_floor", Kind::Tray);
         for good in ["UNIT_1_floor", "trays", "*", "UNIT_1*", "*_floor", "UNIT_*_floor", "UNIT_1_floor*"] {
             assert!(pattern(good).matches(name, kind), "{good}");
@@ -273,7 +273,7 @@ mod tests {
     }
 
     #[test]
-    fn the_most_generous_entry_counts_while_its_command_is_executed() {
+    fn most_permissive_entry_applies_during_its_command() {
         let permits = permits();
         let finger = ("left_finger", Kind::Finger);
         let part = ("BAR", Kind::Part);
@@ -290,7 +290,7 @@ mod tests {
     }
 
     #[test]
-    fn every_group_is_of_a_kind_that_can_be_a_mover_or_an_obstacle() {
+    fn every_group_can_be_a_mover_or_an_obstacle() {
         assert!(Kind::ALL.iter().all(|kind| kind.is_mover() || kind.is_obstacle()));
         assert!(Kind::ALL.iter().all(|kind| !kind.groups().is_empty()));
     }

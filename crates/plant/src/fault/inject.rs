@@ -92,7 +92,7 @@ impl Injector {
         self.push(plan.faults.iter().filter(stays), plan.seed, seed);
     }
 
-    /// Forget the faults that are over.
+    /// Discard the faults that are over.
     pub(crate) fn forget_past(&mut self) {
         let next = self.tick + 1;
         self.faults.retain(|running| running.active || running.fault.when.until > next);
@@ -339,7 +339,7 @@ mod tests {
     const FROM_3_TO_6: When = When { from: 3, until: 6, rate: None, ticks: 1 };
 
     #[test]
-    fn each_disorder_has_its_effect_only_in_its_window() {
+    fn every_fault_acts_only_in_its_window() {
         for (disorder, expected) in [
             (Disorder::Off, [1010, 1020, 0, 0, 0, 1060]),
             (Disorder::Stuck(None), [1010, 1020, 1030, 1030, 1030, 1060]),
@@ -357,7 +357,7 @@ mod tests {
     }
 
     #[test]
-    fn a_rate_begins_it_now_and_then_for_its_ticks() {
+    fn rate_starts_a_fault_at_random_for_its_ticks() {
         let when = When { from: 0, until: u64::MAX, rate: Some(0.05), ticks: 4 };
         let mut injector = injector(vec![(sensor("beam.1", Disorder::Off), when)]);
         let (mut begun, mut active) = (0, 0);
@@ -373,7 +373,7 @@ mod tests {
     }
 
     #[test]
-    fn the_same_seeds_give_the_same_faults() {
+    fn equal_seeds_give_equal_fault_plans() {
         let run = |seed, plan_seed| {
             let when = When { rate: Some(0.1), ..When::ALWAYS };
             let fault = Fault { number: 1, what: sensor("beam.1", Disorder::Off), when };
@@ -386,7 +386,7 @@ mod tests {
     }
 
     #[test]
-    fn valves_stick_and_no_air_passes_them() {
+    fn stuck_valves_pass_no_air() {
         let open = What::Valve(Output::named("grip.open-fine").unwrap(), true);
         let late = When { from: 2, ..When::ALWAYS };
         let mut injector = injector(vec![(open, When::ALWAYS), (What::AirLost, late)]);
@@ -397,7 +397,7 @@ mod tests {
     }
 
     #[test]
-    fn a_delivery_gets_the_fault_that_is_meant_for_it() {
+    fn delivery_fault_applies_to_its_delivery() {
         let bar = || Some("BAR".to_owned());
         let late = When { from: 10, ..When::ALWAYS };
         let mut injector = injector(vec![

@@ -111,7 +111,7 @@ pub enum Disorder {
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 pub enum Mishap {
     Missing,
-    /// The part lies beside its place: offset along world X and Y, in.
+    /// The part lies off its place: offset along world X and Y, in.
     Misplaced {
         x: f64,
         y: f64,

@@ -24,7 +24,7 @@ mod tests {
     use interfaces::point::Output;
 
     #[test]
-    fn without_air_only_venting_is_left() {
+    fn fingers_without_air_can_only_vent() {
         let mut outputs = DeviceOutputs::default();
         Output::valves().for_each(|valve| valve.write(&mut outputs, 1));
         cut_air(&mut outputs);

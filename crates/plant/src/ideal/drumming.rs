@@ -1,4 +1,4 @@
-//! The tool drum, the tool in it, and what it presses on.
+//! The tool drum, and the tool in it with its contacts.
 
 use geometry::frame::{Frame, Vector as Inches};
 

@@ -16,7 +16,8 @@ use crate::{
     squeeze::{Squeeze, squeeze},
 };
 
-/// Greatest height from which a part that is released comes to lie on what is under it, in; the cell's jobs have 0.15.
+/// Greatest height from which a released part comes to rest on the body below it, in; the cell's jobs have
+/// 0.15.
 const DROP: f64 = 0.5;
 
 #[derive(Clone, Debug)]

@@ -1,16 +1,16 @@
 //! The ideal cell: the devices of the cell without physics, noise, delay and fault.
 //!
-//! It consists of the same parts as [`crate::Cell`] (robot controller, arm, air of the fingers, quick change, rotary
-//! table, tool drum, analysis of pictures), and of the geometry of [`Room`] instead of bodies. So it says what the
-//! control processes do if everything goes as planned:
+//! It consists of the same parts as [`crate::Cell`] (robot controller, arm, air of the fingers, quick change,
+//! rotary table, tool drum, analysis of pictures), and of the geometry of [`Room`] instead of bodies. It shows
+//! the actions of the control processes if everything goes as planned:
 //!
 //! | device | differs from the cell |
 //! |---|---|
 //! | arm | stiff: the tool is where the joints have it |
 //! | fingers | stop at the part between them; a part in them does not slide |
-//! | part that is released | is in its nest, or on what is under it, at once; with nothing under it, it stays there |
+//! | released part | is in its nest, or on the body below it, at once; without one, it stays there |
 //! | camera | nothing hides a part |
-//! | force sensor | feels the drum and its strike plate, nothing else |
+//! | force sensor | measures only the drum and its strike plate |
 //! | vise and machines | work at once |
 //! | robot | pushes no part: one that lies in the vise goes to its seat when the jaws close |
 

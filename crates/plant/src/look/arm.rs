@@ -259,7 +259,7 @@ fn forearm(upper: f64, radius: f64) -> Mesh {
     mesh
 }
 
-/// The link that pitches: hubs beside the end of the forearm, and a yoke with the yaw axis.
+/// The link that pitches: hubs at the end of the forearm, and a yoke with the yaw axis.
 fn wrist_pitch(forearm: f64, radius: f64) -> Mesh {
     let mut mesh = Mesh::default();
     let out = forearm + COAT;

@@ -153,7 +153,7 @@ mod tests {
     }
 
     #[test]
-    fn a_picture_is_small_and_shows_the_answer() {
+    fn picture_is_small_and_shows_the_answer() {
         let found =
             VisionResponse { status: VisionStatus::Done, y: 100, recognised: Some(17), ..Default::default() };
         let doubt = VisionResponse { status: VisionStatus::NotRecognised, ..Default::default() };
@@ -166,7 +166,7 @@ mod tests {
     }
 
     #[test]
-    fn a_file_has_the_pixels_and_the_palette() {
+    fn png_has_the_pixels_and_the_palette() {
         let mut pixels = vec![0; SIZE * SIZE];
         pixels[3 * SIZE + 7] = 2;
         let palette = [[1, 2, 3], [4, 5, 6], [7, 8, 9]];
@@ -180,7 +180,7 @@ mod tests {
     }
 
     #[test]
-    fn the_left_side_of_the_tool_is_left_in_the_picture() {
+    fn left_of_the_tool_is_left_in_the_picture() {
         let camera = CellDescription::from_toml(include_str!("../../../../data/cell.toml")).unwrap().camera;
         let widest = camera.view / inches(camera.reference_range_mm / 1000.0);
         let canvas = Canvas { pixels: vec![0; SIZE * SIZE], widest };

@@ -31,7 +31,7 @@ pub(crate) fn finger(cell: &CellDescription, hand: Hand, side: f64) -> Mesh {
     finger_mesh(hand.description(cell), side, mark(hand))
 }
 
-/// The colour that tells the hands apart.
+/// The colour that identifies the hand.
 const fn mark(hand: Hand) -> Material {
     match hand {
         Hand::Parts => Green,
@@ -96,7 +96,7 @@ fn robot_gripper(cell: &CellDescription, gripper: &Gripper, mark: Material) -> M
     let [back, front] = [-1.0, 1.0].map(|side| body.0.position.x + side * body.1.x / 2.0);
     let [wide, high] = [body.1.y / 2.0, body.1.z / 2.0];
     for side in [-1.0, 1.0] {
-        // Rails, and the coloured mark that tells the grippers apart.
+        // Rails, and the coloured mark that identifies the gripper.
         mesh.rod(Bright, [front, -wide + 0.3, side * 1.3], [front, wide - 0.3, side * 1.3], 0.22, 0.0, SMALL);
         let [low, top] = if side > 0.0 { [high - 0.02, high + 0.06] } else { [-high - 0.06, 0.02 - high] };
         mesh.cuboid(mark, [back + 0.5, -wide + 0.6, low], [back + 1.5, wide - 0.6, top], 0.0);

@@ -258,7 +258,7 @@ impl Mesh {
     }
 }
 
-/// A small count as `f64`, exact.
+/// A small number as `f64`, exact.
 #[must_use]
 pub fn count(n: usize) -> f64 {
     u32::try_from(n).map_or(f64::MAX, f64::from)

@@ -168,7 +168,7 @@ mod tests {
     const NONE: MotorCommand = MotorCommand { number: 0, order: MotorOrder::None, steps: 0 };
 
     #[test]
-    fn the_table_is_started_up_by_hand() {
+    fn table_is_started_up_by_hand() {
         let mut table = table();
         table.press(TableKey::Power(false)).unwrap();
         assert_eq!(table.press(TableKey::Reset), Err(TableRefusal::NoPower));
@@ -190,7 +190,7 @@ mod tests {
     }
 
     #[test]
-    fn released_keys_end_a_motion_by_hand_and_no_other() {
+    fn released_keys_end_only_motions_by_hand() {
         let mut table = table();
         let far = MotorCommand { number: 1, order: MotorOrder::Turn, steps: 2000 };
         table.order(&far);
@@ -206,7 +206,7 @@ mod tests {
     }
 
     #[test]
-    fn only_a_controller_that_was_turned_on_at_prog_obeys_its_line() {
+    fn table_controller_turned_on_at_prog_obeys_its_line() {
         let mut table = table();
         let turn = |number| MotorCommand { number, order: MotorOrder::Turn, steps: 100 };
         table.press(TableKey::Manual(true)).unwrap();

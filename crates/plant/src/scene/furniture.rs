@@ -241,7 +241,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_steps_of_the_programs_are_cut_out_of_the_jaws() {
+    fn program_steps_are_cut_out_of_the_jaws() {
         let cell = CellDescription::from_toml(include_str!("../../../../data/cell.toml")).unwrap();
         let mut pieces = jaw_pieces(&cell.vise);
         pieces.sort_by(|a, b| b[1][0].total_cmp(&a[1][0]).then(a[2][0].total_cmp(&b[2][0])));

@@ -1,4 +1,4 @@
-//! Materials: a few colours that are easy to tell apart.
+//! Materials: a few colours that are easy to distinguish.
 
 use crate::{description::PartType, solid::Family};
 

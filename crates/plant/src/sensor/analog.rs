@@ -29,7 +29,7 @@ mod tests {
     use crate::noise::Stream;
 
     #[test]
-    fn it_is_linear_between_the_ends_of_its_converter() {
+    fn sensor_is_linear_within_its_converter_range() {
         let analog = Analog { offset: 205.0, scale: 700.0, noise: 0.0 };
         let mut noise = Noise::new(1, Stream::Gripper);
         let counts = [-1.0, 0.0, 0.5, 1.0007, 5.0, 6.0].map(|value| analog.counts(value, &mut noise));
@@ -37,7 +37,7 @@ mod tests {
     }
 
     #[test]
-    fn its_noise_has_no_bias_and_an_end() {
+    fn sensor_noise_is_unbiased_and_bounded() {
         let analog = Analog { offset: 1000.0, scale: 1.0, noise: 3.0 };
         let mut noise = Noise::new(1, Stream::Gripper);
         let read: Vec<f64> = (0..4000).map(|_| f64::from(analog.counts(0.0, &mut noise)) - 1000.0).collect();

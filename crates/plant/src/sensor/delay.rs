@@ -70,7 +70,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn words_come_out_as_they_went_in_but_later() {
+    fn delayed_words_are_unchanged() {
         let mut line = DelayLine::default();
         assert_eq!([1, 2, 3, 4, 5].map(|word| line.pass(word, 2)), [1, 1, 1, 2, 3]);
         let mut none = DelayLine::default();

@@ -19,7 +19,7 @@ mod tests {
     use crate::noise::Stream;
 
     #[test]
-    fn it_counts_up_from_zero_and_around() {
+    fn resolver_counts_up_from_zero_and_wraps() {
         let mut noise = Noise::new(1, Stream::Resolvers);
         let mut exact = |angle| counts(angle, 0.0, &mut noise);
         assert_eq!(exact(0.0), 0);

@@ -20,7 +20,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_switch_turns_off_later_than_on() {
+    fn switch_turns_off_later_than_on() {
         let mut switch = Switch::default();
         let seen = [0.02, 0.0, 0.02, 0.03, 0.04, 0.02, -0.1].map(|beyond| switch.see(beyond, 0.03));
         assert_eq!(seen, [false, true, true, true, false, false, true]);

@@ -184,7 +184,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_warning_is_explained_with_its_code() {
+    fn warning_is_explained_with_its_code() {
         assert_eq!(explained(Warning::JointLimit), "WD6 (joint 6 is at its limit)");
         assert_eq!(explained(Warning::ShoulderUp), "P05 (joint 2, the shoulder, is at its upper limit)");
         let ended = "P-IG (the DEPC function has ended and must be started again)";
@@ -192,7 +192,7 @@ mod tests {
     }
 
     #[test]
-    fn the_screen_reads_as_the_manual_has_it() {
+    fn screen_text_equals_that_of_the_manual() {
         assert_eq!(
             Message::Aligned([true, false, false, false, true, true]).to_string(),
             "* = ALIGNED   1 2 3 4 5 6\n              *       * *"

@@ -160,7 +160,7 @@ pub struct T3Controller {
     transmitter: bool,
     /// The emergency stops that are pressed.
     estops: [bool; 5],
-    /// The Prim Interface Box has power. Only the console of `rcs-cell` takes it away, so it is on in every saved cell.
+    /// The Prim Interface Box has power. Only the console of `rcs-cell` removes it, so every saved cell has it.
     #[serde(skip, default = "powered")]
     prim_box: bool,
     /// The pump and its lines work.

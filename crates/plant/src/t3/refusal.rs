@@ -62,7 +62,7 @@ pub enum Refusal {
     /// A warning must be answered first.
     #[error("a warning is on the screen: answer it with enter, or with cancel twice")]
     Warned,
-    /// There is no warning to answer.
+    /// No warning requires an answer.
     #[error("there is no warning on the screen to answer")]
     NothingToAnswer,
     /// The error P-IG can only be cancelled.

@@ -65,7 +65,7 @@ fn frame(words: [i16; 6], function: [u8; 2]) -> [u8; FRAME_BYTES] {
 }
 
 #[test]
-fn the_steps_of_the_manual_lead_to_a_report_of_home() {
+fn steps_of_the_manual_end_with_a_report_of_home() {
     let mut t3 = auto();
     assert!(off(&t3.position()) <= HOME_TOLERANCE, "{:?}", t3.position());
     t3.press(Key::CycleStart).unwrap();
@@ -82,7 +82,7 @@ fn the_steps_of_the_manual_lead_to_a_report_of_home() {
 }
 
 #[test]
-fn a_missing_board_is_found_when_the_function_begins() {
+fn missing_board_is_detected_when_the_function_begins() {
     let mut t3 = auto();
     assert_eq!(t3.press(Key::Board(false)), Err(Refusal::Powered));
     t3.press(Key::ControlPower(false)).unwrap();
@@ -107,7 +107,7 @@ fn a_missing_board_is_found_when_the_function_begins() {
 
 /// IV.1 steps 2 and 5: the error stays, and FAULT RESET does nothing, until the Prim Interface Box has power.
 #[test]
-fn a_fault_shows_its_error_and_resets_only_with_the_prim_interface_box() {
+fn fault_resets_only_with_the_prim_interface_box() {
     let mut t3 = t3();
     assert_eq!(t3.error(), None);
     t3.press(Key::PrimBox(false)).unwrap();
@@ -124,7 +124,7 @@ fn a_fault_shows_its_error_and_resets_only_with_the_prim_interface_box() {
 
 /// IV.3.4: after INTERRUPT and CANCEL twice the pendant moves single axes near HOME.
 #[test]
-fn the_pendant_turns_single_axes_in_manual_mode() {
+fn pendant_turns_single_axes_in_manual_mode() {
     let mut t3 = running();
     let jog = |axis, degrees| Key::Jog { axis, degrees };
     assert_eq!(t3.press(jog(1, 5)), Err(Refusal::Running));
@@ -152,7 +152,7 @@ fn the_pendant_turns_single_axes_in_manual_mode() {
 }
 
 #[test]
-fn a_broken_transmitter_is_noticed_with_the_next_answer_and_repaired() {
+fn broken_transmitter_is_detected_at_the_next_answer() {
     let mut t3 = running();
     t3.press(Key::Transmitter(false)).unwrap();
     assert_eq!(pass(&mut t3, 0.2), []);
@@ -226,7 +226,7 @@ fn steps_out_of_order_are_refused_without_effect() {
 }
 
 #[test]
-fn axes_get_their_asterisks_one_by_one() {
+fn axes_are_aligned_one_by_one() {
     let mut t3 = manual();
     t3.press(Key::Align(Some(3))).unwrap();
     assert_eq!(t3.press(Key::Align(Some(4))), Err(Refusal::Moving));
@@ -236,7 +236,7 @@ fn axes_get_their_asterisks_one_by_one() {
 }
 
 #[test]
-fn a_wd_error_is_cleared_by_step_12() {
+fn wd_error_is_cleared_by_step_12() {
     let mut t3 = auto();
     t3.press(Key::CycleStart).unwrap();
     for _ in 0..200 {
@@ -273,7 +273,7 @@ fn enter_restarts_at_the_place_of_the_robot() {
 }
 
 #[test]
-fn the_arm_follows_acknowledged_points_and_functions_run_on_arrival() {
+fn arm_follows_points_and_functions_run_on_arrival() {
     let mut t3 = running();
     for count in 1..=50_i16 {
         let sent = step(&mut t3, &frame([count * 20, -6293, -636, -9000, 13500, 0], [7, 9]), true);
@@ -286,7 +286,7 @@ fn the_arm_follows_acknowledged_points_and_functions_run_on_arrival() {
 }
 
 #[test]
-fn after_a_cancel_the_program_goes_home_and_can_begin_again() {
+fn cancelled_program_moves_home_and_can_begin_again() {
     let mut t3 = running();
     for count in 1..=20_i16 {
         step(&mut t3, &frame([count * 50, -6293, -636, -9000, 13500, 0], [0; 2]), true);
@@ -300,7 +300,7 @@ fn after_a_cancel_the_program_goes_home_and_can_begin_again() {
 }
 
 #[test]
-fn an_emergency_stop_lets_the_arm_sink_and_takes_the_whole_start_up() {
+fn emergency_stop_requires_the_whole_start_up() {
     let mut t3 = running();
     t3.press(Key::Press(EStop::Terminals)).unwrap();
     let before = t3.position().tool[2];
@@ -319,7 +319,7 @@ fn an_emergency_stop_lets_the_arm_sink_and_takes_the_whole_start_up() {
 }
 
 #[test]
-fn hold_stops_the_programs_own_motions_and_interrupt_ends_them() {
+fn hold_stops_and_interrupt_ends_program_motions() {
     let mut t3 = auto();
     t3.press(Key::CycleStart).unwrap();
     pass(&mut t3, 0.2);
@@ -333,7 +333,7 @@ fn hold_stops_the_programs_own_motions_and_interrupt_ends_them() {
 }
 
 #[test]
-fn the_same_seed_is_the_same_morning() {
+fn equal_seeds_give_equal_start_ups() {
     let morning = |seed| T3Controller::dark(Limits::NBS, &Actuators::default(), seed).position();
     assert_eq!(morning(3), morning(3));
     assert_ne!(morning(3), morning(4));

@@ -101,7 +101,7 @@ impl Rig {
         }
     }
 
-    /// Move the tool to a frame in a straight line at `speed` in/s; a radian counts as 14 in.
+    /// Move the tool to a frame in a straight line at `speed` in/s; a radian is treated as 14 in.
     pub fn go(&mut self, to: Frame, speed: f64) {
         let from = self.at;
         let turn = rotation_vector(&(from.rotation.inverse() * to.rotation));

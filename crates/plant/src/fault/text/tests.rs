@@ -76,7 +76,7 @@ fn every_kind_is_read() {
 }
 
 #[test]
-fn every_rule_of_the_line_is_read() {
+fn every_line_rule_parses() {
     let read = parse_line(&source(
         "seed = 7\nmost_per_tick = 2\n\
          [[fault]]\nkind = \"flip\"\ndirection = \"to-host\"\nrate = 0.001\nfrom = 100\nuntil = 500\n\
@@ -104,7 +104,7 @@ fn said(entry: &str) -> String {
 }
 
 #[test]
-fn mistakes_report_place_expected_and_found() {
+fn fault_file_errors_have_place_expected_and_found() {
     for (entry, expected) in [
         ("kind = \"stuk\"", "line 5, column 8: fault[1].kind: expected one of drop, "),
         ("kind = \"stuk\"", ", found \"stuk\" (the nearest one is stuck)"),
@@ -187,7 +187,7 @@ fn mistakes_report_place_expected_and_found() {
 }
 
 #[test]
-fn all_mistakes_are_found_at_once() {
+fn all_fault_file_errors_are_reported_at_once() {
     let text = "seeds = 3\n\
         [[fault]]\nkind = \"stuk\"\n\
         [[fault]]\nkind = \"slow\"\nsensor = \"beam.1\"\nby = 0\n\
@@ -218,7 +218,7 @@ fn invalid_fault_files_are_refused() {
 }
 
 #[test]
-fn the_files_of_the_project_are_read() {
+fn shipped_fault_files_parse() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../data/faults");
     let mut count = 0;
     for entry in fs::read_dir(folder).unwrap() {
