@@ -1,8 +1,8 @@
 //! Cost of a tick of the simulated cell: at rest, with a moving part in the fingers, with the vise closing on a part in
 //! the fingers; cost of its digest, of saving and of restoring it.
 //!
-//! `cargo bench -p plant --bench cell`. The scenes are those of the determinism tests; each sample begins with the same
-//! saved cell, so that all samples measure the same ticks.
+//! `cargo bench -p plant --bench cell`. The scenes are those of the determinism tests. Each sample begins with
+//! the same saved cell, so that all samples measure the same ticks.
 
 #[path = "../tests/rig/mod.rs"]
 mod rig;

@@ -1,8 +1,8 @@
 //! Prints digests of two scenes with many contacts, one line each: `cargo run --release --example world_hash [SEED]`.
 //!
 //! The lines are the same in every run, in every process, and with and without `--release` (physics without
-//! optimisation is much slower: a minute or two). `--ticks` prints the digest of every tick, so that two outputs can be
-//! compared line by line if they differ.
+//! optimisation takes a minute or two). `--ticks` prints the digest of every tick, for a comparison line by
+//! line if two outputs differ.
 
 #![expect(clippy::print_stdout, reason = "figures are what it is for")]
 

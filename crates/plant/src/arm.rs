@@ -12,10 +12,10 @@
 //!   damping x rate = torque of the weights + torque of the contacts
 //! ```
 //!
-//! Inertia is neglected: at three degrees a second it has no effect. The equation is solved implicitly in the stiffness
-//! of the contacts, which is large, so that an arm that lies on something is at rest. The shot pin stops the shoulder,
-//! the joints' limits stop the others. Meanwhile the servos keep their command, as far as their following error allows,
-//! and jump back to it when the pressure returns.
+//! Inertia is neglected: at three degrees per second it has no effect. The equation is solved implicitly in the
+//! stiffness of the contacts, which is large, so that an arm on an obstacle comes to rest. The shot pin stops
+//! the shoulder, the joints' limits stop the others. The servos keep their command within their following
+//! error, and jump back to it when the pressure returns.
 
 use geometry::{
     frame::{Frame, Vector},
@@ -99,7 +99,7 @@ pub struct Arm {
     pin: f64,
     /// Rates of the joints in the last step without pressure, rad/s.
     rates: [f64; 6],
-    /// Time since the pressure went, s.
+    /// Time since the loss of pressure, s.
     sinking: f64,
 }
 
@@ -138,7 +138,8 @@ impl Arm {
         Load::weight(END_PLATE, chain.along(END_PLATE, TOOL_CENTRE), self.actuators.hydraulics.tool_weight)
     }
 
-    /// Turn the pressure on or off. Off stops the motion, keeps the present command, and extends the shot pin.
+    /// Turn the pressure on or off. The loss of pressure stops the motion, keeps the present command, and
+    /// extends the shot pin.
     pub fn set_pressure(&mut self, on: bool) {
         if self.pressure && !on {
             self.stop();
@@ -226,12 +227,12 @@ impl Arm {
         self.command = Ramp::at(command);
     }
 
-    /// The rates of the joints, rad/s: a joint that would pass a stop within the step ends at the stop, and the others
-    /// move as if it were fixed.
+    /// The rates of the joints, rad/s. A joint that would pass a stop within the step ends at the stop, and the
+    /// others move as if it were fixed.
     fn give_way(&self, dt: f64, mut damping: Matrix6<f64>, mut torque: Vector6<f64>) -> [f64; 6] {
         let mut stopped = [None; 6];
         loop {
-            // Dampers are positive and contacts only add to them: the matrix has an inverse.
+            // Dampers are positive and contacts only add to them, so the matrix has an inverse.
             let solved = damping.cholesky().map_or_else(Vector6::zeros, |cholesky| cholesky.solve(&torque));
             let mut rates: [f64; 6] = solved.into();
             let mut beyond = false;

@@ -1,7 +1,8 @@
 //! Collision shapes of robot and devices, from the cell description and their positions.
 //!
-//! Links of the arm are capsules, hands and furniture are boxes, plates and round parts are cylinders. The simulated
-//! cell and the path check ([`crate::room`]) both make their bodies here, so that both use the same shapes.
+//! Links of the arm are capsules, hands and furniture are boxes, plates and round parts are cylinders. The
+//! simulated cell and the path check ([`crate::room`]) both make their bodies here, and therefore use the same
+//! shapes.
 
 use core::f64::consts::{FRAC_PI_2, SQRT_2};
 
@@ -71,7 +72,7 @@ pub fn arm(cell: &CellDescription, joints: &Joints) -> [Body; 3] {
     };
     let upper = capsule("upper_arm", upper, T3.upper_arm / 4.0, T3.upper_arm, robot.upper_arm_radius);
     let fore = capsule("forearm", fore, 0.0, T3.forearm, robot.forearm_radius);
-    // Its round end is behind the end plate, in front of which the quick change sits.
+    // Its round end is above the end plate, on which the quick change is mounted.
     let end = T3.yaw_to_plate - robot.wrist_radius;
     let wrist = capsule("wrist", plate, 0.0, end, robot.wrist_radius);
     [upper.at(chain::UPPER_ARM), fore.at(chain::FOREARM), wrist.at(chain::WRIST)]
@@ -153,7 +154,7 @@ pub fn stored(cell: &CellDescription, gripper: &Gripper, name: &'static str, at:
     let change = &cell.quick_change;
     let plate = Inches::new(-gripper.plate() - change.length / 4.0, 0.0, 0.0);
     let plate = Frame { position: plate, rotation: Rotation::identity() };
-    // The inscribed square of the round plate: the camera looks past the round plate.
+    // The inscribed square of the round plate, because the camera's view passes the round plate.
     let side = change.radius * SQRT_2;
     let boxes = body_boxes(cell, gripper).into_iter();
     boxes

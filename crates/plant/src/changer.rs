@@ -1,9 +1,10 @@
 //! Positions of the grippers, on the robot, in a holster or on the floor, and their changes.
 //!
-//! The state of the ring decides, not the command of the controller ([`crate::quick_change`]). A gripper that the ring
-//! holds moves with the arm. A released gripper lands on the holster under it, or falls. It rests on its holster, and
-//! slides with an A plate that engages it. A gripper is *mated* while its pins touch, locked or not: only then it has
-//! air and its sensors are connected. The bodies of a gripper at rest in its holster are not simulated.
+//! The state of the ring decides, not the controller's command ([`crate::quick_change`]). A gripper that the
+//! ring holds moves with the arm. A released gripper lands on the holster under it, or falls. It rests on its
+//! holster, and slides with an A plate that engages it. A gripper is *mated* while its pins touch, locked or
+//! not: only then it has air and its sensors are connected. The bodies of a gripper at rest in its holster are
+//! not simulated.
 
 use geometry::frame::Frame;
 use interfaces::device::{HolsterSensors, QuickChangeSensors, QuickChangeValves};
@@ -26,7 +27,7 @@ pub(crate) enum GripperPlace {
     Holster(usize, Perch),
     /// It was released away from a holster.
     Fallen,
-    /// A person has taken it out of the cell.
+    /// A person has removed it from the cell.
     Away,
 }
 
@@ -111,7 +112,7 @@ impl Changer {
         }
     }
 
-    /// True if it must be simulated: it moves, can be moved, or can move something.
+    /// True if it must be simulated: it moves, can be moved, or can move another body.
     pub(crate) fn is_present(&self, hand: Hand) -> bool {
         match self.place(hand) {
             Some(GripperPlace::Holster(_, perch)) => self.mated == Some(hand) || !perch.rests(),
@@ -124,7 +125,7 @@ impl Changer {
         !self.places.iter().any(|place| matches!(place, GripperPlace::Holster(which, _) if *which == holster))
     }
 
-    /// Where a gripper lands if the ring releases it at `robot`.
+    /// Landing place of a gripper that the ring releases at `robot`.
     fn land(&self, robot: &Frame) -> GripperPlace {
         let caught = self.holsters.iter().enumerate().find_map(|(which, holster)| {
             let perch = holster.catch(&holster.offset(robot)).filter(|_| self.is_empty(which))?;
@@ -133,7 +134,7 @@ impl Changer {
         caught.unwrap_or(GripperPlace::Fallen)
     }
 
-    /// The place of the gripper in the ring if the lips of a holster hold its ears down and tear it off; `None` if not.
+    /// The place of the gripper in the ring if the lips of a holster hold its ears down and detach it.
     fn torn(&mut self, robot: &Frame) -> Option<GripperPlace> {
         if let Some(which) = self.under_lips {
             let holster = &self.holsters[which];
@@ -151,8 +152,8 @@ impl Changer {
         None
     }
 
-    /// A time step of a gripper on its holster: it falls as far as there is room, slides with an engaged A plate, and
-    /// is caught if the ring has just locked.
+    /// A time step of a gripper on its holster: it falls as far as there is room, slides with an engaged A
+    /// plate, and is locked if the ring has just closed.
     fn step_on_holster(&mut self, hand: Hand, which: usize, mut perch: Perch, step: &Step) -> GripperPlace {
         let holster = &self.holsters[which];
         perch.fall(step.dt);
@@ -225,8 +226,8 @@ impl Changer {
         Some(place)
     }
 
-    /// Hang a gripper that is not on the robot in a holster, numbered from 0 in the order of the grippers' ids, or take it
-    /// out of the cell. Returns the gripper.
+    /// Place a gripper that is not on the robot in a holster, numbered from 0 in the order of the grippers'
+    /// ids, or remove it from the cell. Returns the gripper.
     ///
     /// # Errors
     /// [`WorkstationError`] if the gripper or holster does not exist, the quick change has the gripper, or
@@ -283,14 +284,14 @@ impl Changer {
     }
 }
 
-/// What has happened to the grippers in a step.
+/// Changes of the grippers in a step.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Changes {
     /// The ring has released this gripper away from a holster.
     pub(crate) fell: Option<Hand>,
-    /// The lips of a holster have torn this gripper off the ring.
+    /// The lips of a holster have detached this gripper from the ring.
     pub(crate) torn: Option<Hand>,
-    /// The pins of this gripper touch no more: it has lost its air.
+    /// The pins of this gripper no longer touch: it has lost its air.
     pub(crate) parted: Option<Hand>,
 }
 

@@ -1,5 +1,5 @@
-//! Collision check of the robot: each tick arm, gripper, and the carried part are checked against everything else in
-//! the cell, and against the arm itself.
+//! Collision check of the robot: in each tick, arm, gripper, and the carried part are checked against all other
+//! bodies of the cell, and against the arm itself.
 //!
 //! The simulated arm follows its path even through contact, like a hydraulic arm, so collisions must be
 //! computed from geometry. The cell description lists permitted contacts ([`crate::description::Permits`]). Of
@@ -34,7 +34,7 @@ pub struct Body {
     pub pose: Pose,
     pub shape: SharedShape,
     pub aabb: Aabb,
-    /// Its position in the chain of the arm, from 1 at the base; 0 for other bodies. Neighbours in the chain do not
+    /// Its position in the chain of the arm, from 1 at the base; 0 for other bodies. Adjacent links do not
     /// collide.
     pub chain: u8,
 }
@@ -64,7 +64,7 @@ impl Body {
     /// True if they overlap, so that one cannot be put where the other is.
     #[must_use]
     pub fn overlaps(&self, other: &Self) -> bool {
-        // Round shapes inside each other have no separating direction, and no depth.
+        // Round shapes inside each other have neither a separating direction nor a depth.
         let same = (self.pose.translation - other.pose.translation).length() < SAME_PLACE;
         let contact = query::contact(&self.pose, &*self.shape, &other.pose, &*other.shape, 0.0);
         same || matches!(contact, Ok(Some(contact)) if contact.dist < -OVERLAP)
@@ -122,7 +122,7 @@ impl Contact {
     }
 }
 
-/// The present contacts, and which of them began earlier.
+/// The present contacts, with the ones that began earlier marked.
 #[derive(Clone, Debug, Default, Deserialize, Serialize)]
 pub struct Clearance {
     /// Distance within which pairs are reported, m.

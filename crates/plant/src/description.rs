@@ -1,9 +1,9 @@
-//! The cell description: one TOML file with positions, sizes and forces of everything in the cell.
+//! The cell description: one TOML file with positions, sizes and forces of all objects in the cell.
 //!
-//! All values in the file are in inches, degrees, pounds and seconds, in world coordinates. Reading finds all mistakes
-//! at once: invalid TOML, keys that are missing, unknown or misspelt, values of the wrong type, and numbers and names
-//! that [`CellDescription::validate`] rejects. Each mistake gives its entry, its place in the text, the expected and
-//! the found value.
+//! All values in the file are in inches, degrees, pounds and seconds, in world coordinates. Reading reports all
+//! errors at once: invalid TOML, keys that are missing, unknown or misspelt, values of the wrong type, and
+//! numbers and names that [`CellDescription::validate`] rejects. Each error has its entry, its place in the
+//! text, the expected and the found value.
 
 mod check;
 mod contact;
@@ -468,7 +468,7 @@ impl CellDescription {
     /// Read a description from TOML text and check it.
     ///
     /// # Errors
-    /// All mistakes of the text with their places.
+    /// All errors of the text with their places.
     pub fn from_toml(text: &str) -> Result<Self, Diagnostics> {
         Document::load(&source(text), KIND, |description: &Self, stand_ins, problems| {
             let (unfit, positive) = description.problems(stand_ins);
@@ -477,8 +477,8 @@ impl CellDescription {
         })
     }
 
-    /// The place of an entry in the text of a description, by its path, such as `gripper.parts.body[0]`; if it is
-    /// missing, that of the nearest table around it.
+    /// The place of an entry in the text of a description, by its path, such as `gripper.parts.body[0]`, or
+    /// that of the nearest table around a missing entry.
     #[must_use]
     pub fn place(text: &Source, entry: &str) -> At {
         Document::parse(text, KIND).0.place(entry)

@@ -1,9 +1,9 @@
 //! The tool drum of the machine tool at its transfer position: the place of a tool, fingers, and a strike plate.
 //!
-//! The drum's frame is the tool frame of the location TOOL-TRNS: X into the drum. A tool goes in along X. Near the end,
-//! detents resist with a force that rises like that of a spring; afterwards they keep the tool with a smaller force.
-//! Closed fingers, or another tool, stop it with a hundred pounds. The fingers centre a tool when they close and hold
-//! it more strongly than the robot: the robot's hold slides first.
+//! The drum's frame is the tool frame of the location TOOL-TRNS: X into the drum. A tool is inserted along X.
+//! Near the end, detents resist with a force that rises like that of a spring; afterwards they keep the tool
+//! with a smaller force. Closed fingers, or another tool, stop it with a hundred pounds. The fingers centre a
+//! tool when they close, and hold it more strongly than the robot: the robot's hold slides first.
 //!
 //! Detents and obstacles are one spring along X. Its far end, the anchor, slides when the force reaches its
 //! limit, so that a tool comes to rest completely, and a force sensor reads a steady value.
@@ -40,7 +40,7 @@ pub struct Entering {
 }
 
 impl Entering {
-    /// The error of fingers that cannot close on a tool that is here.
+    /// The error of fingers that cannot close on a tool at this position.
     pub(crate) fn not_in_place(self, tool: String) -> WorkstationError {
         let distance = libm::hypot(self.left, self.aside);
         WorkstationError::NotInPlace { tool, distance, degrees: self.angle.to_degrees() }
@@ -177,7 +177,7 @@ impl Drum {
         (spring - DAMPING * speed).clamp(-inward, outward)
     }
 
-    /// Fix the tool in the drum, or release it; the spring along X then rests at the tool's position.
+    /// Fix the tool in the drum, or release it. The spring along X then rests at the tool's position.
     pub fn lead(&mut self, fast: bool, entering: &Entering) {
         if let Some(pocketed) = &mut self.tool {
             pocketed.fast = fast;

@@ -1,13 +1,14 @@
 //! Analysis of a picture (V.2.1 LOCATE-OBJ): the centroid; for the second picture also the angle and recognition.
 //!
-//! It uses only the visible points of each part ([`Subject`]), so it gives the same bits in the cell and in another
-//! process. It computes centroid and lengths from these points: for a part that is cut by the edge of the picture or
-//! half hidden, the centroid is off its middle and recognition fails. Parts that touch in the picture are one blob.
+//! It uses only the visible points of each part ([`Subject`]), so its results are equal bit for bit in the cell
+//! and in another process. It computes centroid and lengths from these points: for a part that is cut by the
+//! edge of the picture or half hidden, the centroid is off its middle and recognition fails. Parts that touch
+//! in the picture are one blob.
 //!
-//! Positions are those of a pinhole camera: a part that is nearer than the expected range looks larger and farther from
-//! the axis. The second picture also measures the outline and recognises the part by it. `variation` chooses the
-//! exposure: a part that reflects too little light for it is not in the picture; one that reflects too much blooms, and
-//! its outline grows. LOCATE-OBJ tries the variations one after the other.
+//! Positions are those of a pinhole camera: a part nearer than the expected range looks larger and farther from
+//! the axis. The second picture also measures the outline, which identifies the part. `variation` selects the
+//! exposure: a part with too little reflectance for it is not in the picture; one with too much blooms, and its
+//! outline grows. LOCATE-OBJ tries the variations in turn.
 
 use geometry::{
     frame::Vector,
@@ -46,7 +47,7 @@ pub struct Analysis {
 }
 
 impl Analysis {
-    /// An analysis that has had no request yet; `seed` is that of the run.
+    /// An analysis before its first request; `seed` is that of the run.
     #[must_use]
     pub fn new(description: &Description, seed: u64) -> Self {
         Self {
@@ -167,7 +168,7 @@ impl Analysis {
         }
     }
 
-    /// True if the analysis fails at random; draws a number only if such failures are configured.
+    /// True if the analysis fails at random. It draws a number only if such failures are configured.
     fn fails(&mut self) -> bool {
         let chance = self.description.failure;
         chance > 0.0 && (self.noise.within(1.0) + 1.0) / 2.0 < chance
@@ -201,7 +202,7 @@ fn grip_angle(edges: &[(Vector, f64); 2], grip: i16, noise: f64) -> i32 {
     let widest = grip.unsigned_abs() == 1;
     let (across, _) = if (first.1 > second.1) == widest { first } else { second };
     let angle = hundredths_of_degree(libm::atan2(across.z, across.y) + noise);
-    // An edge has no direction: choose the roll of less than a quarter turn.
+    // An edge has no direction, so the roll of less than a quarter turn is chosen.
     let folded = angle.rem_euclid(18_000);
     if folded > 9_000 { folded - 18_000 } else { folded }
 }

@@ -10,7 +10,7 @@ use crate::{
     hand::{Hand, ROBOT_HANDS},
 };
 
-/// Where a gripper is that a person has taken out of the cell, m: far below the floor.
+/// Position of a gripper that a person has removed from the cell, m: far below the floor.
 const AWAY: Vector = Vector::new(0.0, 0.0, -100.0);
 
 impl Cell {
@@ -49,8 +49,8 @@ impl Cell {
         }
     }
 
-    /// Hang a gripper that is not on the robot in a holster, numbered from 0 in the order of the grippers' ids, or take it
-    /// out of the cell, as a person does.
+    /// Place a gripper that is not on the robot in a holster, numbered from 0 in the order of the grippers'
+    /// ids, or remove it from the cell, like a person.
     ///
     /// # Errors
     /// [`WorkstationError`] if the gripper or holster does not exist, the quick change has the gripper, or
@@ -86,8 +86,8 @@ impl Cell {
         self.changer.holster_sensors(&self.description, &frames)
     }
 
-    /// End effector id of the gripper that the ring of the quick change holds, if any. The id pins also read a gripper
-    /// that is mated and not locked.
+    /// End effector id of the gripper that the ring of the quick change holds, if any. The id pins also read a
+    /// gripper that is mated but not locked.
     #[must_use]
     pub fn gripper(&self) -> Option<u8> {
         self.changer.carried().and_then(Hand::end_effector_id)

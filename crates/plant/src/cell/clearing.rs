@@ -1,6 +1,6 @@
 //! Bodies of the clearance check: the moving parts of the robot, and the obstacles ([`crate::bodies`]).
 //!
-//! A held part counts at its true position: it can move in the fingers.
+//! A held part is checked at its true position, because it can move in the fingers.
 
 use super::{Cell, CellEvent};
 use crate::{
@@ -12,7 +12,7 @@ use crate::{
 };
 
 impl Cell {
-    /// Find new contacts; called once a tick.
+    /// Find new contacts. Called once per tick.
     pub(super) fn check_clearance(&mut self) {
         let mut obstacles = self.devices();
         obstacles.extend(self.part_bodies());
@@ -40,8 +40,8 @@ impl Cell {
     }
 
     /// Contacts of the robot at the end of the last tick, and pairs nearer than the margin of
-    /// [`Cell::watch_clearance`]: each pair of names once, at its deepest point, without pairs that may always touch.
-    /// The controller does not get them: a T3 has no contact sensors.
+    /// [`Cell::watch_clearance`]: each pair of names once, at its deepest point, without pairs that may always
+    /// touch. The controller does not receive them: a T3 has no contact sensors.
     #[must_use]
     pub fn contacts(&self) -> &[Contact] {
         self.clearance.contacts()

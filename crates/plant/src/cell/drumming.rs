@@ -76,7 +76,7 @@ impl Cell {
         }
     }
 
-    /// Take the drum's hold off its tool.
+    /// Release the tool from the drum.
     pub(super) fn free_drum(&mut self) {
         if let Some(left) = self.drum.tool.take() {
             self.lead_by_drum(&left, false);

@@ -46,7 +46,7 @@ pub enum CellEvent {
     ForcedOut { part: String },
     /// The quick change has released a gripper that was not over an empty holster.
     GripperFell { gripper: String },
-    /// The robot lifted a gripper in the seat of its holster, and the lips tore it off the quick change.
+    /// The robot lifted a gripper in the seat of its holster, and the lips detached it from the quick change.
     GripperTorn { gripper: String },
     /// A part lies on the floor.
     Fell { part: String },
@@ -58,7 +58,7 @@ pub enum CellEvent {
     Lamps(Lamps),
     /// A visible event of the robot.
     Robot(RobotEvent),
-    /// The simulated arm cannot reach the position of the robot that it follows, and stays behind.
+    /// The simulated arm cannot reach the position of the robot that it follows, and does not move.
     CannotFollow(JointProblem),
     /// The position of a body was not finite; the body was removed from the simulation.
     Quarantined,

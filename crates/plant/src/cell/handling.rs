@@ -1,7 +1,7 @@
 //! Parts in hands and vise: blocking, gripping, slipping, releasing.
 //!
-//! The robot's gripper and the pedestal's hand work alike. During a handover a part is in both at once; it can also be
-//! in a hand and in the vise. These rules decide which of them yields:
+//! The robot's gripper and the pedestal's hand work alike. During a handover both hold the part; a part can
+//! also be in a hand and in the vise. These rules decide which of them yields:
 //!
 //! * a hand that closes on a part held by something else stops where its nearer finger touches, and grips the part as
 //!   it lies; it draws the part to its middle when the other holder releases it;
@@ -24,7 +24,7 @@ use crate::{
     vise::Clamped,
 };
 
-/// Slide of a part in the fingers from which it is reported, in.
+/// Least slide of a part in the fingers that is reported, in.
 const SLIP: f64 = 0.02;
 /// Ticks after which the vise reports a jaw that does not move (2 s).
 const JAW_PATIENCE: u32 = 50;
@@ -120,7 +120,7 @@ impl Cell {
             || HANDS.iter().any(|hand| self.is_held_by(*hand, index))
     }
 
-    /// Holders store the index of their part: update it after the list of parts has changed.
+    /// Update the part indices of the holders after the list of parts has changed.
     pub(super) fn renumber(&mut self, place: impl Fn(usize) -> usize) {
         for hand in HANDS {
             if let (Gripper { hold: Some((held, _)), .. }, _) = self.hand_at_work(hand) {
@@ -190,7 +190,8 @@ impl Cell {
         }
     }
 
-    /// The other holder has released part `index`: a hand that holds it draws it to the middle of its fingers.
+    /// Called when the other holder has released part `index`: a hand that holds it draws it to the middle of
+    /// its fingers.
     pub(super) fn recover(&mut self, hand: Hand, index: usize) {
         let (gripper, world) = self.hand_at_work(hand);
         if let Some((_, hold)) = gripper.hold.as_mut().filter(|(held, _)| *held == index) {
@@ -198,7 +199,7 @@ impl Cell {
         }
     }
 
-    /// Move the jaw of the vise; it pushes a part along, and stops when the part touches the fixed face.
+    /// Move the jaw of the vise. It pushes a part along, and stops when the part touches the fixed face.
     pub(super) fn drive_jaw(&mut self, dt: f64) {
         if !self.vise.moving() {
             return;
@@ -217,9 +218,9 @@ impl Cell {
         }
     }
 
-    /// The part that stops the jaw first, its step and its geometry: of the steps whose faces it covers well, the
-    /// shallowest, because that one stops the jaw. A bar that is pressed against the back of its step is not in the
-    /// next one.
+    /// The part that stops the jaw first, its step and its geometry. Of the steps whose faces it covers well,
+    /// it is the shallowest, which stops the jaw. A bar that is pressed against the back of its step is not in
+    /// the next one.
     fn between_jaws(&self) -> Option<(usize, usize, Squeeze)> {
         let standing = (0..self.parts.len()).filter_map(|index| {
             let offers: Vec<_> = self

@@ -34,8 +34,8 @@ impl LinkPose {
 }
 
 impl Cell {
-    /// The cell with its present parts, and with the parts that will be put down later, given by their names in the
-    /// description and in that order: so a log has the geometry before its first tick. Unknown names are left out.
+    /// The cell with its present parts, and with later ones, given by their names in the description and in
+    /// that order, so that a log has the geometry before its first tick. Unknown names are omitted.
     #[must_use]
     pub fn scene(&self, coming: &[&str]) -> Scene<'_> {
         let present = self.parts.iter().map(|part| (part.id, &part.kind));

@@ -10,7 +10,7 @@ use crate::{
 
 /// Greatest distance of a part from its seat in the vise (ASSUMED).
 pub(crate) const SEATED: Tolerance = Tolerance { inches: 0.03, degrees: 1.0 };
-/// A part farther than this from the seat of a nest is not in it, in.
+/// Greatest distance of a part in a nest from its seat, in.
 const IN_NEST: f64 = 1.0;
 
 impl Cell {

@@ -78,7 +78,7 @@ pub struct Cell {
     joystick: Joystick,
     parts: Vec<Part>,
     next_part: u32,
-    /// Fixed blocks: like the obstacles, they are made again from the description when a cell is restored.
+    /// Fixed blocks. Like the obstacles, they are made from the description when a cell is restored.
     #[serde(skip)]
     furniture: Vec<Block>,
     #[serde(skip)]
@@ -95,7 +95,7 @@ pub struct Cell {
     /// Number of ticks in which the jaw of the vise should have moved and did not.
     jaw_waits: u32,
     events: Vec<CellEvent>,
-    /// The arm cannot follow the robot; this is reported once.
+    /// True once it was reported that the arm cannot follow the robot.
     stays_behind: bool,
     droop: Option<Droop>,
     #[serde(with = "crate::image::record")]
@@ -226,8 +226,8 @@ impl Cell {
     /// not used: the caller sends `outputs.link_tx` to the robot and fills in its answer (`link_rx` and `link_ready`
     /// are returned empty).
     ///
-    /// The arm moves no faster than its servos can, so that a distant first position causes a motion and not a jump. If
-    /// a position is unreachable, the arm stays where it is and reports a [`CellEvent::CannotFollow`].
+    /// The arm is limited to the speeds of its servos, so that a distant first position causes a motion and not
+    /// a jump. If a position is unreachable, the arm does not move and reports a [`CellEvent::CannotFollow`].
     pub fn step_following(&mut self, position: Option<&Plate>, outputs: &DeviceOutputs) -> DeviceInputs {
         let outputs = &self.begin_tick(outputs);
         let followed = position.map_or(Ok(()), |plate| self.t3.follow(plate));
@@ -242,7 +242,7 @@ impl Cell {
         self.inputs
     }
 
-    /// Begin a tick and its faults; returns the controller's commands with the faults applied.
+    /// Begin a tick and its faults. Returns the controller's commands with the faults applied.
     fn begin_tick(&mut self, outputs: &DeviceOutputs) -> DeviceOutputs {
         let before = self.faults.hydraulics_lost();
         let changes = self.faults.next();
@@ -300,7 +300,7 @@ impl Cell {
         self.look(outputs);
     }
 
-    /// Once a tick: detect new contacts and fallen parts.
+    /// Once per tick: detect new contacts and fallen parts.
     fn after_tick(&mut self) {
         self.check_clearance();
         if !self.world.quarantine().is_empty() {
@@ -316,8 +316,8 @@ impl Cell {
         *self.t3.arm().joints()
     }
 
-    /// The tool frame with the deflection of arm and fingers, inches: the middle between the fingertips; for a robot
-    /// without a gripper, where they would be.
+    /// The tool frame with the deflection of arm and fingers, inches: the middle between the fingertips, or its
+    /// place on a robot without a gripper.
     #[must_use]
     pub fn tool(&self) -> Frame {
         match self.changer.carried() {
@@ -371,7 +371,7 @@ impl Cell {
     /// Press a key of the T3 controller's console, its teach pendant, or an emergency stop.
     ///
     /// # Errors
-    /// [`Refusal`]: what must be done first; the state is unchanged.
+    /// [`Refusal`] with the missing step. The state is then unchanged.
     pub fn press(&mut self, key: Key) -> Result<(), Refusal> {
         let done = self.t3.press(key);
         self.hear_t3();
@@ -439,8 +439,8 @@ pub(crate) fn physics(description: &CellDescription) -> PhysicsWorld {
     parameters.num_solver_iterations = physics.solver_iterations;
     parameters.contact_softness = stiffness;
     parameters.static_contact_softness = stiffness;
-    // The job has gaps of about a millimetre: rapier's defaults allow 5 mm of penetration, and do not check contacts
-    // until a body has moved by 50 mm. Faces that are more than 0.5 mm apart need not be solved for.
+    // The job has gaps of about a millimetre. Rapier's defaults allow 5 mm of penetration, and do not check
+    // contacts until a body has moved by 50 mm. Faces that are more than 0.5 mm apart need not be solved for.
     parameters.normalized_allowed_linear_error = 1e-5;
     parameters.normalized_prediction_distance = 5e-4;
     parameters.contact_recycling = false;

@@ -1,6 +1,6 @@
 //! Checks of a workstation action against the description alone: whether the cell has the names in it.
 //!
-//! The cell checks this before it acts; a job can be checked before the first tick.
+//! The cell checks this before it acts. A job can be checked before the first tick.
 
 use diagnostics::nearest;
 use geometry::frame::Frame;
@@ -8,7 +8,7 @@ use geometry::frame::Frame;
 use super::{WorkstationAction, WorkstationError};
 use crate::description::{CellDescription, Nest, PartType};
 
-/// Where a part can be put down.
+/// Place on which a part can be put down.
 pub(crate) enum Spot<'c> {
     Nest(&'c Nest),
     /// On the floor of a tray, with this frame.
@@ -21,7 +21,7 @@ pub(crate) enum Machine<'c> {
 }
 
 impl CellDescription {
-    /// Check that everything that a workstation action names is in the cell.
+    /// Check that all names in a workstation action are in the cell.
     ///
     /// # Errors
     /// [`WorkstationError`]; [`WorkstationError::blames`] returns the wrong word.
@@ -72,7 +72,7 @@ impl CellDescription {
         })
     }
 
-    /// Where a part goes in a sector of a unit: a part that has nests goes only into a nest.
+    /// Place of a part in a sector of a unit. A part with nests is accepted only in a nest.
     pub(crate) fn spot(
         &self,
         kind: &PartType,
@@ -115,7 +115,7 @@ impl CellDescription {
     /// Check that the vise is at a location.
     ///
     /// # Errors
-    /// [`WorkstationError::NoVise`] if it is not.
+    /// [`WorkstationError::NoVise`] if it is at another one.
     pub fn has_vise_at(&self, location: &str) -> Result<(), WorkstationError> {
         if location == self.vise.location {
             return Ok(());

@@ -14,7 +14,7 @@ use crate::{
 
 /// Greatest height above a tray's floor at which a part is in the tray, in (ASSUMED: tall tools).
 const IN_TRAY: f64 = 10.0;
-/// A part whose centre is nearer than this to that of a nest's seat is in the nest, in.
+/// Greatest distance of the centre of a part in a nest from that of the seat, in.
 const IN_NEST: f64 = 1.0;
 /// A part is put down this far above the surface on which it comes to rest, in.
 const DROP: f64 = 0.002;
@@ -108,7 +108,7 @@ impl Cell {
         Ok(())
     }
 
-    /// A body that a part at `frame` would overlap; the part `but` does not count.
+    /// A body that a part at `frame` would overlap, except the part `but`.
     pub(super) fn in_the_way(&self, kind: &PartType, frame: &Frame, but: Option<u32>) -> Option<String> {
         let part = bodies::part(kind, &to_pose(frame));
         let jaw = self.jaw_bodies();

@@ -1,8 +1,9 @@
 //! The arm without pressure: its loads, its contacts, and their report.
 //!
-//! A powered arm follows its path even through contact; a sagging arm does not. Obstacles push back its rigid parts
-//! with the stiffness of the arm; the simulated contacts act on fingers and held part through their springs. Reported
-//! depths are those of the arm's outline in the obstacle: at 2000 lb/in a tenth of an inch is two hundred pounds.
+//! A powered arm follows its path even through contact; a sagging arm does not. Obstacles push back its rigid
+//! parts with the stiffness of the arm; the simulated contacts act on fingers and held part through their
+//! springs. Reported depths are those of the arm's outline in the obstacle: at 2000 lb/in a tenth of an inch is
+//! two hundred pounds.
 
 use geometry::frame::Vector as Inches;
 use rapier3d_f64::{parry::query, prelude::*};
@@ -22,7 +23,7 @@ use crate::{
 const FRICTION: f64 = 0.30;
 /// Bodies within this distance at the beginning of a tick can be touched during it, in.
 const NEAR: f64 = 0.5;
-/// Least growth of a contact that counts, in.
+/// Least growth of a contact that is recorded, in.
 const LEAST_DEPTH: f64 = 0.001;
 
 /// The droop of the arm since it lost its pressure.
@@ -80,7 +81,7 @@ impl Cell {
         self.droop.as_ref()
     }
 
-    /// Fail the hydraulics: the pressure is lost at once, without a switch being pressed.
+    /// Fail the hydraulics: the pressure is lost at once, without a switch.
     pub fn fail_hydraulics(&mut self) {
         self.t3.lose_pressure();
         self.hear_t3();
@@ -109,7 +110,7 @@ impl Cell {
         }
     }
 
-    /// Once a tick: record the contacts of the sagging arm, and whether it is at rest.
+    /// Once per tick: record the contacts of the sagging arm, and whether it is at rest.
     pub(super) fn watch_droop(&mut self) {
         let Some(mut droop) = self.droop.take() else { return };
         droop.note(touching(&self.movers(), &self.all_obstacles()));

@@ -1,8 +1,8 @@
 //! A cell as bytes, and its digest.
 //!
-//! The saved state is everything on which the next tick depends: all bodies, joints and contacts with the state of the
-//! solver, all devices, the noise of the sensors, and events that were not read yet. A restored cell continues bit for
-//! bit like the saved one. Fixed bodies are made again from the description, which must be the same.
+//! The saved state contains all data on which the next tick depends: bodies, joints and contacts with the state
+//! of the solver, devices, the noise of the sensors, and unread events. A restored cell continues bit for bit
+//! like the saved one. Fixed bodies are made from the description, which must be the same.
 //!
 //! ```text
 //! RCSCELL\0   version u32   length u64   digest u64   the state, in postcard
@@ -34,10 +34,10 @@ pub enum RestoreError {
     /// The bytes were written in another version of the format.
     #[error("this cell was saved in version {found} of the format, expected version {VERSION}")]
     Version { found: u32 },
-    /// There are fewer or more bytes than the header says.
+    /// The number of bytes differs from that in the header.
     #[error("a saved cell of {expected} bytes was expected, found {found}")]
     Length {
-        /// Number of bytes that the header gives; if the header is incomplete, its own length.
+        /// Number of bytes in the header; if the header is incomplete, its own length.
         expected: u64,
         /// Number of bytes found.
         found: u64,
@@ -74,7 +74,7 @@ impl Cell {
         Ok(bytes)
     }
 
-    /// Restore a saved cell; `description` is the one that it was built from.
+    /// Restore a saved cell, built from `description`.
     ///
     /// # Errors
     /// [`RestoreError`] if the bytes are not a complete, undamaged cell of this description.

@@ -1,4 +1,4 @@
-//! The sensors of the cell: pictures of the camera on request, everything else once a tick.
+//! The sensors of the cell: pictures of the camera on request, all others once per tick.
 
 use geometry::frame::{Frame, Vector as Inches};
 use interfaces::device::{
@@ -22,8 +22,8 @@ use crate::{
 const ARM_IN_VIEW: [&str; 2] = ["upper_arm", "forearm"];
 
 impl Cell {
-    /// Let another process analyse the camera's pictures: the caller gets them from [`Cell::picture`], and passes the
-    /// answers to [`Cell::hear_vision`].
+    /// Let another process analyse the camera's pictures. The caller takes them from [`Cell::picture`], and
+    /// passes the answers to [`Cell::hear_vision`].
     #[must_use]
     pub fn with_vision_elsewhere(mut self) -> Self {
         self.vision_elsewhere = true;

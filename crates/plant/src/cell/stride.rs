@@ -1,12 +1,13 @@
 //! Length of a step of the simulation.
 //!
-//! The description sets the number of sub-steps in a tick: springs, contacts and moving air need them. Most of the time
-//! nothing needs them. The servos of the arm always move in sub-steps; the physics takes several at once while
+//! The description sets the number of sub-steps in a tick, which springs, contacts and moving air require. Most
+//! of the time none of these is active. The servos of the arm always move in sub-steps; the physics takes
+//! several at once while
 //!
 //! * only kinematic bodies move: a whole tick;
 //! * parts hang free in the motionless fingers of robot or pedestal, one hand each: a quarter of a tick.
 //!
-//! The physics takes single sub-steps while anything is nearer to the robot's hand than [`NEAR`].
+//! The physics takes single sub-steps while any body is nearer to the robot's hand than [`NEAR`].
 
 use geometry::frame::Frame;
 use interfaces::device::DeviceOutputs;
@@ -26,7 +27,7 @@ use crate::{
 /// Distance to hand, fingers or held part, m, below which contact is possible in the next sub-step; twice the travel of
 /// the hand in this one is added.
 const NEAR: Real = 0.004;
-/// Least distance of the fingers from anything in a long step, m.
+/// Least distance of the fingers from all bodies in a long step, m.
 const SLACK: Real = 0.001;
 /// Distance from hand, fingers and held part beyond which no body is within reach in a tick, m. The shipped arm
 /// moves by less with all joints at their greatest speeds.
@@ -36,7 +37,7 @@ const REACH: Real = 0.5;
 struct Stride {
     /// Greatest number of sub-steps that the physics takes at once.
     most: u32,
-    /// Bounding boxes of everything that the hand may come near to.
+    /// Bounding boxes of all bodies that the hand may approach.
     around: Vec<Aabb>,
     /// Colliders of hand and held part, and their poses in the hand.
     carried: Vec<(ColliderHandle, Pose)>,
@@ -102,7 +103,7 @@ impl Cell {
         Stride { most, around, carried, tool: self.t3.arm().tool(), near }
     }
 
-    /// Number of sub-steps that the physics may take at once if the hand stays clear of everything.
+    /// Number of sub-steps that the physics may take at once if the hand stays clear of all bodies.
     fn most_at_once(&self, outputs: &DeviceOutputs) -> u32 {
         let whole = self.description.physics.substeps;
         let always_small = !self.description.physics.long_steps;
@@ -127,12 +128,13 @@ impl Cell {
             || !self.changer.rests()
     }
 
-    /// True if a body is a part in the motionless fingers of one hand and touches nothing else, or a finger of the
-    /// pedestal's hand around such a part: its springs always move it.
+    /// True if a body is a part in the motionless fingers of one hand that touches no other body, or a finger
+    /// of the pedestal's hand around such a part. Its springs always move it.
     fn hangs_free(&self, body: RigidBodyHandle, outputs: &DeviceOutputs) -> bool {
         self.changer.mated().into_iter().chain([Hand::Pedestal]).any(|hand| {
             let gripper = self.hand(hand);
-            // The parts gripper may be about to take a part from the pedestal's hand: steps are small while it moves.
+            // The parts gripper may be about to take a part from the pedestal's hand, so steps are small while
+            // it moves.
             let works = if hand == Hand::Pedestal { Hand::Parts } else { hand };
             let Some((index, hold)) = &gripper.hold else { return false };
             let part = &self.parts[*index];
@@ -156,7 +158,7 @@ impl Cell {
             .collect()
     }
 
-    /// Bounding boxes of everything that the hand and its part may reach in a tick.
+    /// Bounding boxes of all bodies that the hand and its part may reach in a tick.
     fn around(&self, carried: &[(ColliderHandle, Pose)]) -> Vec<Aabb> {
         let colliders = &self.world.colliders;
         let own = carried.iter().map(|(own, _)| colliders[*own].compute_aabb());
@@ -169,7 +171,7 @@ impl Cell {
         others.map(|(_, collider)| collider.compute_aabb()).filter(|other| other.intersects(&reach)).collect()
     }
 
-    /// True if the hand, which the arm has moved in a sub-step, is near nothing.
+    /// True if no body is near the hand, which the arm has moved in a sub-step.
     fn is_clear(&self, stride: &mut Stride) -> bool {
         let tool = self.t3.arm().tool();
         let travel = metres((tool.position - stride.tool.position).norm());

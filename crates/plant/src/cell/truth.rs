@@ -1,4 +1,5 @@
-//! The true state of the cell, for a judge of what the controller reports. No sensor and no fault is involved.
+//! The true state of the cell, for a judge of the controller's reports. It is independent of sensors and
+//! faults.
 
 use geometry::frame::{Frame, Vector as Inches};
 
@@ -11,7 +12,7 @@ use crate::{
     hand::{Hand, ROBOT_HANDS},
 };
 
-/// Fingers slower than this are at rest, in/s: those that press a part follow its sway.
+/// Fingers slower than this are at rest, in/s. Those that press a part follow its sway.
 const STILL: f64 = 0.05;
 
 /// Devices that hold a part. During a handover there are two.
@@ -102,10 +103,10 @@ impl Cell {
         self.pedestal.table.moving() || self.pedestal.hand.air.speed().abs() > STILL
     }
 
-    /// Take a part away that nothing holds but the tool drum, whose fingers then stay closed.
+    /// Remove a part that is free or only in the tool drum, whose fingers then stay closed.
     ///
     /// # Errors
-    /// [`WorkstationError`]; the state is unchanged.
+    /// [`WorkstationError`]. The state is then unchanged.
     pub fn take_part(&mut self, id: u32) -> Result<(), WorkstationError> {
         if self.index_of(id).is_some_and(|index| self.is_in_drum(index)) {
             self.free_drum();

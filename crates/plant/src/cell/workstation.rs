@@ -15,7 +15,7 @@ pub enum Placement {
     At {
         x: f64,
         y: f64,
-        /// Right-hand roll about the tool's X (down), degrees; at 0 the part's Z is the tool's Z.
+        /// Right-hand roll about the tool's X (down), degrees. At 0 the part's Z is the tool's Z.
         angle: f64,
     },
     /// At random within the random offset of the tray, at any angle, drawn from the seed.
@@ -43,16 +43,16 @@ pub enum WorkstationAction {
         id: u32,
     },
     ViseOpen,
-    /// Close the vise just wide enough for a blank to go in.
+    /// Close the vise to an opening just wide enough for a blank.
     VisePartial,
     ViseClose,
-    /// Select another program of the vise; the jaw does not move until an opening is commanded.
+    /// Select another program of the vise. The jaw does not move before an opening is commanded.
     ViseProgram {
         name: String,
     },
     /// Machine the part that is clamped in the vise or in a nest.
     Machine {
-        /// The part that must be there.
+        /// The required part.
         from: String,
         to: String,
         /// Name of the location of the vise or the nest.
@@ -98,7 +98,7 @@ pub enum WorkstationError {
         part: String,
         unit: String,
         sector: u16,
-        /// Locations and sectors of its nests; sector 0 stands for a nest without a sector.
+        /// Locations and sectors of its nests; 0 for a nest without a sector.
         known: Vec<(String, u16)>,
     },
     /// The vise is at another location.
@@ -113,7 +113,7 @@ pub enum WorkstationError {
     #[error("nothing can be machined at {location}; the cell description has machines at {}", list(.known))]
     NoMachine {
         location: String,
-        /// All locations where something can be machined.
+        /// All locations with a machine.
         known: Vec<String>,
     },
     /// No gripper has this end effector id.
@@ -151,10 +151,10 @@ pub enum WorkstationError {
         /// Angle of its axis to that of its place, degrees.
         degrees: f64,
     },
-    /// The fingers of the drum would close on no tool.
+    /// The drum has no tool for its fingers.
     #[error("the drum has nothing to grip: no tool is in its place")]
     NothingToGrip,
-    /// The side in front was machined before.
+    /// The front side is already machined.
     #[error(
         "{part} is to be machined on its other side, but the one in front was machined before: turn it round first"
     )]
@@ -190,7 +190,7 @@ impl Cell {
     /// Begin an action. A jaw of the vise then moves tick by tick; see [`Cell::workstation_busy`].
     ///
     /// # Errors
-    /// [`WorkstationError`]; the state is unchanged.
+    /// [`WorkstationError`]. The state is then unchanged.
     pub fn workstation(&mut self, action: &WorkstationAction) -> Result<(), WorkstationError> {
         self.description.admits(action)?;
         match action {
@@ -239,8 +239,8 @@ impl Cell {
         self.pedestal.table.is_led_by_hand()
     }
 
-    /// True while the vise moves, a control of the joystick box is held down, or the T3 controller or that of the
-    /// rotary table carries out the action of a key.
+    /// True while the vise moves, a control of the joystick box is held down, or the T3 controller or that of
+    /// the rotary table executes the action of a key.
     #[must_use]
     pub fn workstation_busy(&self) -> bool {
         self.vise.moving() || self.joystick.busy() || self.t3.busy() || self.pedestal.table.is_led_by_hand()

@@ -1,7 +1,7 @@
 //! The injector: begins and ends the faults of a plan, and changes the data between cell and controller.
 //!
-//! Each fault has its own stream of random numbers, so that the faults of one device do not depend on the others. Its
-//! state is plain data: a restored cell continues with its faults.
+//! Each fault has its own stream of random numbers, so that the faults of one device do not depend on the
+//! others. Its state is plain data, so a restored cell continues with its faults.
 
 use interfaces::{
     device::{DeviceInputs, DeviceOutputs},
@@ -38,7 +38,7 @@ struct Running {
     until: u64,
     /// The value at which a sensor is stuck.
     caught: Option<i64>,
-    /// Words on their way through a delayed sensor.
+    /// Words in the delay line of a sensor.
     late: DelayLine,
     times: u64,
     first: u64,
@@ -121,7 +121,7 @@ impl Injector {
         self.faults.iter_mut().filter_map(|running| running.turn(tick)).collect()
     }
 
-    /// Advance to the next tick; returns the faults that begin or end in it.
+    /// Advance to the next tick. Returns the faults that begin or end in it.
     pub(crate) fn next(&mut self) -> Vec<Change> {
         self.tick += 1;
         self.turn()
@@ -142,7 +142,7 @@ impl Injector {
                 _ => {}
             }
         }
-        // Without air supply, a valve that is stuck open passes nothing either.
+        // Without air supply, a valve that is stuck open passes no air.
         if self.active().any(|what| *what == What::AirLost) {
             cut_air(&mut arrives);
         }
@@ -183,7 +183,7 @@ impl Injector {
         self.active().any(|what| *what == What::JawStuck)
     }
 
-    /// True if the camera sees nothing.
+    /// True if the camera is blind.
     #[must_use]
     pub fn camera_blind(&self) -> bool {
         self.active().any(|what| *what == What::CameraBlind)
@@ -244,7 +244,7 @@ impl Injector {
     }
 }
 
-/// True if a fault with a rate happens, or has no rate; draws a number only if there is a rate.
+/// True if a fault with a rate happens, or has no rate. It draws a number only for a rate.
 fn happens(rate: Option<f64>, noise: &mut Noise) -> bool {
     rate.is_none_or(|rate| (noise.within(1.0) + 1.0) / 2.0 < rate)
 }
@@ -365,7 +365,7 @@ mod tests {
             begun += injector.next().iter().filter(|change| change.begins).count();
             active += u32::from(injector.faults[0].active);
         }
-        // A chance of 1 in 20 a tick, and 4 ticks each: a sixth of the time.
+        // A chance of 1 in 20 per tick, and 4 ticks each: a sixth of the time.
         assert!((1450..2050).contains(&active), "{active} of 10,000 ticks");
         assert!((330..500).contains(&begun), "{begun} times");
         let [struck] = &injector.struck()[..] else { panic!("one fault") };

@@ -1,8 +1,8 @@
 //! Faults in the cell, described in a file: sensors, valves, air, wrong or misplaced parts.
 //!
-//! A [`FaultPlan`] is a seed and some [`Fault`]s; an [`Injector`] applies it tick by tick. A fault changes data between
-//! the cell and the controller (a sensor's word, a valve's command), or the delivery of a part; the rest of the cell is
-//! unchanged. So the cell behaves normally, and the controller has to detect the fault.
+//! A [`FaultPlan`] is a seed and some [`Fault`]s; an [`Injector`] applies it tick by tick. A fault changes data
+//! between the cell and the controller (a sensor's word, a valve's command), or the delivery of a part. The
+//! rest of the cell behaves normally, and the controller must detect the fault.
 //!
 //! [`text`] describes the kinds of faults and their notation. Faults of the line to the robot controller, which may be
 //! in the same file, are in [`depc::fault`].
@@ -45,7 +45,7 @@ pub struct When {
     pub from: u64,
     /// First tick after the window.
     pub until: u64,
-    /// Probability to begin in each tick of the window, or in each delivery; `None`: always present.
+    /// Probability of beginning in each tick of the window, or in each delivery; `None` if always present.
     pub rate: Option<f64>,
     /// Duration in ticks, if it has a rate.
     pub ticks: u64,
@@ -122,7 +122,7 @@ pub enum Mishap {
 }
 
 impl What {
-    /// True if it acts on deliveries, and not for a time.
+    /// True if it acts on deliveries instead of for a time.
     #[must_use]
     pub const fn is_delivery(&self) -> bool {
         matches!(self, Self::Delivery(..))

@@ -39,7 +39,7 @@
 //! `device` of a mapping of field I/O that has no connection. A fault without a time is always
 //! present; a fault of the line needs a rate, a tick or a range of ticks.
 //!
-//! Parsing reports all mistakes of a file at once.
+//! Parsing reports all errors of a file at once.
 
 mod cell;
 mod line;
@@ -76,7 +76,7 @@ pub struct FaultFile {
 /// Parses a fault file for a cell.
 ///
 /// # Errors
-/// All mistakes in the file.
+/// All errors in the file.
 pub fn parse(source: &Source, cell: &CellDescription) -> Result<FaultFile, Diagnostics> {
     sheet(source, Some(cell))
 }
@@ -84,7 +84,7 @@ pub fn parse(source: &Source, cell: &CellDescription) -> Result<FaultFile, Diagn
 /// Parses a file with faults of the line only.
 ///
 /// # Errors
-/// All mistakes in the file; faults of the cell are mistakes.
+/// All errors in the file, including faults of the cell.
 pub fn parse_line(source: &Source) -> Result<Plan, Diagnostics> {
     let read = sheet(source, None)?;
     Ok(read.line.unwrap_or_else(|| Plan::new(read.cell.seed)))
@@ -242,7 +242,7 @@ impl Entry<'_> {
     }
 }
 
-/// Reads a file and collects all its mistakes. Without a cell, faults of the cell are mistakes.
+/// Reads a file and collects all its errors. Without a cell, faults of the cell are errors.
 fn sheet(source: &Source, cell: Option<&CellDescription>) -> Result<FaultFile, Diagnostics> {
     let mut file = FaultFile::default();
     Document::load(source, KIND, |sheet: &Sheet, stand_ins, problems| {
@@ -264,7 +264,7 @@ fn sheet(source: &Source, cell: Option<&CellDescription>) -> Result<FaultFile, D
     Ok(file)
 }
 
-/// Add an entry to the file, or return its mistake.
+/// Add an entry to the file, or return its error.
 fn take(
     entry: &Entry<'_>,
     cell: Option<&CellDescription>,
