@@ -1,8 +1,9 @@
 //! The force sensor of the tool gripper (III.3.8). It measures the forces on fingers and tool, and their weight.
 //!
-//! The load is the force of the springs between the hand and fingers and tool, so it includes every contact without
-//! lag. The sensor adds the weight on it, whose direction turns with the robot, an offset of the bridges, and noise:
-//! CAL-SENSOR has to determine the reading without contact (V.1.1). Only four of the six axes are connected.
+//! The load is the force of the springs between the hand and fingers and tool, so it includes every contact
+//! without lag. The sensor adds its own load's weight, whose direction turns with the robot, an offset of the
+//! bridges, and noise: CAL-SENSOR must determine the reading without contact (V.1.1). Only four of the six axes
+//! are connected.
 
 use geometry::frame::Vector;
 use interfaces::device::{FORCE_COUNTS_PER_LB, FORCE_ZERO, ForceSensor, MOMENT_COUNTS_PER_IN_LB};
@@ -78,7 +79,7 @@ mod tests {
     #[test]
     fn measured_weight_turns_with_the_robot() {
         assert_eq!(reading(&Wrench::default(), Vector::x()), [2058, 2068, 2078 + 320, 2088], "pointing down");
-        // With the tool level, 20 lb act along tool -Z at 4 in from the sensor, and bend it about +Y.
+        // With the tool level, 20 lb act along tool -Z at 4 in from the sensor, a moment about +Y.
         assert_eq!(reading(&Wrench::default(), -Vector::z()), [2058 - 320, 2068, 2078, 2088 + 320]);
     }
 

@@ -1,8 +1,8 @@
-//! Friction of a flat pad on a face: how it slows sliding and turning within a time step.
+//! Friction of a flat pad on a face: its effect on sliding and turning within a time step.
 //!
-//! Force and moment of friction share one limit, an ellipse whose axes are the friction force and its moment on the
-//! touched area, and act against the motion at the end of the step. This gives an equation for one number, the impulse
-//! per unit of remaining speed; it is monotonic and solved by bisection.
+//! Force and moment of friction share one limit, an ellipse whose axes are the friction force and its moment on
+//! the touched area, and act against the motion at the end of the step. This gives a monotonic equation for one
+//! number, the impulse per unit of remaining speed, which is solved by bisection.
 
 use rapier3d_f64::math::Real;
 
@@ -33,8 +33,8 @@ pub struct Rubbed {
 }
 
 impl Rubbed {
-    /// The motion after a step in which friction can give an impulse of up to `limit` (N·s); `None` if it stops the
-    /// body.
+    /// The motion after a step in which friction can give an impulse of up to `limit` (N·s); `None` if it stops
+    /// the body.
     #[must_use]
     pub fn after(&self, motion: &Motion, limit: Real) -> Option<Motion> {
         let stop = [self.mass * motion.along, self.mass * motion.across];

@@ -1,5 +1,5 @@
-//! When a pair of fingers takes, keeps and releases a part, from the geometry of the part between them
-//! ([`crate::squeeze`]) and the force of its air.
+//! The conditions in which a pair of fingers grips, keeps and releases a part, from the geometry of the part
+//! between them ([`crate::squeeze`]) and the force of its air.
 
 use rapier3d_f64::math::{Pose, Real, Vector};
 
@@ -16,7 +16,7 @@ use crate::{
 const LEAST_FORCE: f64 = 0.25;
 /// Greatest distance between a pad and a face in contact, m.
 const TOUCHING: Real = 1e-4;
-/// Parts whose centres are farther than this from the fingertips, and their own radius, are not between the fingers, m.
+/// Greatest distance of a part's surface sphere from the fingertips for a part between the fingers, m.
 const REACH: Real = 0.2;
 
 /// Action of a pair of fingers on the part between them.
@@ -49,7 +49,8 @@ pub fn drive(air: &mut Air, dt: f64, supply: Supply, stop: Option<f64>, holds: b
         && (stop - air.opening()).abs() > 1e-5
         && air.force() >= LEAST_FORCE
     {
-        // The two fingers are coupled: a part pushed off the middle spreads them, and they follow it back.
+        // The two fingers are coupled: a part pushed off the middle spreads them, and they follow it when it
+        // returns.
         air.spread(stop);
     }
     air.advance(dt, supply, stop);
@@ -69,8 +70,8 @@ pub fn widest(opening: f64, parts: impl Iterator<Item = (usize, Squeeze)>) -> Op
         .max_by(|(_, a), (_, b)| a.width.total_cmp(&b.width))
 }
 
-/// Opening at which a part stops the fingers, in. A free part is drawn to the middle; a part that is `fast`, because
-/// something else holds it, stops the nearer finger, and with it the other, because the fingers are coupled.
+/// Opening at which a part stops the fingers, in. A free part is drawn to the middle. A `fast` part, which
+/// another device holds, stops the nearer finger, and with it the other, because the fingers are coupled.
 #[must_use]
 pub fn stop(squeeze: &Squeeze, fast: bool) -> f64 {
     let aside = if fast { 2.0 * squeeze.centre.abs() } else { 0.0 };

@@ -1,10 +1,10 @@
 //! A gripper: two coupled fingers, driven by air, and the part that they hold. The robot has three, the pedestal one.
 //!
-//! [`Air`] turns the flow of the valves ([`Supply`]) into an opening and a force: the flow moves free fingers, and
-//! increases the force of blocked ones; without flow both stay constant. The fingers are two bodies attached to the
-//! hand by springs with the combined stiffness of arm, wrist and fingers. So contacts of the gripper have finite
-//! forces: an arm that over-travels by 0.015 in against the vise presses with 30 lb. Geometry decides when fingers are
-//! blocked ([`crate::squeeze`]); the held part is then a [`Hold`].
+//! [`Air`] converts the flow of the valves ([`Supply`]) to an opening and a force: the flow moves free fingers,
+//! and increases the force of blocked ones; without flow both stay constant. The fingers are two bodies
+//! attached to the hand by springs with the combined stiffness of arm, wrist and fingers, so contacts of the
+//! gripper have finite forces: an arm that over-travels by 0.015 in against the vise presses with 30 lb.
+//! Geometry determines when fingers are blocked ([`crate::squeeze`]); the held part is then a [`Hold`].
 
 use geometry::frame::Vector as Inches;
 use interfaces::device::GripSensors;
@@ -25,14 +25,15 @@ use crate::{
 
 /// Fingers farther than this from a blocking part are free, in.
 const FREE_GAP: f64 = 0.001;
-/// Speed below which fingers that press a part with their whole force stand, in/s.
+/// Speed below which fingers that press a part with their whole force are at rest, in/s.
 const SWAY: f64 = 0.05;
 /// Time for which seal friction holds freed fingers before trapped air moves them, s; a part that slides out is clear
 /// by then.
 const BREAKAWAY_TIME: f64 = 0.25;
-/// A body nearer than this to a finger, m, can be touched in the next step; the travel of the hand in it is added.
+/// Distance of a body from a finger within which they can touch in the next step, m, without the travel of the
+/// hand.
 const TOUCHABLE: Real = 2e-3;
-/// Fingers can sleep when none of their points has moved faster than this for half a second, m/s (rad/s): their
+/// Fingers can sleep when none of their points has moved faster than this for half a second, m/s (rad/s). Their
 /// remaining motion is then less than 1e-11 m.
 const STILL: Real = 1e-9;
 /// Speed of fingers that trapped air drives, in/s: that of the coarse flow, which the same ports limit.
@@ -81,7 +82,7 @@ impl Air {
         self.force
     }
 
-    /// True if the force decreased in the last step: a part that slides then is being released.
+    /// True if the force decreased in the last step: a part that then slides is being released.
     #[must_use]
     pub fn relieved(&self) -> bool {
         self.relieved
@@ -102,7 +103,8 @@ impl Air {
         still && !supply.vent && (supply.flow == 0.0 || presses)
     }
 
-    /// Apply a supply for `dt` seconds; `stop` is the opening at which something between the fingers blocks them.
+    /// Apply a supply for `dt` seconds; `stop` is the opening at which an object between the fingers blocks
+    /// them.
     pub fn advance(&mut self, dt: f64, supply: Supply, stop: Option<f64>) {
         let (before, force) = (self.opening, self.force);
         let [least, greatest] = self.range;
@@ -144,7 +146,7 @@ impl Air {
         self.force -= travel * self.compressibility;
     }
 
-    /// Vent the cylinder: the force is zero, and the fingers stay where they are.
+    /// Vent the cylinder: the force is zero, and the fingers do not move.
     pub fn cut(&mut self) {
         (self.force, self.speed, self.relieved) = (0.0, 0.0, false);
     }
@@ -214,7 +216,7 @@ impl Gripper {
         Self { description: description.clone(), air, hold: None, slip_reported: false, hand, fingers, shown }
     }
 
-    /// The body to which the fingers are attached; its pose is the tool frame in the unloaded state.
+    /// The body to which the fingers are attached. Its pose is the tool frame without load.
     #[must_use]
     pub fn hand(&self) -> RigidBodyHandle {
         self.hand
@@ -244,8 +246,8 @@ impl Gripper {
         self.fingers.map(|finger| finger_rest(&self.description, finger.side, self.air.opening()))
     }
 
-    /// From now on the fingers sleep while nothing moves them: their springs are not computed then. They wake when the
-    /// air moves them, when something touches them, and when the hand moves. See [`Gripper::stand`].
+    /// From now on the fingers sleep while they are undisturbed, and their springs are then not computed. They
+    /// wake when the air moves them, when a body touches them, and when the hand moves. See [`Gripper::stand`].
     pub fn let_fingers_sleep(&self, world: &mut PhysicsWorld) {
         for finger in &self.fingers {
             let activation = world.bodies[finger.body].activation_mut();
@@ -255,8 +257,8 @@ impl Gripper {
         }
     }
 
-    /// Stop the hand. A moving kinematic body never sleeps and keeps attached bodies awake: only a held part needs
-    /// that, because it may slide at a small change of its load.
+    /// Stop the hand. A moving kinematic body never sleeps and keeps attached bodies awake. Only a held part
+    /// needs this, because it may slide at a small change of its load.
     pub fn stand(&self, world: &mut PhysicsWorld) {
         let led = self.hold.is_some();
         let kind = if led { RigidBodyType::KinematicPositionBased } else { RigidBodyType::Fixed };
@@ -371,7 +373,7 @@ impl Gripper {
         }
     }
 
-    /// Let somebody hold a gripper that has fallen.
+    /// Hold a gripper that has fallen, like a person who picks it up.
     pub fn pick_up(&self, world: &mut PhysicsWorld) {
         world.bodies[self.hand].set_body_type(RigidBodyType::KinematicPositionBased, true);
         for finger in &self.fingers {

@@ -1,7 +1,7 @@
 //! A hold: a part between two pads, limited by the pads' force and friction.
 //!
-//! Simulated contacts between a squeezed light part and two heavy pads creep, and a rigid joint never slides. A hold is
-//! between the two: springs with force limits between the pads' body and the part.
+//! Simulated contacts between a squeezed light part and two heavy pads creep, and a rigid joint never slides. A
+//! hold combines both: springs with force limits between the pads' body and the part.
 //!
 //! * Along the pads (X, Z, and rotation about Y) the limit is friction, for force and moment together: an ellipse whose
 //!   axes are the friction force and its moment on the touched area. Below the limit the part *sticks* to its springs
@@ -10,8 +10,9 @@
 //! * Across the pads (Y, and the tilts about X and Z) the limit is the pads' force. A greater force pushes the part
 //!   aside, and the pads return it to their middle, flush, as soon as they are stronger.
 //!
-//! The springs act at the middle of the part, where the six axes are decoupled, so that the solver is exact without
-//! iteration; the limits hold where the pads touch, and a bar that is gripped at its end droops about that point.
+//! The springs act at the middle of the part, where the six axes are decoupled, so that the solver is exact
+//! without iteration. The limits apply where the pads touch, and a bar that is gripped at its end droops about
+//! that point.
 
 use rapier3d_f64::math::Vector;
 use rapier3d_f64::prelude::*;
@@ -171,8 +172,8 @@ impl Hold {
             return;
         }
         self.limits = limits;
-        // Within a step, too, the springs must not exceed what the pads bear; a force at the middle of the part adds
-        // its moment about the pads.
+        // The springs must not exceed the limits of the pads within a step either. A force at the middle of the
+        // part adds its moment about the pads.
         let arm = (self.nominal.translation - squeeze.point).length();
         let [about_x, about_y, about_z] = moments;
         let greatest = [
@@ -252,7 +253,8 @@ impl Hold {
             let force = libm::hypot(force.x, force.z) / self.limits.friction;
             let used = libm::hypot(force, moment.y / self.limits.moments[1]);
             if used > 1.0 {
-                // The springs stay at the limit; whether the part sticks or slides is decided before the next step.
+                // The springs stay at the limit. Before the next step it is decided whether the part sticks or
+                // slides.
                 let excess = 1.0 - 1.0 / used;
                 let slide = Vector::new(away.x, 0.0, away.z) * excess;
                 self.nominal.translation += slide;
@@ -272,7 +274,7 @@ impl Hold {
         self.set_rest(world, rest);
     }
 
-    /// Set the rest pose of all springs to the present pose: another, stronger grip holds the part.
+    /// Set the rest pose of all springs to the present pose, because a stronger grip holds the part.
     pub fn relax(&mut self, world: &mut PhysicsWorld) {
         self.nominal = normalised(self.present(world));
         if self.grip != Grip::Sticks {
@@ -281,8 +283,8 @@ impl Hold {
         self.set_rest(world, self.nominal);
     }
 
-    /// The stronger grip has released it: draw the part back to the middle of the pads, flush; along the pads it does
-    /// not move.
+    /// Called when the stronger grip has released the part: draw it back to the middle of the pads, flush. It
+    /// does not move along the pads.
     pub fn recover(&mut self, world: &mut PhysicsWorld) {
         self.nominal.translation.y = 0.0;
         let twist = Rotation::from_xyzw(0.0, self.nominal.rotation.y, 0.0, self.nominal.rotation.w);

@@ -1,8 +1,8 @@
 //! Holsters: a gripper that is not on the robot hangs in one by its ears.
 //!
-//! A gripper released over a holster drops until its ears lie on the cheeks, and can then be slid forward (tool +Z) to
-//! the seat, where lips over the ears prevent lifting and a detent keeps it in place. Four proximity sensors detect the
-//! ears (III.3.4): two large ones from the side, two small ones at the seat.
+//! A gripper released over a holster drops until its ears lie on the cheeks. It can then slide forward (tool
+//! +Z) to the seat, where lips over the ears prevent lifting and a detent keeps it in place. Four proximity
+//! sensors detect the ears (III.3.4): two large ones from the side, two small ones at the seat.
 //!
 //! All coordinates are in the frame of the holster: the tool frame of a gripper that rests on it and is not yet slid
 //! forward. Its X points down, along the gripper. All grippers have the same ears, so any of them fits; the controller
@@ -30,7 +30,7 @@ const LIP: f64 = 0.75;
 const ASKEW: f64 = 0.052_36;
 /// Greatest depth under its rest to which the robot can press a gripper, in.
 const PRESSED: f64 = 0.10;
-/// Distance from the rest beyond which a gripper is not at this holster, in.
+/// Greatest distance from the rest of a gripper at this holster, in.
 const NEAR: f64 = 6.0;
 /// Travel of a gripper under the lips before they stop it, in.
 const LIP_PLAY: f64 = 0.15;
@@ -116,7 +116,7 @@ impl Holster {
         Perch { up: 0.0, speed: 0.0, forward: self.description.seat }
     }
 
-    /// Where a released gripper lands; `None` if it misses the cheeks.
+    /// Landing place of a released gripper; `None` if it misses the cheeks.
     #[must_use]
     pub fn catch(&self, offset: &Offset) -> Option<Perch> {
         let Holsters { catch_height, catch_aside, seat, .. } = self.description;
@@ -127,7 +127,8 @@ impl Holster {
         over.then(|| Perch { up: offset.up.max(0.0), speed: 0.0, forward: self.slide(offset.forward) })
     }
 
-    /// Position of a gripper that is moved to `forward`: not beyond the seat, and drawn to it within the detent.
+    /// Position of a gripper that is moved to `forward`: at most at the seat, and drawn to it within the
+    /// detent.
     #[must_use]
     pub fn slide(&self, forward: f64) -> f64 {
         let Holsters { seat, detent, .. } = self.description;
@@ -147,14 +148,14 @@ impl Holster {
         self.under_lips(offset) && offset.up.abs() <= LIP_PLAY
     }
 
-    /// True if a gripper that was held down is being torn upwards.
+    /// True if a gripper that was held down is being lifted off the ring.
     #[must_use]
     pub fn tears(&self, offset: &Offset) -> bool {
         self.under_lips(offset) && offset.up > LIP_PLAY
     }
 
-    /// Distance of the ears of a gripper, wherever it is, beyond the ranges of the four sensors in the order of the
-    /// bits of [`interfaces::device::HolsterSensors`], in; negative within range.
+    /// Distance of the ears of a gripper at any place beyond the ranges of the four sensors, in the order of
+    /// the bits of [`interfaces::device::HolsterSensors`], in; negative within range.
     #[must_use]
     pub fn beyond(&self, gripper: &Frame, ears: &[Frame; 2]) -> [f64; 4] {
         let Holsters { large_range, small_range, seat, .. } = self.description;

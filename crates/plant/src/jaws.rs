@@ -22,7 +22,7 @@ const FLOWS: [(u8, f64); 6] = [
 pub struct Supply {
     /// Speed of free fingers, in/s, opening positive.
     pub flow: f64,
-    /// Both sides are vented: the force goes to zero.
+    /// True if both sides are vented, so that the force goes to zero.
     pub vent: bool,
 }
 

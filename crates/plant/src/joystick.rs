@@ -1,7 +1,7 @@
 //! The joystick box (III.3.3) and the actions of its operator.
 //!
-//! Switches and knob keep their setting; stick and buttons return when their time is over. Each control has one
-//! position: an action replaces what the same control did before, and leaves the other controls as they are.
+//! Switches and knob keep their setting; stick and buttons return after their time. Each control has one
+//! position: an action replaces the previous one of the same control, and leaves the other controls unchanged.
 
 use interfaces::{
     device::{JoystickBox, KNOB_FULL},
@@ -80,15 +80,15 @@ impl Joystick {
         self.frame != 0 || self.busy()
     }
 
-    /// Release stick and buttons, and switch the frame off. The knob and the switches that suspend processes keep their
-    /// setting, so that nothing moves faster than before.
+    /// Release stick and buttons, and switch the frame off. The knob and the switches that suspend processes
+    /// keep their setting, so that no motion accelerates.
     pub fn release(&mut self) {
         self.frame = 0;
         self.held.clear();
         self.steps.clear();
     }
 
-    /// The box as the controller reads it in the next tick; call once a tick.
+    /// The box as the controller reads it in the next tick. Call it once per tick.
     pub fn read(&mut self) -> JoystickBox {
         for (process, count, wait) in &mut self.steps {
             if *wait == 0 {
@@ -115,7 +115,7 @@ impl Joystick {
 }
 
 impl Held {
-    /// True for stick and buttons, false for keys that move nothing by themselves.
+    /// True for stick and buttons, false for keys that cause no motion by themselves.
     const fn moves(self) -> bool {
         matches!(self, Self::Stick(_) | Self::Button(_))
     }

@@ -1,8 +1,8 @@
 //! The simulated cell: robot controller, arm, gripper, trays, vise, camera and parts, in rapier.
 //!
-//! [`Cell::step`] takes the controller's outputs of one tick and returns its inputs of the next; in between the cell
-//! advances by exactly 40 ms. Other actions of an operator, a job or a test go through [`Cell::workstation`];
-//! [`Cell::events`] returns errors and events.
+//! [`Cell::step`] takes the controller's outputs of one tick and returns its inputs of the next; in between,
+//! the cell advances by exactly 40 ms. Other actions of an operator, a job or a test go through
+//! [`Cell::workstation`]; [`Cell::events`] returns errors and events.
 //!
 //! # How the arm and the grip are modelled, and why
 //!

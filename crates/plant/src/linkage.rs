@@ -8,7 +8,7 @@ use geometry::{
 };
 use nalgebra::Vector6;
 
-/// Axes of the joints from base to roll, in the frames of the links that they turn.
+/// Axes of the joints from base to roll, in the frames of their links.
 pub const AXES: [[f64; 3]; 6] =
     [[0.0, 0.0, 1.0], [0.0, -1.0, 0.0], [0.0, -1.0, 0.0], [0.0, -1.0, 0.0], [0.0, 0.0, 1.0], [1.0, 0.0, 0.0]];
 
@@ -87,7 +87,8 @@ impl Chain {
         self.frames[link].shifted(Vector::new(inches, 0.0, 0.0)).position
     }
 
-    /// Row of the Jacobian: the speed of a point of a link along a direction per radian a second of each joint, in/rad.
+    /// Row of the Jacobian: the speed of a point of a link along a direction per radian per second of each
+    /// joint, in/rad.
     #[must_use]
     pub fn lever(&self, link: usize, at: &Vector, along: &Vector) -> Vector6<f64> {
         let joints = self.frames.iter().zip(AXES).take(link + 1).enumerate();

@@ -1,4 +1,4 @@
-//! Seeded noise: one random stream per device, so that the numbers of a device do not depend on those of others.
+//! Seeded noise: one random stream per device, so that the numbers of a device do not depend on other devices.
 
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;

@@ -22,7 +22,7 @@ const ROLLING: Real = 2.0;
 #[derive(Clone, Debug, Deserialize, Serialize)]
 pub struct Part {
     pub kind: PartType,
-    /// Its number in this cell, from 1; it stays the same when the part is machined.
+    /// Its number in this cell, from 1, which machining does not change.
     pub id: u32,
     pub body: RigidBodyHandle,
     pub collider: ColliderHandle,

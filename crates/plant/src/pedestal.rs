@@ -62,7 +62,7 @@ impl Table {
         }
     }
 
-    /// Once a tick: accept an order if it has a new number.
+    /// Once per tick: accept an order with a new number.
     pub fn order(&mut self, command: &MotorCommand) {
         if !self.attend(command.number) || command.number == 0 || command.number == self.echo {
             return;
@@ -189,7 +189,7 @@ impl Pedestal {
         let table = Table::new(&description.table);
         let tool = to_pose(&hand_frame(description, table.angle()));
         let hand = Gripper::new(world, &description.hand, description.stiffness, &tool, HAND);
-        // Most jobs never use it, and in the others it is mostly at rest.
+        // Most jobs do not use it, and in the others it is mostly at rest.
         hand.let_fingers_sleep(world);
         Self { hand, table, description: description.clone() }
     }

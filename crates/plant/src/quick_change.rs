@@ -1,12 +1,12 @@
 //! The quick change: the A plate on the wrist with its locking ring, and its position relative to the B plate of a
 //! gripper.
 //!
-//! Air turns the ring between its two ends while the control port is enabled; two reflectance sensors detect only the
-//! ends (VI.2). The ring catches a B plate only if it locks while the plates lie together, and releases it at its
-//! unlocked end. The id pins are longer than the play of the plates: they read the gripper under the A plate, locked or
-//! not, also after it has dropped onto its holster (V.2.1 QC-DETACH).
+//! Air turns the ring between its two ends while the control port is enabled; two reflectance sensors detect
+//! only the ends (VI.2). The ring catches a B plate only if it locks while the plates lie together, and
+//! releases it at its unlocked end. The id pins are longer than the play of the plates: they read the gripper
+//! under the A plate, locked or not, even after it has dropped onto its holster (V.2.1 QC-DETACH).
 //!
-//! [`crate::cell`] decides which body carries a gripper, and when it falls.
+//! [`crate::cell`] determines the body that carries a gripper, and when the gripper falls.
 
 use geometry::frame::{Frame, rotation_vector};
 use interfaces::device::QuickChangeValves;
@@ -35,7 +35,7 @@ impl Ring {
         Self { place: f64::from(u8::from(locked)), travel_time: description.travel_time_s }
     }
 
-    /// Apply the air for `dt` seconds. Air on both sides, or on none, leaves the ring where it is.
+    /// Apply the air for `dt` seconds. Air on both sides, or on none, does not move the ring.
     pub fn advance(&mut self, dt: f64, valves: &QuickChangeValves) {
         let way = dt / self.travel_time;
         let towards = match (valves.port, valves.lock, valves.unlock) {

@@ -16,7 +16,7 @@ use crate::{
     sensor::resolver,
 };
 
-/// Reasons for which the electronics does not react.
+/// Reasons why the electronics does not react.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum ResolverRefusal {
     #[error("the resolver electronics is at AUTO: `resolvers manual` comes first")]
@@ -46,7 +46,7 @@ impl ResolverBox {
     /// Turn the switch or press a button.
     ///
     /// # Errors
-    /// [`ResolverRefusal`]; the state is unchanged.
+    /// [`ResolverRefusal`]. The state is then unchanged.
     pub fn press(&mut self, key: ResolverKey) -> Result<(), ResolverRefusal> {
         match key {
             ResolverKey::Manual(on) => self.manual = on,
@@ -100,7 +100,7 @@ mod tests {
                 electronics.press(ResolverKey::Joint(joint)).unwrap();
             }
             assert_eq!(shown(&mut electronics, offset), home);
-            // Once more: nothing changes.
+            // A repetition has no effect.
             electronics.press(ResolverKey::Joint(2)).unwrap();
             assert_eq!(shown(&mut electronics, offset), home);
             assert_eq!(electronics.press(ResolverKey::Joint(6)), Err(ResolverRefusal::NoJoint(6)));

@@ -1,8 +1,8 @@
 //! The cell for the path check: the positions of all bodies and of the carried part, without physics and time.
 //!
-//! A [`Layout`] has the positions of everything that a job moves. [`Room::look`] sets the robot to joint angles and
-//! returns its contacts and near bodies, with the same bodies ([`crate::bodies`]) and the same clearance check as a
-//! run.
+//! A [`Layout`] has the positions of all objects that a job moves. [`Room::look`] sets the robot to joint
+//! angles and returns its contacts and near bodies, with the same bodies ([`crate::bodies`]) and the same
+//! clearance check as a run.
 
 use geometry::{
     frame::{Frame, Vector as Inches},
@@ -23,7 +23,7 @@ use crate::{
 
 /// Names of the grippers by end effector id from 1.
 const GRIPPERS: [&str; 3] = ["parts_gripper", "v_gripper", "tool_gripper"];
-/// A part whose centre is nearer than this to that of a nest's seat is in the nest, in.
+/// Greatest distance of the centre of a part in a nest from that of the seat, in.
 const IN_NEST: f64 = 1.0;
 /// Step in which a part is lowered, in, and number of times that the last step is halved.
 const STEP: f64 = 0.02;
@@ -36,12 +36,13 @@ pub struct Placed {
     pub frame: Frame,
 }
 
-/// Positions of everything that a job moves. Openings in inches, the table angle in degrees.
+/// Positions of all objects that a job moves. Openings in inches, the table angle in degrees.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Layout {
     /// End effector id of the gripper on the robot, if any.
     pub gripper: Option<u8>,
-    /// End effector id of a gripper in its holster that the robot is engaged with, if any: it is not an obstacle then.
+    /// End effector id of a gripper in its holster with which the robot is engaged, if any. It is then not an
+    /// obstacle.
     pub engaged: Option<u8>,
     pub opening: f64,
     pub held: Option<Placed>,
@@ -172,7 +173,7 @@ impl Room {
         Some(Clamped::Held)
     }
 
-    /// The seat of the nest that contains a part; `None` if it is in no nest.
+    /// The seat of the nest that contains a part, if any.
     #[must_use]
     pub fn nest_seat(&self, part: &Placed) -> Option<Frame> {
         let nests = self.cell.nest.iter().filter(|nest| nest.takes(&part.kind)).map(|nest| nest.frame());
@@ -188,8 +189,8 @@ impl Room {
         Some(other.name.to_string())
     }
 
-    /// Final frame of a part lowered from `above` along the unit vector `down`, among the fixed bodies. `None` if it
-    /// touches something at the start, or nothing within `deepest` inches.
+    /// Final frame of a part lowered from `above` along the unit vector `down`, among the fixed bodies. `None`
+    /// if it touches a body at the start, or none within `deepest` inches.
     #[must_use]
     pub fn let_down(&self, kind: &PartType, above: &Frame, down: &Inches, deepest: f64) -> Option<Frame> {
         let at = |deep: f64| Frame { position: above.position + down * deep, ..*above };

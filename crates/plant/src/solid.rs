@@ -98,7 +98,7 @@ pub fn along(kind: &PartType) -> Option<(Frame, f64, f64)> {
     Some((Frame { position: Inches::zeros(), rotation: turn }, diameter / 2.0, length))
 }
 
-/// The family of a part: pictures give each family a colour.
+/// The family of a part, which determines its colour in pictures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Family {
     Tool,

@@ -1,8 +1,8 @@
 //! Geometry of a part between two parallel closing faces: fingers or vise jaws.
 //!
-//! Both grips have the same geometry: two rectangular pads face each other along Y. Of the faces of a box, the most
-//! nearly parallel one turns towards the pads; clipped to the pad, it gives the width at which the pads stop, the point
-//! and area where friction acts, and the pose in which the box lies flush.
+//! Both grips have the same geometry: two rectangular pads face each other along Y. The most nearly parallel
+//! face of a box turns towards the pads. Clipped to the pad, it gives the width at which the pads stop, the
+//! point and area where friction acts, and the pose in which the box lies flush.
 //!
 //! A cylinder that lies between the pads touches each along a line, which is treated as a narrow strip. Pads
 //! with V-grooves (the v-gripper) touch it along two lines, and align its axis with that of the grooves. A

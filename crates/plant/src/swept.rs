@@ -4,7 +4,7 @@ use rapier3d_f64::prelude::{Aabb, BoundingVolume};
 
 use crate::{clearance::Body, convert::metres};
 
-/// Bounding boxes of bodies over a motion, one for each body and leg.
+/// Bounding boxes of bodies over a motion, one per body and leg.
 #[derive(Clone, Debug, Default)]
 pub struct Swept(Vec<Aabb>);
 

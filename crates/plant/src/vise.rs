@@ -4,10 +4,10 @@
 //! are measured between the clamping faces of the step of the selected program, as for the operator; internally the jaw
 //! position is the distance of the inner faces. A part stops the jaw in any step.
 //!
-//! The jaw moves at its speed to an opening. When it reaches a part it pushes the part along, flush with its face, and
-//! stops when the part touches the fixed face; from then on the closing force and friction hold the part. The gripper
-//! cannot resist: 500 lb against at most twice the finger force. The jaws push aside a part that is still in the
-//! fingers.
+//! The jaw moves at its speed to an opening. When it reaches a part it pushes the part along, flush with its
+//! face, and stops when the part touches the fixed face. From then on, closing force and friction hold the
+//! part. The gripper cannot resist: 500 lb against at most twice the finger force. The jaws push aside a part
+//! that is still in the fingers.
 
 use geometry::frame::{Frame, Vector as Inches};
 use rapier3d_f64::prelude::*;
@@ -23,7 +23,7 @@ use crate::{
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Jaws {
     Open,
-    /// Partially closed: wide enough to let a blank in.
+    /// Partially closed, wide enough for a blank to enter.
     Partial,
     /// Closed, on a part if there is one.
     Closed,
@@ -65,7 +65,7 @@ pub struct Vise {
     pub clamped: Option<Clamped>,
 }
 
-/// A part between the jaws: only a crash is stronger than the vise, so the part moves with the jaws.
+/// A part between the jaws. Only a collision is stronger than the vise, so the part moves with the jaws.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Serialize)]
 pub struct Clamped {
     pub part: usize,
@@ -201,8 +201,9 @@ impl Vise {
         to_pose(&self.frame.shifted(Inches::new(0.0, self.gap, 0.0)))
     }
 
-    /// The clamping faces of a step as pads; see [`Vise::fixed_face`] for the position of the fixed one. Deeper steps
-    /// have cut pieces out of them: of the areas left beside and below each piece, the larger rectangle counts.
+    /// The clamping faces of a step as pads; see [`Vise::fixed_face`] for the position of the fixed one. Deeper
+    /// steps cut pieces out of them: of the remaining areas next to and below each piece, the larger rectangle
+    /// is used.
     #[must_use]
     pub fn pads(&self, step: usize) -> Pads {
         let step = self.step(step);

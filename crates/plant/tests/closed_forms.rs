@@ -55,7 +55,7 @@ fn slid(rig: &Rig, degrees: f64, from: &Frame) -> (f64, f64, f64) {
     (way.x, way.z, turned)
 }
 
-/// A block on an incline stands as long as tan a < mu: here mu = 0.30, a = 16.70 degrees.
+/// A block on an incline stays while tan a < mu: here mu = 0.30, a = 16.70 degrees.
 #[test]
 fn block_on_an_incline_stays_below_the_friction_angle() {
     for degrees in [5.0, 12.0, 16.0, 16.5] {
@@ -92,7 +92,7 @@ fn block_on_an_incline_slides_with_friction() {
     }
 }
 
-/// A falling part: z = h - g t²/2 until t = sqrt(2h/g), then it is at rest; nothing bounces in this cell.
+/// A falling part: z = h - g t²/2 until t = sqrt(2h/g), then it is at rest, without bouncing.
 #[test]
 fn falling_part_lands_at_the_computed_time() {
     let top = SLOPE[2] + 2.0 + 1.0;
@@ -123,7 +123,7 @@ fn falling_part_lands_at_the_computed_time() {
     }
 }
 
-/// Move over a block of a given weight in sector 4 and close on it; returns the rig and the frame of the block.
+/// Move over a block of a given weight in sector 4 and close on it. Returns the rig and the frame of the block.
 fn grip_block(weight: f64, force: f64) -> (Rig, Frame) {
     let mut rig = Rig::new(&with_slope(0.0, weight), 1);
     let sector = description().tray("UNIT_1").unwrap().sector(4).unwrap();

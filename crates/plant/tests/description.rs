@@ -1,11 +1,11 @@
-//! Messages for a cell description with mistakes: all mistakes at once, each with the text that causes it.
+//! Messages for a cell description with errors: all errors at once, each with the text that causes it.
 
 use diagnostics::Diagnostic;
 use plant::{Cell, CellDescription};
 
 const TEXT: &str = include_str!("../../../data/cell.toml");
 
-/// The mistakes of the project's description after replacing some texts.
+/// The errors of the shipped description after some replacements.
 fn faults(edits: &[(&str, &str)]) -> (String, Vec<Diagnostic>) {
     let mut text = TEXT.to_owned();
     for (from, to) in edits {
@@ -18,7 +18,7 @@ fn faults(edits: &[(&str, &str)]) -> (String, Vec<Diagnostic>) {
     }
 }
 
-/// The only mistake: the underlined text, its message, and the nearest name.
+/// The only error: the underlined text, its message, and the nearest name.
 fn only(from: &str, to: &str) -> (String, String, Option<String>) {
     let (text, faults) = faults(&[(from, to)]);
     let [fault] = &faults[..] else { panic!("{faults:#?}") };

@@ -1,5 +1,5 @@
-//! The same seed gives the same bits: in ten runs, in two processes, and after saving and restoring the cell during
-//! contacts. `cargo run --example world_hash` with and without `--release` compares the two profiles.
+//! Equal seeds give equal bits: in ten runs, in two processes, and after saving and restoring the cell during
+//! contacts.
 
 use crate::rig::{Rig, description, scenes, tape::Tape};
 use plant::{Cell, RestoreError};
@@ -117,7 +117,7 @@ fn invalid_saved_cells_are_refused() {
         damaged[at] ^= 0x10;
         assert!(matches!(refused(&damaged), RestoreError::Damaged { .. }), "byte {at}");
     }
-    // Magic, then the version: nothing else of another version is read, even if it is undamaged.
+    // Magic, then the version. No more is read of another version, even if it is undamaged.
     let written = u32::from_le_bytes(bytes[8..12].try_into().unwrap());
     for other in (0..written).chain([written + 1, 77]) {
         let mut bytes = bytes.clone();

@@ -1,4 +1,4 @@
-//! The cell through the controller's devices: link, resolvers, gripper sensors, camera, and what viewers get.
+//! The cell through the controller's devices: link, resolvers, gripper sensors, camera, and data for viewers.
 
 use crate::rig::{Rig, UNIT_V1, description, table};
 use depc::{

@@ -53,8 +53,8 @@ fn jaws(rig: &mut Rig, open: bool) {
     rig.ticks(5);
 }
 
-/// Move in a straight line from `from` towards `to` until the forces relative to the start satisfy the condition;
-/// returns the distance along X or Z, and the forces.
+/// Move in a straight line from `from` towards `to` until the forces relative to the start satisfy the
+/// condition. Returns the distance along X or Z, and the forces.
 fn until(
     rig: &mut Rig,
     from: (f64, f64),

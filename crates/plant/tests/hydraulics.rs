@@ -116,7 +116,7 @@ fn sagging_arm_over_a_tray_hits_its_contents() {
     assert!(droop.touched.iter().any(|contact| contact.obstacle.starts_with("UNIT_1_")), "{droop:?}");
     let reported = contacts(&rig);
     assert!(!reported.is_empty(), "{:?}", rig.log);
-    // It is at rest: nothing moves any more.
+    // It is at rest.
     let before = hand(&rig);
     rig.ticks(25);
     assert!((hand(&rig) - before).norm() < 0.3, "{}", hand(&rig) - before);

@@ -1,10 +1,10 @@
-//! The ideal cell accepts and refuses the actions of a workstation as the cell does.
+//! The ideal cell accepts and refuses the same actions of a workstation as the cell.
 
 use crate::{rig::description, vise::upright};
 use geometry::frame::Vector;
 use plant::{Cell, Ideal, Key, Placement, TableKey, WorkstationAction as Action, room::Room};
 
-/// Carry out the actions in both cells; each has ended before the next one begins.
+/// Execute the actions in both cells, one after the other.
 fn both(actions: &[Action]) -> Vec<Result<(), String>> {
     let description = &description();
     let mut cell = Cell::new(description, 1).expect("the cell is sound");

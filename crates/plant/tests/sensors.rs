@@ -28,11 +28,11 @@ fn along_tool(rig: &mut Rig) -> f64 {
 fn force_without_calibration_is_wrong() {
     let mut rig = with_tool_gripper(3.0);
     rig.ticks(10);
-    // Nothing touches the gripper. The drum's guarded moves stop at 25 lb against the tool: with the raw reading they
-    // would stop at almost twice as much, because weight and offset act in the other direction.
+    // The gripper has no contact. The drum's guarded moves stop at 25 lb against the tool. With the raw reading
+    // they would stop at almost twice as much, because weight and offset act in the other direction.
     let bias = along_tool(&mut rig);
     assert!((20.0..28.0).contains(&bias), "{bias} lb of weight and offset at HOME");
-    // As CAL-SENSOR does: subtract the mean of ten readings at rest. A tenth of 25 lb is then detected.
+    // Like CAL-SENSOR: subtract the mean of ten readings at rest. A tenth of 25 lb is then detected.
     let calibrated = along_tool(&mut rig) - bias;
     assert!(calibrated.abs() < 0.2, "{calibrated} lb");
     // The direction of the weight turns with the robot: a bias from another attitude is wrong.
@@ -84,7 +84,7 @@ fn late_converters_show_old_values() {
     );
     assert!(rig.cell.fingers().0 > 0.29);
     rig.tick();
-    // 1 in/s is 28 counts a tick.
+    // 1 in/s is 28 counts per tick.
     assert_eq!(rig.inputs.grip.potentiometer, before + 28);
 }
 

@@ -12,7 +12,7 @@ fn small(description: &CellDescription) -> CellDescription {
     small
 }
 
-/// Play a scene with long steps and with small ones; returns the greatest distance of a part between the two, in.
+/// Play a scene with long and with small steps. Returns the greatest distance of a part between the two, in.
 fn compare(description: &CellDescription, scene: Rig) -> f64 {
     let mut cells = [description, &small(description)].map(|each| Cell::new(each, 1).unwrap());
     let mut apart = 0.0_f64;

@@ -1,4 +1,4 @@
-//! Parts in the vise: standing, falling and being machined.
+//! Parts in the vise: upright, falling and machined.
 
 use crate::rig::{self, PFIX, Rig, description};
 use geometry::frame::{Frame, Vector, rotation_by, rotation_from_x_y};

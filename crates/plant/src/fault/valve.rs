@@ -2,9 +2,9 @@
 
 use interfaces::device::{DeviceOutputs, valve};
 
-/// Remove the air supply: nothing flows in, and air trapped behind the closed valves of a hand stays. The check valves
-/// of v-gripper and tool gripper, whose air stays on while they hold, keep their air too (ASSUMED). Venting needs no
-/// supply.
+/// Remove the air supply. Nothing flows in, and air trapped by the closed valves of a hand stays. The check
+/// valves of v-gripper and tool gripper, whose air stays on while they hold, also keep their air (ASSUMED).
+/// Venting needs no supply.
 pub const fn cut_air(outputs: &mut DeviceOutputs) {
     outputs.grip.bits &= valve::VENT;
     outputs.pedestal_hand.bits &= valve::VENT;
@@ -13,7 +13,7 @@ pub const fn cut_air(outputs: &mut DeviceOutputs) {
     (outputs.quick_change.lock, outputs.quick_change.unlock) = (false, false);
 }
 
-/// Hold the locking ring: it does not follow the air.
+/// Hold the locking ring against the air.
 pub const fn hold_ring(outputs: &mut DeviceOutputs) {
     outputs.quick_change.port = false;
 }

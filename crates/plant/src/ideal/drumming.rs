@@ -14,16 +14,16 @@ use crate::{
     hand::{HANDS, Hand},
 };
 
-/// Distance of the fingertips from the drum's location beyond which they touch nothing of it, in.
+/// Distance of the fingertips from the drum's location within which they can touch the drum, in.
 const NEAR: f64 = 12.0;
 
-/// A finger that touches the strike plate. It presses on the face that it has met first.
+/// A finger that touches the strike plate, and the first face that it touched.
 #[derive(Clone, Debug)]
 pub(super) struct Press {
     pair: (String, String),
     /// Unit vector out of the face, world.
     away: Inches,
-    /// Depth when it was met, in.
+    /// Depth at the first contact, in.
     depth: f64,
     tool: Inches,
 }

@@ -79,13 +79,13 @@ impl Ideal {
         self.clamped == Some(part) || self.is_in_drum(part)
     }
 
-    /// True if something other than `hand` holds a part.
+    /// True if another device than `hand` holds a part.
     fn is_held_elsewhere(&self, hand: Hand, part: usize) -> bool {
         self.is_fixed(part) || hand.others().any(|other| self.is_held_by(other, part))
     }
 
-    /// Move the held parts with their hands. Vise and drum are stronger than a hand, the robot than the pedestal: the
-    /// weaker one loses the part when its fingers reach it no more.
+    /// Move the held parts with their hands. Vise and drum are stronger than a hand, the robot than the
+    /// pedestal. The weaker one loses the part when its fingers no longer reach it.
     pub(super) fn carry(&mut self) {
         for hand in ROBOT_HANDS.into_iter().chain([Hand::Pedestal]) {
             let (Some(hold), Some(frame)) = (self.fingers(hand).hold, self.frame(hand)) else { continue };
@@ -150,14 +150,15 @@ impl Ideal {
         self.carry();
     }
 
-    /// Release the part of a hand: another hand that holds it draws it to its middle, else it comes to lie.
+    /// Release the part of a hand. Another hand that holds it draws it to its middle; without one, it comes to
+    /// rest.
     pub(super) fn release(&mut self, hand: Hand) {
         let Some(hold) = self.fingers_mut(hand).hold.take() else { return };
         self.recover(hold.part);
     }
 
-    /// A holder has released a part: a hand that holds it alone draws it to the middle, and without a holder it comes to
-    /// lie.
+    /// Called when a holder has released a part. A hand that holds it alone draws it to the middle; without a
+    /// holder it comes to rest.
     pub(super) fn recover(&mut self, part: usize) {
         if self.is_fixed(part) {
             return;

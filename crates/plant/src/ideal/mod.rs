@@ -158,7 +158,8 @@ impl Ideal {
         self.t3.arm().tool()
     }
 
-    /// The frame of the fingertips of a hand, world, in; `None` for a gripper that is on no holster and not on the robot.
+    /// The frame of the fingertips of a hand, world, in; `None` for a gripper that is neither on a holster nor
+    /// on the robot.
     fn frame(&self, hand: Hand) -> Option<Frame> {
         match hand {
             Hand::Pedestal => Some(hand_frame(&self.room.cell().pedestal, self.table.angle())),
@@ -171,7 +172,7 @@ impl Ideal {
         ROBOT_HANDS.into_iter().find_map(|hand| self.fingers(hand).hold)
     }
 
-    /// The positions of everything that a job moves.
+    /// The positions of all objects that a job moves.
     #[must_use]
     pub fn layout(&self) -> Layout {
         let worn = self.changer.carried();

@@ -41,7 +41,7 @@ impl CellDescription {
 }
 
 impl Ideal {
-    /// Take a picture if there is a new request: the camera sees each part in its field of view.
+    /// Take a picture for a new request. It shows each part in the field of view.
     pub(super) fn look(&mut self, request: &VisionRequest) {
         if !self.analysis.wants_picture(request) {
             return;

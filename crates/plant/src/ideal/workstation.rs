@@ -1,4 +1,4 @@
-//! The workstation of the ideal cell: each action is over when it begins.
+//! The workstation of the ideal cell, in which actions are immediate.
 
 use geometry::frame::Frame;
 
@@ -15,10 +15,10 @@ use crate::{
 };
 
 impl Ideal {
-    /// Carry out an action.
+    /// Execute an action.
     ///
     /// # Errors
-    /// [`WorkstationError`]; the state is unchanged.
+    /// [`WorkstationError`]. The state is then unchanged.
     pub fn workstation(&mut self, action: &WorkstationAction) -> Result<(), WorkstationError> {
         self.description().admits(action)?;
         match action {
@@ -57,7 +57,7 @@ impl Ideal {
         Ok(())
     }
 
-    /// True while a control of the joystick box is held down, or a controller carries out the action of a key.
+    /// True while a control of the joystick box is held down, or a controller executes the action of a key.
     #[must_use]
     pub fn workstation_busy(&self) -> bool {
         self.joystick.busy() || self.t3.busy() || self.table.is_led_by_hand()

@@ -1,8 +1,9 @@
-//! Draws what the wrist camera saw, with the answer of the vision system, as a small picture.
+//! Draws the picture of the wrist camera, with the answer of the vision system.
 //!
-//! The picture shows the faces that vision evaluated ([`crate::camera::Subject`]), tool Y to the left and tool Z up.
-//! The outline of the part in the answer is green if vision recognised it and yellow if not. A cross marks the centroid
-//! that vision answered, with a line in the direction of the fingers' motion. A red border: vision saw nothing.
+//! The picture shows the faces that vision evaluated ([`crate::camera::Subject`]), tool Y to the left and tool
+//! Z up. The outline of the part in the answer is green if vision recognised it and yellow if not. A cross
+//! marks the centroid of the answer, with a line in the direction of the fingers' motion. A red border means
+//! that vision found no part.
 
 use crate::{
     camera::{Face, Subject, subject::RASTER},
@@ -52,7 +53,7 @@ impl Canvas {
         }
     }
 
-    /// Draws a face: each cell of its raster that the camera sees, as dense points.
+    /// Draws a face: each visible cell of its raster, as dense points.
     fn face(&mut self, subject: &Subject) {
         const FINE: usize = 12;
         let colour = 1 + (subject.reflectance().clamp(0.0, 1.0) * f64::from(GREYS - 1)).round() as u8;
@@ -73,7 +74,7 @@ impl Canvas {
     }
 }
 
-/// The picture of an answer as a PNG file. `subjects` are the faces that the camera saw at the time of the request.
+/// The picture of an answer as a PNG file. `subjects` are the visible faces at the time of the request.
 #[must_use]
 pub fn draw(camera: &Camera, subjects: &[Subject], answer: &VisionResponse) -> Vec<u8> {
     let widest = camera.view / inches(camera.reference_range_mm / 1000.0);
@@ -111,7 +112,7 @@ fn png(pixels: &[u8], palette: &[[u8; 3]]) -> Result<Vec<u8>, EncodingError> {
     let mut encoder = Encoder::new(&mut file, side, side);
     encoder.set_color(ColorType::Indexed);
     encoder.set_palette(palette.as_flattened());
-    // Drawn pictures are small anyway, and a run writes one for each answer of vision.
+    // Drawn pictures are small, and a run writes one per answer of vision.
     encoder.set_compression(Compression::Fast);
     let mut writer = encoder.write_header()?;
     writer.write_image_data(pixels)?;

@@ -1,4 +1,4 @@
-//! Writes a mesh as a binary glTF 2.0 file (GLB), with one primitive for each material.
+//! Writes a mesh as a binary glTF 2.0 file (GLB), with one primitive per material.
 //!
 //! glTF measures in metres with Y up: the link's (X, Y, Z) is written as (X, Z, -Y).
 

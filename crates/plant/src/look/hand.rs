@@ -1,7 +1,7 @@
 //! Meshes of the end effectors: quick change with its camera, grippers with their fingers, and the pedestal's hand.
 //!
-//! The faces of bodies and fingers coincide with the boxes of the collision model; ribs, rails and hoses are on sides
-//! that touch nothing.
+//! The faces of bodies and fingers coincide with the boxes of the collision model; ribs, rails and hoses are on
+//! sides without contacts.
 
 use core::f64::consts::TAU;
 
@@ -41,7 +41,7 @@ const fn mark(hand: Hand) -> Material {
     }
 }
 
-/// The A plate of the quick change, and the camera, which looks past the gripper.
+/// The A plate of the quick change, and the camera, whose view passes the gripper.
 #[must_use]
 pub fn quick_change(cell: &CellDescription) -> Mesh {
     let mut mesh = Mesh::default();

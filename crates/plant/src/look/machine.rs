@@ -88,7 +88,7 @@ pub fn column(block: &Block, spindle: f64) -> Mesh {
     mesh.cuboid(White, [-x, -y, -z], [x, y, z], 0.8);
     mesh.cuboid(Petrol, [-x - 0.4, -y - 0.4, -z], [x + 0.4, y + 0.4, -z + 14.0], 0.5);
     mesh.cuboid(Petrol, [-x - 0.4, -y - 0.4, z - 9.0], [x + 0.4, y + 0.4, z - 3.0], 0.5);
-    // Ways for the head, covers beside them.
+    // Ways for the head, with covers next to them.
     for side in [-9.5, 9.5] {
         mesh.cuboid(Bright, [-x - 1.4, side - 1.0, -z + 16.0], [-x + 0.2, side + 1.0, z - 10.0], 0.1);
     }

@@ -34,7 +34,7 @@ pub struct Piece {
 }
 
 impl Piece {
-    /// The corners of the triangles with their normals; surfaces that meet at a crease get separate normals.
+    /// The corners of the triangles with their normals. Surfaces that meet at a crease have separate normals.
     #[must_use]
     pub fn corners(&self) -> Vec<[Corner; 3]> {
         let key = |point: &Vector| point.map(|value| (value * 1e4).round());
@@ -171,8 +171,8 @@ impl Mesh {
         self.cuboid(material, low, high, chamfer);
     }
 
-    /// Adds a solid of revolution about the line from `from` towards `to`: pairs of distance along the line and radius.
-    /// The polygon of `points` corners circumscribes the circle, so that the solid is nowhere thinner than requested.
+    /// Adds a solid of revolution about the line from `from` towards `to`: pairs of distance along the line and
+    /// radius. The polygon of `points` corners circumscribes the circle, so that the solid is nowhere too thin.
     pub fn lathe(
         &mut self,
         material: Material,

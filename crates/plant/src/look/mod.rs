@@ -1,8 +1,9 @@
-//! Visual meshes of the cell: one for each link of a [`Scene`], generated from the description of the cell.
+//! Visual meshes of the cell: one per link of a [`Scene`], generated from the description of the cell.
 //!
-//! [`Scene::models`] makes parametric solids, which become glTF files. They are for display only: the physics has its own
-//! bodies ([`crate::bodies`], [`crate::scene`]). Each mesh covers the bodies of its link, so that contacts of the
-//! physics show no gap. [`Scene::labels`] lists the names to display, [`camera`] draws what vision saw.
+//! [`Scene::models`] makes parametric solids, which become glTF files. They are for display only: the physics
+//! has its own bodies ([`crate::bodies`], [`crate::scene`]). Each mesh covers the bodies of its link, so that
+//! contacts of the physics show no gap. [`Scene::labels`] lists the names to display; [`camera`] draws the
+//! camera's pictures.
 //!
 //! The same description gives the same bytes. Lengths are inches; [`glb`] converts to metres.
 
@@ -24,7 +25,7 @@ pub use mesh::Mesh;
 pub struct Model {
     /// Name of the link, or of a group of fixed things.
     pub name: String,
-    /// Name of the link that it moves with; `world` for fixed things.
+    /// Name of the link with which it moves; `world` for fixed bodies.
     pub frame: String,
     /// The solids, in the coordinates of the frame, inches.
     pub mesh: Mesh,
@@ -49,18 +50,18 @@ impl Model {
     }
 }
 
-/// A text label beside an object.
+/// A text label next to an object.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Label {
     pub text: String,
-    /// Name of the link that it moves with.
+    /// Name of the link with which it moves.
     pub frame: &'static str,
     /// Position in the frame, inches.
     pub position: [f64; 3],
 }
 
 impl Scene<'_> {
-    /// The detailed meshes: one for each group of fixed bodies, and one for each other link.
+    /// The detailed meshes: one per group of fixed bodies, and one per other link.
     #[must_use]
     pub fn models(&self) -> Vec<Model> {
         let blocks: Vec<&Block> = self.blocks().collect();
@@ -97,13 +98,13 @@ impl Scene<'_> {
         };
         let mut labels = vec![label("T3", "turret", [0.0, 0.0, 2.0 * cell.robot.upper_arm_radius + 6.0])];
         for (tray, number) in cell.tray.iter().zip(1..) {
-            // At different heights, because the trays stand side by side.
+            // At different heights, because the trays are side by side.
             let ([x, y], up) = (tray.centre, 7.0 * f64::from(number));
             labels.push(label(&format!("tray {}", tray.unit), ROOT, [x, y, tray.floor + up]));
         }
         let [_, _, up] = cell.vise.jaw;
         labels.push(label("vise", "vise", [cell.vise.jaw[0], 0.0, 2.0 * up]));
-        // At different heights, because these stand side by side.
+        // At different heights, because these are side by side.
         labels.extend(above("machining centre", "machine_column", 18.0));
         labels.extend(above("tool drum", "tool_drum", 8.0));
         let [x, y, z] = cell.pedestal.position;

@@ -21,7 +21,7 @@ use geometry::frame::{Frame, Vector};
 
 /// Chamfer of surfaces that parts lie on or lean against, in.
 const EDGE: f64 = 0.03;
-/// Chamfer of surfaces that nothing should touch, in.
+/// Chamfer of surfaces without contacts, in.
 const BEVEL: f64 = 0.25;
 /// Height of a cover above the body under it, in: two faces in one plane would flicker.
 const PAINT: f64 = 0.015;

@@ -6,8 +6,9 @@
 //!            └──power off, then on, at PROG─── on, PROG, obeys nothing
 //! ```
 //!
-//! IV.1 says that the power is turned off and on again at the end, and that the switch is at PROG whenever the power is
-//! turned on. So a controller that was at MANUAL, or was turned on there, does not obey its serial line (CHOSEN).
+//! According to IV.1 the power is turned off and on again at the end, and the switch is at PROG whenever the
+//! power is turned on. A controller that was at MANUAL, or was turned on there, therefore ignores its serial
+//! line (CHOSEN).
 
 use interfaces::station::TableKey;
 use serde::{Deserialize, Serialize};
@@ -29,7 +30,7 @@ pub enum TableRefusal {
     Turns,
 }
 
-/// Switches of the panel, and the state of the controller that they have caused.
+/// Switches of the panel, and the resulting state of the controller.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq, Serialize)]
 pub struct TablePanel {
     pub power: bool,
@@ -37,9 +38,9 @@ pub struct TablePanel {
     pub manual: bool,
     /// The controller obeys the orders of its serial line.
     pub obeys: bool,
-    /// Ticks for which RUN is held down, plus one in which it is released.
+    /// Ticks for which RUN is held down, including one for its release.
     run: u32,
-    /// Number of the last order that it has not obeyed; it will not be carried out later.
+    /// Number of the last ignored order, which is not executed later.
     missed: u32,
 }
 
@@ -54,7 +55,7 @@ impl Table {
         self.panel
     }
 
-    /// True while the table carries out the action of a key.
+    /// True while the table executes the action of a key.
     #[must_use]
     pub fn is_led_by_hand(&self) -> bool {
         self.panel.manual && self.moving()
@@ -63,7 +64,7 @@ impl Table {
     /// Press a key, or turn a switch.
     ///
     /// # Errors
-    /// [`TableRefusal`]; the state is unchanged.
+    /// [`TableRefusal`]. The state is then unchanged.
     pub fn press(&mut self, key: TableKey) -> Result<(), TableRefusal> {
         match key {
             TableKey::Power(on) => self.set_power(on),
@@ -108,7 +109,7 @@ impl Table {
         }
     }
 
-    /// Switch the power; without it the motor stops at once.
+    /// Switch the power. Without power the motor stops at once.
     fn set_power(&mut self, on: bool) {
         if on && !self.panel.power {
             self.panel = TablePanel { power: true, obeys: !self.panel.manual, ..self.panel };
@@ -119,7 +120,7 @@ impl Table {
         }
     }
 
-    /// Once a tick: release RUN when its time is over. Returns true if the order with this number must be obeyed.
+    /// Once per tick: release RUN after its time. Returns true if the order with this number must be obeyed.
     pub(super) fn attend(&mut self, number: u32) -> bool {
         if self.panel.run > 0 {
             self.panel.run -= 1;

@@ -25,8 +25,8 @@ pub const PART: Group = Group::GROUP_3;
 /// Collision group of the palms of hands: a held part still collides with the palm.
 pub const PALM: Group = Group::GROUP_6;
 
-/// Distance of the backs of the movable jaw behind those of the fixed one, in: the fixed jaw determines the position of
-/// a part, and the movable jaw must not drag it along when it closes.
+/// Distance of the backs of the movable jaw behind those of the fixed one, in. The fixed jaw determines the
+/// position of a part, and the movable jaw must not drag it when it closes.
 const RELIEF: f64 = 0.02;
 
 /// Coefficient of friction of steel on trays, vise and floor.
@@ -85,7 +85,7 @@ impl Block {
         self.kind == Kind::Vise
     }
 
-    /// Its colour; that of the top of a bench.
+    /// Its colour; for a bench, that of its top.
     #[must_use]
     pub fn colour(&self) -> Material {
         match (self.kind, self.name.as_str()) {

@@ -41,7 +41,7 @@ impl Finger {
 const ARM: [&str; 6] = ["turret", "upper_arm", "forearm", "wrist_pitch", "wrist_yaw", "end_plate"];
 
 impl Moving {
-    /// All, each after its parent.
+    /// All moving bodies, each after its parent.
     pub(crate) fn all() -> impl Iterator<Item = Self> {
         let hand =
             |hand| [Self::Hand(hand), Self::Finger(hand, Finger::Left), Self::Finger(hand, Finger::Right)];

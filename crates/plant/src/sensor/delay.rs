@@ -14,7 +14,7 @@ use crate::description::SensorModels;
 pub struct DelayLine(VecDeque<i64>);
 
 impl DelayLine {
-    /// Put a word in, and return the word that went in `ticks` ago; while the line fills, the oldest one.
+    /// Append a word, and return the word from `ticks` ago, or the oldest one while the line fills.
     pub fn pass(&mut self, word: i64, ticks: u16) -> i64 {
         self.0.push_back(word);
         if self.0.len() > usize::from(ticks) + 1 {
@@ -28,7 +28,7 @@ impl DelayLine {
     }
 }
 
-/// The dead times of a cell's sensors; sensors without dead time are not in it.
+/// The dead times of a cell's sensors, except those without dead time.
 #[derive(Clone, Debug, Default, Deserialize, Serialize)]
 pub struct DeadTimes(Vec<Late>);
 
@@ -56,7 +56,7 @@ impl DeadTimes {
         Self(late.filter(|late| late.ticks > 0).collect())
     }
 
-    /// Once a tick: delay the sensor words.
+    /// Once per tick: delay the sensor words.
     pub fn hold_back(&mut self, inputs: &mut DeviceInputs) {
         for Late { sensor, ticks, line } in &mut self.0 {
             let word = line.pass(sensor.read(inputs), *ticks);

@@ -4,7 +4,7 @@ use interfaces::device::RESOLVER_COUNTS;
 
 use crate::noise::Noise;
 
-/// Counts at an angle in radians, with noise of up to `greatest` counts; draws no number if `greatest` is 0.
+/// Counts at an angle in radians, with noise of up to `greatest` counts. It draws no number if `greatest` is 0.
 pub fn counts(angle: f64, greatest: f64, noise: &mut Noise) -> u32 {
     let turns = angle / (2.0 * core::f64::consts::PI);
     let away = if greatest > 0.0 { noise.within(greatest) } else { 0.0 };

@@ -9,7 +9,7 @@ impl T3Controller {
     /// Press a key.
     ///
     /// # Errors
-    /// [`Refusal`]: what must be done first; the state is unchanged.
+    /// [`Refusal`] with the missing step. The state is then unchanged.
     pub fn press(&mut self, key: Key) -> Result<(), Refusal> {
         let hardware = matches!(
             key,
@@ -73,7 +73,7 @@ impl T3Controller {
         self.pump = true;
     }
 
-    /// Cut the pressure and light FAULT RESET; without control power there is nothing to light or to cut.
+    /// Cut the pressure and light FAULT RESET. Without control power both are already off.
     pub(super) fn fault(&mut self, cause: Cut) {
         if self.stage != Stage::Dark {
             self.shut_off(Stage::Faulted, cause);
@@ -257,7 +257,7 @@ impl T3Controller {
     fn interrupt(&mut self) -> Result<(), Refusal> {
         match self.stage {
             Stage::Depc => {
-                // In step 12 it is pressed while a warning is present: it has no effect then.
+                // In step 12 it is pressed during a warning, and then has no effect.
                 self.keys.interrupt = true;
                 Ok(())
             }

@@ -1,7 +1,7 @@
 //! Messages of the controller, and visible events of the robot.
 //!
-//! Texts of the controller's screen stand alone and are those of the manual (IV.3.3, A 2.3, A 2.4); texts of other
-//! events give their source in brackets.
+//! Texts of the controller's screen are those of the manual (IV.3.3, A 2.3, A 2.4); texts of other events give
+//! their source in brackets.
 
 use std::fmt;
 

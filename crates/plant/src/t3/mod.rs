@@ -7,13 +7,14 @@
 //!                                        bytes to and from the host, once a period
 //! ```
 //!
-//! [`T3Controller::step`] is a period of the controller; [`T3Controller::advance`] lets time pass for the arm, in steps
-//! that the caller chooses. `rcs-cell` adds a pseudo-terminal and a console, the simulated cell ([`crate::cell`])
-//! everything else.
+//! [`T3Controller::step`] is a period of the controller; [`T3Controller::advance`] lets time pass for the arm,
+//! in steps chosen by the caller. `rcs-cell` adds a pseudo-terminal and a console, and [`crate::cell`] the rest
+//! of the simulated cell.
 //!
-//! The DEPC function is a part of the program, and the program runs only under pressure: without pressure there are no
-//! answers, and the controller's DTR is off (A 2.3; ASSUMED: the manual does not say what the host sees of an emergency
-//! stop). The steps of IV.3.3 restore it: fault reset, hydraulics, manual, align, AUTO, cycle start.
+//! The DEPC function is a part of the program, and the program runs only under pressure: without pressure no
+//! answers are sent, and the controller's DTR is off (A 2.3; ASSUMED: the manual does not describe the effect
+//! of an emergency stop on the host). The steps of IV.3.3 restore it: fault reset, hydraulics, manual, align,
+//! AUTO, cycle start.
 
 mod key;
 mod keys;
@@ -146,7 +147,7 @@ pub struct T3Controller {
     /// Axes that are moving to their arrow.
     aligning: [bool; 6],
     since: f64,
-    /// Position of the hand when the pressure came, in, for the message.
+    /// Position of the hand when the pressure returned, in, for the message.
     before_jump: Option<[f64; 3]>,
     motions: u8,
     #[serde(with = "crate::image::record")]
@@ -347,7 +348,7 @@ impl T3Controller {
         Ok(())
     }
 
-    /// Follow the position of another robot within a period. An arm without pressure stays where it is.
+    /// Follow the position of another robot within a period. An arm without pressure does not move.
     ///
     /// # Errors
     /// [`JointProblem`] if this arm cannot reach the position; the command is unchanged.

@@ -38,7 +38,7 @@ impl T3Controller {
         self.arm.reach(goal, longest / OWN_SPEED.to_radians());
     }
 
-    /// Wait while the pump starts; then the servos get pressure and jump to their command.
+    /// Wait while the pump starts. The servos then get pressure and jump to their command.
     pub(super) fn rise(&mut self) {
         match self.before_jump {
             None if self.since < self.pump_delay => {}

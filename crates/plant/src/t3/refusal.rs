@@ -2,7 +2,7 @@
 
 use interfaces::station::EStop;
 
-/// Refusal of a key that was pressed at the wrong time, with what must be done first (IV.3.3).
+/// Refusal of a key that was pressed at the wrong time, with the missing step (IV.3.3).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum Refusal {
     #[error("the controller has no power: control power on comes first")]

@@ -12,7 +12,7 @@ fn t3() -> T3Controller {
     T3Controller::dark(Limits::NBS, &Actuators::default(), 1)
 }
 
-/// Let `seconds` pass in periods with a host on the line; returns the bytes sent.
+/// Let `seconds` pass in periods with a host on the line. Returns the sent bytes.
 fn pass(t3: &mut T3Controller, seconds: f64) -> Vec<u8> {
     let mut sent = Vec::new();
     for _ in 0..(seconds / 0.04).ceil() as u32 {
@@ -105,7 +105,7 @@ fn missing_board_is_detected_when_the_function_begins() {
     assert_eq!(t3.depc().warning(), Warning::BoardMissing);
 }
 
-/// IV.1 steps 2 and 5: the error stays, and FAULT RESET does nothing, until the Prim Interface Box has power.
+/// IV.1 steps 2 and 5: the error stays, and FAULT RESET has no effect, until the Prim Interface Box has power.
 #[test]
 fn fault_resets_only_with_the_prim_interface_box() {
     let mut t3 = t3();

@@ -73,7 +73,7 @@ impl Rig {
         Self { tape: Some(Tape::default()), ..Self::new(description, seed) }
     }
 
-    /// Carry out a workstation action and record it.
+    /// Execute a workstation action and record it.
     pub fn work(&mut self, action: WorkstationAction) {
         self.cell.workstation(&action).unwrap();
         self.beat.actions.push(action);
@@ -203,8 +203,8 @@ impl Rig {
         panic!("the table turns on: {:?}", self.inputs.pedestal);
     }
 
-    /// As the pedestal's controller does: find the + limit, set the counter, turn to the angle at which the fingers
-    /// move across the radial line.
+    /// Like the pedestal's controller: find the + limit, set the counter, turn to the angle at which the
+    /// fingers move across the radial line.
     pub fn table_square(&mut self) {
         self.table(MotorOrder::Turn, 100_000);
         self.table(MotorOrder::SetCounter, 0);
@@ -219,7 +219,7 @@ impl Rig {
         self.ticks(20);
     }
 
-    /// The part that was put down last.
+    /// The last part that was put down.
     pub fn part(&self) -> PartState {
         self.cell.parts().pop().unwrap()
     }
@@ -268,7 +268,7 @@ impl Rig {
         Frame { position: frame.position + Vector::new(0.0, 0.0, up), ..frame }
     }
 
-    /// Insert into the vise as LK-GRP-FX1 does.
+    /// Insert into the vise like LK-GRP-FX1.
     pub fn insert(&mut self) {
         self.go(Self::fixture(&FX1, 10.0, 0.0), 10.0);
         self.go(Self::fixture(&FX1, 5.0, 0.0), 4.0);
