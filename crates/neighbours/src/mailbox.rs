@@ -47,7 +47,8 @@ pub const PEDESTAL_SENSORS: Place =
     Place { name: "Pedestal from Cell Sensors", address: 0xF_5C00, size: 256 };
 /// Pedestal to Cell Orders: not in the table.
 pub const PEDESTAL_ORDERS: Place = Place { name: "Pedestal to Cell Orders", address: 0xF_5E00, size: 256 };
-/// Vision from RCS Request: the request areas of the vision mailbox (IX.4). Figure IX.3 is lost; address and size CHOSEN.
+/// Vision from RCS Request: the request areas of the vision mailbox (IX.4). Figure IX.3 is lost; address and
+/// size are CHOSEN.
 pub const VISION_REQUEST: Place = Place { name: "Vision from RCS Request", address: 0xF_8000, size: 256 };
 /// Vision to RCS Response: the ready words and the response areas of the vision mailbox. Address and size CHOSEN.
 pub const VISION_RESPONSE: Place = Place { name: "Vision to RCS Response", address: 0xF_8200, size: 256 };

@@ -191,8 +191,8 @@ impl Changer {
         }
     }
 
-    /// Move the ring for `dt` seconds with the robot's tool frame at `robot`: catch or release grippers, and update their
-    /// places.
+    /// Move the ring for `dt` seconds with the robot's tool frame at `robot`. It catches or releases grippers,
+    /// whose places are updated.
     pub(crate) fn advance(&mut self, dt: f64, robot: &Frame, valves: &QuickChangeValves) -> Changes {
         let mut changes = Changes::default();
         let was_locked = self.ring.locked();

@@ -16,7 +16,7 @@ use crate::{
 const LEAST_FORCE: f64 = 0.25;
 /// Greatest distance between a pad and a face in contact, m.
 const TOUCHING: Real = 1e-4;
-/// Greatest distance of a part's surface sphere from the fingertips for a part between the fingers, m.
+/// A part between the fingers is nearer to the fingertips than this and its own radius, m.
 const REACH: Real = 0.2;
 
 /// Action of a pair of fingers on the part between them.
@@ -94,8 +94,8 @@ pub fn pads(gripper: &Gripper) -> Pads {
     Pads { x: [-length, 0.0], z: [-width / 2.0, width / 2.0], groove }
 }
 
-/// The light beams between the fingers that parts interrupt, one bit each; `opening` in inches, `parts` with pose in the
-/// tool frame and half size, m.
+/// The light beams between the fingers that parts interrupt, one bit each; `opening` in inches, `parts` with
+/// pose in the tool frame and half size, m.
 pub fn broken_beams(opening: f64, parts: impl Iterator<Item = (Pose, Vector)>) -> u8 {
     let near: Vec<_> =
         parts.filter(|(pose, half)| is_near(pose.translation.length(), half.length())).collect();

@@ -37,7 +37,8 @@
 //!   its axis and holds a tool as the vise does a part ([`drum`]);
 //! * parts on trays, ledge and floor are rigid bodies of rapier, with contacts stiff enough for gaps of a millimetre.
 //!
-//! [`scene`] and [`look`] describe the cell for viewers, and [`fault`] injects faults into the data between the cell and the controller.
+//! [`scene`] and [`look`] describe the cell for viewers, and [`fault`] injects faults into the data between the
+//! cell and the controller.
 
 #![forbid(unsafe_code)]
 

@@ -95,6 +95,7 @@ pub struct LogLine {
 }
 
 impl Log {
+    /// Read a log, which may be incomplete or damaged.
     ///
     /// # Errors
     /// [`ReadError`] if the file is not a log. The layout is not checked: see [`Log::check_layout`].

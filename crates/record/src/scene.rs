@@ -1,5 +1,5 @@
-//! The moving cell: `/tf`, `/tf_static`, `/joint_states`, `/robot_description`, `/meshes`, `/names`, `/trail`, `/contacts`
-//! and `/camera`.
+//! The moving cell: `/tf`, `/tf_static`, `/joint_states`, `/robot_description`, `/meshes`, `/names`, `/trail`,
+//! `/contacts` and `/camera`.
 //!
 //! Links are given relative to their parents in the URDF, so that description and transforms always agree in a
 //! viewer, and the position of a link that only turns does not change.

@@ -1,5 +1,5 @@
-//! Channels for viewers: states of the run, and the layout for Foxglove and Lichtblick, which asks for nothing that a log does
-//! not have.
+//! Channels for viewers: states of the run, and the layout for Foxglove and Lichtblick, which refers only to
+//! data of a log.
 
 use std::{fs, path::Path};
 

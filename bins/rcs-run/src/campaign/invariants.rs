@@ -6,8 +6,8 @@
 //!   the T3's wrist, where D and R turn faster than the tool, T3 Interface takes longer for a point; this is permitted;
 //! * E-move's status of the gripper is true: it holds an object, or nothing.
 //!
-//! The first three hold at all times. Sensors report late, and during a fault wrongly, what the fingers hold: E-move may
-//! be wrong for [`PATIENCE`] ticks after an interruption is over.
+//! The first three hold at all times. Sensors report late, and during a fault wrongly, what the fingers hold:
+//! E-move may be wrong for [`PATIENCE`] ticks after an interruption is over.
 
 use executive::alloc;
 use geometry::{frame::INCHES_PER_RADIAN, pose::WireFrame};

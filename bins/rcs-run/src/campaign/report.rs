@@ -137,6 +137,7 @@ impl<'a> CampaignReport<'a> {
         Self { job, parent, results, rows, decisions, never_fired, command }
     }
 
+    /// The report as one JSON object.
     ///
     /// # Errors
     /// [`Error::Output`] if it cannot be written.

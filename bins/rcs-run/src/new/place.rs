@@ -62,6 +62,7 @@ pub fn with_blocks(
     Ok(change)
 }
 
+/// Check the name of a new place.
 ///
 /// # Errors
 /// [`Error::New`] if the name is invalid or exists.
