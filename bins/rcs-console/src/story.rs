@@ -351,7 +351,7 @@ mod tests {
         let (story, _) = failing();
         let ticks: Vec<_> = story.doings(ProcessId::Emove, 99).iter().map(|doing| doing.tick).collect();
         assert_eq!(ticks, [1, 2, 3]);
-        assert_eq!(story.rows(ProcessId::Emove, 99).len(), 2, "a report is no row");
+        assert_eq!(story.rows(ProcessId::Emove, 99).len(), 2, "a change of the report alone is not a row");
         assert_eq!(story.doing(ProcessId::Emove, 2).map(|doing| doing.tick), Some(2));
         assert_eq!(story.change(&[ProcessId::Emove], 1, true), Some(2));
         assert_eq!(story.change(&[ProcessId::Emove, ProcessId::Task], 6, false), Some(5));

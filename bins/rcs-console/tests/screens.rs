@@ -611,7 +611,7 @@ fn keys_go_in_time() {
     };
     assert_eq!([go("["), go("]"), go("}"), go("{")], [299, 300, 325, 300]);
     assert_eq!(go("g450\n"), 450);
-    assert_eq!(go("gno\n"), 450, "what is no number goes nowhere");
+    assert_eq!(go("gno\n"), 450, "a text that is not a number has no effect");
     assert_eq!(go("t"), FAILURE, "the next trouble");
     assert_eq!(go("T"), 73, "the warning before it");
     let (next, previous) = (go("n"), go("N"));

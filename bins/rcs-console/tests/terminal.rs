@@ -147,7 +147,7 @@ impl Terminal {
         };
         let after = tcgetattr(&self.slave).unwrap();
         let modes = |of: &Termios| (of.local_modes, of.input_modes, of.output_modes, of.control_modes);
-        assert_eq!(modes(&after), modes(&self.before), "the modes of the terminal are not what they were");
+        assert_eq!(modes(&after), modes(&self.before), "the modes of the terminal are not restored");
         status.code()
     }
 
@@ -525,7 +525,7 @@ fn suspended_console_continues() {
     console.press("\x1a");
     let begun = Instant::now();
     while !is_stopped() {
-        assert!(begun.elapsed() < PATIENCE, "it goes on:\n{}", console.screen());
+        assert!(begun.elapsed() < PATIENCE, "the console continues:\n{}", console.screen());
         thread::sleep(Duration::from_millis(20));
     }
     console.wait_while(|screen| screen.contains("Looking for runs"), "the screen is not what it was");

@@ -140,7 +140,7 @@ fn drawn_disturbances_repeat_alone_and_together() {
     assert_eq!(branches.len(), 6);
     for branch in branches {
         let judged = branch["judged"].as_u64().expect("it is counted");
-        assert!(judged > 0, "nothing is judged: {branch}");
+        assert!(judged > 0, "no confirmation was judged: {branch}");
         assert_eq!(
             branch["verdict"] == "false",
             branch["untrue"].to_string().contains("\"false\""),

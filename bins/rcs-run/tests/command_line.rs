@@ -706,7 +706,7 @@ fn interrupt_ends_the_run_in_order() {
     assert!(last_line(&output).contains("was stopped by the user"), "{}", last_line(&output));
     assert_eq!(json(&output)["ending"], "stopped");
     assert!(fs::metadata(&log).unwrap().len() > 0);
-    assert_eq!(executive_runs(child.id()), 0, "nothing is left in shared memory");
+    assert_eq!(executive_runs(child.id()), 0, "shared memory is empty");
 }
 
 #[test]

@@ -279,7 +279,7 @@ mod tests {
         table.order(&command);
         assert!(!table.moving() && table.counter() == 100);
         table.order(&MotorCommand { number: 0, ..command });
-        assert_eq!(table.echo, 7, "0 is no order");
+        assert_eq!(table.echo, 7, "0 is not an order");
     }
 
     #[test]

@@ -28,7 +28,7 @@ fn ten_runs_have_the_same_digests_in_every_tick() {
 fn motion_in_a_tick_changes_the_digest() {
     let tape = tape(scenes::clamping(7));
     let still = tape.digests.windows(2).filter(|pair| pair[0] == pair[1]).count();
-    assert_eq!(still, 0, "the noise of the sensors goes on in every tick");
+    assert_eq!(still, 0, "the noise of the sensors changes in every tick");
 }
 
 /// Prints the chains of this process for [`two_processes_have_the_same_digests`].

@@ -60,7 +60,7 @@ fn cell_follows_a_robot_outside() {
     let home = Plate::from_frame(&T3.forward_plate(&cell.joints()), &Plate::default()).unwrap();
     let outputs = DeviceOutputs::default();
     let before = cell.inputs().resolvers;
-    assert_eq!(cell.step_following(None, &outputs).resolvers, before, "nothing is known of the robot yet");
+    assert_eq!(cell.step_following(None, &outputs).resolvers, before, "the position of the robot is unknown");
     let mut there = home;
     there.words[2] += 200;
     for _ in 0..60 {

@@ -169,7 +169,7 @@ fn looks_cover_all_collision_shapes() {
         Some(format!("{} at {:.2?}", body.name, point.as_slice()))
     };
     let gaps: Vec<String> = bodies.iter().filter_map(gap).collect();
-    assert!(gaps.is_empty(), "nothing is drawn where one can touch {}", gaps.join(", "));
+    assert!(gaps.is_empty(), "no mesh covers the collision body of {}", gaps.join(", "));
 }
 
 #[test]
@@ -179,7 +179,7 @@ fn each_look_belongs_to_a_link_and_has_closed_surfaces() {
     let frames = frames(&cell);
     let models = cell.scene(&[]).models();
     for model in &models {
-        assert!(frames.contains_key(&model.frame), "{} is no link", model.frame);
+        assert!(frames.contains_key(&model.frame), "{} is not a link", model.frame);
     }
     let moving = cell.links().into_iter().map(|link| link.name);
     for link in moving {

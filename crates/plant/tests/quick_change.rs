@@ -94,8 +94,12 @@ fn detached_gripper_stays_in_its_seat() {
     assert_eq!(rig.inputs.quick_change.end_effector_id, 1);
     rig.go_and_stop(over(&HOL_R, 14.0, 1.46), 4.0);
     assert_eq!((rig.inputs.quick_change.end_effector_id, rig.inputs.holsters.right), (0, FULL));
-    assert_eq!((rig.inputs.grip.potentiometer, rig.inputs.grip.strain_left), (0, 0), "nothing is connected");
-    assert_eq!(rig.log, [], "and nothing was touched");
+    assert_eq!(
+        (rig.inputs.grip.potentiometer, rig.inputs.grip.strain_left),
+        (0, 0),
+        "no sensor is connected"
+    );
+    assert_eq!(rig.log, [], "and no contact occurred");
     let seat = over(&HOL_R, 0.0, 1.5);
     let hangs = rig.cell.links().into_iter().find(|link| link.name == "parts_gripper").unwrap();
     let at = Vector::from(hangs.position) / 0.0254;

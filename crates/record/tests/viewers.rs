@@ -102,12 +102,12 @@ fn foxglove_layout_names_existing_channels_and_fields() {
         let schema = channel.unwrap_or_else(|| panic!("no channel {topic}")).schema.as_ref().unwrap();
         if schema.encoding == "protobuf" {
             let set = FileDescriptorSet::decode(&*schema.data).unwrap();
-            assert!(has_field(&set, &schema.name, field), "{name} is no field of {}", schema.name);
+            assert!(has_field(&set, &schema.name, field), "{name} is not a field of {}", schema.name);
         } else {
             let text = String::from_utf8_lossy(&schema.data);
             let field = field.trim_start_matches('.').split('[').next().unwrap_or_default();
             let has = text.lines().any(|line| line.split_whitespace().nth(1) == Some(field));
-            assert!(field.is_empty() || has, "{name} is no field of {text}");
+            assert!(field.is_empty() || has, "{name} is not a field of {text}");
         }
     }
     assert_eq!(panels, layout["configById"].as_object().unwrap().len(), "each panel has its place");

@@ -276,7 +276,7 @@ mod tests {
         bench.report(4, PedestalReport::Executing);
         assert_eq!(bench.tick(4), (true, false));
         assert_eq!(bench.agent.sent().pedestal.status.report, PedestalReport::Executing);
-        assert_eq!(bench.tick(5), (true, true), "the time of the next command begins anew");
+        assert_eq!(bench.tick(5), (true, true), "the next command has its own time limit");
     }
 
     #[test]

@@ -308,7 +308,7 @@ fn only_clients_that_do_not_read_are_disconnected() {
         let mut stream = socket.into_inner();
         ends(&mut stream);
     }
-    assert!(longest < sent / 2, "a message took {longest:?} to be handed over");
+    assert!(longest < sent / 2, "a message took {longest:?} to be sent");
 }
 
 /// A connection that reads at most 100 kB/s.

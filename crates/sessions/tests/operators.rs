@@ -35,7 +35,7 @@ impl Bench {
             if let Some(given) = self.listener.try_next() {
                 return given;
             }
-            assert!(started.elapsed() < Duration::from_secs(2), "no event has come");
+            assert!(started.elapsed() < Duration::from_secs(2), "no event has arrived");
             std::thread::sleep(Duration::from_millis(1));
         }
     }

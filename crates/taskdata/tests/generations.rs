@@ -124,7 +124,7 @@ fn error_leaves_the_data_unchanged() {
 fn directory_may_name_loaded_blocks() {
     let base = loaded(BASE);
     assert!(with(&base, "BLOCK# 2 OFFSET 20000\n 1 load 3 load\nBLOCK# 3 OFFSET 20000\n FDEF\n").is_ok());
-    let missing = with(&base, "BLOCK# 2 OFFSET 20000\n 7 load\n").expect_err("there is no block 7");
+    let missing = with(&base, "BLOCK# 2 OFFSET 20000\n 7 load\n").expect_err("block 7 is missing");
     assert!(missing.contains("there is no block 7 (offset 20000)"), "{missing}");
 }
 

@@ -403,7 +403,7 @@ mod tests {
         is.memory.prim.t3i.number = 9;
         let lines = lines(&is, Some(&was), &Story::new(usize::MAX));
         let changed: Vec<_> = lines.iter().filter(|line| line.mark.changed).map(|line| line.name).collect();
-        assert_eq!(changed, Vec::<&str>::new(), "a number without a command is no command");
+        assert_eq!(changed, Vec::<&str>::new(), "a number without a command is not shown");
         is.memory.task.subtask.command = interfaces::subtask::SubtaskVerb::GetObject;
         let lines = self::lines(&is, Some(&was), &Story::new(usize::MAX));
         let changed: Vec<_> = lines.iter().filter(|line| line.mark.changed).map(|line| line.name).collect();

@@ -71,7 +71,7 @@ mod tests {
         assert_eq!(ticks, [Tick(9), Tick(8), Tick(8)], "as in the log of the run");
         assert!(said[0].text.contains("the E-stop on the joystick box was pressed"), "{said:?}");
         assert_eq!(lines(&now, &now, Tick(9)), []);
-        assert_eq!(lines(&now, &before, Tick(9)), [], "what has been put right is no event");
+        assert_eq!(lines(&now, &before, Tick(9)), [], "a repair is not an event");
     }
 
     /// The views must contain the texts in full; otherwise the cause of a loss is not found.

@@ -195,7 +195,7 @@ mod tests {
         }
         assert_eq!(client.items(), ["LINKBAR1 17 H_ROBOT H_ROBOT 0", "LINKBAR1 18 HWS UNIT_1 2"]);
         assert_eq!(client.ask(DataBaseVerb::Abort), Summary::Done);
-        assert_eq!(client.items().len(), 2, "what was told stays after the connection has ended");
+        assert_eq!(client.items().len(), 2, "reported items remain after the connection");
     }
 
     #[test]

@@ -354,7 +354,7 @@ mod tests {
         let told = status::decode(bench.gate.status_box().data()).unwrap().reason.to_owned();
         assert!(told.ends_with(": HOME is 2.50 in and 0.0 degrees away"), "{told}");
         memory.emove.nearest = near(3.5);
-        assert!(!bench.gate.write(&memory, TaskState::Runs), "the same status is no news");
+        assert!(!bench.gate.write(&memory, TaskState::Runs), "an unchanged status is not written");
     }
 
     #[test]
@@ -364,7 +364,7 @@ mod tests {
         bench.gate.initialize();
         bench.command_box.initialize();
         assert_eq!(bench.gate.read(&bench.command_box, &Vise), None);
-        assert_eq!(*bench.gate.command(), transfer(7), "Task goes on with what it has");
+        assert_eq!(*bench.gate.command(), transfer(7), "Task continues its command");
         assert!(bench.command(&HwsCommand { serial: Default::default(), ..transfer(7) }).is_some());
         assert_eq!(bench.command(&transfer(300)), None);
         assert_eq!(bench.command(&transfer(302)).as_deref(), Some("command 301 comes next, found 302"));

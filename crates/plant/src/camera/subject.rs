@@ -178,6 +178,6 @@ mod tests {
         let subject = plate(0.0, 0.0, |_| true);
         assert!(subject.touches(&plate(3.9, 0.0, |_| true), 0.05));
         assert!(!subject.touches(&plate(4.4, 0.0, |_| true), 0.05));
-        assert!(!subject.touches(&plate(3.9, 0.0, |_| false), 0.0), "what is not seen touches nothing");
+        assert!(!subject.touches(&plate(3.9, 0.0, |_| false), 0.0), "a hidden part is not part of a blob");
     }
 }

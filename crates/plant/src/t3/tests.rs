@@ -156,7 +156,7 @@ fn broken_transmitter_is_detected_at_the_next_answer() {
     let mut t3 = running();
     t3.press(Key::Transmitter(false)).unwrap();
     assert_eq!(pass(&mut t3, 0.2), []);
-    assert_eq!(t3.depc().warning(), Warning::None, "nothing was to be sent");
+    assert_eq!(t3.depc().warning(), Warning::None, "no answer was due");
     assert_eq!(step(&mut t3, &[0x05], true), []);
     assert_eq!(t3.depc().warning(), Warning::Transmitter);
     t3.press(Key::Enter).unwrap();

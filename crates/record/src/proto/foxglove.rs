@@ -258,7 +258,7 @@ mod tests {
             take_transforms(&out),
             [(link("arm", "world"), place), (link("hand", "arm"), Transform::IDENTITY)]
         );
-        assert!(take_transforms(&out[..out.len() - 1]).len() < 2, "half a transform is none");
+        assert!(take_transforms(&out[..out.len() - 1]).len() < 2, "an incomplete transform is dropped");
     }
 
     #[test]

@@ -409,7 +409,10 @@ mod tests {
             assert!(found.contains(why), "{line}: {found}");
         }
         memory.pedestal.status.felt = Felt::Something;
-        assert!(ask("write subtask.regrip LCLEVIS_IH", &memory).is_err(), "it was not told to grip");
+        assert!(
+            ask("write subtask.regrip LCLEVIS_IH", &memory).is_err(),
+            "the pedestal has no order to grip"
+        );
         memory.pedestal.status.gripped = true;
         assert_eq!(
             ask("write subtask.regrip LCLEVIS_IH", &memory).unwrap(),

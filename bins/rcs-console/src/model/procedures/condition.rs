@@ -285,7 +285,7 @@ mod tests {
         let both = |picture: &Picture| {
             [Condition::Stands, Condition::Moved].map(|wanted| holds(picture, &cell, begun, wanted))
         };
-        assert_eq!(both(&picture), [None, None], "the resolvers cannot be believed");
+        assert_eq!(both(&picture), [None, None], "the resolver readings are invalid");
         picture.memory.t3i.status.resolver_frame = Some(WireFrame { tool: [0, 3, -4], ..HOME });
         assert_eq!(both(&picture), [Some(true), Some(false)]);
         picture.memory.t3i.status.resolver_frame = Some(WireFrame { tool: [0, 11, 0], ..HOME });

@@ -128,7 +128,10 @@ mod tests {
                     "{named}: until {}",
                     step.until
                 );
-                assert!(step.warning.is_empty() || !step.ask.is_empty(), "{named}: nothing is asked for");
+                assert!(
+                    step.warning.is_empty() || !step.ask.is_empty(),
+                    "{named}: a warning without a request"
+                );
             }
         }
     }

@@ -136,7 +136,7 @@ mod tests {
         let pose = Pose { wrist: [0, -4145, -4602], tool: [0, -7145, -1483], finger: [3000, -7145, -1483] };
         memory.prim.poses[0] = ChangingPose { number: Some(number), pose };
         let board = |number| Board { number, ..Board::default() };
-        assert!(recorded(&board(2), &memory).is_none(), "nothing was recorded");
+        assert!(recorded(&board(2), &memory).is_none(), "no pose was recorded");
         (memory.prim.status.recorded_pose, memory.prim.status.recording) = (Some(number), true);
         assert!(recorded(&board(6), &memory).is_none(), "Task has its own terminal");
         let lines = recorded(&board(2), &memory).unwrap().lines;

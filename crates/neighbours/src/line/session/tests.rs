@@ -132,7 +132,7 @@ fn protocol_error_closes_the_session_with_a_reason() {
         let told = carry(&mut controller, &mut neighbour, 5, now);
         assert_eq!(told, [Seen::Error(SessionError::Reason(error.to_string()))]);
         controller.receive(&frame(HWSC_COMMAND.address, b"go"), now);
-        assert_eq!(events(&mut controller, now), [], "nothing counts behind it");
+        assert_eq!(events(&mut controller, now), [], "later bytes are ignored");
     }
 }
 

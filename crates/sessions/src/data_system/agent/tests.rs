@@ -128,7 +128,7 @@ fn lost_command_is_repeated_with_its_number() {
     server.join().unwrap();
     let [first, again, anew] = &heard.iter().collect::<Vec<_>>()[..] else { panic!("three were sent") };
     assert_eq!(first, again);
-    assert_eq!([id(first), id(anew)], [1, 2], "what was answered and is asked anew is another command");
+    assert_eq!([id(first), id(anew)], [1, 2], "a repetition after the answer is a new command");
 }
 
 #[test]
@@ -276,7 +276,7 @@ fn stopped_endpoint_ends_the_wait_for_a_silent_server() {
         });
         assert_eq!(agent.execute(&update(1, "UNIT_1")), None);
         assert_eq!(agent.execute(&update(2, "UNIT_2")), None);
-        assert_eq!(pending(&agent), 2, "the next run tells them");
+        assert_eq!(pending(&agent), 2, "the next run sends them");
         drop(agent);
         server.join().unwrap();
     }

@@ -163,9 +163,9 @@ mod tests {
         let pause = Ok("== PAUSE -- 0 -- 0 0 -- 0 -- 0".to_owned());
         assert_eq!((command("PAUSE"), command(" == PAUSE")), (pause.clone(), pause));
         let position = "== POSITION LINKBAR1_BH +2 PFIXTURE 0 0 -- 0 -- 0";
-        assert_eq!(command(position), Ok(position.to_owned()), "what is held is not known");
+        assert_eq!(command(position), Ok(position.to_owned()), "the held object is unknown");
         let Err(OwnLineError::Unreadable(why_not)) = command("MOVE LINKBAR9 +2") else {
-            panic!("it is no command")
+            panic!("it is not a command")
         };
         assert!(why_not.contains("was expected, the line ends"), "{why_not}");
         let OwnLineError::Unreadable(why_not) = why("estop terminals now") else { panic!("it is no line") };

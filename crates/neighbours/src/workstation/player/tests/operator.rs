@@ -261,7 +261,7 @@ fn emulator_without_a_job_waits_again() {
     assert!(stage.hwsc.is_waiting() && stage.received().is_empty());
     stage.order("MOVE");
     stage.until(|stage| stage.outcomes().last() == Some(&("MOVE", Outcome::Finished)));
-    assert!(stage.hwsc.command().number > 41, "it goes on from the last number");
+    assert!(stage.hwsc.command().number > 41, "the number follows the last one");
     stage.hwsc.play(Tick(stage.tick), vec![command("ACQUIRE")]).unwrap();
     stage.until(is_over);
     stage.hwsc.wait_without_job();
