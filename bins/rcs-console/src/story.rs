@@ -154,8 +154,7 @@ impl Story {
         until(&self.doings[process.position()], tick, |doing| doing.tick)
     }
 
-    /// The rows that decided in a process up to a tick, oldest first. Changes of its reports alone are left
-    /// out.
+    /// The rows that decided in a process up to a tick, oldest first. Changes of its reports alone are left out.
     #[must_use]
     pub fn rows(&self, process: ProcessId, tick: u64) -> Vec<Doing> {
         let mut rows: Vec<Doing> = Vec::new();

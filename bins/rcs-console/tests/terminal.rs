@@ -197,8 +197,7 @@ fn run(name: &str, log: &Path, job: &str, speed: u8) -> Running {
     begin(config)
 }
 
-/// A run in real time, accelerated by `speed`, whose job of one command waits for an operator; its data are
-/// `data`.
+/// A run in real time, accelerated by `speed`, whose job of one command waits for an operator; its data are `data`.
 fn waiting_run(directory: &Path, data: &Path, name: &str, speed: u8) -> Running {
     let job = directory.join("safe.job");
     std::fs::write(&job, TO_SAFE).unwrap();

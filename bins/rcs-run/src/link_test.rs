@@ -1,9 +1,8 @@
 //! `rcs-run link-test`: measures round trips on a DEPC link, and prints a verdict.
 //!
-//! The host of [`depc::host`] starts the link and then sends, every 40 ms, the position that the robot has
-//! reported, so that the robot does not move. The latency of an answer ends when its byte is readable, not at
-//! the next tick. A frame is in time if its ACK arrives within a tick, since the next frame then follows
-//! without a gap.
+//! The host of [`depc::host`] starts the link and then sends, every 40 ms, the position that the robot has reported, so
+//! that the robot does not move. The latency of an answer ends when its byte is readable, not at the next tick. A frame
+//! is in time if its ACK arrives within a tick, since the next frame then follows without a gap.
 
 mod dump;
 mod tally;
@@ -38,8 +37,7 @@ use crate::rcs_run::{
 /// Length of a tick.
 const PERIOD: Duration = Duration::from_millis(TICK_MS);
 
-/// Test the link and print the result. Exit status 0 if the link is usable, 1 if not, 3 if the link never came
-/// up.
+/// Test the link and print the result. Exit status 0 if the link is usable, 1 if not, 3 if the link never came up.
 ///
 /// # Errors
 /// [`Error`] if the test cannot run.

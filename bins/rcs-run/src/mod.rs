@@ -1,10 +1,9 @@
 //! `rcs-run`: the RCS-II/T3 controller with its simulated cell.
 //!
-//! [`cli`] is the command line, and each subcommand is a module. `run` carries out a run of the library
-//! `runtime`; with `--boards split` several processes share the controller's work (`board`). `link_test` tests
-//! the line to a robot. [`campaign`] interrupts a job at many ticks, [`new`] makes data for a new part, tool,
-//! place or tray. The other subcommands check and print task data and decision tables, or remove the remains of
-//! killed runs.
+//! [`cli`] is the command line, and each subcommand is a module. `run` carries out a run of the library `runtime`; with
+//! `--boards split` several processes share the controller's work (`board`). `link_test` tests the line to a robot.
+//! [`campaign`] interrupts a job at many ticks, [`new`] makes data for a new part, tool, place or tray. The other
+//! subcommands check and print task data and decision tables, or remove the remains of killed runs.
 
 #![deny(unsafe_code)]
 
@@ -48,8 +47,7 @@ use self::{
 /// Execute a command line. Returns the exit status.
 ///
 /// # Errors
-/// [`Error`] with its exit status and reason, if the command could not begin or its answer could not be
-/// written.
+/// [`Error`] with its exit status and reason, if the command could not begin or its answer could not be written.
 pub fn execute(cli: Cli) -> Result<ExitCode, Error> {
     match cli.command {
         None => run::run(&cli.run),

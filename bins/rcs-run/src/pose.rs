@@ -105,9 +105,8 @@ fn asked(arguments: &PoseArguments, store: &Store) -> Result<Pose, Error> {
     })
 }
 
-/// Common memory some ticks later. The controller carries out `joystick record` in the tick after its answer,
-/// so an earlier reading would show the previous record. A run without further ticks has no request to carry
-/// out.
+/// Common memory some ticks later. The controller carries out `joystick record` in the tick after its answer, so an
+/// earlier reading would show the previous record. A run without further ticks has no request to carry out.
 fn settled(attached: &Attached) -> Result<CommonMemory, Error> {
     let first = attached.memory()?;
     let begun = Instant::now();

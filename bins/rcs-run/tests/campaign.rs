@@ -1,5 +1,4 @@
-//! `rcs-run campaign` as a program: the branch without interruption is the ordinary run, and the output is
-//! complete.
+//! `rcs-run campaign` as a program: the branch without interruption is the ordinary run, and the output is complete.
 
 use std::{path::Path, process::Command};
 
@@ -93,8 +92,7 @@ fn branches_hurt_in_earlier_campaigns_are_done() {
 const REQUIRED: &str =
     "pause,pause-twice,refused,replaced,answer-lost,answer-late,answer-damaged,hold,nudge,held,restart,power";
 
-/// A sample of the campaign: all jobs, all required kinds and the E-stop. The ticks follow from the number of
-/// the job.
+/// A sample of the campaign: all jobs, all required kinds and the E-stop. The ticks follow from the number of the job.
 #[test]
 fn campaign_sample_recovers_without_damage() {
     let count = |row: &Value, name: &str| row[name].as_u64().expect("counts are numbers");

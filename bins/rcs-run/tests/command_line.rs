@@ -343,8 +343,7 @@ fn run_refuses_a_job_with_a_mistyped_holster() {
             "{file} {to}: {said}"
         );
         assert!(said.contains("objects/grippers.blk, block 703"), "{file} {to}: {said}");
-        // A job that keeps its gripper does not need the holster. An error of a location form concerns all its
-        // names.
+        // A job that keeps its gripper does not need the holster. An error of a location form concerns all its names.
         if file != "locations.blk" {
             assert_eq!(run("linkbar").status.code(), Some(0), "{file} {to}: {}", last_line(&run("linkbar")));
         }

@@ -1,5 +1,4 @@
-//! The program with a robot at a serial port: a pseudo-terminal, with the controller of [`depc`] at its other
-//! end.
+//! The program with a robot at a serial port: a pseudo-terminal, with the controller of [`depc`] at its other end.
 
 mod common;
 
@@ -214,8 +213,7 @@ fn linkbar(place: &Place, ticks: &str) -> (Output, Value) {
 }
 
 const PROMPT: Option<Duration> = Some(Duration::from_millis(2));
-/// Attempts of a test on the 40 ms grid. Other load may delay a frame in one attempt; a real error recurs in
-/// each.
+/// Attempts of a test on the 40 ms grid. Other load may delay a frame in one attempt; a real error recurs in each.
 const ATTEMPTS: u32 = 5;
 
 /// Try something on the 40 ms grid: first concurrently with other tests of this file, then alone.

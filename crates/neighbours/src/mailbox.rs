@@ -161,8 +161,7 @@ impl Mailbox {
         }
     }
 
-    /// Copies head and data received from the network, without the unused rest. An error leaves the mailbox
-    /// unchanged.
+    /// Copies head and data received from the network, without the unused rest. An error leaves the mailbox unchanged.
     ///
     /// # Errors
     /// [`MailboxError::Length`] if the length word differs from the number of bytes, or exceeds the mailbox.

@@ -1,8 +1,7 @@
 //! Collision shapes of robot and devices, from the cell description and their positions.
 //!
-//! Links of the arm are capsules, hands and furniture are boxes, plates and round parts are cylinders. The
-//! simulated cell and the path check ([`crate::room`]) both make their bodies here, and therefore use the same
-//! shapes.
+//! Links of the arm are capsules, hands and furniture are boxes, plates and round parts are cylinders. The simulated
+//! cell and the path check ([`crate::room`]) both make their bodies here, and therefore use the same shapes.
 
 use core::f64::consts::{FRAC_PI_2, SQRT_2};
 

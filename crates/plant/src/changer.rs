@@ -1,10 +1,9 @@
 //! Positions of the grippers, on the robot, in a holster or on the floor, and their changes.
 //!
-//! The state of the ring decides, not the controller's command ([`crate::quick_change`]). A gripper that the
-//! ring holds moves with the arm. A released gripper lands on the holster under it, or falls. It rests on its
-//! holster, and slides with an A plate that engages it. A gripper is *mated* while its pins touch, locked or
-//! not: only then it has air and its sensors are connected. The bodies of a gripper at rest in its holster are
-//! not simulated.
+//! The state of the ring decides, not the controller's command ([`crate::quick_change`]). A gripper that the ring holds
+//! moves with the arm. A released gripper lands on the holster under it, or falls. It rests on its holster, and slides
+//! with an A plate that engages it. A gripper is *mated* while its pins touch, locked or not: only then it has air and
+//! its sensors are connected. The bodies of a gripper at rest in its holster are not simulated.
 
 use geometry::frame::Frame;
 use interfaces::device::{HolsterSensors, QuickChangeSensors, QuickChangeValves};

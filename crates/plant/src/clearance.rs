@@ -1,11 +1,10 @@
 //! Collision check of the robot: in each tick, arm, gripper, and the carried part are checked against all other
 //! bodies of the cell, and against the arm itself.
 //!
-//! The simulated arm follows its path even through contact, like a hydraulic arm, so collisions must be
-//! computed from geometry. The cell description lists permitted contacts ([`crate::description::Permits`]). Of
-//! the pairs that are not always permitted, the check keeps, each tick, those that touch or are nearer than a
-//! margin, with their depth and direction. The caller knows the present command and decides which are
-//! permitted.
+//! The simulated arm follows its path even through contact, like a hydraulic arm, so collisions must be computed from
+//! geometry. The cell description lists permitted contacts ([`crate::description::Permits`]). Of the pairs that are not
+//! always permitted, the check keeps, each tick, those that touch or are nearer than a margin, with their depth and
+//! direction. The caller knows the present command and decides which are permitted.
 
 use std::{borrow::Cow, collections::BTreeSet};
 
@@ -34,8 +33,7 @@ pub struct Body {
     pub pose: Pose,
     pub shape: SharedShape,
     pub aabb: Aabb,
-    /// Its position in the chain of the arm, from 1 at the base; 0 for other bodies. Adjacent links do not
-    /// collide.
+    /// Its position in the chain of the arm, from 1 at the base; 0 for other bodies. Adjacent links do not collide.
     pub chain: u8,
 }
 

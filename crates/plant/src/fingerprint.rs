@@ -1,9 +1,8 @@
 //! The bytes of a value for a digest: all its variable data, without its description.
 //!
 //! A digest of the cell is taken in every tick, so it must be cheap. Every device contains its part of the cell
-//! description, which is most of its data and never changes: fields with the name `description` are omitted.
-//! Numbers are little-endian in their own width; sequences and texts are preceded by their length, enums by
-//! their variant.
+//! description, which is most of its data and never changes: fields with the name `description` are omitted. Numbers
+//! are little-endian in their own width; sequences and texts are preceded by their length, enums by their variant.
 
 use core::fmt;
 

@@ -1,9 +1,8 @@
 //! The force sensor of the tool gripper (III.3.8). It measures the forces on fingers and tool, and their weight.
 //!
-//! The load is the force of the springs between the hand and fingers and tool, so it includes every contact
-//! without lag. The sensor adds its own load's weight, whose direction turns with the robot, an offset of the
-//! bridges, and noise: CAL-SENSOR must determine the reading without contact (V.1.1). Only four of the six axes
-//! are connected.
+//! The load is the force of the springs between the hand and fingers and tool, so it includes every contact without
+//! lag. The sensor adds its own load's weight, whose direction turns with the robot, an offset of the bridges, and
+//! noise: CAL-SENSOR must determine the reading without contact (V.1.1). Only four of the six axes are connected.
 
 use geometry::frame::Vector;
 use interfaces::device::{FORCE_COUNTS_PER_LB, FORCE_ZERO, ForceSensor, MOMENT_COUNTS_PER_IN_LB};

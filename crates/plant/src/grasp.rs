@@ -30,8 +30,7 @@ pub enum Grasp {
     Release,
 }
 
-/// The decision after the air has moved the fingers; `stop` is the opening at which a part between them stops
-/// them, in.
+/// The decision after the air has moved the fingers; `stop` is the opening at which a part between them stops them, in.
 #[must_use]
 pub fn decide(holds: bool, stop: Option<f64>, air: &Air) -> Grasp {
     let presses = air.force() >= LEAST_FORCE;
@@ -49,8 +48,7 @@ pub fn drive(air: &mut Air, dt: f64, supply: Supply, stop: Option<f64>, holds: b
         && (stop - air.opening()).abs() > 1e-5
         && air.force() >= LEAST_FORCE
     {
-        // The two fingers are coupled: a part pushed off the middle spreads them, and they follow it when it
-        // returns.
+        // The two fingers are coupled: a part pushed off the middle spreads them, and they follow it when it returns.
         air.spread(stop);
     }
     air.advance(dt, supply, stop);

@@ -30,8 +30,7 @@ const SWAY: f64 = 0.05;
 /// Time for which seal friction holds freed fingers before trapped air moves them, s; a part that slides out is clear
 /// by then.
 const BREAKAWAY_TIME: f64 = 0.25;
-/// Distance of a body from a finger within which they can touch in the next step, m, without the travel of the
-/// hand.
+/// Distance of a body from a finger within which they can touch in the next step, m, without the travel of the hand.
 const TOUCHABLE: Real = 2e-3;
 /// Fingers can sleep when none of their points has moved faster than this for half a second, m/s (rad/s). Their
 /// remaining motion is then less than 1e-11 m.
@@ -103,8 +102,7 @@ impl Air {
         still && !supply.vent && (supply.flow == 0.0 || presses)
     }
 
-    /// Apply a supply for `dt` seconds; `stop` is the opening at which an object between the fingers blocks
-    /// them.
+    /// Apply a supply for `dt` seconds; `stop` is the opening at which an object between the fingers blocks them.
     pub fn advance(&mut self, dt: f64, supply: Supply, stop: Option<f64>) {
         let (before, force) = (self.opening, self.force);
         let [least, greatest] = self.range;

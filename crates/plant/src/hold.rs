@@ -10,9 +10,8 @@
 //! * Across the pads (Y, and the tilts about X and Z) the limit is the pads' force. A greater force pushes the part
 //!   aside, and the pads return it to their middle, flush, as soon as they are stronger.
 //!
-//! The springs act at the middle of the part, where the six axes are decoupled, so that the solver is exact
-//! without iteration. The limits apply where the pads touch, and a bar that is gripped at its end droops about
-//! that point.
+//! The springs act at the middle of the part, where the six axes are decoupled, so that the solver is exact without
+//! iteration. The limits apply where the pads touch, and a bar that is gripped at its end droops about that point.
 
 use rapier3d_f64::math::Vector;
 use rapier3d_f64::prelude::*;
@@ -253,8 +252,7 @@ impl Hold {
             let force = libm::hypot(force.x, force.z) / self.limits.friction;
             let used = libm::hypot(force, moment.y / self.limits.moments[1]);
             if used > 1.0 {
-                // The springs stay at the limit. Before the next step it is decided whether the part sticks or
-                // slides.
+                // The springs stay at the limit. Before the next step it is decided whether the part sticks or slides.
                 let excess = 1.0 - 1.0 / used;
                 let slide = Vector::new(away.x, 0.0, away.z) * excess;
                 self.nominal.translation += slide;

@@ -127,8 +127,7 @@ impl Holster {
         over.then(|| Perch { up: offset.up.max(0.0), speed: 0.0, forward: self.slide(offset.forward) })
     }
 
-    /// Position of a gripper that is moved to `forward`: at most at the seat, and drawn to it within the
-    /// detent.
+    /// Position of a gripper that is moved to `forward`: at most at the seat, and drawn to it within the detent.
     #[must_use]
     pub fn slide(&self, forward: f64) -> f64 {
         let Holsters { seat, detent, .. } = self.description;

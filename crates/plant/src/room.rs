@@ -41,8 +41,7 @@ pub struct Placed {
 pub struct Layout {
     /// End effector id of the gripper on the robot, if any.
     pub gripper: Option<u8>,
-    /// End effector id of a gripper in its holster with which the robot is engaged, if any. It is then not an
-    /// obstacle.
+    /// End effector id of a gripper in its holster with which the robot is engaged, if any. It is then not an obstacle.
     pub engaged: Option<u8>,
     pub opening: f64,
     pub held: Option<Placed>,

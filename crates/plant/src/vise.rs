@@ -201,9 +201,8 @@ impl Vise {
         to_pose(&self.frame.shifted(Inches::new(0.0, self.gap, 0.0)))
     }
 
-    /// The clamping faces of a step as pads; see [`Vise::fixed_face`] for the position of the fixed one. Deeper
-    /// steps cut pieces out of them: of the remaining areas next to and below each piece, the larger rectangle
-    /// is used.
+    /// The clamping faces of a step as pads; see [`Vise::fixed_face`] for the position of the fixed one. Deeper steps
+    /// cut pieces out of them: of the remaining areas next to and below each piece, the larger rectangle is used.
     #[must_use]
     pub fn pads(&self, step: usize) -> Pads {
         let step = self.step(step);

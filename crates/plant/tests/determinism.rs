@@ -1,5 +1,4 @@
-//! Equal seeds give equal bits: in ten runs, in two processes, and after saving and restoring the cell during
-//! contacts.
+//! Equal seeds give equal bits: in ten runs, in two processes, and after saving and restoring the cell during contacts.
 
 use crate::rig::{Rig, description, scenes, tape::Tape};
 use plant::{Cell, RestoreError};

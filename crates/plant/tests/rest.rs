@@ -1,8 +1,7 @@
 //! Bodies at rest stay at rest: parts that are held or stacked for a minute, and the arm at its command.
 //!
-//! The linkbar job depends on gaps of a millimetre (cell proposal, §2). 0.5 mm per minute is permitted; the
-//! limit here is 0.1 mm.
-//! 0.1 mm.
+//! The linkbar job depends on gaps of a millimetre (cell proposal, §2). 0.5 mm per minute is permitted; the limit here
+//! is 0.1 mm. 0.1 mm.
 
 use crate::rig::{self, CELL, Rig, UNIT_V1, description, scenes, table};
 use geometry::{

@@ -1,10 +1,8 @@
-//! The channels of the buffers: one per buffer of [`CommonMemory`] and [`ExternalInputs`], found in their
-//! schemas.
+//! The channels of the buffers: one per buffer of [`CommonMemory`] and [`ExternalInputs`], found in their schemas.
 //!
 //! The outputs of a process are a header and buffers. Each buffer has a channel `/process/buffer`, a command
-//! `/process/buffer_command`; the header has `/process/row` ([`crate::rows`]). A message is written when its
-//! buffer changes, and at least every ten seconds, so that a viewer that starts in the middle soon finds a
-//! value.
+//! `/process/buffer_command`; the header has `/process/row` ([`crate::rows`]). A message is written when its buffer
+//! changes, and at least every ten seconds, so that a viewer that starts in the middle soon finds a value.
 
 use std::{
     collections::BTreeMap,

@@ -58,8 +58,7 @@ pub fn tables() -> Value {
     Ladder::processes().iter().map(process).collect()
 }
 
-/// The reasons of failures: `[{code, text, remedy}]`; without a remedy if PAUSE and the same command may be
-/// enough.
+/// The reasons of failures: `[{code, text, remedy}]`; without a remedy if PAUSE and the same command may be enough.
 #[must_use]
 pub fn reasons() -> Value {
     let Schema::Enum(schema) = Reason::SCHEMA else { return Value::Array(Vec::new()) };

@@ -56,9 +56,8 @@ impl LogFile {
         }
     }
 
-    /// Claim `<name>.mcap` in a directory, or `<name>-2.mcap` and so on while other runs write the earlier
-    /// ones. A log of an earlier run is kept under the time of its end, for example
-    /// `<name>-2026-11-27T214500Z.mcap`.
+    /// Claim `<name>.mcap` in a directory, or `<name>-2.mcap` and so on while other runs write the earlier ones. A log
+    /// of an earlier run is kept under the time of its end, for example `<name>-2026-11-27T214500Z.mcap`.
     ///
     /// # Errors
     /// [`RecordError::Create`].

@@ -148,8 +148,7 @@ pub struct CellModel {
     pub names: Vec<Name>,
     /// Links that move, in the order of [`CellFrame::transforms`].
     pub links: Vec<Link>,
-    /// Fixed links, with their places in their parents. A viewer draws no link without a transform, even with a
-    /// URDF.
+    /// Fixed links, with their places in their parents. A viewer draws no link without a transform, even with a URDF.
     pub fixed: Vec<(Link, Transform)>,
     /// Names of the joints in the order of [`CellFrame::joints`].
     pub joints: Vec<String>,

@@ -1,7 +1,6 @@
 //! Openings and forces of the grippers in SI units: `/instruments`, for the curves of viewers.
 //!
-//! The statuses of the grippers have hundredths of an inch and pounds, as in the manual, which viewers cannot
-//! convert.
+//! The statuses of the grippers have hundredths of an inch and pounds, as in the manual, which viewers cannot convert.
 
 use std::io::{Seek, Write};
 

@@ -47,9 +47,8 @@ impl Leaf {
         if self.is_in(image) { value.to_string() } else { reflect::NONE.to_owned() }
     }
 
-    /// True if the field is a record number of the task data. Added data change the numbers of later records
-    /// but not their meaning, so runs with different task data are compared without these fields, by names and
-    /// results.
+    /// True if the field is a record number of the task data. Added data change the numbers of later records but not
+    /// their meaning, so runs with different task data are compared without these fields, by names and results.
     #[must_use]
     pub fn is_record_number(&self) -> bool {
         let number = match self.schema {
@@ -210,8 +209,7 @@ pub fn interface_version() -> String {
     digest.to_string()
 }
 
-/// Version of the layout: a digest of [`description`], which changes if, and only if, the meaning of an image
-/// changes.
+/// Version of the layout: a digest of [`description`], which changes if, and only if, the meaning of an image changes.
 #[must_use]
 pub fn version() -> String {
     let mut digest = Digest::new();

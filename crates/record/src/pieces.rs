@@ -1,18 +1,16 @@
 //! Splits a log file, which may be damaged, into pieces.
 //!
-//! Every length in the file is checked against the size of the file before use. An unreadable piece ends at the
-//! next readable record: a chunk or an attachment with the right checksum, or metadata of this program. The
-//! total of decompressed bytes, and with it memory and time of reading, is limited in proportion to the size of
-//! the file.
+//! Every length in the file is checked against the size of the file before use. An unreadable piece ends at the next
+//! readable record: a chunk or an attachment with the right checksum, or metadata of this program. The total of
+//! decompressed bytes, and with it memory and time of reading, is limited in proportion to the size of the file.
 //!
 //! Logs that other programs have rewritten are also read: with other compressions, without chunks, or without
 //! checksums. Damage in a part without a checksum may remain undetected.
 //!
-//! A whole file has at its end the right checksums of all its chunks and of the index after them. Its chunks
-//! are then decompressed only when read, and the index lists the chunks with messages of a channel. Otherwise
-//! each chunk must prove by its own checksum that it is readable. All processors check the first chunks ahead.
-//! The decompressed data are not kept: decompressing them again is as fast as fetching them from memory outside
-//! the caches.
+//! A whole file has at its end the right checksums of all its chunks and of the index after them. Its chunks are then
+//! decompressed only when read, and the index lists the chunks with messages of a channel. Otherwise each chunk must
+//! prove by its own checksum that it is readable. All processors check the first chunks ahead. The decompressed data
+//! are not kept: decompressing them again is as fast as fetching them from memory outside the caches.
 
 use std::{collections::BTreeMap, io::Read as _, iter, ops::Range, thread};
 
@@ -209,8 +207,7 @@ fn unreadable(bytes: &[u8], at: usize) -> Option<(Damage, usize)> {
 /// True if the file ends with the right checksums of its data and of its summary, which has its channels and
 /// schemas; `None` without such an end.
 fn is_whole(bytes: &[u8]) -> Option<bool> {
-    // Footer: beginning of the summary, beginning of its offsets, checksum of the summary and of the footer up
-    // to here.
+    // Footer: beginning of the summary, beginning of its offsets, checksum of the summary and of the footer up to here.
     let footer = bytes.len().checked_sub(HEAD + FOOTER + MAGIC.len())?;
     let (opcode, end) = frame(bytes, footer)?;
     if opcode != op::FOOTER || bytes.get(end..) != Some(MAGIC) {
@@ -332,8 +329,7 @@ fn frame(bytes: &[u8], at: usize) -> Option<(u8, usize)> {
     (end <= bytes.len()).then_some((*opcode, end))
 }
 
-/// Begin, operation code and end of the records from a position on, up to one that would be longer than the
-/// file.
+/// Begin, operation code and end of the records from a position on, up to one that would be longer than the file.
 fn frames(bytes: &[u8], from: usize) -> impl Iterator<Item = (usize, u8, usize)> {
     let mut at = from;
     iter::from_fn(move || {

@@ -276,8 +276,7 @@ impl Recorder {
             ticks, states, cells, notes, files, operators, shown, lost, path, end: slot, thread, ..
         } = self;
         *slot.lock().unwrap_or_else(PoisonError::into_inner) = (end, lost);
-        // The writer finishes when the producers are dropped. The ticks are dropped last, because it waits for
-        // them.
+        // The writer finishes when the producers are dropped. The ticks are dropped last, because it waits for them.
         drop((states, cells, notes, files, operators, shown));
         drop(ticks);
         let (Written { ticks, bytes }, earlier) = thread.join().map_err(|_| RecordError::Thread)??;

@@ -79,8 +79,7 @@ pub struct ReplayReport {
 }
 
 impl ReplayReport {
-    /// True if every computed tick was the same, and also the digest if the log has one and no tick was
-    /// skipped.
+    /// True if every computed tick was the same, and also the digest if the log has one and no tick was skipped.
     #[must_use]
     pub fn is_same(&self) -> bool {
         let digests = self.recorded_digest.is_none_or(|recorded| recorded == self.digest.value());

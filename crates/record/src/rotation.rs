@@ -15,8 +15,7 @@ use crate::file::is_earlier;
 pub struct LogLimit {
     /// Size, bytes, after which the run begins a new log. A log exceeds it by its end and by one second.
     pub bytes: u64,
-    /// Greatest number of kept earlier logs with the name of this one; the oldest are removed. `None` keeps
-    /// all.
+    /// Greatest number of kept earlier logs with the name of this one; the oldest are removed. `None` keeps all.
     pub kept: Option<usize>,
 }
 

@@ -1,9 +1,8 @@
 //! The row channels: one per process, `/process/row`, with the row of a decision table that fired.
 //!
-//! A message has the row as text, the step in which it was looked up, the values of the state variables in its
-//! table, the tick in which it fired, and the rows of other tables that fired in addition. A process at rest
-//! repeats its last row in its header, with `resting` set. A message is written when anything except the tick
-//! changes.
+//! A message has the row as text, the step in which it was looked up, the values of the state variables in its table,
+//! the tick in which it fired, and the rows of other tables that fired in addition. A process at rest repeats its last
+//! row in its header, with `resting` set. A message is written when anything except the tick changes.
 
 use std::io::{Seek, Write};
 

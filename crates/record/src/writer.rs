@@ -179,8 +179,7 @@ impl<W: Write + Seek> LogWriter<W> {
         self.ticks > 0
     }
 
-    /// Continue the run of another log, which now has this name. The tap, which already has the channels, is
-    /// passed on.
+    /// Continue the run of another log, which now has this name. The tap, which already has the channels, is passed on.
     pub(crate) fn continue_run<E: Write + Seek>(&mut self, ended: &mut LogWriter<E>, name: String) {
         self.output.tap = ended.output.tap.take();
         self.before = ended.before;
@@ -189,8 +188,7 @@ impl<W: Write + Seek> LogWriter<W> {
         self.earlier = Some(name);
     }
 
-    /// Write a tick. `state` has the states after it; give it with the first tick, once per second, and after a
-    /// gap.
+    /// Write a tick. `state` has the states after it; give it with the first tick, once per second, and after a gap.
     ///
     /// # Errors
     /// Errors of the sink.
@@ -249,8 +247,7 @@ impl<W: Write + Seek> LogWriter<W> {
         Ok(())
     }
 
-    /// Write the changes of the state after a tick for viewers, or the whole state, from the images of the
-    /// tick.
+    /// Write the changes of the state after a tick for viewers, or the whole state, from the images of the tick.
     fn write_state(
         &mut self,
         tick: Tick,

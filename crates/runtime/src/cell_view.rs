@@ -24,9 +24,8 @@ pub struct View {
 }
 
 impl View {
-    /// Fill the view with the cell after `tick`. `warning` is the last warning on the screen of the robot
-    /// controller; `place` is the number of the job's last begun line and the number of its lines; `steps` are
-    /// all begun steps.
+    /// Fill the view with the cell after `tick`. `warning` is the last warning on the screen of the robot controller;
+    /// `place` is the number of the job's last begun line and the number of its lines; `steps` are all begun steps.
     pub fn look(
         &mut self,
         tick: Tick,

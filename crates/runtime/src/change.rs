@@ -1,8 +1,7 @@
 //! Changes of a run between two ticks: experiments with a recorded run ([`crate::repeat`]).
 //!
-//! A change takes effect in the next tick, and is written to the log. Changed task data are a new generation,
-//! so that a replay of the log finds them. Unlike those of a line `** load`, they do not wait for the end of a
-//! command.
+//! A change takes effect in the next tick, and is written to the log. Changed task data are a new generation, so that a
+//! replay of the log finds them. Unlike those of a line `** load`, they do not wait for the end of a command.
 
 use plant::fault::{What, text::FaultFile};
 use taskdata::load::{

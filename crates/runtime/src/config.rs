@@ -74,8 +74,7 @@ pub struct RunConfig {
     pub network: Option<Address>,
     #[serde(with = "as_text::list")]
     pub outside: Vec<Role>,
-    /// Begin under stand-alone command, with the job, although the workstation controller is another process
-    /// (IV.4.1).
+    /// Begin under stand-alone command, with the job, although the workstation controller is another process (IV.4.1).
     pub stand_alone: bool,
     /// File that keeps updates until a Data System in another process receives them.
     pub outbox: PathBuf,
@@ -253,8 +252,7 @@ pub struct RobotConfig {
     pub kind: RobotKind,
     /// Seconds for which a controller may be silent while its DTR is on; `None` for the default.
     pub silence: Option<u16>,
-    /// Time by which the robot is expected to lag behind its points, ms; `None` for the robot's own value, or
-    /// 200 ms.
+    /// Time by which the robot is expected to lag behind its points, ms; `None` for the robot's own value, or 200 ms.
     pub lag: Option<u16>,
 }
 

@@ -67,8 +67,7 @@ impl EgmPort {
                 let real = config.clock == ClockKind::Real;
                 let prepare = move || {
                     if real {
-                        // The run reports missing settings for its own thread. This thread gets at most the
-                        // same ones.
+                        // The run reports missing settings for its own thread. This thread gets at most the same ones.
                         let _ = realtime::raise_priority();
                     }
                 };

@@ -1,9 +1,8 @@
 //! A run of the controller as a library.
 //!
-//! A [`RunConfig`] describes the run: task data, job, clock, robot, faults, boards, neighbours, log.
-//! [`Run::new`] reads and checks it and starts the required parts; [`Run::step`] runs one tick; [`Run::finish`]
-//! ends the log and returns the [`RunOutcome`]. An [`Observer`] receives messages, each [`Event`] and each
-//! tick.
+//! A [`RunConfig`] describes the run: task data, job, clock, robot, faults, boards, neighbours, log. [`Run::new`] reads
+//! and checks it and starts the required parts; [`Run::step`] runs one tick; [`Run::finish`] ends the log and returns
+//! the [`RunOutcome`]. An [`Observer`] receives messages, each [`Event`] and each tick.
 //!
 //! ```no_run
 //! use runtime::{LogTarget, Run, RunConfig};
@@ -14,10 +13,9 @@
 //! # Ok::<(), runtime::StartError>(())
 //! ```
 //!
-//! The order in a tick: receive bytes from a serial line, run the controller (with measured time and
-//! allocations), send bytes over the line, pass the tick to the log, advance the cell, run the workstation
-//! controller. The physics of the cell allocates and takes most of the time; neither is attributed to the
-//! controller.
+//! The order in a tick: receive bytes from a serial line, run the controller (with measured time and allocations), send
+//! bytes over the line, pass the tick to the log, advance the cell, run the workstation controller. The physics of the
+//! cell allocates and takes most of the time; neither is attributed to the controller.
 
 pub mod agreement;
 mod as_text;

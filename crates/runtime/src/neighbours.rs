@@ -247,8 +247,7 @@ impl Neighbours {
         self.events.extend(agent.remarks().into_iter().map(Event::from));
     }
 
-    /// Vision reads E-move's request and the camera picture. Its answer is among the device words of the next
-    /// tick.
+    /// Vision reads E-move's request and the camera picture. Its answer is among the device words of the next tick.
     fn step_vision(&mut self, tick: Tick, memory: &CommonMemory, workstation: &mut SimulatedWorkstation) {
         let Some(port) = &mut self.vision else { return };
         let cell = &mut workstation.cell;
@@ -267,8 +266,7 @@ impl Neighbours {
         }
     }
 
-    /// Number of the job's last begun line, 0 before the first, and the number of its lines; both 0 without a
-    /// job.
+    /// Number of the job's last begun line, 0 before the first, and the number of its lines; both 0 without a job.
     #[must_use]
     pub fn place(&self) -> (usize, usize) {
         match &self.workstation {

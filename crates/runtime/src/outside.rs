@@ -112,8 +112,7 @@ impl OutsideWorkstation {
         self.load.take()
     }
 
-    /// Answer a load with the reason of a refusal, or `None`. Only the line that requested it receives the
-    /// answer.
+    /// Answer a load with the reason of a refusal, or `None`. Only the line that requested it receives the answer.
     pub fn load_answered(&mut self, refused: Option<String>) {
         if self.loading.take() == Some(self.line) {
             self.refused = refused;

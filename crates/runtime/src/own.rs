@@ -17,16 +17,14 @@ use plant::t3::explained;
 /// The calls of a tick are first [`advance`](Self::advance), then at most one point ([`Robot::accept`]) or
 /// request for the present position ([`Robot::present`]), then [`position`](Self::position).
 ///
-/// The robot is supervised while it moves (docs/design/link.md "Following"): T3 Interface compares `position`
-/// with the path of the last points. A robot that is off this path receives no further point, and
-/// [`Robot::stop`] is called once. It must stop in place, and [`Robot::present`] must return that position from
-/// then on.
+/// The robot is supervised while it moves (docs/design/link.md "Following"): T3 Interface compares `position` with the
+/// path of the last points. A robot that is off this path receives no further point, and [`Robot::stop`] is called
+/// once. It must stop in place, and [`Robot::present`] must return that position from then on.
 pub trait OwnRobot: Robot {
     /// A tick of 40 ms begins: move towards the last accepted point.
     fn advance(&mut self);
 
-    /// Position of the end plate, if known. The arm of the simulated cell, and everything that it carries,
-    /// follows it.
+    /// Position of the end plate, if known. The arm of the simulated cell, and everything that it carries, follows it.
     fn position(&self) -> Option<Plate>;
 
     /// Time by which the robot is expected to lag behind its points, at most 1 s, including the 80 ms of the

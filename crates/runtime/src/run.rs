@@ -95,8 +95,7 @@ pub struct Run {
     rest: RestWatch,
     /// The end of the run for which the robot is brought to rest.
     ramp: Option<Ramp>,
-    /// Ticks for which the host waits for an answer. At a port it waits for the first answer as long as
-    /// `--wait`.
+    /// Ticks for which the host waits for an answer. At a port it waits for the first answer as long as `--wait`.
     patience: Option<u16>,
     first_patience: Option<u16>,
     /// The last reported state of the line.
@@ -160,8 +159,7 @@ impl Run {
         self.closed.workstation.cell.digest()
     }
 
-    /// Start the clock and prepare the first tick. The 40 ms grid begins with the clock, including the
-    /// preparation.
+    /// Start the clock and prepare the first tick. The 40 ms grid begins with the clock, including the preparation.
     fn begin(&mut self) {
         self.started = Some(Instant::now());
         if self.config.clock == ClockKind::Real {
@@ -296,8 +294,7 @@ impl Run {
         None
     }
 
-    /// Run the processes. If a lost board is replaced, the boards run the same tick again; otherwise the run
-    /// ends.
+    /// Run the processes. If a lost board is replaced, the boards run the same tick again; otherwise the run ends.
     fn decide(&mut self, given: &Given) -> Option<Ending> {
         loop {
             let (runner, skipped) = (&mut self.runner, self.pace.skipped());

@@ -212,9 +212,8 @@ pub struct CellFile {
 }
 
 impl CellFile {
-    /// Read the description, and check that task data, job and description describe the same cell. An error of
-    /// a form of the task data is added to [`Store::faults`]. If `is_lenient`, errors of entries of the cell
-    /// are tolerated.
+    /// Read the description, and check that task data, job and description describe the same cell. An error of a form
+    /// of the task data is added to [`Store::faults`]. If `is_lenient`, errors of entries of the cell are tolerated.
     ///
     /// # Errors
     /// [`StartError`], with all errors.

@@ -90,8 +90,7 @@ impl Run {
         ending.checked(verdicts)
     }
 
-    /// The ending of a run that another process commands. Without a job that can fail, the state of the robot
-    /// decides.
+    /// The ending of a run that another process commands. Without a job that can fail, the state of the robot decides.
     pub(super) fn left(&self, ending: Ending) -> Ending {
         let commanding = self.neighbours.are_commanding();
         self.standing().filter(|_| commanding).map_or(ending, Ending::from)
@@ -114,8 +113,7 @@ impl Run {
         })
     }
 
-    /// The warning of the robot controller, or of the robot at a port, shortly before a failure that it
-    /// explains.
+    /// The warning of the robot controller, or of the robot at a port, shortly before a failure that it explains.
     fn warning_before(&self, failure: &Failure) -> Option<Failure> {
         if let Some(trouble) = self.robot.trouble().filter(|_| failure.stopped) {
             return Some(Failure::outside(failure.tick, Kind::RobotController, "robot", trouble));

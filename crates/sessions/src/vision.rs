@@ -193,8 +193,7 @@ impl Port {
         self.wanted.number != 0 && self.wanted.picture != Kind::None && !self.written && !answered
     }
 
-    /// Initialize the ready words and the response area like blocks 984-986. Keep the response that E-move has
-    /// read.
+    /// Initialize the ready words and the response area like blocks 984-986. Keep the response that E-move has read.
     fn initialize(&mut self) {
         self.output = Areas::INITIALIZED.output;
         self.found = Areas::INITIALIZED.response;

@@ -1,5 +1,4 @@
-//! The state band: the state of the robot in one word, its reason, the operator's next step, and the main
-//! facts.
+//! The state band: the state of the robot in one word, its reason, the operator's next step, and the main facts.
 
 use closed_loop::{account::Kind, failure::Failure};
 use interfaces::{

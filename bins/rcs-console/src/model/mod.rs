@@ -1,5 +1,4 @@
-//! The state of the console without a terminal. Keys and pictures change it; it selects screen, tick and
-//! process.
+//! The state of the console without a terminal. Keys and pictures change it; it selects screen, tick and process.
 
 pub mod band;
 pub mod buffers;

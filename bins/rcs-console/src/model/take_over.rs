@@ -21,8 +21,7 @@ pub enum TakeOver {
 }
 
 impl TakeOver {
-    /// The state after an answer of the run. A refusal that offers a take-over begins it; an accepted request
-    /// ends it.
+    /// The state after an answer of the run. A refusal that offers a take-over begins it; an accepted request ends it.
     #[must_use]
     pub fn after(self_: Option<Self>, line: &str, verdict: &Result<String, String>) -> Option<Self> {
         match verdict {

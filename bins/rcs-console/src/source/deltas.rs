@@ -1,5 +1,4 @@
-//! The ticks of a log in memory: differences from tick to tick, and a whole image once per second, as in the
-//! file.
+//! The ticks of a log in memory: differences from tick to tick, and a whole image once per second, as in the file.
 //!
 //! A log of an hour has 90,000 ticks. Whole images would take half a gigabyte. Differences take a fiftieth of
 //! it, and any tick is decoded in at most 25 steps.

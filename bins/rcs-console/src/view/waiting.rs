@@ -15,8 +15,7 @@ pub struct Waiting {
     pub runs: Vec<RunName>,
     /// Index of the run under the cursor.
     pub cursor: usize,
-    /// The boards of the selected run while it waits for boards, with true for those that have joined (IV.2.1,
-    /// IV.2.8).
+    /// The boards of the selected run while it waits for boards, with true for those that have joined (IV.2.1, IV.2.8).
     pub boards: Vec<(Board, bool)>,
     /// State of that run before its first tick, as a phrase after its name.
     pub phase: Option<String>,

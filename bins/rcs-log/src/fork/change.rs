@@ -177,8 +177,7 @@ pub fn description(text: &str) -> Result<CellDescription, Box<Refusal>> {
     })
 }
 
-/// Converts changes to operations, with the task data and the cell of the tick, except changes of the cell
-/// description.
+/// Converts changes to operations, with the task data and the cell of the tick, except changes of the cell description.
 ///
 /// # Errors
 /// [`Refusal`] of the first impossible change.

@@ -1,11 +1,10 @@
 //! Traces a failure back over the ticks to its first cause.
 //!
-//! The trace begins with the process that first reported the reason which Task received. The row that fired
-//! when that process began to report it has new conditions: those that were false in the previous tick. If a
-//! process below reports a failure at that time, or reported a change in the previous tick, the trace continues
-//! with that process and the tick of its report. It ends at a process with no such report from below. The cause
-//! is then a device, a limit, or data. From this process, the commands are traced upwards: who gave each
-//! command, when, and by which row.
+//! The trace begins with the process that first reported the reason which Task received. The row that fired when that
+//! process began to report it has new conditions: those that were false in the previous tick. If a process below
+//! reports a failure at that time, or reported a change in the previous tick, the trace continues with that process and
+//! the tick of its report. It ends at a process with no such report from below. The cause is then a device, a limit, or
+//! data. From this process, the commands are traced upwards: who gave each command, when, and by which row.
 
 use interfaces::t3i::LinkFault;
 use levels::ladder::{PROCESS_COUNT, ProcessId};
@@ -54,8 +53,7 @@ fn below(history: &History, at: Root) -> Option<Root> {
     found.map(|(process, report)| Root { process, tick: report.tick })
 }
 
-/// Returns true if `reason` is a failure. T3I reports `no error` for success, the other processes an empty
-/// text.
+/// Returns true if `reason` is a failure. T3I reports `no error` for success, the other processes an empty text.
 pub fn has_failed(process: ProcessId, reason: &str) -> bool {
     let none = if process == ProcessId::T3i { LinkFault::None.text() } else { "" };
     reason != none
@@ -92,8 +90,7 @@ fn news(history: &History, at: Root, fired: &history::Fired) -> Option<String> {
     }
     let last = history.row(at.process, seen)?;
     let (now, before) = (row_of(at.process, fired)?, row_of(at.process, last)?);
-    // A table consulted first that decides now had passed on the decision before, by a row that no header
-    // names.
+    // A table consulted first that decides now had passed on the decision before, by a row that no header names.
     let is_above = before.table.name != now.table.name;
     let passed = now.table.rows.iter().filter(|row| is_above && row.action == CONSULT);
     let changed = changed(passed.chain([before.row]), &now);
@@ -232,8 +229,7 @@ mod tests {
         Decided { table: u8::try_from(at + 1).unwrap(), row }
     }
 
-    /// ORDERED passed on the decision while E-move was busy, so the condition that E-move has the order is not
-    /// new.
+    /// ORDERED passed on the decision while E-move was busy, so the condition that E-move has the order is not new.
     #[test]
     fn passed_on_conditions_are_not_new() {
         let history = history(&[

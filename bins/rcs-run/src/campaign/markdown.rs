@@ -1,5 +1,4 @@
-//! The Markdown table of a campaign, one column per job. Columns of the jobs that were run are replaced; others
-//! stay.
+//! The Markdown table of a campaign, one column per job. Columns of the jobs that were run are replaced; others stay.
 
 use std::fmt::Write as _;
 

@@ -217,8 +217,7 @@ impl<'f> Operator<'f> {
         matches!(self.doing, Doing::Own(Then::SameCommand))
     }
 
-    /// The state after tick `now` on which the operator's next action depends. Commands are numbered from
-    /// `newest`.
+    /// The state after tick `now` on which the operator's next action depends. Commands are numbered from `newest`.
     ///
     /// The tick in which a command began is not part of it once Task has had the time to echo the command: see
     /// [`Self::waits_until`].

@@ -82,8 +82,7 @@ fn title(result: &BranchResult) -> String {
     }
 }
 
-/// The cause by which a branch is counted. For a stranded branch: the process that failed, its command and its
-/// row.
+/// The cause by which a branch is counted. For a stranded branch: the process that failed, its command and its row.
 fn cause(result: &BranchResult) -> &str {
     let known = (result.verdict == Verdict::Stranded)
         .then(|| result.detail.strip_prefix("tick ")?.split_once(": "))

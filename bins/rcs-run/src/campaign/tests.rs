@@ -82,8 +82,7 @@ fn fingerprint(branch: &Branch<'_>) -> (Digest, u64) {
 
 #[test]
 fn fork_continues_bit_for_bit_like_its_parent() {
-    // STARTUP sends a statement about the robot to the Data System, so an answer is pending at one of the
-    // forks.
+    // STARTUP sends a statement about the robot to the Data System, so an answer is pending at one of the forks.
     let facility = with_job(
         "== STARTUP -- +0 -- 0 +0 -- 0 -- 0\n\
          ** tray UNIT_1 4 LINKBAR1_BH\n\

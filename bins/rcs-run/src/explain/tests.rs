@@ -85,8 +85,7 @@ fn vision_precedes_an_object_in_a_tray() {
             "MOV-TO-OBJ LINKBAR1_BH with grip +2 at UNIT_1 sector 4",
         ]
     );
-    // A motion within a location uses no trajectory: only the departure from the view, if any, and the
-    // approach.
+    // A motion within a location uses no trajectory: only the departure from the view, if any, and the approach.
     assert!(points(&found, 2).iter().all(|(part, _)| *part != "trajectory"));
     assert_eq!(found.phases.last().unwrap().what, "MOV-OBJ-TO LINKBAR1_BH with grip +2 at PFIXTURE");
 }

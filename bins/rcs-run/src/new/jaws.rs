@@ -1,10 +1,9 @@
 //! Chooses the step of the vise for a new part: an existing step, or a new step in the jaws.
 //!
-//! A step is a notch in both jaws, from the front to its back and down to its ledge, as deep as its clamping
-//! face. A part fits if it is stable before it is pushed to the back, projects far enough in front to be
-//! pushed, and is wider than the remaining gap between the ledges. A new step is deeper than all others and
-//! ends above their ledges, so that it does not cut their ledges and leaves the lower part of each clamping
-//! face.
+//! A step is a notch in both jaws, from the front to its back and down to its ledge, as deep as its clamping face. A
+//! part fits if it is stable before it is pushed to the back, projects far enough in front to be pushed, and is wider
+//! than the remaining gap between the ledges. A new step is deeper than all others and ends above their ledges, so that
+//! it does not cut their ledges and leaves the lower part of each clamping face.
 
 use plant::description::{Vise, ViseProgram};
 

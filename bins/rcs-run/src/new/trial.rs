@@ -43,8 +43,7 @@ impl Trial {
         self.place.path()
     }
 
-    /// Run the new job with several seeds and, if `others`, every other job once. Returns the number of
-    /// finished runs.
+    /// Run the new job with several seeds and, if `others`, every other job once. Returns the number of finished runs.
     ///
     /// # Errors
     /// [`Error::New`] with the first run that did not finish.

@@ -17,12 +17,11 @@
 //!   32       106 + 102 bytes  the DML string, see STRING       -           yes
 //! ```
 //!
-//! The manual gives the values of the 28-byte command and says that DSClen, TRNSlen and TYPEindc are changed
-//! for a DML command. The lengths follow by counting. Of TYPEindc it gives only the initial value, 0x55;
-//! CHOSEN: 0x55 is the first command of a connection (ABORT), 0x56 INITIATE, 0x57 STARTUP, 0x58 DML. Also
-//! CHOSEN: trans-id# is the number of an update, which is executed once even if it is sent repeatedly; 0 means
-//! no number. Numbers are stored low byte first, lengths of the protocol high byte first, like the values in
-//! the figure.
+//! The manual gives the values of the 28-byte command and says that DSClen, TRNSlen and TYPEindc are changed for a DML
+//! command. The lengths follow by counting. Of TYPEindc it gives only the initial value, 0x55; CHOSEN: 0x55 is the
+//! first command of a connection (ABORT), 0x56 INITIATE, 0x57 STARTUP, 0x58 DML. Also CHOSEN: trans-id# is the number
+//! of an update, which is executed once even if it is sent repeatedly; 0 means no number. Numbers are stored low byte
+//! first, lengths of the protocol high byte first, like the values in the figure.
 
 use std::ops::Range;
 

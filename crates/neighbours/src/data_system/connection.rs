@@ -67,14 +67,12 @@ impl Keeper for InMemory {
     }
 }
 
-/// The Data System's mailboxes and keeper. With [`InMemory`] it is a value: a copy continues from the same
-/// state.
+/// The Data System's mailboxes and keeper. With [`InMemory`] it is a value: a copy continues from the same state.
 #[derive(Clone, Debug)]
 pub struct DataSystem<K = InMemory> {
     answer_ticks: u64,
     receiver: handshake::Receiver,
-    /// First tick in which the answer to the command in progress may take effect; `None` without a command in
-    /// progress.
+    /// First tick in which the answer to the command in progress may take effect; `None` without a command in progress.
     due: Option<Tick>,
     status: DataBaseStatus,
     command_box: Mailbox,

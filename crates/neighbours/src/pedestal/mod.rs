@@ -7,17 +7,15 @@
 //!                   <--TableLayout---- Pedestal Table to RCS Status      <-- the rotary table, for Diagnostics
 //! ```
 //!
-//! The crate `sessions` has the controller's end (`pedestal::Agent`). [`System`] is the pedestal's end: the
-//! same three processes that the controller steps itself if the pedestal is in its process. The agent's data
-//! are an input of the next tick ([`interfaces::OutsidePedestal`]), so that boards, logs and replays do not
-//! depend on the network.
+//! The crate `sessions` has the controller's end (`pedestal::Agent`). [`System`] is the pedestal's end: the same three
+//! processes that the controller steps itself if the pedestal is in its process. The agent's data are an input of the
+//! next tick ([`interfaces::OutsidePedestal`]), so that boards, logs and replays do not depend on the network.
 //!
 //! In the simulated cell the pedestal's devices are part of the cell. Two more mailboxes carry their words
 //! ([`cell`]). A real pedestal has its own devices.
 //!
-//! All integers have four bytes, `cycle-cnt` eight, as in the controller (CHOSEN: the manual gives no widths).
-//! The mailboxes can therefore hold every command, and a run is bit-identical in whichever process its pedestal
-//! runs.
+//! All integers have four bytes, `cycle-cnt` eight, as in the controller (CHOSEN: the manual gives no widths). The
+//! mailboxes can therefore hold every command, and a run is bit-identical in whichever process its pedestal runs.
 
 pub mod cell;
 pub mod command;

@@ -1,5 +1,4 @@
-//! The areas that vision writes (IX.4): the two ready words and the response. CHOSEN, since Figure IX.3 is
-//! lost.
+//! The areas that vision writes (IX.4): the two ready words and the response. CHOSEN, since Figure IX.3 is lost.
 
 use interfaces::device::{VisionResponse, VisionStatus};
 

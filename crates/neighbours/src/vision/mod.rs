@@ -1,9 +1,8 @@
 //! The NBS vision system and E-move (IX.4, V.2.1 LOCATE-OBJ).
 //!
-//! Vision has its own parallel interface, which the software uses like a slightly modified mailbox: a request
-//! area and a response area, the byte-count of each, and two words that permit their use. Figure IX.3, with
-//! addresses and sizes, is lost. CHOSEN: two mailboxes, one per direction, so that each has one writer; their
-//! data are the areas.
+//! Vision has its own parallel interface, which the software uses like a slightly modified mailbox: a request area and
+//! a response area, the byte-count of each, and two words that permit their use. Figure IX.3, with addresses and sizes,
+//! is lost. CHOSEN: two mailboxes, one per direction, so that each has one writer; their data are the areas.
 //!
 //! ```text
 //!   E-move --VisionRequest--> Port --request---> F8000 --> vision

@@ -138,8 +138,7 @@ pub struct Part {
 }
 
 impl Picture {
-    /// Leave out the parts farthest from the optical axis, if the mailbox cannot hold all. Returns their
-    /// number.
+    /// Leave out the parts farthest from the optical axis, if the mailbox cannot hold all. Returns their number.
     pub fn crop(&mut self) -> usize {
         let Some(excess) = self.parts.len().checked_sub(MAX_PARTS).filter(|excess| *excess > 0) else {
             return 0;

@@ -10,12 +10,10 @@
 //! | the one after the last                    | accepted                                                             |
 //! | any other                                 | refused; accepted as the first since the mailboxes were initialized  |
 //!
-//! An accepted command is first checked against the task data ([`Judge`]). One that fails is passed to Task
-//! with that verdict, and Task refuses it: the status echoes its number with `error` and the error in the
-//! command.
+//! An accepted command is first checked against the task data ([`Judge`]). One that fails is passed to Task with that
+//! verdict, and Task refuses it: the status echoes its number with `error` and the error in the command.
 //!
-//! A workstation controller that (re)connects reads `command-#-echo` in the status and continues after it
-//! (IX.1).
+//! A workstation controller that (re)connects reads `command-#-echo` in the status and continues after it (IX.1).
 
 use std::fmt;
 
@@ -193,9 +191,8 @@ impl Gate {
         Ok(())
     }
 
-    /// WRITE-HWS-STATUS and UPDATE-MAILGRAM?, called once per tick. Writes Task's status to the mailbox if it
-    /// has changed, and then returns true. Names and distances of a reason are those of the tick of its
-    /// arrival.
+    /// WRITE-HWS-STATUS and UPDATE-MAILGRAM?, called once per tick. Writes Task's status to the mailbox if it has
+    /// changed, and then returns true. Names and distances of a reason are those of the tick of its arrival.
     pub fn write(&mut self, memory: &CommonMemory, state: TaskState) -> bool {
         let task = memory.task.status;
         if task != self.told.0 {

@@ -1,8 +1,7 @@
 //! The workstation controller (HWSC) and Task (V.4.2, IX.1).
 //!
-//! The manual names the fields of the two interfaces, their widths and their order. The mailboxes contain them
-//! in that order, without gaps. Values that the manual does not give are marked CHOSEN in [`command`] and
-//! [`status`].
+//! The manual names the fields of the two interfaces, their widths and their order. The mailboxes contain them in that
+//! order, without gaps. Values that the manual does not give are marked CHOSEN in [`command`] and [`status`].
 //!
 //! ```text
 //!   HWSC --command::encode--> F6000 --Gate--> HwsCommand --> Task

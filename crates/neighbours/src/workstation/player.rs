@@ -29,9 +29,8 @@
 //!
 //! An operator can stop the job, command the robot meanwhile, and continue the job ([`operator`]).
 //!
-//! The emulator uses only Task's mailboxes: it reads a [`Status`], and writes a command ([`Hwsc::mailgram`]).
-//! It can therefore run in the controller's process or in another one, and a real workstation controller can
-//! replace it.
+//! The emulator uses only Task's mailboxes: it reads a [`Status`], and writes a command ([`Hwsc::mailgram`]). It can
+//! therefore run in the controller's process or in another one, and a real workstation controller can replace it.
 
 mod operator;
 mod outcome;
@@ -435,9 +434,8 @@ impl Hwsc {
         is_begun && self.step_at(self.current).is_some_and(hands_over)
     }
 
-    /// Resumes the command after the workstation controller has disconnected: sends PAUSE, and continues with
-    /// the next line of the job. `commands` are the intermediate commands, `last` is the number of the last
-    /// one.
+    /// Resumes the command after the workstation controller has disconnected: sends PAUSE, and continues with the next
+    /// line of the job. `commands` are the intermediate commands, `last` is the number of the last one.
     pub fn take_back(&mut self, tick: Tick, last: u32, commands: Vec<BegunStep>) {
         self.took(tick);
         self.finish(Outcome::Finished);

@@ -143,8 +143,7 @@ impl Analysis {
         answer
     }
 
-    /// Result of a second picture in addition to the centroid: the angle, and whether the part is the requested
-    /// one.
+    /// Result of a second picture in addition to the centroid: the angle, and whether the part is the requested one.
     fn recognise(
         &mut self,
         blob: &[&Subject],

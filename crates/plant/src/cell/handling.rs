@@ -30,8 +30,7 @@ const SLIP: f64 = 0.02;
 const JAW_PATIENCE: u32 = 50;
 /// Greatest penetration of a part into a clamping face at which it is still between the jaws, m.
 const OUTSIDE: Real = 2e-3;
-/// A part is also in a step of the jaws if it covers this fraction of the largest area that it covers in any
-/// step.
+/// A part is also in a step of the jaws if it covers this fraction of the largest area that it covers in any step.
 const WELL: Real = 0.25;
 /// Stiffness of the springs between fingers and part: a bar sags by only 0.01 mm, and friction does not jolt it.
 const FINGER_STIFFNESS: Stiffness = Stiffness { linear: 2.0e5, angular: 500.0 };
@@ -218,9 +217,8 @@ impl Cell {
         }
     }
 
-    /// The part that stops the jaw first, its step and its geometry. Of the steps whose faces it covers well,
-    /// it is the shallowest, which stops the jaw. A bar that is pressed against the back of its step is not in
-    /// the next one.
+    /// The part that stops the jaw first, its step and its geometry. Of the steps whose faces it covers well, it is the
+    /// shallowest, which stops the jaw. A bar that is pressed against the back of its step is not in the next one.
     fn between_jaws(&self) -> Option<(usize, usize, Squeeze)> {
         let standing = (0..self.parts.len()).filter_map(|index| {
             let offers: Vec<_> = self

@@ -1,9 +1,8 @@
 //! The arm without pressure: its loads, its contacts, and their report.
 //!
-//! A powered arm follows its path even through contact; a sagging arm does not. Obstacles push back its rigid
-//! parts with the stiffness of the arm; the simulated contacts act on fingers and held part through their
-//! springs. Reported depths are those of the arm's outline in the obstacle: at 2000 lb/in a tenth of an inch is
-//! two hundred pounds.
+//! A powered arm follows its path even through contact; a sagging arm does not. Obstacles push back its rigid parts
+//! with the stiffness of the arm; the simulated contacts act on fingers and held part through their springs. Reported
+//! depths are those of the arm's outline in the obstacle: at 2000 lb/in a tenth of an inch is two hundred pounds.
 
 use geometry::frame::Vector as Inches;
 use rapier3d_f64::{parry::query, prelude::*};

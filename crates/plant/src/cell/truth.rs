@@ -1,5 +1,4 @@
-//! The true state of the cell, for a judge of the controller's reports. It is independent of sensors and
-//! faults.
+//! The true state of the cell, for a judge of the controller's reports. It is independent of sensors and faults.
 
 use geometry::frame::{Frame, Vector as Inches};
 

@@ -1,9 +1,8 @@
 //! Permitted contacts, and the commands during which they are permitted: the entries `[[contact]]` of a cell
 //! description.
 //!
-//! Every body that can collide has a name and a [`Kind`]. An entry names movers and obstacles by names, by the
-//! groups of their kinds, or by patterns with one `*`; `*` alone matches all. A contact that no entry permits
-//! is a collision.
+//! Every body that can collide has a name and a [`Kind`]. An entry names movers and obstacles by names, by the groups
+//! of their kinds, or by patterns with one `*`; `*` alone matches all. A contact that no entry permits is a collision.
 
 use std::fmt;
 
@@ -192,8 +191,7 @@ impl Permits {
         covering.map(Permit::limit).fold(0.0, f64::max)
     }
 
-    /// True if every body of one kind may always touch every body of another to any depth, so that no check is
-    /// needed.
+    /// True if every body of one kind may always touch every body of another to any depth, so that no check is needed.
     #[must_use]
     pub fn ignores(&self, mover: Kind, obstacle: Kind) -> bool {
         self.0.iter().any(|permit| {

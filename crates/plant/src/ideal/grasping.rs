@@ -16,8 +16,7 @@ use crate::{
     squeeze::{Squeeze, squeeze},
 };
 
-/// Greatest height from which a released part comes to rest on the body below it, in; the cell's jobs have
-/// 0.15.
+/// Greatest height from which a released part comes to rest on the body below it, in; the cell's jobs have 0.15.
 const DROP: f64 = 0.5;
 
 #[derive(Clone, Debug)]
@@ -150,8 +149,7 @@ impl Ideal {
         self.carry();
     }
 
-    /// Release the part of a hand. Another hand that holds it draws it to its middle; without one, it comes to
-    /// rest.
+    /// Release the part of a hand. Another hand that holds it draws it to its middle; without one, it comes to rest.
     pub(super) fn release(&mut self, hand: Hand) {
         let Some(hold) = self.fingers_mut(hand).hold.take() else { return };
         self.recover(hold.part);

@@ -1,9 +1,8 @@
 //! Draws the picture of the wrist camera, with the answer of the vision system.
 //!
-//! The picture shows the faces that vision evaluated ([`crate::camera::Subject`]), tool Y to the left and tool
-//! Z up. The outline of the part in the answer is green if vision recognised it and yellow if not. A cross
-//! marks the centroid of the answer, with a line in the direction of the fingers' motion. A red border means
-//! that vision found no part.
+//! The picture shows the faces that vision evaluated ([`crate::camera::Subject`]), tool Y to the left and tool Z up.
+//! The outline of the part in the answer is green if vision recognised it and yellow if not. A cross marks the centroid
+//! of the answer, with a line in the direction of the fingers' motion. A red border means that vision found no part.
 
 use crate::{
     camera::{Face, Subject, subject::RASTER},

@@ -1,9 +1,8 @@
 //! Visual meshes of the cell: one per link of a [`Scene`], generated from the description of the cell.
 //!
-//! [`Scene::models`] makes parametric solids, which become glTF files. They are for display only: the physics
-//! has its own bodies ([`crate::bodies`], [`crate::scene`]). Each mesh covers the bodies of its link, so that
-//! contacts of the physics show no gap. [`Scene::labels`] lists the names to display; [`camera`] draws the
-//! camera's pictures.
+//! [`Scene::models`] makes parametric solids, which become glTF files. They are for display only: the physics has its
+//! own bodies ([`crate::bodies`], [`crate::scene`]). Each mesh covers the bodies of its link, so that contacts of the
+//! physics show no gap. [`Scene::labels`] lists the names to display; [`camera`] draws the camera's pictures.
 //!
 //! The same description gives the same bytes. Lengths are inches; [`glb`] converts to metres.
 

@@ -6,9 +6,8 @@
 //!            └──power off, then on, at PROG─── on, PROG, obeys nothing
 //! ```
 //!
-//! According to IV.1 the power is turned off and on again at the end, and the switch is at PROG whenever the
-//! power is turned on. A controller that was at MANUAL, or was turned on there, therefore ignores its serial
-//! line (CHOSEN).
+//! According to IV.1 the power is turned off and on again at the end, and the switch is at PROG whenever the power is
+//! turned on. A controller that was at MANUAL, or was turned on there, therefore ignores its serial line (CHOSEN).
 
 use interfaces::station::TableKey;
 use serde::{Deserialize, Serialize};

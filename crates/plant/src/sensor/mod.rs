@@ -1,7 +1,6 @@
 //! Sensors: models from the true value to the word. The words have the names of [`interfaces::point`].
 //!
-//! A device gives the true value (an opening, a force, a distance), and a chain of small models converts it to
-//! a word:
+//! A device gives the true value (an opening, a force, a distance), and a chain of small models converts it to a word:
 //!
 //! ```text
 //!   truth -- Analog (offset, scale, noise, converter) or resolver or Switch (hysteresis) --> word

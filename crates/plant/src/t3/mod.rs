@@ -11,10 +11,9 @@
 //! in steps chosen by the caller. `rcs-cell` adds a pseudo-terminal and a console, and [`crate::cell`] the rest
 //! of the simulated cell.
 //!
-//! The DEPC function is a part of the program, and the program runs only under pressure: without pressure no
-//! answers are sent, and the controller's DTR is off (A 2.3; ASSUMED: the manual does not describe the effect
-//! of an emergency stop on the host). The steps of IV.3.3 restore it: fault reset, hydraulics, manual, align,
-//! AUTO, cycle start.
+//! The DEPC function is a part of the program, and the program runs only under pressure: without pressure no answers
+//! are sent, and the controller's DTR is off (A 2.3; ASSUMED: the manual does not describe the effect of an emergency
+//! stop on the host). The steps of IV.3.3 restore it: fault reset, hydraulics, manual, align, AUTO, cycle start.
 
 mod key;
 mod keys;

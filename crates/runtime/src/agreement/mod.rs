@@ -25,8 +25,7 @@ use taskdata::{
 
 use closed_loop::workstation::orders;
 
-/// The names in the `**` lines of a job that the cell lacks. `source` is the text of the description, `path`
-/// its file.
+/// The names in the `**` lines of a job that the cell lacks. `source` is the text of the description, `path` its file.
 pub fn of_job(job: &Job, source: &Source, cell: &CellDescription, store: &Store, path: &Path) -> Diagnostics {
     let mut problems = Problems::default();
     let mut state = job::State::new(cell, store.view());
@@ -115,8 +114,7 @@ fn place(source: &Source, line: &JobLine, word: Option<&str>) -> At {
     At { source: 0, start: short(begin + start), length: short(length) }
 }
 
-/// The names in a cell description that the task data lack: errors for locations, warnings for names that no
-/// job needs.
+/// The names in a cell description that the task data lack: errors for locations, warnings for names that no job needs.
 pub fn of_cell(source: Source, cell: &CellDescription, store: &Store) -> Diagnostics {
     let mut names = Names { source: &source, data: store.view(), problems: Problems::default() };
     names.locations(cell);

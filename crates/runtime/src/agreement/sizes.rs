@@ -169,9 +169,8 @@ fn grip(both: &mut Both<'_>, index: usize, record: &EndEffPara) {
     }
 }
 
-/// Possible widths of a part between the fingers, in. On a tray the part's X axis points down and its Z axis is
-/// along that of the sector, so the movetable of the grip there determines the side. Elsewhere any side is
-/// possible.
+/// Possible widths of a part between the fingers, in. On a tray the part's X axis points down and its Z axis is along
+/// that of the sector, so the movetable of the grip there determines the side. Elsewhere any side is possible.
 fn widths(both: &Both<'_>, record: &EndEffPara, part: &PartType) -> Vec<f64> {
     let on_tray = |kind| matches!(kind, RefType::Any | RefType::Array);
     let grips = both.data.grip_locs.iter().filter(|g| g.object == record.object && g.grip == record.grip);

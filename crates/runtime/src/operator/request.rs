@@ -151,8 +151,7 @@ impl Request {
         }
     }
 
-    /// True if it can only stop a motion, or changes nothing. Every operator may send it, also while another
-    /// commands.
+    /// True if it can only stop a motion, or changes nothing. Every operator may send it, also while another commands.
     pub const fn is_stop(&self) -> bool {
         match self {
             Self::Status

@@ -30,8 +30,7 @@ use crate::{
     views::{self, Viewed},
 };
 
-/// Ticks to wait for the first answer of a robot controller at a port, which may be powered up after the run
-/// has begun.
+/// Ticks to wait for the first answer of a robot controller at a port, which may be powered up after the run has begun.
 fn first_patience(config: &RunConfig) -> Option<u16> {
     if config.robot.kind == RobotKind::Sim {
         return None;

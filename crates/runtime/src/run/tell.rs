@@ -122,8 +122,7 @@ impl Run {
             self.fresh.push(event);
         }
         for event in &self.fresh {
-            // Contacts and false reports have their own judges, and a warning matters only if it explains a
-            // failure.
+            // Contacts and false reports have their own judges, and a warning matters only if it explains a failure.
             if let Some(Kind::EmergencyStop | Kind::Power | Kind::Lost | Kind::Device) =
                 Kind::of_code(event.code())
             {

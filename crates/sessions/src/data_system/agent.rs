@@ -5,8 +5,7 @@
 //! Updates are kept on the disk until they are answered ([`Outbox`]). Pending updates of an earlier run follow
 //! the next STARTUP, before Task receives its status, so that the database receives all updates in their order.
 //!
-//! On the line the agent numbers the commands itself, because updates sent after STARTUP have no number of
-//! Task:
+//! On the line the agent numbers the commands itself, because updates sent after STARTUP have no number of Task:
 //!
 //! | command sent                             | command-id#     | status that answers it                              |
 //! |------------------------------------------|-----------------|-----------------------------------------------------|
@@ -214,8 +213,7 @@ impl Agent {
         presence
     }
 
-    /// Send a command and wait for its status. `None` without a Data System or an answer, or if the run is to
-    /// end.
+    /// Send a command and wait for its status. `None` without a Data System or an answer, or if the run is to end.
     fn ask(&mut self, bytes: &[u8]) -> Option<Answer> {
         if let Err(error) = self.send(bytes) {
             return Some(refused(error.to_string()));
@@ -250,8 +248,7 @@ impl Agent {
         }
     }
 
-    /// Write a command to the mailbox, with the next number. A repetition of an unanswered command keeps its
-    /// number.
+    /// Write a command to the mailbox, with the next number. A repetition of an unanswered command keeps its number.
     fn send(&mut self, bytes: &[u8]) -> Result<(), MailboxError> {
         let mut bytes = bytes.to_vec();
         command::identify(&mut bytes, self.command_id);

@@ -1,9 +1,8 @@
 //! Unanswered updates for the Data System, on the controller's disk.
 //!
-//! An update is stored here under a new number before it is sent, and deleted when the Data System has answered
-//! it. If the run is killed in between, the next run sends it with the same number, and the Data System
-//! executes it once. The file is an SQLite database whose journal is flushed to the disk before an update is
-//! sent.
+//! An update is stored here under a new number before it is sent, and deleted when the Data System has answered it. If
+//! the run is killed in between, the next run sends it with the same number, and the Data System executes it once. The
+//! file is an SQLite database whose journal is flushed to the disk before an update is sent.
 //!
 //! File and journal have reserved space: updates can be stored even if a log fills the disk. The file has free
 //! pages, and the write-ahead journal is overwritten from its start when [`CHECKPOINT`] pages of it are used.

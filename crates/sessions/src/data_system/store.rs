@@ -1,8 +1,7 @@
 //! The database: items, devices, storage positions, and the past places of every item, in one SQLite file.
 //!
-//! The number identifies an item: a machined blank keeps its number and changes its name. Items without a
-//! number are identified by name. A report of a known position changes nothing, so a repeated report has no
-//! further effect.
+//! The number identifies an item: a machined blank keeps its number and changes its name. Items without a number are
+//! identified by name. A report of a known position changes nothing, so a repeated report has no further effect.
 //!
 //! ```sql
 //! SELECT * FROM whereabouts WHERE number = '17';   -- where it is

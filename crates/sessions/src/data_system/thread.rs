@@ -18,8 +18,7 @@ use super::{
 };
 use crate::network::StopHandle;
 
-/// Time after which a waiting run considers the server dead; it is long for a disk. An agent has its own time
-/// limit.
+/// Time after which a waiting run considers the server dead; it is long for a disk. An agent has its own time limit.
 const PATIENCE: Duration = Duration::from_secs(30);
 
 /// Time between two checks for a server while no command is in progress.
@@ -215,8 +214,7 @@ impl Drop for Threaded {
             // Unanswered updates stay in the outbox.
             stop_handle.stop();
         }
-        // Closing the channel of requests ends the thread, which closes the database, so that it leaves no
-        // journal.
+        // Closing the channel of requests ends the thread, which closes the database, so that it leaves no journal.
         self.requests = None;
         let Some(thread) = self.thread.take() else { return };
         let ended = Instant::now();

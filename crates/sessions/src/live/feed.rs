@@ -1,9 +1,8 @@
 //! The messages for clients: channels, the newest message of each, those of the last minute, and a queue per client.
 //!
-//! A client that subscribes receives the newest message of the channel at once, with the present time, even if
-//! that message was sent only once, at the start of the run. For transforms it receives those of all links. A
-//! client that has requested the past instead receives the state at its beginning, and all later messages with
-//! their times.
+//! A client that subscribes receives the newest message of the channel at once, with the present time, even if that
+//! message was sent only once, at the start of the run. For transforms it receives those of all links. A client that
+//! has requested the past instead receives the state at its beginning, and all later messages with their times.
 
 use std::{
     collections::{BTreeMap, VecDeque},
@@ -62,8 +61,7 @@ struct Past {
     messages: VecDeque<(u64, Arc<[u8]>)>,
     /// The newest data before these messages.
     before: Newest,
-    /// True if no past is kept: the messages are differences, which are unreadable without all earlier
-    /// messages.
+    /// True if no past is kept: the messages are differences, which are unreadable without all earlier messages.
     is_off: bool,
 }
 

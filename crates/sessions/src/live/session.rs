@@ -23,8 +23,7 @@ pub const VELOCITY: &str = "/operator/velocity";
 pub const TOKEN: &str = "/operator/token";
 /// The parameter for this client's access to the run: [`ACCESS_WORDS`].
 pub const ACCESS: &str = "/operator/access";
-/// The values of [`ACCESS`]: the run accepts no requests; requests require the token; the client has given the
-/// token.
+/// The values of [`ACCESS`]: the run accepts no requests; requests require the token; the client has given the token.
 pub const ACCESS_WORDS: [&str; 3] = ["none", "token", "granted"];
 /// The parameter for the name under which the run knows the client as an operator.
 pub const NAME: &str = "/viewer/name";

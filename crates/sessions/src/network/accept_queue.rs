@@ -1,9 +1,8 @@
 //! The accept queue: connections that have not yet sent a hello.
 //!
-//! It is short, so that unknown clients cost the run little. When it is full, the oldest connection without a
-//! hello is closed after a minimum time: clients that send nothing, or single bytes, cannot block other
-//! clients. A refused connection keeps its slot for the same time, so that clients can neither guess quickly
-//! nor fill the log.
+//! It is short, so that unknown clients cost the run little. When it is full, the oldest connection without a hello is
+//! closed after a minimum time: clients that send nothing, or single bytes, cannot block other clients. A refused
+//! connection keeps its slot for the same time, so that clients can neither guess quickly nor fill the log.
 
 use std::{
     io,

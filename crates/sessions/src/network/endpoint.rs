@@ -66,8 +66,7 @@ impl Endpoint {
         })
     }
 
-    /// Do not wait for the neighbour once `interrupted` is set. An exchange then uses the mailboxes that have
-    /// arrived.
+    /// Do not wait for the neighbour once `interrupted` is set. An exchange then uses the mailboxes that have arrived.
     #[must_use]
     pub fn until(mut self, interrupted: Arc<AtomicBool>) -> Self {
         self.interrupted = interrupted;
@@ -163,9 +162,8 @@ impl Endpoint {
         Presence { connected, new, was_connected: self.shared.sessions.load(Ordering::Acquire) != 0 }
     }
 
-    /// Wait until the neighbour has answered the pulse or has disconnected, the endpoint was stopped, or the
-    /// run is to end. Returns true if it has answered. A neighbour that does not answer in time loses its
-    /// session.
+    /// Wait until the neighbour has answered the pulse or has disconnected, the endpoint was stopped, or the run is to
+    /// end. Returns true if it has answered. A neighbour that does not answer in time loses its session.
     fn wait(&self, tick: u64, session: u32) -> bool {
         let mut answered = locked(&self.shared.answered);
         while *answered < tick

@@ -96,8 +96,7 @@ mod tests {
         Peer::connect_within(answer_limit(ClockKind::Fast) / 2, &address, Role::Workstation).unwrap();
     }
 
-    /// All attempts are refused, the run receives a limited number of events, and another client is admitted
-    /// soon.
+    /// All attempts are refused, the run receives a limited number of events, and another client is admitted soon.
     #[test]
     fn repeated_attempts_neither_fill_the_log_nor_block_others() {
         let place = tempfile::tempdir().unwrap();
@@ -114,8 +113,7 @@ mod tests {
         let events = std::iter::from_fn(|| endpoint.event());
         let told =
             u32::try_from(events.filter(|event| matches!(event, NetEvent::Refused(_))).count()).unwrap();
-        // One event per slot and interval of `SAFE`, and one for the full queue. Time also passes after the
-        // loop.
+        // One event per slot and interval of `SAFE`, and one for the full queue. Time also passes after the loop.
         let most = (started.elapsed().as_secs_f64() / SAFE.as_secs_f64()).ceil() as u32 + 1;
         assert!(told <= most * (SLOTS as u32 + 1), "{told} of {tried} in {most} s");
     }

@@ -32,8 +32,7 @@ pub(super) struct Shared {
     pub sessions: AtomicU32,
     /// The latest tick whose mailboxes were written.
     pub pulse: AtomicU64,
-    /// The last pulse that the neighbour has answered. It is in a mutex, because a tick may wait for its
-    /// change.
+    /// The last pulse that the neighbour has answered. It is in a mutex, because a tick may wait for its change.
     pub answered: Mutex<u64>,
     /// Notified when `answered`, `session` or `over` changes.
     pub changed: Condvar,
@@ -43,8 +42,7 @@ pub(super) struct Shared {
     wake: OwnedFd,
 }
 
-/// Lock a mutex, even after a panic in another thread: the data in the locks of the network are always
-/// consistent.
+/// Lock a mutex, even after a panic in another thread: the data in the locks of the network are always consistent.
 pub(super) fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }

@@ -120,8 +120,7 @@ impl Client {
         self.send_within(PATIENCE, line)
     }
 
-    /// Like [`Client::send`], for a request that is discarded unless the run executes it within the time
-    /// `left`.
+    /// Like [`Client::send`], for a request that is discarded unless the run executes it within the time `left`.
     ///
     /// # Errors
     /// The errors of [`Client::send`].

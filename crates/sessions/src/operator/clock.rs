@@ -1,10 +1,9 @@
 //! The clock of a run, by which it judges the time limits of requests.
 //!
-//! Clocks of different machines cannot be compared. Each line of the run therefore carries the time of the
-//! run's clock, and a client specifies the limit of a request in the same clock: the time of the last line,
-//! plus the time since it was read, plus the time for which the client waits. A delay of that line makes the
-//! limit too early, never too late. A request that is delayed in transit, or in a suspended run, has passed its
-//! limit when it arrives.
+//! Clocks of different machines cannot be compared. Each line of the run therefore carries the time of the run's clock,
+//! and a client specifies the limit of a request in the same clock: the time of the last line, plus the time since it
+//! was read, plus the time for which the client waits. A delay of that line makes the limit too early, never too late.
+//! A request that is delayed in transit, or in a suspended run, has passed its limit when it arrives.
 
 use std::time::{Duration, Instant};
 

@@ -51,8 +51,7 @@ struct Received {
 }
 
 impl Given {
-    /// Answers the request, if the event has one, without waiting. A session that does not read its answers is
-    /// ended.
+    /// Answers the request, if the event has one, without waiting. A session that does not read its answers is ended.
     pub fn answer(self, verdict: Result<String, String>) {
         let Some(Received { number, stream, clock, .. }) = self.request else { return };
         let line = format!("{}\n", Answer { number, time: clock.now(), verdict });
@@ -123,8 +122,7 @@ impl Listener {
         Entrance { sessions: Arc::clone(&self.sessions) }
     }
 
-    /// Returns the next event, if any, without waiting. A request whose sender no longer waits is marked as
-    /// late.
+    /// Returns the next event, if any, without waiting. A request whose sender no longer waits is marked as late.
     #[must_use]
     pub fn try_next(&self) -> Option<Given> {
         self.events.try_recv().ok().map(Given::judged)

@@ -177,8 +177,7 @@ impl Group {
     }
 }
 
-/// A reference packed into 32 bits, never 0; `None` for no reference, or a record number beyond those of a
-/// file.
+/// A reference packed into 32 bits, never 0; `None` for no reference, or a record number beyond those of a file.
 pub(crate) fn packed(at: Reference) -> Option<u32> {
     let kind = u32::from(at.kind.code());
     let known = kind > 0 && kind < 16 && at.number < 1 << 28 && (at.number > 0 || at.kind == RefType::Any);

@@ -308,8 +308,7 @@ impl<'a> TaskData<'a> {
     /// The owners of a place: of its location point, of the pose of the location point, or of a static array.
     pub(super) fn owners(&self, place: &Place) -> impl Iterator<Item = Reference> + Clone + use<'a> {
         let (data, place) = (*self, *place);
-        // The owners of an array on a tray are omitted: they include other trays that are divided in the same
-        // way.
+        // The owners of an array on a tray are omitted: they include other trays that are divided in the same way.
         let array = if place.locpt.is_null() { place.array } else { ArrayId::NULL };
         // The record of the location point is read only if the other owners have no entry.
         (0..3)

@@ -1,5 +1,4 @@
-//! Forms that are not in the manual: sensors of guarded moves, and the relative moves of holsters and tool
-//! drum.
+//! Forms that are not in the manual: sensors of guarded moves, and the relative moves of holsters and tool drum.
 //!
 //! In the manual both are code (V.1.1, V.3.1). Here they are data, like all dependences on the cell. The forms
 //! have the style of the manual:

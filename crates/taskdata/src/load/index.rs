@@ -1,9 +1,8 @@
 //! Building of the indexes of the files; [`crate::files::index`] describes the search.
 //!
-//! The keys are put into buckets of about three. Each bucket gets a pilot, the fullest bucket first, while most
-//! slots are free: the first of 256 pilots that maps all keys of the bucket to free slots. Without such a
-//! pilot, which for 100,000 keys happens less than once in a million times, the build starts again with another
-//! seed.
+//! The keys are put into buckets of about three. Each bucket gets a pilot, the fullest bucket first, while most slots
+//! are free: the first of 256 pilots that maps all keys of the bucket to free slots. Without such a pilot, which for
+//! 100,000 keys happens less than once in a million times, the build starts again with another seed.
 
 use crate::files::{
     Index,

@@ -97,9 +97,8 @@ impl Store {
     /// removed, except the locations of an object, which its newer object location entries replace together.
     /// Paths, their points and their parameters, which have no names, and object locations get new numbers.
     ///
-    /// All blocks of the texts are loaded, like by `load` at a terminal, unless the texts have a root directory
-    /// block. A directory may also name blocks of these data. The whole new generation is checked, not only the
-    /// new part.
+    /// All blocks of the texts are loaded, like by `load` at a terminal, unless the texts have a root directory block.
+    /// A directory may also name blocks of these data. The whole new generation is checked, not only the new part.
     ///
     /// # Errors
     /// The report, if it has an error that these data lack. The new generation is then not made.

@@ -1,6 +1,5 @@
-//! Blocks that no directory loads (orphans), and directory lines that name no existing block. All effects of
-//! one wrong or missing number are reported in one message: an entry is not reported for a name that only an
-//! orphan defines.
+//! Blocks that no directory loads (orphans), and directory lines that name no existing block. All effects of one wrong
+//! or missing number are reported in one message: an entry is not reported for a name that only an orphan defines.
 
 use std::collections::{BTreeMap, HashMap, HashSet};
 

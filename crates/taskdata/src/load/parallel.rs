@@ -45,8 +45,7 @@ pub fn map<T: Send>(count: usize, work: impl Fn(usize) -> T + Sync) -> Vec<T> {
     done.into_iter().map(|(_, result)| result).collect()
 }
 
-/// Like [`map`], for `count` items in pieces of at most `size`; `work` receives the range of positions of a
-/// piece.
+/// Like [`map`], for `count` items in pieces of at most `size`; `work` receives the range of positions of a piece.
 pub(super) fn map_pieces<T: Send>(
     count: usize,
     size: usize,

@@ -1,9 +1,8 @@
 //! From words to entries: the compiling words of chapter VII.
 //!
-//! A form is read as in FORTH, word by word, regardless of columns. A compiling word takes the words after it
-//! (`-pt-`, `-obj-` …), or the numbers before it (`-pose-`, `-mtb-`). After an error the rest of the entry is
-//! skipped up to the next compiling word or the next line that begins with a number, so that one error gives
-//! one message.
+//! A form is read as in FORTH, word by word, regardless of columns. A compiling word takes the words after it (`-pt-`,
+//! `-obj-` …), or the numbers before it (`-pose-`, `-mtb-`). After an error the rest of the entry is skipped up to the
+//! next compiling word or the next line that begins with a number, so that one error gives one message.
 
 use diagnostics::{At, BlockNumber, Problems, nearest};
 
@@ -63,8 +62,7 @@ impl<'a> Parser<'a, '_> {
         }
         self.next += 1;
         match word.text {
-            // Forms are always loaded into empty files, so ERASE-MOVTAB has no effect; FDEF only selects a
-            // vocabulary.
+            // Forms are always loaded into empty files, so ERASE-MOVTAB has no effect; FDEF only selects a vocabulary.
             "ERASE-MOVTAB" | "FDEF" => Ok(None),
             "-pt-" => forms::point_at(self, "location point").map(|e| Some(Entry::Locpt(e))),
             "-ar-" => forms::point_at(self, "array").map(|e| Some(Entry::ArrayAt(e))),

@@ -19,8 +19,7 @@ use super::{
     source::places_in_blocks,
 };
 
-/// Greatest number of records in a file (SPECNOTES.md, Task data). Beyond it, the error is the manual's FILE
-/// FULL.
+/// Greatest number of records in a file (SPECNOTES.md, Task data). Beyond it, the error is the manual's FILE FULL.
 pub const FILE_RECORDS: usize = 100_000;
 
 /// Names of the files, for declarations. The manual has no names for the files of the object location form and
@@ -185,8 +184,7 @@ impl Store {
         }
     }
 
-    /// The files of read blocks, for a log: those of the first load, then those of each [`Store::with_blocks`]
-    /// in turn.
+    /// The files of read blocks, for a log: those of the first load, then those of each [`Store::with_blocks`] in turn.
     #[must_use]
     pub fn sources(&self) -> &[Source] {
         &self.sources

@@ -23,8 +23,7 @@ pub struct Names {
 }
 
 impl Names {
-    /// The names in these texts, and the jobs in their directory. If the data have errors, only the blocks are
-    /// known.
+    /// The names in these texts, and the jobs in their directory. If the data have errors, only the blocks are known.
     #[must_use]
     pub fn of(sources: &[Source], directory: &Path) -> Self {
         let numbers = sources.iter().flat_map(|source| blocks(0, source).0).map(|block| block.number);

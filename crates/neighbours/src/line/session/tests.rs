@@ -32,8 +32,7 @@ fn events(session: &mut Session, now: Instant) -> Vec<Seen> {
     }
 }
 
-/// Passes the output of one side to the other in pieces of `pieces` bytes. Returns the events of the other
-/// side.
+/// Passes the output of one side to the other in pieces of `pieces` bytes. Returns the events of the other side.
 fn carry(from: &mut Session, to: &mut Session, pieces: usize, now: Instant) -> Vec<Seen> {
     let bytes = std::mem::take(from.output());
     let seen = bytes.chunks(pieces).flat_map(|piece| {

@@ -10,9 +10,8 @@
 //! ```
 //!
 //! Commands of the operator and of the job share one sequence of command numbers, that of the
-//! [`Commander`](rcs_core::handshake::Commander). While an operator is connected, the job waits instead of
-//! ending if a command fails, the joystick box is on, an emergency occurs, or the workstation refuses an
-//! action.
+//! [`Commander`](rcs_core::handshake::Commander). While an operator is connected, the job waits instead of ending if a
+//! command fails, the joystick box is on, an emergency occurs, or the workstation refuses an action.
 
 use std::fmt;
 
@@ -274,8 +273,7 @@ impl Hwsc {
         true
     }
 
-    /// Called when the current line has failed. Returns true if the job waits for an operator instead of
-    /// ending.
+    /// Called when the current line has failed. Returns true if the job waits for an operator instead of ending.
     pub(super) fn waits_for_operator(&mut self, failure: &JobFailure) -> bool {
         let can_be_mended = match failure {
             JobFailure::Command(_)

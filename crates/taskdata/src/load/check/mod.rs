@@ -26,8 +26,7 @@ use super::origins::Origins;
 
 pub(super) use reach::check as reach;
 
-/// All checks except that of the reach; only the checks of single objects unless `whole`, because names are
-/// missing.
+/// All checks except that of the reach; only the checks of single objects unless `whole`, because names are missing.
 pub(super) fn check(data: &TaskData<'_>, origins: &Origins, whole: bool, problems: &mut Problems) {
     let mut findings = Findings::default();
     if whole {

@@ -206,8 +206,7 @@ impl<'a> Reach<'a> {
                 Target::Pose(id) => {
                     self.target(&what, &frame, at, id, findings);
                 }
-                // Its reach is checked with the location points. The robot moves to it here even if it is a
-                // corner.
+                // Its reach is checked with the location points. The robot moves to it here even if it is a corner.
                 Target::LocationPoint(_) => vertical(&what, &frame, at, findings),
                 Target::Stop => {}
             }

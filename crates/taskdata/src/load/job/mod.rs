@@ -1,11 +1,10 @@
 //! Job files: commands of the workstation controller, and actions of the workstation between them.
 //!
-//! A job is a text of lines. `==` begins a Task command with the nine fields of Figure VIII.4, which are the
-//! variables of V.4.2 without the serial number (SPECNOTES.md, contradiction 25): object, source grip, location
-//! and sector, destination grip, location and sector, end-at location and sector; `--` is a null field. A
-//! serial number may follow: `#17` (an extension), and `expect error` for a command that must fail (an
-//! extension). The manual has no other lines: vise, trays and machine belong to the HWSC, not to the robot.
-//! Lines that begin with `**` are such actions:
+//! A job is a text of lines. `==` begins a Task command with the nine fields of Figure VIII.4, which are the variables
+//! of V.4.2 without the serial number (SPECNOTES.md, contradiction 25): object, source grip, location and sector,
+//! destination grip, location and sector, end-at location and sector; `--` is a null field. A serial number may follow:
+//! `#17` (an extension), and `expect error` for a command that must fail (an extension). The manual has no other lines:
+//! vise, trays and machine belong to the HWSC, not to the robot. Lines that begin with `**` are such actions:
 //!
 //! ```text
 //! ** tray UNIT_1 4 LINKBAR1_BH            a part is delivered into a sector, at a random position (seed of the run)

@@ -1,8 +1,7 @@
 //! A line from another process or an operator during the run, instead of from a job.
 //!
-//! Its meaning depends only on its words and the task data; the run itself handles `load OFFSET BLOCK` earlier.
-//! Parsing it opens no file, because that could take any time, and would reveal to the connected system which
-//! files exist.
+//! Its meaning depends only on its words and the task data; the run itself handles `load OFFSET BLOCK` earlier. Parsing
+//! it opens no file, because that could take any time, and would reveal to the connected system which files exist.
 
 use std::fmt;
 
