@@ -22,7 +22,7 @@ fn section(command: &Command, depth: usize, page: &mut String) {
     add(page, format_args!("{} {name}\n\n{}\n", "#".repeat(depth), about.join("\n\n")));
     let usage: Vec<_> = usage.trim_start_matches("Usage: ").lines().map(str::trim).collect();
     add(page, format_args!("```text\n{}\n```\n", usage.join("\n")));
-    // An option that all subcommands take is told once, at the program.
+    // An option that all subcommands take is listed once, at the program.
     let shown = |argument: &&Arg| {
         let is_told = depth > 1 && argument.is_global_set();
         !argument.is_hide_set() && !is_told && !matches!(argument.get_id().as_str(), "help" | "version")

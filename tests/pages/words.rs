@@ -58,7 +58,8 @@ fn pages_and_comments_avoid_the_phrases_of_the_word_list() {
     let text = fs::read_to_string(root().join("docs/words.toml")).expect("the word list can be read");
     let words: Words = toml::from_str(&text).expect("the word list is valid");
     let mut found = Vec::new();
-    for path in pages() {
+    // Entries of earlier versions keep their words.
+    for path in pages().into_iter().filter(|path| !path.ends_with("CHANGELOG.md")) {
         let text =
             normalized(&without_code(&prose(&fs::read_to_string(&path).expect("the page can be read"))));
         found.extend(words.word.iter().flat_map(|word| word.in_text(&path, &text)));

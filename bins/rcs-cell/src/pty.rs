@@ -8,7 +8,7 @@
 //! the superuser can open it. In this case a new terminal replaces it under the same path.
 //!
 //! While the program runs, it holds an abstract socket named after the path. The kernel removes this socket when the
-//! program ends, for whatever reason. A link without its socket is therefore stale and may be replaced.
+//! program ends, for any reason. A link without its socket is therefore stale and may be replaced.
 
 use std::{
     io,

@@ -39,7 +39,7 @@ impl Seen<'_> {
     }
 }
 
-/// Age after which a device counts as lost, ms: 25 ticks.
+/// Age after which a device is lost, ms: 25 ticks.
 pub const LOST_MS: u32 = 1000;
 
 impl Mapping {

@@ -147,7 +147,7 @@ pub trait Ending: Sized {
 pub struct Execution {
     /// Echo and adoption.
     pub receiver: Receiver,
-    /// How far it has come.
+    /// Its progress.
     pub outcome: Outcome,
     /// Why it failed.
     pub reason: Reason,

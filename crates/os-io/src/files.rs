@@ -18,7 +18,7 @@ use crate::carried;
 /// Greatest length of a text file, bytes: task data, jobs, cell descriptions and fault plans have some kilobytes.
 pub const TEXT: u64 = 16 << 20;
 
-/// Reads a regular file of at most `limit` bytes. Never blocks, whatever `path` names.
+/// Reads a regular file of at most `limit` bytes. Never blocks, for any kind of file.
 ///
 /// # Errors
 /// [`ErrorKind::InvalidInput`] with the kind found if `path` is no regular file, [`ErrorKind::FileTooLarge`] if the

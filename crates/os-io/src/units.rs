@@ -122,7 +122,7 @@ const UNITS: [Unit; 4] = [
     Unit { text: "lb", other: "N", factor: NEWTON, digits: -1, whole: true },
 ];
 
-/// What may be between two numbers that share the unit of the last one, besides blanks: `(1.00, 2.00, 3.00 in)`,
+/// What may be between two numbers that share the unit of the last one, in addition to blanks: `(1.00, 2.00, 3.00 in)`,
 /// `3.0 x 1.5 in`.
 const BETWEEN: [&str; 8] = ["", ",", "x", "to", "and", "or", "Y", "Z"];
 

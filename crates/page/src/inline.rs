@@ -95,7 +95,7 @@ pub enum Content<'a> {
 
 /// The page as one file, with a packed log or the start of a run inside.
 ///
-/// The file permits itself this one script, whatever the texts of the log are. With a log it loads nothing; with a run
+/// The file permits itself this one script, independent of the texts of the log. With a log it loads nothing; with a run
 /// it connects to its own server only.
 #[must_use]
 pub fn document(title: &str, content: Content<'_>) -> String {

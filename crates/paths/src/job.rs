@@ -38,7 +38,7 @@ pub const NOT_CHECKED: [&str; 6] = [
     "faults of sensors, valves and the link",
     "the lag of the resolvers; the lag of the servos is included",
 ];
-/// Greatest distance from a location point at which the robot counts as being there at the start, in.
+/// Greatest distance from a location point at which the robot is there at the start, in.
 const STANDS: f64 = 0.5;
 /// Positions checked for a part delivered at random in its sector: x and y as shares of the greatest offset, and the
 /// angle in degrees. Rotations by half a turn are equivalent for two fingers.

@@ -21,7 +21,7 @@ use crate::{
     walk::Walk,
 };
 
-/// Greatest distance of a part from its expected position, in; beyond it the part counts as missing.
+/// Greatest distance of a part from its expected position, in; beyond it the part is missing.
 const THERE: f64 = 8.0;
 
 #[derive(Clone, Debug)]

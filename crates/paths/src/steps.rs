@@ -13,7 +13,7 @@ use crate::holster::{Lacking, PUT, TAKE, TAKEN, WORN, holster, object_of};
 const PEDESTAL: &str = "PEDESTAL";
 /// Location at which the robot waits while the pedestal turns.
 const PEDESTAL_SAFE: &str = "PED-SAFE";
-/// Location at which tools are handed over to the drum.
+/// Location of the tool transfer to the drum.
 const TOOL_TRANSFER: &str = "TOOL-TRNS";
 
 /// A command of E-move, or of a neighbour while the robot is at rest.

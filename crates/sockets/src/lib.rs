@@ -129,7 +129,7 @@ impl Line {
     }
 
     /// Waits until bytes can be read (returns true), pending bytes can be written, `wake` is readable, or the time
-    /// `until` has come.
+    /// `until` is reached.
     ///
     /// # Errors
     /// Errors of the system.

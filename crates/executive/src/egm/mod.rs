@@ -4,7 +4,7 @@
 //!   host (T3 Interface, or any other)
 //!     │ bytes, once a tick of 40 ms
 //!   bridge::Bridge: depc::Controller, which moves ...
-//!     │ orders, at most one a tick            ▲ samples
+//!     │ orders, at most one per tick           ▲ samples
 //!   line::Line: egm::Host, in its own thread or in simulated time
 //!     │ EgmSensor                              ▲ EgmRobot, every 4 ms
 //!   robot controller, or emulator::EgmRobot

@@ -209,7 +209,7 @@ impl Worker {
             Err(error) => return self.refuse(sender, Cause::Message(error)),
         };
         self.robot = Some(sender);
-        // An answer that cannot be sent counts as a lost datagram.
+        // An answer that cannot be sent is treated as a lost datagram.
         let _ = self.socket.send_to(answer, sender);
         let answered = nanoseconds(self.origin).saturating_sub(now);
         let cycle = self.heard.replace(now).map(|before| now.saturating_sub(before));

@@ -97,7 +97,7 @@ pub fn prefix(name: &RunName, layout: &str) -> String {
 }
 
 /// Take the lock for listing runs, and for creating or removing a run's directory. The system releases it when its
-/// holder ends, in whatever way.
+/// holder ends, in any way.
 pub(super) fn lock() -> Result<File, SharedMemoryError> {
     own_root()?;
     let path = root().join("lock");

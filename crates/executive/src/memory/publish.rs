@@ -38,7 +38,7 @@ impl Window {
     pub(super) fn with<T>(&self, work: impl FnOnce(&mut Published) -> T) -> Option<T> {
         match self.0.try_lock() {
             Ok(mut published) => Some(work(&mut published)),
-            // Every value in it is valid, whatever its owner was doing when it panicked.
+            // Every value in it is valid, no matter where its owner panicked.
             Err(TryLockError::Poisoned(published)) => Some(work(&mut published.into_inner())),
             Err(TryLockError::WouldBlock) => None,
         }

@@ -201,7 +201,7 @@ impl SerialLine {
         self.port.is_some()
     }
 
-    /// True if the port has modem lines; a pseudo-terminal has none, and counts as ready while it is there.
+    /// True if the port has modem lines; a pseudo-terminal has none, and is ready while it exists.
     #[must_use]
     pub fn has_modem_lines(&self) -> bool {
         self.port.as_ref().is_some_and(|port| port.modem)

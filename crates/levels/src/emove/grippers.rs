@@ -38,7 +38,7 @@ pub enum FingerVerb {
     Pause,
     /// Bring the fingers to an opening with no object between them.
     Stand,
-    /// Open and let go.
+    /// Open and release.
     Release,
     /// Close on an object.
     Grasp,

@@ -57,7 +57,7 @@ pub struct EmergencyResult {
     pub cause: String,
     /// Position of the tool point, in.
     pub position_in: [f64; 3],
-    /// True if the arm has come to rest.
+    /// True if the arm is at rest.
     pub at_rest: bool,
     /// True if the shot pin has stopped the shoulder.
     pub on_shot_pin: bool,
