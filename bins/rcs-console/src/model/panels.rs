@@ -254,7 +254,6 @@ mod tests {
     }
 
     /// The smallest terminal has room for 18 lines below the band, including the two titles.
-    #[expect(clippy::field_reassign_with_default, reason = "another field is private")]
     #[test]
     fn panels_with_all_requests_fit_the_smallest_terminal() {
         let mut operating = Operating::default();

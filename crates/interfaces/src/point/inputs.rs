@@ -46,11 +46,11 @@ type Row = (&'static str, Group, Kind, RangeInclusive<i64>, fn(&mut DeviceInputs
 const BIT: RangeInclusive<i64> = 0..=1;
 #[expect(clippy::as_conversions, reason = "widens, in a constant")]
 const FULL: RangeInclusive<i64> = 0..=ADC_FULL_SCALE as i64;
-#[expect(clippy::as_conversions, clippy::arithmetic_side_effects, reason = "widens, in a constant")]
+#[expect(clippy::as_conversions, reason = "widens, in a constant")]
 const TURN: RangeInclusive<i64> = 0..=RESOLVER_COUNTS as i64 - 1;
 #[expect(clippy::as_conversions, reason = "widens, in a constant")]
 const KNOB: RangeInclusive<i64> = 0..=KNOB_FULL as i64;
-#[expect(clippy::as_conversions, clippy::arithmetic_side_effects, reason = "widens, in a constant")]
+#[expect(clippy::as_conversions, reason = "widens, in a constant")]
 const STICK: RangeInclusive<i64> = -(KNOB_FULL as i64)..=KNOB_FULL as i64;
 /// Numbers of 32 bits.
 const COUNT: RangeInclusive<i64> = -0x8000_0000..=0x7FFF_FFFF;

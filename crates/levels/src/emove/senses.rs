@@ -43,6 +43,7 @@ impl<'a> Senses<'a> {
     }
 
     #[must_use]
+    /// The command.
     pub const fn verb(&self) -> EmoveVerb {
         self.command.command
     }
@@ -98,6 +99,7 @@ impl Senses<'_> {
     }
 
     #[must_use]
+    /// The status of the attached gripper.
     pub const fn gripper(&self) -> Lower {
         self.subordinates.gripper
     }
@@ -113,6 +115,7 @@ impl Senses<'_> {
     }
 
     #[must_use]
+    /// Whether the object is held.
     pub fn held(&self) -> Held {
         Held::of(self.holding(), self.command.object)
     }
@@ -167,6 +170,7 @@ impl Senses<'_> {
     }
 
     #[must_use]
+    /// The holster.
     pub fn holster(&self) -> EmoveHolster {
         holster(self.command.end_effector_id, self.memory())
     }
@@ -202,6 +206,7 @@ impl Senses<'_> {
     }
 
     #[must_use]
+    /// The answer of vision.
     pub fn sight(&self) -> Sight {
         sight(self.state.localization.last_place(), self.inputs)
     }
@@ -225,6 +230,7 @@ impl Senses<'_> {
     }
 
     #[must_use]
+    /// The link to the robot.
     pub const fn link(&self) -> EmoveLink {
         if self.memory().prim.status.link_running { EmoveLink::Up } else { EmoveLink::Down }
     }
@@ -236,6 +242,7 @@ impl Senses<'_> {
     }
 
     #[must_use]
+    /// Whether the fingers move.
     pub fn motion(&self) -> FingerMotion {
         let moving = self.state.grippers.are_moving(self.inputs.tick, self.memory());
         if moving { FingerMotion::Moving } else { FingerMotion::AtRest }
