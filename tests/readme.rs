@@ -75,11 +75,13 @@ fn process(command: &str) -> Process {
     process
 }
 
-/// Run the samples of a page in an empty directory with the shipped data. Returns their number.
+/// Run the samples of a page in a directory with the shipped data and viewers. Returns their number.
 fn run_samples(page: &str) -> usize {
     let text = fs::read_to_string(root().join(page)).expect("the page is there");
     let scratch = Scratch::new("samples");
-    symlink(root().join("data"), scratch.file("data")).expect("there is room for a link");
+    for shipped in ["data", "viewers"] {
+        symlink(root().join(shipped), scratch.file(shipped)).expect("there is room for a link");
+    }
     let blocks = text.split("```console\n").skip(1).filter_map(|rest| rest.split_once("```"));
     let mut run = 0;
     for (block, _) in blocks {
