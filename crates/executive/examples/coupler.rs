@@ -1,4 +1,4 @@
-//! An emulated BK9000, and a controller that switches its outputs: two programs, to try networks and other programs with.
+//! An emulated BK9000, and a controller that switches its outputs: two programs to test networks and other programs.
 //!
 //! `coupler station 127.0.0.1:1502` prints the outputs when they change, and the greatest age of an image that was
 //! carried out. `coupler controller 127.0.0.1:1502 60` runs for 60 s with an output on, releases the device when it is

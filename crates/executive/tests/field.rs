@@ -224,7 +224,7 @@ fn panic_in_the_tick_ends_the_device() {
 
 /// The controller of [`lost_process_is_followed_by_the_fallback`], in a process of its own.
 #[test]
-#[ignore = "it is a program of another test"]
+#[ignore = "child process that lost_process_is_followed_by_the_fallback starts and kills"]
 fn controller_in_another_process() {
     let address = env::var(STATION).expect("started by the other test").parse().expect("an address");
     let mut controller = Controller::of(address, plan(500, 100));

@@ -62,7 +62,7 @@ pub fn pack(log: &Log, added: &[Attachment]) -> Vec<u8> {
     finish(out)
 }
 
-/// What the page needs of a run before its first message: its metadata and files, with further ones. The messages
+/// Data of a run before its first message: its metadata and files, with further ones. The messages
 /// arrive over the live view.
 #[must_use]
 pub fn pack_start(

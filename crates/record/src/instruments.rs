@@ -20,7 +20,7 @@ pub const INSTRUMENTS: &str = "/instruments";
 const POUND: f64 = 4.448_221_615_260_5;
 
 messages! {
-    /// What the grippers report.
+    /// Statuses of the grippers.
     Instruments {
         /// Opening of the parts gripper, metres.
         parts_gripper_m: f64,

@@ -71,7 +71,7 @@ pub struct Device {
     pub exchange_ms: u16,
     /// Time for an answer, ms.
     pub timeout_ms: u16,
-    /// What the connection has to know.
+    /// Plan of the connection: address, process data, watchdog.
     pub plan: Plan,
 }
 
@@ -165,7 +165,7 @@ impl InPoint {
 pub struct OutPoint {
     pub name: String,
     pub target: Target<Output>,
-    /// What is written at the start, at the end, and when the controller is lost.
+    /// Value at the start, at the end, and when the controller is lost.
     pub safe: i64,
     /// It may be on while nothing moves.
     pub rest: bool,

@@ -12,7 +12,7 @@ pub(super) struct Place<'t> {
     pub bit: Option<u8>,
 }
 
-/// What is expected of a place.
+/// Expected form of a place, for messages.
 pub(super) const EXPECTED: &str = "\"DEVICE coil|discrete|input|holding ADDRESS[.BIT]\"";
 
 impl<'t> Place<'t> {

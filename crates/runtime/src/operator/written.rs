@@ -143,10 +143,10 @@ fn old_value(variable: Variable, memory: &CommonMemory) -> String {
     let value = match variable {
         Variable::Ledger => task.ledger.map(|ledger| ledger.command.to_string()),
         Variable::Pending => {
-            let owed = task.updates.pending.iter().flatten();
-            let owed: Vec<String> =
-                owed.map(|update| format!("{} at {}", update.item, update.position)).collect();
-            (!owed.is_empty()).then(|| owed.join(", "))
+            let pending = task.updates.pending.iter().flatten();
+            let pending: Vec<String> =
+                pending.map(|update| format!("{} at {}", update.item, update.position)).collect();
+            (!pending.is_empty()).then(|| pending.join(", "))
         }
         Variable::Regrip => memory.subtask.regrip.map(|regrip| regrip.object.to_string()),
         Variable::Held => estimates.held.map(|held| format!("{} {}", held.object.object, held.object.grip)),

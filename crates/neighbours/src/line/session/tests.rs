@@ -277,7 +277,10 @@ proptest! {
 
     /// The same at a neighbour, because another program may listen instead of the controller.
     #[test]
-    fn arbitrary_bytes_do_not_panic_at_a_neighbour(bytes in prop::collection::vec(any::<u8>(), 0..300), front in 0_usize..3) {
+    fn arbitrary_bytes_do_not_panic_at_a_neighbour(
+        bytes in prop::collection::vec(any::<u8>(), 0..300),
+        front in 0_usize..3,
+    ) {
         let now = Instant::now();
         let mut session = Session::neighbour(Role::DataSystem, now);
         let hello: &[u8] = &[&b"RCS2\x03\x00\x00\x00"[..], b"\x02\x00\x00\x00\x08\x00\0\0\0\0\0\0"].concat();

@@ -126,9 +126,9 @@ fn lost_command_is_repeated_with_its_number() {
     is_done(agent.execute(&update(72, "UNIT_1")), 72);
     drop(agent);
     server.join().unwrap();
-    let [first, again, anew] = &heard.iter().collect::<Vec<_>>()[..] else { panic!("three were sent") };
+    let [first, again, later] = &heard.iter().collect::<Vec<_>>()[..] else { panic!("three were sent") };
     assert_eq!(first, again);
-    assert_eq!([id(first), id(anew)], [1, 2], "a repetition after the answer is a new command");
+    assert_eq!([id(first), id(later)], [1, 2], "a repetition after the answer is a new command");
 }
 
 #[test]
