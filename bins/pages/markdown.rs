@@ -1,20 +1,24 @@
 //! The reference page of a program.
 
+use std::collections::hash_map::Entry;
+use std::collections::{BTreeMap, HashMap};
 use std::fmt::Write as _;
 
 use clap::{Arg, Command};
 
-/// The page: a section for the program and one for each subcommand, with the usage, the arguments and the options.
+/// The page: a section for the program and one for each subcommand, with the usage, the arguments and the options. An
+/// argument that several commands have with the same text is described at the first of them.
 #[must_use]
 pub fn markdown(command: &Command) -> String {
     let mut command = command.clone();
     command.build();
     let mut page = String::new();
-    section(&command, 1, &mut page);
+    section(&command, 1, &mut HashMap::new(), &mut page);
     page
 }
 
-fn section(command: &Command, depth: usize, page: &mut String) {
+/// `described` has the arguments described so far, each with its command.
+fn section(command: &Command, depth: usize, described: &mut HashMap<String, String>, page: &mut String) {
     let name = command.get_bin_name().unwrap_or(command.get_name());
     let usage = command.clone().render_usage().to_string();
     let about = command.get_long_about().or(command.get_about()).map(ToString::to_string).unwrap_or_default();
@@ -27,9 +31,19 @@ fn section(command: &Command, depth: usize, page: &mut String) {
         let is_told = depth > 1 && argument.is_global_set();
         !argument.is_hide_set() && !is_told && !matches!(argument.get_id().as_str(), "help" | "version")
     };
+    let mut elsewhere: BTreeMap<String, Vec<String>> = BTreeMap::new();
     for argument in command.get_arguments().filter(shown) {
         let what = format!("{}: {}", label(argument), escaped(&text(argument)));
-        add(page, format_args!("- {}", what.trim_end_matches([':', ' '])));
+        match described.entry(what) {
+            Entry::Occupied(at) => elsewhere.entry(at.get().clone()).or_default().push(typed(argument)),
+            Entry::Vacant(at) => {
+                add(page, format_args!("- {}", at.key().trim_end_matches([':', ' '])));
+                at.insert(name.to_owned());
+            }
+        }
+    }
+    for (name, arguments) in elsewhere {
+        add(page, format_args!("- As for `{name}`: {}.", arguments.join(", ")));
     }
     if command.get_arguments().any(|argument| shown(&argument)) {
         page.push('\n');
@@ -38,7 +52,13 @@ fn section(command: &Command, depth: usize, page: &mut String) {
         add(page, format_args!("```text\n{after}\n```\n"));
     }
     let visible = |below: &&Command| !below.is_hide_set() && below.get_name() != "help";
-    command.get_subcommands().filter(visible).for_each(|below| section(below, depth + 1, page));
+    command.get_subcommands().filter(visible).for_each(|below| section(below, depth + 1, described, page));
+}
+
+/// The name of an argument: `--json`, or `<JOB>` without a flag.
+fn typed(argument: &Arg) -> String {
+    let value = || argument.get_value_names().unwrap_or_default().join(" ");
+    argument.get_long().map_or_else(|| format!("`<{}>`", value()), |long| format!("`--{long}`"))
 }
 
 /// The argument as it is typed, and what is taken without it.
