@@ -8,12 +8,9 @@ use rcs_core::Plain;
 
 use super::goal::{CLOSED_END, OPEN_END, SUPPLY_FORCE};
 
-/// Greatest difference between consecutive steady readings, counts: above the noise, below a fine flow.
-const STEADY_COUNTS: u16 = 6;
-/// Least difference of the potentiometer between the ends of travel, counts.
-const LEAST_TRAVEL: f64 = 1000.0;
-/// Least difference of a strain gage between the supply force and none, counts.
-const LEAST_STRAIN: f64 = 400.0;
+const STEADY_COUNTS: u16 = 6; // counts: above the noise, below a fine flow
+const LEAST_TRAVEL: f64 = 1000.0; // counts between the ends of travel
+const LEAST_STRAIN: f64 = 400.0; // counts between supply force and no force
 
 /// The line through a value at some counts and another at `span` counts more.
 fn through(counts: f64, value: f64, span: f64, further: f64) -> Scale {
@@ -28,28 +25,21 @@ pub(super) fn value(scale: &Scale, counts: f64) -> f64 {
 /// Steady readings, counts.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct Readings {
-    /// Potentiometer.
     pub potentiometer: f64,
-    /// Left strain gage.
     pub left: f64,
-    /// Right strain gage.
     pub right: f64,
 }
 
-/// Sums over the ticks since the readings have been steady.
+/// Sums of counts over the ticks since the readings have been steady.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct Steady {
-    /// Ticks in the sums.
     pub ticks: u32,
-    /// Sum of the potentiometer's counts.
     pub potentiometer: u32,
-    /// Sum of the left strain gage's counts.
     pub left: u32,
-    /// Sum of the right strain gage's counts.
     pub right: u32,
 }
 
-/// From the readings at both ends of travel and without force.
+/// `free` are readings without force.
 pub(super) fn calibration(closed: &Readings, open: &Readings, free: &Readings) -> Calibration {
     let travel = open.potentiometer - closed.potentiometer;
     let (left, right) = (closed.left - free.left, closed.right - free.right);
@@ -72,7 +62,6 @@ pub(super) fn is_plausible(closed: &Readings, open: &Readings, free: &Readings) 
 }
 
 impl Steady {
-    /// Add the readings of a tick; those of the previous tick show whether they are steady.
     pub(super) fn note(&mut self, now: &GripSensors, before: &GripSensors) {
         let still = |now: u16, before: u16| now.abs_diff(before) <= STEADY_COUNTS;
         let steady = still(now.potentiometer, before.potentiometer)
@@ -87,7 +76,6 @@ impl Steady {
         };
     }
 
-    /// The mean of the steady readings.
     pub(super) fn mean(&self) -> Readings {
         let ticks = f64::from(self.ticks.max(1));
         Readings {

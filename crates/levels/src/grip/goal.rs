@@ -1,5 +1,3 @@
-//! The goal of a command for the fingers.
-
 use geometry::units::inches;
 use interfaces::grip::{GripCommand, GripVerb};
 use rcs_core::Plain;
@@ -10,25 +8,18 @@ use super::tables::{
 };
 use crate::execution::Course;
 
-/// Opening at the closed end of travel, in (VIII.9.1: a closed gripper has 0.10 in).
-pub(super) const CLOSED_END: f64 = 0.10;
-/// Opening at the open end of travel, in.
-pub(super) const OPEN_END: f64 = 5.00;
-/// Force on each finger with the whole supply pressure: the strain gages measure it when the fingers are shut on
-/// each other, lb. ASSUMED: the pads meet at the closed end of travel.
+pub(super) const CLOSED_END: f64 = 0.10; // in (VIII.9.1: a closed gripper has 0.10 in)
+pub(super) const OPEN_END: f64 = 5.00; // in
+/// lb on each finger: the strain gages read it on fingers shut on each other. ASSUMED: the pads meet when closed.
 pub(super) const SUPPLY_FORCE: f64 = 80.0;
 
 /// Goal of the current command: a copy, because the buffer of a commander that restarts is empty.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct GripGoal {
-    /// What to do.
     pub verb: GripVerb,
-    /// Opening, or the grasp size, in.
-    pub opening: f64,
-    /// Force, lb.
-    pub force: f64,
-    /// Greatest speed, in/s, if one is commanded.
-    pub speed: Option<f64>,
+    pub opening: f64,       // in; for a grasp, the size of the object
+    pub force: f64,         // lb
+    pub speed: Option<f64>, // in/s
 }
 
 impl From<&GripCommand> for GripGoal {
@@ -43,7 +34,6 @@ impl From<&GripCommand> for GripGoal {
 }
 
 impl GripGoal {
-    /// True if a gripper of this type can reach opening and force.
     #[must_use]
     pub fn is_attainable(&self) -> bool {
         let reachable =

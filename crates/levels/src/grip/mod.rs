@@ -1,14 +1,12 @@
 //! Grip (VI.3): the parts gripper, end effector 1, by eight air valves, a potentiometer and two strain gages.
 //!
 //! Air flow is not proportional: six flow valves open or close the fingers at three speeds, and trapped air keeps
-//! the opening. So the servo chooses a flow by the remaining distance, coarse to fine, stops inside a dead band,
-//! lets the readings settle, and only then decides. It does not oscillate: a stopped flow starts again only if the
-//! settled reading is outside a wider band.
+//! the opening. The servo chooses a flow by the remaining distance, stops in a dead band, lets the readings settle,
+//! and then decides. To prevent oscillation, a stopped flow starts again only outside a wider band.
 //!
-//! The command selects the table. UP-INIT starts by itself when the system starts, and commands wait for it. Later
-//! it starts only by command: UP-INIT closes with the whole supply pressure, and a part may be held. Without a
-//! calibration, commands that move the fingers are refused. Only OPEN-GRIP to the open end works without: all open
-//! flows until the readings are steady, and the calibration stays deferred.
+//! UP-INIT starts by itself when the system starts, later only by command: it closes with the whole supply
+//! pressure, and a part may be held. Commands wait for it. Without a calibration only OPEN-GRIP to the open end
+//! works: all open flows until the readings are steady.
 //!
 //! ```text
 //!   a command                               the calibration (UP-INIT)
@@ -34,11 +32,10 @@
 //!    Done         (Error: too late, without the gripper)
 //! ```
 //!
-//! A gripper that is attached when the system starts is calibrated at once. The process of a gripper attached later
-//! was dormant, and a process that wakes moves nothing before it gets a command (docs/design/handshake.md "Wake"):
-//! E-move sends UP-INIT when the gripper is clear of its holster (V.2.1 QC-ATTACH). When the gripper is removed, a
-//! calibration in progress is void and all valves go off; a finished one is kept. PAUSE leaves the valves as they
-//! are, literally (VI.3.1): if a flow is on it stays on, and PAUSE is done when the fingers rest.
+//! The process of a gripper attached later was dormant, and moves nothing before a command (docs/design/handshake.md
+//! "Wake"): E-move sends UP-INIT when the gripper is clear of its holster (V.2.1 QC-ATTACH). Removing the gripper
+//! voids a calibration in progress, keeps a finished one, and turns all valves off. PAUSE leaves the valves as they
+//! are (VI.3.1), and is done when the fingers rest.
 
 pub mod calibration;
 pub mod goal;
@@ -71,17 +68,13 @@ use self::{
 };
 use crate::execution::Course;
 
-/// The process with the servo of a gripper.
 #[derive(Clone, Debug, Default)]
 pub struct Servo<S> {
     state: State,
     gripper: PhantomData<S>,
 }
 
-/// Consult UP-INIT and CALIBRATION; returns the remaining decision.
-///
-/// # Errors
-/// The row that decides.
+/// Consult UP-INIT and CALIBRATION. An error is the row that decides.
 fn calibrating(phase: GripPhase, situation: &Situation) -> Result<GripDuty, Choice<Action, GripPhase>> {
     match up_init::up_init(phase, situation) {
         Verdict::Decided(decision) => Err(decision.of(number::UP_INIT)),

@@ -1,5 +1,3 @@
-//! Postprocess of Grip: the valves, the calibration, and the status to the commander.
-
 use geometry::units::{hundredths, rounded};
 use interfaces::{
     GripOutputs,
@@ -17,11 +15,11 @@ use crate::execution::Outcome;
 
 const CLOSE_FULLY: u8 = valve::SUPPLY | valve::CLOSE_COARSE | valve::CLOSE_MEDIUM | valve::CLOSE_FINE;
 const OPEN_FULLY: u8 = valve::SUPPLY | valve::OPEN_COARSE | valve::OPEN_MEDIUM | valve::OPEN_FINE;
-/// The difference of fingertip heights at any opening: the fingers of this gripper move in parallel. ASSUMED.
+/// The fingers of this gripper move in parallel. ASSUMED.
 const FINGER_HEIGHT: i32 = 0;
 
 impl State {
-    /// Carry out the action of a row. Without the gripper all valves are off.
+    /// Without the gripper all valves are off.
     pub(super) fn act(&mut self, action: Action, seen: &StateVariables, tick: Tick) {
         match action {
             Action::Begin | Action::Widen => (self.since, self.steady) = (tick, Steady::default()),
@@ -83,7 +81,6 @@ impl State {
         core::mem::take(&mut self.steady).mean()
     }
 
-    /// Set scale and offset from the last readings.
     fn calibrate(&mut self) {
         let free = self.take_readings();
         self.calibration = Some(calibration(&self.closed, &self.open, &free));

@@ -1,5 +1,3 @@
-//! Preprocess of Grip: its state variables, from the command and the sensors.
-//!
 //! The bands allow for valves that act one to two samples after a reading, at the flows of
 //! [`interfaces::device::valve`]: per tick, a coarse flow moves 0.16 in, a medium one 0.04 in or 4 lb, a fine one
 //! 0.01 in or 1 lb. Each band is wider than two ticks of its flow, so no flow overshoots the next finer band.
@@ -29,40 +27,27 @@ use super::{
 };
 use crate::execution::{Asked, Outcome};
 
-/// Least distance for a coarse flow, in.
-const FAR: f64 = 0.40;
-/// Least distance for a medium flow, in.
-const MIDDLE: f64 = 0.10;
-/// The fingers are stopped within this distance, in.
-const DEAD_BAND: f64 = 0.010;
-/// Tolerance for fingers at rest, in: the dead band and twice the noise.
-const REST_BAND: f64 = 0.016;
+const FAR: f64 = 0.40; // in: least distance for a coarse flow
+const MIDDLE: f64 = 0.10; // in: least distance for a medium flow
+const DEAD_BAND: f64 = 0.010; // in
+const REST_BAND: f64 = 0.016; // in: the dead band and twice the noise
 
-/// Least force of the servo, lb: contact is not reliable below it.
-const LEAST_FORCE: f64 = 3.0;
-/// Least difference from the commanded force for a medium flow, lb.
-const FORCE_MIDDLE: f64 = 12.0;
-/// The flow is stopped within this difference, lb.
-const FORCE_DEAD_BAND: f64 = 1.0;
-/// Tolerance for a force at rest, lb.
-const FORCE_REST_BAND: f64 = 2.0;
+const LEAST_FORCE: f64 = 3.0; // lb: contact is not reliable below it
+const FORCE_MIDDLE: f64 = 12.0; // lb: least difference for a medium flow
+const FORCE_DEAD_BAND: f64 = 1.0; // lb
+const FORCE_REST_BAND: f64 = 2.0; // lb
 /// Fingers without force this far below the grasp size have missed the object, in. Reported openings are rounded to
 /// 0.01 in, and "nothing held" must read at or below the grasp size.
 const MISSED_BELOW: f64 = 0.02;
-/// Ticks in which the force of an object must build up.
-const MISSED_TICKS: u8 = 3;
+const MISSED_TICKS: u8 = 3; // for the force of an object to build up
 
-/// Ticks with the valves off until readings are settled: two until the last flow has ended, and a window.
-const SETTLE_TICKS: u8 = 6;
-/// Ticks until motionless fingers are at rest: valves act two ticks late.
-const STILL_TICKS: u8 = 5;
+const SETTLE_TICKS: u8 = 6; // two until the last flow has ended, and a window
+const STILL_TICKS: u8 = 5; // valves act two ticks late
 /// Time limit of a command by its greatest flow, ticks: fine, medium, coarse (26, 12 and 6 s). The whole travel
 /// takes 490, 125 and 55 ticks, a grasp 30 more.
 const LIMIT_TICKS: [u64; 3] = [650, 300, 150];
-/// Time limit of UP-INIT, ticks (16 s); it takes about 100.
-const CALIBRATION_LIMIT_TICKS: u64 = 400;
-/// Steady ticks for a calibration reading; longer than valves take to act.
-const STEADY_TICKS: u32 = 12;
+const CALIBRATION_LIMIT_TICKS: u64 = 400; // 16 s; UP-INIT takes about 100
+const STEADY_TICKS: u32 = 12; // longer than valves take to act
 
 impl State {
     /// Read the inputs of a tick. If the outputs were republished, the process was dormant in the previous tick.
@@ -114,7 +99,7 @@ impl State {
         }
     }
 
-    /// Read the command number. When the process starts or wakes, consult START.
+    /// When the process starts or wakes, consult START.
     fn observe(
         &mut self,
         (tick, number): (Tick, u32),
@@ -180,7 +165,6 @@ impl State {
         }
     }
 
-    /// Count ticks: since the end of waiting, since the valves went off, since the object should have been sensed.
     fn count(&mut self, arrival: Arrival, step: Step, measured: &Measured, tick: Tick) {
         if step == Step::Start && !self.is_calibrating() {
             self.since = tick;
@@ -197,14 +181,12 @@ impl State {
         self.missed = if missing { self.missed.saturating_add(1) } else { 0 };
     }
 
-    /// The sensor words are old: the part presence is unknown, and the readings settle again.
     fn await_readings(&mut self) {
         (self.felt, self.touch, self.touch_ticks) = (Felt::NotKnown, Touch::Unclear, 0);
         (self.still_ticks, self.settled, self.missed) = (0, 0, 0);
         self.steady = Steady::default();
     }
 
-    /// Whether the sensors agree with the calibration.
     fn sensors(&self, connection: GroupHealth, measured: &Measured) -> Sensors {
         match (&self.calibration, &self.sensed) {
             _ if connection == GroupHealth::Stale => Sensors::Stale,
@@ -238,7 +220,6 @@ impl State {
         if tick.since(self.since) > limit { Clock::Expired } else { Clock::Running }
     }
 
-    /// The opening, compared with the commanded one.
     fn opening(&self, step: Step, measured: &Measured) -> GripOpening {
         let (opening, dead_band) = match step {
             Step::Start | Step::Move => (measured.opening, DEAD_BAND),

@@ -1,9 +1,9 @@
 //! Part presence between the fingers of Grip, by strain gages and potentiometer alone.
 //!
 //! A part is between the fingers if both strain gages read a force and the fingers are above the closed end of
-//! travel, where fingers that press on each other read a force, too. Nothing is between them if neither reads a
+//! travel, where fingers that press on each other read a force, too. The fingers are empty if neither reads a
 //! force. Contact of one finger alone is not enough: a part held with little force may touch only one of them. A
-//! value counts after `FELT_TICKS`.
+//! value is valid after `FELT_TICKS`.
 
 use interfaces::{
     device::{ADC_FULL_SCALE, GripSensors},
@@ -21,22 +21,15 @@ use super::{
     },
 };
 
-/// A force above this is contact, lb.
-pub(super) const CONTACT: f64 = 1.0;
-/// The closed end reaches this far above the closed opening, in: no smaller opening exists.
-pub(super) const MISSED_AT_END: f64 = 0.02;
-/// Ticks for which the sensors must agree (0.2 s): longer than it takes to push a part from one finger to the
-/// other.
+pub(super) const CONTACT: f64 = 1.0; // lb
+pub(super) const MISSED_AT_END: f64 = 0.02; // in above the closed opening: no smaller opening exists
+/// 0.2 s: longer than it takes to push a part from one finger to the other.
 pub(super) const FELT_TICKS: u8 = 5;
-/// Greatest difference of consecutive potentiometer readings at rest, counts: above the noise, below a fine flow.
-const STILL_COUNTS: u16 = 6;
-/// Openings farther beyond an end of travel are impossible: the potentiometer fails, in.
-const BEYOND: f64 = 0.15;
-/// Smaller forces are impossible: the strain gage fails, lb.
-const LEAST_PLAUSIBLE_FORCE: f64 = -5.0;
+const STILL_COUNTS: u16 = 6; // above the noise, below a fine flow
+const BEYOND: f64 = 0.15; // in; an opening farther beyond an end of travel is a sensor failure
+const LEAST_PLAUSIBLE_FORCE: f64 = -5.0; // lb; a smaller reading is a sensor failure
 
 impl State {
-    /// Consult TOUCH and PRESENCE; `before` are the readings of the previous tick.
     pub(super) fn detect(&mut self, before: Option<&GripSensors>, measured: &Measured) {
         let still = match (before, &self.sensed) {
             (Some(before), Some(Sensed { last, .. })) => {
@@ -86,7 +79,6 @@ fn pads(measured: &Measured, still: bool) -> Pads {
     }
 }
 
-/// True if the fingers of a gripper can read these values.
 pub(super) fn is_plausible(counts: &GripSensors, measured: &Measured) -> bool {
     let inside = |counts: u16| counts > 0 && counts < ADC_FULL_SCALE;
     inside(counts.potentiometer)

@@ -1,5 +1,3 @@
-//! The sensor words and the command of a servoed gripper.
-
 use interfaces::{
     CommonMemory, Reason,
     device::{DeviceInputs, GripSensors, GroupHealth},
@@ -8,23 +6,18 @@ use interfaces::{
 
 use super::tables::Attachment;
 
-/// The sensor words and the command of a servoed gripper.
-///
-/// The hand of the Active Pedestal is nearly identical to the parts gripper (III.9.2), so both use one servo.
+/// A gripper with a servo. The hand of the Active Pedestal is nearly identical to the parts gripper (III.9.2).
 pub trait Servoed {
     const NAME: &'static str;
     /// `endeff-id#` of the gripper; 0 if it is never on the quick change.
     const END_EFFECTOR_ID: u8;
 
-    /// The reason code of a failure for this gripper.
     #[must_use]
     fn reason(reason: Reason) -> Reason {
         reason
     }
     fn command(memory: &CommonMemory) -> &GripCommand;
-    /// The sensor words, and whether their gripper is attached.
     fn sensors(devices: &DeviceInputs) -> (Attachment, GripSensors);
-    /// The connection with the devices of the gripper.
     fn connection(devices: &DeviceInputs) -> GroupHealth;
 }
 

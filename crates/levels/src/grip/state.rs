@@ -11,19 +11,14 @@ use super::{
 };
 use crate::execution::Execution;
 
-/// Stored readings, for a steady opening and a velocity.
-pub(super) const WINDOW: usize = 4;
+pub(super) const WINDOW: usize = 4; // readings, for a steady opening and a velocity
 
-/// The last readings of the attached gripper.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct Sensed {
-    /// All words of the last tick.
     pub last: GripSensors,
-    /// Counts of the potentiometer, the newest first.
-    pub window: [u16; WINDOW],
+    pub window: [u16; WINDOW], // counts of the potentiometer, the newest first
 }
 
-/// Contact of the fingers in a tick.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain, Actions)]
 pub enum Touch {
     /// Not certain: one finger touches, or both do while they move.
@@ -34,42 +29,25 @@ pub enum Touch {
     Both,
 }
 
-/// State of Grip.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct State {
-    /// The command and its progress.
     pub execution: Execution,
-    /// Step of its table.
     pub step: Step,
-    /// Its goal.
     pub goal: GripGoal,
     /// Start of its execution after a wait, or of the calibration.
     pub since: Tick,
-    /// Ticks in [`Step::Settle`].
-    pub settled: u8,
-    /// Ticks below the grasp size without force.
-    pub missed: u8,
-    /// Step of UP-INIT.
-    pub phase: GripPhase,
-    /// Scale and offset of the sensors, from a calibration or from before a restart.
-    pub calibration: Option<Calibration>,
-    /// Readings at the closed end, while calibrating.
-    pub closed: Readings,
-    /// Readings at the open end, while calibrating.
-    pub open: Readings,
-    /// Duration of steady readings, while calibrating.
+    pub settled: u8,                      // ticks in Step::Settle
+    pub missed: u8,                       // ticks below the grasp size without force
+    pub phase: GripPhase,                 // step of UP-INIT
+    pub calibration: Option<Calibration>, // may be from before a restart
+    pub closed: Readings,                 // at the closed end, while calibrating
+    pub open: Readings,                   // at the open end, while calibrating
     pub steady: Steady,
-    /// The last readings, if the gripper was attached in the previous tick.
-    pub sensed: Option<Sensed>,
-    /// What is between the fingers.
+    pub sensed: Option<Sensed>, // `None` unless the gripper was attached in the previous tick
     pub felt: Felt,
-    /// Their contact in the previous tick.
-    pub touch: Touch,
-    /// Ticks with the same contact.
+    pub touch: Touch, // contact in the previous tick
     pub touch_ticks: u8,
-    /// Ticks for which the fingers have been at rest.
     pub still_ticks: u8,
-    /// Command bits to the valves.
     pub valves: u8,
 }
 

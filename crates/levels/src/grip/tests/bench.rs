@@ -1,5 +1,3 @@
-//! The Grip process and a simulated gripper, tick by tick.
-
 use geometry::units::hundredths;
 use interfaces::{
     CommonMemory, ExternalInputs, GripOutputs,
@@ -63,7 +61,6 @@ impl Bench {
         Self::boot(gripper, true)
     }
 
-    /// The same with the gripper in its holster.
     pub fn without(gripper: Gripper) -> Self {
         Self::boot(gripper, false)
     }
@@ -91,7 +88,7 @@ impl Bench {
         self.world.patterns.clear();
     }
 
-    /// Execute a command; panics unless it is done. Returns the ticks and the outputs.
+    /// Panics unless the command is done. Returns its ticks and the outputs.
     pub fn done(&mut self, command: GripVerb, opening: f64, force: i32) -> (u64, GripOutputs) {
         self.command(command, opening, force);
         let began = self.tick;

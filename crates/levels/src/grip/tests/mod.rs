@@ -1,5 +1,3 @@
-//! Scenarios of Grip with a simulated gripper.
-
 mod bench;
 mod ends;
 
@@ -164,7 +162,6 @@ fn interrupted_grasp_or_opening_continues() {
     );
 }
 
-/// Step until the tick after the valves went off.
 fn settle(bench: &mut Bench) {
     bench.step();
     bench.until(|bench| bench.process.state.settled != 0);
@@ -538,7 +535,6 @@ fn part_presence_changes_after_five_ticks() {
     assert_eq!(bench.wait(10).status.felt, Felt::NotKnown);
     bench.world.strain[0].1 = 40.5;
     assert_eq!(bench.wait(10).status.felt, Felt::Something);
-    // Faulty sensors.
     for breakage in [
         (|g: &mut Gripper| g.strain[1] = (0.0, 0.0)) as fn(&mut Gripper),
         |g| g.strain[1] = (5000.0, 0.0),
@@ -560,7 +556,6 @@ fn part_presence_changes_after_five_ticks() {
     assert_eq!(felt, [[Felt::NotKnown; 5].as_slice(), &[Felt::Something; 2]].concat());
 }
 
-/// Random work for one bench; returns the images of all outputs.
 fn work(
     mut bench: Bench,
     commands: &[(bool, i32, i32, i32)],
