@@ -1,5 +1,3 @@
-//! The goals of the commands. The rows that end a command test the readings of the same tick, without CONFIRM.
-
 use interfaces::Unconfirmed;
 
 use crate::goal::{Goal, Sensor};

@@ -1,21 +1,13 @@
-//! Differences between the grippers that open and close.
-
 use interfaces::{CommonMemory, jaws::JawsCommand};
 
-/// Parameters that differ between grippers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Parameters {
-    /// `endeff-id#`.
-    pub end_effector_id: u8,
-    /// Opening at the closed end of travel, in.
-    pub closed: f64,
-    /// Opening at the open end of travel, in.
-    pub opened: f64,
+    pub end_effector_id: u8, // `endeff-id#`
+    pub closed: f64,         // in
+    pub opened: f64,         // in
 }
 
-/// A gripper that opens and closes.
 pub trait JawsKind {
-    /// The manual's name of its process.
     const NAME: &'static str;
     const PARAMETERS: Parameters;
 

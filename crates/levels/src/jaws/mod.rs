@@ -1,9 +1,8 @@
 //! V-Grip (VI.4) and Tool-Grip (VI.5): grippers that open and close by air, with a potentiometer for the position
 //! of their fingers.
 //!
-//! TG-LEVEL is VG-LEVEL with other parameters, so both share one process, with a [`JawsKind`] each. There is no
-//! servo: a command gives air to one side, waits until the potentiometer reading is steady, and reports where the
-//! fingers have stopped.
+//! Both share one process, with a [`JawsKind`] each, and have no servo: a command gives air to one side, waits until
+//! the potentiometer reading is steady, and reports where the fingers have stopped.
 //!
 //! ```text
 //!    GRASP    closed ........................... size ........................... opened
@@ -57,7 +56,6 @@ use self::{
     tables::{Action, StateVariables, number},
 };
 
-/// The process of a gripper that opens and closes.
 #[derive(Clone, Debug, Default)]
 pub struct Jaws<K> {
     state: State,

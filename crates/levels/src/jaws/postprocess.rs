@@ -1,5 +1,3 @@
-//! Postprocess of V-Grip and Tool-Grip: the valves, and the status to E-move.
-
 use geometry::units::hundredths;
 use interfaces::{
     JawsOutputs, Reason,
@@ -18,7 +16,6 @@ use super::{
 use crate::execution::Outcome;
 
 impl State {
-    /// Carry out the action of a row, and consult VALVES.
     pub(super) fn act(&mut self, action: Action, seen: &StateVariables) {
         let set = match action {
             Action::Close => Air::Close,
@@ -54,8 +51,8 @@ impl State {
         }
     }
 
-    /// The outputs of this tick. Of the words of VI.4.2 only `jaws-stuck` reports a failure, so it is used for
-    /// every failure without a finger position; the reason has the details.
+    /// Of the words of VI.4.2 only `jaws-stuck` reports a failure, so it is used for every failure without a finger
+    /// position; the reason has the details.
     pub(super) fn report(&self, seen: &StateVariables, tick: Tick) -> JawsOutputs {
         let report = match self.execution.outcome {
             Outcome::Idle => JawsReport::Idle,

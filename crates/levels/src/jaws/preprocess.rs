@@ -1,5 +1,3 @@
-//! Preprocess of V-Grip and Tool-Grip: their state variables, from the command and the sensors.
-
 use geometry::units::inches;
 use interfaces::{JawsOutputs, device::QuickChangeSensors, grip::Felt, jaws::JawsCommand, process::Inputs};
 use rcs_core::{
@@ -22,23 +20,16 @@ pub const POTENTIOMETER_OFFSET: f64 = 205.0;
 /// Counts of the potentiometer per inch. ASSUMED.
 pub const POTENTIOMETER_SCALE: f64 = 600.0;
 
-/// Ticks after a change of the air in which the fingers may not have started to move.
-pub(super) const START_TICKS: u8 = 6;
+pub(super) const START_TICKS: u8 = 6; // from a change of the air until the fingers move
 /// Ticks until stopped fingers with closing air press (1 s, ASSUMED): the pressure must build up, also after a
 /// drop, and there are no force sensors (VI.4).
 pub(super) const PRESSED_TICKS: u8 = 25;
-/// Ticks until the readings of a newly attached gripper count.
-const SETTLED_TICKS: u8 = 5;
-/// Time limit for any travel of the fingers, ticks (4 s).
-pub(super) const LIMIT_TICKS: u64 = 100;
-/// Greatest difference of the readings in a window for fingers at rest, counts.
-const STILL_COUNTS: u16 = 4;
-/// Tolerance for fingers at an end of travel, in.
-const STOP_BAND: f64 = 0.05;
-/// Openings farther beyond an end of travel are impossible: the potentiometer fails, in.
-const BEYOND: f64 = 0.15;
-/// Tolerance for fingers at `commanded-size`, in.
-const SIZE_BAND: f64 = 0.10;
+const SETTLED_TICKS: u8 = 5; // until a newly attached gripper is read
+pub(super) const LIMIT_TICKS: u64 = 100; // 4 s, for any travel
+const STILL_COUNTS: u16 = 4; // greatest difference in a window at rest
+const STOP_BAND: f64 = 0.05; // in
+const BEYOND: f64 = 0.15; // in; an opening farther beyond an end of travel is a sensor failure
+const SIZE_BAND: f64 = 0.10; // in
 
 impl State {
     /// Read the inputs of a tick. If the outputs were republished, the process was dormant in the previous tick.

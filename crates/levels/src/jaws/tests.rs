@@ -1,5 +1,3 @@
-//! Scenarios of V-Grip and Tool-Grip with a simulated gripper.
-
 use geometry::units::hundredths;
 use interfaces::{
     CommonMemory, ExternalInputs, JawsOutputs, Reason,
