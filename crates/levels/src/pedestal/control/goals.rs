@@ -1,5 +1,3 @@
-//! The goals of the pedestal's commands, and how the statuses of hand and table compare with them.
-
 use interfaces::{
     CommonMemory,
     pedestal::{PedestalCommand, PedestalVerb, TableVerb},
@@ -11,10 +9,8 @@ use crate::{
     goal::{Goal, Sensor},
 };
 
-/// Greatest difference between the opening of an open hand and the commanded one, 0.01 in (ASSUMED).
-const OPEN_WITHIN: i32 = 10;
-/// Tolerance of the table's angle, 0.1 degree: several steps of its motor (ASSUMED).
-const AT_ANGLE: u32 = 10;
+const OPEN_WITHIN: i32 = 10; // 0.01 in (ASSUMED)
+const AT_ANGLE: u32 = 10; // 0.1 degree: several steps of the motor (ASSUMED)
 
 pub static REST: Goal = Goal {
     holds: "the hand has finished its last command, and the table has stopped",
@@ -52,7 +48,6 @@ pub static RELEASED: Goal = Goal {
     unconfirmed: &[],
 };
 
-/// The goal of a command, compared with the statuses of hand and table.
 pub(super) fn proof(command: &PedestalCommand, situation: &Situation, memory: &CommonMemory) -> Proof {
     let is_open = || {
         let opening = memory.hand.status.position.saturating_add(OPEN_WITHIN);

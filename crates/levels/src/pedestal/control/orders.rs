@@ -1,5 +1,3 @@
-//! Orders of a command to hand and table.
-
 use interfaces::{
     grip::{GripCommand, GripVerb},
     pedestal::{PedestalCommand, PedestalVerb, TableStatus},
@@ -8,7 +6,7 @@ use interfaces::{
 use super::tables::{PedestalAngle, PedestalOpening};
 use crate::{grip::goal::GripGoal, pedestal::table::is_within_limits};
 
-/// The hand's command for a command of the pedestal, without its number.
+/// Without a command number.
 pub(super) fn hand_command(command: &PedestalCommand) -> GripCommand {
     let (verb, force) = match command.command {
         PedestalVerb::PreGrip | PedestalVerb::Release => (GripVerb::OpenGrip, 0),
@@ -33,7 +31,6 @@ pub(super) const fn table_angle(command: &PedestalCommand, table: &TableStatus) 
     }
 }
 
-/// Whether the table can turn to the commanded angle.
 pub(super) fn angle(command: &PedestalCommand, table: &TableStatus) -> PedestalAngle {
     match command.command {
         PedestalVerb::Flip if table.position.is_none() => PedestalAngle::Unknown,
@@ -49,7 +46,6 @@ pub(super) fn angle(command: &PedestalCommand, table: &TableStatus) -> PedestalA
     }
 }
 
-/// Whether the hand can reach the commanded opening and force.
 pub(super) fn opening(command: &PedestalCommand) -> PedestalOpening {
     if GripGoal::from(&hand_command(command)).is_attainable() {
         PedestalOpening::Within

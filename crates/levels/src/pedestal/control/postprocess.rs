@@ -1,5 +1,3 @@
-//! Postprocess of the pedestal process: commands to hand and table, and the status to Subtask.
-
 use geometry::units::rounded;
 use interfaces::{
     PedestalOutputs, Reason,
@@ -18,7 +16,6 @@ use super::{
 use crate::{execution::Report, pedestal::table::report_of};
 
 impl State {
-    /// Set the outputs that a row asks for.
     pub(super) fn act<Data: ?Sized>(
         &mut self,
         action: Action,
@@ -60,7 +57,7 @@ impl State {
         }
     }
 
-    /// Pass up the failure of a process below; without an answer it has no reason.
+    /// A process that does not answer gives no reason.
     fn pass_up(&mut self, lower: Lower, below: Reason) {
         let silent = lower == Lower::Lost || below == Reason::None;
         self.execution.fail(if silent { Reason::NeighbourLost } else { below });
@@ -71,7 +68,7 @@ impl State {
         outputs.hand = GripCommand { number: self.hand.send(tick), ..command };
     }
 
-    /// A command to the table; the absolute angle in 0.1 degree.
+    /// `angle` is absolute, in 0.1 degree.
     fn command_table(&mut self, command: TableVerb, angle: i32, tick: Tick, outputs: &mut PedestalOutputs) {
         self.ordered = PedestalRecipient::Table;
         outputs.table = TableCommand { number: self.table.send(tick), command, angle };
@@ -97,7 +94,7 @@ impl State {
     }
 }
 
-/// The angle of the table; not known if the table does not answer.
+/// Not known if the table does not answer.
 fn table_position<Data: ?Sized>(inputs: &Inputs<'_, Data>) -> Option<i32> {
     let table = &inputs.memory.table;
     table.status.position.filter(|_| table.header.stamp == inputs.tick.previous())

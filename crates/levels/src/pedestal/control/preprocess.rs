@@ -1,6 +1,3 @@
-//! Preprocess of the pedestal process: its state variables, from the command and the statuses of hand and
-//! table.
-
 use interfaces::{
     CommonMemory, PedestalOutputs,
     grip::{Felt, GripVerb},
@@ -24,7 +21,7 @@ use crate::{
 };
 
 impl State {
-    /// Read the inputs of a tick. A starting process adopts its last command to the hand.
+    /// A starting process adopts its last command to the hand.
     pub(super) fn sense<Data: ?Sized>(
         &mut self,
         inputs: &Inputs<'_, Data>,
@@ -107,7 +104,7 @@ impl State {
     }
 }
 
-/// The part presence of the hand; not known if it does not answer.
+/// Not known if the hand does not answer.
 pub(super) fn felt<Data: ?Sized>(inputs: &Inputs<'_, Data>) -> Felt {
     let hand = &inputs.memory.hand;
     if hand.header.stamp == inputs.tick.previous() { hand.status.felt } else { Felt::NotKnown }

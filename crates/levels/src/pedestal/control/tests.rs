@@ -1,6 +1,3 @@
-//! Scenarios of the pedestal process: with scripted statuses, and with the processes of hand and table and their
-//! devices.
-
 use interfaces::{
     CommonMemory, ExternalInputs, Header, PedestalOutputs, Reason,
     grip::{Felt, GripReport, GripVerb},
@@ -22,7 +19,6 @@ use crate::{
 };
 
 type Bench = bench::Bench<Pedestal, ByHand>;
-/// All three processes with a simulated hand and a simulated table.
 type Cell = bench::Bench<Pedestal, Real>;
 
 impl Tested<()> for Pedestal {
@@ -51,7 +47,6 @@ impl Tested<()> for Pedestal {
     }
 }
 
-/// Hand and table report the statuses that a test has written.
 #[derive(Clone, Default)]
 struct ByHand {
     silent: bool,
@@ -77,7 +72,6 @@ impl Bench {
         bench
     }
 
-    /// A bench whose hand has closed on an object.
     fn gripping() -> Self {
         let mut bench = Self::new();
         bench.send((PedestalVerb::Grip, 250, 50, 0));

@@ -1,5 +1,3 @@
-//! Postprocess of the table process: orders to the motor, and the status to the pedestal process.
-
 use interfaces::{
     Reason, TableOutputs,
     device::{MotorCommand, MotorOrder, PedestalSensors},
@@ -18,7 +16,6 @@ use crate::execution::Outcome;
 const TO_THE_LIMIT: i32 = steps(AT_LIMIT.saturating_sub(LIMIT_MINUS).saturating_mul(2));
 
 impl State {
-    /// Carry out what a row asks for.
     pub(super) fn act(&mut self, action: Action, sensors: &PedestalSensors, tick: Tick) {
         match action {
             Action::Wait => {}

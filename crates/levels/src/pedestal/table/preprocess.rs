@@ -1,5 +1,3 @@
-//! Preprocess of the table process: its state variables, from the command and the sensors.
-
 use geometry::units::rounded;
 use interfaces::{
     TableOutputs,
@@ -27,24 +25,18 @@ pub const LIMIT_PLUS: i32 = -200;
 /// Least angle that can be commanded, 0.1 degree: slightly before the - limit. ASSUMED.
 pub const LIMIT_MINUS: i32 = -3400;
 
-/// Tolerance of the goal, steps: the switch stops the motor a few steps late.
-const ON_GOAL: i32 = 5;
+const ON_GOAL: i32 = 5; // steps: the switch stops the motor a few steps late
 /// Counts of the potentiometer per tenth of a degree on the counter. A counted turn of 183.5 degrees turns the
 /// table by 180 (VII.7.4); 10 counts per degree of the table are ASSUMED.
 const COUNTS_PER_TENTH: f64 = 180.0 / 183.5;
-/// Greatest difference of counter and potentiometer, counts: 1.2 degrees, several times the noise.
-const AGREEMENT: f64 = 12.0;
+const AGREEMENT: f64 = 12.0; // counts, 1.2 degrees: several times the noise
 
-/// Ticks without motion until the motor is at rest: a ramp begins and ends slowly.
-const STANDING_TICKS: u8 = 3;
-/// Ticks in which the controller must take an order (1 s).
-const SILENCE_TICKS: u8 = 25;
-/// Time limit for a turn, a stop or a calibration, ticks (60 s): four times a whole turn.
-pub(super) const LIMIT_TICKS: u64 = 1500;
+const STANDING_TICKS: u8 = 3; // a ramp begins and ends slowly
+const SILENCE_TICKS: u8 = 25; // 1 s for the controller to take an order
+pub(super) const LIMIT_TICKS: u64 = 1500; // 60 s: four times a whole turn
 
 impl State {
-    /// Read the inputs of a tick. A process that starts in the middle of a job adopts the calibration in its
-    /// outputs.
+    /// A process that starts in the middle of a job adopts the calibration in its outputs.
     pub(super) fn sense<Data: ?Sized>(
         &mut self,
         inputs: &Inputs<'_, Data>,

@@ -1,5 +1,3 @@
-//! Scenarios of the table process with a simulated rotary table.
-
 use interfaces::{
     CommonMemory, ExternalInputs, Reason, TableOutputs,
     device::{MotorCommand, MotorOrder, TABLE_STEPS_PER_TENTH},
