@@ -15,11 +15,10 @@
 //! ```
 //!
 //! QC-LOCK and QC-UNLOCK give the ring air and enable the control port until the ring has arrived, both sensors
-//! detect it, or 25 ticks have passed. Then the port is disabled again, so that no gripper is unlocked by accident.
-//! Between commands the status is that of the ring: QC-PAUSE watches it from the first tick on, also before any
-//! command, after a restart and after the end of other commands. A ring that had air before a restart may still
-//! move in that tick, and is read from the next one on. If a ring did not arrive, or sensors failed while it
-//! turned, this is reported until the next command, regardless of later readings.
+//! detect it, or 25 ticks have passed. Then the port is disabled, so that no gripper is unlocked by accident.
+//! Between commands, and before the first one, QC-PAUSE watches the ring. A ring that had air before a restart may
+//! still move in the first tick, and is read from the next one on. A ring that did not arrive, or sensors that
+//! failed while it turned, are reported until the next command, regardless of later readings.
 //!
 //! ```text
 //!    QC-LOCK, QC-UNLOCK            arrived

@@ -1,5 +1,3 @@
-//! Postprocess of Quick Change: the valves, and the status to E-move.
-
 use interfaces::{
     QuickChangeOutputs,
     device::QuickChangeValves,
@@ -11,7 +9,6 @@ use super::{state::State, tables::Action};
 use crate::execution::Outcome;
 
 impl State {
-    /// Set the outputs that a row asks for.
     pub(super) fn act(&mut self, action: Action, tick: Tick) -> QuickChangeOutputs {
         let report = match action {
             Action::Wait | Action::Lock | Action::Unlock => QuickChangeReport::Executing,

@@ -1,5 +1,3 @@
-//! Preprocess of Quick Change: its state variables, from the command and the sensors, and the filter of the readings.
-
 use interfaces::{
     QuickChangeOutputs, device::QuickChangeSensors, process::Inputs, quick_change::RingPosition,
 };
@@ -10,18 +8,14 @@ use super::{
     tables::{Clock, Id, Request, Situation, StateVariables},
 };
 
-/// Ticks after which a ring that neither sensor detects is stuck (0.5 s): longer than its travel takes.
-pub(super) const STUCK_TICKS: u8 = 12;
-/// Ticks after which contradicting sensors, or an id without a gripper, are a malfunction.
-pub(super) const MALFUNCTION_TICKS: u8 = 3;
-/// Ticks in which a commanded ring must arrive (1 s).
-pub(super) const TURN_TICKS: u64 = 25;
-/// The greatest id of a gripper: 1 parts, 2 v, 3 tool (III.3.6 to III.3.8); 0 without a gripper.
-const GREATEST_ID: u8 = 3;
+pub(super) const STUCK_TICKS: u8 = 12; // 0.5 s that neither sensor sees the ring: more than its travel
+pub(super) const MALFUNCTION_TICKS: u8 = 3; // with contradicting sensors, or an id without a gripper
+pub(super) const TURN_TICKS: u64 = 25; // 1 s for a commanded ring to arrive
+const GREATEST_ID: u8 = 3; // 1 parts, 2 v, 3 tool (III.3.6 to III.3.8); 0 without a gripper
 
 impl State {
-    /// Read the inputs of a tick. `outputs` are those of the previous tick. A ring that had air when the process
-    /// was restarted may still move in this tick: it is read in the next one.
+    /// `outputs` are those of the previous tick. A ring that had air when the process was restarted may still move in
+    /// this tick: it is read in the next one.
     pub(super) fn sense<Data: ?Sized>(
         &mut self,
         inputs: &Inputs<'_, Data>,

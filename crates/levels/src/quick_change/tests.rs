@@ -1,5 +1,3 @@
-//! Scenarios of Quick Change.
-
 use interfaces::{
     CommonMemory, ExternalInputs, QuickChangeOutputs, Reason,
     device::{GroupHealth, QuickChangeSensors, QuickChangeValves},
@@ -58,7 +56,6 @@ impl Bench {
         Self::before(Ring::at(place))
     }
 
-    /// A tick with these sensor readings.
     fn read(&mut self, locked: bool, unlocked: bool, end_effector_id: u8) -> QuickChangeOutputs {
         self.world.claim = Some(QuickChangeSensors { locked, unlocked, end_effector_id });
         self.step()
