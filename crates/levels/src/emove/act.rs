@@ -1,5 +1,3 @@
-//! Postprocess of E-move: the commands to Prim, the gripper, Quick Change and vision that a row asks for.
-
 use interfaces::{
     EmoveOutputs, Reason,
     emove::{EmoveCommand, EmoveVerb, GoneTo},
@@ -25,8 +23,7 @@ use super::{
 };
 use crate::halt::Commanding as _;
 
-/// Force of a grasp by joystick button, lb: the smallest in the usual range (VIII.9.1; ASSUMED).
-const HAND_FORCE: i32 = 30;
+const HAND_FORCE: i32 = 30; // lb: the smallest in the usual range (VIII.9.1; ASSUMED)
 
 /// The process that receives the order. No row waits for fingers that open during a motion, but the previous motion
 /// must have ended.
@@ -160,7 +157,7 @@ impl State {
         self.execution.fail(reason);
     }
 
-    /// Ramp down and hold. The ring keeps its state.
+    /// The ring keeps its state.
     fn stop_robot(&mut self, inputs: &EmoveInputs<'_>, outputs: &mut EmoveOutputs) {
         self.localization.search_again();
         self.motion.send(PrimVerb::Pause, inputs, outputs);
@@ -176,7 +173,6 @@ impl State {
         self.finish();
     }
 
-    /// True if the robot carries the object of the command to its goal.
     fn brings(&self, command: &EmoveCommand) -> bool {
         let held = self.held.held().map(|held| held.object.object);
         command.command == EmoveVerb::MovObjTo && held == command.object
@@ -187,7 +183,7 @@ impl State {
         self.localization.arrive(robot_at(command, gone_to, goal.pose));
     }
 
-    /// Relative moves have ended at the location of the command: record it and report done.
+    /// Relative moves have ended at the location of the command.
     fn stand(&mut self, gone_to: GoneTo, command: &EmoveCommand, inputs: &EmoveInputs<'_>) {
         self.localization.stand(gone_to, command, inputs.memory);
         self.exchange.end();

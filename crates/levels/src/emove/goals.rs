@@ -1,5 +1,3 @@
-//! The goals of E-move's commands, and how the sensors compare with them.
-
 use geometry::frame::Frame;
 use interfaces::{
     CommonMemory, EmoveOutputs, Unconfirmed,

@@ -9,8 +9,7 @@ use taskdata::files::{EndEffPara, TaskData};
 
 use super::{EmoveInputs, gripper::EmoveGripper, robot_place::commanded_pose};
 
-/// Grip of a holster object with the gripper on the robot. Its approach size is the opening for the path through the
-/// holster.
+/// Grip of a holster object with the gripper on the robot. Its approach size is the opening in the holster.
 const GRIPPER_ON: i32 = 1;
 
 pub(super) fn gripper_on<'d>(command: &EmoveCommand, data: &TaskData<'d>) -> Option<&'d EndEffPara> {
@@ -21,7 +20,6 @@ pub(super) fn sizes<'d>(command: &EmoveCommand, data: &TaskData<'d>) -> Option<&
     data.end_eff(command.object_parameters)
 }
 
-/// The grasp that the command requests.
 pub(super) fn grasp_of(command: &EmoveCommand, inputs: &EmoveInputs<'_>) -> Grasped {
     let gripper = EmoveGripper::attached(inputs.memory);
     Grasped {

@@ -8,23 +8,16 @@ use rcs_core::Plain;
 
 use crate::jaws::{CylindricalPartGripper, JawsKind, Parameters, ToolGripper};
 
-/// Opening of the closed parts gripper, 0.01 in.
-const PARTS_CLOSED: i32 = 10;
-/// Tolerance of a commanded opening, 0.01 in (the servo's own band, `levels::grip`).
-const PARTS_BAND: i32 = 2;
-/// Slower fingers are at rest, 0.01 in/s: above the noise of the potentiometer, below the slowest motion by air.
-const STILL: i32 = 10;
-/// The parts gripper has released an object when it is this much wider than the grasp, 0.01 in.
-const LET_GO: i32 = 25;
-/// Smallest force that indicates contact, lb. Forces are reported in whole pounds, and no grasp is weaker than 3 lb
-/// (`levels::grip`).
+const PARTS_CLOSED: i32 = 10; // 0.01 in
+const PARTS_BAND: i32 = 2; // 0.01 in (the servo's own band, `levels::grip`)
+const STILL: i32 = 10; // 0.01 in/s: above the noise of the potentiometer, below the slowest motion by air
+const LET_GO: i32 = 25; // 0.01 in more than the grasp: the object is released
+/// lb, which indicates contact. Forces are reported in whole pounds, and no grasp is weaker than 3 lb.
 const FELT: i32 = 1;
-/// V-gripper and tool gripper hold an object if the opening is within this of the grasp size, 0.01 in (ASSUMED).
-const JAWS_BAND: i32 = 10;
-/// Tolerance of their stops, 0.01 in.
-const STOP_BAND: i32 = 5;
+const JAWS_BAND: i32 = 10; // 0.01 in: opening of jaws on an object of the grasp size (ASSUMED)
+const STOP_BAND: i32 = 5; // 0.01 in
 
-/// The gripper on the robot; the code is `endeff-id#` (III.3.6 to III.3.8).
+/// The code is `endeff-id#` (III.3.6 to III.3.8).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum EmoveGripper {
     /// The robot is bare.
@@ -40,13 +33,11 @@ pub enum EmoveGripper {
     Tool,
 }
 
-/// True if the sensors of the ring report it unlocked, or between its ends.
 pub(super) const fn is_open(memory: &CommonMemory) -> bool {
     matches!(memory.quick_change.status.ring, RingPosition::Unlocked | RingPosition::Between)
 }
 
 impl EmoveGripper {
-    /// The gripper with an id; `None` for an unassigned id (Quick Change does not report such an id).
     #[must_use]
     pub fn of(id: Option<u8>) -> Self {
         id.and_then(Self::from_code).unwrap_or_default()
@@ -60,13 +51,12 @@ impl EmoveGripper {
         }
     }
 
-    /// The gripper that Quick Change reads, locked or not.
     #[must_use]
     pub fn attached(memory: &CommonMemory) -> Self {
         Self::of(memory.quick_change.status.end_effector_id)
     }
 
-    /// Closed and open stop of the grippers without a sensor in between, 0.01 in.
+    /// Stops of the grippers without a sensor in between, 0.01 in.
     pub(super) fn stops(self) -> Option<(i32, i32)> {
         let Parameters { closed, opened, .. } = match self {
             Self::V => CylindricalPartGripper::PARAMETERS,
@@ -82,7 +72,6 @@ impl EmoveGripper {
         self.stops().is_some()
     }
 
-    /// What its sensors detect between the fingers; `Nothing` without a gripper.
     #[must_use]
     pub const fn felt(self, memory: &CommonMemory) -> Felt {
         let (header, felt) = match (self, self.jaws(memory)) {
@@ -93,7 +82,6 @@ impl EmoveGripper {
         if header.republished { Felt::NotKnown } else { felt }
     }
 
-    /// The smallest opening, 0.01 in.
     #[must_use]
     pub fn closed(self) -> i32 {
         match self.stops() {
@@ -102,7 +90,7 @@ impl EmoveGripper {
         }
     }
 
-    /// The flags that enable only the process of this gripper (II.2.3).
+    /// Only the process of this gripper is awake (II.2.3).
     #[must_use]
     pub const fn dormancy(self) -> Dormancy {
         Dormancy {
@@ -112,8 +100,7 @@ impl EmoveGripper {
         }
     }
 
-    /// True if its process is dormant, or woke in this tick: it does not execute a command of this tick
-    /// (docs/design/handshake.md "Wake").
+    /// A process that woke in this tick does not execute a command of this tick (docs/design/handshake.md "Wake").
     pub(super) const fn is_asleep(self, memory: &CommonMemory) -> bool {
         let dormant = &memory.emove.dormant;
         match self {
@@ -132,7 +119,7 @@ impl EmoveGripper {
         }
     }
 
-    /// The opening, 0.01 in. `None` if it is unknown: not calibrated, not read since the process woke, or no gripper.
+    /// The opening, 0.01 in; `None` without a gripper, a calibration, or a reading since the process woke.
     #[must_use]
     pub fn opening(self, memory: &CommonMemory) -> Option<i32> {
         match self.jaws(memory) {
@@ -166,10 +153,9 @@ impl EmoveGripper {
         self.jaws(memory).is_none_or(|jaws| jaws.valves.close)
     }
 
-    /// True if closed fingers with this opening hold an object of `grasp_size`, 0.01 in.
-    ///
-    /// The parts gripper closes until it detects the object: any opening above the grasp size means an object
-    /// (VIII.9.1). Jaws stop at the object or at their stop: only the size distinguishes the two.
+    /// True if closed fingers with this opening hold an object of `grasp_size`, 0.01 in. The parts gripper closes
+    /// until it detects the object: any opening above the grasp size means an object (VIII.9.1). Jaws stop at the
+    /// object or at their stop: only the size distinguishes the two.
     #[must_use]
     pub fn grips(self, opening: i32, grasp_size: i32) -> bool {
         match self.stops() {
@@ -194,7 +180,6 @@ impl EmoveGripper {
         self == Self::Parts && grip.initialized && grip.left_force < FELT && grip.right_force < FELT
     }
 
-    /// True if jaws must close to reach an opening.
     pub(super) fn closes_for(self, opening: i32) -> bool {
         match self.stops() {
             Some((closed, open)) => {

@@ -38,15 +38,11 @@ use super::{
     tables::{EmoveHolster, ExchangePosition, Lock, Ring, Shut},
 };
 
-/// Tolerance of the seat, in: much shorter than any relative move.
-const AT_POINT: f64 = 0.12;
-/// Tolerance of the low point, in: QCD-DOWN may end a little above or below it.
-const AT_LOW: f64 = 0.3;
-/// The robot is clear of the holster within this of the upper points, or beyond them, in.
-const CLEAR: f64 = 0.3;
-/// The robot is on a segment within [`ASIDE_INCHES`]. On the way to the seat it may be this much higher, in: QCD-SEAT
-/// begins where the large sensors see the ears, up to 0.5 in above the low point (V.2.1). QCD-UP ends as much above
-/// its point.
+const AT_POINT: f64 = 0.12; // in: much shorter than any relative move
+const AT_LOW: f64 = 0.3; // in: QCD-DOWN may end a little above or below the low point
+const CLEAR: f64 = 0.3; // in: clear of the holster near the upper points, or beyond them
+/// in, on the way to the seat, above a segment: QCD-SEAT begins where the large sensors see the ears, up to 0.5 in
+/// above the low point (V.2.1). QCD-UP ends as much above its point.
 const ABOVE: f64 = 0.6;
 
 struct HolsterPoints {
@@ -108,8 +104,7 @@ const fn is_exchange(verb: EmoveVerb) -> bool {
 
 const HOLSTER_SENSORS: u8 = 0x0F;
 
-/// The state of a gripper's own holster. ASSUMED: the parts gripper uses the right holster, the v-gripper the left,
-/// the tool gripper the centre.
+/// ASSUMED: the parts gripper uses the right holster, the v-gripper the left, the tool gripper the centre.
 pub(super) fn holster(gripper: Option<u8>, memory: &CommonMemory) -> EmoveHolster {
     let status = &memory.prim.status;
     let bits = match EmoveGripper::of(gripper) {
@@ -137,7 +132,6 @@ pub(super) fn along(command: &EmoveCommand, inputs: &EmoveInputs<'_>) -> Exchang
     }
 }
 
-/// The fingers, compared with the opening for the path through the holster.
 pub(super) fn shut(command: &EmoveCommand, inputs: &EmoveInputs<'_>) -> Shut {
     let opening = gripper_on(command, inputs.data).map(|on| on.appr_size);
     let attached = EmoveGripper::attached(inputs.memory);
@@ -156,12 +150,9 @@ pub(super) fn seat_pose(command: &EmoveCommand, memory: &CommonMemory, data: &Ta
 
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct GripperExchange {
-    /// Commands to Quick Change.
     commander: Commander,
-    /// In the tick before.
-    attached: EmoveGripper,
-    /// The holster of an exchange that is under way.
-    holster: Option<Exchange>,
+    attached: EmoveGripper,    // the gripper in the previous tick
+    holster: Option<Exchange>, // the holster of an exchange in progress
 }
 
 impl GripperExchange {
@@ -199,7 +190,6 @@ impl GripperExchange {
         }
     }
 
-    /// The ring, by the answer of Quick Change to the last command.
     pub(super) fn ring(&self, tick: Tick, memory: &CommonMemory) -> Ring {
         match (self.status(tick, memory), memory.quick_change.status.report) {
             (Lower::Pending | Lower::Executing, _) => Ring::Busy,
@@ -218,9 +208,9 @@ impl GripperExchange {
         }
     }
 
-    /// True if the id pins report no gripper although the ring stayed locked since one was attached: the pins have a
-    /// bad contact, and the held object is unknown until they read again. A gripper that its own holster detects,
-    /// while the robot is in no holster, has been torn off the ring.
+    /// True if the id pins read no gripper although the ring stayed locked since one was attached: bad contact, and the
+    /// held object is unknown until they read again. A gripper that its own holster detects, while the robot is in no
+    /// holster, has been torn off the ring.
     pub(super) fn is_misread(&self, memory: &CommonMemory) -> bool {
         let read = EmoveGripper::attached(memory);
         let locked = memory.quick_change.status.ring == RingPosition::Locked;
@@ -228,19 +218,17 @@ impl GripperExchange {
         locked && self.attached != EmoveGripper::None && read != self.attached && !rests
     }
 
-    /// Id of the gripper on the robot. A bad contact of the pins does not make the robot bare, because Subtask would
-    /// fetch the attached gripper again.
+    /// Bad contact of the pins does not make the robot bare: Subtask would fetch the attached gripper again.
     pub(super) fn end_effector_id(&self, memory: &CommonMemory) -> Option<u8> {
         if self.is_misread(memory) { self.attached.id() } else { memory.quick_change.status.end_effector_id }
     }
 
-    /// Read the attached gripper. True if it has changed.
     pub(super) fn sense_gripper(&mut self, memory: &CommonMemory) -> bool {
         let attached = EmoveGripper::attached(memory);
         attached != mem::replace(&mut self.attached, attached)
     }
 
-    /// A relative move of an exchange command begins: the robot is in the holster.
+    /// A relative move begins: the robot is in the holster.
     pub(super) fn note_move(&mut self, command: &EmoveCommand, inputs: &EmoveInputs<'_>) {
         let gripper = command.end_effector_id.filter(|_| is_exchange(command.command));
         if let (Some(gripper), Some(base)) = (gripper, base(command, inputs.memory, inputs.data)) {
@@ -249,7 +237,6 @@ impl GripperExchange {
         }
     }
 
-    /// True between the first and the last point of an exchange.
     pub(super) const fn is_half_done(&self) -> bool {
         self.holster.is_some()
     }
@@ -278,7 +265,7 @@ impl GripperExchange {
         self.holster.map(|exchange| exchange.gripper).or(loose)
     }
 
-    /// The handshake with Quick Change. Searches renumber its commands (docs/evidence.md).
+    /// Searches renumber the commands (docs/evidence.md).
     pub const fn commander(&mut self) -> &mut Commander {
         &mut self.commander
     }

@@ -46,14 +46,11 @@ pub enum FingerVerb {
     Calibrate,
 }
 
-/// A [`FingerVerb`] with its parameters.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct FingerOrder {
     pub order: FingerVerb,
-    /// Opening, or size of the object, 0.01 in.
-    pub opening: i32,
-    /// Force of a grasp, lb.
-    pub force: i32,
+    pub opening: i32, // 0.01 in; for a grasp, the size of the object
+    pub force: i32,   // lb
 }
 
 impl FingerOrder {
@@ -63,29 +60,20 @@ impl FingerOrder {
     }
 }
 
-/// The interfaces to the three gripper processes, and the last order.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct Grippers {
-    /// Commands to Grip.
     parts: Commander,
-    /// Commands to V-Grip.
     v: Commander,
-    /// Commands to Tool-Grip.
     tool: Commander,
-    /// The gripper that has the last order.
-    to: EmoveGripper,
-    /// The last order.
+    to: EmoveGripper, // the gripper that has the last order
     order: FingerVerb,
-    /// Last size commanded to jaws, 0.01 in.
-    size: i32,
-    /// The last command closes jaws.
-    closing: bool,
-    /// Gripper button of the joystick box in the tick before; only a new press acts.
-    button: JoystickGrip,
+    size: i32,            // the last size commanded to jaws, 0.01 in
+    closing: bool,        // the last command closes jaws
+    button: JoystickGrip, // the button in the previous tick: only a new press acts
 }
 
 impl Grippers {
-    /// At the start of a tick: follow the echoes until the first command.
+    /// Follow the echoes until the first command.
     pub fn start(&mut self, tick: Tick, memory: &CommonMemory) {
         let written = &memory.emove;
         self.parts.start_from(tick, written.grip.number, memory.grip.status.echo);
@@ -93,7 +81,7 @@ impl Grippers {
         self.tool.start_from(tick, written.tool_grip.number, memory.tool_grip.status.echo);
     }
 
-    /// In the first tick after a restart: the attached gripper may still execute an earlier command.
+    /// After a restart the attached gripper may still execute an earlier command.
     pub fn adopt(&mut self, memory: &CommonMemory) {
         let (attached, written) = (EmoveGripper::attached(memory), &memory.emove);
         self.order = match attached {
@@ -126,20 +114,19 @@ impl Grippers {
         self.order
     }
 
-    /// True if the attached gripper has the last order.
     #[must_use]
     pub fn are_ordered(&self, memory: &CommonMemory) -> bool {
         self.to == EmoveGripper::attached(memory)
     }
 
-    /// After a change of the gripper: its process wakes, and does not answer commands from before it slept.
+    /// The process of a new gripper wakes, and does not answer commands from before it slept.
     pub fn note_gripper(&mut self, memory: &CommonMemory) {
         if EmoveGripper::attached(memory) != EmoveGripper::None {
             self.to = EmoveGripper::None;
         }
     }
 
-    /// The gripper button of the joystick box, if it was pressed in this tick.
+    /// The gripper button of the joystick box, in the tick in which it is pressed.
     #[must_use]
     pub fn pressed(&self, memory: &CommonMemory) -> JoystickGrip {
         match memory.prim.status.joystick_grip {
@@ -148,7 +135,7 @@ impl Grippers {
         }
     }
 
-    /// At the end of the inputs of a tick: store the gripper button.
+    /// Called after all other inputs of a tick.
     pub const fn note_button(&mut self, memory: &CommonMemory) {
         self.button = memory.prim.status.joystick_grip;
     }
@@ -160,7 +147,7 @@ impl Grippers {
         busy && !matches!(self.order, FingerVerb::None | FingerVerb::Pause)
     }
 
-    /// Send an order to the attached gripper. Without a gripper, or while it sleeps, the order is only recorded.
+    /// Without a gripper, or while it sleeps, the order is only recorded.
     pub fn send(
         &mut self,
         request: FingerOrder,
@@ -217,7 +204,7 @@ impl Grippers {
         }
     }
 
-    /// Progress of the last order. `Lost` if its gripper is no longer attached.
+    /// Progress of the last order; `Lost` if its gripper is no longer attached.
     #[must_use]
     pub fn status(&self, tick: Tick, memory: &CommonMemory) -> Lower {
         let attached = EmoveGripper::attached(memory);
@@ -243,12 +230,10 @@ impl Grippers {
         matches!(self.order, FingerVerb::Stand | FingerVerb::Release | FingerVerb::Grasp)
     }
 
-    /// The report of jaws that stopped at the wrong end.
     const fn wrong_end(&self) -> JawsReport {
         if self.closing { JawsReport::Opened } else { JawsReport::Closed }
     }
 
-    /// The reason why the last order failed: from the process, or from its report.
     #[must_use]
     pub fn fault(&self, tick: Tick, memory: &CommonMemory) -> Reason {
         let attached = EmoveGripper::attached(memory);
@@ -272,8 +257,7 @@ impl Grippers {
         self.order == FingerVerb::Release && self.status(tick, memory) == Lower::Done
     }
 
-    /// The handshake with a gripper; without one, that with the parts gripper. Searches renumber its commands
-    /// (docs/evidence.md).
+    /// Without a gripper, that of the parts gripper. Searches renumber the commands (docs/evidence.md).
     pub const fn commander(&mut self, of: EmoveGripper) -> &mut Commander {
         match of {
             EmoveGripper::None | EmoveGripper::Parts => &mut self.parts,

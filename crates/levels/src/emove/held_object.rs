@@ -21,34 +21,24 @@ use super::{
 };
 use crate::execution::{Execution, Outcome};
 
-/// Longest time without finger contact of a held object, ticks (0.2 s): pushing a part from one finger to the other
-/// takes less.
+/// Ticks without contact of a held object (0.2 s): longer than a part takes from one finger to the other.
 const UNFELT_TICKS: u8 = 5;
-/// Least opening travel that releases an unknown object, 0.01 in (ASSUMED).
+/// Least opening that releases an unknown object, 0.01 in (ASSUMED).
 const LEAST_RELEASE: i32 = 50;
 
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct HeldObject {
-    /// What the gripper holds.
-    held: Option<Grasped>,
+    held: Option<Grasped>, // the object in the gripper
     /// The object of the last grasp command. `None` with a held object means that its release was interrupted.
     grasping: Option<Grasped>,
-    /// The fingers were empty, and have not been commanded to close since.
-    empty: bool,
-    /// Position along the fingers of the object grasped last.
-    seat: Seat,
-    /// The last place at which an object may have been displaced.
-    disturbed: Option<RobotPlace>,
-    /// The object that the gripper has released, and where.
-    placed: Option<PlacedObject>,
-    /// The last order to the fingers was to release the held object.
-    releasing: bool,
-    /// Ticks without finger contact of the held object.
-    unfelt: u8,
-    /// An object was held when the current command arrived.
-    carrying: bool,
-    /// The last held object was removed with its gripper.
-    gripper_gone: bool,
+    empty: bool, // the fingers are empty, and have not been commanded to close since
+    seat: Seat,  // seat of the object grasped last
+    disturbed: Option<RobotPlace>, // the last place at which an object may have been displaced
+    placed: Option<PlacedObject>, // the object released last, and where
+    releasing: bool, // the last order to the fingers releases the held object
+    unfelt: u8,  // ticks without contact of the held object
+    carrying: bool, // an object was held when the current command arrived
+    gripper_gone: bool, // the last held object was removed with its gripper
 }
 
 impl HeldObject {
@@ -62,7 +52,7 @@ impl HeldObject {
         (estimates.seat, estimates.disturbed, estimates.placed) = (self.seat, self.disturbed, self.placed);
     }
 
-    /// In the first tick after a restart: a release may have been interrupted.
+    /// A release may have been interrupted by the restart.
     pub(super) fn start(&mut self, order: FingerVerb) {
         let is_cut_off = self.held.is_some() && self.grasping.is_none();
         self.releasing = is_cut_off || order == FingerVerb::Release;
@@ -84,14 +74,13 @@ impl HeldObject {
         self.placed
     }
 
-    /// Record the held object. `at` is the place of the robot.
     pub(super) fn hold(&mut self, grasped: Grasped, at: Option<&RobotPlace>) {
         (self.held, self.placed) = (Some(grasped), None);
         self.forget_disturbance(at);
         self.unfelt = 0;
     }
 
-    /// Adopt the held object from the operator; without a name the fingers are empty.
+    /// The operator names the held object; without a name the fingers are empty.
     pub(super) const fn name(&mut self, grasped: Option<Grasped>) {
         self.grasping = grasped;
         if grasped.is_some() {
@@ -106,8 +95,7 @@ impl HeldObject {
         self.placed = None;
     }
 
-    /// The fingers are commanded to close, on an object or by hand. Closing by hand keeps the name of the held
-    /// object, and ends its release.
+    /// Closing by hand keeps the name of the held object, and ends its release.
     pub(super) const fn close(&mut self, on: Option<Grasped>, seat: Seat) {
         if on.is_some() {
             // A regrasped object is held once the fingers have closed on it.
@@ -123,18 +111,17 @@ impl HeldObject {
         self.releasing = order == FingerVerb::Release;
     }
 
-    /// Record a paused release in the state, because the order no longer shows it. A restarted E-move reads this.
+    /// The order no longer shows a paused release; a restarted E-move reads it here.
     pub(super) const fn pause_release(&mut self) {
         self.grasping = None;
     }
 
-    /// True if a release has begun at the place of the robot and has not ended.
+    /// True if a release has begun at the robot's place and has not ended.
     #[must_use]
     pub const fn is_letting_go(&self, at_place: bool) -> bool {
         self.releasing && self.held.is_some() && at_place
     }
 
-    /// Compare the held object with the one at the start of the command.
     pub(super) const fn load(&self, is_misread: bool) -> EmoveLoad {
         match self.held {
             None if self.carrying && self.gripper_gone => EmoveLoad::GripperGone,
@@ -144,14 +131,12 @@ impl HeldObject {
         }
     }
 
-    /// Another gripper is attached. A ring that was open receives a gripper only in its holster, where no gripper is
-    /// left with an object.
+    /// A ring that was open receives a gripper only in its holster, where no gripper is left with an object.
     pub(super) const fn note_gripper(&mut self, memory: &CommonMemory) {
         (self.empty, self.grasping) = (is_open(memory), None);
     }
 
-    /// Update whether the fingers are empty, and adopt the commanded object if they detect one and none is recorded
-    /// as held.
+    /// Also adopts the commanded object if the fingers detect one and none is recorded as held.
     pub(super) fn sense_grasp(
         &mut self,
         command: &EmoveCommand,
@@ -184,8 +169,8 @@ impl HeldObject {
         None
     }
 
-    /// True if a detected object may be recorded as grasped: not while the fingers move or do not press it, not
-    /// before the closing command has checked, and not if they only opened since they were empty.
+    /// False while the fingers move or do not press the object, before the closing command has checked, and if
+    /// the fingers only opened since they were empty.
     fn may_adopt(
         &self,
         command: &EmoveCommand,
@@ -201,13 +186,12 @@ impl HeldObject {
         !looks && !moving && presses && !self.empty
     }
 
-    /// Update the position of the object along the fingers, which no sensor measures. It slides if the robot hits an
-    /// obstacle while the operator moves the robot or the arm has no pressure: the robot controller is off,
-    /// independent of Prim's report, or the resolvers give no position. In the same way, an arm without control pushes
-    /// an object that it has just released, or is about to grasp.
+    /// No sensor measures the position along the fingers. The object slides if the robot hits an obstacle while the
+    /// operator moves it, or while the arm has no pressure: the robot controller is off, or the resolvers give no
+    /// position. Such an arm also pushes an object that it has just released, or is about to grasp.
     ///
-    /// `origin` is the place of the robot, or the last one; `ends` are the ends of its path; `drum` is the drum of an
-    /// unfinished tool command; `is_sensed` is false if the resolvers give no position.
+    /// `origin` is the last place of the robot; `ends` are those of its path; `drum` is that of an unfinished tool
+    /// command; `is_sensed` is false if the resolvers give no position.
     pub(super) fn sense_seat(
         &mut self,
         (origin, ends): (Option<&RobotPlace>, [Option<&RobotPlace>; 3]),
@@ -233,8 +217,7 @@ impl HeldObject {
         self.placed.zip(at).is_some_and(|(placed, at)| placed.site == at.site)
     }
 
-    /// The seat of the object to be grasped. It is unconfirmed if the object may have been pushed, or slid before its
-    /// release, unless a picture shows its place.
+    /// The seat is unconfirmed if the object may have been pushed, or slid before its release, without a picture of it.
     pub(super) fn next_seat(&self, command: &EmoveCommand, is_located: bool) -> Seat {
         let is_disturbed = self.disturbed.is_some_and(|at| at.site.has_location_of(&command.site));
         match (self.empty, is_located, is_disturbed) {
@@ -244,15 +227,14 @@ impl HeldObject {
         }
     }
 
-    /// Clear the disturbance at this place: the robot has grasped an object there, or released one that did not
-    /// slide.
+    /// The robot has grasped an object here, or released one that did not slide.
     fn forget_disturbance(&mut self, here: Option<&RobotPlace>) {
         let is_here = |at: &RobotPlace| here.is_some_and(|here| at.site.has_location_of(&here.site));
         self.disturbed = self.disturbed.filter(|at| !is_here(at));
     }
 
-    /// Update whether the object is still held. Opening fingers hold it until they have released it: if they stop
-    /// half-way, the object is still between them, and the release can be sent again. `at` is the place of the robot.
+    /// Opening fingers hold the object until they have released it. If they stop half-way, it is still between them,
+    /// and the release can be sent again. `at` is the place of the robot.
     pub(super) fn sense_loss(
         &mut self,
         at: Option<&RobotPlace>,
@@ -291,8 +273,7 @@ impl HeldObject {
         }
     }
 
-    /// The held object: the grasped one while it is detected, else the reading of the sensors. `is_misread` is true
-    /// if the id pins have a bad contact.
+    /// The grasped object while it is detected, else the reading of the sensors. `is_misread`: bad contact of the pins.
     pub(super) fn holding(&self, is_misread: bool, memory: &CommonMemory) -> Holding {
         let attached = EmoveGripper::attached(memory);
         match (self.held, attached.felt(memory)) {
@@ -308,7 +289,7 @@ impl HeldObject {
         }
     }
 
-    /// The contents of the fingers. Without a known opening, the recorded object is assumed.
+    /// If the opening is unknown, the recorded object is assumed.
     pub(super) fn fingers(
         &self,
         at_place: bool,
@@ -338,8 +319,7 @@ impl HeldObject {
         self.is_letting_go(at_place) || (!around && !grippers.are_moving(inputs.tick, memory))
     }
 
-    /// Opening that releases the held object, or the object of the command, 0.01 in. An unknown object may be wider
-    /// than that of the command: the fingers open from their present opening.
+    /// In 0.01 in. An unknown object may be wider than the command's: the fingers open from their present opening.
     pub(super) fn depart_opening(
         &self,
         holding: Holding,

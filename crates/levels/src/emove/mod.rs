@@ -1,8 +1,5 @@
 //! E-move (V.2): divides elemental moves into straight segments for Prim, and coordinates gripper, quick change and
-//! vision with them.
-//!
-//! A new command looks up its data before anything moves. Held object, place of the robot and located object persist
-//! between commands.
+//! vision with them. Held object, place of the robot and located object persist between commands.
 //!
 //! ```text
 //!           ACCEPT, RECORDS          CARRIED, ORDERED: Prim, gripper, ring, vision
@@ -13,8 +10,7 @@
 //!     error <-----------------------------------------------
 //! ```
 //!
-//! A tick follows the manual (II.2.1): [`sense`], decide, [`act`], [`report`]. [`State`] consists of the current
-//! command and these parts. No part reads the fields of another:
+//! [`State`] consists of the current command and these parts. No part reads the fields of another:
 //!
 //! * [`held_object`]: the object in the fingers;
 //! * [`grippers`] and [`gripper`]: the three grippers as one;
@@ -23,14 +19,6 @@
 //! * [`localization`]: place of the robot, or its path;
 //! * [`motion`]: the route of the command, and the commands to Prim;
 //! * [`vision`]: pictures, and the part frame from a picture.
-//!
-//! The other modules are:
-//!
-//! * [`senses`]: the state variables of the commands;
-//! * [`plan`]: the data of a new command;
-//! * [`goals`]: the sensor check of a finished command;
-//! * [`robot_place`] and [`grasp`]: conversions of places and objects;
-//! * [`tables`]: the decision tables, one file per command.
 
 pub mod act;
 pub mod goals;
@@ -79,29 +67,17 @@ pub type EmoveInputs<'a> = Inputs<'a, TaskData<'a>>;
 
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct State {
-    /// The command of Subtask and its progress.
     pub execution: Execution,
-    /// Step of its table.
     pub step: Step,
-    /// The process that has its last order.
-    pub ordered: EmoveRecipient,
-    /// The command has sent an order to Prim, or waits until Prim has ended its previous order.
-    pub uses_prim: bool,
-    /// The points sent when the last order was given.
-    pub ordered_at: Progress,
-    /// The object in the fingers.
+    pub ordered: EmoveRecipient, // the process that has the last order
+    pub uses_prim: bool,         // an order is sent, or waits until Prim has ended the previous one
+    pub ordered_at: Progress,    // progress when the last order was given
     pub held: HeldObject,
-    /// The gripper processes.
     pub grippers: Grippers,
-    /// The change of a gripper.
     pub exchange: GripperExchange,
-    /// The tool drum.
     pub drum: ToolDrum,
-    /// Where the robot is.
     pub localization: Localization,
-    /// The motion of the command.
     pub motion: EmoveMotion,
-    /// Pictures.
     pub vision: EmoveVision,
 }
 
@@ -160,10 +136,8 @@ impl<'d> Process<TaskData<'d>> for Emove {
 }
 
 impl State {
-    /// Consult ATTEND if EXECUTE does not decide. If ATTEND passes, the tables of the command follow.
-    ///
-    /// # Errors
-    /// The action of its row otherwise.
+    /// Consult ATTEND if EXECUTE does not decide. If it passes, the tables of the command follow; else the error is
+    /// the action of its row.
     fn attend(&mut self, course: Course, seen: &mut StateVariables) -> Result<Course, Action> {
         if course != Course::Rest {
             return Ok(course);

@@ -40,7 +40,6 @@ const fn class(verb: EmoveVerb) -> CommandClass {
     }
 }
 
-/// The gripper on the robot, compared with the one of the command.
 fn attached(command: &EmoveCommand, memory: &CommonMemory) -> Attached {
     match EmoveGripper::attached(memory) {
         EmoveGripper::None => Attached::None,
@@ -50,7 +49,6 @@ fn attached(command: &EmoveCommand, memory: &CommonMemory) -> Attached {
     }
 }
 
-/// The holster of an exchange command, and its opening for the path through the holster.
 fn holster(command: &EmoveCommand, data: &TaskData<'_>) -> HolsterData {
     if class(command.command) != CommandClass::Exchange {
         HolsterData::Found

@@ -41,9 +41,8 @@ impl State {
         self.vision.adopt(estimates);
     }
 
-    /// `status-report` and its reason. `joystick-on` lasts as long as the box is active (V.2.2), independent of
-    /// earlier actions, and E-PAUSE keeps it until the processes below pause again. An interrupted command ends in an
-    /// error and is not resumed (docs/design/ownership.md "Joystick box").
+    /// `joystick-on` lasts as long as the box is active (V.2.2), and E-PAUSE keeps it until the processes below pause
+    /// again. An interrupted command ends in an error and is not resumed (docs/design/ownership.md "Joystick box").
     fn outcome(&self, inputs: &EmoveInputs<'_>) -> (StatusReport, Reason, Unconfirmed) {
         let prim = &inputs.memory.prim;
         let taken =
@@ -97,8 +96,8 @@ impl State {
         };
     }
 
-    /// Adopt a value from the operator (IV.2.6). E-move was not stepped in the tick before: its state and its outputs
-    /// contain the same estimates, or it has been restarted and adopts those of the outputs.
+    /// E-move was not stepped in the tick before: its state and its outputs contain the same estimates, or it has been
+    /// restarted and adopts those of the outputs.
     pub(super) fn write(&mut self, write: &Write, inputs: &EmoveInputs<'_>, outputs: &mut EmoveOutputs) {
         self.adopt(&outputs.estimates);
         match (write.variable, write.object) {

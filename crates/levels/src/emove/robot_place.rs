@@ -1,5 +1,4 @@
-//! Place of the robot (docs/design/motion.md "Where the robot is"), from E-move's last completed move and Prim's
-//! status.
+//! Place of the robot (docs/design/motion.md "Where the robot is").
 
 use geometry::{frame::Frame, pose::Pose};
 use interfaces::{
@@ -11,7 +10,6 @@ use taskdata::files::TaskData;
 
 use crate::places::pose_of;
 
-/// True if two frames are the same for a robot at rest.
 #[must_use]
 pub fn near(a: &Frame, b: &Frame, inches: f64, radians: f64) -> bool {
     let distance = a.distance(b);
@@ -40,19 +38,18 @@ pub const fn gone_to(command: &EmoveCommand) -> GoneTo {
     }
 }
 
-/// The place of a robot at the location of a command.
 #[must_use]
 pub const fn robot_at(command: &EmoveCommand, gone_to: GoneTo, pose: Pose) -> RobotPlace {
     RobotPlace { gone_to, site: command.site, pose }
 }
 
-/// True if the operator has the robot. Its place matters again when the operator gives it back.
+/// The operator has the robot. Its place matters again when the operator gives it back.
 #[must_use]
 pub fn is_led(memory: &CommonMemory) -> bool {
     memory.prim.status.report == PrimReport::JoystickOn
 }
 
-/// True if the link to the robot controller has failed, or Prim restarts it. The arm may have moved since.
+/// The link to the robot controller has failed, or Prim restarts it. The arm may have moved since.
 #[must_use]
 pub const fn is_cut_off(memory: &CommonMemory) -> bool {
     let status = &memory.prim.status;
@@ -66,7 +63,6 @@ pub fn base(command: &EmoveCommand, memory: &CommonMemory, data: &TaskData<'_>) 
     pose_of(command.pose?, memory, data)
 }
 
-/// The robot's place for the status.
 #[must_use]
 pub const fn standing(at: &RobotPlace) -> Standing {
     let grip = match at.gone_to {
@@ -76,17 +72,15 @@ pub const fn standing(at: &RobotPlace) -> Standing {
     Standing { site: at.site, grip }
 }
 
-/// The frame of the robot, by the resolvers.
 #[must_use]
 pub fn present_frame(memory: &CommonMemory) -> Option<Frame> {
     memory.changing_pose(memory.prim.status.sensor_pose?)?.to_frame().ok()
 }
 
-/// An uncontrolled robot within this distance of an object may push it, in: the reach of the fingers and a held part
-/// (ASSUMED).
+/// An uncontrolled robot this near may push an object: the reach of the fingers and a held part (ASSUMED).
 const PUSHED_INCHES: f64 = 6.0;
 
-/// True if the robot may push an object at a pose, by distance or because the resolvers give no position.
+/// True if the object is near, or the resolvers give no position.
 #[must_use]
 pub fn may_push(pose: &Pose, memory: &CommonMemory) -> bool {
     match (present_frame(memory), pose.to_frame()) {
@@ -102,16 +96,14 @@ pub fn commanded_pose(memory: &CommonMemory) -> Option<Pose> {
     commanded.or_else(|| present_frame(memory).map(|frame| Pose::from_frame(&frame)))
 }
 
-/// A robot is at a place within so many inches …
+/// Within these a robot is at a place: the tolerance that Prim confirms after a motion.
 pub const THERE_INCHES: f64 = 0.02;
-/// … and radians (0.1 degree): the tolerance that Prim confirms after a motion.
-pub const THERE_RADIANS: f64 = 0.1 * core::f64::consts::PI / 180.0;
-/// A place is confirmed within so many inches …
+pub const THERE_RADIANS: f64 = 0.1 * core::f64::consts::PI / 180.0; // 0.1 degree
+/// Within these a place is confirmed: the arm settles while the status is passed up.
 pub const CONFIRMED_INCHES: f64 = 0.05;
-/// … and radians (0.25 degree): the arm settles while the status is passed up.
-pub const CONFIRMED_RADIANS: f64 = 0.25 * core::f64::consts::PI / 180.0;
+pub const CONFIRMED_RADIANS: f64 = 0.25 * core::f64::consts::PI / 180.0; // 0.25 degree
 
-/// Distance of the robot from a pose. `present` is its frame by the resolvers.
+/// `present` is the robot's frame by the resolvers.
 #[must_use]
 pub fn offset(pose: &Pose, present: Option<&Frame>) -> Offset {
     let (Some(present), Ok(goal)) = (present, pose.to_frame()) else {
@@ -127,14 +119,13 @@ pub fn offset(pose: &Pose, present: Option<&Frame>) -> Offset {
     }
 }
 
-/// True if both places are the same pose at the same location, independent of [`GoneTo`].
+/// True for the same pose at the same location, independent of [`GoneTo`].
 #[must_use]
 pub fn is_same_pose(a: &RobotPlace, b: &RobotPlace) -> bool {
     let (Ok(a_frame), Ok(b_frame)) = (a.pose.to_frame(), b.pose.to_frame()) else { return false };
     a.site.has_location_of(&b.site) && near(&a_frame, &b_frame, THERE_INCHES, THERE_RADIANS)
 }
 
-/// True if both have the same kind, place, object, grip and pose.
 pub(super) fn is_same_goal(a: &RobotPlace, b: &RobotPlace) -> bool {
     a.gone_to == b.gone_to && a.site.place() == b.site.place() && is_same_pose(a, b)
 }

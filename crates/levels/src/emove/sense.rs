@@ -1,5 +1,3 @@
-//! Preprocess of E-move: held object, place of the robot, and the state variables of the tables.
-
 use geometry::frame::Frame;
 use interfaces::{
     CommonMemory, EmoveOutputs,
@@ -28,7 +26,7 @@ use crate::{
     halt::{Above, Advance, Below, BoxState, Intake, Kind, Replaced},
 };
 
-/// True if the fingers are at an opening, 0.01 in, and no air moves them from there.
+/// True if the fingers are at `opening`, 0.01 in, and no air moves them from there.
 fn stands_at(opening: i32, memory: &CommonMemory) -> bool {
     let attached = EmoveGripper::attached(memory);
     let goes = attached.has_air(!attached.closes_for(opening), memory);
@@ -82,7 +80,7 @@ impl State {
         seen
     }
 
-    /// In the first tick, adopt the estimates from before a restart.
+    /// Adopt the estimates from before a restart.
     fn start(&mut self, inputs: &EmoveInputs<'_>, outputs: &EmoveOutputs) {
         let memory = inputs.memory;
         self.motion.start(inputs.external.operator.robot_init);
@@ -96,7 +94,6 @@ impl State {
         self.held.start(self.grippers.order());
     }
 
-    /// Activities that a new command replaces: motion, ring or fingers.
     fn replaced(&self, watch: &Watch, inputs: &EmoveInputs<'_>) -> Replaced {
         let (tick, memory) = (inputs.tick, inputs.memory);
         let written = &memory.emove;
@@ -122,7 +119,6 @@ impl State {
         self.vision.start(&inputs.external.devices.vision);
     }
 
-    /// Update whether the held object is still held, and whether the fingers are empty.
     fn sense_held(&mut self, command: &EmoveCommand, is_sensed: bool, inputs: &EmoveInputs<'_>) {
         let (memory, robot) = (inputs.memory, &self.localization);
         if self.exchange.is_misread(memory) {
@@ -142,7 +138,7 @@ impl State {
         }
     }
 
-    /// Record a held object. Its earlier release or located place is no longer valid.
+    /// An earlier release or located place of the object is no longer valid.
     pub(super) fn hold(&mut self, grasped: Grasped) {
         self.held.hold(grasped, self.localization.place());
         self.vision.forget();
@@ -162,8 +158,7 @@ impl State {
         self.localization.knowledge(is_moving, is_half_way, inputs)
     }
 
-    /// Update whether the robot is still where its last move ended. [`search`] decides whether to search for its
-    /// place.
+    /// [`search`] decides whether to search for the robot's place.
     fn sense_place(
         &mut self,
         command: &EmoveCommand,
@@ -199,7 +194,6 @@ impl State {
         watch
     }
 
-    /// Update the robot's state at the drum: an unfinished tool command, or fingers around a tool.
     fn sense_drum(&mut self, inputs: &EmoveInputs<'_>) {
         if self.drum.sense_moved_tool(self.localization.last_place(), inputs) {
             self.localization.set_place(None);
@@ -227,7 +221,7 @@ impl State {
         }
     }
 
-    /// The opening for the goal of the route. During a release no opening is ordered.
+    /// During a release no opening is ordered.
     fn opening(&self, gripper: Lower, inputs: &EmoveInputs<'_>) -> EmoveOpening {
         match self.motion.opening() {
             None => EmoveOpening::Free,

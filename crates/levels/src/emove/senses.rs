@@ -22,7 +22,6 @@ use super::{
 };
 use crate::{execution::Work, held::Held};
 
-/// The sources of the state variables of a command.
 pub struct Senses<'a> {
     state: &'a State,
     command: &'a EmoveCommand,

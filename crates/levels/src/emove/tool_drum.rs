@@ -35,21 +35,17 @@ use super::{
 };
 use crate::execution::Execution;
 
-/// Depth tolerance of a tool in its place, where the fingers of the drum close on it, in.
-const SEATED: f64 = 0.15;
-/// The fingers are around the tool up to this far to the right of the way in. To the left they are so up to the end
-/// of ACQ-SLIDE, which a sensor determines, plus this distance, in.
+const SEATED: f64 = 0.15; // in, of depth: the fingers of the drum close on the tool
+/// in to the right of the way in: the fingers are around the tool. To the left they are so up to the end of
+/// ACQ-SLIDE, which a sensor determines, plus this distance.
 const AROUND: f64 = 0.25;
-/// Lateral tolerance of the way in for a tool that is not in its place, in.
-const WIDE_IN: f64 = 0.75;
-/// A tool has no contact up to this far beyond INS-NEAR, in.
-const FREE: f64 = 0.15;
-/// The robot is before the drum up to this far from INS-NEAR …
+const WIDE_IN: f64 = 0.75; // in, sideways, for a tool that is not in its place
+const FREE: f64 = 0.15; // in beyond INS-NEAR, without contact
+/// Greatest distance from INS-NEAR of a robot before the drum, in.
 const FAR: f64 = 10.0;
-/// … and this far from the axis of the way in, in: TOOL-SAFE is 6.1 in away.
+/// Greatest distance of such a robot from the axis of the way in, in: TOOL-SAFE is 6.1 in away.
 const WIDE: f64 = 3.0;
-/// Largest distance from the pose of the grasp at which a tool has not moved since, in.
-const UNMOVED: f64 = 0.1;
+const UNMOVED: f64 = 0.1; // in from the pose of the grasp
 
 struct DrumPoints {
     near: Frame,
@@ -126,8 +122,8 @@ fn locate(drum: &RobotPlace, memory: &CommonMemory, data: &TaskData<'_>) -> AtDr
     }
 }
 
-/// Start of an interrupted relative move at the drum: the robot's position moved back by the completed part of the
-/// move, so that the move ends at its original end.
+/// The robot's position moved back by the completed part of an interrupted relative move, which then ends at its
+/// original end.
 pub(super) fn start_of(
     relative: Relative,
     command: &EmoveCommand,
@@ -144,13 +140,11 @@ pub(super) fn start_of(
     Some(Pose::from_frame(&Frame { position: stand.position - way * share, ..stand }))
 }
 
-/// The tool drum, and the force sensor that guards its moves.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct ToolDrum {
     /// The drum of an unfinished tool command, between its first and last point. The pose is that of the location.
     half_way: Option<RobotPlace>,
-    /// The robot's place at the last order to calibrate the force sensor.
-    calibrated: CalibratedAt,
+    calibrated: CalibratedAt, // place of the robot at the last order to calibrate the force sensor
 }
 
 impl ToolDrum {
@@ -166,7 +160,7 @@ impl ToolDrum {
         self.half_way.as_ref()
     }
 
-    /// The position of the robot at the drum of the command, if a tool command is unfinished there.
+    /// The robot's position at the command's drum, if a tool command is unfinished there.
     pub(super) fn at(&self, command: &EmoveCommand, inputs: &EmoveInputs<'_>) -> AtDrum {
         match &self.half_way {
             Some(drum) if drum.site.has_location_of(&command.site) => {
@@ -176,7 +170,6 @@ impl ToolDrum {
         }
     }
 
-    /// The zero reading of the force sensor, by the place of its calibration.
     pub(super) const fn bias(&self, memory: &CommonMemory) -> Bias {
         match (memory.prim.bias, self.calibrated) {
             (None, _) => Bias::Missing,
@@ -189,8 +182,8 @@ impl ToolDrum {
         self.calibrated = at;
     }
 
-    /// True if the fingers are around a tool in the drum. They hold it only if nothing has moved it since. `at` is
-    /// the place where the last motion ended.
+    /// True if the fingers are around a tool in the drum. They hold it only if nothing has moved it since. `at` is the
+    /// place where the last motion ended.
     pub(super) fn is_around_tool(
         &self,
         at: Option<&RobotPlace>,
@@ -204,7 +197,7 @@ impl ToolDrum {
         }
     }
 
-    /// A relative move of a tool command begins: the command at the drum is unfinished.
+    /// A relative move of a tool command begins.
     pub(super) fn note_move(&mut self, command: &EmoveCommand, inputs: &EmoveInputs<'_>) {
         let base = base(command, inputs.memory, inputs.data);
         if let (true, Some(base)) = (is_tool_command(command.command), base) {
@@ -212,14 +205,13 @@ impl ToolDrum {
         }
     }
 
-    /// The tool command at the drum is no longer unfinished.
+    /// The tool command is no longer unfinished.
     pub(super) const fn end(&mut self) {
         self.half_way = None;
     }
 
     /// After motion of a robot with the fingers around a tool in the drum, the tool command is unfinished again: the
-    /// tool has moved, or the fingers on it. `at` is the place where the last motion ended. True if the robot was
-    /// moved.
+    /// tool or the fingers have moved. `at` is the place where the last motion ended. True if the robot was moved.
     pub(super) fn sense_moved_tool(&mut self, at: Option<&RobotPlace>, inputs: &EmoveInputs<'_>) -> bool {
         let Some(at) = at.filter(|at| at.gone_to == GoneTo::Drum) else { return false };
         let Some(present) = present_frame(inputs.memory) else { return false };
@@ -233,7 +225,7 @@ impl ToolDrum {
     }
 
     /// Consult DRUM about an unfinished tool command. Returns the place of a robot with the fingers around a tool.
-    /// `grasped_at` is the pose at which the held object was grasped.
+    /// `grasped_at` is the pose of the grasp.
     pub(super) fn sense(
         &mut self,
         grasped_at: Option<Pose>,

@@ -26,15 +26,12 @@ use super::{
     tables::{Action, EmoveReach, Sight, Tries, VisionAnswer},
 };
 
-/// Ticks after which vision is reported silent (4 s).
-const VISION_LIMIT: u64 = 100;
-/// LOCATE-OBJ fails after this many pictures of one kind without a result.
-const MAX_TRIES: u8 = 3;
-/// A picture is valid if the robot is within this of its commanded place, in …
+const VISION_LIMIT: u64 = 100; // 4 s, after which vision is reported silent
+const MAX_TRIES: u8 = 3; // pictures of one kind without a result
+/// A picture is valid if the robot is this near to its commanded place.
 const STANDS_INCHES: f64 = 0.1;
-/// … and radians (half a degree).
-const STANDS_RADIANS: f64 = 0.5 * core::f64::consts::PI / 180.0;
-/// Millimetres per inch: vision's range is in millimetres (VII.7.6).
+const STANDS_RADIANS: f64 = 0.5 * core::f64::consts::PI / 180.0; // half a degree
+/// Vision's range is in millimetres (VII.7.6).
 const MM_PER_INCH: f64 = 25.4;
 
 /// VII.7.6.
@@ -52,7 +49,7 @@ fn centred(place: &Frame, seen: &VisionResponse) -> Frame {
     place.shifted(Vector::new(0.0, inches(seen.y), inches(seen.z)))
 }
 
-/// The part frame: at the centroid, turned so that tool Y lies across the dimension to grip.
+/// The frame at the centroid, turned so that tool Y lies across the dimension to grip.
 fn part_frame(place: &Frame, seen: &VisionResponse) -> Frame {
     centred(place, seen).turned(&Rotation::from_axis_angle(&Vector::x_axis(), radians(seen.angle)))
 }
@@ -60,8 +57,8 @@ fn part_frame(place: &Frame, seen: &VisionResponse) -> Frame {
 /// Largest plausible turn, 0.01 degree: a half turn about tool X is equivalent for two fingers.
 const QUARTER_TURN: u32 = 9_000;
 
-/// False if no picture can show the answer of vision; the arm must not move there. The centroid lies at most half the
-/// expected range from the optical axis (ASSUMED: a lens of 53 degrees), and the roll is within a quarter turn.
+/// The centroid of a plausible answer lies at most half the expected range from the optical axis (ASSUMED: a lens of
+/// 53 degrees), and the roll is within a quarter turn. Else the arm must not move there.
 fn is_plausible(request: &VisionRequest, answer: &VisionResponse) -> bool {
     let widest = f64::from(request.range_mm) / (2.0 * MM_PER_INCH);
     let inside = |hundredths: i32| inches(hundredths).abs() <= widest;
@@ -71,9 +68,8 @@ fn is_plausible(request: &VisionRequest, answer: &VisionResponse) -> bool {
 /// A finger of any gripper: 0.50 in thick along the tool's Y (ASSUMED), and 1.50 in wide along its Z (VIII.9.5).
 const FINGER: [f64; 2] = [0.50, 1.50];
 
-/// True if the fingers, open by `opening` in at the tool frame `grip`, stay within the array of their `sector`. The
-/// wall of the tray is half a step from the middle of its outer sectors (VIII.6). `out` are the steps out of the
-/// array, in, in the axes of the sector.
+/// True if the fingers, open by `opening` in at the tool frame `grip`, stay within the array of their `sector`, whose
+/// wall is half a step from its outer sectors (VIII.6). `out` are the steps out of the array, in, in sector axes.
 fn stays_in_array(sector: &Frame, grip: &Frame, opening: f64, out: &[Option<Vector>]) -> bool {
     let axes = sector.rotation.inverse();
     let aside = axes * (grip.position - sector.position);
@@ -86,8 +82,7 @@ fn stays_in_array(sector: &Frame, grip: &Frame, opening: f64, out: &[Option<Vect
     })
 }
 
-/// True if vision has recognised another object than the requested one (V.2.1: the second picture includes
-/// recognition).
+/// Vision may recognise another object than the requested one (V.2.1: the second picture includes recognition).
 fn is_another(request: &VisionRequest, answer: &VisionResponse) -> bool {
     request.picture == Picture::Precise && answer.recognised != Some(request.object_id)
 }
@@ -103,11 +98,10 @@ fn request(number: u32, picture: Picture, variation: u8, view: &VisionPara) -> V
     }
 }
 
-/// The start of the next camera motion, and how it moves.
 struct CameraAim {
     tool: Frame,
     view: MovtabId,
-    /// Parameters of the motion: those of the last approach to the view.
+    /// The parameters of the last approach to the view.
     parameters: TrajParaId,
 }
 
@@ -129,8 +123,7 @@ pub(super) fn can_aim(command: &EmoveCommand, inputs: &EmoveInputs<'_>) -> bool 
     aim(command, inputs).is_some()
 }
 
-/// True if the robot is at its commanded place, as far as that is known. A sinking arm has moved since the picture
-/// was taken.
+/// True if the robot is where it was sent. A sinking arm has moved since the picture was taken.
 fn is_where_sent(place: Option<&RobotPlace>, memory: &CommonMemory) -> bool {
     let sent = place.and_then(|place| place.pose.to_frame().ok());
     match (sent, present_frame(memory)) {
@@ -139,7 +132,7 @@ fn is_where_sent(place: Option<&RobotPlace>, memory: &CommonMemory) -> bool {
     }
 }
 
-/// The answer of vision. `place` is that of the robot.
+/// The answer of vision. `place` is the robot's place.
 pub(super) fn sight(place: Option<&RobotPlace>, inputs: &EmoveInputs<'_>) -> Sight {
     let (request, answer) = (&inputs.memory.emove.vision, &inputs.external.devices.vision);
     match answer.status {
@@ -156,17 +149,13 @@ pub(super) fn sight(place: Option<&RobotPlace>, inputs: &EmoveInputs<'_>) -> Sig
 pub(super) struct View {
     pub goal: Pose,
     pub parameters: TrajParaId,
-    /// Pose of the part, if the last picture determines it.
-    pub part: Option<Pose>,
+    pub part: Option<Pose>, // if the last picture determines it
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct EmoveVision {
-    /// Requests to vision: number and tick of the last one.
-    commander: Commander,
-    /// Pictures without a result in this step.
-    tries: u8,
-    /// What vision has located.
+    commander: Commander, // requests to vision
+    tries: u8,            // pictures without a result in this step
     located: Option<Located>,
 }
 
@@ -195,8 +184,8 @@ impl EmoveVision {
         self.located.map(|Located { object, site, .. }| LocatedObject { object, site })
     }
 
-    /// Discard the pictures after the robot controller was switched off, because the arm has sunk, perhaps onto the
-    /// located object. Discard them also after manual motion near the object, because the fingers may have pushed it.
+    /// Discard the pictures after the robot controller was off, because the arm has sunk, perhaps onto the object, and
+    /// after manual motion near the object, because the fingers may have pushed it.
     pub(super) fn sense(&mut self, memory: &CommonMemory) {
         let may_touch = |located: &Located| may_push(&located.pose, memory);
         let is_pushed = is_led(memory) && self.located.as_ref().is_some_and(may_touch);
@@ -224,7 +213,7 @@ impl EmoveVision {
         if self.tries.saturating_add(1) < MAX_TRIES { Tries::Left } else { Tries::Spent }
     }
 
-    /// The pose of a command, or of the object found by vision.
+    /// The pose of the command, or of the object found by vision.
     pub(super) fn base_frame(
         &self,
         command: &EmoveCommand,
@@ -247,8 +236,8 @@ impl EmoveVision {
         pose.to_frame().map_err(|_| Planning::BadPose)
     }
 
-    /// The open fingers at the object of the second picture, relative to its array. A place outside any array has no
-    /// edge; the motion to the object reports missing task data.
+    /// The open fingers, relative to the object's array, in the second picture. A place outside any array has no edge;
+    /// the motion to the object reports missing task data.
     pub(super) fn reach(&self, command: &EmoveCommand, inputs: &EmoveInputs<'_>) -> EmoveReach {
         let data = inputs.data;
         let inside = || {
@@ -288,7 +277,7 @@ impl EmoveVision {
         }
     }
 
-    /// The next view: over the centroid, and for [`Action::Align`] turned with the part, whose place is then known.
+    /// The next view: over the centroid; for [`Action::Align`] also turned with the part, whose place is then known.
     pub(super) fn next_view(
         &mut self,
         action: Action,
@@ -309,7 +298,7 @@ impl EmoveVision {
         Some(View { goal: Pose::from_frame(&inputs.data.moved(&target, view)), parameters, part })
     }
 
-    /// The handshake with vision. Searches renumber its requests (docs/evidence.md).
+    /// Searches renumber the requests (docs/evidence.md).
     pub const fn commander(&mut self) -> &mut Commander {
         &mut self.commander
     }

@@ -28,27 +28,20 @@ use super::{
 };
 use crate::places::named;
 
-/// The robot has left the place of its last motion if it is more than this many inches …
-/// (docs/design/motion.md "Where the robot is")
+/// Farther from the place of its last motion, the robot has left it (docs/design/motion.md "Where the robot is").
 pub(super) const LOST_INCHES: f64 = 0.5;
-/// … or radians (2 degrees) off.
-pub(super) const LOST_RADIANS: f64 = 2.0 * core::f64::consts::PI / 180.0;
-/// The robot is on a segment into a holster or the drum within this many inches.
-pub(super) const ASIDE_INCHES: f64 = 0.35;
-/// Location points per tick in the search for the place of the robot.
-const SEARCH_PER_TICK: u32 = 64;
+pub(super) const LOST_RADIANS: f64 = 2.0 * core::f64::consts::PI / 180.0; // 2 degrees
+pub(super) const ASIDE_INCHES: f64 = 0.35; // to a segment into a holster or the drum: the robot is on it
+const SEARCH_PER_TICK: u32 = 64; // location points
 
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct Localization {
-    /// The place where the last motion ended.
-    place: Option<RobotPlace>,
-    /// The robot has been moved away from `place`.
-    away: bool,
+    place: Option<RobotPlace>, // the end of the last motion
+    away: bool,                // the robot has been moved away from `place`
     way: Option<Way>,
     /// The path from the last known place or way, on which the joystick box has moved the robot.
     track: Track,
-    /// Location points searched so far.
-    searched: u32,
+    searched: u32, // location points searched so far
     surroundings: Surroundings,
 }
 
@@ -61,24 +54,22 @@ impl Localization {
         (estimates.place, estimates.way, estimates.track) = (self.place, self.way, self.track);
     }
 
-    /// The place of the robot, unless it has been moved away. A robot that is moved back, as by the joystick box, is
-    /// there again.
+    /// A robot that is moved back, as by the joystick box, is at its place again.
     pub(super) fn place(&self) -> Option<&RobotPlace> {
         self.place.as_ref().filter(|_| !self.away)
     }
 
-    /// The place where the last motion ended, even if the robot has been moved away.
+    /// The end of the last motion, even if the robot has been moved away.
     pub(super) const fn last_place(&self) -> Option<&RobotPlace> {
         self.place.as_ref()
     }
 
-    /// The place of the last motion, or the ends of the path.
     pub(super) fn ends(&self) -> [Option<&RobotPlace>; 3] {
         let way = self.way.as_ref();
         [self.place.as_ref(), way.map(|way| &way.to), way.map(|way| &way.from)]
     }
 
-    /// The place of the robot, or its last one.
+    /// The robot's place, or its last one.
     pub(super) fn origin(&self) -> Option<&RobotPlace> {
         self.place().or_else(|| self.way.as_ref().map(|way| &way.from))
     }
@@ -91,7 +82,6 @@ impl Localization {
         &self.surroundings
     }
 
-    /// The robot's place, relative to the command's location.
     pub(super) fn at(&self, command: &EmoveCommand) -> At {
         match self.place() {
             Some(at) if at.site.has_location_of(&command.site) => match at.gone_to {
@@ -103,8 +93,8 @@ impl Localization {
         }
     }
 
-    /// Knowledge of the robot's place. A path that the robot has left is ignored once it is at rest. `is_moving`:
-    /// by an order to Prim; `is_half_way`: in a gripper exchange, or at the tool drum.
+    /// A robot at rest is not on a path that it has left. `is_moving`: by an order to Prim. `is_half_way`: in a
+    /// gripper exchange, or at the tool drum.
     pub(super) fn knowledge(
         &self,
         is_moving: bool,
@@ -123,14 +113,12 @@ impl Localization {
         }
     }
 
-    /// Update whether the robot is still where its last motion ended.
     pub(super) fn sense_place(&mut self, present: &Frame) {
         let there =
             |pose: &Pose| pose.to_frame().is_ok_and(|frame| near(&frame, present, LOST_INCHES, LOST_RADIANS));
         self.away = self.place.as_ref().is_some_and(|place| !there(&place.pose));
     }
 
-    /// Search for the nearest known places while the robot's place is unknown.
     pub(super) fn sense_surroundings(
         &mut self,
         place: PlaceKnowledge,
@@ -150,7 +138,6 @@ impl Localization {
         self.surroundings = Surroundings::default();
     }
 
-    /// Search more location points for the one at which the robot is.
     pub(super) fn search(&mut self, present: &Frame, data: &TaskData<'_>) {
         for _ in 0..SEARCH_PER_TICK {
             let next = LocptId::new(self.searched.saturating_add(1));
@@ -176,7 +163,7 @@ impl Localization {
         (self.place, self.way, self.away) = (Some(at), None, false);
     }
 
-    /// Relative moves have ended at the location of the command.
+    /// Relative moves have ended at the command's location.
     pub(super) fn stand(&mut self, gone_to: GoneTo, command: &EmoveCommand, memory: &CommonMemory) {
         if let Some(pose) = commanded_pose(memory) {
             (self.place, self.away) = (Some(robot_at(command, gone_to, pose)), false);
@@ -193,7 +180,7 @@ impl Localization {
         (self.place, self.way) = (None, None);
     }
 
-    /// The object has been released or lost: the empty fingers depart as from any object.
+    /// Empty fingers depart as from any object.
     pub(super) const fn note_empty_fingers(&mut self) {
         if let Some(place) = &mut self.place
             && let GoneTo::Brought(object) = place.gone_to

@@ -1,6 +1,4 @@
-//! The path on which the robot is: its ends, and whether the robot has left it.
-//!
-//! The points of the path are not stored: they follow from its ends and the task data.
+//! The path on which the robot is. Its points are not stored: they follow from its ends and the task data.
 
 use geometry::{
     frame::{Frame, norm, rotation_by, rotation_vector},
@@ -21,14 +19,11 @@ use crate::emove::{
     robot_place::{commanded_pose, is_cut_off, near, present_frame},
 };
 
-/// Largest step of a commanded pose per tick, in: 14 in/s (A 2.3) plus a margin.
-const STEP_INCHES: f64 = 0.6;
-/// Largest turn per tick, radians: 1 rad/s plus a margin.
-const STEP_RADIANS: f64 = 0.05;
-/// Ticks of motion that a failing link can cut off: the queue of T3I, the line, and the ramp of the robot controller.
-const CUT_OFF_TICKS: f64 = 5.0;
+const STEP_INCHES: f64 = 0.6; // per tick: 14 in/s (A 2.3) plus a margin
+const STEP_RADIANS: f64 = 0.05; // per tick: 1 rad/s plus a margin
+const CUT_OFF_TICKS: f64 = 5.0; // of motion lost with the link: queue, line, ramp of the controller
 
-/// The frame of a straight segment that is nearest to a frame. It turns in proportion to the distance from the start.
+/// The frame of a straight segment nearest to `present`. It turns in proportion to the distance from the start.
 #[must_use]
 pub fn foot(present: &Frame, start: &Frame, end: &Frame) -> Frame {
     let (along, offset) = (end.position - start.position, present.position - start.position);
@@ -44,10 +39,7 @@ pub fn beside(present: &Frame, start: &Frame, end: &Frame) -> f64 {
     norm(&(present.position - foot(present, start, end).position))
 }
 
-/// The route of a way, from its ends.
-///
-/// # Errors
-/// The data that are missing.
+/// An error is the missing data.
 pub fn route_of(way: &Way, data: &TaskData<'_>) -> Result<Route, Planning> {
     if way.straight {
         let stop = Route::between(&way.from, &way.to, data).map(|route| route.stop)?;
@@ -57,7 +49,7 @@ pub fn route_of(way: &Way, data: &TaskData<'_>) -> Result<Route, Planning> {
     }
 }
 
-/// The segment of the way that the robot is on: its start, its end, and the records of both.
+/// The robot's segment of the way: start, end, and the records of both.
 pub(super) fn segment(way: &Way, data: &TaskData<'_>) -> Option<(Frame, Frame, [TrajParaId; 2])> {
     let route = route_of(way, data).ok()?;
     let (end, parameters) = route.point(way.next, data)?;
@@ -91,8 +83,8 @@ fn moves(memory: &CommonMemory) -> bool {
     }
 }
 
-/// True if a commanded pose continues the way: at most one tick of motion from the previous one. It is farther along
-/// the segment after ticks in which E-move was held, and after a restart of the link where the arm was.
+/// True if a commanded pose is at most one tick of motion from the previous one. It is farther along the segment
+/// after ticks in which E-move was held, and after a restart of the link where the arm was.
 fn follows(commanded: &Pose, way: &Way, data: &TaskData<'_>) -> bool {
     let (Ok(now), Ok(before)) = (commanded.to_frame(), way.rest.to_frame()) else { return false };
     let within = |ticks: f64| near(&now, &before, ticks * STEP_INCHES, ticks * STEP_RADIANS);
@@ -101,8 +93,7 @@ fn follows(commanded: &Pose, way: &Way, data: &TaskData<'_>) -> bool {
 }
 
 impl Localization {
-    /// Follow the commanded pose while the robot moves. Record other causes of motion: the operator, or a link that
-    /// has failed or restarted.
+    /// Also records other causes of motion: the operator, or a link that has failed or restarted.
     pub(in crate::emove) fn sense_path(&mut self, memory: &CommonMemory, data: &TaskData<'_>) {
         let Some(way) = &mut self.way else { return };
         let prim = &memory.prim;
@@ -115,7 +106,7 @@ impl Localization {
         }
     }
 
-    /// The path of the robot, unless it has left the path.
+    /// The robot's path; `None` if the robot has left it.
     pub(super) fn on_path(&self, inputs: &EmoveInputs<'_>) -> Option<Way> {
         let (way, present) = (self.way?, present_frame(inputs.memory)?);
         let rest = way.rest.to_frame().ok()?;
@@ -131,7 +122,7 @@ impl Localization {
         before.map(|next| Way { next, ..way }).filter(beside)
     }
 
-    /// The robot starts along a path; `None` if it returns to the last one.
+    /// `way` is `None` if the robot returns to the last one.
     pub(in crate::emove) fn depart(&mut self, way: Option<Way>, rest: Pose) {
         if way.is_some() {
             (self.place, self.way) = (None, way);

@@ -40,35 +40,27 @@ use crate::{
     places::is_in_mbd,
 };
 
-/// Largest shift of the hand by a closing vise or pedestal, in: the part has 0.06 in of play in the vise
-/// (docs/cell.md "Budget"), and the fingers yield …
+/// Shift of the hand by a closing vise or pedestal: the part has 0.06 in of play (docs/cell.md "Budget"), and the
+/// fingers yield.
 const CLAMP_INCHES: f64 = 0.1;
-/// … and largest turn, radians (half a degree).
-const CLAMP_RADIANS: f64 = 0.5 * core::f64::consts::PI / 180.0;
-/// A robot moves straight to a resting place within this distance, in: the short distance of IV.3.3 step 19 (ASSUMED)
-/// …
+const CLAMP_RADIANS: f64 = 0.5 * core::f64::consts::PI / 180.0; // half a degree
+/// From here a robot moves straight to a resting place: the short distance of IV.3.3 step 19 (ASSUMED).
 const RESTING_INCHES: f64 = 12.0;
-/// … and this turn, radians (45 degrees).
-const RESTING_RADIANS: f64 = 45.0 * core::f64::consts::PI / 180.0;
-/// A robot leaves a nest against the direction of the approach within this distance of its line, in …
-const NEST_INCHES: f64 = 2.0;
-/// … and this turn, radians (10 degrees).
-const NEST_RADIANS: f64 = 10.0 * core::f64::consts::PI / 180.0;
+const RESTING_RADIANS: f64 = 45.0 * core::f64::consts::PI / 180.0; // 45 degrees
+const NEST_INCHES: f64 = 2.0; // within which a robot leaves a nest along its approach line
+const NEST_RADIANS: f64 = 10.0 * core::f64::consts::PI / 180.0; // 10 degrees
 
 /// The start of a motion, and how the robot gets there.
 pub(in crate::emove) struct Origination {
     pub place: Option<RobotPlace>,
-    /// The path of an interrupted motion, instead of a place.
-    pub way: Option<Way>,
-    /// The present frame, relative to the place.
-    pub offset: EmoveOffset,
+    pub way: Option<Way>,    // an interrupted path, instead of a place
+    pub offset: EmoveOffset, // the robot's offset from its place
     pub rejoin: Option<Rejoin>,
-    /// The robot returns to the end of the depart leg.
-    pub is_out: bool,
+    pub is_out: bool, // the robot returns to the end of the depart leg
 }
 
-/// Parameters of the last motion to a place: those of its approach's stop line. Without an approach, they are those
-/// of the last point of a trajectory to the place, as for a motion to it (SPECNOTES).
+/// The parameters of the approach's stop line. Without an approach, those of the last point of a trajectory to the
+/// place, as for a motion to it (SPECNOTES).
 fn parameters_at(at: &RobotPlace, data: &TaskData<'_>) -> Option<TrajParaId> {
     let last = |path| Some(data.path(path).last()?.para);
     approach_to(at, data).and_then(last).or_else(|| {
@@ -84,15 +76,14 @@ fn clamps(at: &RobotPlace, data: &TaskData<'_>) -> bool {
     matches!(at.gone_to, GoneTo::Object(_) | GoneTo::Brought(_)) && !is_tray
 }
 
-/// True for a resting place, to which a robot may move straight: a location whose plain approach has no points.
+/// A robot may move straight to a location whose plain approach has no points.
 fn is_resting(id: LocptId, locpt: &Locpt, data: &TaskData<'_>) -> bool {
     let site = Site::point(locpt.name, id);
     let approach = data.approach_location(&site.place()).map(|path| data.path(path));
     is_plain(&site, data) && approach.is_some_and(|path| path.len() == 1)
 }
 
-/// A resting place in reach of a straight move: near, and nearer than any other location. It stays the nearest location
-/// during the move.
+/// The nearest location, within reach of a straight move. It stays the nearest one during the move.
 fn resting_place(present: &Frame, data: &TaskData<'_>) -> Option<RobotPlace> {
     let off = |locpt: &Locpt| norm(&(locpt.frame.position - present.position));
     let numbered = (1..).map(LocptId::new).zip(data.locpts);
@@ -105,8 +96,7 @@ fn resting_place(present: &Frame, data: &TaskData<'_>) -> Option<RobotPlace> {
     })
 }
 
-/// The points by which a robot near the approach of a nest leaves it: against the direction of the approach until
-/// level with the outermost point, then to that point.
+/// A robot leaves a nest against the direction of the approach until level with the outermost point, then to it.
 fn out_of(nest: &RobotPlace, present: &Frame, data: &TaskData<'_>) -> Option<[Frame; 2]> {
     let seat = nest.pose.to_frame().ok()?;
     let first = data.path(approach_to(nest, data)?).first().filter(|point| point.target != Target::Stop)?;
@@ -123,23 +113,19 @@ fn out_of(nest: &RobotPlace, present: &Frame, data: &TaskData<'_>) -> Option<[Fr
     is_beside.then_some([level, outermost])
 }
 
-/// The nearest point of the robot's segment, with its parameters, for the return after manual motion.
+/// The nearest point of the robot's segment, with its parameters.
 fn on_segment(present: &Frame, way: &Way, data: &TaskData<'_>) -> Option<(Frame, TrajParaId)> {
     let (start, end, [_, parameters]) = segment(way, data)?;
     Some((foot(present, &start, &end), parameters))
 }
 
-/// The return of a robot to its path, if it is off it.
 fn to_way(present: &Frame, way: &Way, data: &TaskData<'_>) -> Option<Rejoin> {
     let (foot, parameters) = on_segment(present, way, data)?;
     let beside = !near(present, &foot, THERE_INCHES, THERE_RADIANS);
     beside.then(|| Rejoin::to(Pose::from_frame(&foot), parameters))
 }
 
-/// The return of a robot to its place before another action.
-///
-/// # Errors
-/// The reason why the return is refused.
+/// An error is the reason why the return is refused.
 pub(in crate::emove) fn settle_at(
     at: &RobotPlace,
     offset: EmoveOffset,
@@ -156,8 +142,7 @@ pub(in crate::emove) fn settle_at(
     }
 }
 
-/// The present frame, relative to the place of the robot. A closing vise shifts the hand but not the commanded pose;
-/// the joystick box moves both.
+/// A closing vise shifts the hand but not the commanded pose; the joystick box moves both.
 fn offset(
     at: &RobotPlace,
     present: Option<&Frame>,
@@ -186,8 +171,7 @@ fn offset(
     }
 }
 
-/// Offset of the robot from a place. A vise or the pedestal that has closed on the held part may have shifted the
-/// hand; the robot is still at the place.
+/// A robot whose hand was shifted by a vise or pedestal that closed on the held part is still at the place.
 pub(in crate::emove) fn offset_of_place(
     at: &RobotPlace,
     present: Option<&Frame>,
@@ -203,10 +187,7 @@ pub(in crate::emove) fn offset_of_place(
 }
 
 impl Localization {
-    /// The return to the place before a command that works there.
-    ///
-    /// # Errors
-    /// The reason why the return is refused.
+    /// The return to the place before a command there. An error is the reason why the return is refused.
     pub(in crate::emove) fn stand_still(
         &self,
         holding: Holding,
@@ -218,10 +199,7 @@ impl Localization {
         Ok(Flight { rejoin, ..Flight::default() })
     }
 
-    /// The start of a motion.
-    ///
-    /// # Errors
-    /// The reason why the robot cannot reach it.
+    /// An error is the reason why the robot cannot reach the start.
     pub(in crate::emove) fn origination(
         &self,
         holding: Holding,

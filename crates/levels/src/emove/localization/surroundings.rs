@@ -7,18 +7,14 @@ use taskdata::files::{LocptId, TaskData};
 
 use crate::{emove::motion::relative::Relative, places::named};
 
-/// Location points searched per tick.
-const NEAREST_PER_TICK: u32 = 16;
+const NEAREST_PER_TICK: u32 = 16; // location points
 
 /// The nearest known places of a robot at an unknown place. The search repeats without end.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct Surroundings {
-    /// Location points searched in this round.
-    looked: u32,
-    /// The nearest of this round, sorted by distance.
-    found: [Option<NearPlace>; 2],
-    /// The nearest of the last complete round.
-    pub nearest: [Option<NearPlace>; 2],
+    looked: u32,                         // location points searched in this round
+    found: [Option<NearPlace>; 2],       // the nearest of this round, sorted by distance
+    pub nearest: [Option<NearPlace>; 2], // the nearest of the last complete round
 }
 
 impl Surroundings {
@@ -36,7 +32,6 @@ impl Surroundings {
         }
     }
 
-    /// Insert a place if it is one of the two nearest.
     fn insert(&mut self, place: NearPlace) {
         let nearer = |than: Option<NearPlace>| than.is_none_or(|than| place.inches < than.inches);
         let [first, second] = self.found;
@@ -48,8 +43,7 @@ impl Surroundings {
     }
 }
 
-/// True if a robot can be at a location point without further conditions. In a holster, at the tool drum and at the
-/// pedestal, its departure depends on gripper, tool and part.
+/// False in a holster, at the tool drum and at the pedestal: the departure depends on gripper, tool and part.
 pub(super) fn is_plain(site: &Site, data: &TaskData<'_>) -> bool {
     let has = |relative: Relative| relative.record(site, data).is_some();
     !has(Relative::QcaBack) && !has(Relative::InsIn) && site.location.as_str() != named::PEDESTAL

@@ -28,30 +28,22 @@ use crate::emove::{
     },
 };
 
-/// Largest distance between two records, in: the joystick box moves the robot 0.2 in per tick, and a process may miss
-/// one or two ticks.
+/// Distance between two records: the joystick box moves the robot 0.2 in per tick, and a process may miss two ticks.
 const STEP_INCHES: f64 = 0.6;
-/// … and largest turn, radians.
 const STEP_RADIANS: f64 = 0.05;
-/// A pose is recorded at this distance from the last one, in …
-const SPACING_INCHES: f64 = 0.1;
-/// … or this turn, radians (1 degree).
-const SPACING_RADIANS: f64 = core::f64::consts::PI / 180.0;
-/// The pose at this distance from the start of a segment sets its direction, in: poses are rounded to 0.01 in.
+const SPACING_INCHES: f64 = 0.1; // between recorded poses
+const SPACING_RADIANS: f64 = core::f64::consts::PI / 180.0; // 1 degree
+/// Distance from the start of a segment that sets its direction: poses are rounded to 0.01 in.
 const AIM_INCHES: f64 = 0.5;
-/// A segment is extended while the robot stays this near to its line, in; less than the spacing, so that a corner
-/// starts a new segment …
+/// Distance from the line of a segment that is extended; less than the spacing, so that a corner starts a new one.
 const ASIDE_INCHES: f64 = 0.05;
-/// … and while it turns no more than this, radians (2 degrees).
-const TURN_RADIANS: f64 = 2.0 * core::f64::consts::PI / 180.0;
-/// The robot is on a recorded segment within [`ASIDE_INCHES`] and this turn, radians (half a degree).
-const AGAIN_RADIANS: f64 = 0.5 * core::f64::consts::PI / 180.0;
+const TURN_RADIANS: f64 = 2.0 * core::f64::consts::PI / 180.0; // 2 degrees
+const AGAIN_RADIANS: f64 = 0.5 * core::f64::consts::PI / 180.0; // half a degree: the robot is on a recorded segment
 
 fn vector([x, y, z]: [i32; 3]) -> Vector {
     Vector::new(inches(x), inches(y), inches(z))
 }
 
-/// Distance of two poses, computed from their points: exact enough for small turns.
 fn apart(a: &Pose, b: &Pose) -> Distance {
     let [tool, wrist, finger] =
         [(a.tool, b.tool), (a.wrist, b.wrist), (a.finger, b.finger)].map(|(a, b)| vector(b) - vector(a));
@@ -59,7 +51,7 @@ fn apart(a: &Pose, b: &Pose) -> Distance {
     Distance { inches: norm(&tool), radians: turned / POINT_DISTANCE }
 }
 
-/// Position of a pose relative to a line from a point, in: along the line, and distance from it.
+/// Distance along the line, and from it, in.
 fn on_line(pose: &Pose, from: &Pose, heading: &Vector) -> (f64, f64) {
     let offset = vector(pose.tool) - vector(from.tool);
     let along = offset.dot(heading);
@@ -99,7 +91,7 @@ fn found(track: &Track, pose: &Pose) -> Option<u8> {
     u8::try_from(on?.saturating_add(1)).ok()
 }
 
-/// Cut the record off at a pose on the segment that starts with its `count`th point.
+/// Cut the record off at a pose on the segment that starts with the `count`th point.
 fn cut(track: &mut Track, count: u8, pose: &Pose) {
     let next = track.points.get(usize::from(count)).filter(|_| count < track.count).copied();
     let to = next.unwrap_or(track.end);
@@ -157,7 +149,6 @@ const fn is_motion(order: PrimVerb) -> bool {
 }
 
 impl Localization {
-    /// In each tick: record how the joystick box moves the robot away from its place or way.
     pub(in crate::emove) fn sense_track(&mut self, place: PlaceKnowledge, memory: &CommonMemory) {
         let Some(present) = memory.prim.status.sensor_pose.and_then(|pose| memory.changing_pose(pose)) else {
             return;

@@ -8,9 +8,8 @@
 //! ```
 //!
 //! A motion to the same goal continues. For another goal the robot moves back along the path to the end of the depart
-//! leg, and from there to the goal. A robot stopped in the depart leg first completes that leg. If the operator has
-//! moved the robot off the path, it first returns to the path and stops there, because the goal may be a nest with
-//! closed sides. The points of the path are not stored: they follow from its ends and the task data.
+//! leg, and from there to the goal; in the depart leg it first completes that leg. A robot that the operator moved off
+//! the path returns to it and stops there, because the goal may be a nest with closed sides.
 
 use geometry::pose::Pose;
 use interfaces::{
@@ -32,51 +31,36 @@ use crate::emove::{
 
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct Flight {
-    /// The way to its goal.
     pub route: Option<Route>,
-    /// The part of an interrupted way that is retraced first.
-    pub back: Option<Back>,
-    /// The points of the return to the place or path.
-    pub rejoin: Option<Rejoin>,
+    pub back: Option<Back>,     // the part of an interrupted way that is retraced first
+    pub rejoin: Option<Rejoin>, // points of the return to the place or path
 }
 
 /// Progress of a motion. The same order after progress is not a repetition.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub struct Progress {
-    /// Points of the route that were sent.
-    pub on: u16,
-    /// The next point, on the way back.
-    pub back: u16,
-    /// The robot has been sent to the end of its way back.
-    pub is_back: bool,
-    /// Points left on the return to the place or path.
-    pub rejoin: u8,
+    pub on: u16,       // points of the route that were sent
+    pub back: u16,     // the next point on the way back
+    pub is_back: bool, // the robot has been sent to the end of its way back
+    pub rejoin: u8,    // points left on the return to the place or path
 }
 
-/// The retraced part of an interrupted way.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct Back {
-    /// The way.
     pub route: Route,
-    /// The point, in the direction of the goal, that follows the robot: the robot moves to the point before it.
-    pub next: u16,
-    /// The end of the depart leg has been commanded.
-    pub complete: bool,
+    pub next: u16,      // the point after the robot; the robot moves to the one before
+    pub complete: bool, // the end of the depart leg has been commanded
 }
 
 /// The points to which the robot moves before its route begins: first back along the record of manual motion.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct Rejoin {
-    /// Points of the record that are left; the last one is next.
-    pub track: u8,
-    /// The points after the record.
-    pub points: [Option<Pose>; 2],
-    /// Parameters of the motions.
+    pub track: u8,                 // points of the record that are left; the last one is next
+    pub points: [Option<Pose>; 2], // the points after the record
     pub parameters: TrajParaId,
 }
 
 impl Back {
-    /// The next leg back. `None` if a record is missing.
     fn leg(&self, data: &TaskData<'_>) -> Option<EmoveLeg> {
         let (_, from) = self.route.point(self.next, data)?;
         let (frame, to) = match self.next.checked_sub(1) {
@@ -117,7 +101,6 @@ impl Rejoin {
     }
 }
 
-/// The path of a robot that moves to a point of a route.
 fn way(route: &Route, next: u16, rest: Pose, data: &TaskData<'_>) -> Way {
     Way {
         from: route.from,
@@ -132,10 +115,7 @@ fn way(route: &Route, next: u16, rest: Pose, data: &TaskData<'_>) -> Way {
     }
 }
 
-/// The complete way from a place whose depart leg is complete.
-///
-/// # Errors
-/// The reason why no way exists.
+/// The way from a place whose depart leg is complete. An error is the reason why no way exists.
 fn from_outside(from: &RobotPlace, to: &RobotPlace, data: &TaskData<'_>) -> Result<Route, Planning> {
     let route = Route::between(from, to, data)?;
     Ok(Route { commanded: route.depart_points(data), ..route })
@@ -169,10 +149,7 @@ fn start(goal: &RobotPlace, begin: &Origination, data: &TaskData<'_>) -> MotionS
 }
 
 impl Flight {
-    /// Plan the motion from the robot's start to a goal, whose place is `to`.
-    ///
-    /// # Errors
-    /// The reason why no motion exists.
+    /// `to` is the place of the goal. An error is the reason why no motion exists.
     pub(in crate::emove) fn plan(
         goal: &EmoveGoal,
         to: &RobotPlace,
@@ -235,8 +212,7 @@ impl Flight {
         self.rejoin.is_some() || back || self.route.as_ref().is_some_and(|route| route.departing(data))
     }
 
-    /// The next leg, which is recorded as commanded, and the resulting path of the robot
-    /// ([`super::EmoveMotion::send_leg`]).
+    /// Records the leg as commanded, and returns the resulting path of the robot too.
     pub(super) fn next_leg(
         &mut self,
         track: &Track,

@@ -28,11 +28,9 @@ use super::{
     tables::{EmoveContact, Initialization, Pause},
 };
 
-/// Ticks in which a GO-UNTIL may report not-detected (1 s): the robot is at rest, and a later contact is not
-/// expected.
+/// 1 s of not-detected, after which a GO-UNTIL ends: the robot is at rest, and no later contact is expected.
 const PATIENCE: u32 = 25;
 
-/// The changing pose of an output.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Slot {
     Departure,
@@ -43,25 +41,20 @@ pub(super) enum Slot {
 
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct EmoveMotion {
-    /// Commands to Prim.
     commander: Commander,
-    /// The motion, if the command is a motion command.
-    flight: Flight,
-    /// Ticks for which Prim has reported not-detected.
-    undetected: u32,
-    /// Last record number of a changing pose.
-    last_pose: u32,
-    /// The last `.R` that was executed.
-    robot_init: u32,
+    flight: Flight,  // the motion, if the command is a motion command
+    undetected: u32, // ticks of not-detected from Prim
+    last_pose: u32,  // the last record number of a changing pose
+    robot_init: u32, // the last `.R` that was executed
 }
 
 impl EmoveMotion {
-    /// In the first tick: ignore an `.R` entered before.
+    /// Ignore an `.R` entered before the first tick.
     pub(super) const fn start(&mut self, robot_init: u32) {
         self.robot_init = robot_init;
     }
 
-    /// Follow the echo until the first command, and count the ticks without detection.
+    /// Follow the echo until the first command.
     pub(super) fn sense(&mut self, inputs: &EmoveInputs<'_>) {
         let (order, prim) = (&inputs.memory.emove.prim, &inputs.memory.prim.status);
         self.commander.start_from(inputs.tick, order.number, prim.echo);
@@ -73,12 +66,11 @@ impl EmoveMotion {
         (self.flight, self.undetected) = (flight, 0);
     }
 
-    /// Status of Prim's last command.
     pub(super) fn status(&self, inputs: &EmoveInputs<'_>) -> Lower {
         self.commander.status_of(inputs.tick, &inputs.memory.prim)
     }
 
-    /// The same for the robot: after a through point it moves on to the next one.
+    /// The status of the robot: after a through point it moves to the next one.
     pub(super) fn robot(&self, inputs: &EmoveInputs<'_>) -> Lower {
         match self.status(inputs) {
             Lower::Done if inputs.memory.emove.prim.command == PrimVerb::GoThru => Lower::Executing,
@@ -112,8 +104,7 @@ impl EmoveMotion {
         &self.flight
     }
 
-    /// Opening of the fingers at the goal, 0.01 in, and whether it has been commanded; `None` if no opening is
-    /// required.
+    /// The opening at the goal, 0.01 in, and whether it has been commanded; `None` if no opening is required.
     pub(super) fn opening(&self) -> Option<(i32, bool)> {
         let route = self.flight.route.as_ref()?;
         Some((route.opening?, route.opening_sent))
@@ -125,12 +116,12 @@ impl EmoveMotion {
         }
     }
 
-    /// The handshake with Prim. Searches renumber its commands (docs/evidence.md).
+    /// Searches renumber the commands (docs/evidence.md).
     pub const fn commander(&mut self) -> &mut Commander {
         &mut self.commander
     }
 
-    /// The route with the record numbers of its ends, and the last record number. Searches renumber them.
+    /// The route, and the last record number, which searches renumber.
     pub const fn pose_numbers(&mut self) -> (Option<&mut route::Route>, &mut u32) {
         (self.flight.route.as_mut(), &mut self.last_pose)
     }
@@ -147,7 +138,6 @@ impl EmoveMotion {
         }
     }
 
-    /// Give a changing pose a new record number and value.
     pub(super) const fn publish(&mut self, slot: Slot, pose: Pose, outputs: &mut EmoveOutputs) -> u32 {
         self.last_pose = pose_range::next(pose_range::EMOVE, self.last_pose);
         let [departure, goal, between, located] = &mut outputs.poses;
@@ -187,9 +177,8 @@ impl EmoveMotion {
         self.send(PrimVerb::RobotInit, inputs, outputs);
     }
 
-    /// GO-THRU or GOTO-PT with the next point, of the route or back along `track`. Returns the resulting path of the
-    /// robot; `None` on its return to a path. `is_straight` belongs to the retraced path; `rest` is the last
-    /// commanded pose.
+    /// GO-THRU or GOTO-PT with the next point, of the route or back along `track`. Returns the robot's path; `None` on
+    /// its return to one. `is_straight` belongs to the retraced path; `rest` is the last commanded pose.
     pub(super) fn send_leg(
         &mut self,
         verb: PrimVerb,
@@ -226,7 +215,7 @@ impl EmoveMotion {
         outputs.prim.trajectory_parameters = parameters;
     }
 
-    /// DELTA-MOVE, GO-UNTIL or GO-WHILE to Prim from a record of POSE. False if the task data lack the move.
+    /// Send a relative move from a record of POSE. False if the task data lack the move.
     pub(super) fn send_relative(
         &mut self,
         verb: PrimVerb,

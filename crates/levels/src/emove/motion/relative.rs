@@ -1,9 +1,8 @@
 //! Relative moves: the short straight motions at holsters and tool drum (V.2.1 QC-DETACH … REMOVE-TOOL).
 //!
-//! The manual specifies them in the processes. Here a command names each, and task data give its movetable,
-//! parameters and sensor for the name and the location (file REL-MOVES). Some start from the pose of the command's
-//! location, independent of the robot's position. Others start from the robot's position, because a sensor ended the
-//! guarded move before.
+//! A command names each, and task data (file REL-MOVES) give its movetable, parameters and sensor for the name and
+//! the location. Some start from the pose of the command's location, independent of the robot's position. Others
+//! start from the robot's position, because a sensor ended the guarded move before.
 
 use interfaces::{
     CommonMemory,
@@ -71,7 +70,6 @@ pub enum Relative {
     RemOutOn,
 }
 
-/// The start of a relative move.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Reference {
     /// From the pose of the command's location.
@@ -111,7 +109,6 @@ impl Relative {
         }
     }
 
-    /// True if a sensor guards the move.
     #[must_use]
     pub const fn is_guarded(self) -> bool {
         matches!(
@@ -136,7 +133,6 @@ impl Relative {
     }
 }
 
-/// The first record that the relative moves of a command lack.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum RelativeMoves {
     /// No record is missing, or the command has no relative move.
@@ -177,7 +173,6 @@ pub const fn moves_of(verb: EmoveVerb) -> &'static [Relative] {
     }
 }
 
-/// Look up the records of a command's relative moves.
 #[must_use]
 pub fn look_up(command: &EmoveCommand, memory: &CommonMemory, data: &TaskData<'_>) -> RelativeMoves {
     let located = command.pose.is_some_and(|pose| match pose {

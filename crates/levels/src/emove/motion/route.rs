@@ -18,7 +18,6 @@ use crate::emove::robot_place::{gone_to, robot_at};
 /// opens this wide; the others open to their stop.
 pub const FULL_OPENING: i32 = 500;
 
-/// Result of planning a motion command.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Planning {
     /// A way exists, or the command needs none.
@@ -49,7 +48,6 @@ pub enum Planning {
     NoSpeed,
 }
 
-/// The next point of the route.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Ahead {
     /// A point on the way back to the position before manual motion.
@@ -66,68 +64,46 @@ pub enum Ahead {
 
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct Route {
-    /// The place left.
     pub from: RobotPlace,
-    /// The goal.
     pub to: RobotPlace,
-    /// Depart points, relative to the pose of departure. After bringing an object, or without depart points,
-    /// the approach points in reverse.
+    /// Relative to the pose of departure; the approach points in reverse after bringing an object, or without others.
     pub depart: PathId,
-    /// Intermediate trajectory.
     pub between: PathId,
-    /// Approach points, relative to the goal, and the stop.
+    /// Points relative to the goal, and the stop.
     pub approach: PathId,
-    /// Parameters of the final motion.
-    pub stop: TrajParaId,
-    /// Points commanded so far.
-    pub commanded: u16,
-    /// The goal has been commanded, or is not needed.
-    pub complete: bool,
-    /// Opening of the fingers at the goal, 0.01 in; `None` if no opening is required.
-    pub opening: Option<i32>,
-    /// The opening has been commanded.
+    pub stop: TrajParaId,     // parameters of the final motion
+    pub commanded: u16,       // points commanded so far
+    pub complete: bool,       // the goal has been commanded, or is not needed
+    pub opening: Option<i32>, // at the goal, 0.01 in; `None` if no opening is required
     pub opening_sent: bool,
-    /// Record number of the pose of departure, once it is published.
-    pub departure: u32,
-    /// Record number of the goal, once it is published.
-    pub goal: u32,
+    pub departure: u32, // record number of the pose, once it is published
+    pub goal: u32,      // record number of the pose, once it is published
 }
 
-/// The next point for Prim.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EmoveLeg {
     pub at: LegGoal,
     pub parameters: TrajParaId,
 }
 
-/// The end of a leg, as a command to Prim.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum LegGoal {
     Record {
-        /// Record of POSE, or changing record.
-        pose: u32,
-        /// Record of MOVTAB, if the point has one.
-        movetable: MovtabId,
+        pose: u32,           // a record of POSE, or a changing record
+        movetable: MovtabId, // if the point has one
     },
-    /// A frame without a record: a movetable applied to the previous trajectory point.
-    Computed(Frame),
+    Computed(Frame), // a movetable applied to the previous trajectory point
 }
 
-/// The goal of a command, from the task data.
 #[derive(Clone, Copy, Debug)]
 pub struct EmoveGoal {
-    /// Frame of the tool at the goal.
-    pub frame: Frame,
-    /// Opening of the fingers, 0.01 in; `None` if no opening is required.
-    pub opening: Option<i32>,
+    pub frame: Frame,         // of the tool
+    pub opening: Option<i32>, // 0.01 in; `None` if no opening is required
     pub gone_to: GoneTo,
 }
 
 impl EmoveGoal {
-    /// The goal of a motion command. `base` is the pose of the command, or of the object found by vision.
-    ///
-    /// # Errors
-    /// The record that is missing.
+    /// `base` is the pose of the command, or of the object found by vision. An error is the missing record.
     pub fn new(command: &EmoveCommand, base: &Frame, data: &TaskData<'_>) -> Result<Self, Planning> {
         let (place, gone_to) = (command.site.place(), gone_to(command));
         let object = command.object.as_ref();
@@ -159,7 +135,6 @@ impl EmoveGoal {
     }
 }
 
-/// The approach to a place, if the task data have one.
 #[must_use]
 pub fn approach_to(at: &RobotPlace, data: &TaskData<'_>) -> Option<PathId> {
     let there = at.site.place();
@@ -172,8 +147,7 @@ pub fn approach_to(at: &RobotPlace, data: &TaskData<'_>) -> Option<PathId> {
     }
 }
 
-/// True if the robot leaves a place by its approach path in reverse: with an object that it brought, and where the
-/// task data have no depart path.
+/// True if it leaves by its approach path in reverse: with an object that it brought, or without a depart path.
 fn takes_out(from: &RobotPlace, data: &TaskData<'_>) -> bool {
     match from.gone_to {
         GoneTo::Brought(_) => true,
@@ -184,14 +158,13 @@ fn takes_out(from: &RobotPlace, data: &TaskData<'_>) -> bool {
     }
 }
 
-/// The parameters with the lower velocity: a retraced segment obeys the limits of both ends.
+/// A retraced segment obeys the limits of both ends.
 pub(super) fn slower(a: TrajParaId, b: TrajParaId, data: &TaskData<'_>) -> TrajParaId {
     let velocity = |id| data.traj_para(id).map_or(i32::MAX, |parameters| parameters.vel_max);
     if velocity(b) < velocity(a) { b } else { a }
 }
 
 impl Route {
-    /// The way of a robot that is already at the goal.
     #[must_use]
     pub fn here(from: &RobotPlace, to: &RobotPlace, opening: Option<i32>) -> Self {
         Self { from: *from, to: *to, opening, complete: true, ..Self::default() }
@@ -203,10 +176,7 @@ impl Route {
         Self { from: *from, to: *to, stop, ..Self::default() }
     }
 
-    /// The complete way between two places.
-    ///
-    /// # Errors
-    /// The reason why no way exists.
+    /// An error is the reason why no way exists.
     pub fn between(from: &RobotPlace, to: &RobotPlace, data: &TaskData<'_>) -> Result<Self, Planning> {
         let (start, end) = (from.site.place(), to.site.place());
         let depart = match from.gone_to {
@@ -237,15 +207,15 @@ impl Route {
         Ok(route)
     }
 
-    /// The line of the task data for a point, from 0, and its parameters; the goal is the last point.
+    /// The line of the task data for a point, from 0; the goal is the last point.
     #[must_use]
     pub fn written<'a>(&self, point: u16, data: &TaskData<'a>) -> Option<&'a PathPoint> {
         let through = self.points(data).nth(usize::from(point)).map(|(_, found)| found);
         through.or_else(|| self.stop_line(data))
     }
 
-    /// The line with the parameters of the final motion: the stop line of the approach; without an approach, the last
-    /// point before the goal (ASSUMED, SPECNOTES).
+    /// The parameters of the final motion: the stop line of the approach; without an approach, the last point before
+    /// the goal (ASSUMED, SPECNOTES).
     fn stop_line<'a>(&self, data: &TaskData<'a>) -> Option<&'a PathPoint> {
         [self.approach, self.between, self.depart].into_iter().find_map(|path| data.path(path).last())
     }
@@ -263,7 +233,7 @@ impl Route {
             .filter(|(_, point)| point.target != Target::Stop)
     }
 
-    /// The next through point; `None` if the goal is next, or the route is complete.
+    /// `None` if the goal is next, or the route is complete.
     fn next_point<'a>(&self, data: &TaskData<'a>) -> Option<(Part, &'a PathPoint)> {
         if self.complete { None } else { self.points(data).nth(usize::from(self.commanded)) }
     }
@@ -274,20 +244,19 @@ impl Route {
         u16::try_from(points.count()).unwrap_or(u16::MAX)
     }
 
-    /// The last point sent, from 0; the goal is the last.
+    /// The last point sent, from 0.
     #[must_use]
     pub const fn heading(&self) -> u16 {
         if self.complete { self.commanded } else { self.commanded.saturating_sub(1) }
     }
 
-    /// The leg of a point; the goal belongs to the approach.
+    /// The goal belongs to the approach.
     #[must_use]
     pub fn part(&self, point: u16, data: &TaskData<'_>) -> Part {
         self.points(data).nth(usize::from(point)).map_or(Part::Approach, |(part, _)| part)
     }
 
-    /// Frame of a point, and parameters of the motion to it; the goal is the last point. `None` if a record is
-    /// missing.
+    /// The goal is the last point. `None` if a record is missing.
     #[must_use]
     pub fn point(&self, point: u16, data: &TaskData<'_>) -> Option<(Frame, TrajParaId)> {
         let (departure, goal) = (self.from.pose.to_frame().ok()?, self.to.pose.to_frame().ok()?);
@@ -318,14 +287,13 @@ impl Route {
         }
     }
 
-    /// True while the next point is a depart point: the fingers must not move (docs/design/motion.md "Finger
-    /// opening").
+    /// While the next point is a depart point, the fingers must not move (docs/design/motion.md "Finger opening").
     #[must_use]
     pub fn departing(&self, data: &TaskData<'_>) -> bool {
         matches!(self.next_point(data), Some((Part::Depart, _)))
     }
 
-    /// The next leg. `None` if a record is missing or the route is complete.
+    /// `None` if a record is missing or the route is complete.
     #[must_use]
     pub fn leg(&self, data: &TaskData<'_>) -> Option<EmoveLeg> {
         let record = |pose: u32, movetable: MovtabId| LegGoal::Record { pose, movetable };
@@ -351,7 +319,6 @@ impl Route {
         Some(EmoveLeg { at, parameters })
     }
 
-    /// Parameters of the previous point, on the departure by an approach path.
     fn behind(&self, data: &TaskData<'_>) -> Option<TrajParaId> {
         match self.commanded.checked_sub(1) {
             Some(before) => self.points(data).nth(usize::from(before)).map(|(_, point)| point.para),

@@ -48,7 +48,6 @@ pub fn data() -> TaskData<'static> {
     store.view()
 }
 
-/// The id of an end effector, from its code in a record (0: without one).
 pub fn given(id: u8) -> Option<u8> {
     (id != 0).then_some(id)
 }
@@ -58,7 +57,7 @@ pub fn frame_of(location: &str) -> Frame {
     data().locpt(id).expect("its record").frame
 }
 
-/// A frame with movetables applied in sequence.
+/// The frame with movetables applied in sequence.
 pub fn moved(frame: Frame, movetables: &[&str]) -> Frame {
     movetables.iter().fold(frame, |frame, name| {
         let id = data().movetable_named(&Name16::clipped(name)).expect("a movetable");
@@ -115,7 +114,6 @@ impl Bench {
         Self::of(location, gripper, None)
     }
 
-    /// The same with the real processes.
     pub fn real(location: &str, gripper: u8) -> Self {
         let mut bench = Self::of(location, gripper, Some(Real::new(gripper != 0)));
         assert_eq!(bench.pause(), DONE);
@@ -128,7 +126,7 @@ impl Bench {
         bench
     }
 
-    /// The same after E-PAUSE: the link is up, and the robot's place is known.
+    /// After E-PAUSE: the link is up, and the robot's place is known.
     pub fn ready(location: &str, gripper: u8) -> Self {
         let mut bench = Self::new(location, gripper);
         assert_eq!(bench.pause(), DONE);
@@ -202,7 +200,7 @@ impl Bench {
         motions
     }
 
-    /// Restart E-move, and keep its output buffers.
+    /// Keeps the output buffers of E-move.
     pub fn restart_and_finish(&mut self) {
         self.restart();
         assert_eq!(self.finish(), error(Reason::Restarted));
@@ -247,7 +245,6 @@ impl Bench {
         self.world.log.iter().filter(is_motion).cloned().collect()
     }
 
-    /// Copies of the cell in each tick of a command.
     pub fn during(&self, line: EmoveLine) -> impl Iterator<Item = Self> {
         let mut bench = self.clone();
         bench.world.log.clear();
@@ -277,7 +274,6 @@ impl Bench {
         self.until(|bench| bench.world.log.iter().any(|text| text.contains(word)));
     }
 
-    /// Distance of the robot from a frame.
     pub fn off(&self, frame: &Frame) -> f64 {
         self.world.frame.distance(frame).path()
     }
@@ -287,7 +283,6 @@ impl Bench {
         self.memory.emove.status.at.unwrap_or_default().site.location.to_string()
     }
 
-    /// The name of the held object; empty without one.
     pub fn held(&self) -> String {
         self.memory.emove.status.held.object().unwrap_or_default().to_string()
     }

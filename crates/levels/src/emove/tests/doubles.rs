@@ -29,19 +29,15 @@ use crate::{
     places::pose_of,
 };
 
-/// Ticks for which a double executes a command.
-const TICKS: u32 = 4;
+const TICKS: u32 = 4; // duration of a command
 
-/// Largest step of a stepwise motion of Prim, in.
-const STEP: f64 = 0.5;
-/// Distance before a through point at which Prim turns to the next point, in.
-const ROUNDED: f64 = 1.0;
+const STEP: f64 = 0.5; // in per tick, for a stepwise motion of Prim
+const ROUNDED: f64 = 1.0; // in before a through point, where Prim turns to the next point
 
 const fn is_motion(verb: PrimVerb) -> bool {
     !matches!(verb, PrimVerb::None | PrimVerb::Pause | PrimVerb::RobotInit | PrimVerb::CalSensor)
 }
 
-/// A frame at a fraction of the path between two frames.
 fn toward(from: &Frame, to: &Frame, share: f64) -> Frame {
     let turn = rotation_vector(&(from.rotation.inverse() * to.rotation));
     Frame { position: from.position + (to.position - from.position) * share, ..*from }
@@ -51,28 +47,20 @@ fn toward(from: &Frame, to: &Frame, share: f64) -> Frame {
 /// The failure of a command whose text contains a word.
 #[derive(Clone, Copy, Debug)]
 pub enum Mishap {
-    /// Prim reports this at the end.
-    Prim(PrimReport, Reason),
-    /// Grip reports `serror`.
-    Grip(Reason),
-    /// V-Grip or Tool-Grip reports this at any opening.
-    Jaws(JawsReport),
-    /// Quick Change always reports this.
-    Ring(QuickChangeReport),
+    Prim(PrimReport, Reason), // Prim reports this at the end
+    Grip(Reason),             // Grip reports `serror`
+    Jaws(JawsReport),         // V-Grip or Tool-Grip reports this at any opening
+    Ring(QuickChangeReport),  // Quick Change always reports this
     Joystick,
-    /// The object slips out of the fingers.
-    Slip,
-    /// Prim reports done, but the robot has not moved.
-    Stays,
+    Slip,  // the object slips out of the fingers
+    Stays, // Prim reports done, but the robot has not moved
     /// The gripper stays on the robot, drops off it, or is another one.
     Mated(u8),
     /// The sensors of the holster read this.
     Holster(u8),
-    /// Grip never completes.
-    Never,
+    Never, // Grip never completes
 }
 
-/// The cell with the doubles.
 #[derive(Clone)]
 pub struct Cell {
     scene: Scene,
@@ -82,12 +70,10 @@ pub struct Cell {
     pub v_grip: Jaws,
     pub tool_grip: Jaws,
     vision: EmoveVision,
-    /// The real processes, instead of the doubles of Quick Change and the grippers.
     pub real: Option<Real>,
     pub dead: Vec<&'static str>,
 }
 
-/// State of the cell, and its failures.
 #[derive(Clone)]
 pub struct Scene {
     pub frame: Frame,
@@ -99,10 +85,8 @@ pub struct Scene {
     /// Size of the object at the fingers, 0.01 in.
     pub object: Option<i32>,
     pub joystick: bool,
-    /// The gripper button that is pressed.
     pub button: JoystickGrip,
     pub mishaps: Vec<(&'static str, Mishap)>,
-    /// All commands of E-move in their order.
     pub log: Vec<String>,
     /// Answers of vision; `Done` after the last.
     pub answers: Vec<VisionStatus>,
@@ -251,7 +235,6 @@ impl Scene {
     }
 }
 
-/// Executes commands, and writes them into a log.
 #[derive(Clone, Default)]
 struct Receiving {
     worker: Worker,
@@ -280,11 +263,9 @@ impl Receiving {
 #[derive(Clone, Default)]
 pub struct Prim {
     pub by_steps: bool,
-    /// Offset of the arm from its commanded position.
-    pub sag: Vector,
+    pub sag: Vector, // offset of the arm from its commanded position
     receiving: Receiving,
-    /// Prim orders T3I to restart the link.
-    pub restarts: bool,
+    pub restarts: bool, // Prim orders T3I to restart the link
     pub report: PrimReport,
     pub reason: Reason,
     /// The force sensor has been calibrated, and has had power ever since.
@@ -457,7 +438,6 @@ fn sleep(header: &mut Header, tick: Tick) {
     (header.stamp, header.republished) = (tick, true);
 }
 
-/// Grip: opens and closes to the commanded opening, or to the object.
 #[derive(Clone)]
 pub struct Grip {
     receiving: Receiving,
@@ -465,8 +445,7 @@ pub struct Grip {
     reason: Reason,
     pub initialized: bool,
     pub opening: i32,
-    /// Force on each finger, lb.
-    pub force: i32,
+    pub force: i32, // lb on each finger
 }
 
 impl Default for Grip {

@@ -1,5 +1,3 @@
-//! INSERT-TOOL, RELEASE-TOOL, ACQUIRE-TOOL and REMOVE-TOOL.
-
 use geometry::frame::{Frame, Vector};
 use interfaces::{
     Reason, StatusReport, Unconfirmed,
@@ -43,21 +41,18 @@ pub const SCENARIOS: &[fn()] = &[
 const INSERTION: &[&str] =
     &["CAL-SENSOR", "DELTA-MOVE INS-FAR", "GO-WHILE INS-NEAR INS-ANY", "GO-WHILE INS-IN INS-FX"];
 
-/// Size of the tool, 0.01 in.
-pub const SIZE: i32 = 248;
+pub const SIZE: i32 = 248; // size of the tool, 0.01 in
 
 fn run(bench: &mut Bench, verb: EmoveVerb) -> (StatusReport, Reason) {
     bench.run(verb, "CUTTER", 1, "TOOL-TRNS", 3)
 }
 
-/// A robot before the drum, with a tool.
 fn loaded() -> Bench {
     let mut bench = Bench::ready("TOOL-SAFE", 3);
     bench.hold("CUTTER", SIZE, 3);
     bench
 }
 
-/// A robot with its tool in the drum.
 fn inserted() -> Bench {
     let mut bench = loaded();
     assert_eq!(run(&mut bench, InsertTool), DONE);
@@ -225,7 +220,6 @@ fn acquire_tool_at_an_empty_drum_fails_and_release_tool_moves_out() {
     assert_eq!(acquire(&mut bench), DONE, "a tool has been put into the drum");
 }
 
-/// The orders of the last command, without the pauses of a failure.
 fn orders(bench: &Bench) -> Vec<&str> {
     bench.log().into_iter().filter(|order| *order != "PAUSE").collect()
 }

@@ -1,5 +1,3 @@
-//! MOV-TO-HOL, QC-DETACH and QC-ATTACH.
-
 use interfaces::{
     Reason,
     emove::EmoveVerb::{MovToLoc, MovToObj, Pause, QcDetach, Release},

@@ -36,12 +36,10 @@ pub const SCENARIOS: &[fn()] = &[
     failed_id_pins_keep_the_estimates,
 ];
 
-/// A bare robot above the holster of a gripper, with the real processes.
 fn bare(gripper: u8) -> Bench {
     above(0, 2, gripper)
 }
 
-/// A robot above the holster of its gripper, with the real processes.
 fn with(gripper: u8) -> Bench {
     above(gripper, 1, gripper)
 }

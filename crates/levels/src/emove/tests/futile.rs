@@ -15,19 +15,16 @@ use crate::{
     halt::Commanding as _,
 };
 
-/// Each combination of the values of two variables.
 fn pairs<A: Copy, B: Copy>(all: &[A], with: &'static [B]) -> Vec<(A, B)> {
     all.iter().flat_map(|&a| with.iter().map(move |&b| (a, b))).collect()
 }
 
-/// The common variables of both commands' tables.
 type Exchange = ((((Mate, Lock), EmoveHolster), ExchangePosition), At);
 
 fn exchanges() -> Vec<Exchange> {
     pairs(&pairs(&pairs(&pairs(Mate::ALL, Lock::ALL), EmoveHolster::ALL), ExchangePosition::ALL), At::ALL)
 }
 
-/// The situations of QC-ATTACH.
 fn attach() -> impl Iterator<Item = Situation> {
     pairs(&pairs(&exchanges(), Shut::ALL), Readiness::ALL).into_iter().map(
         |((((((mate, lock), holster), along), at), shut), readiness)| {
@@ -40,7 +37,6 @@ fn attach() -> impl Iterator<Item = Situation> {
     )
 }
 
-/// The situations of QC-DETACH.
 fn detach() -> impl Iterator<Item = Situation> {
     pairs(&exchanges(), Held::ALL).into_iter().map(|(((((mate, lock), holster), along), at), held)| {
         Situation::QcDetach(

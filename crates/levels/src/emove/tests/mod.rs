@@ -1,5 +1,3 @@
-//! E-move with test doubles of Prim, Quick Change, the three grippers and vision.
-
 mod bench;
 mod confirmed;
 mod doubles;

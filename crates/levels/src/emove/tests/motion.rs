@@ -1,5 +1,3 @@
-//! MOV-…, GRASP-OBJ, RELEASE, LOCATE-OBJ and WITHDRAW with each gripper.
-
 use geometry::{frame::Vector, pose::Pose};
 use interfaces::{
     Reason, StatusReport,

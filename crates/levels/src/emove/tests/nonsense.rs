@@ -1,5 +1,3 @@
-//! Arbitrary commands and arbitrary outputs of the neighbours.
-
 use interfaces::{
     EmoveOutputs, Header, Reason,
     emove::EmoveVerb,
@@ -52,7 +50,6 @@ fn nonsense() -> impl Strategy<Value = Nonsense> {
         })
 }
 
-/// Write the inputs of a tick into common memory.
 fn bring(bench: &mut Bench, tick: &Nonsense) {
     if let Some((verb, object, grip, location, gripper)) = tick.command {
         let verb = EmoveVerb::from_code(verb).unwrap();

@@ -1,5 +1,3 @@
-//! E-PAUSE: the start, the dormancy of the gripper processes, and the joystick box.
-
 use interfaces::{
     Reason, StatusReport,
     emove::{
@@ -49,7 +47,6 @@ fn link_failure_during_pause_is_initialized_again_or_reported() {
     assert_eq!(again.finish(), error(Reason::LinkError), "no third initialization");
     bench.world.dead.push("Prim");
     assert_eq!(bench.finish(), error(Reason::NeighbourLost));
-    // The pause is done.
     let mut bench = Bench::ready("HOME", 1);
     assert_eq!(bench.pause(), DONE);
     (bench.world.prim.report, bench.world.prim.reason) = (PrimReport::T3LinkErr, Reason::LinkError);

@@ -285,7 +285,6 @@ fn restarted_emove_keeps_its_estimates() {
     assert_eq!(bench.memory.emove.status.exchange, Some(1));
 }
 
-/// The operator or another cause moves the robot.
 fn nudge(bench: &mut Bench, by_hand: bool, does: impl FnOnce(&mut Frame)) {
     if by_hand {
         bench.lead(|bench| does(&mut bench.world.frame));

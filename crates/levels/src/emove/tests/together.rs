@@ -1,5 +1,4 @@
-//! E-move with the real Quick Change, Grip, V-Grip and Tool-Grip and their simulated devices, which tests their
-//! interfaces, including sleep and wake. Prim and vision are doubles.
+//! E-move with the real Quick Change, Grip, V-Grip and Tool-Grip and their simulated devices: sleep and wake.
 
 use interfaces::{
     CommonMemory, ExternalInputs, Header, Reason, StatusReport,
@@ -88,7 +87,6 @@ impl Real {
         self.ring.place = 0.0;
     }
 
-    /// Opening of a gripper, and its stops, in.
     fn opening(&self, gripper: u8) -> (f64, (f64, f64)) {
         match gripper {
             1 => (self.parts.opening, (0.10, 5.00)),
@@ -96,7 +94,6 @@ impl Real {
         }
     }
 
-    /// Apply the valves of the tick before, and read the sensors.
     fn devices(&mut self, before: &CommonMemory, external: &mut ExternalInputs, world: &mut Scene) {
         let outputs = before.device_outputs();
         self.ring.turn(outputs.quick_change);

@@ -1,5 +1,3 @@
-//! Estimates that the operator writes while E-move is not stepped.
-
 use interfaces::{
     emove::{EmoveVerb::MovObjTo, Estimates, Holding, Located, ObjectGrip, PlacedObject},
     operator::{Variable, Write},
