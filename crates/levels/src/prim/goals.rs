@@ -1,5 +1,3 @@
-//! The goals of Prim's commands, and how the sensors compare with them.
-
 use geometry::frame::Frame;
 use interfaces::{Unconfirmed, prim::PrimVerb};
 use rcs_core::tick::TICK_S;
@@ -58,12 +56,11 @@ pub static CALIBRATED: Goal = Goal {
     unconfirmed: &[],
 };
 
-/// Seconds from a commanded point to the resolver reading of it, without the lag of the robot: T3 Interface, the
-/// line, and the reading.
+/// Delay of a resolver reading, without the lag of the robot: T3 Interface, the line, and the reading.
 const HOPS_S: f64 = 3.0 * TICK_S;
 
 impl State {
-    /// The goal of a command, compared with the sensors. `lag_ms` is the expected lag of the robot, ms.
+    /// `lag_ms` is the expected lag of the robot, ms.
     pub(super) fn proof(
         &self,
         verb: PrimVerb,
@@ -92,7 +89,6 @@ impl State {
     }
 }
 
-/// The robot passes a through point within the distance by which it follows its command.
 fn passes(goal: &PrimGoal, resolvers: Option<&Frame>, lag_ms: u16) -> Proof {
     let Some(present) = resolvers else { return Proof::unsensed(Unconfirmed::Position) };
     let PrimGoal { frame, limits, through } = goal;

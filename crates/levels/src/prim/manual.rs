@@ -1,8 +1,8 @@
 //! The joystick box moves the robot (III.3.3): a velocity instead of a goal.
 //!
-//! Stick and buttons command a velocity in the coordinates of the frame switch. The velocity is stored in world
-//! coordinates, and its change is limited by [`ACCELERATION`]. So a sudden stick motion, a switch that is turned
-//! off and a rotation of the tool frame all cause ramps. Another frame takes effect only at rest.
+//! Stick and buttons command a velocity in the coordinates of the frame switch. It is stored in world coordinates,
+//! with a limited change ([`ACCELERATION`]). So a sudden stick motion, a switch that is turned off and a rotation of
+//! the tool frame all cause ramps. Another frame takes effect only at rest.
 //!
 //! A rotation does not move its centre: the tool point, or the wrist point, 30.00 in from it (VII.2 `wo`). Its
 //! velocity is measured at the lever [`INCHES_PER_RADIAN`], or at the tool point if that is farther from the
@@ -19,10 +19,9 @@ use rcs_core::{Plain, tick::TICK_S};
 pub const SPEED: f64 = 5.0;
 /// Greatest path acceleration, in/s². ASSUMED: that of a free path (VIII.10).
 pub const ACCELERATION: f64 = 10.0;
-/// Acceleration of a ramp, in/s². The rest of [`ACCELERATION`] is for a tool point that swings about the wrist at
-/// [`SPEED`]: 5² / 30 in/s².
+/// in/s². The rest of [`ACCELERATION`] is for a tool point that swings about the wrist at [`SPEED`]: 5² / 30 in/s².
 const RAMP: f64 = 9.0;
-/// Deflections up to this share are treated as 0: potentiometers do not return to 0 exactly. ASSUMED.
+/// Smaller deflections are treated as 0: potentiometers do not return to 0 exactly. ASSUMED.
 const PLAY: f64 = 0.03;
 
 /// Coordinates of manual motions (III.3.3).
@@ -43,7 +42,6 @@ pub enum Coordinates {
 }
 
 impl Coordinates {
-    /// The frame that the switches of a box select.
     #[must_use]
     pub const fn of(joystick: &JoystickBox) -> Self {
         match joystick.frame {
@@ -63,7 +61,7 @@ impl Coordinates {
         }
     }
 
-    /// Path per radian, inches.
+    /// Path per radian, in.
     const fn lever(self) -> f64 {
         INCHES_PER_RADIAN.max(self.behind())
     }
@@ -71,46 +69,37 @@ impl Coordinates {
 
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct PrimManual {
-    /// The joystick box controls the robot in this tick.
-    pub engaged: bool,
-    /// Coordinates of the motion.
+    pub engaged: bool, // the joystick box controls the robot in this tick
     pub coordinates: Coordinates,
-    /// Commanded translation, as a share of [`SPEED`], in `coordinates`.
-    pub translate: [f64; 3],
-    /// Commanded rotation, as a share of [`SPEED`] at the lever, about the axes of the tool.
+    pub translate: [f64; 3], // share of SPEED, along the axes of `coordinates`
+    /// A share of [`SPEED`] at the lever, about the axes of the tool.
     pub rotate: [f64; 3],
-    /// in/s, in world coordinates.
-    pub linear: [f64; 3],
-    /// rad/s about the centre, in world coordinates.
-    pub angular: [f64; 3],
+    pub linear: [f64; 3],  // in/s, world
+    pub angular: [f64; 3], // rad/s about the centre, world
 }
 
-/// The share from -1 to 1 that two buttons command.
 fn buttons(plus: bool, minus: bool) -> f64 {
     f64::from(i8::from(plus).saturating_sub(i8::from(minus)))
 }
 
-/// The share from -1 to 1 that a stick commands: 0 at the end of the play, linear beyond it.
+/// A share from -1 to 1: 0 within the play, linear beyond it.
 fn deflection(counts: i16) -> f64 {
     let share = f64::from(counts).abs() / f64::from(KNOB_FULL);
     let beyond = ((share - PLAY) / (1.0 - PLAY)).clamp(0.0, 1.0);
     if counts < 0 { -beyond } else { beyond }
 }
 
-/// True if a stick or button is moved beyond its play.
 #[must_use]
 pub fn is_moved(joystick: &JoystickBox) -> bool {
     let pressed = [joystick.up, joystick.down, joystick.roll_plus, joystick.roll_minus];
     deflection(joystick.x) != 0.0 || deflection(joystick.y) != 0.0 || pressed.contains(&true)
 }
 
-/// The vector, shortened to a length of 1.
 fn within_one(v: Vector) -> Vector {
     let length = norm(&v);
     if length > 1.0 { v / length } else { v }
 }
 
-/// The velocity, changed towards another by `most` at most.
 fn towards(from: [f64; 3], to: &Vector, most: f64) -> Vector {
     let from = Vector::from(from);
     let change = to - from;
@@ -119,13 +108,12 @@ fn towards(from: [f64; 3], to: &Vector, most: f64) -> Vector {
 }
 
 impl PrimManual {
-    /// Ramp down to rest.
     pub fn release(&mut self) {
         self.engaged = false;
         (self.translate, self.rotate) = ([0.0; 3], [0.0; 3]);
     }
 
-    /// Command the motion of stick and buttons. They have no effect while a motion in other coordinates ramps down.
+    /// Stick and buttons have no effect while a motion in other coordinates ramps down.
     pub fn ask(&mut self, joystick: &JoystickBox) {
         self.engaged = true;
         let coordinates = Coordinates::of(joystick);
@@ -150,7 +138,6 @@ impl PrimManual {
         self.linear != [0.0; 3] || self.angular != [0.0; 3]
     }
 
-    /// True if the robot moves or is to move.
     #[must_use]
     pub fn is_moving(&self) -> bool {
         self.has_speed() || self.translate != [0.0; 3] || self.rotate != [0.0; 3]

@@ -9,7 +9,7 @@
 //! * the *path clock* ([`tables::path_clock`]), which stops while T3I has enough points.
 //!
 //! So three tables are consulted in every tick, for every command: ATTEND decides whether the tables of the command
-//! are consulted; PATH-CLOCK and RECORD-POSE use the motion after the row of the command.
+//! follow; PATH-CLOCK and RECORD-POSE use the motion after the row of the command.
 //!
 //! ```text
 //!                        ROBOT-INIT: RESTART, link runs, frame-feedback taken over
@@ -20,10 +20,9 @@
 //! ```
 //!
 //! A motion also leads from the left to the right if T3I reports that the robot is at its commanded position. The
-//! command stays in execution, and continues from rest at the robot's position. So the robot is never commanded to
-//! jump to a position that Prim assumes. PAUSE ramps down and then repeats the last point under its number: T3I
-//! holds it, its queue is not cut short, and the commanded position stays exact. PAUSE goes to T3I only while Prim
-//! has no position.
+//! command continues from rest there, so the robot is never commanded to jump to an assumed position. PAUSE ramps
+//! down and then repeats the last point under its number: T3I holds it, its queue is not cut short, and the commanded
+//! position stays exact. PAUSE goes to T3I only while Prim has no position.
 //!
 //! A stick or button that is moved while a frame switch is on stops every motion with `joystick-on`; only during
 //! PAUSE does the box move the robot. The sensors of guarded moves are in [`sensors`].
@@ -112,10 +111,7 @@ impl<'d> Process<TaskData<'d>> for Prim {
 }
 
 impl State {
-    /// Consult ATTEND.
-    ///
-    /// # Errors
-    /// The action of ATTEND, if the tables of the command are not consulted.
+    /// Consult ATTEND. Its action is the error if the tables of the command are not consulted.
     fn attend(&mut self, course: Course, seen: &mut StateVariables) -> Result<Course, Action> {
         let attendance =
             Attendance { course, kind: CommandKind::of(seen.verb), operator: seen.situation.operator };

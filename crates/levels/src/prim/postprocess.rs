@@ -1,5 +1,3 @@
-//! Postprocess of Prim: the motion, the command to T3I, and the status to E-move.
-
 use geometry::{
     pose::{Pose, WireFrame},
     units::hundredths,
@@ -28,7 +26,7 @@ use super::{
 use crate::execution::Outcome;
 
 impl State {
-    /// Begin an accepted command. Only a new GO-UNTIL clears the detected pose.
+    /// Only a new GO-UNTIL clears the detected pose.
     pub(super) fn begin(&self, outputs: &mut PrimOutputs) {
         if self.target.verb == PrimVerb::GoUntil {
             let [_, _, detected, _] = &mut outputs.poses;
@@ -36,7 +34,6 @@ impl State {
         }
     }
 
-    /// Carry out the action of the command's row.
     pub(super) fn act(
         &mut self,
         action: Action,
@@ -94,7 +91,6 @@ impl State {
         }
     }
 
-    /// Give the goal of the command to the motion.
     fn go(&mut self) {
         if let (Some(motion), Some(goal)) = (&mut self.motion, &self.target.goal) {
             motion.go(&goal.frame.frame(), &goal.limits, goal.through);
@@ -109,7 +105,7 @@ impl State {
         }
     }
 
-    /// The condition holds: publish the resolver frame, or without resolvers the commanded one, and stop the robot.
+    /// Publish the resolver frame, or without resolvers the commanded one, and stop the robot.
     fn detect(&mut self, seen: &StateVariables, outputs: &mut PrimOutputs) {
         let commanded = self.motion.as_ref().map(PrimMotion::frame);
         let [_, _, detected, _] = &mut outputs.poses;
@@ -123,7 +119,6 @@ impl State {
         self.manual = PrimManual::default();
     }
 
-    /// Write a command with a new number to T3I.
     fn command_t3i(&mut self, command: T3iVerb, tick: Tick, t3i: &mut T3iCommand) {
         let frame = match (command, &self.motion) {
             (T3iVerb::Point, Some(motion)) => WireFrame::from_frame(&motion.frame()),
@@ -132,8 +127,7 @@ impl State {
         *t3i = T3iCommand { cycle: tick, number: self.t3i.send(tick), command, frame };
     }
 
-    /// Consult the tables that use the motion after the command's row, and carry out their actions. True if the
-    /// commanded pose is recorded.
+    /// Consult the tables after the command's row, and carry out their actions. True if the commanded pose is recorded.
     pub(super) fn follow_path(
         &mut self,
         seen: &StateVariables,
@@ -163,7 +157,6 @@ impl State {
         record.action
     }
 
-    /// Advance the path by a tick; `knob` is the velocity knob, 0 to 1000.
     fn advance(&mut self, knob: u16) {
         let Some(motion) = &mut self.motion else { return };
         if self.manual.is_moving() {
@@ -174,7 +167,6 @@ impl State {
         }
     }
 
-    /// Write the pose records, the status to E-move, and the LEDs of the joystick box.
     pub(super) fn report(
         &mut self,
         recording: Recording,
@@ -218,7 +210,7 @@ impl State {
         outputs.joystick_leds = if engaged { devices.joystick.frame } else { 0 };
     }
 
-    /// Write a pose record, under a new number if the pose differs. `None` empties the record.
+    /// A different pose gets a new number. `None` empties the record.
     fn publish(&mut self, record: &mut ChangingPose, pose: Option<Pose>) {
         match pose {
             None => *record = ChangingPose::default(),

@@ -1,6 +1,3 @@
-//! Preprocess of Prim: its state variables, from the statuses of T3I and E-move, the resolvers, the sensors
-//! and the joystick box.
-
 use core::mem;
 
 use depc::track;
@@ -30,17 +27,15 @@ use super::{
 };
 use crate::{execution::Asked, halt::Above, places::pose_of};
 
-/// Consecutive ticks of rest at the goal before the robot is at rest (docs/design/motion.md "Rest").
+/// Consecutive ticks at the goal until the robot is at rest (docs/design/motion.md "Rest").
 const SETTLED: u32 = 3;
-/// Time limit for rest after the last point, ticks: 2 s (docs/design/motion.md "Rest").
+/// 2 s, in which the robot must rest after the last point (docs/design/motion.md "Rest").
 const PATIENCE: u32 = 50;
-/// Tolerance of the goal, and greatest motion per tick at rest, inches.
-const AT_GOAL_INCHES: f64 = 0.02;
-/// The same for rotations, radians: 0.1 degree.
-const AT_GOAL_RADIANS: f64 = 0.1 * core::f64::consts::PI / 180.0;
+const AT_GOAL_INCHES: f64 = 0.02; // tolerance of the goal; greatest motion per tick at rest
+const AT_GOAL_RADIANS: f64 = 0.1 * core::f64::consts::PI / 180.0; // 0.1 degree
 
 impl State {
-    /// Read the inputs of a tick. `outputs` are those of the previous tick.
+    /// `outputs` are those of the previous tick.
     pub(super) fn sense(
         &mut self,
         inputs: &Inputs<'_, TaskData<'_>>,
@@ -90,8 +85,7 @@ impl State {
         StateVariables { arrival, verb, request, field, proof, situation, button, feedback, resolvers }
     }
 
-    /// After Prim was held or suspended the motion continues from rest, because T3I has stopped the robot. If Prim
-    /// is stepped singly, the motion continues from point to point.
+    /// T3I has stopped the robot while Prim was held or suspended. A singly stepped Prim moves from point to point.
     fn resume_from_rest(&mut self, inputs: &Inputs<'_, TaskData<'_>>) {
         let stopped = inputs.external.operator.is_stopped(ProcessId::Prim.board());
         let held = stopped || inputs.external.devices.joystick.hold & single_step::PRIM != 0;
@@ -104,7 +98,7 @@ impl State {
         }
     }
 
-    /// Look up the records that a new command names; keep them if they are complete.
+    /// The records of a new command are kept if they are complete.
     fn look_up(&mut self, command: &PrimCommand, inputs: &Inputs<'_, TaskData<'_>>) -> Request {
         let missing = match target(command, inputs) {
             Ok(target) => {
@@ -118,7 +112,6 @@ impl State {
         Request { asked: Asked::Now, missing }
     }
 
-    /// The state of the commanded motion.
     pub(super) fn posture(&self, t3i: Interface) -> Posture {
         match &self.motion {
             None => Posture::Unpositioned,
@@ -128,11 +121,8 @@ impl State {
         }
     }
 
-    /// The state of T3I, as far as it answers the command `sent`.
-    ///
-    /// A point is sent in each tick and echoed two ticks later. So the echo of the previous point is accepted while
-    /// points are sent. Any other command must be echoed itself, so that an error from before a RESTART is not
-    /// taken for an answer to it.
+    /// A point is sent in each tick and echoed two ticks later, so the echo of the previous point is accepted while
+    /// points are sent. Any other command must be echoed itself: an error from before a RESTART is no answer to it.
     fn interface(&self, inputs: &Inputs<'_, TaskData<'_>>, sent: &T3iCommand) -> Interface {
         let t3i = &inputs.memory.t3i;
         let (number, echo) = (self.t3i.number, t3i.status.echo);
@@ -156,8 +146,7 @@ impl State {
         }
     }
 
-    /// Watch the resolvers after the last point for rest at the goal, and for rest anywhere. Without resolvers the
-    /// report of T3I is used.
+    /// Watch for rest after the last point, at the goal or anywhere: by the resolvers, else by the report of T3I.
     fn ends(
         &mut self,
         inputs: &Inputs<'_, TaskData<'_>>,
@@ -194,7 +183,7 @@ impl State {
         guard
     }
 
-    /// The readings of CAL-SENSOR; all must be from the same rest.
+    /// All readings of CAL-SENSOR must be from the same rest.
     fn samples(&mut self, inputs: &Inputs<'_, TaskData<'_>>, rest: PrimRest) -> Samples {
         let DeviceInputs { force, field, .. } = &inputs.external.devices;
         self.calibration.watch_power(force);
@@ -215,7 +204,6 @@ impl State {
 }
 
 impl Standstill {
-    /// Whether the robot has rested for this many `ticks`.
     const fn rest(&self, ticks: u32) -> PrimRest {
         if ticks >= SETTLED {
             PrimRest::Arrived
@@ -241,7 +229,7 @@ impl CommandKind {
     }
 }
 
-/// A command with its records, or the first missing one.
+/// The error is the first missing record.
 fn target(command: &PrimCommand, inputs: &Inputs<'_, TaskData<'_>>) -> Result<PrimTarget, PrimMissing> {
     let verb = command.command;
     let sensor = match verb {
@@ -271,7 +259,6 @@ fn goal(command: &PrimCommand, inputs: &Inputs<'_, TaskData<'_>>) -> Result<Prim
     })
 }
 
-/// How many frame switches of the joystick box are on.
 fn switches(joystick: &JoystickBox) -> Switches {
     match joystick.frame.count_ones() {
         0 => Switches::Off,
@@ -280,7 +267,6 @@ fn switches(joystick: &JoystickBox) -> Switches {
     }
 }
 
-/// Whether a command needs a position.
 const fn position(verb: PrimVerb) -> Position {
     match verb {
         PrimVerb::None | PrimVerb::Pause | PrimVerb::RobotInit => Position::NotNeeded,
@@ -298,8 +284,7 @@ fn operator(joystick: &JoystickBox) -> PrimOperator {
     if on && is_moved(joystick) { PrimOperator::Moves } else { PrimOperator::Idle }
 }
 
-/// T3I's check of the report after the last RESTART; not available before T3I has echoed the RESTART, or while it
-/// starts the link.
+/// The check after the last RESTART; not available before T3I has echoed it, or while T3I starts the link.
 const fn report(interface: Interface, status: &T3iStatus) -> ReportCheck {
     match interface {
         Interface::Busy | Interface::Silent => ReportCheck::NoReport,
@@ -308,7 +293,6 @@ const fn report(interface: Interface, status: &T3iStatus) -> ReportCheck {
     }
 }
 
-/// The meaning of a fault of T3I.
 const fn fault(status: &T3iStatus) -> Interface {
     match status.fault {
         _ if matches!(status.following, Following::OffPath) => Interface::OffPath,
@@ -320,7 +304,6 @@ const fn fault(status: &T3iStatus) -> Interface {
     }
 }
 
-/// The meaning of a link that does not respond.
 const fn silence(status: &T3iStatus) -> Interface {
     if status.controller_ready { Interface::LinkSilent } else { Interface::LinkOff }
 }

@@ -1,12 +1,11 @@
 //! The sensors of guarded moves: device words become "the condition holds" or "the sensor is faulty".
 //!
-//! Low-level sensors that affect the motion from cycle to cycle are inputs of Prim (V.1.1). A guarded move names one
-//! (SENSOR-PARA); it watches the tool gripper's force sensor (III.3.8), the proximity sensors of a holster (III.3.4) or
-//! the beams between the fingers (III.3.6).
+//! A guarded move names a sensor (V.1.1, SENSOR-PARA): the tool gripper's force sensor (III.3.8), the proximity
+//! sensors of a holster (III.3.4) or the beams between the fingers (III.3.6).
 //!
 //! A force is the reading less the *bias*, which CAL-SENSOR takes with the robot at rest: strain gages drift, and
-//! measure the weight of the held part. Without a bias a force is not valid, and the guarded move is refused with
-//! `sensor-error`. The same applies to a reading at an end of its converter, where greater forces cannot be
+//! measure the weight of the held part. Without a bias, or with a reading at an end of its converter, a force is not
+//! valid, and the guarded move is refused with `sensor-error`.
 //! distinguished.
 
 use interfaces::{
@@ -21,32 +20,24 @@ use taskdata::files::{SensorPara, SensorSource};
 
 use super::tables::{Guard, Samples};
 
-/// Readings for a bias: 0.4 s. ASSUMED.
-pub const SAMPLES: u32 = 10;
-/// `endeff-id#` of the gripper with the beams.
-const BEAM_GRIPPER: u8 = 1;
-/// Both large sensors of a holster: the ears are near.
-const NEAR: u8 = 0x03;
-/// Both small sensors of a holster: the ears are seated.
-const SEATED: u8 = 0x0C;
+pub const SAMPLES: u32 = 10; // 0.4 s. ASSUMED
+const BEAM_GRIPPER: u8 = 1; // `endeff-id#` of the gripper with the beams
+const NEAR: u8 = 0x03; // both large sensors of a holster: the ears are near
+const SEATED: u8 = 0x0C; // both small sensors of a holster: the ears are seated
 
-/// The bias of the force sensor and its measurement. Counts, in the order tool Fx, Fy, Fz, My.
+/// Bias of the force sensor, in counts, in the order tool Fx, Fy, Fz, My.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct ForceCalibration {
     /// The reading without load; cleared when the sensor loses power.
     pub bias: Option<[f64; FORCE_AXES]>,
-    /// Sum of the readings taken so far.
     pub sum: [f64; FORCE_AXES],
-    /// How many.
     pub samples: u32,
 }
 
-/// The reading of the sensor of a guarded move.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GuardReading {
     pub guard: Guard,
-    /// lb or in lb; 1 while a switch is on.
-    pub value: f64,
+    pub value: f64, // lb or in lb; 1 while a switch is on
 }
 
 impl Default for GuardReading {
@@ -63,8 +54,8 @@ impl GuardReading {
     }
 }
 
-/// Counts from the middle of the converters as tool Fx, Fy, Fz, My: tool X, Y, Z are sensor Z, -Y, X (III.3.8).
-/// `None` if the sensor has no power, or an axis is overloaded: then the other axes are not valid either.
+/// Counts from the middle as tool Fx, Fy, Fz, My: tool X, Y, Z are sensor Z, -Y, X (III.3.8). `None` if the sensor has
+/// no power, or an axis is overloaded: then the other axes are not valid either.
 fn tool_axes(force: &ForceSensor) -> Option<[f64; FORCE_AXES]> {
     let sound = |counts: u16| (1..ADC_FULL_SCALE).contains(&counts);
     if !force.valid || ![force.x, force.y, force.z, force.moment].into_iter().all(sound) {
@@ -75,19 +66,17 @@ fn tool_axes(force: &ForceSensor) -> Option<[f64; FORCE_AXES]> {
 }
 
 impl ForceCalibration {
-    /// Each tick: clear the bias when the sensor has no power.
+    /// Without power the bias is lost.
     pub fn watch_power(&mut self, force: &ForceSensor) {
         if !force.valid {
             *self = Self::default();
         }
     }
 
-    /// Discard the readings of an unfinished bias.
     pub fn begin(&mut self) {
         (self.sum, self.samples) = ([0.0; FORCE_AXES], 0);
     }
 
-    /// Whether a reading can be taken, or all have been taken.
     #[must_use]
     pub fn progress(&self, force: &ForceSensor) -> Samples {
         if tool_axes(force).is_none() {
@@ -106,7 +95,6 @@ impl ForceCalibration {
         }
     }
 
-    /// Take the mean of the readings as the bias.
     pub fn finish(&mut self) {
         if self.samples > 0 {
             self.bias = Some(self.sum.map(|sum| sum / f64::from(self.samples)));
@@ -120,7 +108,7 @@ impl ForceCalibration {
         Some(counts / f64::from(counts_per_unit))
     }
 
-    /// The reading of a sensor in this tick. `end_effector` is the id of the attached gripper.
+    /// `end_effector` is the id of the attached gripper.
     #[must_use]
     pub fn read(
         &self,
@@ -153,7 +141,6 @@ impl ForceCalibration {
     }
 }
 
-/// Whether both sensors of a pair detect the ears.
 fn holster(sensors: &HolsterSensors, which: i32, pair: u8) -> GuardReading {
     match which {
         1 => GuardReading::switch(sensors.right & pair == pair),
@@ -163,7 +150,7 @@ fn holster(sensors: &HolsterSensors, which: i32, pair: u8) -> GuardReading {
     }
 }
 
-/// Whether a beam is broken, 1 to 8, or any (0). Faulty for grippers without beams.
+/// A beam, 1 to 8, or any (0). Faulty for grippers without beams.
 fn beam(beams: u8, which: i32, end_effector: Option<u8>) -> GuardReading {
     let mask = match u32::try_from(which) {
         Ok(0) => u8::MAX,

@@ -10,8 +10,7 @@ use rcs_core::{Plain, tick::TICK_S};
 const VELOCITY_COUNT: f64 = 0.1;
 /// in/s² per count of `acc-fac`: a velocity count per tick (4 is 10 in/s²). ASSUMED.
 const ACCELERATION_COUNT: f64 = VELOCITY_COUNT / TICK_S;
-/// in/s³ per count of `smooth`: an acceleration count per tick, so a larger number is less smoothing (VII.6).
-/// ASSUMED.
+/// in/s³ per count of `smooth`: an acceleration count per tick; a larger number is less smoothing (VII.6). ASSUMED.
 const JERK_COUNT: f64 = ACCELERATION_COUNT / TICK_S;
 /// Greatest velocity on the DEPC link, in/s (A 2.3).
 pub const LINK_VELOCITY: f64 = 14.0;
@@ -19,17 +18,13 @@ pub const LINK_VELOCITY: f64 = 14.0;
 /// Limits along a path, whose inches are those of [`geometry::frame::Distance::path`].
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct Limits {
-    /// in/s.
-    pub velocity: f64,
-    /// in/s².
-    pub acceleration: f64,
-    /// in/s³.
-    pub jerk: f64,
+    pub velocity: f64,     // in/s
+    pub acceleration: f64, // in/s²
+    pub jerk: f64,         // in/s³
 }
 
 impl Limits {
-    /// Limits from the counts of a TRAJ-PARA record; the velocity is limited to [`LINK_VELOCITY`]. `None` if a
-    /// count is not positive: such a move would never end.
+    /// The velocity is limited to [`LINK_VELOCITY`]. `None` if a count is not positive: such a move would never end.
     #[must_use]
     pub fn from_counts(acc_fac: i32, vel_max: i32, smooth: i32) -> Option<Self> {
         if acc_fac <= 0 || vel_max <= 0 || smooth <= 0 {
@@ -42,7 +37,7 @@ impl Limits {
         })
     }
 
-    /// Half the acceleration and jerk: the share of each of two superposed motions.
+    /// Half the acceleration and jerk, for each of two superposed motions.
     #[must_use]
     pub fn share(&self) -> Self {
         Self { velocity: self.velocity, acceleration: self.acceleration * 0.5, jerk: self.jerk * 0.5 }

@@ -16,15 +16,14 @@
 //!                          ^ new segment starts: not before the old one brakes
 //! ```
 //!
-//! * The new segment starts no earlier than the old one brakes, and accelerates no faster than it brakes. So the
-//!   sum of both velocities never exceeds the larger of their limits, and a straight passage runs at full speed if
-//!   its next goal arrives in time.
+//! * The new segment starts no earlier than the old one brakes, and accelerates no faster than it brakes. So the sum
+//!   of both velocities never exceeds the larger limit, and a straight passage runs at full speed if its next goal
+//!   arrives in time.
 //! * Braking towards a through point and starting over a residual use half of acceleration and jerk each, so the
-//!   vector sum keeps the limits at any angle between the segments. Starts without a residual and the stop at a last
-//!   point use all of them.
+//!   vector sum keeps the limits at any angle. Starts without a residual and the last stop use all of them.
 //! * At most two motions are superposed: a through point is passed only when no older residual is left.
-//! * Knob, PAUSE and an early new goal are handled alike, as a new velocity for the running profile. After a stop
-//!   the next segment starts where the stop ended.
+//! * Knob, PAUSE and an early new goal are a new velocity for the running profile. After a stop the next segment
+//!   starts where the stop ended.
 //!
 //! Rotations are superposed as world rotations. Their acceleration then has a small extra term, at most the product
 //! of both angular velocities.
@@ -44,21 +43,15 @@ use self::{
     segment::{FrameData, Segment, SegmentOrder},
 };
 
-/// The commanded motion of the tool frame.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct PrimMotion {
-    /// The commanded frame.
     pub at: FrameData,
     /// Goal of the last order; the commanded frame after a halt.
-    pub goal: FrameData,
-    /// The previous segment, which brakes into its through point.
-    pub residual: Option<Segment>,
-    /// The segment under way.
+    pub goal: FrameData, // goal of the last order; after a halt, the commanded frame
+    pub residual: Option<Segment>, // the previous segment, which brakes into its through point
     pub current: Option<Segment>,
-    /// The next order.
     pub next: Option<SegmentOrder>,
-    /// The motion comes to rest before the next segment starts.
-    pub halting: bool,
+    pub halting: bool, // the motion comes to rest before the next segment starts
 }
 
 impl PrimMotion {
@@ -73,20 +66,18 @@ impl PrimMotion {
         self.at.frame()
     }
 
-    /// [`geometry::frame::Distance::path`] from the commanded frame to the goal of the last order, inches.
+    /// Path from the commanded frame to the goal of the last order, inches.
     #[must_use]
     pub fn distance(&self) -> f64 {
         self.frame().distance(&self.goal.frame()).path()
     }
 
-    /// True if nothing moves and no order is waiting.
     #[must_use]
     pub fn is_at_rest(&self) -> bool {
         self.current.is_none() && self.residual.is_none() && self.next.is_none() && !self.halting
     }
 
-    /// The last order was a GO-THRU and the next one may be given: no older residual is left, and the point is
-    /// nearer than the brake distance.
+    /// The next order may be given after a GO-THRU: no older residual is left, and the point is within brake distance.
     #[must_use]
     pub fn is_passing(&self) -> bool {
         let alone = self.residual.is_none() && self.next.is_none() && !self.halting;
@@ -94,7 +85,7 @@ impl PrimMotion {
         alone && self.current.as_ref().is_none_or(near)
     }
 
-    /// Go to a goal: directly from a through point that [`is_passing`](Self::is_passing), else after a halt.
+    /// Go directly if the motion [`is_passing`](Self::is_passing) a through point, else after a halt.
     pub fn go(&mut self, goal: &Frame, limits: &Limits, through: Option<f64>) {
         self.halting = !self.is_passing();
         let goal = FrameData::from(goal);
@@ -111,7 +102,7 @@ impl PrimMotion {
         }
     }
 
-    /// Set the position of a robot at rest that was moved by other means. A waiting order starts there.
+    /// Set the position of a robot that was moved by other means. A waiting order starts there.
     pub fn put(&mut self, frame: &Frame) {
         self.at = FrameData::from(frame);
         if self.next.is_none() {
@@ -119,8 +110,7 @@ impl PrimMotion {
         }
     }
 
-    /// Continue from rest at the last point, straight to the goal of the last order. The robot may have stopped
-    /// anywhere.
+    /// Continue from rest at the last point, straight to the goal of the last order. The robot may be anywhere.
     pub fn stand(&mut self) {
         let under_way = self.current.filter(|_| !self.halting).map(|segment| segment.order);
         let next = self.next.or(under_way);
@@ -128,7 +118,7 @@ impl PrimMotion {
         *self = if next.is_some() { Self { goal: self.goal, next, ..rested } } else { rested };
     }
 
-    /// Advance the path clock by a tick; `knob` is the velocity knob, 0 to 1000.
+    /// `knob` is the velocity knob, 0 to 1000.
     pub fn step(&mut self, knob: u16) {
         if let (Some(order), None, None) = (self.next, &self.current, &self.residual) {
             self.start_from_rest(&order, knob);
@@ -154,7 +144,6 @@ impl PrimMotion {
         self.residual.as_ref().map_or(frame, |residual| residual.missing().apply(&frame))
     }
 
-    /// Start the next order from rest, with all of its limits.
     fn start_from_rest(&mut self, order: &SegmentOrder, knob: u16) {
         self.current = Some(Segment::new(&self.at.frame(), order));
         self.next = None;
@@ -162,7 +151,6 @@ impl PrimMotion {
         self.plan(&SegmentState::default(), knob);
     }
 
-    /// Plan the current profile again if the permitted velocity has changed.
     fn follow(&mut self, knob: u16) {
         let current = self.current.as_ref().filter(|current| {
             !current.profile.is_braking() && self.velocity(&current.order, knob) != current.velocity
@@ -172,13 +160,12 @@ impl PrimMotion {
         }
     }
 
-    /// Velocity permitted for the current segment, in/s.
+    /// The permitted velocity, in/s.
     fn velocity(&self, order: &SegmentOrder, knob: u16) -> f64 {
         if self.halting { 0.0 } else { order.limits.velocity_at(knob) }
     }
 
-    /// Plan the current segment from a state on it. If that is impossible the old plan remains: it ends at the
-    /// goal, and the next tick tries again.
+    /// If a plan is impossible from this state the old one remains: it ends at the goal, and the next tick tries again.
     fn plan(&mut self, from: &SegmentState, knob: u16) {
         let Some(current) = &self.current else { return };
         let (order, length) = (current.order, current.length);
@@ -205,8 +192,7 @@ impl PrimMotion {
         }
     }
 
-    /// Start the segment of the next order as soon as the `old` one brakes. `before` is the clock of the old one in
-    /// the previous tick.
+    /// The next segment starts as soon as the `old` one brakes. `before` is the old clock in the previous tick.
     fn hand_over(&mut self, order: &SegmentOrder, old: Segment, before: f64, knob: u16) {
         let clock = old.profile.clock;
         let Some(braking_point) = old.profile.braking_point().filter(|begin| clock >= *begin) else {
@@ -225,7 +211,6 @@ impl PrimMotion {
         self.current = self.current.map(|current| at(late, current));
     }
 
-    /// Drop the segments that are at rest.
     fn retire(&mut self) {
         self.residual = self.residual.filter(|residual| !residual.is_at_rest());
         let Some(current) = &self.current else { return };

@@ -1,6 +1,5 @@
 //! Distance along a segment over time: a jerk-limited profile in closed form.
 //!
-//! A profile changes the velocity to a cruise velocity, cruises, and stops at the goal: up to seven phases of constant
 //! A profile changes the velocity to a cruise velocity, cruises, and stops at the goal: up to seven phases of
 //! constant jerk, from any velocity and acceleration. The change and the stop may have different limits. A profile
 //! is continuous in time and only its *samples* are sent. So differences of samples are means of the true velocity,
@@ -13,50 +12,36 @@ use rcs_core::Plain;
 
 use super::limits::Limits;
 
-/// Bisections for the cruise velocity: 14 in/s over 2^48 is less than a rounding error of the path.
+/// Enough: 14 in/s over 2^48 is less than a rounding error of the path.
 const BISECTIONS: u32 = 48;
 /// Shorter paths are treated as no motion, inches.
 pub const NO_PATH: f64 = 1e-9;
 
-/// State along a segment.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct SegmentState {
-    /// Path from the start, inches.
-    pub position: f64,
-    /// in/s, negative only by rounding.
-    pub velocity: f64,
-    /// in/s².
-    pub acceleration: f64,
+    pub position: f64,     // in, from the start
+    pub velocity: f64,     // in/s, negative only by rounding
+    pub acceleration: f64, // in/s²
 }
 
-/// A phase of constant jerk.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct JerkPhase {
-    /// Seconds.
-    pub duration: f64,
-    /// in/s³.
-    pub jerk: f64,
+    pub duration: f64, // s
+    pub jerk: f64,     // in/s³
 }
 
 /// A planned motion along a segment, and its clock.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct Profile {
-    /// State at clock 0.
-    pub start: SegmentState,
-    /// To the cruise velocity.
-    pub change: [JerkPhase; 3],
-    /// Duration at the cruise velocity, seconds.
-    pub cruise: f64,
-    /// From the cruise velocity to rest.
-    pub stop: [JerkPhase; 3],
-    /// The profile ends at the goal; otherwise where it comes to rest.
-    pub to_goal: bool,
-    /// Seconds since `start`.
-    pub clock: f64,
+    pub start: SegmentState,    // state at clock 0
+    pub change: [JerkPhase; 3], // to the cruise velocity
+    pub cruise: f64,            // s
+    pub stop: [JerkPhase; 3],   // from the cruise velocity to rest
+    pub to_goal: bool,          // otherwise the profile ends where it comes to rest
+    pub clock: f64,             // s since `start`
 }
 
 impl SegmentState {
-    /// The state after `time` seconds of constant jerk.
     #[must_use]
     fn after(&self, time: f64, jerk: f64) -> Self {
         let (v, a) = (self.velocity, self.acceleration);
@@ -99,7 +84,6 @@ fn change(from: &SegmentState, velocity: f64, limits: &Limits) -> [JerkPhase; 3]
     ]
 }
 
-/// Path of a stop from a velocity without acceleration.
 fn stopping_path(velocity: f64, limits: &Limits) -> f64 {
     let ramp = limits.acceleration / limits.jerk;
     let time = if velocity >= limits.acceleration * ramp {
@@ -110,13 +94,13 @@ fn stopping_path(velocity: f64, limits: &Limits) -> f64 {
     velocity * time / 2.0
 }
 
-/// End of a profile with this cruise velocity and no cruise.
+/// The end of a profile without a cruise.
 fn end(from: &SegmentState, velocity: f64, change_limits: &Limits, stop_limits: &Limits) -> f64 {
     from.after_all(&change(from, velocity, change_limits)).position + stopping_path(velocity, stop_limits)
 }
 
-/// The highest cruise velocity from which the profile ends no later than at `goal`. `None` if the goal would be
-/// overrun, or if a dip to a lower `cap` needs more than the remaining path.
+/// The highest cruise velocity with an end no later than `goal`. `None` if the goal would be overrun, or if a dip
+/// to a lower `cap` needs more than the remaining path.
 fn cruise_velocity(from: &SegmentState, goal: f64, cap: f64, up: &Limits, down: &Limits) -> Option<f64> {
     if end(from, cap, up, down) <= goal {
         return Some(cap);
@@ -138,8 +122,8 @@ fn cruise_velocity(from: &SegmentState, goal: f64, cap: f64, up: &Limits, down: 
 }
 
 impl Profile {
-    /// A profile to the goal, at `cap` in/s at most: speed changes within `up`, the stop within `down`. `None` if
-    /// that is impossible from this state; then the old profile remains in use.
+    /// The profile has `cap` in/s at most, speed changes within `up` and a stop within `down`. `None` if impossible
+    /// from this state; then the old profile remains in use.
     #[must_use]
     pub fn to_goal(from: &SegmentState, goal: f64, cap: f64, up: &Limits, down: &Limits) -> Option<Self> {
         let nothing = Self { start: *from, to_goal: true, ..Self::default() };
@@ -155,14 +139,14 @@ impl Profile {
         Some(profile)
     }
 
-    /// A profile to rest as soon as `limits` allow, before the goal. `None` if the goal would be overrun.
+    /// The fastest stop within `limits`, before the goal. `None` if the goal would be overrun.
     #[must_use]
     pub fn to_rest(from: &SegmentState, goal: f64, limits: &Limits) -> Option<Self> {
         let change = change(from, 0.0, limits);
         (from.after_all(&change).position <= goal).then_some(Self { start: *from, change, ..Self::default() })
     }
 
-    /// Clock at which the stop at the goal begins; `None` if the profile ends elsewhere.
+    /// Clock time of the start of the stop at the goal; `None` if the profile ends elsewhere.
     #[must_use]
     pub fn braking_point(&self) -> Option<f64> {
         self.to_goal.then(|| duration(&self.change) + self.cruise)

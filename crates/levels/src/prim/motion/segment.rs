@@ -12,10 +12,8 @@ use super::{
 /// A [`Frame`] as plain data.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct FrameData {
-    /// Tool point, inches.
-    pub position: [f64; 3],
-    /// Rotation matrix, row by row.
-    pub rotation: [f64; 9],
+    pub position: [f64; 3], // tool point, inches
+    pub rotation: [f64; 9], // matrix, row by row
 }
 
 impl From<&Frame> for FrameData {
@@ -39,33 +37,22 @@ impl FrameData {
     }
 }
 
-/// A goal and the limits of the motion to it.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct SegmentOrder {
-    /// The goal.
     pub goal: FrameData,
-    /// GO-THRU: the next segment may start before this one has ended. Remaining path at which it may be given,
-    /// inches; 0 for at the point itself.
+    /// GO-THRU: the next segment may start when this path remains, inches; 0 at the point itself.
     pub through: Option<f64>,
-    /// Limits of TRAJ-PARA.
     pub limits: Limits,
 }
 
-/// A segment under way.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct Segment {
-    /// Where it goes.
     pub order: SegmentOrder,
-    /// From start to goal, inches.
-    pub translation: [f64; 3],
-    /// From start to goal, axis times angle, radians.
-    pub rotation: [f64; 3],
-    /// [`Distance::path`] from start to goal, inches.
-    pub length: f64,
-    /// The motion along it.
+    pub translation: [f64; 3], // from start to goal, inches
+    pub rotation: [f64; 3],    // from start to goal, axis times angle, radians
+    pub length: f64,           // path from start to goal, inches
     pub profile: Profile,
-    /// Velocity for which the profile was planned, in/s.
-    pub velocity: f64,
+    pub velocity: f64, // in/s, for which the profile was planned
 }
 
 /// A small displacement: inches, and axis times angle in radians.
@@ -87,7 +74,6 @@ impl Displacement {
 }
 
 impl Segment {
-    /// The line from `start` to the goal of `order`, without a profile.
     #[must_use]
     pub fn new(start: &Frame, order: &SegmentOrder) -> Self {
         let goal = order.goal.frame();
@@ -103,8 +89,7 @@ impl Segment {
         }
     }
 
-    /// The remaining displacement to the goal. It is zero once the profile has ended at the goal, so the last point
-    /// is exactly the goal.
+    /// Zero once the profile has ended at the goal, so the last point is exactly the goal.
     #[must_use]
     pub fn missing(&self) -> Displacement {
         let over = self.profile.to_goal && self.profile.remaining() <= 0.0;
@@ -116,7 +101,7 @@ impl Segment {
         }
     }
 
-    /// True if it rests at the goal, or where a profile to rest ended.
+    /// True at the goal, and where a profile to rest has ended.
     #[must_use]
     pub fn is_at_rest(&self) -> bool {
         self.profile.remaining() <= 0.0

@@ -11,7 +11,7 @@ use rcs_core::tick::TICK_S;
 
 use super::{PrimMotion, limits::Limits};
 
-/// A small generator (SplitMix64), so that a seed identifies a run.
+/// SplitMix64: a seed identifies a run.
 struct Random(u64);
 
 impl Random {
@@ -55,7 +55,7 @@ impl Random {
     }
 }
 
-/// A rate of change: of the position in in/s^n, and of the orientation in rad/s^n.
+/// A rate of change: of the position in in/s^n, of the orientation in rad/s^n.
 #[derive(Clone, Copy, Debug)]
 struct Rate {
     linear: Vector,
@@ -76,7 +76,6 @@ impl Rate {
     }
 }
 
-/// Limits of all segments that were active in a tick, and whether there were two.
 #[derive(Clone, Copy, Debug, Default)]
 struct Allowed {
     limits: Limits,
@@ -181,7 +180,7 @@ fn on_the_line(motion: &PrimMotion) -> Result<(), String> {
     Ok(())
 }
 
-/// Execute `moves` random moves with random interference; return the number of ticks.
+/// Executes `moves` random moves with random interference; returns the number of ticks.
 fn run(seed: u64, moves: u32) -> Result<u64, String> {
     let mut random = Random(seed);
     let mut motion = PrimMotion::at_rest(&straight_down(Vector::new(-66.5, -5.5, -14.0)));

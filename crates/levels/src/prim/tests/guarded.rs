@@ -1,5 +1,3 @@
-//! Guarded moves, DELTA-MOVE and CAL-SENSOR.
-
 use interfaces::device::{FORCE_COUNTS_PER_LB, ForceSensor};
 use rcs_core::tick::TICK_S;
 
@@ -17,7 +15,6 @@ pub(super) const SCENARIOS: &[fn()] = &[
 /// A force sensor at rest with a part in the gripper.
 const LOADED: ForceSensor = ForceSensor { x: 2100, y: 2000, z: 1900, moment: 2048, valid: true };
 
-/// The reading of [`LOADED`] with a push of some pounds along tool X.
 fn pushed(pounds: i32) -> ForceSensor {
     let z = i32::from(LOADED.z) + pounds * FORCE_COUNTS_PER_LB;
     ForceSensor { z: z.clamp(0, 4095) as u16, ..LOADED }

@@ -1,4 +1,4 @@
-//! PAUSE with the joystick box, the record button, and a held Prim.
+//! Manual motion in PAUSE, the record button, and a held Prim.
 
 use geometry::{
     frame::{Rotation, rotation_vector},
@@ -25,7 +25,6 @@ pub(super) const SCENARIOS: &[fn()] = &[
 const FULL: i16 = 1000;
 
 impl Rig {
-    /// A rig in which PAUSE is done.
     pub(super) fn paused() -> Self {
         let mut rig = Self::initialized();
         assert_eq!(rig.run(PrimVerb::Pause, 0), PrimReport::Done);

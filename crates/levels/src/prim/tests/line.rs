@@ -30,7 +30,6 @@ type Bench = bench::Bench<Prim, Whole, TaskData<'static>>;
 struct Whole {
     t3i: T3i,
     line: Line,
-    /// Robot position after each tick.
     track: Vec<Vector>,
 }
 
@@ -94,7 +93,6 @@ impl Bench {
         bench
     }
 
-    /// Distance of the robot from a goal.
     fn off(&self, goal: &Frame) -> f64 {
         self.world.line.robot.at.to_tool(&T3).distance(goal).path()
     }

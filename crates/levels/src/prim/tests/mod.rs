@@ -69,7 +69,6 @@ static SENSORS: LazyLock<Store> = LazyLock::new(|| {
     }
 });
 
-/// POSE, MOVTAB and TRAJ-PARA of the tests.
 static FILES: LazyLock<(Vec<PoseRecord>, Vec<MovtabRecord>)> = LazyLock::new(|| {
     let up = MovetableLine { system: System::World, values: [0, 0, 300] };
     let poses = vec![
@@ -92,7 +91,6 @@ fn data() -> TaskData<'static> {
     TaskData { poses, movetables, traj_paras: &PARAMETERS, ..SENSORS.view() }
 }
 
-/// Prim with a commander above it and the model below.
 type Rig = bench::Bench<Prim, Below, TaskData<'static>>;
 
 #[derive(Clone)]
@@ -142,7 +140,6 @@ impl<'d> Tested<TaskData<'d>> for Prim {
 }
 
 impl<W: World<Prim>> bench::Bench<Prim, W, TaskData<'static>> {
-    /// A tick in which E-move writes a command.
     fn command(&mut self, command: PrimVerb, pose: u32) {
         let before = self.memory.emove.prim;
         self.send(PrimCommand {
@@ -168,7 +165,6 @@ impl Rig {
         rig
     }
 
-    /// The pose that Prim publishes under a number.
     fn pose(&self, number: Option<u32>) -> Option<&Pose> {
         self.memory.changing_pose(number?)
     }
@@ -188,7 +184,6 @@ impl Rig {
         self.process.state().motion.expect("Prim commands the robot").frame()
     }
 
-    /// True if Prim commands the robot and the path has ended.
     fn at_rest(&self) -> bool {
         self.process.state().motion.is_some_and(|motion| motion.is_at_rest())
     }

@@ -1,5 +1,3 @@
-//! Random commands, sensors and operators: the points stay within the limits.
-
 use geometry::frame::{INCHES_PER_RADIAN, Rotation, rotation_vector};
 use interfaces::device::ForceSensor;
 use rcs_core::tick::TICK_S;
@@ -10,12 +8,9 @@ use crate::{
     prim::{manual::ACCELERATION, tables::TABLES},
 };
 
-/// Greatest velocity of all sets of parameters, in/s.
-const VELOCITY: f64 = 10.0;
-/// Smallest jerk limit of all sets, in/s³.
-const JERK: f64 = 250.0;
+const VELOCITY: f64 = 10.0; // in/s, the greatest of all parameter sets
+const JERK: f64 = 250.0; // in/s³, the least of all parameter sets
 
-/// Checks consecutive points of Prim.
 struct Watch {
     number: u32,
     frames: [Frame; 3],
@@ -95,7 +90,6 @@ impl Rig {
         (self.world.noise >> 11) % n
     }
 
-    /// Random changes of the devices and of T3I.
     fn disturb(&mut self, operator: bool) {
         if self.below(30) == 0 {
             self.external.devices.holsters.right = [0, 3, 15][self.below(3) as usize];
