@@ -1,5 +1,3 @@
-//! The goals of the commands. The rows that end a command test the readings of the same tick, without CONFIRM.
-
 use crate::goal::{Goal, Sensor};
 
 pub static REST: Goal = Goal {

@@ -21,8 +21,8 @@
 //! While the link runs, T3I compares the resolvers with the path that it has sent in the time of the expected lag.
 //! A robot that is off this path is stopped (`following`, `left`): the rest of the motion would be a short cut.
 //!
-//! Four tables decide in a tick: REPORT for the report of the controller, RECEIVE for the command in the buffer,
-//! FOLLOW for the robot, then the table of the current command for the output.
+//! Four tables decide in a tick: REPORT, RECEIVE for the command in the buffer, FOLLOW for the robot, then the table
+//! of the current command for the output.
 //!
 //! ```text
 //!                 a point that is missing or cannot be sent
@@ -69,8 +69,7 @@ impl Default for T3i {
 }
 
 impl T3i {
-    /// A process with the limits of another tick length, and another time limit for answers (`answer_ticks`, at
-    /// least 1).
+    /// `limits` belong to the tick length; `answer_ticks`, at least 1, is the time limit for answers.
     #[must_use]
     pub fn new(limits: Limits, answer_ticks: u16) -> Self {
         Self { state: State::new(limits, answer_ticks) }

@@ -1,5 +1,3 @@
-//! Postprocess of T3I: the queue, the frame on the line, and the status to Prim.
-
 use core::f64::consts::PI;
 
 use depc::{
@@ -27,7 +25,7 @@ use super::{
 };
 
 impl State {
-    /// Carry out the action of RECEIVE for the command in the buffer.
+    /// The action of RECEIVE for the command in the buffer.
     pub(super) fn take(&mut self, intake: T3iIntake, seen: &StateVariables) {
         let arrival = seen.request.arrival;
         if matches!(arrival, Arrival::New | Arrival::Restarted) {
@@ -48,7 +46,7 @@ impl State {
         }
     }
 
-    /// Carry out the action of REPORT for the words with which a report is compared.
+    /// The action of REPORT for the words with which a report is compared.
     pub(super) fn compare(&mut self, comparison: Comparison) {
         match comparison {
             Comparison::Keep => {}
@@ -59,7 +57,7 @@ impl State {
         }
     }
 
-    /// Carry out the action of FOLLOW for the motion.
+    /// The action of FOLLOW for the motion.
     pub(super) fn supervise(&mut self, supervision: Supervision, seen: &StateVariables) {
         match supervision {
             Supervision::Continue => {}
@@ -74,7 +72,6 @@ impl State {
         }
     }
 
-    /// Put the frame of this tick on the line.
     pub(super) fn send(&mut self, action: Action, seen: &StateVariables) -> LinkBytes {
         let mut tx = LinkBytes::default();
         let command = |position: &Position| {
@@ -175,7 +172,7 @@ impl Action {
     }
 }
 
-/// The tool frame at the angles of the resolvers; counts beyond 17 bits are whole turns and do not matter.
+/// Counts beyond 17 bits are whole turns and do not matter.
 pub(super) fn resolver_frame(resolvers: &Resolvers) -> WireFrame {
     let turn = 2.0 * PI / f64::from(RESOLVER_COUNTS);
     WireFrame::from_frame(

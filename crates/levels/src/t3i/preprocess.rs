@@ -1,5 +1,3 @@
-//! Preprocess of T3I: the received bytes, and the state variables.
-
 use depc::{
     Plate,
     host::{HostEvent, PATIENCE_TICKS},
@@ -29,8 +27,7 @@ const NEAR_COUNTS: i32 = 2;
 const TICK_MS: u16 = 40;
 
 impl State {
-    /// Read the line and the command buffer. `outputs` are those of the previous tick: a restarted T3I learns from
-    /// them what was sent.
+    /// `outputs` are those of the previous tick. A restarted T3I reads from them what was sent.
     pub(super) fn sense<Data: ?Sized>(
         &mut self,
         inputs: &Inputs<'_, Data>,
@@ -88,12 +85,11 @@ impl State {
         }
     }
 
-    /// Give the received bytes to the host's end of the link. The queue is emptied when the link is lost.
+    /// The queue is emptied when the link is lost.
     fn receive_bytes<Data: ?Sized>(&mut self, inputs: &Inputs<'_, Data>) -> (HostEvent, Reported) {
         let devices = &inputs.external.devices;
         self.host.set_patience(devices.link_patience.unwrap_or(PATIENCE_TICKS));
-        // First, because a port that has taken part of a frame is not ready either, and this fault is more
-        // specific.
+        // First: a port that has taken part of a frame is not ready either, and this fault is more specific.
         let torn = if devices.link_unsent { self.host.unsent() } else { HostEvent::None };
         let event = self.host.receive(&devices.link_rx, devices.link_ready).max(torn);
         match event {
@@ -109,7 +105,6 @@ impl State {
         (event, self.place())
     }
 
-    /// Whether the robot is within the limit of its path.
     fn followed<Data: ?Sized>(&mut self, resolvers: &WireFrame, inputs: &Inputs<'_, Data>) -> Followed {
         let devices = &inputs.external.devices;
         self.reported = self.reported.saturating_add(1).min(GRACE_TICKS);
@@ -125,7 +120,7 @@ impl State {
         }
     }
 
-    /// Whether the last reported position is on the commanded way.
+    /// The last reported position, compared with the commanded path.
     fn place(&self) -> Reported {
         let reported = self.host.position();
         let near = |sent: &SentWords| {
@@ -135,7 +130,6 @@ impl State {
         if self.sent.as_ref().is_some_and(near) { Reported::Near } else { Reported::Far }
     }
 
-    /// Whether the point of a new command can be sent.
     fn point(&self, command: &T3iCommand) -> Point {
         if command.number != successor(self.receiver.echo) {
             Point::Gap
@@ -157,7 +151,7 @@ impl State {
         }
     }
 
-    /// The next step within the limits towards the oldest point, or towards a new one if the queue is empty.
+    /// The next step within the limits to the oldest point, or to a new one if the queue is empty.
     fn advance(&self, arrival: Arrival, command: &T3iCommand) -> Option<Step> {
         let new =
             Some(&command.frame).filter(|_| arrival == Arrival::New && command.command == T3iVerb::Point);

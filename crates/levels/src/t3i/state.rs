@@ -15,52 +15,32 @@ use crate::rows::Rows;
 /// transit, and one spare.
 pub const QUEUE_POINTS: usize = 4;
 
-/// Ticks in which the resolvers must come near a reported position: 1 s.
-pub const GRACE_TICKS: u8 = 25;
+pub const GRACE_TICKS: u8 = 25; // 1 s for the resolvers to come near a reported position
 
-/// State of T3I.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct State {
-    /// The command number and its adoption.
     pub receiver: Receiver,
-    /// The current command.
     pub command: T3iVerb,
-    /// Step of its table.
     pub step: Step,
-    /// Step of RECEIVE.
-    pub receive: ReceiveStep,
-    /// The host's end of the link.
+    pub receive: ReceiveStep, // step of RECEIVE
     pub host: Host,
-    /// The velocity limits.
     pub limits: Limits,
-    /// The position sent or reported last.
-    pub position: Position,
-    /// The words with which a report is compared; none before the first position.
-    pub sent: Option<SentWords>,
-    /// Step of REPORT: is the robot where it was sent?
+    pub position: Position,      // the position sent or reported last
+    pub sent: Option<SentWords>, // words with which a report is compared; `None` before the first position
+    /// Step of REPORT: whether the robot is at its commanded position.
     pub check: ReportCheck,
-    /// The output of the previous tick.
-    pub before: Before,
-    /// Step of FOLLOW.
-    pub following: Following,
-    /// The path that was sent.
-    pub track: Track,
-    /// Ticks since the last report of the robot controller, up to [`GRACE_TICKS`].
-    pub reported: u8,
-    /// Distance of the resolvers from the path, 0.01 in.
-    pub deviation: i32,
-    /// Where the robot left its path.
-    pub left: Option<PathLeft>,
-    /// Waiting points; the first `queued` are valid, the oldest first.
-    pub queue: [WireFrame; QUEUE_POINTS],
-    /// How many.
+    pub before: Before,                   // the output of the previous tick
+    pub following: Following,             // step of FOLLOW
+    pub track: Track,                     // the path that was sent
+    pub reported: u8,                     // ticks since the last report, up to GRACE_TICKS
+    pub deviation: i32,                   // 0.01 in, distance of the resolvers from the path
+    pub left: Option<PathLeft>,           // where the robot left its path
+    pub queue: [WireFrame; QUEUE_POINTS], // the first `queued` are valid, the oldest first
     pub queued: u8,
-    /// The rows for the header.
     pub rows: Rows,
 }
 
 impl State {
-    /// The state before the first tick.
     pub(super) fn new(limits: Limits, answer_ticks: u16) -> Self {
         Self { limits, host: Host::new(answer_ticks), ..Self::default() }
     }
@@ -73,12 +53,11 @@ impl State {
         self.queue.first().filter(|_| self.queued > 0)
     }
 
-    /// True if the queue has room for another point.
     pub(super) fn has_room(&self) -> bool {
         usize::from(self.queued) < QUEUE_POINTS
     }
 
-    /// Append a point; a full queue drops it.
+    /// A full queue drops the point.
     pub(super) fn append(&mut self, point: WireFrame) {
         if let Some(slot) = self.queue.get_mut(usize::from(self.queued)) {
             *slot = point;

@@ -6,12 +6,10 @@ use interfaces::t3i::{Following, PathLeft};
 
 use super::*;
 
-/// A robot whose resolvers lag by some ticks.
 struct Lagging {
     bench: Bench,
     ticks: usize,
     past: VecDeque<[u32; 6]>,
-    /// The resolvers keep their counts.
     frozen: bool,
     x: f64,
 }
@@ -63,7 +61,6 @@ impl Lagging {
         self.bench.memory.t3i.status.left.unwrap()
     }
 
-    /// Distance between the commanded and the fed-back frame, in.
     fn apart(&self) -> f64 {
         let PathLeft { commanded, fed_back, .. } = self.left();
         commanded.to_frame().unwrap().distance(&fed_back.to_frame().unwrap()).inches

@@ -29,10 +29,10 @@ use crate::{
     environment::line::{Line, counts},
 };
 
-/// T3I, the line, the controller; the test is Prim.
+/// T3I, the line and the controller; the test acts as Prim.
 type Bench = bench::Bench<T3i, Below>;
 
-/// The line, and whether Prim is stepped in the following ticks.
+/// The line, and whether Prim is stepped in the next ticks.
 #[derive(Clone)]
 struct Below {
     line: Line,
@@ -76,7 +76,6 @@ impl Bench {
         Self { external, ..Self::before(Below { line, prim_runs: true }) }
     }
 
-    /// A bench after RESTART has finished.
     fn running() -> Self {
         let mut bench = Self::new();
         bench.step();
@@ -104,7 +103,6 @@ impl Bench {
         self.memory.t3i.status.fault
     }
 
-    /// The row that fired, as table and number.
     fn row(&self) -> (&'static str, u8) {
         let Decided { table, row } = self.memory.t3i.header.decided.unwrap();
         (tables::TABLES[usize::from(table) - 1].name, row)
@@ -286,7 +284,6 @@ fn unsendable_way_is_an_invalid_command() {
     assert_eq!((bench.report(), bench.fault()), (T3iReport::Error, LinkFault::InvalidCommand));
 }
 
-/// One tick without the answer to the last frame.
 fn unanswered(bench: &mut Bench) {
     let late = std::mem::take(&mut bench.external.devices.link_rx);
     bench.step();
@@ -482,7 +479,6 @@ fn cut_off(taken: bool) -> Bench {
     bench
 }
 
-/// Reconnect the line and restart the link.
 fn restarted(mut bench: Bench) -> Bench {
     bench.world.line.connected = true;
     bench.command(T3iVerb::Restart);
