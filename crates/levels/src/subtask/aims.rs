@@ -1,7 +1,7 @@
 //! Objects and locations of commands to E-move.
 //!
-//! Task names one location with each command. Subtask looks up holsters, pedestal and tool drum when the command
-//! arrives, before anything moves, and publishes their poses in its own changing records.
+//! Task names one location with each command. Holsters, pedestal and tool drum are looked up when the command
+//! arrives, before anything moves, and their poses are published in Subtask's own changing records.
 
 use geometry::pose::Pose;
 use interfaces::{
@@ -17,31 +17,24 @@ use taskdata::files::{EndEffId, Location, LocptId, RefType, TaskData, VisionId};
 
 use crate::places::{Missing, named};
 
-/// Grip of a holster's object with which the robot puts its gripper in (VII.7 by convention).
+/// By convention (VII.7), the grip of a holster's object with which the robot puts its gripper in.
 const PUT_IN: i32 = 1;
-/// Grip of a holster's object with which the bare robot takes the gripper out.
+/// The grip with which the bare robot takes the gripper out.
 const TAKE_OUT: i32 = 2;
-/// The objects of the holsters: the names of grippers 1, 2 and 3 as objects that can be placed.
+/// The grippers 1, 2 and 3 as objects that can be placed in holsters.
 pub const GRIPPERS: [&str; 3] = ["GRIPPER-1", "GRIPPER-2", "GRIPPER-3"];
 
-/// The target of a command to E-move: an object, a location, or an object at a location.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct SubtaskAim {
-    /// The object, if there is one.
     pub object: Option<Name16>,
-    /// Its grip.
     pub grip: i32,
-    /// The record of END-EFF-PARA, if the object has that grip.
-    pub parameters: EndEffId,
-    /// Gripper that is needed.
+    pub parameters: EndEffId, // record of END-EFF-PARA, if the object has that grip
     pub end_effector_id: Option<u8>,
-    /// The location.
     pub site: Site,
-    /// Record number of the pose, once it is assigned.
-    pub pose: Option<u32>,
+    pub pose: Option<u32>, // record number, once it is assigned
 }
 
-/// The targets that a command of Task does not name, and the two poses that they share.
+/// The targets that a command of Task does not name, and their poses.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct Aims {
     /// GET-ENDEFF: the holster of the attached gripper. FIX-GRIP: the object, moved to the pedestal. Tool commands:
@@ -52,11 +45,10 @@ pub struct Aims {
     /// FIX-GRIP: the object, taken from the pedestal, at the pose of `first`.
     pub third: SubtaskAim,
     /// Poses of `first` and `second`.
-    pub poses: [Pose; 2],
+    pub poses: [Pose; 2], // poses of `first` and `second`
 }
 
 impl SubtaskAim {
-    /// The target that the command of Task names.
     #[must_use]
     pub const fn of_command(command: &SubtaskCommand) -> Self {
         // The object is taken with the source grip and placed with the destination grip.
@@ -80,7 +72,6 @@ impl SubtaskAim {
         Self { object: None, grip: 0, parameters: EndEffId::NULL, end_effector_id, site, pose: None }
     }
 
-    /// The same location with an object in a grip.
     fn with_object(self, object: Option<Name16>, grip: i32, data: &TaskData<'_>) -> Result<Self, Missing> {
         let (id, _) = object.and_then(|object| data.object(&object, grip)).ok_or(Missing::Grip)?;
         Ok(Self { object, grip, parameters: id, ..self })
@@ -95,7 +86,7 @@ impl SubtaskAim {
         }
     }
 
-    /// A command to E-move with this target; its number is still 0.
+    /// The number of the command is still 0.
     #[must_use]
     pub fn command(&self, verb: EmoveVerb, data: &TaskData<'_>) -> EmoveCommand {
         let (object, place) = (self.object.as_ref(), self.site.place());
@@ -117,11 +108,8 @@ impl SubtaskAim {
 }
 
 impl Aims {
-    /// Look up the targets of a command that Task does not name. `attached` is the id of the gripper on the robot,
-    /// `exchange` that of an interrupted exchange.
-    ///
-    /// # Errors
-    /// The data that the command needs and the task data lack.
+    /// `attached` is the id of the gripper on the robot, `exchange` that of an interrupted exchange. The error is the
+    /// first data that the command needs and the task data lack.
     pub fn new(
         command: &SubtaskCommand,
         attached: Option<u8>,
@@ -196,7 +184,6 @@ impl Aims {
     }
 }
 
-/// The holster of the gripper with this id: the location point assigned to its object (VII.7.3).
 fn holster(id: u8, grip: i32, data: &TaskData<'_>, pose: &mut Pose) -> Result<SubtaskAim, Missing> {
     let name = usize::from(id).checked_sub(1).and_then(|position| GRIPPERS.get(position));
     let object = Name16::clipped(name.ok_or(Missing::Holster)?);

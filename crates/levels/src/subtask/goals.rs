@@ -1,5 +1,3 @@
-//! The goals of Subtask's commands, compared with the statuses of E-move and of the pedestal.
-
 use interfaces::{
     Unconfirmed,
     emove::{EmoveStatus, Holding, Pins},
@@ -18,7 +16,6 @@ use crate::{
     held::Held,
 };
 
-/// Tolerance of a grasp, as E-move states it.
 const GRASP: &str = "as GRASP-OBJ of E-move";
 
 pub static REST: Goal = Goal {
@@ -108,7 +105,6 @@ pub static REMOVED: Goal = Goal {
     unconfirmed: &[Unconfirmed::GraspForce, Unconfirmed::PartInFingers],
 };
 
-/// The goal of a command, compared with the statuses from below.
 pub(super) fn proof(
     command: &SubtaskCommand,
     situation: &Situation,
@@ -176,7 +172,6 @@ pub(crate) const fn is_free(held: Holding) -> Proof {
     }
 }
 
-/// The robot is at the location of a command.
 fn at(emove: &EmoveStatus, command: &SubtaskCommand) -> Proof {
     match emove.at {
         Some(at) if at.site == command.site => Proof::at(emove.offset),

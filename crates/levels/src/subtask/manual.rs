@@ -1,6 +1,5 @@
 //! Manual orders to the Active Pedestal (docs/design/recovery.md "Part in the pedestal"): the state variables of
-//! BY-HAND. They depend only on common memory and task data, so the program that takes the order decides as Subtask
-//! does in the next tick.
+//! BY-HAND. They depend only on common memory and task data, so a program decides like Subtask in the next tick.
 
 use interfaces::{
     CommonMemory, StatusReport,
@@ -25,14 +24,12 @@ use super::{
 };
 use crate::{emove::robot_place::present_frame, places::named};
 
-/// Distance of the tool from PEDESTAL at which empty fingers are clear of the part, in (ASSUMED: more than the
-/// overlap of fingers and part).
+/// Empty fingers are clear of the part at this distance, in (ASSUMED: more than the overlap of fingers and part).
 const CLEAR_INCHES: f64 = 4.0;
-/// Opening of RELEASE for an unknown object if the task data have no PED-PARA record, 0.01 in.
+/// Opening of RELEASE for an unknown object without a PED-PARA record, 0.01 in.
 const WIDE: i32 = 450;
 
-/// The state variables of BY-HAND for an order. `tick` is the tick in which it is sent; `memory` is common memory
-/// before.
+/// The order is sent in `tick`; `memory` is common memory before it.
 #[must_use]
 pub fn manual(order: &HandOrder, tick: Tick, memory: &CommonMemory, data: &TaskData<'_>) -> ManualOrder {
     let (below, above) = (&memory.pedestal, &memory.task.subtask);
@@ -65,10 +62,7 @@ pub fn manual(order: &HandOrder, tick: Tick, memory: &CommonMemory, data: &TaskD
     }
 }
 
-/// Decide on an order as Subtask does in `tick`.
-///
-/// # Errors
-/// The reason for the refusal.
+/// Decide like Subtask in `tick`. The error is the reason for the refusal.
 pub fn judge(
     order: &HandOrder,
     tick: Tick,
@@ -84,7 +78,7 @@ pub fn judge(
     }
 }
 
-/// The command for an order, without cycle and number. `regrip` is the object in the hand, if it is known.
+/// The command has no cycle and number yet. `regrip` is the object in the hand, if it is known.
 pub(super) fn command(order: &HandOrder, regrip: Option<&Name16>, data: &TaskData<'_>) -> PedestalCommand {
     let known = para(order.object.as_ref().or(regrip), data).copied();
     let widest = data.ped_paras.iter().map(|para| para.release_size).max();
@@ -123,8 +117,7 @@ pub(super) fn robot_there(memory: &CommonMemory, data: &TaskData<'_>) -> RobotTh
     }
 }
 
-/// A robot at another place is clear. A robot at no known place is clear if it is idle and its tool is far enough
-/// from PEDESTAL.
+/// A robot at another place is clear; one at no known place if it is idle and its tool is far from PEDESTAL.
 fn is_clear(emove: &EmoveStatus, memory: &CommonMemory, data: &TaskData<'_>) -> bool {
     let pedestal = data.locpt_named(&Name10::clipped(named::PEDESTAL));
     match emove.at {

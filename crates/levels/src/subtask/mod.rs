@@ -1,9 +1,6 @@
 //! Subtask (V.3): divides a command of Task into commands to E-move, and coordinates the robot with the Active
 //! Pedestal.
 //!
-//! Task names one location with each command. Subtask looks up holsters, pedestal and tool drum when the command
-//! arrives, before anything moves.
-//!
 //! ```text
 //!                 ACCEPT                 ORDERED: E-move, pedestal
 //!   a command --------------> Start ---> Moving ---> Grasping ---> ... ---> done
@@ -13,13 +10,9 @@
 //!     error <-----------------------------------------------
 //! ```
 //!
-//! * [`state`]: the state of Subtask;
 //! * `pedestal_hand`: the part in the pedestal's hand;
 //! * [`manual`]: orders of a person to the pedestal;
-//! * [`aims`]: objects and locations of the commands to E-move;
-//! * [`preprocess`]: the state variables;
-//! * [`tables`]: the decision tables, one file per command;
-//! * [`postprocess`]: the outputs that a row asks for.
+//! * [`aims`]: objects and locations of the commands to E-move.
 
 pub mod aims;
 pub mod goals;

@@ -13,20 +13,17 @@ use super::{
 };
 use crate::held::Held;
 
-/// The hand is open if it is within this distance of its opening to receive the object, 0.01 in (ASSUMED).
-const OPEN_WITHIN: i32 = 10;
-/// Tolerance of the table angle, 0.1 degree: several steps of its motor (ASSUMED).
-const AT_ANGLE: u32 = 10;
+const OPEN_WITHIN: i32 = 10; // 0.01 in (ASSUMED)
+const AT_ANGLE: u32 = 10; // 0.1 degree: several steps of the motor (ASSUMED)
 
 impl State {
-    /// Each tick: clear the estimate if the hand is empty. While the hand moves, the estimate is kept.
+    /// An empty hand clears the estimate; a moving hand keeps it.
     pub(super) fn sense_hand(&mut self, status: &PedestalStatus, pedestal: SubtaskPedestal) {
         if pedestal != SubtaskPedestal::Moving && pedestal_hand(status) == PedestalLoad::Free {
             self.regrip = None;
         }
     }
 
-    /// Record the object on which the pedestal is commanded to close its hand.
     pub(super) const fn give(&mut self, command: &SubtaskCommand) {
         self.regrip = match command.object {
             Some(object) => Some(Regrip { object }),
@@ -50,7 +47,7 @@ impl State {
     }
 }
 
-/// The load of the hand. Contact before GRIP, or after an opening, does not count.
+/// Contact before GRIP, or after an opening, is ignored.
 pub(super) const fn pedestal_hand(status: &PedestalStatus) -> PedestalLoad {
     match status.felt {
         Felt::Something if status.gripped => PedestalLoad::HoldsPart,
@@ -68,7 +65,7 @@ pub(super) fn turn(status: &PedestalStatus, para: &PedPara) -> Turn {
     }
 }
 
-/// The absolute angle to which the table turns an object, 0.1 degree. FLIP itself is relative (VI.7.1).
+/// The absolute angle of the turned object, 0.1 degree. FLIP itself is relative (VI.7.1).
 pub(super) const fn turned(para: &PedPara) -> i32 {
     para.table_pos.saturating_add(para.flip_angle)
 }

@@ -1,5 +1,3 @@
-//! Postprocess of Subtask: commands to E-move and to the Active Pedestal, and the status to Task.
-
 use interfaces::{
     ChangingPose, Reason, StatusReport, SubtaskOutputs, Unconfirmed,
     emove::{EmoveCommand, EmoveVerb},
@@ -108,7 +106,7 @@ impl State {
         }
     }
 
-    /// Send a command to the Active Pedestal: opening in 0.01 in, force in lb, angle in 0.1 degree.
+    /// Opening in 0.01 in, force in lb, angle in 0.1 degree.
     fn command_pedestal(
         &mut self,
         verb: PedestalVerb,
@@ -129,7 +127,7 @@ impl State {
         };
     }
 
-    /// Send a manual order to the pedestal. The current command is not affected.
+    /// A manual order does not affect the current command.
     pub(super) fn command_manually(
         &mut self,
         inputs: &Inputs<'_, TaskData<'_>>,
@@ -145,7 +143,7 @@ impl State {
         outputs.pedestal = PedestalCommand { cycle: inputs.tick, number, ..command };
     }
 
-    /// Stop the pedestal unless its last command was PAUSE or none. True if Subtask has to wait for it.
+    /// A PAUSE is not sent after a PAUSE, or before the first command. True if Subtask has to wait for the pedestal.
     fn pause_pedestal(
         &mut self,
         seen: &StateVariables,

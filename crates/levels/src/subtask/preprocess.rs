@@ -1,5 +1,3 @@
-//! Preprocess of Subtask: its state variables, from the statuses of E-move and of the Active Pedestal.
-
 use geometry::pose::Pose;
 use interfaces::{
     StatusReport,
@@ -64,7 +62,7 @@ impl State {
         }
     }
 
-    /// Before the first command after a start, continue from the output buffers that Subtask wrote before it.
+    /// Before the first command after a start, adopt the output buffers from before it.
     fn adopt(&mut self, inputs: &Inputs<'_, TaskData<'_>>) {
         let (tick, memory, written) = (inputs.tick, inputs.memory, &inputs.memory.subtask);
         self.emove.start_from(tick, written.emove.number, memory.emove.status.echo);
@@ -75,8 +73,8 @@ impl State {
         }
     }
 
-    /// Look up the locations of a new command that Task does not name, and the pedestal data for FIX-GRIP. Only
-    /// complete results are stored.
+    /// Look up the locations that Task does not name, and the pedestal data for FIX-GRIP. Incomplete results are not
+    /// stored.
     fn look_up(&mut self, command: &SubtaskCommand, inputs: &Inputs<'_, TaskData<'_>>) -> Request {
         self.ordered = SubtaskRecipient::Nothing;
         let emove = &inputs.memory.emove.status;
@@ -191,7 +189,7 @@ pub(super) fn location_pose(command: &SubtaskCommand, inputs: &Inputs<'_, TaskDa
     pose_of(command.pose?, inputs.memory, inputs.data).map(|frame| Pose::from_frame(&frame))
 }
 
-/// The need to find the object by vision. `is_at` is true if the last pictures were taken at its location.
+/// `is_at` is true if the last pictures were taken at the command's location.
 fn vision(emove: &EmoveStatus, is_at: bool, command: &SubtaskCommand, data: &TaskData<'_>) -> SubtaskVision {
     let located = emove.located.is_some_and(|located| {
         is_at && Some(located.object) == command.object && located.site == command.site

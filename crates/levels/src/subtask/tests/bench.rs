@@ -1,5 +1,4 @@
-//! Subtask with test doubles of E-move and the Active Pedestal. They complete each order after a few ticks, or fail
-//! as a test selects.
+//! Subtask with doubles of E-move and the Active Pedestal, which complete or fail each order after a few ticks.
 
 use geometry::pose::Pose;
 use interfaces::{
@@ -24,20 +23,16 @@ use crate::{
     subtask::Subtask,
 };
 
-/// Duration of a command at a double, in ticks.
-const WORK: u32 = 3;
+const WORK: u32 = 3; // ticks of a command
 
-/// The failure of a command that the test selects.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Mishap {
     Error(Reason),
-    /// No end.
     Hang,
     /// No answer, not even an echo.
     Silence,
     /// The joystick box becomes active (E-move); can't-do (pedestal).
     Special(Reason),
-    /// Reported done, without effect.
     NoEffect,
     /// Done, and the object is no longer held.
     Loss,
@@ -51,7 +46,6 @@ pub struct EmoveDouble {
     pub outputs: EmoveOutputs,
     pub received: Vec<EmoveCommand>,
     pub mishap: Option<(EmoveVerb, Mishap)>,
-    /// Each command is reported done, without effect.
     pub ignores: bool,
 }
 
@@ -112,11 +106,8 @@ pub struct PedestalDouble {
     pub outputs: PedestalOutputs,
     pub received: Vec<PedestalCommand>,
     pub mishap: Option<(PedestalVerb, Mishap)>,
-    /// Size of the part within reach of the hand, 0.01 in.
-    pub part: i32,
-    /// The hand loses the object while the table turns.
-    pub slips: bool,
-    /// Each command is reported done, without effect.
+    pub part: i32,   // width of the part at the hand, 0.01 in
+    pub slips: bool, // the hand loses the object while the table turns
     pub ignores: bool,
 }
 
@@ -233,7 +224,6 @@ impl<'d> Bench<'d> {
         bench
     }
 
-    /// Write a new command for an object at a location, with the grips for source and destination.
     pub fn command(&mut self, verb: SubtaskVerb, object: &str, grips: (i32, i32), location: &str) {
         let object = Name16::new(object).unwrap();
         let mut poses = self.memory.task.poses;
@@ -278,7 +268,6 @@ impl<'d> Bench<'d> {
         self.finish()
     }
 
-    /// The orders to E-move since the last command began.
     pub fn sent(&self) -> Vec<&'static str> {
         self.world.emove.received.iter().map(|command| command.command.text()).collect()
     }
@@ -287,7 +276,6 @@ impl<'d> Bench<'d> {
         self.world.pedestal.received.iter().map(|command| command.command.text()).collect()
     }
 
-    /// A robot that holds the part has received FIX-GRIP from grip 1 to grip -1.
     pub fn fixing() -> Self
     where
         Self: Default,

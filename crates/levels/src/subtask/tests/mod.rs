@@ -1,5 +1,3 @@
-//! Scenarios of Subtask with doubles of E-move and of the Active Pedestal.
-
 mod bench;
 mod confirmed;
 pub(crate) mod data;
@@ -28,7 +26,6 @@ fn error(reason: Reason) -> (StatusReport, Reason) {
     (StatusReport::Error, reason)
 }
 
-/// The pose with a record number, as the levels publish it.
 fn pose_of(bench: &Bench<'_>, number: u32) -> Option<geometry::pose::Pose> {
     bench.memory.changing_pose(number).copied()
 }

@@ -33,12 +33,10 @@ pub(super) const SCENARIOS: &[fn()] = &[
     manual_release_is_accepted_while_the_robot_holds_the_part,
 ];
 
-/// FIX-GRIP of the part from grip 1 to grip -1.
 fn fix(bench: &mut Bench<'_>) -> (StatusReport, Reason) {
     bench.run(SubtaskVerb::FixGrip, "PART", (1, -1), "")
 }
 
-/// True if E-move or the pedestal is executing anything but a pause.
 fn is_under_way(bench: &Bench<'_>) -> bool {
     let (subtask, emove, pedestal) =
         (&bench.memory.subtask, &bench.memory.emove.status, &bench.memory.pedestal.status);
