@@ -1,12 +1,11 @@
 //! Task and the Data System (IV.4.2, IX.2): commands, retries and pending updates.
 //!
-//! While no Data System is connected, Task sends no updates and does not wait. Once connected, Task sends an update
-//! after each completed move from or to the MBD. It also sends one after the release of an object that the database
-//! has as held by the robot. An update that is not accepted is pending, also when another command replaces its
-//! command and when the object was released after its command ended. Task sends pending updates before it moves the
-//! next object, at the end of a POSITION or RELEASE-TOOL, and at the end of the next STARTUP. The database is
-//! therefore at most one command behind. With DB-DONE (Figure IV.1) each command is sent once and assumed done, so
-//! the database may lack it.
+//! While no Data System is connected, Task sends no updates and does not wait. Once connected, it sends an update
+//! after each completed move from or to the MBD, and after the release of an object that the database has as held by
+//! the robot. An update that is not accepted is pending, also when its command is replaced or has ended. Task sends
+//! pending updates before it moves the next object, at the end of a POSITION or RELEASE-TOOL, and at the end of the
+//! next STARTUP. So the database is at most one command behind. With DB-DONE (Figure IV.1) each command is sent once
+//! and assumed done, so the database may lack it.
 
 use interfaces::{
     DataBaseCommand, DataBaseStatus, ExternalInputs, TaskOutputs,
@@ -33,35 +32,30 @@ use super::{
 };
 use crate::held::Held;
 
-/// Time limit for a command to the Data System, in ticks: 10 s, for a factory network.
+/// Ticks for an answer: 10 s, for a factory network.
 pub const ANSWER_LIMIT: u64 = 250;
-/// Number of times that a command is written before the Data System is reported silent.
+/// After this many attempts the Data System is reported silent.
 pub const MAX_TRIES: u8 = 3;
-/// `STORAGE-POS` of an object that the robot holds, which is also the name of the client (IX.2).
+/// `STORAGE-POS` of an object that the robot holds, and the name of the client (IX.2).
 pub const IN_HAND: &str = "H_ROBOT";
 
-/// The state of the Data System as Task estimates it.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct DataSystem {
-    /// Numbers of the commands to it.
     pub commander: Commander,
-    /// The command that was written last.
-    pub request: DataBaseCommand,
-    /// How often it was written.
-    pub tries: u8,
-    /// Connection, pending updates and carried object: an output, adopted again after a restart.
-    pub updates: DataBaseUpdates,
+    pub request: DataBaseCommand, // the last command
+    pub tries: u8,                // times that `request` was written
+    pub updates: DataBaseUpdates, // an output, adopted again after a restart
 }
 
 impl DataSystem {
-    /// In its first tick Task adopts the outputs from before a restart, and its last command.
+    /// Adopt the outputs from before a restart, and the last command.
     pub const fn adopt(&mut self, written: &TaskOutputs, tick: Tick) {
         (self.updates, self.request) = (written.updates, written.data_base);
         let number = written.data_base.number;
         self.commander = Commander { number, sent: tick, started: number != 0 };
     }
 
-    /// The status of the Data System. With DB-DONE (Figure IV.1) the last command is always done.
+    /// With DB-DONE (Figure IV.1) the last command is always done.
     pub fn read(&mut self, external: &ExternalInputs) -> DataBaseStatus {
         self.commander.start(external.data_base.echo);
         if external.operator.db_done {
@@ -71,7 +65,7 @@ impl DataSystem {
         }
     }
 
-    /// Each tick, before anything else: remove an accepted update from the queue.
+    /// Called first in each tick: an accepted update leaves the queue.
     pub fn observe(&mut self, status: &DataBaseStatus, tick: Tick) {
         let [first, _] = self.updates.pending;
         let is_first_sent = first
@@ -80,7 +74,7 @@ impl DataSystem {
         self.change(if is_accepted { Event::Accepted } else { Event::None }, None);
     }
 
-    /// Consult QUEUE; `new` is the update of [`Event::New`].
+    /// Consult QUEUE. `new` is the update of [`Event::New`].
     fn change(&mut self, event: Event, new: Option<DataBaseCommand>) {
         let [first, second] = self.updates.pending;
         self.updates.pending = match queue((), &Change { event, pending: self.pending() }).action {
@@ -92,7 +86,6 @@ impl DataSystem {
         };
     }
 
-    /// The result of the last command to the Data System.
     #[must_use]
     pub fn status(&self, status: &DataBaseStatus, tick: Tick) -> DataBase {
         let answered = self.commander.started && status.echo == self.commander.number;
@@ -105,7 +98,7 @@ impl DataSystem {
         }
     }
 
-    /// The connection of the Data System. `executing` is the current command.
+    /// `executing` is the current command.
     #[must_use]
     pub const fn connection(&self, executing: Option<TaskVerb>) -> Connection {
         match (self.updates.connected, self.updates.connecting, executing) {
@@ -134,7 +127,7 @@ impl DataSystem {
         update((), &unsent).action
     }
 
-    /// The object that the robot carried last, compared with `object`.
+    /// Compare the object carried last with `object`.
     #[must_use]
     pub fn carrying(&self, object: Name16) -> Carrying {
         match self.updates.carried {
@@ -144,21 +137,18 @@ impl DataSystem {
         }
     }
 
-    /// Send a command for the first time.
     fn send(&mut self, request: DataBaseCommand, tick: Tick, outputs: &mut TaskOutputs) {
         self.tries = 0;
         self.request = request;
         self.send_again(tick, outputs);
     }
 
-    /// Send the last command again, with a new number.
     pub fn send_again(&mut self, tick: Tick, outputs: &mut TaskOutputs) {
         self.tries = self.tries.saturating_add(1);
         self.request.number = self.commander.send(tick);
         outputs.data_base = self.request;
     }
 
-    /// Send a reconfiguration command: one without an item.
     pub fn reconfigure(&mut self, command: DataBaseVerb, tick: Tick, outputs: &mut TaskOutputs) {
         (self.updates.connected, self.updates.connecting) = (false, true);
         self.send(DataBaseCommand { command, ..DataBaseCommand::default() }, tick, outputs);
@@ -250,7 +240,7 @@ impl DataSystem {
         self.send_pending(tick, outputs);
     }
 
-    /// REPORT-ITEM: append an update about the object that the robot has carried and released.
+    /// Append an update (REPORT-ITEM) about the object that the robot has carried and released.
     pub fn append_released(&mut self, placed: &PlacedObject) {
         if let Some(Carried { item, serial, .. }) = self.updates.carried.take() {
             self.append(item, serial, placed.site.location, placed.site.sector);
@@ -269,7 +259,6 @@ impl DataSystem {
         }
     }
 
-    /// The Data System is disconnected; pending updates are dropped.
     pub fn disconnect(&mut self, tick: Tick, outputs: &mut TaskOutputs) {
         self.change(Event::Discard, None);
         (self.updates.taking, self.updates.carried) = (None, None);

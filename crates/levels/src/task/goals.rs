@@ -1,5 +1,3 @@
-//! The goals of Task's commands, and how the statuses of Subtask and of the Data System compare with them.
-
 use interfaces::{
     Unconfirmed,
     emove::{Holding, Pins},
@@ -17,7 +15,6 @@ use crate::{
     subtask::goals::{force, is_free},
 };
 
-/// Tolerance of a grasp, as E-move states it.
 const GRASP: &str = "as GRASP-OBJ of E-move";
 
 pub static REST: Goal = Goal {
@@ -107,7 +104,6 @@ pub static DISCONNECTED: Goal = Goal {
     unconfirmed: &[],
 };
 
-/// The goal of a command, compared with the statuses of Subtask and of the Data System.
 pub(super) fn proof(plan: &Plan, below: &SubtaskStatus, data_base: DataBase) -> Proof {
     let force = force(below.end_effector_id);
     let is_held = || match Held::of(below.held, plan.object) {
@@ -161,7 +157,6 @@ pub(super) fn proof(plan: &Plan, below: &SubtaskStatus, data_base: DataBase) -> 
     }
 }
 
-/// The object was released at the destination.
 fn is_placed(plan: &Plan, below: &SubtaskStatus) -> bool {
     let destination = plan.destination.site();
     below.placed.is_some_and(|placed| plan.object == Some(placed.object) && destination == Some(placed.site))

@@ -1,10 +1,9 @@
 //! The ledger: the last accepted command about an object or a tool, until it finishes (docs/design/recovery.md
 //! "Ledger").
 //!
-//! The ledger is an output of Task, so it survives a restart. It distinguishes a repeated command from a new one. A
-//! TRANSFER that was interrupted after its RELEASE continues with the update and the motion to its end-at location;
-//! the same TRANSFER after a finished one starts at the beginning. The progress of the command is not in the ledger;
-//! it follows from the statuses from below.
+//! The ledger is an output of Task, so it survives a restart. It distinguishes a repeated command from a new one: an
+//! interrupted TRANSFER continues after its RELEASE with the update and the motion to its end-at location; after a
+//! finished one it starts at the beginning. Progress is not in the ledger: it follows from the statuses from below.
 
 use interfaces::{
     data_base::Carried,
@@ -16,7 +15,6 @@ use rcs_core::{Plain, name::Name16};
 
 use super::plan::{Plan, Resumed, TaskVerb};
 
-/// The object of a repeated command: placed or not, and the robot still there or not.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Placed {
     /// Not placed, or the command is new.
@@ -27,10 +25,9 @@ pub enum Placed {
     Left,
 }
 
-/// The place of the part during a regrip.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum TaskPart {
-    /// No.
+    /// Not in the pedestal's hand.
     Elsewhere,
     /// In the pedestal's hand. The robot may hold it too.
     InPedestal,
@@ -42,7 +39,6 @@ pub const fn content(command: &HwsCommand) -> HwsCommand {
     HwsCommand { number: 0, ..*command }
 }
 
-/// The progress of an interrupted command that is repeated.
 #[must_use]
 pub fn resumed(command: &HwsCommand, ledger: Option<&Ledger>) -> Resumed {
     match ledger.filter(|ledger| ledger.command == content(command)).map(|ledger| ledger.last) {
@@ -58,7 +54,7 @@ pub fn resumed(command: &HwsCommand, ledger: Option<&Ledger>) -> Resumed {
     }
 }
 
-/// The object of a repeated command, if it is placed already. Objects that earlier commands placed are ignored.
+/// The object of a repeated command. Objects that earlier commands placed are ignored.
 #[must_use]
 pub fn placed(plan: &Plan, below: &SubtaskStatus, ledger: Option<&Ledger>) -> Placed {
     let placing = matches!(
@@ -79,8 +75,8 @@ pub fn placed(plan: &Plan, below: &SubtaskStatus, ledger: Option<&Ledger>) -> Pl
     }
 }
 
-/// True if the object of a new command is held and comes from another place than the source. The ledger has the place
-/// if it is about the object; otherwise the carried object has it (docs/design/recovery.md "Data base").
+/// True if a held object comes from another place than the source of a new command. The ledger has the place if it is
+/// about the object; otherwise the carried object has it (docs/design/recovery.md "Data base").
 #[must_use]
 pub fn is_from_elsewhere(
     command: &HwsCommand,
@@ -109,8 +105,8 @@ pub fn is_taken(ledger: Option<&Ledger>, object: &Name16) -> bool {
     })
 }
 
-/// The ledger after a command is accepted. A command without an object leaves it unchanged. A command that has to
-/// take its object again has reported nothing yet.
+/// A command without an object leaves the ledger unchanged. A command that has to take its object again has reported
+/// no update yet.
 #[must_use]
 pub fn opened(ledger: Option<Ledger>, command: &HwsCommand, plan: &Plan) -> Option<Ledger> {
     if !plan.is_about_something() || plan.resumed != Resumed::Not {

@@ -14,13 +14,9 @@
 //!     error <-----------------------------------------
 //! ```
 //!
-//! * [`state`]: the state of Task;
 //! * [`plan`]: a command with its names looked up;
 //! * [`ledger`]: the command that is not finished;
-//! * [`data_system`]: updates of the Data System;
-//! * [`preprocess`]: the state variables;
-//! * [`tables`]: the decision tables, one file per command;
-//! * [`postprocess`]: the outputs that a row asks for.
+//! * [`data_system`]: updates of the Data System.
 
 pub mod data_system;
 pub mod goals;
@@ -122,7 +118,7 @@ impl<'d> Process<TaskData<'d>> for Task {
 }
 
 impl State {
-    /// Consult JOYSTICK in each tick, after any result of EXECUTE. HALT, PRECONDITION and ORDERED test its decision.
+    /// JOYSTICK follows any result of EXECUTE. HALT, PRECONDITION and ORDERED test its decision.
     fn joystick(&mut self, course: Course, seen: &mut StateVariables) -> Result<Course, Action> {
         let operator = TaskOperator { subtask: seen.subordinates.subtask, outcome: self.execution.outcome };
         seen.subordinates.takeover = match joystick(self.control, &operator) {

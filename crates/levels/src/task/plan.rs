@@ -14,7 +14,6 @@ use super::tables::{
 };
 use crate::places::{Missing, is_in_mbd, named};
 
-/// Commands of Task (V.4.1).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 #[text(upper)]
 pub enum TaskVerb {
@@ -50,29 +49,27 @@ pub enum TaskVerb {
 /// `endeff-id#` of the tool gripper (VII.7.2).
 pub const TOOL_GRIPPER: u8 = 3;
 
-/// The command names an object (V.4.1).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Handling {
     /// The command names no object.
     NoObject,
-    /// It does.
+    /// The command names an object.
     Object,
 }
 
 /// The progress of a command that was sent before and not finished (docs/design/recovery.md "Ledger").
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Resumed {
-    /// No.
+    /// The command is new.
     Not,
-    /// It was.
+    /// The command was begun and is not finished.
     Begun,
-    /// It was interrupted while Subtask had its tool command.
+    /// The command was interrupted while Subtask had its tool command.
     AtTool,
-    /// It was interrupted on the way to the end-at location.
+    /// The command was interrupted on the way to the end-at location.
     Leaving,
 }
 
-/// Source and destination grip numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Grips {
     /// The object stays in its grip.
@@ -86,77 +83,56 @@ pub enum Grips {
 pub enum TaskGripper {
     /// A gripper may have this number, or no object is named.
     Valid,
-    /// It cannot.
+    /// No gripper can have this number.
     Invalid,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct Location {
-    /// Its name and records.
     pub site: Site,
     /// Its T-POSE.
-    pub pose: ChangingPose,
+    pub pose: ChangingPose, // the T-POSE of the location
 }
 
-/// A location of a command, with the grip there.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct PlanSite {
-    /// Named by the command.
-    pub location: Option<Location>,
-    /// Grip of the object there.
+    pub location: Option<Location>, // the location that the command names
     pub grip: i32,
-    /// Record of END-EFF-PARA, if the object has that grip.
-    pub parameters: EndEffId,
+    pub parameters: EndEffId, // record of END-EFF-PARA, if the object has that grip
 }
 
-/// A command, looked up.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct Plan {
-    /// What to do.
     pub verb: TaskVerb,
-    /// The object, if the command names one.
     pub object: Option<Name16>,
-    /// Its serial number.
     pub serial: Name16,
-    /// `obj-endeff-id#` for Subtask (V.3.2): gripper for the object; none if any gripper will do.
+    /// `obj-endeff-id#` for Subtask (V.3.2); `None` if any gripper will do.
     pub end_effector_id: Option<u8>,
-    /// Where the object is.
     pub source: PlanSite,
-    /// The destination of the object, or of the robot alone.
-    pub destination: PlanSite,
-    /// The place of the robot at the end of the command.
-    pub end_at: PlanSite,
-    /// The update about the move from or to the MBD has still to be sent.
-    pub update_due: bool,
-    /// An ACQUIRE of an object that is held already, and was not taken from the source.
-    pub from_elsewhere: bool,
-    /// The progress before the command was repeated.
-    pub resumed: Resumed,
+    pub destination: PlanSite, // destination of the object, or of the robot alone
+    pub end_at: PlanSite,      // place of the robot at the end of the command
+    pub update_due: bool,      // the move from or to the MBD is still to be reported
+    pub from_elsewhere: bool,  // an ACQUIRE of a held object that was not taken from the source
+    pub resumed: Resumed,      // progress before the command was repeated
 }
 
-/// The result of the look-up of a command.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Found {
     pub plan: Plan,
-    /// The missing data of the object, or else of the first location that lacks data.
-    pub missing: Missing,
-    /// `endeff-id#` of the gripper for the object.
-    pub gripper: TaskGripper,
+    pub missing: Missing,     // missing data of the object, else of a location
+    pub gripper: TaskGripper, // number of the gripper for the object
     pub regrip: TaskRegrip,
-    /// The trajectory from the tool drum to the end-at location.
-    pub way_out: WayOut,
+    pub way_out: WayOut, // trajectory from the tool drum to the end-at location
 }
 
 impl TaskVerb {
-    /// The command for a word. Ten characters are compared, as in all processes below (SPECNOTES.md, contradiction
-    /// 22).
+    /// Compares ten characters, as all processes below do (SPECNOTES.md, contradiction 22).
     #[must_use]
     pub fn of(word: &Name16) -> Option<Self> {
         let word = Name10::clipped(word.as_str());
         Self::ALL.iter().copied().find(|verb| *verb != Self::None && Name10::clipped(verb.text()) == word)
     }
 
-    /// True if the fields of the command are ignored.
     const fn is_bare(self) -> bool {
         matches!(self, Self::None | Self::Pause | Self::Startup | Self::Shutdown)
     }
@@ -214,7 +190,7 @@ impl Plan {
         Found { plan, missing, gripper, regrip, way_out: plan.way_out(data) }
     }
 
-    /// The trajectory from the tool drum to the end-at location, for a command that ends at the drum.
+    /// Only a command that ends at the drum needs a trajectory out of it.
     fn way_out(&self, data: &TaskData<'_>) -> WayOut {
         let leaves = matches!(self.verb, TaskVerb::ReleaseTool | TaskVerb::RemoveTool);
         let Some(end_at) = self.end_at.location.filter(|_| leaves) else { return WayOut::Leads };
@@ -234,7 +210,7 @@ impl Plan {
         if self.object.is_some() { Handling::Object } else { Handling::NoObject }
     }
 
-    /// True if the command is about an object or a tool.
+    /// True if the command names an object or a tool.
     #[must_use]
     pub const fn is_about_something(&self) -> bool {
         self.object.is_some() || self.verb.is_for_tools()
@@ -260,7 +236,7 @@ impl Plan {
         if self.source.grip == self.destination.grip { Grips::Same } else { Grips::Different }
     }
 
-    /// The data for a location of the command.
+    /// The task data for a location of the command.
     #[must_use]
     pub const fn site(&self, site: &PlanSite) -> SiteData {
         if site.location.is_none() {
@@ -295,8 +271,7 @@ impl Plan {
         }
     }
 
-    /// The site to which POSITION goes: the source, or the destination if the source is null (SPECNOTES.md,
-    /// contradiction 24).
+    /// POSITION goes to the source, or to the destination if the source is null (SPECNOTES.md, contradiction 24).
     #[must_use]
     pub const fn position_site(&self) -> &PlanSite {
         if self.source.location.is_some() { &self.source } else { &self.destination }
@@ -307,14 +282,13 @@ impl Plan {
         self.object.map(|object| ObjectGrip { object, grip: self.position_site().grip })
     }
 
-    /// The site with the grip of the tool: the source if the tool has its grip, else the destination.
+    /// The site with the tool's grip: the source if the tool has its grip, else the destination.
     #[must_use]
     pub const fn tool_site(&self) -> &PlanSite {
         if self.source.parameters.is_null() { &self.destination } else { &self.source }
     }
 }
 
-/// The number of the gripper for an object. The tool commands need the tool gripper even if no object is named.
 fn gripper(verb: TaskVerb, object: Option<&Name16>, data: &TaskData<'_>) -> (Option<u8>, TaskGripper) {
     let id = match object {
         None if verb.is_for_tools() => TOOL_GRIPPER.into(),
@@ -332,7 +306,6 @@ impl PlanSite {
         self.location.map(|location| location.site)
     }
 
-    /// The kind of destination that the location is.
     #[must_use]
     pub fn destination(&self) -> Destination {
         match self.location.as_ref().map(|location| location.site.location.as_str()) {

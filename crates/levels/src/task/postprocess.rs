@@ -1,5 +1,3 @@
-//! Postprocess of Task: commands to Subtask and to the Data System, and the status to the HWSC.
-
 use interfaces::{
     ChangingPose, Reason, TaskOutputs, Unconfirmed,
     data_base::DataBaseVerb,
@@ -23,8 +21,7 @@ use crate::{
 };
 
 impl State {
-    /// Take over an accepted command and give its poses new record numbers: T-POSE-1 source, T-POSE-2 destination,
-    /// T-POSE-3 end-at.
+    /// The poses of an accepted command get new record numbers: T-POSE-1 source, T-POSE-2 destination, T-POSE-3 end-at.
     pub(super) fn begin(
         &mut self,
         plan: &Plan,
@@ -137,7 +134,7 @@ impl State {
         self.plan.is_about_something() && outputs.ledger.is_some()
     }
 
-    /// The Data System, which becomes the recipient of the last order.
+    /// The Data System becomes the recipient of the last order.
     const fn order(&mut self) -> &mut DataSystem {
         self.ordered = TaskRecipient::DataSystem;
         &mut self.data_system
@@ -153,7 +150,7 @@ impl State {
         self.order().report_item(&plan, held, inputs.tick, outputs);
     }
 
-    /// Send a command to Subtask for the object of the plan at one of its locations.
+    /// Send a command for the object of the plan at one of its locations.
     fn send(
         &mut self,
         verb: SubtaskVerb,
@@ -180,8 +177,7 @@ impl State {
         };
     }
 
-    /// Send a tool command to Subtask, which names the location itself. If the command names no tool, it means the
-    /// held one.
+    /// Subtask names the location of a tool command itself. A command without a tool means the held one.
     fn send_tool(&mut self, verb: SubtaskVerb, inputs: &Inputs<'_, TaskData<'_>>, outputs: &mut TaskOutputs) {
         let PlanSite { grip, parameters, .. } = *self.plan.tool_site();
         self.send(verb, &PlanSite { location: None, grip, parameters }, inputs, outputs);

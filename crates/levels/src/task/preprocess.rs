@@ -1,5 +1,3 @@
-//! Preprocess of Task: its state variables, from the statuses of Subtask and of the Data System.
-
 use interfaces::{
     emove::{Holding, Offset, Standing},
     hws::{Checked, Confirmed},
@@ -80,7 +78,7 @@ impl State {
         }
     }
 
-    /// Before the first command after a start, continue from the output buffers that Task wrote before it.
+    /// Before the first command after a start, adopt the output buffers from before it.
     fn adopt(&mut self, inputs: &Inputs<'_, TaskData<'_>>) {
         let (memory, written) = (inputs.memory, &inputs.memory.task);
         self.subtask.start_from(inputs.tick, written.subtask.number, memory.subtask.status.echo);
@@ -91,7 +89,7 @@ impl State {
         }
     }
 
-    /// Store the confirmation of a person. Drop it when the robot leaves its place or holds nothing.
+    /// A person's confirmation is dropped when the robot leaves its place or holds nothing.
     fn note_support(&mut self, inputs: &Inputs<'_, TaskData<'_>>) {
         let below = &inputs.memory.subtask.status;
         let told = inputs.external.operator.confirmed.map(|by| Confirmed { by, at: below.at });
@@ -100,7 +98,7 @@ impl State {
             .filter(|confirmed| confirmed.at == below.at && below.held != Holding::Nothing);
     }
 
-    /// A new command, compared with the commands before it.
+    /// Compare a new command with the commands before it.
     fn plan(&self, plan: &Plan, inputs: &Inputs<'_, TaskData<'_>>) -> Plan {
         let (below, ledger) = (&inputs.memory.subtask.status, inputs.memory.task.ledger.as_ref());
         let held = Held::of(below.held, plan.object);
@@ -128,7 +126,7 @@ impl State {
         Plan { update_due: due.action == Notice::Send, ..plan }
     }
 
-    /// Consult RELEASED about the object that Subtask reports as released.
+    /// Consult RELEASED about an object that Subtask reports as released.
     fn follow_object(&mut self, verb: TaskVerb, replaces: bool, inputs: &Inputs<'_, TaskData<'_>>) {
         let memory = inputs.memory;
         let Some(placed) = memory.subtask.status.placed else { return };
@@ -206,8 +204,8 @@ fn preconditions(found: &Found, checked: Checked) -> Preconditions {
     }
 }
 
-/// The end-at location, compared with the robot's place. The name of a location does not identify a sector. A robot
-/// that was moved away from its place, however little, has to go there.
+/// The name of a location does not identify a sector. A robot that was moved away from its place, however little, has
+/// to go there.
 fn ends(end_at: &PlanSite, below: &SubtaskStatus) -> Ends {
     let is_there = matches!(below.offset, Offset::None | Offset::NotSensed);
     let at = below.at.filter(|_| is_there).map(|at| at.site.location);
@@ -226,7 +224,7 @@ fn station(at: Option<Name10>) -> Station {
     }
 }
 
-/// The route from the robot's place to the position of a POSITION. Task compares only the names of the locations.
+/// Compares only the names of locations.
 fn way(at: Option<Standing>, plan: &Plan, data: &TaskData<'_>) -> TaskRoute {
     let Some(at) = at else { return TaskRoute::NoStart };
     let Some(to) = plan.position_site().site() else { return TaskRoute::Here };

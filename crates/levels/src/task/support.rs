@@ -14,7 +14,6 @@ use taskdata::files::{LocptId, Place, Reference, TaskData};
 use super::plan::Plan;
 use crate::places::named;
 
-/// The support of the held object when the gripper opens.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum TaskSupport {
     /// Nothing that is known.
@@ -28,7 +27,6 @@ pub enum TaskSupport {
 }
 
 impl TaskSupport {
-    /// The support of the held object, for the command of a plan.
     #[must_use]
     pub fn sense(
         below: &SubtaskStatus,
@@ -51,8 +49,8 @@ impl TaskSupport {
         }
     }
 
-    /// The support at the place itself, with its jaws ignored. If the gripper holds something unknown, the object
-    /// that the command names is assumed.
+    /// The support at the place, ignoring jaws. If the gripper holds something unknown, the object that the command
+    /// names is assumed.
     #[must_use]
     pub fn of_place(below: &SubtaskStatus, named: Option<ObjectGrip>, data: &TaskData<'_>) -> Self {
         // Only a robot that is at an object, or has brought one, has a grip.
@@ -76,15 +74,14 @@ impl TaskSupport {
     }
 }
 
-/// True if the object has its own grip data at the location point of the place. Grip data for `$$$` do not describe a
-/// fixture.
+/// True if the object has its own grip data at the location point. Grip data for `$$$` do not describe a fixture.
 fn has_place(object: &ObjectGrip, at: &Standing, data: &TaskData<'_>) -> bool {
     let [here, anywhere] = [at.site.record, LocptId::NULL]
         .map(|point| data.grip_loc(&object.object, object.grip, &Place::point(point)));
     here.is_some() && here != anywhere
 }
 
-/// True if a part stays in this fixture by its weight (VII.5: owner VFIXTURE).
+/// A part stays in a nest by its weight (VII.5: owner VFIXTURE).
 fn is_nest(at: &Standing, data: &TaskData<'_>) -> bool {
     let owner = data.owner_named(&Name10::clipped(named::NESTS));
     let point = Reference::location_point(at.site.record);

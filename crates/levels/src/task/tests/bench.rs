@@ -23,10 +23,8 @@ use crate::{
     task::Task,
 };
 
-/// Duration of a command at a double, in ticks.
-const WORK: u32 = 3;
+const WORK: u32 = 3; // ticks of a command
 
-/// The failure of a command that the test selects.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Mishap {
     Error(Reason),
@@ -153,7 +151,6 @@ impl SubtaskDouble {
         }
     }
 
-    /// The gripper holds an object, or nothing if the name is empty.
     pub fn hold(&mut self, object: &str) {
         let object = Name16::new(object).unwrap();
         let held = Holding::Object(ObjectGrip { object, grip: 1 });
@@ -169,8 +166,7 @@ impl SubtaskDouble {
         }
     }
 
-    /// Put the robot at a location, or at no known place if the name is empty. At the drum's location it is in the
-    /// drum.
+    /// If the name is empty, the robot is at no known place. At the drum's location it is in the drum.
     pub fn stand(&mut self, location: &str) {
         let location = Name10::new(location).unwrap();
         let site = Site { location, ..Site::default() };
@@ -181,11 +177,9 @@ impl SubtaskDouble {
 
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Answer {
-    /// No answer.
     #[default]
-    Absent,
-    /// The command is done after some ticks.
-    After(u64),
+    Absent, // no answer
+    After(u64), // done after these ticks
     Refuse,
 }
 
@@ -196,7 +190,6 @@ pub struct DataSystem {
     pub status: DataBaseStatus,
     pub received: Vec<DataBaseCommand>,
     pub answer: Answer,
-    /// A command with another answer.
     pub except: Option<(DataBaseVerb, Answer)>,
 }
 
@@ -243,7 +236,6 @@ impl World<Task> for Below {
 }
 
 impl<'d> Tested<TaskData<'d>> for Task {
-    /// Commands of the workstation controller are lines ([`Bench::command`]).
     type Order = ();
     type End = (HwsReport, Reason);
     const LONGEST: u64 = 3000;
@@ -335,7 +327,6 @@ impl<'d> Bench<'d> {
         })
     }
 
-    /// The orders to Subtask since the last command began.
     pub fn sent(&self) -> Vec<&'static str> {
         self.world.subtask.received.iter().map(|command| command.command.text()).collect()
     }
@@ -344,7 +335,6 @@ impl<'d> Bench<'d> {
         self.world.data_system.received.iter().map(|command| command.command.text()).collect()
     }
 
-    /// Set the attached gripper, its object and the robot's place.
     pub fn set(&mut self, gripper: u8, object: &str, at: &str) {
         self.world.subtask.outputs.status.end_effector_id = (gripper != 0).then_some(gripper);
         self.world.subtask.hold(object);

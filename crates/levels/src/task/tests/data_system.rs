@@ -1,5 +1,3 @@
-//! Scenarios of Task and the Data System (IV.4.2, IX.2).
-
 use interfaces::{
     Reason,
     data_base::DataBaseVerb,
@@ -228,7 +226,6 @@ fn update_carries_the_serial_number_of_the_command() {
     assert_eq!(update(&bench).1, "LB-0042");
 }
 
-/// Run a line and return the positions of its updates.
 fn told(bench: &mut Bench<'_>, line: &str) -> Vec<String> {
     assert_eq!(bench.run(line), FINISHED, "{line}");
     let updates = bench.world.data_system.received.iter().filter(|told| told.command == DataBaseVerb::Update);

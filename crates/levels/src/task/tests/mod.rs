@@ -1,5 +1,3 @@
-//! Scenarios of Task with doubles of Subtask and of the Data System.
-
 mod bench;
 mod confirmed;
 mod coverage;

@@ -42,7 +42,6 @@ fn moving_bench() -> Bench<'static> {
     bench
 }
 
-/// True if Subtask is executing anything but a pause.
 fn is_under_way(bench: &Bench<'_>) -> bool {
     let pausing = bench.memory.task.subtask.command == SubtaskVerb::Pause;
     let status = &bench.memory.subtask.status;
@@ -414,7 +413,6 @@ fn confirmation_ends_when_the_robot_leaves_or_holds_nothing() {
     assert!(!counts(&confirmed(brought(Holding::Nothing, "HOME"), Support::ByHand)));
 }
 
-/// The position and sector of each update that the Data System has accepted.
 fn updates(bench: &Bench<'_>) -> Vec<(String, i32)> {
     let told = bench.world.data_system.received.iter().filter(|told| told.command == DataBaseVerb::Update);
     told.map(|told| (told.position.to_string(), told.sector.unwrap_or(0))).collect()
