@@ -21,7 +21,6 @@ use crate::{
     goal::Goal,
 };
 
-/// The goal of the command, compared with the sensors.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Evidence {
     /// The goal holds.
@@ -70,7 +69,6 @@ pub enum Evidence {
     NoAnswer,
 }
 
-/// Age of the readings.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Reading {
     /// They may be older than the end of the command.
@@ -79,7 +77,6 @@ pub enum Reading {
     Newest,
 }
 
-/// A command that a row reports as done, for [`CONFIRM`].
 #[derive(Clone, Copy, Debug, Variables)]
 pub struct Claim {
     /// The goal of the command, compared with the sensors.
@@ -88,7 +85,6 @@ pub struct Claim {
     pub reading: Reading,
 }
 
-/// The actions of [`CONFIRM`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Actions)]
 pub enum Doubt {
     /// Wait for a newer reading.
@@ -124,24 +120,20 @@ decision_table! {
     }
 }
 
-/// The goal of a command, compared with the sensors.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Proof {
     pub evidence: Evidence,
-    /// The part without a sensor.
     pub unconfirmed: Unconfirmed,
 }
 
 impl Proof {
     pub const HOLDS: Self = Self::of(Evidence::Holds);
 
-    /// The sensors cover the whole goal, with this result.
     #[must_use]
     pub const fn of(evidence: Evidence) -> Self {
         Self { evidence, unconfirmed: Unconfirmed::None }
     }
 
-    /// A part of the goal has no sensor.
     #[must_use]
     pub const fn unsensed(unconfirmed: Unconfirmed) -> Self {
         match unconfirmed {
@@ -153,13 +145,11 @@ impl Proof {
         }
     }
 
-    /// The goal holds if a condition is true.
     #[must_use]
     pub const fn when(holds: bool, otherwise: Evidence) -> Self {
         if holds { Self::HOLDS } else { Self::of(otherwise) }
     }
 
-    /// The robot is at a place, by its offset from it.
     #[must_use]
     pub const fn at(offset: Offset) -> Self {
         match offset {
@@ -268,7 +258,6 @@ mod tests {
     static GOAL: Goal =
         Goal { holds: "it holds", sensors: &[Sensor::Resolvers], tolerance: "", age: 2, unconfirmed: &[] };
 
-    /// The result of CONFIRM for a row from step 7 to step 8.
     fn ask(execution: &mut Execution, action: Act, proof: Proof) -> (u8, u8, Act, u8) {
         let row = Choice { table: 3, row: 5, action, next: 8_u8, values: Values::default() };
         let choice = execution.confirm(9, 7_u8, row, (&GOAL, proof));

@@ -10,7 +10,6 @@ use rcs_core::table::Table;
 
 use crate::{confirm::CONFIRM, execution::EXECUTE};
 
-/// Tables and rows that have fired, with their state variables.
 #[derive(Debug, Default)]
 pub struct Coverage(BTreeSet<(u8, u8, u8, u64)>);
 
@@ -46,16 +45,13 @@ impl Coverage {
 }
 
 thread_local! {
-    /// Rows that have fired in this thread, by the name of the process.
     static FIRED: RefCell<BTreeMap<&'static str, Coverage>> = const { RefCell::new(BTreeMap::new()) };
 }
 
-/// Record the rows that a process reports in a test.
 pub fn note(process: &'static str, tables: &[&Table], header: &Header) {
     FIRED.with_borrow_mut(|fired| fired.entry(process).or_default().note(tables, header));
 }
 
-/// The rows of a process that do not fire in any of some scenarios, as [`Coverage::missing`] lists them.
 pub fn silent<P: Process<Data>, Data>(scenarios: &[fn()]) -> Vec<String> {
     FIRED.take();
     scenarios.iter().for_each(|scenario| scenario());

@@ -29,7 +29,6 @@ use rcs_core::{
 
 use crate::{halt::Halt, rows::Rows};
 
-/// Progress of the current command.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Outcome {
     /// No command has arrived yet.
@@ -58,7 +57,6 @@ impl Outcome {
     }
 }
 
-/// Use of the tables of the current command.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain, Actions)]
 pub enum Course {
     /// Do not consult the tables.
@@ -71,7 +69,6 @@ pub enum Course {
     Continue,
 }
 
-/// The command buffer, for [`EXECUTE`].
 #[derive(Clone, Copy, Debug, Variables)]
 pub struct Buffer {
     /// Whether the command is new.
@@ -112,7 +109,6 @@ pub enum Refusal {
     Fail(Reason),
 }
 
-/// Result of the last order to a process below, after failures are passed up.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Work {
     /// The order is not done yet.
@@ -124,60 +120,41 @@ pub enum Work {
 /// A row that has given an order to a process below.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub struct LastOrder {
-    /// Its table.
     pub table: u8,
-    /// Its number.
     pub row: u8,
-    /// The state variables of its table in that tick, as one number.
-    pub variables: u64,
+    pub variables: u64, // the state variables in that tick, as one number
 }
 
-/// The actions that end a command, for [`CONFIRM`](crate::confirm::CONFIRM).
 pub trait Ending: Sized {
     const WAIT: Self;
 
     fn fail(reason: Reason) -> Self;
 
-    /// True if the action reports the command as done.
     fn ends(&self) -> bool;
 }
 
-/// The current command of a process and its progress.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct Execution {
-    /// Echo and adoption.
     pub receiver: Receiver,
-    /// Its progress.
     pub outcome: Outcome,
-    /// Why it failed.
     pub reason: Reason,
-    /// The part of its goal without a sensor, when it ended.
-    pub unconfirmed: Unconfirmed,
-    /// The rows for the header.
+    pub unconfirmed: Unconfirmed, // at the end of the command
     pub rows: Rows,
-    /// The command is new and neither accepted nor refused yet.
-    pub waiting: bool,
-    /// The stop of the previous command.
+    pub waiting: bool, // the command is neither accepted nor refused yet
     pub halt: Halt,
-    /// The last order of the command.
     pub last_order: Option<LastOrder>,
-    /// Ticks in which a row reported it done and the sensors contradicted.
-    pub claimed: u8,
+    pub claimed: u8, // ticks in which a row reported done and the sensors contradicted
 }
 
-/// Progress of a command, for the process above.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Report {
     pub outcome: Outcome,
     pub reason: Reason,
-    /// The part of the goal that no sensor has confirmed, for a command that is done.
     pub unconfirmed: Unconfirmed,
 }
 
-/// Number of [`EXECUTE`] in every process.
-const EXECUTE_NUMBER: u8 = 1;
-/// Number of the table ACCEPT in every process.
-const ACCEPT_NUMBER: u8 = 2;
+const EXECUTE_NUMBER: u8 = 1; // in every process
+const ACCEPT_NUMBER: u8 = 2; // in every process
 
 impl Execution {
     /// Start a tick: read the number of the command in the buffer. Also returns whether the command is to be
@@ -239,7 +216,6 @@ impl Execution {
         (self.outcome, self.reason) = (Outcome::Error, reason);
     }
 
-    /// Pass up the failure of the process below.
     pub fn pass_up(&mut self, lower: Lower, reason: Reason) {
         match lower {
             Lower::Joystick => (self.outcome, self.reason) = (Outcome::Joystick, Reason::JoystickOn),
@@ -248,8 +224,7 @@ impl Execution {
         }
     }
 
-    /// The status for the process above. A restarted process reports executing until its previous orders have come
-    /// to rest.
+    /// A restarted process reports executing until its previous orders are at rest.
     ///
     /// `standing` is the reason from the process below during a PAUSE. A link failure during a PAUSE does not fail
     /// it: the reason accompanies `done` (docs/design/link.md).

@@ -1,13 +1,13 @@
 //! The goal of a command: the condition at its end, and the sensors that confirm it (V: execution depends on
 //! "whether any subgoals of the command have been achieved", and on "what sensory values are being observed").
 //!
-//! `commands!` requires a goal for each command, so that a command without one does not compile. `rcs-run tables`
-//! prints them. [`CONFIRM`](crate::confirm::CONFIRM) compares the goal with the sensors when a row reports the end.
+//! `commands!` requires a goal for each command. [`CONFIRM`](crate::confirm::CONFIRM) compares it with the sensors
+//! when a row reports the end. In Grip, V-Grip, Tool-Grip, Quick Change and the rotary table the rows that end a
+//! command test the readings of the same tick, so CONFIRM is not consulted.
 
 use interfaces::Unconfirmed;
 use rcs_core::Plain;
 
-/// The sensors or reports that confirm a goal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Sensor {
     /// The resolvers of the robot.
@@ -57,7 +57,6 @@ pub enum Sensor {
 
 #[derive(Debug)]
 pub struct Goal {
-    /// The condition.
     pub holds: &'static str,
     pub sensors: &'static [Sensor],
     /// The tolerance, with its unit; empty if the reading has two values.
@@ -76,9 +75,7 @@ pub struct Declared {
     pub goal: &'static Goal,
 }
 
-/// The goals of a process, for `rcs-run tables`.
 pub trait Goals {
-    /// The goals of all its commands.
     const GOALS: &'static [Declared];
 }
 

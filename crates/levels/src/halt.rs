@@ -23,7 +23,6 @@ use rcs_core::{
 
 use crate::execution::{Course, Ending, Execution, LastOrder};
 
-/// The command of a process, for [`HALT`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Intake {
     /// It has been accepted or refused, or the buffer has none.
@@ -43,7 +42,6 @@ pub enum Kind {
     Pause,
 }
 
-/// The joystick box.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum BoxState {
     /// It is off.
@@ -52,7 +50,6 @@ pub enum BoxState {
     On,
 }
 
-/// The process that commands this one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Above {
     /// It wrote its buffers in the last tick, or is not watched.
@@ -62,14 +59,12 @@ pub enum Above {
 }
 
 impl Above {
-    /// From the header of its buffers.
     #[must_use]
     pub fn of(header: &Header, tick: Tick) -> Self {
         if header.stamp == tick.previous() { Self::Live } else { Self::Lost }
     }
 }
 
-/// The state of the processes below.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Below {
     /// Their last commands have ended, or they do not answer.
@@ -81,7 +76,6 @@ pub enum Below {
 }
 
 impl Below {
-    /// From the status of one process below, and whether its last command was a pause.
     #[must_use]
     pub const fn of(status: Lower, pausing: bool) -> Self {
         match (status, pausing) {
@@ -101,7 +95,6 @@ impl Below {
     }
 }
 
-/// The state variables of [`HALT`].
 #[derive(Clone, Copy, Debug, Variables)]
 pub struct Replaced {
     /// The state of the command.
@@ -116,7 +109,6 @@ pub struct Replaced {
     pub below: Below,
 }
 
-/// The actions of [`HALT`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Actions)]
 pub enum Halting {
     /// A pause to the processes below.
@@ -154,7 +146,6 @@ decision_table! {
     }
 }
 
-/// An order to a process below, for [`EFFECT`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Order {
     /// The row that fired gives no order.
@@ -174,7 +165,6 @@ pub enum Advance {
     Made,
 }
 
-/// The state variables of [`EFFECT`].
 #[derive(Clone, Copy, Debug, Variables)]
 pub struct Fired {
     /// The order that it gives.
@@ -183,7 +173,6 @@ pub struct Fired {
     pub advance: Advance,
 }
 
-/// The actions of [`EFFECT`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Actions)]
 pub enum Futile {
     /// Report an error.
@@ -200,9 +189,7 @@ decision_table! {
     }
 }
 
-/// The actions of a process that commands others, for [`HALT`].
 pub trait Stopping: Ending {
-    /// A pause to the processes below.
     const STOP: Self;
 
     #[must_use]
@@ -214,7 +201,6 @@ pub trait Stopping: Ending {
     }
 }
 
-/// The actions of a process that commands others, for [`EFFECT`].
 pub trait Commanding: Ending {
     /// True if the action gives a process below an order that changes a state variable when it is carried out.
     fn is_order(&self) -> bool;

@@ -1,5 +1,3 @@
-//! The object in the attached gripper, as the tables of Task, Subtask and E-move test it.
-
 use interfaces::emove::Holding;
 use rcs_core::{Plain, name::Name16};
 
@@ -19,7 +17,6 @@ pub enum Held {
 }
 
 impl Held {
-    /// The held object, compared with the `object` of a command.
     #[must_use]
     pub fn of(holding: Holding, object: Option<Name16>) -> Self {
         match holding {

@@ -26,10 +26,8 @@ use crate::{
     processes::*,
 };
 
-/// A process by name, with its decision tables.
 #[derive(Debug)]
 pub struct ProcessInfo {
-    /// The manual's name.
     pub name: &'static str,
     /// Its tables; `table` of a [`Decided`] counts them from 1.
     pub tables: &'static [&'static Table],
@@ -37,13 +35,11 @@ pub struct ProcessInfo {
 }
 
 impl ProcessInfo {
-    /// A table by its number in a header.
     #[must_use]
     pub fn table(&self, number: u8) -> Option<&'static Table> {
         self.tables.get(usize::from(number.checked_sub(1)?)).copied()
     }
 
-    /// A row by its numbers, with its table.
     #[must_use]
     pub fn row(&self, decided: Decided) -> Option<(&'static Table, &'static Row)> {
         let table = self.table(decided.table)?;
@@ -77,11 +73,9 @@ macro_rules! ladder {
     )+) => {
         static PROCESSES: [ProcessInfo; PROCESS_COUNT] = [ $( info::<$id>(), )+ ];
 
-        /// The states of all processes.
         #[derive(Clone, Copy, Debug, PartialEq, Plain)]
         pub struct LadderState {
             $( #[doc = $doc] pub $field: StateOf<$id>, )+
-            /// Single-step buttons of the previous tick.
             pub buttons: u8,
         }
 
@@ -196,7 +190,6 @@ impl Ladder {
         &PROCESSES
     }
 
-    /// One tick: read `before` and `external`, write `after`.
     pub fn step(
         &mut self,
         tick: Tick,

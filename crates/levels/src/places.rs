@@ -41,14 +41,12 @@ pub fn pose_of(number: u32, memory: &CommonMemory, data: &TaskData<'_>) -> Optio
     }
 }
 
-/// True if a record of LOCPT is one of the MBD's.
 #[must_use]
 pub fn is_in_mbd(point: LocptId, data: &TaskData<'_>) -> bool {
     let owner = data.owner_named(&Name10::clipped(named::MBD)).filter(|_| !point.is_null());
     owner.is_some_and(|owner| data.is_member(owner, Reference::location_point(point)))
 }
 
-/// The first entry missing in the task data: a state variable of the tables ACCEPT.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Missing {
     /// No entry is missing.

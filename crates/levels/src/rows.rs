@@ -1,20 +1,14 @@
-//! The rows in the header of a process, with the ticks in which they fired, and the state variables of their
-//! tables.
+//! The rows in the header of a process: those that fired, when, and for which state variables.
 
 use interfaces::{Basis, Consulted, Decided, Header};
 use rcs_core::{Plain, header::BESIDE, name::Name16, table::Choice, tick::Tick};
 
-/// The rows of a process.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct Rows {
-    /// The tick in which the process was stepped last.
-    pub tick: Tick,
-    /// The row that decided last.
+    pub tick: Tick, // the last tick in which the process was stepped
     pub decided: Option<Decided>,
-    /// The tick in which it decided, and the state variables of its table.
-    pub basis: Option<Basis>,
-    /// Rows of other tables in that tick.
-    pub beside: [Option<Consulted>; BESIDE],
+    pub basis: Option<Basis>, // the tick and the state variables of `decided`
+    pub beside: [Option<Consulted>; BESIDE], // rows of other tables in that tick
 }
 
 impl Rows {
@@ -35,7 +29,6 @@ impl Rows {
         self.basis = Some(Basis { tick: self.tick, values });
     }
 
-    /// Record a row of a table that does not decide about the command.
     pub fn beside<Action, Step>(&mut self, choice: &Choice<Action, Step>) {
         let decided = Decided { table: choice.table, row: choice.row };
         self.add(Consulted { decided, values: choice.values });

@@ -2,7 +2,6 @@
 
 use rcs_core::Plain;
 
-/// Whether the gripper of the process is on the robot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Attachment {
     /// It is attached and the quick change is locked.
@@ -11,7 +10,6 @@ pub enum Attachment {
     Detached,
 }
 
-/// The gripper that a command addresses.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Addressee {
     /// That of this process, or the command names none.
@@ -20,7 +18,6 @@ pub enum Addressee {
     Other,
 }
 
-/// The time of a command, or of a motion for which it waits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Clock {
     /// The time limit is not over.
