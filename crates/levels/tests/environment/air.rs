@@ -1,5 +1,3 @@
-//! The fingers of a gripper with an air servo: effects of the valves on opening, force and counts.
-
 use interfaces::device::{ADC_FULL_SCALE, GripSensors, valve};
 use rcs_core::tick::TICK_S;
 
@@ -12,43 +10,32 @@ const FLOWS: [(u8, f64); 6] = [
     (valve::CLOSE_MEDIUM, -1.0),
     (valve::CLOSE_COARSE, -4.0),
 ];
-/// Force of a blocked finger per inch that the air would have moved it, lb/in.
-const COMPRESSIBILITY: f64 = 100.0;
-/// Reading of the first finger while it pushes the object towards the second, lb.
+const COMPRESSIBILITY: f64 = 100.0; // lb on a blocked finger per inch that it would have moved
+/// Force on the first finger while it pushes the object towards the second, lb.
 const PUSH: f64 = 4.0;
 
 #[derive(Clone, Copy, Debug)]
 pub struct Object {
-    /// Opening at which both fingers touch, in.
-    pub size: f64,
-    /// Distance by which one finger touches earlier than the other, in.
-    pub off_centre: f64,
+    pub size: f64,       // opening at which both fingers touch, in
+    pub off_centre: f64, // in, by which one finger touches earlier than the other
 }
 
 #[derive(Clone, Debug)]
 pub struct Gripper {
     pub opening: f64,
-    /// True force of each finger, lb.
-    pub force: f64,
+    pub force: f64, // true force of each finger, lb
     pub object: Option<Object>,
-    /// Greatest noise, counts.
-    pub noise: u16,
-    /// Counts at 0 and counts per inch of the potentiometer.
-    pub potentiometer: (f64, f64),
-    /// Counts at 0 and counts per pound of the strain gages.
-    pub strain: [(f64, f64); 2],
-    /// Valves act one tick late.
-    pub late: bool,
-    /// Without air the valves have no effect.
-    pub without_air: bool,
-    /// Valve patterns in order, without repetitions.
-    pub patterns: Vec<u8>,
+    pub noise: u16,                // greatest noise, counts
+    pub potentiometer: (f64, f64), // counts at 0, counts per inch
+    pub strain: [(f64, f64); 2],   // counts at 0, counts per pound
+    pub late: bool,                // valves act one tick late
+    pub without_air: bool,         // valves have no effect
+    pub patterns: Vec<u8>,         // valve patterns in order, without repetitions
     pending: u8,
     random: u64,
 }
 
 impl Gripper {
-    /// A gripper at rest at an opening.
     pub fn new(opening: f64, seed: u64) -> Self {
         Self {
             opening,

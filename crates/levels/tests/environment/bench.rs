@@ -1,4 +1,4 @@
-//! A process and its environment, tick by tick. The test is its commander.
+//! A process and its environment. The test is the commander.
 
 use std::fmt::Debug;
 
@@ -10,15 +10,13 @@ use rcs_core::{Plain, plain::Writer, tick::Tick};
 
 use crate::{coverage, processes};
 
-/// The buffers of a process in common memory.
 pub trait Buffers {
     type Outputs: Plain + Copy;
 
     fn outputs(memory: &mut CommonMemory) -> &mut Self::Outputs;
     fn header(outputs: &mut Self::Outputs) -> &mut Header;
-    /// The command number that its status echoes.
     fn echo(outputs: &Self::Outputs) -> u32;
-    /// The number of the last command of its commander; 0 for Task, whose commander is not a process.
+    /// The last command of the commander; 0 for Task, whose commander is not a process.
     fn number(memory: &mut CommonMemory) -> u32;
 }
 
@@ -59,20 +57,17 @@ macro_rules! buffers {
 
 for_each_process!(buffers);
 
-/// A process that a test commands.
 pub trait Tested<Data>: Buffers + Process<Data, Outputs = <Self as Buffers>::Outputs> + Default {
     type Order: Copy;
     type End: Copy + Debug + PartialEq;
     /// Time limit of every command, ticks.
     const LONGEST: u64;
 
-    /// Write a command of its commander with a number.
     fn order(memory: &mut CommonMemory, order: Self::Order, number: u32);
     /// The number of the last command, if no process commands this one.
     fn number_outside(_external: &ExternalInputs) -> u32 {
         0
     }
-    /// The end of the echoed command.
     fn end(outputs: &<Self as Buffers>::Outputs) -> Option<Self::End>;
     /// True while the process has suspended itself until a person continues.
     fn is_suspended(_outputs: &<Self as Buffers>::Outputs, _external: &ExternalInputs) -> bool {
@@ -82,12 +77,10 @@ pub trait Tested<Data>: Buffers + Process<Data, Outputs = <Self as Buffers>::Out
     fn check(_outputs: &<Self as Buffers>::Outputs, _memory: &CommonMemory, _external: &ExternalInputs) {}
 }
 
-/// The environment of a process: devices and neighbours.
 pub trait World<P: Buffers> {
     /// Write the device words of this tick, and the neighbours' outputs of the previous tick.
     fn sense(&mut self, _tick: Tick, _memory: &mut CommonMemory, _external: &mut ExternalInputs) {}
-    /// Neighbours read the outputs `before` and write their own; devices react to the process's outputs of this
-    /// tick.
+    /// Neighbours read the outputs `before` and write their own; devices react to the outputs of this tick.
     fn act(
         &mut self,
         _tick: Tick,
@@ -98,7 +91,6 @@ pub trait World<P: Buffers> {
     }
 }
 
-/// A process, its buffers and its environment.
 #[derive(Clone)]
 pub struct Bench<P, W, Data = ()> {
     pub process: P,
@@ -107,7 +99,6 @@ pub struct Bench<P, W, Data = ()> {
     pub world: W,
     pub data: Data,
     pub tick: Tick,
-    /// The process is not stepped: its outputs are republished.
     pub held: bool,
 }
 
@@ -158,7 +149,6 @@ impl<P: Tested<Data>, W: World<P>, Data> Bench<P, W, Data> {
         outputs
     }
 
-    /// Step some ticks; returns the last outputs.
     pub fn wait(&mut self, ticks: u32) -> <P as Buffers>::Outputs {
         (0..ticks).for_each(|_| {
             self.step();
@@ -166,7 +156,6 @@ impl<P: Tested<Data>, W: World<P>, Data> Bench<P, W, Data> {
         self.outputs()
     }
 
-    /// Step until the command has ended; returns its end.
     pub fn finish(&mut self) -> P::End {
         for _ in 0..P::LONGEST {
             let outputs = self.step();
@@ -191,7 +180,6 @@ impl<P: Tested<Data>, W: World<P>, Data> Bench<P, W, Data> {
         }
     }
 
-    /// A copy of the bench in each tick in which the command is executed.
     pub fn at_every_tick(mut self) -> impl Iterator<Item = Self>
     where
         Self: Clone,
@@ -231,7 +219,6 @@ impl<P: Tested<Data>, W: World<P>, Data> Bench<P, W, Data> {
         self.finish()
     }
 
-    /// Do not step the process for some ticks.
     pub fn sleep(&mut self, ticks: u32) {
         self.held = true;
         self.wait(ticks);

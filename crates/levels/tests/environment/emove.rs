@@ -1,5 +1,3 @@
-//! E-move as Subtask sees it: the effects of its orders on its status.
-
 use interfaces::{
     StatusReport,
     emove::{
@@ -7,7 +5,6 @@ use interfaces::{
     },
 };
 
-/// True if the robot moves away for an order.
 pub const fn moves(verb: EmoveVerb) -> bool {
     matches!(
         verb,
@@ -51,7 +48,6 @@ pub const fn grasp(status: &mut EmoveStatus, object: ObjectGrip) {
     (status.held, status.placed, status.located) = (Holding::Object(object), None, None);
 }
 
-/// The fingers release their object at the robot's place.
 pub fn release(status: &mut EmoveStatus) {
     if let Holding::Object(ObjectGrip { object, grip }) = status.held {
         let site = status.at.unwrap_or_default().site;

@@ -1,20 +1,15 @@
-//! The fingers of V-Grip and of Tool-Grip.
-
 use interfaces::device::JawValves;
 use levels::jaws::{JawsKind, POTENTIOMETER_OFFSET, POTENTIOMETER_SCALE};
 use rcs_core::tick::TICK_S;
 
-/// Fingers that air moves at one speed, with a potentiometer.
+/// Fingers of V-Grip or Tool-Grip, which air moves at one speed, with a potentiometer.
 #[derive(Clone, Debug)]
 pub struct Fingers {
     pub opening: f64,
     pub ends: (f64, f64),
-    /// in/s.
-    pub speed: f64,
-    /// An object that limits the closing of the fingers, in.
-    pub object: Option<f64>,
-    /// Greatest noise of the potentiometer, counts.
-    pub noise: u16,
+    pub speed: f64,          // in/s
+    pub object: Option<f64>, // width of an object between the fingers, in
+    pub noise: u16,          // greatest noise, counts
     random: u32,
 }
 

@@ -28,13 +28,12 @@ impl Robot for Exact {
     }
 }
 
-/// Disturbance of an answer of the controller.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Answer {
     Comes,
     IsLost,
     IsDamaged,
-    /// This answer and all following ones are late by some ticks, until the line is empty.
+    /// This answer and all following ones, until the line is empty.
     IsLate(usize),
 }
 
@@ -42,16 +41,13 @@ pub enum Answer {
 pub struct Line {
     pub controller: Controller,
     pub robot: Exact,
-    /// The line carries bytes.
-    pub connected: bool,
+    pub connected: bool, // the line carries bytes
     pub hold: bool,
-    /// The controller's program runs; otherwise its DTR is off.
-    pub on: bool,
+    pub on: bool, // the controller's program runs; otherwise its DTR is off
     pub answer: Answer,
     late: VecDeque<LinkBytes>,
 }
 
-/// The resolver counts of joints.
 pub fn counts(joints: &Joints) -> [u32; 6] {
     joints.map(|angle| {
         let turns = (angle / (2.0 * std::f64::consts::PI)).rem_euclid(1.0);

@@ -2,18 +2,14 @@
 
 use interfaces::device::{QuickChangeSensors, QuickChangeValves};
 
-/// A ring that turns with the valves, tick by tick.
+/// A ring that turns with the valves.
 #[derive(Clone, Copy, Debug)]
 pub struct Ring {
-    /// 0 unlocked, 1 locked.
-    pub place: f64,
-    /// Share of its travel per tick.
-    pub speed: f64,
-    /// Where it jams.
-    pub jam: Option<f64>,
+    pub place: f64,       // 0 unlocked, 1 locked
+    pub speed: f64,       // share of its travel per tick
+    pub jam: Option<f64>, // where it jams
     pub id: u8,
-    /// Sensor readings that replace the true ones.
-    pub claim: Option<QuickChangeSensors>,
+    pub claim: Option<QuickChangeSensors>, // replaces the true readings
 }
 
 impl Ring {
@@ -38,7 +34,6 @@ impl Ring {
     }
 }
 
-/// The sensor readings of a ring that is locked on a gripper, or open without one.
 pub const fn mated(is_locked: bool, id: u8) -> QuickChangeSensors {
     let end_effector_id = if is_locked { id } else { 0 };
     QuickChangeSensors { locked: is_locked, unlocked: !is_locked, end_effector_id }

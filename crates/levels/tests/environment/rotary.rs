@@ -5,30 +5,22 @@ use levels::pedestal::table::{LIMIT_MINUS, preprocess::AT_LIMIT};
 
 #[derive(Clone, Debug)]
 pub struct Rotary {
-    /// Steps; 0 where the calibrated counter is 0.
-    pub position: i32,
+    pub position: i32, // steps; 0 where the calibrated counter is 0
     pub goal: i32,
-    /// Reading of the counter at position 0.
-    pub offset: i32,
+    pub offset: i32, // counter at position 0
     pub echo: u32,
-    /// Steps per tick.
-    pub speed: i32,
-    /// Ticks that an order takes on the line.
-    pub delay: u8,
-    /// The last order, and ticks until it arrives.
-    pub waiting: (MotorCommand, u8),
-    /// Steps lost per tick of a turn.
-    pub slip: i32,
+    pub speed: i32,                  // steps per tick
+    pub delay: u8,                   // ticks that an order takes on the line
+    pub waiting: (MotorCommand, u8), // the last order, and ticks until it arrives
+    pub slip: i32,                   // steps lost per tick of a turn
     pub blocked: bool,
     pub off: bool,
-    /// The motor does not stop on any order.
-    pub runs_on: bool,
-    /// Error of the potentiometer, counts.
-    pub wrong: f64,
+    pub runs_on: bool, // no order stops the motor
+    pub wrong: f64,    // error of the potentiometer, counts
 }
 
 impl Rotary {
-    /// A table that was left at an angle, 0.1 degree.
+    /// `angle` is in 0.1 degree.
     pub fn new(angle: i32) -> Self {
         let position = angle * TABLE_STEPS_PER_TENTH;
         Self {
@@ -95,7 +87,7 @@ impl Rotary {
         f64::from(self.position) / f64::from(10 * TABLE_STEPS_PER_TENTH)
     }
 
-    /// Write the words of table and motor; those of the hand stay.
+    /// Does not write the words of the hand.
     pub fn sense(&self, sensors: &mut PedestalSensors) {
         let counts = 3950.0 + self.angle() * 10.0 * 180.0 / 183.5 + self.wrong;
         sensors.table_potentiometer = counts.round().clamp(0.0, 4095.0) as u16;

@@ -1,5 +1,3 @@
-//! T3 Interface as Prim sees it: a model that stalls, fails and checks the order of points.
-
 use std::collections::VecDeque;
 
 use geometry::pose::WireFrame;
@@ -14,38 +12,27 @@ use rcs_core::{
 
 const QUEUE: usize = 4;
 
-/// T3I and everything below it, as Prim sees them.
+/// T3I and everything below it, as Prim sees them: a model that stalls, fails and checks the order of points.
 #[derive(Clone, Default)]
 pub struct ModelT3i {
     pub receiver: Receiver,
     pub command: T3iVerb,
     pub queue: VecDeque<WireFrame>,
     pub output: WireFrame,
-    /// Ticks until the link runs.
-    pub starting: Option<u32>,
+    pub starting: Option<u32>, // ticks until the link runs
     pub running: bool,
     pub fault: LinkFault,
-    /// The fault of each start of the link; without a fault the link runs.
-    pub broken: LinkFault,
-    /// Faults that occur by themselves once the link runs again.
-    pub more_faults: u32,
+    pub broken: LinkFault, // fault of each start of the link; without a fault the link runs
+    pub more_faults: u32,  // faults after the link runs again
     pub dtr_off: bool,
-    /// The robot is not at its commanded position.
-    pub elsewhere: bool,
-    /// Every frame that was sent to the robot, without repetitions.
-    pub path: Vec<WireFrame>,
-    /// Offset of the resolvers from the output, 0.01 in.
-    pub off: i32,
-    /// It is not stepped; its last outputs stay.
-    pub dead: bool,
-    /// It is held; its last outputs are republished.
-    pub held: bool,
-    /// It reads no command, and continues with the last one.
-    pub deaf: bool,
-    /// The robot has left its path.
-    pub left: bool,
-    /// The robot is off its path again after each RESTART.
-    pub astray: bool,
+    pub elsewhere: bool,      // the robot is not at its commanded position
+    pub path: Vec<WireFrame>, // frames sent to the robot, without repetitions
+    pub off: i32,             // offset of the resolvers from the output, 0.01 in
+    pub dead: bool,           // T3I is not stepped; its last outputs stay
+    pub held: bool,           // T3I is held; its last outputs are republished
+    pub deaf: bool,           // T3I reads no command, and continues with the last one
+    pub left: bool,           // the robot has left its path
+    pub astray: bool,         // the robot is off its path again after each RESTART
 }
 
 impl ModelT3i {

@@ -2,17 +2,14 @@
 
 use rcs_core::handshake::{Arrival, Receiver};
 
-/// The activity of a double in a tick.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Turn {
     Takes,
-    /// The command ends in this tick.
-    Ends,
-    /// It works, or has no command.
-    Waits,
+    Ends,  // the command ends in this tick
+    Waits, // works, or has no command
 }
 
-/// The last command of a double, and the remaining ticks of work.
+/// Ticks of work that are left for the last command.
 #[derive(Clone, Debug, Default)]
 pub struct Worker {
     receiver: Receiver,
@@ -20,7 +17,7 @@ pub struct Worker {
 }
 
 impl Worker {
-    /// A tick with a command number in the buffer; the command takes `ticks`.
+    /// `number` is the command number in the buffer; a command takes `ticks`.
     pub fn turn(&mut self, number: u32, ticks: u32) -> Turn {
         if self.receiver.observe(number) == Arrival::New {
             self.left = ticks;

@@ -15,8 +15,7 @@ use taskdata::{
     load::{Step, Store, job::own_command},
 };
 
-/// Grip of the objects in commands of Subtask.
-const GRIP: i32 = 2;
+const GRIP: i32 = 2; // grip of the objects in commands of Subtask
 
 fn store() -> &'static Store {
     static STORE: OnceLock<Store> = OnceLock::new();
@@ -39,7 +38,6 @@ pub fn commands(lines: &[&str]) -> Vec<HwsCommand> {
     lines.iter().map(read).collect()
 }
 
-/// A command of Subtask for an object at a location.
 pub fn emove_command(verb: EmoveVerb, object: &str, grip: i32, location: &str) -> EmoveCommand {
     let (object, at) = (Name16::new(object).expect("a name"), place(location));
     EmoveCommand {
@@ -56,7 +54,6 @@ pub fn emove_command(verb: EmoveVerb, object: &str, grip: i32, location: &str) -
     }
 }
 
-/// The record of the pose of a location point without a movetable.
 pub fn pose_of_point(name: &str) -> u32 {
     let found = data().locpt_named(&Name16::new(name).expect("a name")).and_then(|id| data().locpt(id));
     found.expect("the data have the point").pose.number()
@@ -67,8 +64,7 @@ pub fn place(name: &str) -> Location {
     data().resolve_location(&name, None, None::<&Name16>).expect("the data have the location")
 }
 
-/// A command of Subtask with its pose: for an object, its grip 2 and the parts gripper, or for a location alone.
-/// `nth` is the number of the pose.
+/// A command for an object in grip 2 with the parts gripper, or for a location. `nth` is the number of the pose.
 pub fn subtask_command(
     verb: SubtaskVerb,
     object: Option<&str>,

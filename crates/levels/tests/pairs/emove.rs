@@ -28,33 +28,28 @@ use crate::{
     search::Wrong,
 };
 
-/// A command of Subtask, and its location if it differs from the object's.
-pub type Line = (EmoveVerb, Option<&'static str>);
+pub type Line = (EmoveVerb, Option<&'static str>); // a location other than the object's
 
-/// The process of a gripper, its outputs, and its fingers.
 pub trait Fingered: Stepped {
     const GRIPPER: EmoveGripper;
-    /// The object, its grip, and the location of the robot.
-    const OBJECT: (&'static str, i32, &'static str);
-    /// The greatest age within the time limit of a command, ticks.
-    const LIMIT: u64;
+    const OBJECT: (&'static str, i32, &'static str); // object, grip, location of the robot
+    const LIMIT: u64; // ticks, the greatest age within the time limit of a command
     const COUNTERS: &'static [(&'static str, u8)];
-    /// Ticks until E-move must know that the part is gone.
+    /// Ticks until E-move must report that the part is gone.
     const LATE: u8;
 
     type Fingers: Copy + Debug + PartialEq;
     const OPEN: Self::Fingers;
 
-    /// A process that waits for a command, with open fingers.
+    /// The process waits for a command, with open fingers.
     fn first() -> Self;
-    /// Possible states of the fingers in the next tick, and whether they are prompt.
+    /// Next states of the fingers, and whether they are prompt.
     fn next(&self, fingers: Self::Fingers) -> Vec<(Self::Fingers, bool)>;
     /// True if a long time may have passed when the fingers reach this state.
     fn may_be_long(&self, fingers: Self::Fingers, next: (Self::Fingers, bool)) -> bool;
     fn sensors(&self, fingers: Self::Fingers) -> GripSensors;
     fn are_around(fingers: Self::Fingers) -> bool;
     fn hold(fingers: Self::Fingers) -> bool;
-    /// True if the fingers touch or hold the part.
     fn touch(fingers: Self::Fingers) -> bool;
     fn are_open(fingers: Self::Fingers) -> bool;
 
@@ -62,7 +57,6 @@ pub trait Fingered: Stepped {
     fn execution(&mut self) -> &mut Execution;
     fn reports_executing(&self) -> bool;
     fn rests(&self) -> bool;
-    /// True if the fingers press their object.
     fn presses(&self) -> bool;
     fn echo(&self) -> u32;
 
@@ -76,19 +70,15 @@ pub trait Fingered: Stepped {
     fn add_to(&self, outputs: &EmoveOutputs, image: &mut Image);
 }
 
-/// True if E-move has reported a command done.
 pub fn is_done(outputs: &EmoveOutputs, number: u32) -> bool {
     outputs.status.echo == number && outputs.status.report == StatusReport::Done
 }
 
-/// The fingers with or without a part, Prim with the robot, and Quick Change.
 #[derive(Clone)]
 pub struct Around<G: Fingered> {
-    /// Pose of the robot at the object.
-    object_at: Pose,
+    object_at: Pose, // pose of the robot at the object
     fingers: G::Fingers,
-    /// Ticks for which the fingers have been empty.
-    apart: u8,
+    apart: u8, // ticks for which the fingers have been empty
     robot: Robot,
     quick_change: u32,
 }
@@ -232,12 +222,11 @@ impl<G: Fingered> Scene for Around<G> {
 }
 
 impl<G: Fingered> Pair<G> {
-    /// True if the robot is at the object.
     fn is_at_object(&self) -> bool {
         is_at(&self.scene.object_at, &self.scene.robot.at)
     }
 
-    /// Possible states of the fingers in the next tick. A part is only at the object's place, or between them.
+    /// A part is only at the object's place, or between the fingers.
     fn next(&self) -> Vec<(G::Fingers, bool)> {
         let mut next = self.lower.next(self.scene.fingers);
         if !self.is_at_object() && !G::touch(self.scene.fingers) {
@@ -254,7 +243,6 @@ impl<G: Fingered> Pair<G> {
             && self.upper.out.quick_change.number == self.scene.quick_change
     }
 
-    /// Prim has not ended its last order.
     fn is_moving(&self) -> bool {
         self.scene.robot.is_busy(&self.upper.out.prim)
     }

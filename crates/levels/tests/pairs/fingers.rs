@@ -41,7 +41,6 @@ pub fn calibration() -> Calibration {
     Calibration { potentiometer: scale(POTENTIOMETER, 0.01), left: strain, right: strain }
 }
 
-/// Whether air opens the fingers, and whether it closes them.
 pub const fn flow(bits: u8) -> (bool, bool) {
     let opens = valve::OPEN_FINE | valve::OPEN_MEDIUM | valve::OPEN_COARSE;
     let closes = valve::CLOSE_FINE | valve::CLOSE_MEDIUM | valve::CLOSE_COARSE;
@@ -49,7 +48,7 @@ pub const fn flow(bits: u8) -> (bool, bool) {
 }
 
 impl Fingers {
-    /// Possible states of the fingers in the next tick, and whether they are prompt: moving fingers arrive.
+    /// Next states, and whether they are prompt: moving fingers arrive.
     pub fn next(self, bits: u8) -> Vec<(Self, bool)> {
         match (flow(bits), self) {
             ((true, _), now) => vec![(now, false), (Self::Open, true)],

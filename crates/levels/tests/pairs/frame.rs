@@ -16,13 +16,11 @@ use crate::{
 
 pub type Data = TaskData<'static>;
 
-/// A process between two ticks.
 pub trait Stepped: Clone {
     fn step(&mut self, inputs: &Inputs<'_, Data>);
     fn restart(&mut self);
 }
 
-/// The state of a process, and its outputs.
 pub struct Half<P: Process<Data>> {
     pub state: P::State,
     pub out: P::Outputs,
@@ -60,24 +58,21 @@ pub trait Scene: Clone {
     type Upper: Stepped;
     type Lower: Stepped;
     type Line: Clone;
-    /// The command in the buffer of the commander.
     type Command: Copy;
     /// Behaviour of the environment in a tick.
     type Does: Copy + Debug;
 
     const LONG: u64;
-    /// What can happen to the processes.
+    /// Events that can happen to the processes.
     const MISHAPS: &'static [Mishap] = Mishap::RESTARTS;
     /// A command can arrive in the tick of a mishap.
     const COMMANDS_IN_MISHAPS: bool = false;
 
-    /// Possible behaviours of the environment in the next tick.
     fn choices(pair: &Pair<Self>) -> Vec<Choice<Self::Does>>;
-    /// The last command has ended.
     fn has_ended(pair: &Pair<Self>) -> bool;
-    /// A command can arrive although the last one has not ended.
+    /// True if a command can replace the last one.
     fn is_other(pair: &Pair<Self>, line: &Self::Line) -> bool;
-    /// A command can arrive after the last one has ended.
+    /// True if a command can arrive after the end of the last one.
     fn may(_pair: &Pair<Self>, _line: &Self::Line) -> bool {
         true
     }
@@ -85,48 +80,31 @@ pub trait Scene: Clone {
     /// Other changes of an event before the tick.
     fn begin(_pair: &mut Pair<Self>, _event: &Event<Self::Does>) {}
     fn inputs(pair: &Pair<Self>) -> (CommonMemory, ExternalInputs);
-    /// The environment reads the outputs of the previous tick, and reacts.
-    ///
-    /// # Errors
-    /// The fault in its orders.
+    /// The environment reads the outputs of the previous tick, and reacts. The error is the fault in its orders.
     fn act(pair: &mut Pair<Self>, event: &Event<Self::Does>, memory: &CommonMemory) -> Result<(), Wrong>;
     /// Record values that `judge` needs in later ticks.
     fn note(_pair: &mut Pair<Self>, _before: &Pair<Self>) {}
-    /// Check the conditions of each tick. `before` is the pair as the processes read it.
-    ///
-    /// # Errors
-    /// The violated condition.
+    /// Check each tick; `before` is the pair as the processes read it. The error is the violated condition.
     fn judge(pair: &Pair<Self>, before: &Pair<Self>, event: &Event<Self::Does>) -> Result<(), Wrong>;
-    /// Check the conditions of a steady state.
-    ///
-    /// # Errors
-    /// The violated condition.
+    /// Check a steady state.
     fn judge_rest(_pair: &Pair<Self>, _before: &Pair<Self>, _event: &Event<Self::Does>) -> Result<(), Wrong> {
         Ok(())
     }
     /// Restart numbers and times that no longer matter.
     fn renumber(pair: &mut Pair<Self>);
-    /// As [`World::image`].
     fn image(pair: &Pair<Self>) -> Vec<u8>;
-    /// As [`World::rests`].
     fn rests(pair: &Pair<Self>) -> bool;
-    /// As [`World::pauses`].
     fn pauses(pair: &Pair<Self>) -> bool;
 }
 
-/// A possible behaviour of the environment.
 #[derive(Clone, Copy, Debug)]
 pub struct Choice<Does> {
     pub does: Does,
-    /// Every order ends in this tick.
-    pub prompt: bool,
+    pub prompt: bool, // every order ends in this tick
     pub mishaps: u8,
-    /// It can happen in a tick like any other.
-    pub short: bool,
-    /// It can follow a long time without other events.
-    pub long: bool,
-    /// It happens only without a command or a mishap.
-    pub quiet: bool,
+    pub short: bool, // possible in a tick without a long time before
+    pub long: bool,  // after a long time without other events
+    pub quiet: bool, // only without a command or a mishap
 }
 
 impl<Does> Choice<Does> {
@@ -137,21 +115,18 @@ impl<Does> Choice<Does> {
 
 #[derive(Clone, Copy, Debug)]
 pub struct Event<Does> {
-    /// Index of an arriving command in the list of commands.
-    pub told: Option<usize>,
+    pub told: Option<usize>, // index of the arriving command
     pub does: Does,
     pub mishap: Mishap,
-    /// Number of mishaps in this event.
     pub mishaps: u8,
-    /// A long time without other events has passed.
-    pub long: bool,
+    pub long: bool, // after a long time without other events
 }
 
 #[derive(Clone)]
 pub struct Pair<S: Scene> {
     pub tick: Tick,
     pub lines: Arc<[S::Line]>,
-    /// Commands that may still arrive before the last one has ended; any number for `None`.
+    /// Commands that may still replace the last one; any number for `None`.
     pub early: Option<u8>,
     pub mishaps: u8,
     pub command: S::Command,
@@ -161,7 +136,7 @@ pub struct Pair<S: Scene> {
 }
 
 impl<S: Scene<Upper: Default, Command: Default>> Pair<S> {
-    /// A pair before its first tick: these commands can arrive, this many of them `early`, and this many mishaps.
+    /// `early` is the number of commands that may replace others.
     pub fn new(
         lines: impl Into<Arc<[S::Line]>>,
         (early, mishaps): (Option<u8>, u8),

@@ -1,5 +1,3 @@
-//! Grip, the process of the parts gripper.
-
 use interfaces::{
     CommonMemory, EmoveOutputs, GripOutputs,
     device::GripSensors,
@@ -20,7 +18,7 @@ use crate::{
     image::{Image, rebase},
 };
 
-/// Depart size of the object, slightly more than its grasp size, and its force.
+/// Depart size of the object, slightly more than its grasp size, 0.01 in, and its force, lb.
 const SIZES: Sizes = Sizes { open: 350, part: 66, force: 30 };
 
 #[derive(Clone)]

@@ -22,24 +22,22 @@ use levels::{
 
 /// The greatest age within the time limit of the hand's commands, ticks.
 const LIMIT: u64 = 150;
-/// The opening of PRE-GRIP and RELEASE and the grasp size of a GRIP, 0.01 in.
+/// Opening of PRE-GRIP and RELEASE, and grasp size of a GRIP, 0.01 in.
 const OPEN: i32 = 450;
 const SIZE: i32 = 250;
 const SIZES: Sizes = Sizes { open: 450, part: 256, force: 50 };
-/// The angle of PRE-GRIP, and the goal of every FLIP, 0.1 degree.
+/// Angle of PRE-GRIP, and goal of every FLIP, 0.1 degree.
 const RECEIVE: i32 = -1200;
 const TURNED: i32 = -2200;
 
 /// Reaction of the rotary table to its order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TableDoes {
-    /// Nothing new; a new order is taken.
     Goes,
     Ends,
     Fails,
 }
 
-/// The fingers, and the table as the pedestal process sees it.
 #[derive(Clone)]
 pub struct Around {
     fingers: Fingers,
@@ -48,8 +46,7 @@ pub struct Around {
 
 pub type Pair = frame::Pair<Around>;
 
-/// The first tick of a started system, with a calibrated and open hand, and a calibrated table. This many mishaps
-/// can happen, and these commands can arrive.
+/// A pair before its first tick: hand and table are calibrated, the hand is open.
 pub fn first(mishaps: u8, commands: &[PedestalVerb]) -> Pair {
     let calibration = Some(calibration());
     let mut hand = Half::<Hand> {
@@ -146,7 +143,6 @@ impl Scene for Around {
         Ok(())
     }
 
-    /// Each command that is reported done has had its effect.
     fn judge(pair: &Pair, before: &Pair, _: &Event<Self::Does>) -> Result<(), Wrong> {
         let ended = |it: &Pair| {
             let status = &it.upper.out.status;
@@ -177,7 +173,6 @@ impl Scene for Around {
         }
     }
 
-    /// Restart numbers and times that no longer matter.
     fn renumber(pair: &mut Pair) {
         let (pedestal, out) = (&mut pair.upper.state, &mut pair.upper.out);
         let echo = &mut pedestal.execution.receiver.echo;
@@ -187,8 +182,8 @@ impl Scene for Around {
         rebase(&mut pedestal.table, &mut [&mut out.table.number, &mut pair.scene.table.echo]);
     }
 
-    /// Without values that no row tests: reasons; the step, the command, the goal and the times of a process that
-    /// executes no command; the text of an order that has been taken.
+    /// No row tests reasons, the text of an order that has been taken, or step, command, goal and times of an idle
+    /// process.
     fn image(pair: &Pair) -> Vec<u8> {
         let counters = &[("settled", 6), ("missed", 3), ("touch_ticks", 5), ("still_ticks", 5)];
         let mut image = Image::new(pair.tick, LIMIT, counters);
@@ -244,27 +239,23 @@ impl Scene for Around {
     }
 }
 
-/// A command of Subtask to the pedestal process has ended.
 pub fn has_ended(command: &PedestalCommand, status: &PedestalStatus) -> bool {
     status.echo == command.number && status.report != PedestalReport::Executing
 }
 
 impl Pair {
-    /// The hand has read its last command, and the pedestal its echo.
     fn is_settled(&self) -> bool {
         let number = self.upper.out.hand.number;
         number == 0
             || (number == self.lower.out.status.echo && number == self.lower.state.execution.receiver.echo)
     }
 
-    /// The table has not ended its last order.
     fn is_turning(&self) -> bool {
         let number = self.upper.out.table.number;
         (number != self.scene.table.echo && number != 0)
             || self.scene.table.report == PedestalReport::Executing
     }
 
-    /// The fingers have been at rest long enough for their process.
     fn is_still(&self) -> bool {
         let read = self.lower.state.sensed.map(|sensed| sensed.last);
         read == Some(self.scene.fingers.sensors(&SIZES))

@@ -1,5 +1,4 @@
-//! The right holster with the parts gripper: places of the robot in it, the commands of Subtask there, and their
-//! conditions.
+//! The right holster with the parts gripper: the robot's places, the commands of Subtask, and their conditions.
 
 use geometry::frame::Frame;
 use interfaces::{
@@ -15,7 +14,6 @@ use crate::{
     search::Wrong,
 };
 
-/// The gripper, its name in the holster, and the holster.
 pub const GRIPPER: (u8, &str, &str) = (1, "GRIPPER-1", "HOLSTER-R");
 /// Place of the seated gripper in the axes of the holster, in.
 pub const SEAT: f64 = 1.5;
@@ -84,7 +82,6 @@ pub fn judge_order(command: &EmoveCommand, order: &PrimCommand, ring: Ring) -> R
     }
 }
 
-/// Each command that is reported done has had its effect: the robot is there, with the gripper `mated` or not.
 pub fn judge_done(
     command: &EmoveCommand,
     out: &EmoveOutputs,

@@ -21,24 +21,19 @@ use rcs_core::{
 /// Ages that are kept exactly: one more than [`rcs_core::handshake::ECHO_LIMIT`].
 const EXACT: u64 = 4;
 
-/// One-byte fields, by name, that count up to a greatest value.
 type Counters = &'static [(&'static str, u8)];
 
-/// The contribution of some bytes of a value to an image.
 enum Piece {
     Keep(usize),
     Skip(usize),
-    /// The number of a tick: its age; `None` for one that is left out.
-    Age(Option<Clock>),
-    /// A byte that counts up to a greatest value.
-    Count(u8),
-    /// A flag, and the pieces of a value that is present only if the flag is set, with its size.
+    Age(Option<Clock>), // the age of a tick; `None` if it is left out
+    Count(u8),          // a byte that counts up to a greatest value
+    /// The pieces of a value that is present only if its flag is set, with its size.
     Option(usize, Vec<Self>),
 }
 
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Clock {
-    /// Send time of a command: its age counts until its echo is due.
     Sent,
     /// Only whether its age is over the limit counts.
     Other,
@@ -47,7 +42,6 @@ enum Clock {
 type Known = (TypeId, Counters, Rc<[Piece]>);
 
 thread_local! {
-    /// A short list, so that a search takes no time.
     static PIECES: RefCell<Vec<Known>> = const { RefCell::new(Vec::new()) };
 }
 
@@ -93,8 +87,7 @@ pub struct Image {
     pub bytes: Vec<u8>,
     value: Vec<u8>,
     now: Tick,
-    /// Ticks after which a time is over its limit.
-    limit: u64,
+    limit: u64, // ticks after which a time is over its limit
     counters: Counters,
 }
 
@@ -103,7 +96,6 @@ impl Image {
         Self { bytes: Vec::with_capacity(1024), value: Vec::new(), now, limit, counters }
     }
 
-    /// Add the relevant parts of a value.
     pub fn add<T: Plain + 'static>(&mut self, value: &T) {
         let pieces = PIECES.with_borrow_mut(|known| self.pieces_of::<T>(known));
         let mut bytes = std::mem::take(&mut self.value);
@@ -114,7 +106,7 @@ impl Image {
         self.value = bytes;
     }
 
-    /// The pieces of a type, cached in `known`.
+    /// The pieces are cached in `known`.
     fn pieces_of<T: Plain + 'static>(&self, known: &mut Vec<Known>) -> Rc<[Piece]> {
         let of = TypeId::of::<T>();
         if let Some((.., pieces)) =
@@ -129,7 +121,6 @@ impl Image {
         pieces
     }
 
-    /// Add the relevant parts of some bytes; returns their number.
     fn add_bytes(&mut self, pieces: &[Piece], bytes: &[u8]) -> usize {
         let mut at = 0;
         for piece in pieces {
@@ -167,8 +158,7 @@ impl Image {
     }
 }
 
-/// Restart the numbers of an interface at 1: only their differences count, and otherwise they would never repeat.
-/// The send time of a command counts until its echo.
+/// Restart the numbers at 1, since they would never repeat. The send time matters until the echo.
 pub fn rebase(commander: &mut Commander, numbers: &mut [&mut u32]) {
     let mut all = vec![&mut commander.number];
     all.extend(numbers.iter_mut().map(|number| &mut **number));
@@ -177,7 +167,7 @@ pub fn rebase(commander: &mut Commander, numbers: &mut [&mut u32]) {
     }
 }
 
-/// The same for an interface to a commander outside the pair. Returns whether all numbers are equal.
+/// The same for a commander outside the pair. Returns whether all numbers are equal.
 pub fn rebase_echoes(numbers: &mut [&mut u32]) -> bool {
     let least = numbers.iter().map(|number| **number).filter(|number| *number != 0).min();
     let Some(before) = least.map(|least| least - 1) else { return false };
@@ -185,7 +175,7 @@ pub fn rebase_echoes(numbers: &mut [&mut u32]) -> bool {
     numbers.iter().all(|number| **number == 1)
 }
 
-/// Restart the record numbers of E-move: those of the current records in their order, and one for all others.
+/// Number the current records of E-move in their order, and all others as one.
 pub fn renumber_poses(emove: &mut emove::State, out: &mut EmoveOutputs) {
     let (first, others) = (pose_range::EMOVE | 1, pose_range::EMOVE | 9);
     let stand = out.poses.map(|record| record.number);
@@ -206,8 +196,7 @@ pub fn renumber_poses(emove: &mut emove::State, out: &mut EmoveOutputs) {
     *last = others;
 }
 
-/// Clear the values that no row of E-move tests: the reason, the nearest places, and its command while it executes
-/// none. Returns whether it executes one.
+/// No row tests the reason, the nearest places, or an idle E-move's command. Returns whether it executes a command.
 pub fn forget(emove: &mut emove::State) -> bool {
     emove.execution.reason = Reason::None;
     emove.localization.forget_surroundings();

@@ -28,16 +28,12 @@ use crate::{
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Fingers {
-    /// At the open end of travel.
     Open,
-    /// Wider than the part by an inch.
     Wide,
     Holding,
-    /// At the closed end of travel.
     Closed,
 }
 
-/// The differences between the two.
 pub trait Side: JawsKind + Clone + Default {
     const GRIPPER: EmoveGripper;
     const OBJECT: (&'static str, i32, &'static str);
@@ -150,7 +146,7 @@ impl<S: Side> Fingered for Jaws<S> {
         [&[(fingers, true)], also].concat()
     }
 
-    /// They moved, and will not rest before the time limit is over.
+    /// The fingers moved, and will not rest within the time limit.
     fn may_be_long(&self, fingers: Fingers, (next, _): (Fingers, bool)) -> bool {
         let still =
             self.half.state.window.is_some_and(|window| window.iter().all(|counts| *counts == window[0]));

@@ -38,12 +38,10 @@ use levels::jaws::{CylindricalPartGripper, ToolGripper};
 use search::{Found, World, search};
 use subtask::{BRING, GET, GOTO, GRIPPER, PAUSE, PLACE, POSITION, RELEASE};
 
-/// True for all searches, false for those of an ordinary run.
 fn is_full() -> bool {
     std::env::var("RCS_PAIRS").is_ok_and(|value| value == "full")
 }
 
-/// A number as on the page, with commas.
 fn grouped(number: impl ToString) -> String {
     let digits = number.to_string();
     let groups = digits.as_bytes().rchunks(3).rev();
@@ -163,8 +161,7 @@ fn task_and_subtask_transfer_with_a_mishap() {
 const GRASPING: &[emove::Line] =
     &[(EmoveVerb::GraspObj, None), (EmoveVerb::Release, None), (EmoveVerb::Pause, None)];
 
-/// E-move and the process of a gripper: `early` commands arrive before the last one has ended (any number for
-/// `None`), and this many `restarts`. The pair comes to rest within `pause` and `any` ticks.
+/// `early` commands replace others (any number for `None`). The pair comes to rest within `pause` and `any` ticks.
 fn grasping<G: emove::Fingered>(
     name: &str,
     commands: &'static [emove::Line],
@@ -246,7 +243,7 @@ fn emove_and_v_grip_go_back_to_an_object() {
 const THERE_AND_BACK: &[prim::Line] =
     &[(EmoveVerb::Pause, ""), (EmoveVerb::MovToLoc, "HOME"), (EmoveVerb::MovToLoc, "SAFE")];
 
-/// E-move and Prim: `motions` commands interrupt a motion, and `faults` faults occur.
+/// `motions` commands interrupt a motion, and `faults` faults occur.
 fn moves(name: &str, motions: u8, faults: u8) {
     let found = is_sound(name, prim::Pair::first("HOME", THERE_AND_BACK, motions, faults), 1_000_000);
     assert!(found.pause <= 10 && found.any <= 30, "{} and {}", found.pause, found.any);
@@ -271,8 +268,8 @@ const CHANGING_TOOLS: &[prim::Line] = &[
     (EmoveVerb::Pause, ""),
 ];
 
-/// E-move and Prim at the drum, with guarded moves: this many unusual events, commands that interrupt a motion, and
-/// `faults`. The pair comes to rest within `any` ticks.
+/// At the drum, with guarded moves: this many unusual events, commands that interrupt a motion, and faults. The pair
+/// comes to rest within `any` ticks.
 fn guards(name: &str, commands: usize, (unusual, motions, faults): (u8, u8, u8), any: u32) {
     let first = prim::Pair::at_drum(&CHANGING_TOOLS[..commands], unusual, motions, faults);
     let found = is_sound(name, first, 1_000_000);
@@ -300,7 +297,7 @@ fn emove_and_prim_change_tools_with_a_fault() {
 const CHANGING_GRIPPERS: &[prim::Line] =
     &[(EmoveVerb::QcAttach, prim::HOLSTER), (EmoveVerb::QcDetach, prim::HOLSTER), (EmoveVerb::Pause, "")];
 
-/// E-move and Prim at a holster, with guarded moves, as at the drum.
+/// Like [`guards`], at a holster.
 fn exchanges(name: &str, commands: usize, (unusual, motions, faults): (u8, u8, u8), any: u32) {
     let first = prim::Pair::at_holster(&CHANGING_GRIPPERS[..commands], unusual, motions, faults);
     let found = is_sound(name, first, 1_000_000);
@@ -325,8 +322,7 @@ fn emove_and_prim_change_grippers_with_a_fault() {
     exchanges("E-move and Prim, grippers, a fault", commands, (unusual, 0, 1), 44);
 }
 
-/// Subtask and E-move: `early` commands arrive before the last one has ended, and this many `mishaps`. The pair
-/// comes to rest within `any` ticks.
+/// `early` commands replace others, and `mishaps` happen. The pair comes to rest within `any` ticks.
 fn fetches(name: &str, object: &str, lines: &[subtask::Line], (early, mishaps): (u8, u8), any: u32) {
     let found = is_sound(name, subtask::first(object, lines, early, mishaps), 4_000_000);
     assert!(found.pause <= 12 && found.any <= any, "{} and {}", found.pause, found.any);
@@ -370,7 +366,7 @@ fn subtask_and_emove_with_other_commands() {
     fetches("Subtask and E-move, other commands", KNOWN, lines, (0, 0), 28);
 }
 
-/// E-move and Quick Change: `early` commands arrive before the last one has ended, and this many `faults`.
+/// `early` commands replace others, and `faults` occur.
 fn changes(name: &str, early: u8, faults: u8) {
     let found = is_sound(name, ring::first(early, faults), 1_000_000);
     assert!(found.pause <= 14 && found.any <= 43, "{} and {}", found.pause, found.any);

@@ -8,14 +8,13 @@ use rcs_core::tick::Tick;
 
 use crate::{image::Image, search::Wrong};
 
-/// Opening with the part, 0.01 in; empty and closed; half-way of an order to open.
+/// Opening with the part, empty and closed, and half-way of an order to open, 0.01 in.
 const PART: i32 = 66;
 const PASSED: i32 = 54;
 const HALF: i32 = 80;
 /// Force on the part, lb.
 const FORCE: i32 = 30;
 
-/// Reaction of Grip to its order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum GripDoes {
     /// Nothing new; a new order is taken.
@@ -28,7 +27,6 @@ pub enum GripDoes {
     Loses,
 }
 
-/// True if the fingers move for an order.
 pub const fn moves(verb: GripVerb) -> bool {
     matches!(verb, GripVerb::Position | GripVerb::OpenGrip | GripVerb::CloseGrip)
 }
@@ -37,8 +35,7 @@ pub const fn moves(verb: GripVerb) -> bool {
 pub struct PartsGripper {
     pub echo: u32,
     pub report: GripReport,
-    /// Opening, 0.01 in.
-    pub position: i32,
+    pub position: i32, // opening, 0.01 in
     pub full: bool,
 }
 
@@ -47,20 +44,15 @@ impl PartsGripper {
         Self { echo: 0, report: GripReport::Idle, position, full: false }
     }
 
-    /// Grip has not ended this order of E-move.
     pub fn is_busy(&self, order: &GripCommand) -> bool {
         (order.number != self.echo && order.number != 0) || self.report == GripReport::Executing
     }
 
-    /// The fingers move for this order, or will.
     pub fn is_moving(&self, order: &GripCommand) -> bool {
         self.is_busy(order) && moves(order.command)
     }
 
-    /// Grip takes E-move's outputs of the previous tick.
-    ///
-    /// # Errors
-    /// Fingers that are to move to an opening drop an object.
+    /// Grip takes E-move's outputs of the previous tick. The error: fingers drop an object by moving to an opening.
     pub fn does(&mut self, does: GripDoes, order: &GripCommand) -> Result<(), Wrong> {
         let busy = self.is_busy(order);
         if order.number != self.echo && order.number != 0 {
@@ -95,7 +87,6 @@ impl PartsGripper {
         Ok(())
     }
 
-    /// Grip is dormant: it adopts the order in its buffer.
     pub fn sleep(&mut self, order: &GripCommand) {
         let report = if order.number == 0 { GripReport::Idle } else { GripReport::Serror };
         (self.echo, self.report) = (order.number, report);

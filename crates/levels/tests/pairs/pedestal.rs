@@ -19,9 +19,9 @@ use crate::{
     search::{Mishap, Wrong},
 };
 
-/// Ticks until the table reports a motor silent that does not take an order.
+/// Ticks until a motor that takes no order is reported silent.
 const SILENT: u8 = 25;
-/// The grasp size of a GRIP and the opening of the object between the fingers, 0.01 in.
+/// Grasp size of a GRIP, and opening with the object, 0.01 in.
 const SIZE: i32 = 250;
 const WIDE: i32 = 256;
 /// Goals of the commands, steps: the parking place, then steps of -100 degrees.
@@ -29,14 +29,12 @@ const GOALS: [i32; 4] = [-2000, -12_000, -22_000, -32_000];
 /// Place of a table that has stopped elsewhere, steps.
 const ELSEWHERE: i32 = -15_000;
 
-/// Reaction of the hand to its command.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum HandDoes {
     /// Nothing new; a new command is taken.
     Goes,
     Ends(Felt),
     Fails,
-    /// The fingers lose their object.
     Loses,
     Silent,
 }
@@ -51,7 +49,6 @@ pub enum MotorDoes {
     StopsElsewhere,
 }
 
-/// Hand and motor, and the results of their orders.
 #[derive(Clone)]
 pub struct Around {
     hand: GripStatus,
@@ -60,15 +57,13 @@ pub struct Around {
     goal: i32,
     seeks: bool,
     slipped: bool,
-    /// The motor has turned without taking orders for longer than the time limit of the table.
-    was_off: bool,
-    /// The hand's last end is that of an order of the current command.
-    hand_ended: bool,
+    was_off: bool,    // the motor took no orders for longer than the table's time limit
+    hand_ended: bool, // the hand's last end belongs to the current command
 }
 
 pub type Pair = frame::Pair<Around>;
 
-/// The first tick of a started system; this many mishaps can happen, and these commands can arrive.
+/// A pair before its first tick.
 pub fn first(mishaps: u8, commands: &[PedestalVerb]) -> Pair {
     let around = Around {
         hand: GripStatus { felt: Felt::Nothing, ..GripStatus::default() },
@@ -251,7 +246,6 @@ impl Scene for Around {
         Ok(())
     }
 
-    /// Each command that is reported done has had its effect, by its own orders.
     fn judge(pair: &Pair, before: &Pair, _: &Event<Self::Does>) -> Result<(), Wrong> {
         let status = &pair.upper.out.status;
         let ends = status.echo == pair.command.number
@@ -280,7 +274,6 @@ impl Scene for Around {
         }
     }
 
-    /// Restart numbers and times that no longer matter.
     fn renumber(pair: &mut Pair) {
         let (pedestal, out, table) = (&mut pair.upper.state, &mut pair.upper.out, &mut pair.lower.state);
         let echo = &mut pedestal.execution.receiver.echo;
@@ -308,9 +301,8 @@ impl Scene for Around {
         }
     }
 
-    /// Without values that no row tests: reasons; the step, the command and the time of a process that executes no
-    /// command; the text of an order that has been taken; the opening of an empty hand. The pedestal's status
-    /// repeats its state.
+    /// No row tests reasons, the text of an order that has been taken, the opening of an empty hand, or step, command
+    /// and time of an idle process. The pedestal's status repeats its state.
     fn image(pair: &Pair) -> Vec<u8> {
         let mut image =
             Image::new(pair.tick, Self::LONG - 500, &[("standing", 3), ("unanswered", SILENT + 2)]);
@@ -379,7 +371,6 @@ impl Scene for Around {
 }
 
 impl Pair {
-    /// The table has read its last command, and the pedestal its echo.
     fn is_settled(&self) -> bool {
         let number = self.upper.out.table.number;
         number == 0
@@ -396,12 +387,11 @@ impl Pair {
             )
     }
 
-    /// The motor does not take its order, and the table knows.
     fn is_off(&self) -> bool {
         self.lower.out.motor.number != self.scene.motor.motor_echo && self.scene.was_off
     }
 
-    /// The motor turns, and takes orders; without orders it is ignored (PAUSE of the rotary table).
+    /// The motor turns, and takes orders. Without orders it is ignored (PAUSE of the rotary table).
     fn turns(&self) -> bool {
         self.scene.motor.motor_moving && !self.scene.was_off
     }

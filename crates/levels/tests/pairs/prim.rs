@@ -36,14 +36,11 @@ use change::Change;
 pub use tool::DRUM;
 use tool::{GRIPPER, Happens, TOOL, Tool};
 
-/// Time limit of any motion of these commands, ticks.
-const LONG: u32 = 2_000;
-/// Ticks until a process above must know that the robot is elsewhere.
+const LONG: u32 = 2_000; // ticks, the time limit of any motion
+/// Ticks until a process above must report that the robot is elsewhere.
 const LATE: u8 = 4;
-/// Distance of a displaced robot, in.
-const ASIDE: f64 = 1.0;
+const ASIDE: f64 = 1.0; // in, from its place to a displaced robot
 
-/// A command of Subtask, and its location; PAUSE has none.
 pub type Line = (EmoveVerb, &'static str);
 
 /// The location of commands for the parts gripper in its holster.
@@ -51,7 +48,6 @@ pub const HOLSTER: &str = holster::GRIPPER.2;
 
 const PAUSE: Line = (EmoveVerb::Pause, "");
 
-/// Behaviour of T3 Interface and the robot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Link {
     /// It requests no point, or does not start yet.
@@ -63,8 +59,7 @@ pub enum Link {
     Half,
     /// It reports an error: of the link, of the line, of a command; or the controller's DTR goes off.
     Fails(LinkFault, bool),
-    /// It does not write.
-    Silent,
+    Silent, // T3 Interface does not write
     /// The robot is off the commanded pose: after RESTART T3 Interface detects it.
     Aside,
     /// It requests no point, and E-move or Prim is restarted.
@@ -84,35 +79,26 @@ pub struct Pair {
     commands: &'static [Line],
     /// Commands that may still interrupt a motion, and faults that may still occur.
     left: (u8, u8),
-    /// The way to Prim's goal has been halved.
-    halved: bool,
+    halved: bool, // the way to Prim's goal has been halved
     command: EmoveCommand,
     emove: emove::State,
     emove_out: EmoveOutputs,
     prim: prim::state::State,
     prim_out: PrimOutputs,
-    /// The echo of Quick Change, where it is not part of the scene.
-    quick_change: u32,
+    quick_change: u32, // the echo of a Quick Change that is not in the scene
     t3i: T3iStatus,
-    /// It has not written in the last tick.
-    silent: bool,
-    /// Ticks for which the robot has been off its last point.
-    aside: u8,
-    /// Its last commanded place.
-    robot: Frame,
-    /// The tool gripper at the drum.
+    silent: bool, // T3 Interface has not written in the last tick
+    aside: u8,    // ticks for which the robot has been off its last point
+    robot: Frame, // the last commanded place
     tool: Option<Tool>,
     /// The parts gripper and its holster. Without it and a tool gripper the robot is bare.
     change: Option<Change>,
-    /// Number of unusual events, other than faults, that can still happen: fingers that stick, and a GO-UNTIL whose
-    /// condition is not met where most of the move is over.
+    /// Unusual events that can still happen: fingers that stick, and a GO-UNTIL that ends without its condition.
     unusual: u8,
     /// The condition of a guarded move was met since Prim took it, or since the robot rested.
     contact: bool,
-    /// The same, or its sensor was faulty.
-    stops: bool,
-    /// Ticks for which the robot has moved since then.
-    brakes: u32,
+    stops: bool, // the condition was met, or its sensor was faulty
+    brakes: u32, // ticks for which the robot has moved since then
     /// Whether the bias of the force sensor was taken at TOOL-SAFE; `None` without a bias.
     biased_at_safe: Option<bool>,
 }
@@ -122,14 +108,12 @@ pub struct Pair {
 type Said = (u32, StatusReport, u32, PrimReport, u32, bool, bool);
 
 impl Pair {
-    /// A started pair, with a bare robot at a location that E-move has not found yet. This many of these commands
-    /// may interrupt a motion, and this many faults occur.
+    /// The bare robot is at a location that E-move has not found yet.
     pub fn first(location: &'static str, commands: &'static [Line], motions: u8, faults: u8) -> Self {
         Self { commands, left: (motions, faults), ..Self::at(location, None, None) }
     }
 
-    /// A pair whose robot is before the drum, with open fingers. This many unusual events and faults may occur, and
-    /// this many of these commands may interrupt a motion.
+    /// The robot is before the drum, with open fingers.
     pub fn at_drum(commands: &'static [Line], unusual: u8, motions: u8, faults: u8) -> Self {
         let mut pair = Self::at("SAFE", Some(Tool::new()), None);
         pair.runs(PAUSE);
@@ -137,8 +121,7 @@ impl Pair {
         Self { commands, left: (motions, faults), unusual, ..pair }
     }
 
-    /// A pair whose bare robot is above the parts gripper in its holster, where it has just left it. This many
-    /// unusual events and faults may occur, and this many of these commands may interrupt a motion.
+    /// The bare robot is above the parts gripper in its holster, which it has just left.
     pub fn at_holster(commands: &'static [Line], unusual: u8, motions: u8, faults: u8) -> Self {
         let mut pair = Self::at("SAFE", None, Some(Change::new()));
         pair.runs(PAUSE);
@@ -176,7 +159,6 @@ impl Pair {
         pair
     }
 
-    /// Execute a command without any fault.
     fn runs(&mut self, line: Line) {
         let mut told = Some(line);
         for _ in 0..LONG {
@@ -292,7 +274,6 @@ impl Pair {
         self.prim.motion.is_some_and(|motion| !motion.is_at_rest())
     }
 
-    /// True if a command interrupts a motion.
     fn interrupts(&self) -> bool {
         let goes = self.emove.execution.outcome == Outcome::Executing || self.emove.execution.waiting;
         self.is_moving() || (goes && self.command.command != EmoveVerb::Pause)
@@ -432,12 +413,10 @@ impl World for Pair {
 }
 
 impl Pair {
-    /// The robot moves by guarded moves.
     const fn is_guarded(&self) -> bool {
         self.tool.is_some() || self.change.is_some()
     }
 
-    /// Fingers move, or the ring turns.
     fn awaits_arrival(&self) -> bool {
         self.tool.is_some_and(|tool| tool.moves()) || self.change.is_some_and(|change| change.turns())
     }

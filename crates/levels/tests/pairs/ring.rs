@@ -29,10 +29,8 @@ use levels::{emove::Emove, execution::Outcome, places::robot_at, quick_change::Q
 
 /// Greatest count of equal readings, ticks.
 const STEADY: u8 = 12;
-/// Opening of the fingers at the start, 0.01 in.
-const OPENING: i32 = 300;
+const OPENING: i32 = 300; // 0.01 in, opening at the start
 
-/// Sensor readings that replace the true ones.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Fault {
     None,
@@ -45,21 +43,17 @@ pub struct Does {
     pub prim: PrimDoes,
     pub grip: GripDoes,
     pub ring: Ring,
-    /// The sensors have this fault from now on.
-    pub fault: Option<Fault>,
+    pub fault: Option<Fault>, // the fault of the sensors from now on
 }
 
-/// The ring and the gripper, Prim with the robot, and Grip.
 #[derive(Clone)]
 pub struct Around {
-    /// Prim, Grip and the ring do not fail, and no motion is seen half-way.
-    obeys: bool,
+    obeys: bool, // Prim, Grip and the ring do not fail, and no motion ends half-way
     ring: Ring,
     fault: Fault,
     robot: Robot,
     grip: PartsGripper,
-    /// The gripper is on the quick change; otherwise in its holster.
-    mated: bool,
+    mated: bool, // the gripper is on the quick change; otherwise in its holster
 }
 
 pub type Pair = frame::Pair<Around>;
@@ -67,8 +61,7 @@ pub type Pair = frame::Pair<Around>;
 /// A gripper is seated within this distance, in.
 const SEATED: f64 = 0.06;
 
-/// A bare robot above the gripper with an open ring. `early` commands may arrive before the last one has ended, and
-/// `faults` faults or restarts may happen; if any may, Prim, Grip and the ring do not fail.
+/// A bare robot above the gripper with an open ring. If `faults` may happen, Prim, Grip and the ring do not fail.
 pub fn first(early: u8, faults: u8) -> Pair {
     let (_, object, location) = GRIPPER;
     let at = place(location);
@@ -136,7 +129,6 @@ impl Pair {
         }
     }
 
-    /// True if the ring has air and turns.
     fn is_driven(&self) -> bool {
         self.lower.out.valves.port
     }
@@ -145,12 +137,11 @@ impl Pair {
         !self.upper.out.dormant.grip && self.scene.grip.is_busy(&self.upper.out.grip)
     }
 
-    /// Prim has taken its last order.
     fn has_taken(&self) -> bool {
         self.upper.out.prim.number == 0 || self.upper.out.prim.number == self.scene.robot.echo
     }
 
-    /// Possible reactions of Prim: a motion ends when the robot is at rest at its goal.
+    /// A motion ends when the robot is at rest at its goal.
     fn prim_may(&self) -> Vec<PrimDoes> {
         let robot = &self.scene.robot;
         let mut may = vec![PrimDoes::Goes];

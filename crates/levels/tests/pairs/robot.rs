@@ -12,7 +12,6 @@ use rcs_core::tick::Tick;
 
 use crate::{data::data, image::Image, search::Wrong};
 
-/// Reaction of Prim to its order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PrimDoes {
     /// Nothing new; a new order is taken.
@@ -31,7 +30,6 @@ pub enum PrimDoes {
     Misses,
 }
 
-/// True if the robot moves away for an order.
 pub const fn moves(verb: PrimVerb) -> bool {
     matches!(
         verb,
@@ -39,20 +37,17 @@ pub const fn moves(verb: PrimVerb) -> bool {
     )
 }
 
-/// True if a command of E-move is a motion to a location.
 pub const fn goes(verb: EmoveVerb) -> bool {
     matches!(verb, EmoveVerb::MovToLoc | EmoveVerb::MovToObj | EmoveVerb::MovObjTo)
 }
 
-/// The robot is at its commanded place within this distance, in.
-pub const THERE: f64 = 0.021;
+pub const THERE: f64 = 0.021; // in, within which the robot is at its place
 
-/// True if a robot is at this pose.
 pub fn is_at(goal: &Pose, at: &Pose) -> bool {
     goal.to_frame().is_ok_and(|goal| at.to_frame().is_ok_and(|at| goal.distance(&at).inches <= THERE))
 }
 
-/// Half-way from one pose to another of the same orientation.
+/// The middle of two poses of the same orientation.
 fn middle(from: &Pose, to: &Pose) -> Pose {
     let middle = |a: [i32; 3], b: [i32; 3]| [0, 1, 2].map(|axis| i32::midpoint(a[axis], b[axis]));
     Pose {
@@ -68,39 +63,29 @@ pub struct Robot {
     pub report: PrimReport,
     pub link: bool,
     pub at: Pose,
-    /// The goal of a motion that Prim executes; for a GO-UNTIL, where its condition is met.
-    pub goal: Option<Pose>,
-    /// Its end if the condition is not met.
-    pub far: Pose,
-    /// It has gone half of the way since it was at a goal.
-    pub half: bool,
-    /// Ticks for which it has been at the goal, up to [`SETTLED`].
-    pub there: u8,
+    pub goal: Option<Pose>, // the goal; for a GO-UNTIL, where its condition is met
+    pub far: Pose,          // end of a GO-UNTIL whose condition is not met
+    pub half: bool,         // the robot has gone half of the way from a goal
+    pub there: u8,          // ticks at the goal, up to SETTLED
 }
 
-/// Ticks at the goal until Prim can report it, where a search counts them: the robot comes to rest in them.
+/// Ticks at rest at the goal until Prim can report it, in a search that counts them.
 pub const SETTLED: u8 = 2;
 
 impl Robot {
-    /// A robot at rest without an order.
     pub const fn new(at: Pose) -> Self {
         Self { echo: 0, report: PrimReport::Idle, link: true, at, goal: None, far: at, half: false, there: 0 }
     }
 
-    /// Prim has not ended this order of E-move.
     pub fn is_busy(&self, order: &PrimCommand) -> bool {
         (order.number != self.echo && order.number != 0) || self.report == PrimReport::Executing
     }
 
-    /// The robot moves for this order, or will.
     pub fn is_moving(&self, order: &PrimCommand) -> bool {
         self.goal.is_some() || (order.number != self.echo && moves(order.command))
     }
 
-    /// Prim takes E-move's outputs of the previous tick.
-    ///
-    /// # Errors
-    /// The order names a record that does not exist.
+    /// Prim takes E-move's outputs of the previous tick. The error is an order that names no existing record.
     pub fn take(&mut self, memory: &CommonMemory) -> Result<(), Wrong> {
         let order = &memory.emove.prim;
         if order.number != self.echo && order.number != 0 {
@@ -144,8 +129,7 @@ impl Robot {
         (self.goal, self.far, self.there) = (None, self.at, 0);
     }
 
-    /// Clear the text of an order that Prim has taken, and the poses of E-move if `over`, when no order leads to
-    /// them.
+    /// Clear the text of a taken order and, if `over`, the poses of E-move, to which no order leads then.
     pub fn forget_order(&self, out: &mut EmoveOutputs, over: bool) {
         let PrimCommand { number, command, .. } = out.prim;
         if self.echo == number || number == 0 {

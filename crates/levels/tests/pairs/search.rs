@@ -9,19 +9,16 @@ use std::{
 
 use interfaces::process::Process;
 
-/// The violated condition.
 pub type Wrong = &'static str;
 
 /// Disturbance of a tick, in addition to failing orders.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Mishap {
     None,
-    /// The upper process of the pair is restarted.
-    RestartUpper,
+    RestartUpper, // the upper process restarts
     RestartLower,
-    /// The lower process is not stepped, and writes nothing.
-    SilentLower,
-    /// The potentiometer of the rotary table has another reading than before.
+    SilentLower, // the lower process is not stepped, and writes nothing
+    /// The potentiometer of the rotary table reads differently than before.
     Slip,
 }
 
@@ -44,37 +41,30 @@ pub fn resumed<P: Process<Data> + Default, Data>(state: P::State, is_restarted: 
     process
 }
 
-/// A pair of neighbouring processes, and their environment.
 pub trait World: Clone {
-    /// Behaviour of the environment in a tick.
     type Event: Copy + Debug;
 
     /// All possible events of the next tick, and whether each is *prompt*: no command, no loss, and every order
     /// ends in this tick or exceeds its time limit.
     fn events(&self) -> Vec<(Self::Event, bool)>;
 
-    /// Step a tick.
-    ///
-    /// # Errors
-    /// The violated condition.
+    /// Step a tick. The error is the violated condition.
     fn step(&mut self, event: Self::Event) -> Result<(), Wrong>;
 
     /// All values that affect the future, as bytes.
     fn image(&self) -> Vec<u8>;
 
-    /// The last command has ended, and the pair is at rest.
     fn rests(&self) -> bool;
 
     fn pauses(&self) -> bool;
 }
 
-/// The result of a search, or the shortest path to a violated condition.
+/// The result, or the shortest path to a violated condition.
 #[derive(Debug)]
 pub struct Found<Event> {
     pub states: usize,
     pub ticks: u64,
-    /// Greatest number of prompt ticks until the pair rests, from any state whose last command is PAUSE.
-    pub pause: u32,
+    pub pause: u32, // prompt ticks until rest, if the last command is PAUSE
     pub any: u32,
     pub wrong: Option<(Vec<Event>, Wrong)>,
 }
@@ -87,8 +77,7 @@ struct Space<Event> {
     from: Vec<(u32, Option<Event>)>,
     rests: Vec<bool>,
     pauses: Vec<bool>,
-    /// Prompt successors of each state: a range of `onward`.
-    ranges: Vec<(usize, usize)>,
+    ranges: Vec<(usize, usize)>, // prompt successors of each state: a range of `onward`
     onward: Vec<u32>,
     ticks: u64,
 }
@@ -108,7 +97,7 @@ impl<Event: Copy> Space<Event> {
         (number, number == next)
     }
 
-    /// The ticks that lead to a state, and one more.
+    /// The ticks to a state, and one more.
     fn way(&self, mut state: u32, last: Option<Event>) -> Vec<Event> {
         let mut way = Vec::from_iter(last);
         while state != NONE {
@@ -120,7 +109,7 @@ impl<Event: Copy> Space<Event> {
         way
     }
 
-    /// For each state the greatest number of prompt ticks until the pair rests; or a state on a cycle.
+    /// The greatest number of prompt ticks until the pair rests, for each state. The error is a state on a cycle.
     fn longest(&self) -> Result<Vec<u32>, u32> {
         const OPEN: u32 = u32::MAX;
         const UNKNOWN: u32 = u32::MAX - 1;
@@ -153,7 +142,7 @@ impl<Event: Copy> Space<Event> {
     }
 }
 
-/// Search all states in order of distance, up to `most` of them.
+/// Search states in order of distance, up to `most` of them.
 pub fn search<W: World>(first: W, most: usize) -> Found<W::Event> {
     let mut space = Space {
         known: HashMap::new(),

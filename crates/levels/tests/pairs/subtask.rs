@@ -30,14 +30,12 @@ use levels::{
     subtask::Subtask,
 };
 
-/// Ticks until vision is silent.
-const LIMIT: u64 = 100;
-/// Opening of the fingers at the start, 0.01 in.
-const OPENING: i32 = 300;
-/// Ticks until Subtask must know that the part is gone.
+const LIMIT: u64 = 100; // ticks until vision is silent
+const OPENING: i32 = 300; // 0.01 in, opening at the start
+/// Ticks until Subtask must report that the part is gone.
 const LATE: u8 = 3;
 
-/// A command: whether it names an object, its location, sector, and the number of its pose.
+/// Whether the command names an object; location, sector, and number of the pose.
 pub type Line = (SubtaskVerb, bool, &'static str, Option<i32>, u32);
 pub const PAUSE: Line = (SubtaskVerb::Pause, false, "SAFE", None, 3);
 pub const GET: Line = (SubtaskVerb::GetObject, true, "UNIT_2", Some(1), 1);
@@ -55,27 +53,21 @@ pub struct Does {
     pub vision: Option<VisionStatus>,
 }
 
-/// Prim with the robot, Grip with its fingers, vision, and the results of the current command.
 #[derive(Clone)]
 pub struct Around {
     robot: Robot,
     grip: PartsGripper,
     quick_change: u32,
     vision: VisionResponse,
-    /// E-move wrote nothing in the previous tick.
-    silent: bool,
-    /// Subtask has sent E-move an order of the current command.
-    own: bool,
-    /// Ticks for which the fingers have been empty.
-    apart: u8,
-    /// The fingers have released the part, or lost it, at its destination.
-    let_go: bool,
+    silent: bool, // E-move wrote nothing in the previous tick
+    own: bool,    // E-move has an order of the current command
+    apart: u8,    // ticks for which the fingers have been empty
+    let_go: bool, // the fingers released or lost the part at its destination
 }
 
 pub type Pair = frame::Pair<Around>;
 
-/// A robot at SAFE whose parts gripper is attached and open. These commands can arrive, this many of them before
-/// the last one has ended, and this many mishaps.
+/// The robot is at SAFE with the parts gripper attached and open. `early` commands replace others.
 pub fn first(object: &str, lines: &[Line], early: u8, mishaps: u8) -> Pair {
     let command = |&(verb, named, location, sector, nth): &Line| {
         subtask_command(verb, Some(object).filter(|_| named), location, sector, nth)
@@ -142,7 +134,6 @@ impl Scene for Around {
         choices
     }
 
-    /// The last command has ended, as Task reads it.
     fn has_ended(pair: &Pair) -> bool {
         let status = &pair.upper.out.status;
         status.echo == pair.command.number && status.report != StatusReport::Executing

@@ -27,10 +27,8 @@ use crate::{
     search::{Mishap, Wrong},
 };
 
-/// Greatest number of ticks for which E-move continues an order of a replaced command.
-const REPLACED: u8 = 6;
+const REPLACED: u8 = 6; // ticks for which E-move continues an order of a replaced command
 
-/// Reaction of E-move to its order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum EmoveDoes {
     /// Nothing new; a new order is taken.
@@ -50,39 +48,27 @@ pub enum EmoveDoes {
 pub struct Does {
     pub emove: EmoveDoes,
     pub answer: Option<DataBaseReport>,
-    /// The joystick box is turned on or off.
-    pub switched: bool,
+    pub switched: bool, // the joystick box is turned on or off
 }
 
-/// E-move with the joystick box, the Data System, and the results of the current command.
 #[derive(Clone)]
 pub struct Around {
-    /// The fingers can finish a release in a pause.
-    lets_go: bool,
-    /// E-move's status, without the joystick box.
-    emove: EmoveStatus,
-    /// E-move wrote nothing in the previous tick.
-    silent: bool,
+    lets_go: bool,      // the fingers can finish a release in a pause
+    emove: EmoveStatus, // E-move's status, without the joystick box
+    silent: bool,       // E-move wrote nothing in the previous tick
     box_on: bool,
     data_base: DataBaseStatus,
-    /// The Data System accepts every request at once.
-    prompt: bool,
-    /// Location of an object in the Data System.
-    recorded: Option<Name10>,
-    /// E-move's order belongs to the current command.
-    own: bool,
-    /// The last completed order of the current command.
-    reached: EmoveVerb,
-    /// The last completed request of the current command.
-    answered: DataBaseVerb,
-    /// Ticks for which E-move has continued an order of a replaced command.
-    replaced: u8,
+    prompt: bool,             // the Data System accepts every request at once
+    recorded: Option<Name10>, // location of an object in the Data System
+    own: bool,                // E-move's order belongs to the current command
+    reached: EmoveVerb,       // the last completed order of the current command
+    answered: DataBaseVerb,   // the last completed request of the current command
+    replaced: u8,             // ticks for which E-move has continued a replaced order
 }
 
 pub type Pair = frame::Pair<Around>;
 
-/// The first tick of a started system, with the parts gripper attached; this many mishaps can happen, and these
-/// commands can arrive.
+/// A pair before its first tick, with the parts gripper attached.
 pub fn first(mishaps: u8, commands: Vec<HwsCommand>) -> Pair {
     let around = Around {
         lets_go: false,
@@ -101,7 +87,7 @@ pub fn first(mishaps: u8, commands: Vec<HwsCommand>) -> Pair {
 }
 
 impl Pair {
-    /// The robot is at PFIXTURE and holds the object of a command there; the Data System has this place.
+    /// The robot is at PFIXTURE and holds the object of a command there, which the Data System has at this place.
     pub fn carrying(mut self, command: &HwsCommand) -> Self {
         let object = command.object.expect("a command about an object");
         let place = emove_command(EmoveVerb::Release, object.as_str(), command.source_grip, "PFIXTURE");
@@ -112,8 +98,7 @@ impl Pair {
         self.connected(IN_HAND)
     }
 
-    /// The Data System is connected, and has the object of the commands at a position; the fingers can finish a
-    /// release in a pause.
+    /// The Data System has the object at a position; the fingers can finish a release in a pause.
     pub fn connected(mut self, position: &str) -> Self {
         self.upper.out.updates.connected = true;
         self.upper.state.data_system.updates = self.upper.out.updates;
@@ -121,7 +106,7 @@ impl Pair {
         self
     }
 
-    /// The Data System accepts every request at once, and never refuses.
+    /// `prompt`: the Data System accepts every request at once.
     pub const fn promptly(mut self, prompt: bool) -> Self {
         self.scene.prompt = prompt;
         self
@@ -168,7 +153,7 @@ impl Pair {
 }
 
 impl Around {
-    /// The report of E-move: *joystick-on* while the operator has the robot, for any result before.
+    /// E-move reports *joystick-on* while the operator has the robot, regardless of other results.
     fn emove_status(&self) -> EmoveStatus {
         let report = match self.emove.report {
             StatusReport::Done | StatusReport::JoystickOn if self.box_on => StatusReport::JoystickOn,
@@ -291,7 +276,6 @@ impl Scene for Around {
         Ok(())
     }
 
-    /// Each command that is reported finished has had its effect, by its own orders; and a replaced command stops.
     fn judge(pair: &Pair, before: &Pair, _: &Event<Does>) -> Result<(), Wrong> {
         if pair.scene.replaced > REPLACED {
             return Err("a replaced command continues");
@@ -340,7 +324,6 @@ impl Scene for Around {
         }
     }
 
-    /// Restart numbers and times that no longer matter.
     fn renumber(pair: &mut Pair) {
         let (task, out, subtask) = (&mut pair.upper.state, &mut pair.upper.out, &mut pair.lower.state);
         let echo = &mut task.execution.receiver.echo;
@@ -360,8 +343,8 @@ impl Scene for Around {
         }
     }
 
-    /// Without values that no row tests: reasons; numbers of poses; the command and the step of a process that
-    /// executes no command; the text of a command that has ended.
+    /// No row tests reasons, numbers of poses, the text of a command that has ended, or step and command of an idle
+    /// process.
     fn image(pair: &Pair) -> Vec<u8> {
         let mut image = Image::new(pair.tick, ANSWER_LIMIT, &[]);
         let mut it = pair.clone();
@@ -427,7 +410,6 @@ impl Scene for Around {
 }
 
 impl Pair {
-    /// E-move has not ended its last order.
     fn is_busy(&self) -> bool {
         let number = self.lower.out.emove.number;
         (number != self.scene.emove.echo && number != 0) || self.scene.emove.report == StatusReport::Executing

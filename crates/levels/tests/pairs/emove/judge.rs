@@ -1,5 +1,3 @@
-//! Conditions for E-move and the process of a gripper in each tick.
-
 use geometry::pose::Pose;
 use interfaces::{
     StatusReport,
@@ -17,12 +15,12 @@ use crate::{
 };
 
 impl<G: Fingered> Pair<G> {
-    /// An object that is recorded as held has been released, or partly.
+    /// True if a held object is being released, or has been.
     const fn lets_go(&self) -> bool {
         self.upper.state.held.is_letting_go(true)
     }
 
-    /// Each command that is reported done has had its effect. `before` is the pair as the processes read it.
+    /// `before` is the pair as the processes read it.
     pub(super) fn judge(
         &self,
         before: &Self,

@@ -6,7 +6,7 @@ use super::{Fingered, Pair};
 use crate::image::{Image, forget, rebase, rebase_echoes, renumber_poses};
 
 impl<G: Fingered> Pair<G> {
-    /// Clear the values that no row tests: reasons, and the commands of processes that execute none.
+    /// No row tests reasons, or commands of idle processes.
     pub(super) fn alike(&self) -> Vec<u8> {
         let mut image = Image::new(self.tick, G::LIMIT, G::COUNTERS);
         let mut it = self.clone();
@@ -36,7 +36,6 @@ impl<G: Fingered> Pair<G> {
         image.bytes
     }
 
-    /// Restart numbers and times that no longer matter.
     pub(super) fn renumber(&mut self) {
         let (emove, out) = (&mut self.upper.state, &mut self.upper.out);
         renumber_poses(emove, out);

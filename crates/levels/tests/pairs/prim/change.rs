@@ -23,18 +23,16 @@ use crate::{
     search::Wrong,
 };
 
-/// Reach of the pins, also to the side; the ring catches within this; in.
+/// Reach of the pins, in, also to the side. The ring catches the gripper within it.
 const REACH: f64 = 0.65;
 const PLAY: f64 = 0.15;
 const CAUGHT: f64 = 0.05;
 /// Height from which a released gripper lands, in.
 const LANDS: f64 = 0.6;
-/// The lips are over its ears from here on, and hold it down within this, in.
+/// From here on the lips are over the gripper's ears, and hold it down within this distance, in.
 const LIPS: f64 = 0.75;
 const HELD_DOWN: f64 = 0.15;
-/// Within this distance the gripper is drawn to the seat, in.
-const DETENT: f64 = 0.1;
-/// Ranges of the large and the small sensors, in.
+const DETENT: f64 = 0.1; // in from the seat, within which the gripper is drawn to it
 const LARGE: f64 = 0.5;
 const SMALL: f64 = 0.1;
 
@@ -44,15 +42,12 @@ pub struct Change {
     report: QuickChangeReport,
     ring: Ring,
     turns: Option<Ring>,
-    /// Distance of a gripper on the holster from the seat, in; none if the ring has it.
-    rests: Option<f64>,
-    /// The sensors of the holster have no power.
-    dark: bool,
+    rests: Option<f64>, // in from the seat, on the holster; `None` if the ring has the gripper
+    dark: bool,         // the sensors of the holster have no power
     grip: PartsGripper,
 }
 
 impl Change {
-    /// A gripper at its seat, and an open ring.
     pub fn new() -> Self {
         let object = Name16::new(GRIPPER.1).expect("a name");
         let (_, on) = data().object(&object, 1).expect("the data have the gripper");
@@ -87,17 +82,13 @@ impl Change {
         self.dark
     }
 
-    /// The id pins read the gripper.
     pub fn is_mated(&self, robot: &Frame) -> bool {
         let (x, z) = holster::within(robot);
         self.rests.is_none_or(|rests| (-REACH..=CAUGHT).contains(&x) && (z - rests).abs() <= PLAY)
     }
 
-    /// Quick Change and Grip take E-move's outputs of the previous tick. Prim and the robot are as they are after
-    /// this tick.
-    ///
-    /// # Errors
-    /// The ring is turned while the robot moves, or the gripper falls or is torn off.
+    /// Prim and the robot are as they are after this tick. It is an error to turn the ring while the robot moves, or to
+    /// drop or tear off the gripper.
     pub fn does(
         &mut self,
         happens: Happens,
@@ -159,7 +150,6 @@ impl Change {
         Ok(())
     }
 
-    /// The gripper moves with the robot, or is pushed along the holster.
     fn carry(&mut self, robot: &Frame) -> Result<(), Wrong> {
         let (x, z) = holster::within(robot);
         let mated = self.is_mated(robot);
@@ -176,7 +166,7 @@ impl Change {
         Ok(())
     }
 
-    /// The sensors of the holster that detect the gripper: the large ones in the lower bits.
+    /// The bits of the sensors that detect the gripper; the large ones are the lower bits.
     fn sees(&self, robot: &Frame) -> u8 {
         let (x, z) = self.rests.map_or_else(|| holster::within(robot), |rests| (0.0, rests));
         let large = x.abs() <= LARGE && (-LARGE..=SEAT + LARGE).contains(&z);
@@ -188,7 +178,6 @@ impl Change {
         }
     }
 
-    /// True if the condition holds that Prim watches.
     pub fn is_met(&self, robot: &Frame, prim: &State) -> bool {
         let sees = self.sees(robot);
         prim.target.sensor.is_some_and(|sensor| match sensor.source {
@@ -198,7 +187,6 @@ impl Change {
         })
     }
 
-    /// Write the inputs of E-move and Prim.
     pub fn write(&self, robot: &Frame, memory: &mut CommonMemory, devices: &mut DeviceInputs, stamp: Tick) {
         let mated = self.is_mated(robot);
         let status = &mut memory.quick_change.status;

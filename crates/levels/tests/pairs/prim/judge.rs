@@ -1,5 +1,3 @@
-//! Conditions for E-move and Prim in each tick.
-
 use geometry::frame::Frame;
 use interfaces::{
     emove::{EmoveVerb, Holding},
@@ -16,15 +14,13 @@ use crate::{
     search::Wrong,
 };
 
-/// Greatest motion of the commanded pose per tick, in.
-const STEP: f64 = 0.6;
-/// Ticks until a guarded move is at rest after its condition is met.
-const BRAKES: u32 = 12;
-/// ACQUIRE-TOOL takes the tool within this distance of its place, in: ACQ-NEAR and ACQ-STRIKE.
+const STEP: f64 = 0.6; // in per tick, the greatest step of the commanded pose
+const BRAKES: u32 = 12; // ticks from the condition until a guarded move is at rest
+/// ACQUIRE-TOOL takes a tool within this distance of its place, in.
 const DEEP: f64 = 0.3;
 
 impl Pair {
-    /// Record whether the condition of a guarded move is met, by the inputs of Prim in this tick.
+    /// Record whether the condition is met, by the inputs of Prim in this tick.
     pub(super) fn watch(&mut self, before: &Self) {
         if !before.is_guarded() {
             return;
@@ -51,7 +47,7 @@ impl Pair {
         self.brakes = if self.stops && self.is_moving() { self.brakes + 1 } else { 0 };
     }
 
-    /// The commanded pose does not jump, and each command that is reported done has had its effect.
+    /// The commanded pose does not jump, and each command that is done has had its effect.
     pub(super) fn judge(&self, before: &Self) -> Result<(), Wrong> {
         if let (Some(now), Some(then)) = (&self.prim.motion, &before.prim.motion)
             && now.frame().distance(&then.frame()).inches > STEP
@@ -130,7 +126,6 @@ impl Pair {
         }
     }
 
-    /// Each command that Prim reports done has had its effect.
     fn judge_prim(&self, before: &Self, stands: &Frame) -> Result<(), Wrong> {
         let done = |it: &Self| {
             let status = &it.prim_out.status;
@@ -154,7 +149,6 @@ impl Pair {
         }
     }
 
-    /// Each command at the drum that is reported done has had its effect.
     fn judge_tool(&self, before: &Self, stands: &Frame) -> Result<(), Wrong> {
         let base = place(super::DRUM).frame;
         let moved = |from: &Frame, relative: Relative| {

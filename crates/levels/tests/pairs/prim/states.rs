@@ -7,12 +7,11 @@ use levels::{emove::gripper::EmoveGripper, execution::Outcome};
 use super::Pair;
 use crate::image::{Image, rebase, rebase_echoes, renumber_poses};
 
-/// Longer than any relevant time except that of an echo, ticks.
-const LIMIT: u64 = 250;
+const LIMIT: u64 = 250; // ticks: longer than any relevant time except that of an echo
 
 impl Pair {
-    /// Without values that no row tests: reasons; the nearest places; the time at rest above its limit; the times
-    /// of restarts of the link, since enough faults cannot occur.
+    /// No row tests reasons, the nearest places, the time at rest above its limit, or the times of link restarts: not
+    /// enough faults can occur.
     pub(super) fn alike(&self) -> Vec<u8> {
         let mut image = Image::new(self.tick, LIMIT, &[]);
         let mut it = self.clone();
@@ -72,7 +71,6 @@ impl Pair {
         image.bytes
     }
 
-    /// Restart numbers and times that no longer matter.
     pub(super) fn renumber(&mut self) {
         renumber_poses(&mut self.emove, &mut self.emove_out);
         let (emove, out) = (&mut self.emove, &mut self.emove_out);

@@ -27,12 +27,10 @@ use crate::{
     search::Wrong,
 };
 
-/// The tool, its grip, and its size, 0.01 in.
-pub const TOOL: (&str, i32, i32) = ("DRILL-2", 1, 175);
+pub const TOOL: (&str, i32, i32) = ("DRILL-2", 1, 175); // name, grip, size in 0.01 in
 pub const GRIPPER: u8 = 3;
 pub const DRUM: &str = "TOOL-TRNS";
-/// The fingers are around a tool within this distance, in.
-const AROUND: f64 = 0.5;
+const AROUND: f64 = 0.5; // in from the tool: the fingers are around it
 
 const NEUTRAL: ForceSensor = ForceSensor { x: ZERO, y: ZERO, z: ZERO, moment: ZERO, valid: true };
 const ZERO: u16 = FORCE_ZERO as u16;
@@ -43,23 +41,18 @@ pub enum Happens {
     /// Moving fingers arrive; if they close at the tool, they have it between them.
     Arrive,
     Stick,
-    /// The condition of the guarded move is met.
-    Contact,
+    Contact, // the condition of the guarded move is met
     Free,
-    /// The sensor has no power, for this tick.
-    Dead,
+    Dead, // the sensor has no power in this tick
 }
 
 #[derive(Clone, Copy, Debug)]
 pub struct Tool {
     echo: u32,
     report: JawsReport,
-    /// Opening, 0.01 in.
-    size: i32,
-    /// Air closes the fingers; otherwise it opens them.
-    closes: bool,
-    /// Pose of the robot when its fingers are around the tool.
-    at: Frame,
+    size: i32,    // opening, 0.01 in
+    closes: bool, // air closes the fingers; otherwise it opens them
+    at: Frame,    // pose of the robot with its fingers around the tool
     pub force: ForceSensor,
 }
 
@@ -72,7 +65,6 @@ fn closed() -> i32 {
 }
 
 impl Tool {
-    /// Open fingers without a load, and a tool in its place in the drum.
     pub fn new() -> Self {
         let (object, grip, _) = TOOL;
         let command = emove_command(EmoveVerb::InsertTool, object, grip, DRUM);
@@ -102,10 +94,7 @@ impl Tool {
         (self.force.z, self.force.moment) != (ZERO, ZERO)
     }
 
-    /// Tool-Grip takes E-move's outputs of the previous tick. Prim and the robot are as they are after this tick.
-    ///
-    /// # Errors
-    /// Fingers are moved while the robot moves.
+    /// Prim and the robot are as they are after this tick. It is an error to move the fingers while the robot moves.
     pub fn does(
         &mut self,
         happens: Happens,
@@ -147,7 +136,7 @@ impl Tool {
         Ok(())
     }
 
-    /// Counts of the watched axis, its bias in counts, and counts per pound or inch pound.
+    /// Counts of the watched axis, its bias, and counts per pound or inch pound.
     fn axis(&mut self, sensor: &SensorPara, prim: &State) -> Option<(&mut u16, f64, i32)> {
         let bias = prim.calibration.bias?;
         match sensor.source {
@@ -170,7 +159,6 @@ impl Tool {
         }
     }
 
-    /// True if the condition holds that Prim watches.
     pub fn is_pressed(&self, prim: &State) -> bool {
         let Some(sensor) = prim.target.sensor.filter(|_| self.force.valid) else { return false };
         let mut it = *self;
@@ -185,7 +173,6 @@ impl Tool {
         prim.target.sensor.is_some() && (!self.force.valid || prim.calibration.bias.is_none())
     }
 
-    /// Write the inputs of E-move and Prim.
     pub fn write(&self, memory: &mut CommonMemory, devices: &mut DeviceInputs, stamp: Tick) {
         let outputs = &mut memory.tool_grip;
         (outputs.header.stamp, outputs.header.republished) = (stamp, memory.emove.dormant.tool_grip);

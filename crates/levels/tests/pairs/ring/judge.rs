@@ -1,5 +1,3 @@
-//! Conditions for E-move and Quick Change in each tick.
-
 use super::Pair;
 use crate::{emove::is_done, holster, search::Wrong};
 

@@ -59,8 +59,8 @@ impl Pair {
         image.bytes
     }
 
-    /// Clear values that no row tests: reasons; the commands of processes that execute none; the text of an order
-    /// that was taken; poses without an order; the time of a ring that has arrived.
+    /// No row tests reasons, commands of idle processes, the text of an order that was taken, poses without an order,
+    /// or the time of a ring that has arrived.
     fn forget(&mut self) {
         let executes = forget(&mut self.upper.state);
         let ring = &mut self.lower.state;
@@ -81,7 +81,6 @@ impl Pair {
         }
     }
 
-    /// Restart numbers and times that no longer matter.
     pub(super) fn renumber(&mut self) {
         renumber_poses(&mut self.upper.state, &mut self.upper.out);
         let (emove, out) = (&mut self.upper.state, &mut self.upper.out);

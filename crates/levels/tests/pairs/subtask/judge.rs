@@ -1,5 +1,3 @@
-//! Conditions for Subtask and E-move in each tick.
-
 use geometry::pose::Pose;
 use interfaces::{
     emove::EmoveVerb,
@@ -17,7 +15,6 @@ use crate::{
 };
 
 impl Pair {
-    /// True if the robot is at the goal of a command.
     fn is_goal(&self, command: &SubtaskCommand, at: &Pose) -> bool {
         let Some((_, pose)) = self.lines.iter().find(|(_, pose)| pose.number == command.pose) else {
             return false;
@@ -88,7 +85,6 @@ impl Pair {
         Ok(())
     }
 
-    /// Each command that is reported done has had its effect.
     fn judge_end(&self, before: &Self) -> Result<(), Wrong> {
         let (status, held) = (&before.lower.out.status, before.lower.out.status.held.object());
         let there = self.is_goal(&self.command, &before.scene.robot.at);

@@ -14,8 +14,7 @@ use super::{Pair, is_over};
 use crate::image::{forget, rebase, rebase_echoes, renumber_poses};
 
 impl Pair {
-    /// Clear values that no row tests: reasons; the commands of processes that execute none; the text of an order
-    /// that was taken; poses without an order.
+    /// No row tests reasons, commands of idle processes, the text of a taken order, or poses without an order.
     pub(super) fn forget(&mut self) {
         let (subtask, emove) = (&mut self.upper.state, &mut self.lower.state);
         subtask.execution.reason = Reason::None;
@@ -48,7 +47,6 @@ impl Pair {
         }
     }
 
-    /// Restart numbers and times that no longer matter.
     pub(super) fn renumber(&mut self) {
         renumber_poses(&mut self.lower.state, &mut self.lower.out);
         let (subtask, out, emove, below) =
