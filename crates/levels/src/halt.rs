@@ -207,11 +207,8 @@ pub trait Commanding: Ending {
 }
 
 impl Execution {
-    /// Consult [`HALT`], the table with this number, after EXECUTE. Returns the use of the tables: `Begin` in the
-    /// tick in which a command is accepted or refused.
-    ///
-    /// # Errors
-    /// The action of HALT, if no other table is to be consulted.
+    /// Consult [`HALT`], the table with this number, after EXECUTE. Returns `Begin` in the tick in which a command is
+    /// accepted or refused. The error is the action of HALT, if no other table is to be consulted.
     pub fn halt(&mut self, number: u8, course: Course, replaced: &Replaced) -> Result<Course, Halting> {
         self.waiting |= course == Course::Begin;
         let intake = match course {

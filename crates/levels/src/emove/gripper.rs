@@ -12,7 +12,7 @@ const PARTS_CLOSED: i32 = 10; // 0.01 in
 const PARTS_BAND: i32 = 2; // 0.01 in (the servo's own band, `levels::grip`)
 const STILL: i32 = 10; // 0.01 in/s: above the noise of the potentiometer, below the slowest motion by air
 const LET_GO: i32 = 25; // 0.01 in more than the grasp: the object is released
-/// lb, which indicates contact. Forces are reported in whole pounds, and no grasp is weaker than 3 lb.
+/// Least force of a contact, lb. Forces are reported in whole pounds, and no grasp is weaker than 3 lb.
 const FELT: i32 = 1;
 const JAWS_BAND: i32 = 10; // 0.01 in: opening of jaws on an object of the grasp size (ASSUMED)
 const STOP_BAND: i32 = 5; // 0.01 in

@@ -41,8 +41,8 @@ use super::{
 const AT_POINT: f64 = 0.12; // in: much shorter than any relative move
 const AT_LOW: f64 = 0.3; // in: QCD-DOWN may end a little above or below the low point
 const CLEAR: f64 = 0.3; // in: clear of the holster near the upper points, or beyond them
-/// in, on the way to the seat, above a segment: QCD-SEAT begins where the large sensors see the ears, up to 0.5 in
-/// above the low point (V.2.1). QCD-UP ends as much above its point.
+/// Height above a segment on the way to the seat, in: QCD-SEAT begins where the large sensors see the ears, up to
+/// 0.5 in above the low point (V.2.1). QCD-UP ends as much above its point.
 const ABOVE: f64 = 0.6;
 
 struct HolsterPoints {

@@ -36,8 +36,8 @@ use super::{
 use crate::execution::Execution;
 
 const SEATED: f64 = 0.15; // in, of depth: the fingers of the drum close on the tool
-/// in to the right of the way in: the fingers are around the tool. To the left they are so up to the end of
-/// ACQ-SLIDE, which a sensor determines, plus this distance.
+/// The fingers are around the tool within this distance to the right of the way in, in. To the left they are so up to
+/// the end of ACQ-SLIDE, which a sensor determines, plus this distance.
 const AROUND: f64 = 0.25;
 const WIDE_IN: f64 = 0.75; // in, sideways, for a tool that is not in its place
 const FREE: f64 = 0.15; // in beyond INS-NEAR, without contact

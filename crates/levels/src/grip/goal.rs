@@ -10,7 +10,7 @@ use crate::execution::Course;
 
 pub(super) const CLOSED_END: f64 = 0.10; // in (VIII.9.1: a closed gripper has 0.10 in)
 pub(super) const OPEN_END: f64 = 5.00; // in
-/// lb on each finger: the strain gages read it on fingers shut on each other. ASSUMED: the pads meet when closed.
+/// Force on each finger, lb, read on fingers shut on each other. ASSUMED: the pads meet at the closed end.
 pub(super) const SUPPLY_FORCE: f64 = 80.0;
 
 /// Goal of the current command: a copy, because the buffer of a commander that restarts is empty.

@@ -74,7 +74,7 @@ pub struct Servo<S> {
     gripper: PhantomData<S>,
 }
 
-/// Consult UP-INIT and CALIBRATION. An error is the row that decides.
+/// Consult UP-INIT and CALIBRATION. The error is the row that decides.
 fn calibrating(phase: GripPhase, situation: &Situation) -> Result<GripDuty, Choice<Action, GripPhase>> {
     match up_init::up_init(phase, situation) {
         Verdict::Decided(decision) => Err(decision.of(number::UP_INIT)),

@@ -51,7 +51,7 @@ impl State {
         }
     }
 
-    /// Of the words of VI.4.2 only `jaws-stuck` reports a failure, so it is used for every failure without a finger
+    /// Of the words of VI.4.2 only `jaws-stuck` reports a failure. It reports every failure without a finger
     /// position; the reason has the details.
     pub(super) fn report(&self, seen: &StateVariables, tick: Tick) -> JawsOutputs {
         let report = match self.execution.outcome {

@@ -19,7 +19,7 @@ use rcs_core::{Plain, tick::TICK_S};
 pub const SPEED: f64 = 5.0;
 /// Greatest path acceleration, in/s². ASSUMED: that of a free path (VIII.10).
 pub const ACCELERATION: f64 = 10.0;
-/// in/s². The rest of [`ACCELERATION`] is for a tool point that swings about the wrist at [`SPEED`]: 5² / 30 in/s².
+/// Acceleration of a ramp, in/s²; the rest is for a tool point that swings about the wrist at [`SPEED`]: 5² / 30.
 const RAMP: f64 = 9.0;
 /// Smaller deflections are treated as 0: potentiometers do not return to 0 exactly. ASSUMED.
 const PLAY: f64 = 0.03;

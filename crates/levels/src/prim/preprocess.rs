@@ -122,7 +122,7 @@ impl State {
     }
 
     /// A point is sent in each tick and echoed two ticks later, so the echo of the previous point is accepted while
-    /// points are sent. Any other command must be echoed itself: an error from before a RESTART is no answer to it.
+    /// points are sent. Any other command must be echoed itself: an error from before a RESTART does not answer it.
     fn interface(&self, inputs: &Inputs<'_, TaskData<'_>>, sent: &T3iCommand) -> Interface {
         let t3i = &inputs.memory.t3i;
         let (number, echo) = (self.t3i.number, t3i.status.echo);

@@ -6,7 +6,6 @@
 //! A force is the reading less the *bias*, which CAL-SENSOR takes with the robot at rest: strain gages drift, and
 //! measure the weight of the held part. Without a bias, or with a reading at an end of its converter, a force is not
 //! valid, and the guarded move is refused with `sensor-error`.
-//! distinguished.
 
 use interfaces::{
     device::{

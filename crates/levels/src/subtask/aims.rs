@@ -44,7 +44,6 @@ pub struct Aims {
     pub second: SubtaskAim,
     /// FIX-GRIP: the object, taken from the pedestal, at the pose of `first`.
     pub third: SubtaskAim,
-    /// Poses of `first` and `second`.
     pub poses: [Pose; 2], // poses of `first` and `second`
 }
 

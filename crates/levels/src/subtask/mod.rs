@@ -1,15 +1,6 @@
 //! Subtask (V.3): divides a command of Task into commands to E-move, and coordinates the robot with the Active
 //! Pedestal.
 //!
-//! ```text
-//!                 ACCEPT                 ORDERED: E-move, pedestal
-//!   a command --------------> Start ---> Moving ---> Grasping ---> ... ---> done
-//!       |                                  |            |
-//!       | data are missing                 | E-move or the pedestal failed, or the operator took the robot
-//!       v                                  v            v
-//!     error <-----------------------------------------------
-//! ```
-//!
 //! * `pedestal_hand`: the part in the pedestal's hand;
 //! * [`manual`]: orders of a person to the pedestal;
 //! * [`aims`]: objects and locations of the commands to E-move.

@@ -90,7 +90,6 @@ pub enum TaskGripper {
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct Location {
     pub site: Site,
-    /// Its T-POSE.
     pub pose: ChangingPose, // the T-POSE of the location
 }
 

@@ -204,8 +204,7 @@ fn preconditions(found: &Found, checked: Checked) -> Preconditions {
     }
 }
 
-/// The name of a location does not identify a sector. A robot that was moved away from its place, however little, has
-/// to go there.
+/// The name of a location does not identify a sector. A robot that was moved off its place must return to it.
 fn ends(end_at: &PlanSite, below: &SubtaskStatus) -> Ends {
     let is_there = matches!(below.offset, Offset::None | Offset::NotSensed);
     let at = below.at.filter(|_| is_there).map(|at| at.site.location);

@@ -41,7 +41,6 @@ pub trait Fingered: Stepped {
     type Fingers: Copy + Debug + PartialEq;
     const OPEN: Self::Fingers;
 
-    /// The process waits for a command, with open fingers.
     fn first() -> Self;
     /// Next states of the fingers, and whether they are prompt.
     fn next(&self, fingers: Self::Fingers) -> Vec<(Self::Fingers, bool)>;
@@ -63,9 +62,7 @@ pub trait Fingered: Stepped {
     fn number(outputs: &mut EmoveOutputs) -> &mut u32;
     fn renumber(&mut self, commander: &mut Commander, number: &mut u32);
     fn commander(state: &mut emove::State) -> &mut Commander;
-    /// Clear the values that no row tests.
     fn forget(&mut self, tick: Tick);
-    /// Clear the text of an order that has been taken.
     fn forget_order(outputs: &mut EmoveOutputs);
     fn add_to(&self, outputs: &EmoveOutputs, image: &mut Image);
 }

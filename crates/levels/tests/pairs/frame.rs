@@ -157,7 +157,6 @@ impl<S: Scene<Upper: Default, Command: Default>> Pair<S> {
 }
 
 impl<S: Scene> Pair<S> {
-    /// No command, or one that can arrive.
     fn told(&self) -> impl Iterator<Item = Option<usize>> + use<S> {
         let (ended, early) = (S::has_ended(self), self.early != Some(0));
         let may = |line| (ended || (early && S::is_other(self, line))) && S::may(self, line);

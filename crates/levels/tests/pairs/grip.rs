@@ -89,7 +89,6 @@ impl Fingered for Grip {
         next
     }
 
-    /// The fingers have been at rest long enough for their process.
     fn may_be_long(&self, fingers: Fingers, (next, arrive): (Fingers, bool)) -> bool {
         let it = &self.half.state;
         let read = it.sensed.map(|sensed| sensed.last) == Some(self.sensors(fingers));

@@ -219,7 +219,6 @@ impl Pair {
         (memory, external)
     }
 
-    /// T3 Interface takes Prim's outputs of the previous tick.
     fn t3i_does(&mut self, sent: &T3iCommand, link: Link) {
         self.silent = link == Link::Silent;
         if self.silent {
@@ -430,7 +429,6 @@ impl Pair {
         }
     }
 
-    /// The condition of a GO-UNTIL is not met yet.
     fn awaits(&self) -> bool {
         let executes = self.prim.execution.outcome == Outcome::Executing;
         executes && self.prim.target.verb == PrimVerb::GoUntil && !self.contact

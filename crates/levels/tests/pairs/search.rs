@@ -32,7 +32,6 @@ impl Mishap {
     }
 }
 
-/// A process that continues from a state, or has been restarted.
 pub fn resumed<P: Process<Data> + Default, Data>(state: P::State, is_restarted: bool) -> P {
     let mut process = P::default();
     if !is_restarted {

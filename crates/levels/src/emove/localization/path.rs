@@ -39,7 +39,7 @@ pub fn beside(present: &Frame, start: &Frame, end: &Frame) -> f64 {
     norm(&(present.position - foot(present, start, end).position))
 }
 
-/// An error is the missing data.
+/// The error is the missing data.
 pub fn route_of(way: &Way, data: &TaskData<'_>) -> Result<Route, Planning> {
     if way.straight {
         let stop = Route::between(&way.from, &way.to, data).map(|route| route.stop)?;

@@ -125,7 +125,7 @@ fn to_way(present: &Frame, way: &Way, data: &TaskData<'_>) -> Option<Rejoin> {
     beside.then(|| Rejoin::to(Pose::from_frame(&foot), parameters))
 }
 
-/// An error is the reason why the return is refused.
+/// The error is the reason why the return is refused.
 pub(in crate::emove) fn settle_at(
     at: &RobotPlace,
     offset: EmoveOffset,
@@ -187,7 +187,7 @@ pub(in crate::emove) fn offset_of_place(
 }
 
 impl Localization {
-    /// The return to the place before a command there. An error is the reason why the return is refused.
+    /// The return to the place before a command there. The error is the reason why the return is refused.
     pub(in crate::emove) fn stand_still(
         &self,
         holding: Holding,
@@ -199,7 +199,7 @@ impl Localization {
         Ok(Flight { rejoin, ..Flight::default() })
     }
 
-    /// An error is the reason why the robot cannot reach the start.
+    /// The error is the reason why the robot cannot reach the start.
     pub(in crate::emove) fn origination(
         &self,
         holding: Holding,

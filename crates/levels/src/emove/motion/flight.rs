@@ -115,7 +115,7 @@ fn way(route: &Route, next: u16, rest: Pose, data: &TaskData<'_>) -> Way {
     }
 }
 
-/// The way from a place whose depart leg is complete. An error is the reason why no way exists.
+/// The way from a place whose depart leg is complete. The error is the reason why no way exists.
 fn from_outside(from: &RobotPlace, to: &RobotPlace, data: &TaskData<'_>) -> Result<Route, Planning> {
     let route = Route::between(from, to, data)?;
     Ok(Route { commanded: route.depart_points(data), ..route })
@@ -149,7 +149,7 @@ fn start(goal: &RobotPlace, begin: &Origination, data: &TaskData<'_>) -> MotionS
 }
 
 impl Flight {
-    /// `to` is the place of the goal. An error is the reason why no motion exists.
+    /// `to` is the place of the goal. The error is the reason why no motion exists.
     pub(in crate::emove) fn plan(
         goal: &EmoveGoal,
         to: &RobotPlace,

@@ -28,7 +28,7 @@ use super::{
     tables::{EmoveContact, Initialization, Pause},
 };
 
-/// 1 s of not-detected, after which a GO-UNTIL ends: the robot is at rest, and no later contact is expected.
+/// A GO-UNTIL ends after 1 s of not-detected: the robot is at rest, and no later contact is expected.
 const PATIENCE: u32 = 25;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -103,7 +103,7 @@ pub struct EmoveGoal {
 }
 
 impl EmoveGoal {
-    /// `base` is the pose of the command, or of the object found by vision. An error is the missing record.
+    /// `base` is the pose of the command, or of the object found by vision. The error is the missing record.
     pub fn new(command: &EmoveCommand, base: &Frame, data: &TaskData<'_>) -> Result<Self, Planning> {
         let (place, gone_to) = (command.site.place(), gone_to(command));
         let object = command.object.as_ref();
@@ -176,7 +176,7 @@ impl Route {
         Self { from: *from, to: *to, stop, ..Self::default() }
     }
 
-    /// An error is the reason why no way exists.
+    /// The error is the reason why no way exists.
     pub fn between(from: &RobotPlace, to: &RobotPlace, data: &TaskData<'_>) -> Result<Self, Planning> {
         let (start, end) = (from.site.place(), to.site.place());
         let depart = match from.gone_to {

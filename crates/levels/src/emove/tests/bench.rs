@@ -57,7 +57,6 @@ pub fn frame_of(location: &str) -> Frame {
     data().locpt(id).expect("its record").frame
 }
 
-/// The frame with movetables applied in sequence.
 pub fn moved(frame: Frame, movetables: &[&str]) -> Frame {
     movetables.iter().fold(frame, |frame, name| {
         let id = data().movetable_named(&Name16::clipped(name)).expect("a movetable");
@@ -206,7 +205,6 @@ impl Bench {
         assert_eq!(self.finish(), error(Reason::Restarted));
     }
 
-    /// The operator takes the robot with the joystick box and acts on the bench.
     pub fn lead(&mut self, does: impl FnOnce(&mut Self)) {
         self.world.joystick = true;
         self.wait(5);
@@ -231,7 +229,6 @@ impl Bench {
         bench
     }
 
-    /// Restart E-move without the estimate that the fingers were empty.
     pub fn forget_empty(&mut self) {
         self.wait(3);
         self.restart();
@@ -258,7 +255,6 @@ impl Bench {
         self
     }
 
-    /// The gripper finds an object of a size and holds it.
     pub fn hold(&mut self, object: &'static str, size: i32, gripper: u8) {
         self.world.object = Some(size);
         assert_eq!(self.run(EmoveVerb::GraspObj, object, 1, "", gripper), DONE);
@@ -269,7 +265,6 @@ impl Bench {
         self.world.log.iter().map(String::as_str).collect()
     }
 
-    /// Step until a command to a neighbour contains a word.
     pub fn until_logged(&mut self, word: &str) {
         self.until(|bench| bench.world.log.iter().any(|text| text.contains(word)));
     }

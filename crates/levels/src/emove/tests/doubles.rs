@@ -109,7 +109,6 @@ impl DerefMut for Cell {
 }
 
 impl Cell {
-    /// A robot with a gripper; the other grippers are in their holsters.
     pub fn new(frame: Frame, gripper: u8, real: Option<Real>) -> Self {
         let mut resident = [1, 2, 3];
         let mut holsters = [0b1111; 3];
@@ -188,8 +187,7 @@ impl Scene {
         self.mishaps.iter().find(|(word, _)| text.contains(word)).map(|(_, mishap)| *mishap)
     }
 
-    /// Update the sensors of the holsters and the mated gripper. `seats` are the poses of the holsters right, left,
-    /// centre.
+    /// `seats` are the poses of the holsters right, left, centre.
     pub fn feel_holsters(&mut self, seats: [Frame; 3]) {
         for ((which, id), base) in (0..3).zip(1..).zip(seats) {
             let Frame { position: at, .. } = base.inverse().compose(&self.frame);
@@ -210,7 +208,6 @@ impl Scene {
         }
     }
 
-    /// Effect of a completed motion on grippers and holsters.
     fn moved(&mut self, text: &str, gripper: u8) {
         let which = usize::from(gripper.clamp(1, 3)) - 1;
         let seen = &mut self.holsters[which];
@@ -259,7 +256,6 @@ impl Receiving {
     }
 }
 
-/// Prim: reaches its goal after a delay, or in steps.
 #[derive(Clone, Default)]
 pub struct Prim {
     pub by_steps: bool,
@@ -500,7 +496,6 @@ impl Grip {
     }
 }
 
-/// V-Grip or Tool-Grip: opens and closes, and finds an object on the way.
 #[derive(Clone)]
 pub struct Jaws {
     receiving: Receiving,
@@ -569,7 +564,6 @@ impl Jaws {
     }
 }
 
-/// Vision: answers with the commanded status, and a small offset from the middle of the picture.
 #[derive(Clone, Default)]
 pub struct EmoveVision {
     left: u32,

@@ -59,7 +59,6 @@ fn inserted() -> Bench {
     bench
 }
 
-/// A robot before the drum with open fingers, and a tool in the drum.
 fn empty() -> Bench {
     let mut bench = Bench::ready("TOOL-SAFE", 3);
     bench.world.v_grip.opening = 350;

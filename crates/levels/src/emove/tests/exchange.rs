@@ -32,7 +32,6 @@ fn above(gripper: u8) -> Bench {
     bench
 }
 
-/// A bare robot above the holster of a gripper.
 fn bare(gripper: u8) -> Bench {
     let mut bench = Bench::ready("HOME", 0);
     assert_eq!(bench.perform(to_holster(2, gripper)), DONE);

@@ -482,7 +482,7 @@ fn grasp_after_a_release_clears_the_placed_object() {
 
 /// Stuck jaws may still move where their air presses them, and hold nothing without air.
 #[test]
-fn pressurised_jaws_count_as_moving() {
+fn pressurised_jaws_are_treated_as_moving() {
     for (close, open) in [(false, false), (true, false), (false, true)] {
         let air = JawValves { open, close };
         let mut bench = Bench::ready("HOME", 2);

@@ -47,8 +47,7 @@ fn detach() -> impl Iterator<Item = Situation> {
     })
 }
 
-/// Trace the orders of a command until it ends, or until EFFECT ends it because a row repeats its order without a
-/// change.
+/// The orders of a command until it ends, or until EFFECT ends it.
 fn orders(verb: EmoveVerb, situation: &Situation) {
     let (mut step, mut last) = (Step::first(verb), None);
     let mut orders = Vec::new();

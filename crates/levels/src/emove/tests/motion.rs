@@ -153,7 +153,6 @@ fn fingers_at_their_opening_are_not_commanded() {
     assert!(!bench.log().contains(&"POSE 350"));
 }
 
-/// The final motion waits for the fingers.
 #[test]
 fn fingers_open_only_after_the_depart_points() {
     let mut bench = Bench::ready("HOME", 1);

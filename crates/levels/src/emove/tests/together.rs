@@ -32,7 +32,6 @@ pub struct Real {
     tool_grip: ToolGrip,
     ring: Ring,
     parts: Gripper,
-    /// Fingers of V-Grip and of Tool-Grip.
     jaws: [Fingers; 2],
 }
 
@@ -120,7 +119,6 @@ impl Real {
     }
 }
 
-/// The robot with one gripper fetches another.
 fn exchange(bench: &mut Bench, from: u8, to: u8) {
     if from != 0 {
         assert_eq!(bench.perform(to_holster(1, from)), DONE);

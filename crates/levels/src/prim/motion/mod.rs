@@ -46,7 +46,6 @@ use self::{
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct PrimMotion {
     pub at: FrameData,
-    /// Goal of the last order; the commanded frame after a halt.
     pub goal: FrameData, // goal of the last order; after a halt, the commanded frame
     pub residual: Option<Segment>, // the previous segment, which brakes into its through point
     pub current: Option<Segment>,

@@ -118,7 +118,6 @@ impl Bench {
         self.external.devices.joystick.hold = if on { single_step::PRIM } else { 0 };
     }
 
-    /// Inches that the robot moved in each of the last ticks.
     fn last_ways(&self, ticks: usize) -> Vec<f64> {
         let ways: Vec<f64> = self.world.track.windows(2).map(|two| norm(&(two[1] - two[0]))).collect();
         ways[ways.len() - ticks..].to_vec()

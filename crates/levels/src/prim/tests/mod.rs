@@ -179,7 +179,6 @@ impl Rig {
         (command.sensor, command.end_effector_id) = (Some(Name10::new(sensor).unwrap()), Some(1));
     }
 
-    /// The commanded frame, without rounding.
     fn commanded(&self) -> Frame {
         self.process.state().motion.expect("Prim commands the robot").frame()
     }

@@ -133,7 +133,6 @@ impl Rig {
     }
 }
 
-/// A run of random commands; returns the first error.
 fn run(seed: u64, operator: bool) -> Result<(), String> {
     let mut rig = Rig::initialized();
     (rig.world.noise, rig.world.stalls) = (seed, seed % 8);
@@ -159,7 +158,6 @@ fn run(seed: u64, operator: bool) -> Result<(), String> {
     Ok(())
 }
 
-/// Rows that do not fire in any of many runs.
 fn silent_in(scenario: fn()) -> Vec<String> {
     silent::<Prim, TaskData<'_>>(&[scenario])
 }

@@ -34,7 +34,6 @@ pub enum Mishap {
     /// The joystick box becomes active (E-move); can't-do (pedestal).
     Special(Reason),
     NoEffect,
-    /// Done, and the object is no longer held.
     Loss,
     /// QC-ATTACH attaches another gripper.
     OtherGripper(u8),
@@ -212,7 +211,6 @@ impl Default for Bench<'static> {
 }
 
 impl<'d> Bench<'d> {
-    /// A bench with the parts gripper attached, after one idle tick.
     pub fn of(data: TaskData<'d>) -> Self {
         let pedestal = PedestalDouble { part: 255, ..PedestalDouble::default() };
         let mut bench =
@@ -285,7 +283,6 @@ impl<'d> Bench<'d> {
         bench
     }
 
-    /// An object is held in a grip that Subtask has observed.
     pub fn grasped(object: &str, grip: i32) -> Self
     where
         Self: Default,

@@ -268,7 +268,6 @@ impl<'d> Bench<'d> {
         bench
     }
 
-    /// A bench whose Data System is connected and answers after two ticks.
     pub fn connected() -> Self
     where
         Self: Default,

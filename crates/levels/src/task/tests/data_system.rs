@@ -277,7 +277,6 @@ const LET_GO_WITHOUT_NAME: &str = "POSITION -- 0 -- 0 0 PFIXTURE 0 -- 0";
 const TO_FIXTURE: &str = "TRANSFER PART +1 SAFE 0 +1 PFIXTURE 0 -- 0";
 const OTHER: &str = "TRANSFER BAR +1 PFIXTURE 0 +1 UNIT_1 1 SAFE 0";
 
-/// The positions of the updates since the last call.
 fn positions(bench: &mut Bench<'_>) -> Vec<String> {
     let updates =
         bench.world.data_system.received.drain(..).filter(|told| told.command == DataBaseVerb::Update);
@@ -381,7 +380,6 @@ fn was(serial: &str, position: &str, sector: i32) -> Told {
     (serial.to_owned(), position.to_owned(), sector)
 }
 
-/// The updates of PART since the last call.
 fn parts(bench: &mut Bench<'_>) -> Vec<Told> {
     let updates = bench.world.data_system.received.drain(..);
     let of_part = updates.filter(|told| told.command == DataBaseVerb::Update && told.item.as_str() == "PART");

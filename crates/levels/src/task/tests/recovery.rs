@@ -35,7 +35,6 @@ pub(super) const SCENARIOS: &[fn()] = &[
 const REGRIP: &str = "TRANSFER PART +1 PFIXTURE 0 -1 UNIT_1 2 SAFE 0";
 const LET_GO_BY_DESTINATION: &str = "POSITION PART 0 -- 0 +1 PFIXTURE 0 -- 0";
 
-/// A bench whose robot is at no known place while it moves.
 fn moving_bench() -> Bench<'static> {
     let mut bench = Bench::connected();
     bench.world.subtask.loses_place = true;

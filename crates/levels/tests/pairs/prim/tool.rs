@@ -77,7 +77,6 @@ impl Tool {
         &mut self.echo
     }
 
-    /// The tool is between the fingers, and air presses it.
     pub const fn holds(&self) -> bool {
         self.closes && self.size == TOOL.2
     }
@@ -168,7 +167,6 @@ impl Tool {
         if threshold < 0.0 { value <= threshold } else { value >= threshold }
     }
 
-    /// True if Prim watches a faulty sensor.
     pub fn is_blind(&self, prim: &State) -> bool {
         prim.target.sensor.is_some() && (!self.force.valid || prim.calibration.bias.is_none())
     }

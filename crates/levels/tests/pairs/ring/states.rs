@@ -10,7 +10,6 @@ use crate::image::{Image, forget, rebase, rebase_echoes, renumber_poses};
 const LIMIT: u64 = 25;
 
 impl Pair {
-    /// Every command is echoed, and its commander has read the echo.
     pub(super) fn is_settled(&self) -> bool {
         let (prim, grip) = (self.upper.out.prim.number, self.upper.out.grip.number);
         let ring = self.upper.out.quick_change.number;

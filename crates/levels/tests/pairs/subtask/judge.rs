@@ -32,7 +32,6 @@ impl Pair {
         places.any(|(command, _)| self.is_goal(command, at))
     }
 
-    /// True if E-move gives an order that moves robot or fingers.
     fn orders_motion(&self, before: &Self) -> bool {
         let (now, then) = (&self.lower.out, &before.lower.out);
         (now.prim.number != then.prim.number && robot::moves(now.prim.command))
