@@ -46,7 +46,6 @@ impl ProcessInfo {
         Some((table, table.row(decided.row)?))
     }
 
-    /// The row that decided last, with the values for which it fired.
     #[must_use]
     pub fn fired(&self, header: &Header) -> Option<Fired> {
         let (table, row) = self.row(header.decided?)?;

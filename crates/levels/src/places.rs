@@ -1,5 +1,3 @@
-//! Conversion of places between task data and records of the interfaces.
-
 use geometry::{frame::Frame, pose::Pose};
 use interfaces::{
     CommonMemory,

@@ -34,7 +34,6 @@ impl Rows {
         self.add(Consulted { decided, values: choice.values });
     }
 
-    /// The row of another table, if it was consulted in the last tick.
     #[must_use]
     pub fn row_of(&self, table: u8) -> Option<u8> {
         let mut rows = self.beside.iter().flatten().map(|consulted| consulted.decided);

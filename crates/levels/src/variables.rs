@@ -1,5 +1,3 @@
-//! State variables that several processes share.
-
 use rcs_core::Plain;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]

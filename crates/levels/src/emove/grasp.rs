@@ -1,4 +1,4 @@
-//! Grasps: object and grip of a command, with the sizes of the object forms (VII.7.1).
+//! Object and grip of a command, with the sizes of the object forms (VII.7.1).
 
 use interfaces::{
     emove::{EmoveCommand, Grasped, ObjectGrip},

@@ -142,7 +142,6 @@ pub(super) fn shut(command: &EmoveCommand, inputs: &EmoveInputs<'_>) -> Shut {
     }
 }
 
-/// Pose of a gripper at its seat in the holster of a command.
 pub(super) fn seat_pose(command: &EmoveCommand, memory: &CommonMemory, data: &TaskData<'_>) -> Option<Pose> {
     let base = base(command, memory, data)?;
     Some(Pose::from_frame(&HolsterPoints::of(&command.site, &base, data)?.slow))

@@ -135,12 +135,10 @@ impl Grippers {
         }
     }
 
-    /// Called after all other inputs of a tick.
     pub const fn note_button(&mut self, memory: &CommonMemory) {
         self.button = memory.prim.status.joystick_grip;
     }
 
-    /// True if the fingers execute an order that moves them.
     #[must_use]
     pub fn are_moving(&self, tick: Tick, memory: &CommonMemory) -> bool {
         let busy = matches!(self.status(tick, memory), Lower::Pending | Lower::Executing);
@@ -251,7 +249,6 @@ impl Grippers {
         }
     }
 
-    /// True when the attached gripper has finished [`FingerVerb::Release`].
     #[must_use]
     pub fn has_let_go(&self, tick: Tick, memory: &CommonMemory) -> bool {
         self.order == FingerVerb::Release && self.status(tick, memory) == Lower::Done

@@ -90,7 +90,6 @@ impl HeldObject {
         }
     }
 
-    /// The operator invalidates the placed object.
     pub(super) const fn forget_placed(&mut self) {
         self.placed = None;
     }

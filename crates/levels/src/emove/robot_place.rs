@@ -103,7 +103,6 @@ pub const THERE_RADIANS: f64 = 0.1 * core::f64::consts::PI / 180.0; // 0.1 degre
 pub const CONFIRMED_INCHES: f64 = 0.05;
 pub const CONFIRMED_RADIANS: f64 = 0.25 * core::f64::consts::PI / 180.0; // 0.25 degree
 
-/// `present` is the robot's frame by the resolvers.
 #[must_use]
 pub fn offset(pose: &Pose, present: Option<&Frame>) -> Offset {
     let (Some(present), Ok(goal)) = (present, pose.to_frame()) else {

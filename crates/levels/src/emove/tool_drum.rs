@@ -197,7 +197,6 @@ impl ToolDrum {
         }
     }
 
-    /// A relative move of a tool command begins.
     pub(super) fn note_move(&mut self, command: &EmoveCommand, inputs: &EmoveInputs<'_>) {
         let base = base(command, inputs.memory, inputs.data);
         if let (true, Some(base)) = (is_tool_command(command.command), base) {
@@ -205,7 +204,6 @@ impl ToolDrum {
         }
     }
 
-    /// The tool command is no longer unfinished.
     pub(super) const fn end(&mut self) {
         self.half_way = None;
     }

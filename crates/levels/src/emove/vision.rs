@@ -132,7 +132,6 @@ fn is_where_sent(place: Option<&RobotPlace>, memory: &CommonMemory) -> bool {
     }
 }
 
-/// The answer of vision. `place` is the robot's place.
 pub(super) fn sight(place: Option<&RobotPlace>, inputs: &EmoveInputs<'_>) -> Sight {
     let (request, answer) = (&inputs.memory.emove.vision, &inputs.external.devices.vision);
     match answer.status {

@@ -19,7 +19,6 @@ pub struct PrimGoal {
     pub through: Option<f64>,
 }
 
-/// The last accepted command, with its records looked up.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct PrimTarget {
     pub verb: PrimVerb,
@@ -36,7 +35,6 @@ pub struct Standstill {
     pub still: u32,    // the last consecutive ones without motion
 }
 
-/// Greatest number of RESTARTs in [`RESTART_TICKS`].
 pub const MOST_RESTARTS: usize = 10;
 /// 10 s. ASSUMED.
 pub const RESTART_TICKS: u64 = 250;

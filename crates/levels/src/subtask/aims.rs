@@ -85,7 +85,6 @@ impl SubtaskAim {
         }
     }
 
-    /// The number of the command is still 0.
     #[must_use]
     pub fn command(&self, verb: EmoveVerb, data: &TaskData<'_>) -> EmoveCommand {
         let (object, place) = (self.object.as_ref(), self.site.place());
@@ -134,7 +133,6 @@ impl Aims {
         }
     }
 
-    /// GET-ENDEFF: the holsters of the attached and the wanted gripper.
     fn holsters(
         wanted: Option<u8>,
         attached: Option<u8>,
@@ -168,7 +166,6 @@ impl Aims {
         })
     }
 
-    /// Tool commands: the transfer location, with the object from Task.
     fn drum(command: &SubtaskCommand, data: &TaskData<'_>) -> Result<Self, Missing> {
         let location = point(named::TOOL_TRNS, data)?;
         let at = SubtaskAim::at(location.site(), command.end_effector_id);

@@ -25,7 +25,6 @@ use super::{
 };
 
 impl State {
-    /// The action of RECEIVE for the command in the buffer.
     pub(super) fn take(&mut self, intake: T3iIntake, seen: &StateVariables) {
         let arrival = seen.request.arrival;
         if matches!(arrival, Arrival::New | Arrival::Restarted) {
@@ -46,7 +45,6 @@ impl State {
         }
     }
 
-    /// The action of REPORT for the words with which a report is compared.
     pub(super) fn compare(&mut self, comparison: Comparison) {
         match comparison {
             Comparison::Keep => {}
@@ -57,7 +55,6 @@ impl State {
         }
     }
 
-    /// The action of FOLLOW for the motion.
     pub(super) fn supervise(&mut self, supervision: Supervision, seen: &StateVariables) {
         match supervision {
             Supervision::Continue => {}

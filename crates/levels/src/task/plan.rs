@@ -220,7 +220,6 @@ impl Plan {
         if self.from_elsewhere { TaskOrigin::Elsewhere } else { TaskOrigin::Source }
     }
 
-    /// The object or tool that the command takes.
     #[must_use]
     pub const fn takes(&self) -> Takes {
         match self.verb {
@@ -235,7 +234,6 @@ impl Plan {
         if self.source.grip == self.destination.grip { Grips::Same } else { Grips::Different }
     }
 
-    /// The task data for a location of the command.
     #[must_use]
     pub const fn site(&self, site: &PlanSite) -> SiteData {
         if site.location.is_none() {

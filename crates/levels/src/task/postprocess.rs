@@ -134,7 +134,6 @@ impl State {
         self.plan.is_about_something() && outputs.ledger.is_some()
     }
 
-    /// The Data System becomes the recipient of the last order.
     const fn order(&mut self) -> &mut DataSystem {
         self.ordered = TaskRecipient::DataSystem;
         &mut self.data_system
@@ -150,7 +149,6 @@ impl State {
         self.order().report_item(&plan, held, inputs.tick, outputs);
     }
 
-    /// Send a command for the object of the plan at one of its locations.
     fn send(
         &mut self,
         verb: SubtaskVerb,

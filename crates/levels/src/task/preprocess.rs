@@ -98,7 +98,6 @@ impl State {
             .filter(|confirmed| confirmed.at == below.at && below.held != Holding::Nothing);
     }
 
-    /// Compare a new command with the commands before it.
     fn plan(&self, plan: &Plan, inputs: &Inputs<'_, TaskData<'_>>) -> Plan {
         let (below, ledger) = (&inputs.memory.subtask.status, inputs.memory.task.ledger.as_ref());
         let held = Held::of(below.held, plan.object);

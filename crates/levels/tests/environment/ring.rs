@@ -1,8 +1,6 @@
-//! The locking ring of the quick change with its two sensors and the id pins.
-
 use interfaces::device::{QuickChangeSensors, QuickChangeValves};
 
-/// A ring that turns with the valves.
+/// The locking ring of the quick change, with its two sensors and the id pins.
 #[derive(Clone, Copy, Debug)]
 pub struct Ring {
     pub place: f64,       // 0 unlocked, 1 locked

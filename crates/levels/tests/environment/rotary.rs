@@ -1,5 +1,3 @@
-//! The rotary table: its motor with a controller, its switches and its potentiometer.
-
 use interfaces::device::{MotorCommand, MotorOrder, PedestalSensors, TABLE_STEPS_PER_TENTH};
 use levels::pedestal::table::{LIMIT_MINUS, preprocess::AT_LIMIT};
 

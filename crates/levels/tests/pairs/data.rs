@@ -1,5 +1,3 @@
-//! The task data, and the commands of the workstation controller that the searches send.
-
 use std::{path::Path, sync::OnceLock};
 
 use geometry::pose::Pose;

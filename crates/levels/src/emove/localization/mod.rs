@@ -69,7 +69,6 @@ impl Localization {
         [self.place.as_ref(), way.map(|way| &way.to), way.map(|way| &way.from)]
     }
 
-    /// The robot's place, or its last one.
     pub(super) fn origin(&self) -> Option<&RobotPlace> {
         self.place().or_else(|| self.way.as_ref().map(|way| &way.from))
     }
@@ -158,7 +157,6 @@ impl Localization {
         self.searched = 0;
     }
 
-    /// The robot is at rest at the goal of a motion.
     pub(super) const fn arrive(&mut self, at: RobotPlace) {
         (self.place, self.way, self.away) = (Some(at), None, false);
     }
@@ -170,7 +168,6 @@ impl Localization {
         }
     }
 
-    /// The place has changed without a motion.
     pub(super) const fn set_place(&mut self, at: Option<RobotPlace>) {
         self.place = at;
     }

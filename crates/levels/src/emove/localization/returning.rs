@@ -50,7 +50,6 @@ const RESTING_RADIANS: f64 = 45.0 * core::f64::consts::PI / 180.0; // 45 degrees
 const NEST_INCHES: f64 = 2.0; // within which a robot leaves a nest along its approach line
 const NEST_RADIANS: f64 = 10.0 * core::f64::consts::PI / 180.0; // 10 degrees
 
-/// The start of a motion, and how the robot gets there.
 pub(in crate::emove) struct Origination {
     pub place: Option<RobotPlace>,
     pub way: Option<Way>,    // an interrupted path, instead of a place
@@ -113,7 +112,6 @@ fn out_of(nest: &RobotPlace, present: &Frame, data: &TaskData<'_>) -> Option<[Fr
     is_beside.then_some([level, outermost])
 }
 
-/// The nearest point of the robot's segment, with its parameters.
 fn on_segment(present: &Frame, way: &Way, data: &TaskData<'_>) -> Option<(Frame, TrajParaId)> {
     let (start, end, [_, parameters]) = segment(way, data)?;
     Some((foot(present, &start, &end), parameters))

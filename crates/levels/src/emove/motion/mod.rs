@@ -151,7 +151,6 @@ impl EmoveMotion {
         self.last_pose
     }
 
-    /// Number the ends of the route of a new command.
     pub(super) fn publish_route(&mut self, outputs: &mut EmoveOutputs) {
         if let Some(mut route) = self.flight.route {
             route.departure = self.publish(Slot::Departure, route.from.pose, outputs);
@@ -201,7 +200,6 @@ impl EmoveMotion {
         path
     }
 
-    /// GOTO-PT with a goal outside the route.
     pub(super) fn send_goal(
         &mut self,
         goal: Pose,

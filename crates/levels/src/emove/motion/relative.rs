@@ -145,7 +145,6 @@ pub enum RelativeMoves {
     NoPose,
 }
 
-/// The relative moves of a command, in their order.
 #[must_use]
 pub const fn moves_of(verb: EmoveVerb) -> &'static [Relative] {
     use Relative::{

@@ -250,7 +250,6 @@ impl Route {
         if self.complete { self.commanded } else { self.commanded.saturating_sub(1) }
     }
 
-    /// The goal belongs to the approach.
     #[must_use]
     pub fn part(&self, point: u16, data: &TaskData<'_>) -> Part {
         self.points(data).nth(usize::from(point)).map_or(Part::Approach, |(part, _)| part)

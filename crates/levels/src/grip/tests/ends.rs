@@ -1,5 +1,3 @@
-//! Every command ends, from every state and in every environment.
-
 use interfaces::{
     Reason,
     grip::{Felt, GripReport, GripVerb},

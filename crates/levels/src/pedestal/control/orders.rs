@@ -6,7 +6,6 @@ use interfaces::{
 use super::tables::{PedestalAngle, PedestalOpening};
 use crate::{grip::goal::GripGoal, pedestal::table::is_within_limits};
 
-/// Without a command number.
 pub(super) fn hand_command(command: &PedestalCommand) -> GripCommand {
     let (verb, force) = match command.command {
         PedestalVerb::PreGrip | PedestalVerb::Release => (GripVerb::OpenGrip, 0),

@@ -134,7 +134,6 @@ impl PrimMotion {
         self.retire();
     }
 
-    /// The frame on the current line, displaced by the rest of the residual.
     fn superposed(&self) -> Frame {
         let frame = self
             .current

@@ -30,7 +30,6 @@ pub struct JerkPhase {
     pub jerk: f64,     // in/s³
 }
 
-/// A planned motion along a segment, and its clock.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct Profile {
     pub start: SegmentState,    // state at clock 0
@@ -94,7 +93,6 @@ fn stopping_path(velocity: f64, limits: &Limits) -> f64 {
     velocity * time / 2.0
 }
 
-/// The end of a profile without a cruise.
 fn end(from: &SegmentState, velocity: f64, change_limits: &Limits, stop_limits: &Limits) -> f64 {
     from.after_all(&change(from, velocity, change_limits)).position + stopping_path(velocity, stop_limits)
 }
@@ -152,7 +150,6 @@ impl Profile {
         self.to_goal.then(|| duration(&self.change) + self.cruise)
     }
 
-    /// The stop at the goal has begun, or is over.
     #[must_use]
     pub fn is_braking(&self) -> bool {
         self.braking_point().is_some_and(|begin| self.clock >= begin)

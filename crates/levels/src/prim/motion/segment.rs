@@ -9,7 +9,6 @@ use super::{
     profile::{NO_PATH, Profile},
 };
 
-/// A [`Frame`] as plain data.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct FrameData {
     pub position: [f64; 3], // tool point, inches
@@ -63,7 +62,6 @@ pub struct Displacement {
 }
 
 impl Displacement {
-    /// The frame, displaced in world coordinates.
     #[must_use]
     pub fn apply(&self, frame: &Frame) -> Frame {
         Frame {

@@ -1,5 +1,3 @@
-//! Random moves, checked by the sampled frames that T3I receives.
-
 use std::collections::VecDeque;
 
 use geometry::{

@@ -1,5 +1,3 @@
-//! Manual motion in PAUSE, the record button, and a held Prim.
-
 use geometry::{
     frame::{Rotation, rotation_vector},
     pose::POINT_DISTANCE,

@@ -1,5 +1,3 @@
-//! T3I with the controller's end of the link, tick by tick.
-
 use nalgebra::Rotation3;
 
 mod follow;

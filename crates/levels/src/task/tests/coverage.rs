@@ -1,5 +1,3 @@
-//! Every row of every table of Task fires.
-
 use interfaces::Reason;
 use rcs_core::{handshake::Lower, table::Verdict};
 use taskdata::files::TaskData;

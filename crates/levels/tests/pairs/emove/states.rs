@@ -1,5 +1,3 @@
-//! Equivalent states of E-move and the process of a gripper.
-
 use interfaces::Reason;
 
 use super::{Fingered, Pair};

@@ -1,5 +1,3 @@
-//! Equivalent states of E-move and Prim.
-
 use geometry::pose::WireFrame;
 use interfaces::{Reason, emove::EmoveVerb, pose_range};
 use levels::{emove::gripper::EmoveGripper, execution::Outcome};

@@ -1,5 +1,3 @@
-//! Equivalent states of E-move and Quick Change.
-
 use interfaces::{Reason, grip::GripCommand, prim::PrimCommand};
 use levels::{emove::gripper::EmoveGripper, execution::Outcome};
 

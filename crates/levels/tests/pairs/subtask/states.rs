@@ -1,5 +1,3 @@
-//! Equivalent states of Subtask and E-move.
-
 use interfaces::{
     Reason,
     device::{VisionRequest, VisionResponse},
