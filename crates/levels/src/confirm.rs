@@ -25,7 +25,7 @@ use crate::{
 pub enum Evidence {
     /// The goal holds.
     Holds,
-    /// No sensor contradicts it, and a part of it has no sensor.
+    /// No sensor contradicts the goal, and a part of it has no sensor.
     Unsensed,
     /// The robot is not at the goal.
     Elsewhere,
@@ -71,9 +71,9 @@ pub enum Evidence {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Reading {
-    /// They may be older than the end of the command.
+    /// The readings may be older than the end of the command.
     Awaited,
-    /// They are newer than the end of the command.
+    /// The readings are newer than the end of the command.
     Newest,
 }
 

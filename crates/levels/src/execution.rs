@@ -39,7 +39,7 @@ pub enum Outcome {
     Done,
     /// The command has failed.
     Error,
-    /// Given up because the operator took the robot.
+    /// The command was given up because the operator took the robot.
     Joystick,
 }
 
@@ -95,9 +95,9 @@ decision_table! {
 /// Whether the command in the buffer is new. Only a new one is checked.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Asked {
-    /// It is not: the current command continues.
+    /// The command is not new: it continues.
     Before,
-    /// It is new.
+    /// The command is new.
     Now,
 }
 

@@ -25,36 +25,36 @@ use crate::execution::{Course, Ending, Execution, LastOrder};
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Intake {
-    /// It has been accepted or refused, or the buffer has none.
+    /// The command has been accepted or refused, or the buffer has none.
     Taken,
-    /// It is new and neither accepted nor refused yet.
+    /// The command is new and neither accepted nor refused yet.
     Asked,
-    /// It was found at the start of the process and is not executed.
+    /// The command was found at the start of the process and is not executed.
     Adopted,
 }
 
 /// Whether the new command itself stops the processes below.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Kind {
-    /// It does not stop them.
+    /// The command does not stop the processes below.
     Other,
-    /// Its own table sends a pause down and waits for it.
+    /// The table of the command sends a pause down and waits for it.
     Pause,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum BoxState {
-    /// It is off.
+    /// The joystick box is off.
     Off,
-    /// It is on: the operator has the robot, and no command is sent.
+    /// The joystick box is on: the operator has the robot, and no command is sent.
     On,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Above {
-    /// It wrote its buffers in the last tick, or is not watched.
+    /// The process above wrote its buffers in the last tick, or is not watched.
     Live,
-    /// It did not write them: this process has no commander.
+    /// The process above did not write its buffers: this process has no commander.
     Lost,
 }
 
@@ -67,11 +67,11 @@ impl Above {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Below {
-    /// Their last commands have ended, or they do not answer.
+    /// The last commands of the processes below have ended, or they do not answer.
     AtRest,
-    /// They were commanded to pause and are coming to rest.
+    /// The processes below were commanded to pause and are coming to rest.
     Pausing,
-    /// They execute another command.
+    /// The processes below execute another command.
     UnderWay,
 }
 
@@ -150,24 +150,24 @@ decision_table! {
 pub enum Order {
     /// The row that fired gives no order.
     None,
-    /// It gives an order, and is not the last row that gave one with the same state variables.
+    /// The row gives an order, and is not the last row that gave one with the same state variables.
     New,
-    /// It is the last row that gave an order, and the state variables are the same as then.
+    /// The last row that gave an order fires again, with the same state variables.
     Repeated,
 }
 
 /// Progress of the command since its last order, apart from the state variables: points of a route, for example.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Advance {
-    /// It has not advanced.
+    /// The command has not advanced since its last order.
     None,
-    /// It has advanced.
+    /// The command has advanced since its last order.
     Made,
 }
 
 #[derive(Clone, Copy, Debug, Variables)]
 pub struct Fired {
-    /// The order that it gives.
+    /// The order that the row gives.
     pub order: Order,
     /// Progress of the command since its last order.
     pub advance: Advance,

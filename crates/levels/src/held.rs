@@ -12,7 +12,7 @@ pub enum Held {
     Other,
     /// The gripper holds an unidentified object.
     Something,
-    /// Its sensors do not show it; treated as held.
+    /// The sensors do not show whether something is held; treated as held.
     NotKnown,
 }
 

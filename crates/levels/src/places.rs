@@ -49,21 +49,21 @@ pub fn is_in_mbd(point: LocptId, data: &TaskData<'_>) -> bool {
 pub enum Missing {
     /// No entry is missing.
     Nothing,
-    /// The location is missing, or only an owner of others.
+    /// The location is missing, or is only an owner of others.
     Location,
-    /// The object.
+    /// The object is missing.
     Object,
-    /// The name of an object, which the location requires.
+    /// The location requires the name of an object.
     ObjectName,
-    /// An array of the object at the location.
+    /// The object has no array at the location.
     Array,
-    /// The sector of the array.
+    /// The array does not have the sector.
     Sector,
-    /// The grip of the object.
+    /// The object does not have the grip.
     Grip,
-    /// The grip movetable of object, grip and location.
+    /// Object, grip and location have no grip movetable.
     GripMovetable,
-    /// The holster of the gripper.
+    /// The gripper has no holster.
     Holster,
 }
 

@@ -2,17 +2,17 @@ use rcs_core::Plain;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Attachment {
-    /// It is attached and the quick change is locked.
+    /// The gripper is attached and the quick change is locked.
     Attached,
-    /// It is not attached, or the quick change is not locked.
+    /// The gripper is not attached, or the quick change is not locked.
     Detached,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Addressee {
-    /// That of this process, or the command names none.
+    /// The command names the gripper of this process, or none.
     This,
-    /// Another gripper.
+    /// The command names another gripper.
     Other,
 }
 

@@ -17,19 +17,19 @@ use super::plan::{Plan, Resumed, TaskVerb};
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Placed {
-    /// Not placed, or the command is new.
+    /// The object is not placed, or the command is new.
     Not,
     /// The gripper released the object last at the destination, and the robot is still there.
     AtDestination,
-    /// The same, but the robot has been moved away from there.
+    /// The gripper released the object last at the destination, and the robot has been moved away from there.
     Left,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum TaskPart {
-    /// Not in the pedestal's hand.
+    /// The part is not in the pedestal's hand.
     Elsewhere,
-    /// In the pedestal's hand. The robot may hold it too.
+    /// The part is in the pedestal's hand. The robot may hold it too.
     InPedestal,
 }
 

@@ -42,7 +42,7 @@ pub enum TaskVerb {
     RemoveTool,
     /// Connect the Data System.
     Startup,
-    /// Disconnect it.
+    /// Disconnect the Data System.
     Shutdown,
 }
 

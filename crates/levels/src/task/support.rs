@@ -16,13 +16,13 @@ use crate::places::named;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum TaskSupport {
-    /// Nothing that is known.
+    /// No support is known.
     None,
-    /// The sector of a tray, or the nest, where the robot is with the object.
+    /// The robot is with the object at a sector of a tray, or at a nest.
     Place,
-    /// A fixture with jaws where the robot is with the object. Whether the jaws clamp it is not known.
+    /// The robot is with the object at a fixture with jaws. Whether the jaws clamp it is not known.
     Jaws,
-    /// The jaws of such a fixture clamp the object, or a person holds it.
+    /// The jaws of the fixture clamp the object, or a person holds it.
     Secured,
 }
 
