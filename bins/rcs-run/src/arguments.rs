@@ -65,8 +65,11 @@ pub struct RunArguments {
     /// emulated robot in simulated time; docs/egm.md has its options.
     #[arg(long, value_name = "ROBOT", default_value = "sim", value_parser = robot(), hide_possible_values = true)]
     pub robot: RobotConfig,
-    /// Couplers between the controller and the devices of the cell: sim:NAME for emulated ones in simulated time, with
-    /// the mapping NAME of the data directory (data/field/NAME.toml), or sim:FILE (docs/field.md)
+    /// Couplers between the controller and the devices of the cell: the mapping NAME of the data directory
+    /// (data/field/NAME.toml), or FILE, over TCP; sim:NAME or sim:FILE for emulated couplers in simulated time
+    ///
+    /// Couplers over TCP need --clock real. Outputs are safe before the first tick, at the end, and when the controller
+    /// is lost (docs/field.md).
     #[arg(long, value_name = "FIELD")]
     pub field: Option<FieldConfig>,
     /// Fault plan: faults of the cell and of the line to the simulated robot, at set ticks or at random; a name in the
@@ -79,7 +82,7 @@ pub struct RunArguments {
     /// Name of the run in shared memory [default: JOB-PID, with the process identifier of this process]
     #[arg(long, value_name = "NAME")]
     pub run: Option<RunName>,
-    /// Seconds to wait for boards that are started by hand, and for neighbours in other processes
+    /// Seconds to wait for boards that are started by hand, for neighbours in other processes, and for couplers
     #[arg(long, value_name = "N", default_value_t = 300, value_parser = clap::value_parser!(u32).range(1..=86_400))]
     pub wait: u32,
     /// Seed of the cell's sensor noise and of the positions of delivered parts

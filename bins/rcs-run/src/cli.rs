@@ -41,7 +41,7 @@ Examples:
   rcs-run tables > tables.md           all decision tables
 
 Exit status: 0 finished; 1 the job failed; 2 usage, configuration or data error;
-3 stopped by the user, an emergency stop or a lost link, or no link to test.
+3 stopped by the user, an emergency stop, a lost link or a lost device, or no link to test.
 The reason is the last line on standard error."
 )]
 pub struct Cli {

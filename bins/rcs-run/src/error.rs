@@ -38,9 +38,10 @@ pub enum Error {
     Write { path: PathBuf, source: io::Error },
     #[error("{} cannot be read: {source}", path.display())]
     Unlisted { path: PathBuf, source: io::Error },
-    /// A robot at a port, without data named by the user.
+    /// A robot at a port, or couplers over TCP, without data named by the user.
     #[error(
-        "a robot at a port needs the data of its cell: --data DIR, or those of the program with --data built-in"
+        "a robot at a port, or couplers over TCP, need the data of their cell: --data DIR, or those of the program \
+         with --data built-in"
     )]
     BuiltInAtPort,
     /// A word that is not a job, but nearly a subcommand.

@@ -32,7 +32,9 @@ impl fmt::Display for LastLines<'_> {
         if result.simulated.is_some() {
             writeln!(f, "In the simulated cell, which follows the robot:")?;
         }
-        if result.parts.is_empty() {
+        if result.field.as_ref().is_some_and(|field| field.is_real) {
+            writeln!(f, "The devices are real: this program does not know where the parts are.")?;
+        } else if result.parts.is_empty() {
             writeln!(f, "No part is in the cell.")?;
         }
         // A held part first, as the most important information for the operator.

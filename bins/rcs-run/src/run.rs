@@ -41,7 +41,8 @@ pub fn run(arguments: &RunArguments) -> Result<ExitCode, Error> {
     // The console uses the terminal, so messages go to the log of the run.
     let observer: Box<dyn Observer> =
         if console.is_some() { Box::new(()) } else { Box::new(Progress::default()) };
-    if config.robot.kind.lives_in_real_time() && arguments.data.is_none() && is_carried(&config.data) {
+    let is_at_port = config.robot.kind.lives_in_real_time() || config.has_real_devices();
+    if is_at_port && arguments.data.is_none() && is_carried(&config.data) {
         return Err(Error::BuiltInAtPort);
     }
     let run = Run::new(config, observer).map_err(explained)?;

@@ -15,6 +15,9 @@ use serde::{Deserialize, Serialize};
 
 use crate::failure::Failure;
 
+/// Code of a coupler whose outputs were made safe: the devices are stopped, which is not a failure of the job.
+const TRIPPED: &str = "io.tripped";
+
 /// Kinds of failures. Within a tick, an earlier kind is the cause of a later one.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "kebab-case")]
@@ -73,7 +76,7 @@ impl Kind {
             "cell.dropped" | "cell.forced-out" | "cell.gripper-fell" | "cell.gripper-torn" | "cell.fell" => {
                 Self::Lost
             }
-            "cell.vise-stuck" | "cell.quarantined" => Self::Device,
+            "cell.vise-stuck" | "cell.quarantined" | "io.stale" | TRIPPED => Self::Device,
             "cell.warning" | "robot.refuses" => Self::RobotController,
             "truth.false" => Self::FalseReport,
             _ => return None,
@@ -177,7 +180,7 @@ impl Account {
         self.failures().find(|failure| failure.table.is_some())
     }
 
-    /// True if the link to the robot is lost or the robot was stopped, which is not a failure of the job.
+    /// True if the link to the robot or to its devices is lost, or they were stopped, which is not a failure of the job.
     #[must_use]
     pub fn is_stopped(&self) -> bool {
         self.failures().any(|failure| failure.stopped)
@@ -224,7 +227,8 @@ impl Alarms {
     pub fn line(&mut self, tick: Tick, source: &str, code: &str, text: &str) {
         if let Some(kind) = Kind::of_code(code) {
             let tick = Tick(tick.0.saturating_sub(u64::from(kind.is_in_cell())));
-            self.failures.push(Failure::outside(tick, kind, source, text.to_owned()));
+            let failure = Failure::outside(tick, kind, source, text.to_owned());
+            self.failures.push(Failure { stopped: code == TRIPPED, ..failure });
         }
     }
 

@@ -29,7 +29,7 @@ pub struct Failure {
     /// The row that fired, from 1.
     pub row: Option<u8>,
     pub text: String,
-    /// True if the link to the robot is lost or the robot was stopped, which is not a failure of the job.
+    /// True if the link to the robot or to its devices is lost, or they were stopped, which is not a failure of the job.
     #[serde(skip)]
     pub stopped: bool,
 }
@@ -112,6 +112,7 @@ impl Watch {
         let task = cause_of(ProcessId::Task)?;
         let Fault::Reason(reason) = task.fault else { return None };
         let link = matches!(reason, Reason::LinkOff | Reason::LinkError);
+        let device = matches!(reason, Reason::DeviceSilent | Reason::DeviceTripped);
         let root = ProcessId::upward().find(|process| {
             cause_of(*process).is_some_and(|cause| match cause.fault {
                 Fault::Reason(other) => other == reason && cause.tick <= task.tick,
@@ -141,7 +142,7 @@ impl Watch {
             table: fired.map(|fired| fired.table.name.to_owned()),
             row: fired.map(|fired| fired.row.number),
             text,
-            stopped: link,
+            stopped: link || device,
         })
     }
 }

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use couplers::{Orders, Report};
 use depc::Plate;
 use interfaces::{DeviceInputs, DeviceOutputs, device::LinkBytes};
 use plant::{Cell, CellEvent};
@@ -11,7 +12,7 @@ use taskdata::load::{Store, job::Reload};
 use crate::{
     ClosedLoop, RobotLine, Turn, World,
     contacts::{Commands, ContactCheck, ContactEvent},
-    field::{FieldEvent, SimulatedField},
+    field::{Desk, Field, FieldEvent},
     truth::{Confirmation, Scene, TruthCheck, placement::PlacementCheck},
     workstation::SimulatedWorkstation,
 };
@@ -52,8 +53,11 @@ impl World for SimulatedWorkstation {
     }
 
     fn inputs(&self) -> DeviceInputs {
-        let inputs = self.cell.inputs();
-        self.field.as_ref().map_or(inputs, |field| field.inputs(&inputs))
+        let mut inputs = self.cell.inputs();
+        if let Some(field) = &self.field {
+            field.desk().apply(&mut inputs);
+        }
+        inputs
     }
 
     fn settle(&mut self, checks: &mut Checks, turn: &Turn<'_>) -> (DeviceInputs, Settled) {
@@ -62,7 +66,7 @@ impl World for SimulatedWorkstation {
         let (inputs, mut settled) = advance(self, checks, tick, commands, outputs, moved);
         let Checks { placement, truth, .. } = checks;
         placement.look(tick, hws, &memory.task.status, self.cell.description(), &self.cell.parts());
-        if !self.is_robot_elsewhere() {
+        if self.is_whole() {
             truth.note_delivered(tick, self.delivered());
             settled.untrue = truth.look(&Scene { tick, hws, memory, data, cell: &self.cell });
         }
@@ -85,22 +89,27 @@ fn advance(
     let is_elsewhere = workstation.is_robot_elsewhere();
     let cell = &mut workstation.cell;
     let mut outputs = *outputs;
-    if let Some(field) = &mut workstation.field {
+    if let Some(Field::Simulated(field)) = workstation.field.as_deref_mut() {
         outputs = field.write(tick, &outputs, |device| cell.is_device_cut(device));
     }
     let mut inputs = match is_elsewhere {
         true => cell.step_following(moved, &outputs),
         false => line.advance(tick, cell, &outputs),
     };
-    if let Some(field) = &mut workstation.field {
-        inputs = field.read(tick, &inputs);
+    match workstation.field.as_deref_mut() {
+        Some(Field::Simulated(field)) => inputs = field.read(tick, &inputs),
+        Some(Field::External(desk)) => {
+            desk.apply(&mut inputs);
+            desk.note_changes(&inputs);
+        }
+        None => {}
     }
     let mut events = workstation.events(tick);
     // The check selects the contacts that are events.
     events.retain(|event| !matches!(event, CellEvent::Contact(_)));
     let begun = contacts.look(tick, workstation.cell.contacts(), commands);
     workstation.cell.watch_clearance(contacts.margin());
-    let field = workstation.field.as_mut().map(|field| field.take_events()).unwrap_or_default();
+    let field = workstation.field.as_mut().map(|field| field.desk_mut().take_events()).unwrap_or_default();
     (inputs, Settled { events, contacts: begun, untrue: Vec::new(), field })
 }
 
@@ -111,10 +120,33 @@ impl<L> ClosedLoop<L> {
     }
 
     #[must_use]
-    pub fn with_field(mut self, field: SimulatedField) -> Self {
+    pub fn with_field(mut self, field: Field) -> Self {
         self.workstation.field = Some(Box::new(field));
         self.inputs = self.workstation.inputs();
         self
+    }
+
+    /// The outputs of the last tick as orders for couplers outside of the loop, in the order of the devices. Does not
+    /// allocate.
+    pub fn coupler_orders(&mut self) -> impl Iterator<Item = &Orders> {
+        let (tick, outputs) = (self.course.tick(), self.outputs());
+        let desk = match self.workstation.field.as_deref_mut() {
+            Some(Field::External(desk)) => {
+                desk.order(tick, &outputs);
+                Some(&*desk)
+            }
+            _ => None,
+        };
+        desk.into_iter().flat_map(Desk::orders)
+    }
+
+    /// The reports of couplers outside of the loop before a tick, at the time `now`, ns: they determine its inputs.
+    /// Does not allocate.
+    pub fn observe_couplers(&mut self, now: u64, reports: impl Iterator<Item = Report>) {
+        if let Some(Field::External(desk)) = self.workstation.field.as_deref_mut() {
+            desk.observe(now, reports);
+            desk.apply(&mut self.inputs);
+        }
     }
 
     /// Skip the distances to objects that the robot does not touch, which saves time.

@@ -8,7 +8,7 @@ use plant::{
 use rcs_core::tick::{TICK_MS, Tick};
 use taskdata::load::job::{Drum, Offset, Workstation as Action};
 
-use crate::field::SimulatedField;
+use crate::field::Field;
 
 /// Time limit for an arm without pressure to come to rest before the run ends, ticks: two minutes. From HOME it takes
 /// 40 s; an arm that slides off an obstacle takes twice as long.
@@ -28,7 +28,7 @@ pub struct Emergency {
 #[derive(Clone)]
 pub struct SimulatedWorkstation {
     pub cell: Cell,
-    pub field: Option<Box<SimulatedField>>,
+    pub field: Option<Box<Field>>,
     state: WorkstationState,
 }
 
@@ -71,6 +71,18 @@ impl SimulatedWorkstation {
     #[must_use]
     pub const fn is_robot_elsewhere(&self) -> bool {
         self.state.robot_elsewhere
+    }
+
+    /// True if robot and devices are those of the simulated cell, so that it shows what has become of the parts.
+    #[must_use]
+    pub fn is_whole(&self) -> bool {
+        !self.is_robot_elsewhere() && !self.has_real_devices()
+    }
+
+    /// True if devices of the cell are behind couplers outside of the loop.
+    #[must_use]
+    pub fn has_real_devices(&self) -> bool {
+        matches!(self.field.as_deref(), Some(Field::External(_)))
     }
 
     /// Events of the cell in the finished `tick`. A failed simulation or vise is a fault of the workstation.

@@ -1,5 +1,7 @@
 //! The connection that a session needs, and its faults.
 
+use std::fmt;
+
 use modbus::{Error, MOST_FRAME_BYTES, Request, Response};
 use rcs_core::Plain;
 
@@ -73,6 +75,19 @@ impl Fault {
             Self::NoAnswer | Self::Unanswered | Self::Exception(_) => false,
             Self::NoConnection | Self::Disconnected | Self::Frame(_) => true,
         }
+    }
+}
+
+/// The end of a sentence about the device: `it does not answer`.
+impl fmt::Display for Fault {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::NoAnswer | Self::Unanswered => "it does not answer",
+            Self::NoConnection => "it does not accept a connection",
+            Self::Disconnected => "it has ended the connection",
+            Self::Exception(code) => return write!(f, "it refuses a request with exception {code}"),
+            Self::Frame(part) => return write!(f, "its answer is wrong in the {}", part.text()),
+        })
     }
 }
 

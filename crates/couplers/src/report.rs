@@ -1,5 +1,7 @@
 //! Orders to a session, and its state.
 
+use std::fmt;
+
 use rcs_core::Plain;
 
 use crate::{
@@ -60,6 +62,21 @@ pub enum State {
     Ended(bool),
 }
 
+impl State {
+    /// The state as a word, in logs and messages.
+    #[must_use]
+    pub const fn word(self) -> &'static str {
+        match self {
+            Self::Starting => "starting",
+            Self::Running => "running",
+            Self::Stale => "stale",
+            Self::Tripped(_) => "tripped",
+            Self::Silent => "silent",
+            Self::Ended(_) => "ended",
+        }
+    }
+}
+
 /// Why a device is tripped.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Trip {
@@ -90,6 +107,26 @@ pub enum Refusal {
     Register(RegisterFault),
     /// It has fewer bits of inputs or outputs than the plan needs.
     Lengths(Lengths),
+}
+
+/// The end of a sentence about the device.
+impl fmt::Display for Refusal {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::OutputsOn => f.write_str("outputs are on that may not be on at rest"),
+            Self::Register(RegisterFault { address, expected, found }) => {
+                write!(f, "register {address:#06x} is {found}, and {expected} was expected")
+            }
+            Self::Lengths(lengths) => write!(
+                f,
+                "it has {} bits of inputs and {} of outputs, and the mapping needs {} and {}",
+                lengths.inputs_found,
+                lengths.outputs_found,
+                lengths.inputs_expected,
+                lengths.outputs_expected
+            ),
+        }
+    }
 }
 
 /// A register with another value than expected.
@@ -153,6 +190,17 @@ pub struct Report {
 }
 
 impl Report {
+    /// The report of a session that has not connected yet.
+    pub const STARTING: Self = Self {
+        state: State::Starting,
+        refusal: None,
+        read_at: None,
+        inputs: InWords::ZERO,
+        acknowledged: OutWords::ZERO,
+        fault: None,
+        counters: Counters::ZERO,
+    };
+
     /// Age of the inputs at the time `now`, ns; `None` before the first answer.
     #[must_use]
     pub fn age(&self, now: u64) -> Option<u64> {

@@ -22,8 +22,8 @@ use rcs_core::Plain;
 use crate::{
     MS,
     link::{Fault, Link},
-    plan::{InWords, OutWords, Plan, PlanError},
-    report::{Counters, Mode, Orders, Refusal, Report, State, Trip},
+    plan::{OutWords, Plan, PlanError},
+    report::{Mode, Orders, Refusal, Report, State, Trip},
 };
 
 /// A device that returns later than this is tripped, also if its watchdog has more time: it may have none.
@@ -106,15 +106,7 @@ impl Session {
         Ok(Self {
             plan,
             phase: Phase::Closed { next: 0 },
-            report: Report {
-                state: State::Starting,
-                refusal: None,
-                read_at: None,
-                inputs: InWords::ZERO,
-                acknowledged: OutWords::ZERO,
-                fault: None,
-                counters: Counters::ZERO,
-            },
+            report: Report::STARTING,
             sent: OutWords::ZERO,
             written_at: None,
             heard_at: 0,

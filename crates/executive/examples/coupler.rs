@@ -28,7 +28,7 @@ fn milliseconds() -> u16 {
 
 /// Requests priority, so that other programs do not delay what is measured.
 fn prepare() {
-    if let Err(why) = realtime::raise_priority() {
+    if let Err(why) = realtime::raise_priority(realtime::FIELD_PRIORITY) {
         println!("without priority: {why}");
     }
 }

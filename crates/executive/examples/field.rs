@@ -33,7 +33,7 @@ struct Bench {
 impl Bench {
     fn new(plan: Plan) -> Result<Self, Box<dyn Error>> {
         // The threads of station and device inherit the priority.
-        if let Err(why) = realtime::raise_priority() {
+        if let Err(why) = realtime::raise_priority(realtime::FIELD_PRIORITY) {
             println!("without priority: {why}");
         }
         let local = SocketAddr::from((Ipv4Addr::LOCALHOST, 0));

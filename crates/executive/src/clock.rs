@@ -210,6 +210,15 @@ impl Clock {
         }
     }
 
+    /// Start of slot 0, of `CLOCK_MONOTONIC`; `None` with [`Clock::Fast`].
+    #[must_use]
+    pub const fn start(&self) -> Option<Duration> {
+        match self {
+            Self::Fast => None,
+            Self::Real(grid) => Some(grid.start()),
+        }
+    }
+
     /// Number of slots skipped since the start.
     #[must_use]
     pub const fn skipped(&self) -> u64 {

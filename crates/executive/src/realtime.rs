@@ -26,6 +26,8 @@ use thread_priority::{
 
 /// Priority of the tick: above interrupt threads of ordinary devices, below the kernel's own watchdogs.
 pub const PRIORITY: u8 = 80;
+/// Priority of the threads of couplers: below the tick.
+pub const FIELD_PRIORITY: u8 = PRIORITY - 1;
 
 /// Size of the stack that is touched beforehand; a tick needs a fraction of it.
 const STACK_BYTES: usize = 512 * 1024;
@@ -92,7 +94,7 @@ pub fn acquire(core: Option<usize>) -> RealTime {
     lock_memory(&mut verdict);
     touch_stack();
     verdict.add("stack touched", Ok(()));
-    verdict.add(format!("SCHED_FIFO {PRIORITY}"), raise_priority());
+    verdict.add(format!("SCHED_FIFO {PRIORITY}"), raise_priority(PRIORITY));
     pin(&mut verdict, core);
     let idle_states = limit_idle_states();
     let outcome = idle_states.as_ref().map(|_| ()).map_err(ToString::to_string);
@@ -104,9 +106,9 @@ pub fn acquire(core: Option<usize>) -> RealTime {
 ///
 /// # Errors
 /// The reason of the refusal.
-pub fn raise_priority() -> Result<(), String> {
+pub fn raise_priority(priority: u8) -> Result<(), String> {
     let policy = ThreadSchedulePolicy::Realtime(RealtimeThreadSchedulePolicy::Fifo);
-    ThreadPriority::try_from(PRIORITY).map_err(|error| error.to_string()).and_then(|priority| {
+    ThreadPriority::try_from(priority).map_err(|error| error.to_string()).and_then(|priority| {
         set_thread_priority_and_policy(thread_native_id(), priority, policy).map_err(in_words)
     })
 }

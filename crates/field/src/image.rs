@@ -13,16 +13,16 @@ use crate::{
 
 /// What a connection knows of its device before a tick.
 #[derive(Clone, Copy, Debug)]
-pub struct Seen<'w> {
+pub struct Seen {
     /// The words that were read last.
-    pub words: &'w InWords,
+    pub words: InWords,
     /// Their age, ms; `None` if none were read yet.
     pub age_ms: Option<u32>,
     /// Its outputs are safe until an operator releases them.
     pub is_tripped: bool,
 }
 
-impl Seen<'_> {
+impl Seen {
     /// The connection of a point that is stale after so many ms.
     fn connection(&self, stale_ms: u16) -> GroupHealth {
         match self.age_ms {
@@ -46,7 +46,7 @@ impl Mapping {
     /// Writes the words of the devices, in their order, into the inputs of the controller. The words of a device that
     /// does not answer are those that it gave last, so its inputs keep their values, except those with `then`. While
     /// any device is not fresh, the velocity knob is at 0 and the robot ramps to rest.
-    pub fn apply(&self, devices: &[Seen<'_>], inputs: &mut DeviceInputs) {
+    pub fn apply(&self, devices: &[Seen], inputs: &mut DeviceInputs) {
         let mut health = FieldHealth::default();
         // The id pins come first: the gripper decides on the line of the potentiometer.
         for point in self.inputs.iter().filter(|point| point.group == Group::QuickChange) {
@@ -103,18 +103,21 @@ impl Mapping {
         }
     }
 
-    /// The first output that is not safe in the images and may not be on while nothing moves.
-    #[must_use]
-    pub fn first_on(&self, images: &[OutWords]) -> Option<&OutPoint> {
-        let is_on = |point: &&OutPoint| {
-            images.get(point.slot.device).is_some_and(|image| point.slot.get(&image.words) != point.safe)
+    /// The outputs of a device that are not safe in its image and may not be on while nothing moves.
+    pub fn outputs_on<'m>(
+        &'m self,
+        device: usize,
+        image: &'m OutWords,
+    ) -> impl Iterator<Item = &'m OutPoint> {
+        let is_on = move |point: &&OutPoint| {
+            !point.rest && point.device() == device && point.get(image) != point.safe
         };
-        self.outputs.iter().filter(|point| !point.rest).find(is_on)
+        self.outputs.iter().filter(is_on)
     }
 }
 
 impl InPoint {
-    fn apply(&self, devices: &[Seen<'_>], inputs: &mut DeviceInputs, health: &mut FieldHealth) {
+    fn apply(&self, devices: &[Seen], inputs: &mut DeviceInputs, health: &mut FieldHealth) {
         let (connection, raw) = match self.from {
             Origin::Fixed(value) => (GroupHealth::Fresh, value),
             Origin::Slot(slot) => {

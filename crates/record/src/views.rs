@@ -24,6 +24,8 @@ pub const COMMANDER: &str = "/operator/state";
 pub const CONTROLLER: &str = "/cell/controller";
 pub const PARTS: &str = "/cell/parts";
 pub const PLACES: &str = "/cell/places";
+/// Topic of the couplers of a run with `--field`.
+pub const FIELD: &str = "/field";
 
 messages! {
     /// A line of a job.
@@ -165,6 +167,32 @@ messages! {
         /// The places.
         places: Vec<Place>,
     }
+
+    /// A coupler between the controller and devices of the cell.
+    Coupler {
+        /// Its name in the mapping.
+        name: String,
+        /// `starting`, `running`, `stale`, `tripped`, `silent` (it has no orders) or `ended`.
+        state: &'static str,
+        /// Age of its inputs, ms.
+        age_ms: u64,
+        /// Its input words, as they were read last.
+        inputs: Vec<u32>,
+        /// The output words of the controller.
+        commanded: Vec<u32>,
+        /// The output words that it has acknowledged last.
+        acknowledged: Vec<u32>,
+        /// Number of requests and connections that failed.
+        failures: u32,
+        /// Number of times that its outputs were made safe until a release.
+        trips: u32,
+    }
+
+    /// The couplers of a run.
+    Couplers {
+        /// In the order of their names.
+        couplers: Vec<Coupler>,
+    }
 }
 
 #[derive(Clone, Debug, PartialEq)]
@@ -175,10 +203,11 @@ pub enum View {
     Controller(Controller),
     Parts(Parts),
     Places(Places),
+    Couplers(Couplers),
 }
 
 /// Number of kinds of [`View`].
-pub const KINDS: usize = 6;
+pub const KINDS: usize = 7;
 
 /// Kinds that hardly ever change: the lines of the job, and the places.
 const FIXED: [usize; 2] = [0, 5];
@@ -193,6 +222,7 @@ impl View {
             Self::Controller(_) => 3,
             Self::Parts(_) => 4,
             Self::Places(_) => 5,
+            Self::Couplers(_) => 6,
         }
     }
 
@@ -204,6 +234,7 @@ impl View {
             Self::Controller(message) => typed::encode(message),
             Self::Parts(message) => typed::encode(message),
             Self::Places(message) => typed::encode(message),
+            Self::Couplers(message) => typed::encode(message),
         }
     }
 }
@@ -234,6 +265,7 @@ impl Views {
             channel::<Controller, W>(output, CONTROLLER)?,
             channel::<Parts, W>(output, PARTS)?,
             channel::<Places, W>(output, PLACES)?,
+            channel::<Couplers, W>(output, FIELD)?,
         ]))
     }
 

@@ -149,6 +149,12 @@ impl RunConfig {
         }
     }
 
+    /// True if couplers over TCP connect the devices.
+    #[must_use]
+    pub fn has_real_devices(&self) -> bool {
+        self.field.as_ref().is_some_and(|field| !field.is_simulated)
+    }
+
     /// The job; `None` if another process commands.
     #[must_use]
     pub fn played(&self) -> Option<&str> {
@@ -166,14 +172,31 @@ impl Default for RunConfig {
 pub struct FieldConfig {
     /// Name of a mapping in the data directory, or a path.
     pub mapping: PathBuf,
+    /// True for emulated couplers in simulated time; false for couplers over TCP at the addresses of the mapping.
+    pub is_simulated: bool,
 }
 
 /// Prefix of a mapping whose couplers are emulated in simulated time.
 const SIMULATED: &str = "sim:";
 
+impl FieldConfig {
+    /// Emulated couplers in simulated time.
+    #[must_use]
+    pub fn simulated(mapping: impl Into<PathBuf>) -> Self {
+        Self { mapping: mapping.into(), is_simulated: true }
+    }
+
+    /// Couplers over TCP.
+    #[must_use]
+    pub fn tcp(mapping: impl Into<PathBuf>) -> Self {
+        Self { mapping: mapping.into(), is_simulated: false }
+    }
+}
+
 impl fmt::Display for FieldConfig {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{SIMULATED}{}", self.mapping.display())
+        let prefix = if self.is_simulated { SIMULATED } else { "" };
+        write!(f, "{prefix}{}", self.mapping.display())
     }
 }
 
@@ -181,12 +204,13 @@ impl FromStr for FieldConfig {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        match text.strip_prefix(SIMULATED) {
-            Some(name) if !name.is_empty() => Ok(Self { mapping: name.into() }),
-            _ => {
-                Err(format!("sim:NAME or sim:FILE was expected, couplers in simulated time; found {text:?}"))
-            }
+        let name = text.strip_prefix(SIMULATED);
+        if name.unwrap_or(text).is_empty() {
+            return Err(format!(
+                "a mapping was expected: NAME or FILE for couplers over TCP, or {SIMULATED}NAME; found {text:?}"
+            ));
         }
+        Ok(name.map_or_else(|| Self::tcp(text), Self::simulated))
     }
 }
 

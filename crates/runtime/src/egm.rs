@@ -68,7 +68,7 @@ impl EgmPort {
                 let prepare = move || {
                     if real {
                         // The run reports missing settings for its own thread. This thread gets at most the same ones.
-                        let _ = realtime::raise_priority();
+                        let _ = realtime::raise_priority(realtime::PRIORITY);
                     }
                 };
                 let line = UdpLine::open(address, options.from, options.settings(&placement), prepare)?;

@@ -54,6 +54,20 @@ pub enum StartError {
     FaultsAtPort,
     #[error("the field I/O cannot begin: {0}")]
     Field(#[from] closed_loop::field::FieldError),
+    /// Couplers over TCP need a clock in real time.
+    #[error(
+        "couplers over TCP need real time: add --clock real, or use --field sim:NAME for emulated couplers"
+    )]
+    FieldNotInRealTime,
+    /// A device cannot be opened.
+    #[error("the field I/O cannot begin: {device}: {source}")]
+    FieldDevice { device: String, source: executive::field::DeviceError },
+    /// Devices are not ready: one sentence per device.
+    #[error("the field I/O cannot begin: {}", .0.join("; "))]
+    FieldNotReady(Vec<String>),
+    /// A fault file cannot cut a real connection.
+    #[error("the fault file cuts the connection of {0:?}, which needs emulated couplers: --field sim:NAME")]
+    CutOverTcp(String),
     /// The fault file cuts a connection that the run does not have.
     #[error("the fault file cuts the connection of {device:?}: expected {expected}")]
     NoSuchDevice { device: String, expected: String },

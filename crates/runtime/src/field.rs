@@ -1,24 +1,33 @@
 //! Field I/O of a run: the mapping, and the run's messages about it.
 
+mod port;
+
 use std::path::Path;
 
 use diagnostics::{FIELDS, Source};
+use executive::egm::Peer;
 use field::{Mapping, Presence};
 use interfaces::point::Group;
 use os_io::files;
 use plant::fault::{FaultPlan, What};
 
-use crate::{config::FieldConfig, error::StartError};
+use sessions::network::Role;
+
+pub use self::port::{FieldPort, hindrance};
+use crate::{
+    config::{FieldConfig, RobotKind, RunConfig},
+    error::StartError,
+};
 
 /// Groups that a mapping can have, but that this version executes only in the simulated cell.
 const ONLY_SIMULATED: [Group; 5] = [Group::Vise, Group::Machine, Group::Drum, Group::Trays, Group::Supply];
 
-/// Reads the mapping of a run.
+/// Reads the mapping of a run. Also returns its text.
 ///
 /// # Errors
 /// [`StartError`], with all errors of the file.
-pub fn load(config: &FieldConfig, data: &Path) -> Result<Mapping, StartError> {
-    read(&FIELDS.find(&config.mapping, data)?)
+pub fn load(config: &FieldConfig, data: &Path) -> Result<(Mapping, String), StartError> {
+    read_with_text(&FIELDS.find(&config.mapping, data)?)
 }
 
 /// Reads a mapping.
@@ -26,17 +35,27 @@ pub fn load(config: &FieldConfig, data: &Path) -> Result<Mapping, StartError> {
 /// # Errors
 /// [`StartError`], with all errors of the file.
 pub fn read(path: &Path) -> Result<Mapping, StartError> {
+    read_with_text(path).map(|(mapping, _)| mapping)
+}
+
+fn read_with_text(path: &Path) -> Result<(Mapping, String), StartError> {
     let text = files::read_text(path).map_err(|source| StartError::Read { path: path.to_owned(), source })?;
-    let source = Source { name: path.display().to_string(), text: text.into() };
+    let source = Source { name: path.display().to_string(), text: text.clone().into() };
     let what = || format!("the mapping {}", path.display());
-    Mapping::parse(&source).map_err(|report| StartError::Data { what: what(), report: Box::new(report) })
+    let mapping = Mapping::parse(&source)
+        .map_err(|report| StartError::Data { what: what(), report: Box::new(report) })?;
+    Ok((mapping, text))
 }
 
 /// Checks that the devices whose connection a fault plan cuts exist.
 ///
 /// # Errors
 /// [`StartError::NoSuchDevice`].
-pub fn check_cuts(faults: &FaultPlan, mapping: Option<&Mapping>) -> Result<(), StartError> {
+pub fn check_cuts(
+    faults: &FaultPlan,
+    config: &RunConfig,
+    mapping: Option<&Mapping>,
+) -> Result<(), StartError> {
     let cut = faults.faults.iter().filter_map(|fault| match &fault.what {
         What::FieldCut(device) => Some(device),
         _ => None,
@@ -46,6 +65,9 @@ pub fn check_cuts(faults: &FaultPlan, mapping: Option<&Mapping>) -> Result<(), S
             let expected = "a run with couplers: add --field sim:NAME".to_owned();
             return Err(StartError::NoSuchDevice { device: device.clone(), expected });
         };
+        if config.has_real_devices() {
+            return Err(StartError::CutOverTcp(device.clone()));
+        }
         if mapping.device(device).is_none() {
             let names: Vec<&str> = mapping.devices.iter().map(|device| device.name.as_str()).collect();
             let expected = format!("a device of the mapping, one of {}", names.join(", "));
@@ -55,20 +77,49 @@ pub fn check_cuts(faults: &FaultPlan, mapping: Option<&Mapping>) -> Result<(), S
     Ok(())
 }
 
-/// Message of a run with emulated couplers at its start.
+/// The parts of a run that are simulated: groups of devices, and the robot.
 #[must_use]
-pub fn introduction(mapping: &Mapping) -> String {
-    let devices: Vec<&str> = mapping.devices.iter().map(|device| device.name.as_str()).collect();
-    let carries =
-        |group: &Group| mapping.presence(*group) != Presence::Simulated && !ONLY_SIMULATED.contains(group);
-    let through: Vec<&str> = Group::ALL.into_iter().filter(carries).map(Group::name).collect();
-    let beside: Vec<&str> = Group::ALL.into_iter().filter(|group| !carries(group)).map(Group::name).collect();
-    format!(
-        "field I/O with emulated couplers: {}; through them: {}; not through them: {}; simulated: all devices",
-        devices.join(", "),
-        listed(&through),
-        listed(&beside)
-    )
+pub fn simulated(config: &RunConfig, mapping: &Mapping) -> Vec<&'static str> {
+    let is_emulated = !config.has_real_devices();
+    let is_simulated = |group: &Group| match group {
+        Group::Vision => !config.outside.contains(&Role::Vision),
+        group => is_emulated || !carries(mapping, *group),
+    };
+    let robot = matches!(&config.robot.kind, RobotKind::Sim)
+        || matches!(&config.robot.kind, RobotKind::Egm(options) if options.peer == Peer::Simulated);
+    let groups = Group::ALL.into_iter().filter(is_simulated).map(Group::name);
+    robot.then_some("robot").into_iter().chain(groups).collect()
+}
+
+/// True if the words of a group pass through the couplers.
+fn carries(mapping: &Mapping, group: Group) -> bool {
+    mapping.presence(group) != Presence::Simulated && !ONLY_SIMULATED.contains(&group)
+}
+
+/// Messages of a run with couplers at its start.
+#[must_use]
+pub fn introduction(config: &RunConfig, mapping: &Mapping) -> Vec<String> {
+    let (through, beside): (Vec<Group>, Vec<Group>) =
+        Group::ALL.into_iter().partition(|group| carries(mapping, *group));
+    let names = |groups: &[Group]| listed(&groups.iter().map(|group| group.name()).collect::<Vec<_>>());
+    let (through, beside) = (names(&through), names(&beside));
+    if !config.has_real_devices() {
+        let devices: Vec<&str> = mapping.devices.iter().map(|device| device.name.as_str()).collect();
+        return vec![format!(
+            "field I/O with emulated couplers: {}; through them: {through}; not through them: {beside}; \
+             simulated: all devices",
+            devices.join(", "),
+        )];
+    }
+    let at = |device: &field::Device| format!("{} at {}", device.name, device.address);
+    let devices: Vec<String> = mapping.devices.iter().map(at).collect();
+    let simulated = listed(&simulated(config, mapping));
+    vec![
+        format!("field I/O over TCP: {}; real: {through}; simulated: {simulated}", devices.join(", ")),
+        "the devices are real, and the cell of this program is only a model: places of parts, contacts and \
+         confirmations are not judged, and finished means that all lines have ended"
+            .to_owned(),
+    ]
 }
 
 fn listed(names: &[&str]) -> String {

@@ -53,6 +53,10 @@ pub const IN_MEMORY: &str = "memory";
 pub const STAND_BY: &str = "stand_by";
 /// Metadata key: the run also executes commands that use records with errors.
 pub const UNCHECKED: &str = "unchecked";
+/// Key: the couplers of the run, as `--field` names them.
+pub const FIELD: &str = "field";
+/// Attachment: the mapping of emulated couplers.
+pub const MAPPING: &str = "field.toml";
 /// Key: number of ticks after which the run was to stop.
 pub const TICKS: &str = "ticks";
 
@@ -334,6 +338,9 @@ fn attachments(setup: &Setup) -> Vec<Attachment> {
     all.push(Attachment::text(Attachment::CELL, &setup.description_text));
     let loads = setup.job.reloads.iter().map(|reload| &reload.source);
     all.extend(loads.map(|source| Attachment::text(&format!("{LOADS}{}", source.name), &source.text)));
+    if !setup.mapping_text.is_empty() {
+        all.push(Attachment::text(MAPPING, &setup.mapping_text));
+    }
     if !setup.faults_text.is_empty() {
         all.push(Attachment::text(FAULTS, &setup.faults_text));
     }
@@ -373,5 +380,6 @@ fn metadata(config: &RunConfig, setup: &Setup, attachments: &[Attachment]) -> BT
     let limit = config.ticks.map(|ticks| (TICKS.to_owned(), ticks.to_string()));
     let stand_by = config.stand_by.then(|| (STAND_BY.to_owned(), "yes".to_owned()));
     let unchecked = config.unchecked.then(|| (UNCHECKED.to_owned(), "yes".to_owned()));
-    own.chain(limit).chain(stand_by).chain(unchecked).chain(config.remarks.clone()).collect()
+    let field = config.field.as_ref().map(|field| (FIELD.to_owned(), field.to_string()));
+    own.chain(field).chain(limit).chain(stand_by).chain(unchecked).chain(config.remarks.clone()).collect()
 }

@@ -101,6 +101,12 @@ impl Pace {
         matches!(self.clock, Clock::Real(_))
     }
 
+    /// Start of slot 0, of `CLOCK_MONOTONIC`; `None` in fast clock.
+    #[must_use]
+    pub const fn start(&self) -> Option<Duration> {
+        self.clock.start()
+    }
+
     #[must_use]
     pub const fn skipped(&self) -> u64 {
         self.clock.skipped()

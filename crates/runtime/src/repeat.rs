@@ -14,8 +14,10 @@ use std::{
 use record::{Attachment, Log, Part};
 
 use crate::{
-    config::{LogTarget, RobotConfig, RunConfig},
-    log::{DATA, DATA_BASE, FAULTS, IN_MEMORY, LOADS, OUTSIDE, RETRY, STAND_BY, TICKS, UNCHECKED},
+    config::{FieldConfig, LogTarget, RobotConfig, RunConfig},
+    log::{
+        DATA, DATA_BASE, FAULTS, FIELD, IN_MEMORY, LOADS, MAPPING, OUTSIDE, RETRY, STAND_BY, TICKS, UNCHECKED,
+    },
     setup::{CELL, EXTENSION},
 };
 
@@ -84,6 +86,10 @@ pub fn unpack(log: &Log, directory: &Path) -> Result<RunConfig, RepeatError> {
     if robot.kind.lives_in_real_time() {
         return Err(RepeatError::Elsewhere(format!("the robot {robot}")));
     }
+    let field: Option<FieldConfig> = said(FIELD).and_then(|field| field.parse().ok());
+    if let Some(field) = field.as_ref().filter(|field| !field.is_simulated) {
+        return Err(RepeatError::Elsewhere(format!("the devices of {}", field.mapping.display())));
+    }
     let number = |key| said(key).and_then(|number| number.parse::<u64>().ok());
     let name = said("job").ok_or(RepeatError::Missing("job"))?;
     let (data, jobs) = (directory.join("data"), directory.join("job"));
@@ -102,8 +108,12 @@ pub fn unpack(log: &Log, directory: &Path) -> Result<RunConfig, RepeatError> {
     let stand_by = said(STAND_BY).is_some();
     let operated = stand_by || log.operator_lines().next().is_some();
     let faults = log.attachment(FAULTS).map(|faults| write(directory, FAULTS, faults)).transpose()?;
+    let mapping =
+        field.map(|_| log.attachment(MAPPING).ok_or(RepeatError::Missing("mapping"))).transpose()?;
+    let mapping = mapping.map(|mapping| write(directory, MAPPING, mapping)).transpose()?;
     Ok(RunConfig {
         robot,
+        field: mapping.map(FieldConfig::simulated),
         faults,
         seed: number("seed").ok_or(RepeatError::Missing("seed"))?,
         ticks: number(TICKS),

@@ -38,6 +38,7 @@ use crate::{
     cell_view::View,
     config::{ClockKind, RunConfig},
     event::Event,
+    field::FieldPort,
     live::Live,
     load::Loads,
     log::Log,
@@ -70,6 +71,8 @@ pub struct Run {
     pub(crate) loads: Loads,
     pub(crate) name: RunName,
     pub(crate) robot: Robot,
+    /// The couplers over TCP, if any.
+    pub(crate) field: Option<FieldPort>,
     pub(crate) log: Option<Log>,
     log_path: Option<PathBuf>,
     data: DataResult,
@@ -165,6 +168,9 @@ impl Run {
         if self.config.clock == ClockKind::Real {
             self.ask_for_real_time(self.config.cpu);
         }
+        if let Some((field, start)) = self.field.as_ref().zip(self.pace.start()) {
+            field.align(start);
+        }
         self.show_cell();
         self.neighbours.begin(self.closed.memory(), self.closed.inputs());
         self.note_neighbours(self.closed.tick().next());
@@ -217,6 +223,9 @@ impl Run {
     fn tick(&mut self) -> Option<Ending> {
         self.wait();
         let robot = self.robot.receive();
+        if let Some(field) = &mut self.field {
+            field.receive(&mut self.closed);
+        }
         let given = self.given(robot);
         if let Some(ending) = self.decide(&given) {
             return Some(ending);
@@ -228,6 +237,9 @@ impl Run {
         }
         let levels = self.closed.course().levels();
         self.robot.send(&memory.device_outputs(), || commanded(&levels.state(), &memory));
+        if let Some(field) = &mut self.field {
+            field.send(&mut self.closed);
+        }
         self.runner.stage_times_mut().mark(Stage::Line);
         if let Some(log) = &mut self.log {
             if self.pace.is_real() {
@@ -262,7 +274,9 @@ impl Run {
             player::Progress::Running => self.end_if_nobody_asks(tick),
         }
         // An obstacle stops an arm that sinks without pressure. The verdict is the emergency.
-        let stuck = self.closed.contacts().is_stuck() && !self.closed.workstation.is_settling(tick);
+        let workstation = &self.closed.workstation;
+        let is_judged = !workstation.has_real_devices() && !workstation.is_settling(tick);
+        let stuck = self.closed.contacts().is_stuck() && is_judged;
         if let Some(failure) = self.closed.contacts().verdict().filter(|_| stuck) {
             return Some(failure.into());
         }

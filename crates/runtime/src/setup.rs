@@ -6,7 +6,10 @@ use std::{
     sync::Arc,
 };
 
-use closed_loop::{JobPlayer, field::SimulatedField};
+use closed_loop::{
+    JobPlayer,
+    field::{Field, SimulatedField},
+};
 use depc::fault::Plan;
 use diagnostics::JOBS;
 use executive::serial::SerialLine;
@@ -37,6 +40,7 @@ use crate::{
     config::{ClockKind, LogTarget, MOST_SPEED, RobotKind, RunConfig},
     egm::EgmPort,
     error::StartError,
+    field::FieldPort,
     findings::Findings,
     judge::{add_paths, check_job},
     live::Live,
@@ -61,7 +65,9 @@ pub struct Setup {
     pub description: CellDescription,
     pub cell: Cell,
     /// The couplers between the controller and the cell.
-    pub field: Option<SimulatedField>,
+    pub field: Option<Couplers>,
+    /// The mapping of the couplers, as text; empty without one.
+    pub mapping_text: String,
     /// Text of the fault file; empty without one.
     pub faults_text: String,
     /// Faults of the line to the simulated robot.
@@ -89,6 +95,9 @@ impl Setup {
         if config.robot.kind.lives_in_real_time() && !is_real {
             return Err(StartError::NotInRealTime);
         }
+        if config.has_real_devices() && !is_real {
+            return Err(StartError::FieldNotInRealTime);
+        }
         if config.speed == 0 || config.speed > MOST_SPEED {
             return Err(StartError::Speed(config.speed));
         }
@@ -106,11 +115,11 @@ impl Setup {
         let (faults, faults_text) = faults(config, &description)?;
         let cell = Cell::with_faults(&description, config.seed, &faults.cell)?;
         let mapping = config.field.as_ref().map(|field| crate::field::load(field, data)).transpose()?;
-        crate::field::check_cuts(&faults.cell, mapping.as_ref())?;
-        let field =
-            mapping.map(|mapping| SimulatedField::new(Arc::new(mapping), &cell.inputs())).transpose()?;
-        if let Some(field) = &field {
-            observer.message(&crate::field::introduction(field.mapping()));
+        let (mapping, mapping_text) =
+            mapping.map_or_else(Default::default, |(mapping, text)| (Some(mapping), text));
+        crate::field::check_cuts(&faults.cell, config, mapping.as_ref())?;
+        for line in mapping.iter().flat_map(|mapping| crate::field::introduction(config, mapping)) {
+            observer.message(&line);
         }
         let sees_elsewhere = config.outside.contains(&Role::Vision);
         let cell = if sees_elsewhere { cell.with_vision_elsewhere() } else { cell };
@@ -131,6 +140,14 @@ impl Setup {
             return Err(StartError::InputsOfLog { inputs: inputs.clone(), log: log.path().to_owned() });
         }
         let neighbours = neighbours(config, &job, &description, observer)?;
+        let field = match mapping {
+            Some(mapping) if config.has_real_devices() => Some(Couplers::Tcp(FieldPort::open(mapping)?)),
+            Some(mapping) => {
+                let field = SimulatedField::new(Arc::new(mapping), &cell.inputs())?;
+                Some(Couplers::Simulated(field))
+            }
+            None => None,
+        };
         // Last, so that no byte is sent to the robot if the run cannot begin.
         let robot = match &config.robot.kind {
             RobotKind::Sim => Robot::Simulated,
@@ -148,6 +165,7 @@ impl Setup {
             description,
             cell,
             field,
+            mapping_text,
             faults_text,
             line_faults: faults.line,
             robot,
@@ -155,6 +173,34 @@ impl Setup {
             log,
             live,
         })
+    }
+}
+
+/// The couplers of a run before its first tick.
+pub enum Couplers {
+    Simulated(SimulatedField),
+    /// Couplers over TCP, which may not be ready yet.
+    Tcp(FieldPort),
+}
+
+impl Couplers {
+    /// Wait until all devices are ready. Returns the port of couplers over TCP, too.
+    ///
+    /// # Errors
+    /// The errors of [`FieldPort::gather`].
+    pub fn gather(
+        self,
+        config: &RunConfig,
+        job: &str,
+        observer: &mut dyn Observer,
+    ) -> Result<(Field, Option<FieldPort>), StartError> {
+        match self {
+            Self::Simulated(field) => Ok((Field::Simulated(field), None)),
+            Self::Tcp(mut port) => {
+                let desk = port.gather(config, job, observer)?;
+                Ok((Field::External(desk), Some(port)))
+            }
+        }
     }
 }
 

@@ -69,14 +69,13 @@ impl Run {
     /// confirmations. For a failed run also the emergencies still in force, fallen parts, and failed devices.
     pub(super) fn checked(&self, ending: Ending) -> Ending {
         let parts = self.closed.workstation.cell.parts();
-        let mut verdicts: Vec<Failure> = self
-            .closed
-            .contacts()
-            .verdict()
-            .into_iter()
-            .chain(self.closed.placement().verdict(&parts))
-            .collect();
-        verdicts.extend(self.closed.truth().verdict());
+        let mut verdicts: Vec<Failure> = Vec::new();
+        // With real devices, the cell of this program does not show what has become of the parts.
+        if !self.closed.workstation.has_real_devices() {
+            verdicts.extend(self.closed.contacts().verdict());
+            verdicts.extend(self.closed.placement().verdict(&parts));
+            verdicts.extend(self.closed.truth().verdict());
+        }
         if let Ending::Failed(account) = &ending {
             let same = |one: &Failure, other: &Failure| (one.kind, one.tick) == (other.kind, other.tick);
             let known = |alarm: &&Failure| account.failures().any(|failure| same(failure, alarm));

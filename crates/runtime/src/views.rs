@@ -3,15 +3,18 @@
 //! After each tick the states are collected, and the changed ones are logged. This is between two ticks, where
 //! a run may allocate.
 
-use closed_loop::failure::Failure;
+use closed_loop::{failure::Failure, field::Desk};
+use couplers::{Orders, Report, Span};
 use executive::memory::cell::ControllerView;
+use field::Device;
 use geometry::frame::Frame;
 use interfaces::{CommonMemory, station::EStop};
 use neighbours::workstation::player::{Hwsc, Progress, WaitReason};
 use plant::{Cell, CellDescription, convert::metres, part_link};
 use rcs_core::tick::Tick;
 use record::views::{
-    Commander, Controller, JobLine, JobLines, JobState, KINDS, Lamps, Part, Parts, Place, Places, View,
+    Commander, Controller, Coupler, Couplers, JobLine, JobLines, JobState, KINDS, Lamps, Part, Parts, Place,
+    Places, View,
 };
 use taskdata::load::job::Step;
 
@@ -40,6 +43,8 @@ pub struct Around<'a> {
     pub has_controller: bool,
     /// The last warning on the screen of the robot controller.
     pub warning: Option<&'a Failure>,
+    /// The couplers, if any.
+    pub field: Option<&'a Desk>,
 }
 
 /// The states that were logged last.
@@ -66,6 +71,9 @@ impl Viewed {
             self.note(View::Controller(console(&self.console)), &mut log);
         }
         self.note(View::Parts(parts(around.cell)), &mut log);
+        if let Some(desk) = around.field {
+            self.note(View::Couplers(couplers(desk)), &mut log);
+        }
     }
 
     fn note(&mut self, view: View, log: &mut impl FnMut(View)) {
@@ -162,6 +170,24 @@ fn console(view: &ControllerView) -> Controller {
         screen: view.screen.as_str().to_owned(),
         screen_tick: view.screen_tick.0,
     }
+}
+
+fn couplers(desk: &Desk) -> Couplers {
+    let words = |words: &[u16], spans: &[Span]| {
+        let count = spans.iter().map(Span::words).sum();
+        words.iter().take(count).map(|word| u32::from(*word)).collect()
+    };
+    let coupler = |(device, orders, report, age_ms): (&Device, &Orders, &Report, u64)| Coupler {
+        name: device.name.clone(),
+        state: report.state.word(),
+        age_ms,
+        inputs: words(&report.inputs.words, &device.plan.reads),
+        commanded: words(&orders.words.words, &device.plan.writes),
+        acknowledged: words(&report.acknowledged.words, &device.plan.writes),
+        failures: report.counters.failures,
+        trips: report.counters.trips,
+    };
+    Couplers { couplers: desk.devices().map(coupler).collect() }
 }
 
 fn parts(cell: &Cell) -> Parts {

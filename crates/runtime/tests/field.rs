@@ -7,7 +7,7 @@ use std::{
 };
 
 use rcs_core::tick::Tick;
-use runtime::{Event, FieldConfig, LogTarget, Observer, Run, RunConfig, RunOutcome, StartError};
+use runtime::{Ending, Event, FieldConfig, LogTarget, Observer, Run, RunConfig, RunOutcome, StartError};
 
 const DATA: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../data");
 /// Event codes of a lost part or gripper.
@@ -25,7 +25,7 @@ fn config() -> RunConfig {
     RunConfig {
         log: LogTarget::None,
         shared_memory: false,
-        field: Some(FieldConfig { mapping: "station".into() }),
+        field: Some(FieldConfig::simulated("station")),
         ..RunConfig::new(DATA, "linkbar")
     }
 }
@@ -80,7 +80,23 @@ fn couplers_without_a_fault_leave_the_cell_unchanged() {
             break;
         }
     }
-    assert!(through.finish().is_finished());
+    let outcome = through.finish();
+    assert!(outcome.is_finished());
+    let field = outcome.result.field.expect("couplers");
+    assert!(field.devices.iter().all(|device| device.confirmed), "safe outputs at the end: {field}");
+}
+
+#[test]
+fn repetition_of_a_log_has_the_same_couplers() {
+    let directory = tempfile::tempdir().unwrap();
+    let log = directory.path().join("run.mcap");
+    let config = RunConfig { log: LogTarget::File(log.clone()), ticks: Some(200), ..config() };
+    let first = Run::new(config, Box::new(())).unwrap().complete();
+    let files = tempfile::tempdir().unwrap();
+    let config = runtime::repeat::unpack(&record::Log::open(&log).unwrap(), files.path()).unwrap();
+    assert!(config.field.as_ref().is_some_and(|field| field.is_simulated));
+    let again = Run::new(config, Box::new(())).unwrap().complete();
+    assert_eq!(first.result.digest, again.result.digest);
 }
 
 #[test]
@@ -103,6 +119,9 @@ fn long_cuts_wait_for_an_operator_and_drop_nothing() {
         let (outcome, codes) = cut(&["arm"], at, 50);
         assert!(!outcome.is_finished(), "2 s at tick {at}");
         assert_eq!((codes.count("io.stale"), codes.count("io.released")), (1, 0));
+        let Ending::Failed(account) = &outcome.ending else { panic!("2 s at tick {at}") };
+        assert!(account.is_stopped(), "stopped devices are no failure of the job: {account}");
+        assert!(account.first.text.contains("grip.potentiometer"), "the held readings: {account}");
     }
 }
 

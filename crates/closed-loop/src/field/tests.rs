@@ -49,7 +49,7 @@ impl Bench {
     }
 
     fn codes(&mut self) -> Vec<&'static str> {
-        self.field.take_events().iter().map(FieldEvent::code).collect()
+        self.field.desk.take_events().iter().map(FieldEvent::code).collect()
     }
 }
 
@@ -64,7 +64,7 @@ fn words_pass_the_couplers_without_delay() {
         assert_eq!(inputs.field.any, GroupHealth::Fresh);
     }
     assert!(bench.codes().is_empty());
-    assert_eq!(bench.field.status(), "arm 8 ms, fixture 8 ms, pedestal 8 ms");
+    assert_eq!(bench.field.desk.status(), "arm 8 ms, fixture 8 ms, pedestal 8 ms");
 }
 
 #[test]
@@ -101,11 +101,11 @@ fn long_cut_makes_the_outputs_safe_until_a_release() {
     assert_eq!(inputs.field.grip, GroupHealth::Lost);
     let (valves, inputs) = bench.steps(25, &closing(), "");
     assert_eq!((valves.grip.bits, inputs.field.grip), (0, GroupHealth::Tripped));
-    assert!(bench.field.release("arm") && !bench.field.release("leg"));
+    assert!(bench.field.desk.release("arm") && !bench.field.desk.release("leg"));
     let (valves, _) = bench.steps(2, &closing(), "");
     assert_eq!(valves.grip.bits, 0, "not while an output is asked for that may not be on at rest");
     let at_rest = DeviceOutputs { grip: Default::default(), ..closing() };
-    assert!(bench.field.release("arm"));
+    assert!(bench.field.desk.release("arm"));
     let (valves, inputs) = bench.steps(2, &at_rest, "");
     assert!(valves.tool_grip.close && inputs.field.any == GroupHealth::Fresh);
     assert_eq!(bench.codes(), ["io.stale", "io.tripped", "io.refused", "io.released"]);
@@ -121,4 +121,57 @@ fn copy_continues_alike() {
         assert_eq!(bench.step(&closing(), cut), copy.step(&closing(), cut));
     }
     assert_eq!(bench.codes(), copy.codes());
+}
+
+#[test]
+fn ordered_safe_outputs_wait_for_a_release() {
+    let mut bench = Bench::new();
+    bench.steps(10, &closing(), "");
+    assert!(bench.field.desk.make_safe("arm") && !bench.field.desk.make_safe("leg"));
+    let (valves, inputs) = bench.steps(2, &closing(), "");
+    assert_eq!((valves.grip.bits, valves.tool_grip.close), (0, false));
+    assert_eq!((inputs.field.grip, inputs.field.hand), (GroupHealth::Tripped, GroupHealth::Fresh));
+    assert!(bench.field.desk.release("arm"));
+    let at_rest = DeviceOutputs { grip: Default::default(), ..closing() };
+    let (valves, inputs) = bench.steps(2, &at_rest, "");
+    assert!(valves.tool_grip.close && inputs.field.any == GroupHealth::Fresh);
+    assert_eq!(bench.codes(), ["io.tripped", "io.released"]);
+}
+
+#[test]
+fn end_makes_the_outputs_safe_and_says_whether_that_is_confirmed() {
+    let mut bench = Bench::new();
+    bench.steps(10, &closing(), "");
+    bench.step(&closing(), "pedestal");
+    bench.field.end(&sensors(0));
+    let events = bench.field.desk.take_events();
+    let confirmed: Vec<_> = events.iter().map(|event| (event.device.as_str(), event.what)).collect();
+    let ended = Happened::Ended;
+    assert_eq!(confirmed, [("arm", ended(true)), ("fixture", ended(true)), ("pedestal", ended(false))]);
+    let arm = bench.field.desk.mapping().device("arm").unwrap();
+    let left = bench.field.simulated[arm].coupler().outputs()[0];
+    assert_eq!(left, 1 << 11, "tool.close may be on at rest and stays on");
+}
+
+#[test]
+fn points_are_shown_with_raw_words_and_ages() {
+    let mut bench = Bench::new();
+    let (_, inputs) = bench.steps(10, &closing(), "");
+    let shown = |name: &str| bench.field.desk.show(name, &inputs);
+    assert_eq!(
+        shown("grip.potentiometer").as_deref(),
+        Some("grip.potentiometer: raw 8082, 1010 in the controller; arm, 8 ms old")
+    );
+    assert_eq!(
+        shown("grip.supply").as_deref(),
+        Some("grip.supply: commanded 1, acknowledged 1; arm is running")
+    );
+    assert_eq!(shown("grip.missing"), None);
+    bench.steps(5, &closing(), "arm");
+    let event = &bench.field.desk.take_events()[0];
+    let text = event.to_string();
+    assert!(
+        text.starts_with("arm has not answered for ") && text.contains("grip.potentiometer 1010"),
+        "{text}"
+    );
 }

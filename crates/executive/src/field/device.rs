@@ -22,6 +22,7 @@ use crate::{
     field::{
         latest::{self, latest},
         link::TcpLink,
+        lock::Lock,
     },
 };
 
@@ -37,6 +38,11 @@ pub enum DeviceError {
     Plan(#[from] PlanError),
     #[error("no thread for the device at {address}: {source}")]
     Thread { address: SocketAddr, source: io::Error },
+    /// Two controllers of a device would each undo what the other writes.
+    #[error("another process of this machine controls the device at {address}: end it first")]
+    InUse { address: SocketAddr },
+    #[error("the device at {address} cannot be taken: {source}")]
+    Lock { address: SocketAddr, source: io::Error },
 }
 
 /// A device with a thread of its own.
@@ -48,6 +54,7 @@ pub struct Device {
     start: Arc<AtomicU64>,
     stop: Arc<AtomicBool>,
     thread: Option<JoinHandle<()>>,
+    _lock: Lock,
 }
 
 fn nanoseconds(time: Duration) -> u64 {
@@ -66,6 +73,7 @@ impl Device {
         plan: Plan,
         prepare: impl FnOnce() + Send + 'static,
     ) -> Result<Self, DeviceError> {
+        let lock = Lock::take(address, plan.unit)?;
         let link = TcpLink::new(address, plan.unit, timeout);
         let session = Session::new(plan)?;
         let newest = Orders { tick: 0, mode: Mode::Watch, go: 0, words: OutWords::ZERO };
@@ -88,7 +96,7 @@ impl Device {
                 worker.run();
             })
             .map_err(|source| DeviceError::Thread { address, source })?;
-        Ok(Self { orders, reports, newest, start, stop, thread: Some(thread) })
+        Ok(Self { orders, reports, newest, start, stop, thread: Some(thread), _lock: lock })
     }
 
     /// Aligns the exchanges with the slots of the run's clock: `start` is the time of slot 0, of `CLOCK_MONOTONIC`.

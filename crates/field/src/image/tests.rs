@@ -28,10 +28,10 @@ fn carried(mapping: &Mapping, inputs: &DeviceInputs, ages: [u32; 3]) -> DeviceIn
     arrived
 }
 
-fn seen(images: &[InWords; 3], ages: [u32; 3]) -> [Seen<'_>; 3] {
+fn seen(images: &[InWords; 3], ages: [u32; 3]) -> [Seen; 3] {
     let [a, b, c] = images;
     let [x, y, z] = ages;
-    [(a, x), (b, y), (c, z)].map(|(words, age)| Seen { words, age_ms: Some(age), is_tripped: false })
+    [(a, x), (b, y), (c, z)].map(|(words, age)| Seen { words: *words, age_ms: Some(age), is_tripped: false })
 }
 
 fn inputs() -> impl Strategy<Value = DeviceInputs> {
@@ -142,10 +142,12 @@ fn outputs_that_are_on_are_found_unless_they_may_be() {
     let mut outputs = DeviceOutputs::default();
     (outputs.tool_grip.close, outputs.joystick_leds) = (true, 1);
     mapping.collect(&outputs, &mut images);
-    assert_eq!(mapping.first_on(&images), None);
+    assert_eq!(mapping.outputs_on(0, &images[0]).count(), 0);
     outputs.grip.bits = interfaces::device::valve::VENT;
     mapping.collect(&outputs, &mut images);
-    assert_eq!(mapping.first_on(&images).map(|point| point.name.as_str()), Some("grip.vent"));
+    let on: Vec<&str> = mapping.outputs_on(0, &images[0]).map(|point| point.name.as_str()).collect();
+    assert_eq!(on, ["grip.vent"]);
+    assert_eq!(mapping.outputs_on(1, &images[0]).count(), 0, "another device");
 }
 
 #[test]

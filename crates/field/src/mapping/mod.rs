@@ -30,7 +30,7 @@ mod place;
 
 use std::{net::SocketAddr, ops::RangeInclusive};
 
-use couplers::Plan;
+use couplers::{InWords, OutWords, Plan};
 use diagnostics::{
     Diagnostics, Source,
     toml::{Document, FileKind},
@@ -152,6 +152,21 @@ impl InPoint {
         }
     }
 
+    /// Its raw value in the image of its device; `None` for a fixed value.
+    #[must_use]
+    pub fn raw(&self, image: &InWords) -> Option<i64> {
+        match self.from {
+            Origin::Slot(slot) => Some(slot.get(&image.words)),
+            Origin::Fixed(_) => None,
+        }
+    }
+
+    /// The line from raw values to counts, if it has one for all grippers.
+    #[must_use]
+    pub const fn line(&self) -> Option<Line> {
+        self.line
+    }
+
     /// The ends of a converter, which mean a broken wire.
     pub(crate) fn ends(&self) -> Option<&RangeInclusive<i64>> {
         match self.target {
@@ -177,6 +192,17 @@ impl OutPoint {
     #[must_use]
     pub const fn device(&self) -> usize {
         self.slot.device
+    }
+
+    /// Its value in the image of its device.
+    #[must_use]
+    pub fn get(&self, image: &OutWords) -> i64 {
+        self.slot.get(&image.words)
+    }
+
+    /// Set its value in the image of its device.
+    pub fn set(&self, value: i64, image: &mut OutWords) {
+        self.slot.put(&mut image.words, value);
     }
 }
 

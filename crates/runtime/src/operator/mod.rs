@@ -25,9 +25,12 @@ mod written;
 
 use std::path::{self, Path};
 
-use closed_loop::{field::SimulatedField, workstation::SimulatedWorkstation};
+use closed_loop::{
+    field::{Desk, Field},
+    workstation::SimulatedWorkstation,
+};
 use interfaces::{
-    CommonMemory, OperatorInputs,
+    CommonMemory, DeviceInputs, OperatorInputs,
     device::{JoystickBox, KNOB_FULL},
     station::TableKey,
 };
@@ -99,6 +102,8 @@ pub struct Around<'a> {
     pub tick: Tick,
     /// Common memory after that tick.
     pub memory: &'a CommonMemory,
+    /// The inputs of the devices in the next tick.
+    pub inputs: &'a DeviceInputs,
     /// Task data of the next tick, for reading lines of a job.
     pub store: &'a Store,
     /// Ignore errors in the records that a command uses.
@@ -281,16 +286,26 @@ impl Operator {
             Request::Data => Ok(directory(around.data)),
             Request::Pedestal => Ok(by_hand::state(around.memory)),
             Request::Field => field(around).map(|field| format!("io {}", field.status())),
+            Request::Point(point) => {
+                let inputs = *around.inputs;
+                field(around)?
+                    .show(&point, &inputs)
+                    .ok_or_else(|| format!("the mapping has no point {point}"))
+            }
             Request::Release(device) => {
                 let field = field(around)?;
-                if field.release(&device) {
-                    return Ok(format!(
-                        "{device} is released when it answers and asks for no output but at rest"
-                    ));
+                if !field.release(&device) {
+                    return Err(no_device(field, &device));
                 }
-                let names: Vec<_> =
-                    field.mapping().devices.iter().map(|device| device.name.as_str()).collect();
-                Err(format!("there is no device {device}; expected one of {}", names.join(", ")))
+                Ok(format!("{device} is released when it answers and asks for no output but at rest"))
+            }
+            Request::MakeSafe(device) => {
+                obstacles::check_safe(around.memory)?;
+                let field = field(around)?;
+                if !field.make_safe(&device) {
+                    return Err(no_device(field, &device));
+                }
+                Ok(format!("the outputs of {device} are safe until `io go {device}`"))
             }
             Request::Stop => {
                 self.is_stopped = true;
@@ -385,7 +400,8 @@ impl Operator {
         let (number, names) = (self.sessions.len(), self.sessions.join(", "));
         let held =
             obstacles::emergency(around.workstation).map_or_else(String::new, |why| format!("; {why}"));
-        format!("{job}; {commander} commands; knob {knob}; connected {number}: {names}{held}")
+        let field = field(around).map_or_else(|_| String::new(), |field| format!("; io {}", field.status()));
+        format!("{job}; {commander} commands; knob {knob}; connected {number}: {names}{held}{field}")
     }
 
     /// The obstacles to the robot's motion although the job plays, as text; empty if there are none.
@@ -406,12 +422,18 @@ fn job<'a>(around: &'a mut Around<'_>) -> Result<&'a mut Hwsc, String> {
     around.neighbours.job_under_way()
 }
 
+fn no_device(field: &Desk, name: &str) -> String {
+    let names: Vec<_> = field.mapping().devices.iter().map(|device| device.name.as_str()).collect();
+    format!("there is no device {name}; expected one of {}", names.join(", "))
+}
+
 /// The couplers of the run.
 ///
 /// # Errors
 /// A message if the run has no couplers.
-fn field<'a>(around: &'a mut Around<'_>) -> Result<&'a mut SimulatedField, String> {
-    around.workstation.field.as_deref_mut().ok_or_else(|| "this run has no couplers: --field".to_owned())
+fn field<'a>(around: &'a mut Around<'_>) -> Result<&'a mut Desk, String> {
+    let field = around.workstation.field.as_deref_mut();
+    field.map(Field::desk_mut).ok_or_else(|| "this run has no couplers: --field".to_owned())
 }
 
 #[cfg(test)]

@@ -1,8 +1,8 @@
 //! The obstacles to the robot's motion, as text for the status and for the answers to `job go` and `job skip`.
 
 use interfaces::{
-    CommonMemory, OperatorInputs, StatusReport, device::JoystickBox, hws::HwsReport, operator::BOARDS,
-    prim::PrimReport,
+    CommonMemory, OperatorInputs, StatusReport, device::JoystickBox, emove::Holding, hws::HwsReport,
+    operator::BOARDS, prim::PrimReport,
 };
 use neighbours::workstation::player::Workstation as _;
 use plant::EStop;
@@ -48,6 +48,22 @@ pub fn is_led(memory: &CommonMemory) -> bool {
     memory.prim.status.report == PrimReport::JoystickOn
         || [memory.emove.status.report, memory.subtask.status.report].contains(&StatusReport::JoystickOn)
         || memory.task.status.report == HwsReport::JoystickOn
+}
+
+/// Refuse to make outputs safe while a command is executed or something is held: safe outputs hold no part.
+///
+/// # Errors
+/// The hindrance and its remedy.
+pub fn check_safe(memory: &CommonMemory) -> Result<(), String> {
+    if memory.task.status.report == HwsReport::Executing {
+        return Err(
+            "a command is executed: send `job wait` or `PAUSE`, and ask again when it has ended".to_owned()
+        );
+    }
+    if memory.emove.status.held != Holding::Nothing {
+        return Err("the gripper holds something, and safe outputs may drop it: put it down first".to_owned());
+    }
+    Ok(())
 }
 
 /// The obstacles to the robot's motion although the job plays; empty if there are none. `knob` is the

@@ -24,8 +24,14 @@ pub enum Request {
     Data,
     /// Read the state of the Active Pedestal; changes nothing.
     Pedestal,
+    /// Read the state of the couplers; changes nothing.
     Field,
+    /// Read a point of the couplers; changes nothing.
+    Point(String),
+    /// Release a tripped device.
     Release(String),
+    /// Make the outputs of a device safe until it is released.
+    MakeSafe(String),
     /// Set the velocity knob to zero.
     Stop,
     Go,
@@ -59,7 +65,16 @@ pub enum Request {
 }
 
 /// Requests that change nothing and are not logged.
-pub const QUESTIONS: [&str; 4] = [STATUS, DATA, PEDESTAL, FIELD];
+const QUESTIONS: [&str; 4] = [STATUS, DATA, PEDESTAL, FIELD];
+/// Begin of the request for the state of a point.
+const SHOW: &str = "io show ";
+
+/// True if a request changes nothing, so that it is not logged.
+#[must_use]
+pub fn is_question(line: &str) -> bool {
+    QUESTIONS.contains(&line) || line.starts_with(SHOW)
+}
+
 const STATUS: &str = "status";
 /// Request for the directory of the task data.
 const DATA: &str = "data";
@@ -123,7 +138,11 @@ impl Request {
         if let ["io", rest @ ..] = &each[..] {
             return match rest {
                 ["go", device] => Ok(Self::Release((*device).to_owned())),
-                _ => Err(format!("io, or io go DEVICE, was expected; found {words}")),
+                ["show", point] => Ok(Self::Point((*point).to_owned())),
+                ["safe", device] => Ok(Self::MakeSafe((*device).to_owned())),
+                _ => Err(format!(
+                    "io, io show POINT, io go DEVICE or io safe DEVICE was expected; found {words}"
+                )),
             };
         }
         if let Some(entry) = Entry::read(&each) {
@@ -158,6 +177,7 @@ impl Request {
             | Self::Data
             | Self::Pedestal
             | Self::Field
+            | Self::Point(_)
             | Self::Stop
             | Self::Leave
             | Self::Note
@@ -175,6 +195,7 @@ impl Request {
             | Self::GoOn
             | Self::Skip
             | Self::Release(_)
+            | Self::MakeSafe(_)
             | Self::Command(..)
             | Self::Box(_) => false,
         }

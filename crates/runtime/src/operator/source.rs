@@ -8,7 +8,7 @@ use record::{Attachment, Log, OperatorLine, Part};
 use sessions::operator::{Entrance, Event, Given, Listener};
 use taskdata::load::Source;
 
-use super::request::QUESTIONS;
+use super::request::is_question;
 use crate::{
     config::{ClockKind, OperatorAccess, RunConfig},
     error::StartError,
@@ -88,7 +88,7 @@ impl Input {
 
     /// True if it changes nothing.
     pub fn is_question(&self) -> bool {
-        self.event().line().is_some_and(|line| QUESTIONS.contains(&line))
+        self.event().line().is_some_and(|line| is_question(line))
     }
 
     /// Its line in the log, with the first tick in which it has an effect; `None` if it changes nothing.

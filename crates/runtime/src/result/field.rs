@@ -2,15 +2,26 @@
 
 use std::fmt;
 
-use closed_loop::field::SimulatedField;
-use interfaces::point::Group;
+use closed_loop::field::Desk;
+use couplers::State;
 use serde::Serialize;
+
+use super::TickTimes;
+use crate::field::FieldPort;
 
 #[derive(Clone, Debug, Serialize)]
 pub struct FieldResult {
     pub devices: Vec<FieldDevice>,
-    /// The simulated groups of devices: all of them, since the couplers are emulated.
+    /// The simulated parts of the run: groups of devices, and the robot.
     pub simulated: Vec<&'static str>,
+    /// True if the devices are real: places of parts, contacts and confirmations are not judged.
+    pub is_real: bool,
+    /// Greatest age of the inputs at a tick; `None` in simulated time.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub age_us: Option<TickTimes>,
+    /// Time of a tick for reading and writing the devices; `None` in simulated time.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub tick_us: Option<TickTimes>,
 }
 
 #[derive(Clone, Debug, Serialize)]
@@ -20,25 +31,46 @@ pub struct FieldDevice {
     pub failures: u32,
     /// Number of times that its outputs were made safe until a release.
     pub trips: u32,
+    /// True if it has confirmed that its outputs are safe at the end.
+    pub confirmed: bool,
 }
 
-impl From<&SimulatedField> for FieldResult {
-    fn from(field: &SimulatedField) -> Self {
-        let devices = field.counters().map(|(name, counters)| FieldDevice {
-            name: name.to_owned(),
-            exchanges: counters.exchanges,
-            failures: counters.failures,
-            trips: counters.trips,
+impl FieldResult {
+    /// The result of couplers, with the measurements of couplers over TCP.
+    #[must_use]
+    pub fn new(desk: &Desk, simulated: Vec<&'static str>, port: Option<&FieldPort>) -> Self {
+        let devices = desk.mapping().devices.iter().zip(desk.reports()).map(|(device, report)| FieldDevice {
+            name: device.name.clone(),
+            exchanges: report.counters.exchanges,
+            failures: report.counters.failures,
+            trips: report.counters.trips,
+            confirmed: report.state == State::Ended(true),
         });
-        Self { devices: devices.collect(), simulated: Group::ALL.map(Group::name).to_vec() }
+        Self {
+            devices: devices.collect(),
+            simulated,
+            is_real: port.is_some(),
+            age_us: port.map(|port| port.ages().into()),
+            tick_us: port.map(|port| port.shares().into()),
+        }
     }
 }
 
 impl fmt::Display for FieldResult {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        for FieldDevice { name, exchanges, failures, trips } in &self.devices {
-            write!(f, "{name}: {exchanges} exchanges, {failures} failed, {trips} trips; ")?;
+        for FieldDevice { name, exchanges, failures, trips, confirmed } in &self.devices {
+            let safe = if *confirmed { "confirmed" } else { "NOT confirmed" };
+            write!(
+                f,
+                "{name}: {exchanges} exchanges, {failures} failed, {trips} trips, safe outputs {safe}; "
+            )?;
         }
-        f.write_str("simulated: all devices")
+        if let Some(TickTimes { p50, p99, max }) = self.age_us {
+            let [p50, p99, max] = [p50, p99, max].map(|us| us / 1000.0);
+            write!(f, "inputs were {p50:.1} ms old (p99 {p99:.1} ms, max {max:.1} ms); ")?;
+        }
+        let simulated =
+            if self.simulated.is_empty() { "nothing".to_owned() } else { self.simulated.join(", ") };
+        write!(f, "simulated: {simulated}")
     }
 }

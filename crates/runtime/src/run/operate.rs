@@ -60,6 +60,7 @@ impl Run {
             let mut around = Around {
                 tick,
                 memory: desk.memory,
+                inputs: desk.inputs,
                 store: desk.generations.next(desk.memory, None),
                 gate: desk.gate,
                 unchecked: self.config.unchecked,

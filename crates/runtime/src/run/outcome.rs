@@ -1,6 +1,7 @@
 //! The outcome of a run.
 
 use ::neighbours::workstation::player::BegunStep;
+use closed_loop::field::Field;
 use os_io::shell;
 use os_io::text::amount;
 use rcs_core::tick::TICK_S;
@@ -8,10 +9,10 @@ use rcs_core::tick::TICK_S;
 use super::Run;
 use crate::{
     event::Event,
-    pace,
+    field, pace,
     result::{
-        self, CommandResult, EgmResult, EmergencyResult, FailureResult, FaultsResult, ItemResult, PortResult,
-        RunResult, SIMULATED,
+        self, CommandResult, EgmResult, EmergencyResult, FailureResult, FaultsResult, FieldResult,
+        ItemResult, PortResult, RunResult, SIMULATED,
     },
     verdict::Ending,
 };
@@ -42,6 +43,7 @@ impl Run {
     #[must_use]
     pub fn finish(mut self) -> RunOutcome {
         let wall_s = self.started.map_or(0.0, |started| started.elapsed().as_secs_f64());
+        self.end_field();
         let ending = self.ending.take().unwrap_or(Ending::Stopped);
         let ending = self.checked(ending);
         let mut result = self.result(&ending, wall_s);
@@ -64,6 +66,8 @@ impl Run {
         let simulated_s = ticks as f64 * TICK_S;
         let ramp_ticks = self.ramp.as_ref().map_or(0, |ramp| ramp.ticks);
         let steps = self.neighbours.all_steps();
+        // With real devices, the cell of this program does not show what has become of the parts.
+        let is_judged = !self.closed.workstation.has_real_devices();
         let commands = steps.iter().filter(|step| step.is_command).map(|step| CommandResult {
             text: result::bare(&step.text),
             status: step.outcome.text(),
@@ -92,23 +96,23 @@ impl Run {
             link: (&self.closed.memory().t3i.status.counters).into(),
             operator: self.operator.requests(),
             faults: self.closed.line().faults().map(FaultsResult::from),
-            field: self.closed.workstation.field.as_deref().map(Into::into),
+            field: self.field_result(),
             cell_faults: self.closed.workstation.cell.faults().into_iter().map(Into::into).collect(),
             port: self.robot.port().map(PortResult::from),
             egm: self.robot.egm().map(EgmResult::from),
             emergency_stop: self.closed.workstation.last_emergency().map(EmergencyResult::from),
             digest: self.closed.digest().to_string(),
-            simulated: self.robot.is_elsewhere().then_some(SIMULATED),
+            simulated: (self.robot.is_elsewhere() && is_judged).then_some(SIMULATED),
             digest_before_ramp: self
                 .ramp
                 .as_ref()
                 .map_or_else(|| self.closed.digest(), |ramp| ramp.before)
                 .to_string(),
-            parts: self.closed.workstation.cell.parts(),
+            parts: if is_judged { self.closed.workstation.cell.parts() } else { Vec::new() },
             data_base: self.items(),
-            truth: (!self.robot.is_elsewhere()).then(|| self.closed.truth().result().clone()),
-            contacts: self.closed.contacts().collisions().to_vec(),
-            clearance: self.closed.contacts().nearest().cloned(),
+            truth: self.closed.workstation.is_whole().then(|| self.closed.truth().result().clone()),
+            contacts: if is_judged { self.closed.contacts().collisions().to_vec() } else { Vec::new() },
+            clearance: self.closed.contacts().nearest().filter(|_| is_judged).cloned(),
             events: std::mem::take(&mut self.events),
             log: None,
             failure: match ending {
@@ -119,6 +123,29 @@ impl Run {
                 Ending::Finished | Ending::Stopped | Ending::StoppedByUser => None,
             },
         }
+    }
+
+    /// End the couplers: their outputs become safe and are read back.
+    fn end_field(&mut self) {
+        let (tick, inputs) = (self.closed.tick(), *self.closed.inputs());
+        let Some(field) = self.closed.workstation.field.as_deref_mut() else { return };
+        match (field, &mut self.field) {
+            (Field::Simulated(field), _) => field.end(&inputs),
+            (Field::External(desk), Some(port)) => port.end(desk, &inputs),
+            (Field::External(_), None) => {}
+        }
+        let events = self.closed.workstation.field.as_deref_mut().map(|field| field.desk_mut().take_events());
+        for event in events.into_iter().flatten().map(Event::Field) {
+            self.observer.message(&event.to_string());
+            self.log_event(tick.next(), &event);
+            self.events.push(tick, &event);
+        }
+    }
+
+    fn field_result(&self) -> Option<FieldResult> {
+        let desk = self.closed.workstation.field.as_deref()?.desk();
+        let simulated = field::simulated(&self.config, desk.mapping());
+        Some(FieldResult::new(desk, simulated, self.field.as_ref()))
     }
 
     /// Items in the database at the end.

@@ -113,6 +113,12 @@ impl Run {
         let announced = announced.or_else(|| announced_by_job(&config, &setup.job.name));
         let say = |phase: &str| announced.iter().for_each(|announced| announced.say(phase));
         setup.neighbours.gather(&config, say, &mut *observer)?;
+        if setup.field.is_some() && config.has_real_devices() {
+            say("waits for its couplers");
+        }
+        let field = setup.field.take();
+        let field = field.map(|field| field.gather(&config, &setup.job.name, &mut *observer)).transpose()?;
+        let (field, field_port) = field.map_or((None, None), |(field, port)| (Some(field), port));
         if setup.robot.is_elsewhere() {
             say("waits for its robot");
         }
@@ -131,8 +137,7 @@ impl Run {
             log.view(Tick::BEFORE_START.next(), views::places(&setup.description));
         }
         let publisher = publisher(&config, &name, &mut *observer);
-        let Setup { store, data, mut job, cell, field, line_faults, robot, mut neighbours, mut live, .. } =
-            setup;
+        let Setup { store, data, mut job, cell, line_faults, robot, mut neighbours, mut live, .. } = setup;
         let reloads = std::mem::take(&mut job.reloads);
         let mut closed = ClosedLoop::new(controller, Arc::new(store), Arc::new(reloads), cell);
         if let Some(field) = field {
@@ -177,6 +182,7 @@ impl Run {
             mirror,
             neighbours,
             robot,
+            field: field_port,
             asked,
             operator,
             loads: Loads::with(loader),

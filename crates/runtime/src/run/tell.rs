@@ -4,6 +4,7 @@ use closed_loop::{
     Settled,
     account::{self, Kind},
     failure::Failure,
+    field::Field,
 };
 use interfaces::CommonMemory;
 use neighbours::data_system::DataSystem;
@@ -53,6 +54,7 @@ impl Run {
             cell: &self.closed.workstation.cell,
             has_controller: !self.robot.is_elsewhere(),
             warning: self.warning.as_ref(),
+            field: self.closed.workstation.field.as_deref().map(Field::desk),
         };
         self.viewed.look(&around, |view| log.view(tick.next(), view));
     }

@@ -1,0 +1,227 @@
+//! State of the couplers of a run: orders of a tick, newest reports, events. The transport is elsewhere.
+
+use std::sync::Arc;
+
+use couplers::{MS, Mode, Orders, OutWords, Report, State};
+use field::{Device, Mapping, Seen, Target};
+use interfaces::{DeviceInputs, DeviceOutputs, point::Kind};
+use rcs_core::{Plain as _, tick::Tick};
+
+use super::{FieldEvent, Happened};
+
+#[derive(Clone, Debug)]
+struct Coupler {
+    orders: Orders,
+    report: Report,
+    /// State of its session after the last tick.
+    state: State,
+    refused: u32,
+    /// Time since which its inputs are old, ns.
+    read_at: u64,
+}
+
+/// The couplers of a mapping.
+#[derive(Clone, Debug)]
+pub struct Desk {
+    mapping: Arc<Mapping>,
+    couplers: Vec<Coupler>,
+    /// Images and inputs of the devices, kept so that a tick does not allocate.
+    images: Vec<OutWords>,
+    seen: Vec<Seen>,
+    now: u64,
+    events: Vec<FieldEvent>,
+}
+
+impl Desk {
+    /// Couplers that are being set up: nothing is written yet.
+    #[must_use]
+    pub fn new(mapping: Arc<Mapping>) -> Self {
+        let orders = Orders { tick: 0, mode: Mode::Watch, go: 0, words: OutWords::ZERO };
+        let report = Report::STARTING;
+        let coupler = Coupler { orders, report, state: State::Starting, refused: 0, read_at: 0 };
+        let seen = Seen { words: report.inputs, age_ms: None, is_tripped: false };
+        let count = mapping.devices.len();
+        Self {
+            mapping,
+            couplers: vec![coupler; count],
+            images: vec![OutWords::ZERO; count],
+            seen: vec![seen; count],
+            now: 0,
+            events: Vec::new(),
+        }
+    }
+
+    #[must_use]
+    pub fn mapping(&self) -> &Mapping {
+        &self.mapping
+    }
+
+    /// Begin to write outputs: all devices are set up.
+    pub fn begin(&mut self) {
+        for coupler in &mut self.couplers {
+            (coupler.state, coupler.orders.mode) = (coupler.report.state, Mode::Run);
+        }
+    }
+
+    /// The orders of a tick, with its outputs. Does not allocate.
+    pub fn order(&mut self, tick: Tick, outputs: &DeviceOutputs) {
+        self.mapping.collect(outputs, &mut self.images);
+        for (coupler, image) in self.couplers.iter_mut().zip(&self.images) {
+            (coupler.orders.tick, coupler.orders.words) = (tick.0, *image);
+        }
+    }
+
+    /// The orders of the last tick, in the order of the devices.
+    pub fn orders(&self) -> impl Iterator<Item = &Orders> {
+        self.couplers.iter().map(|coupler| &coupler.orders)
+    }
+
+    /// End: each device gets the outputs of the end, reads them back and disconnects.
+    pub fn end(&mut self) {
+        for Coupler { orders, .. } in &mut self.couplers {
+            (orders.tick, orders.mode) = (orders.tick.wrapping_add(1), Mode::End);
+        }
+    }
+
+    /// The reports of all devices at the time `now`, ns. Does not allocate.
+    pub fn observe(&mut self, now: u64, reports: impl Iterator<Item = Report>) {
+        self.now = now;
+        for ((coupler, seen), report) in self.couplers.iter_mut().zip(&mut self.seen).zip(reports) {
+            coupler.report = report;
+            let age_ms = report.age(now).map(|age| u32::try_from(age / MS).unwrap_or(u32::MAX));
+            let is_tripped = matches!(report.state, State::Tripped(_));
+            *seen = Seen { words: report.inputs, age_ms, is_tripped };
+        }
+    }
+
+    /// The newest reports, in the order of the devices.
+    pub fn reports(&self) -> impl Iterator<Item = &Report> {
+        self.couplers.iter().map(|coupler| &coupler.report)
+    }
+
+    /// Replace the words of mapped points by those of the devices. Does not allocate.
+    pub fn apply(&self, inputs: &mut DeviceInputs) {
+        self.mapping.apply(&self.seen, inputs);
+    }
+
+    /// Release a tripped device. Returns false for an unknown name.
+    pub fn release(&mut self, name: &str) -> bool {
+        self.with_orders(name, |orders| {
+            orders.mode = Mode::Run;
+            orders.go = orders.go.wrapping_add(1);
+        })
+    }
+
+    /// Make the outputs of a device safe until it is released. Returns false for an unknown name.
+    pub fn make_safe(&mut self, name: &str) -> bool {
+        self.with_orders(name, |orders| orders.mode = Mode::Safe)
+    }
+
+    fn with_orders(&mut self, name: &str, change: impl FnOnce(&mut Orders)) -> bool {
+        let index = self.mapping.device(name);
+        let coupler = index.and_then(|index| self.couplers.get_mut(index));
+        coupler.map(|coupler| change(&mut coupler.orders)).is_some()
+    }
+
+    /// The events since the last call.
+    pub fn take_events(&mut self) -> Vec<FieldEvent> {
+        std::mem::take(&mut self.events)
+    }
+
+    fn named(&self) -> impl Iterator<Item = (&str, &Coupler)> {
+        self.mapping.devices.iter().map(|device| device.name.as_str()).zip(&self.couplers)
+    }
+
+    /// State and input age of each device for the status: `arm 8 ms, fixture STALE 0.4 s`.
+    #[must_use]
+    pub fn status(&self) -> String {
+        let states = self.named().map(|(name, Coupler { report, .. })| {
+            let age_ms = report.age(self.now).unwrap_or_default() / MS;
+            let seconds = age_ms as f64 / 1000.0;
+            match report.state {
+                State::Running => format!("{name} {age_ms} ms"),
+                State::Stale => format!("{name} STALE {seconds:.1} s"),
+                state => format!("{name} {}", state.word().to_uppercase()),
+            }
+        });
+        states.collect::<Vec<_>>().join(", ")
+    }
+
+    /// A point as text: raw word, value and age of an input, or an output as commanded and as acknowledged. `inputs`
+    /// are those of the controller. `None` if the mapping has no such point.
+    #[must_use]
+    pub fn show(&self, name: &str, inputs: &DeviceInputs) -> Option<String> {
+        let place = |device: usize| self.named().nth(device);
+        if let Some(point) = self.mapping.inputs.iter().find(|point| point.name == name) {
+            let value = match point.target {
+                Target::Word(input) => format!(", {} in the controller", input.read(inputs)),
+                Target::Station => String::new(),
+            };
+            let Some((device, coupler)) = point.device().and_then(place) else {
+                return Some(format!("{name}: fixed{value}"));
+            };
+            let raw = point.raw(&coupler.report.inputs).unwrap_or_default();
+            let age_ms = coupler.report.age(self.now).unwrap_or_default() / MS;
+            return Some(format!("{name}: raw {raw}{value}; {device}, {age_ms} ms old"));
+        }
+        let point = self.mapping.outputs.iter().find(|point| point.name == name)?;
+        let (device, coupler) = place(point.device())?;
+        let [commanded, acknowledged] =
+            [&coupler.orders.words, &coupler.report.acknowledged].map(|image| point.get(image));
+        let state = coupler.report.state.word();
+        Some(format!("{name}: commanded {commanded}, acknowledged {acknowledged}; {device} is {state}"))
+    }
+
+    /// The devices with their orders, newest reports and ages of inputs, ms.
+    pub fn devices(&self) -> impl Iterator<Item = (&Device, &Orders, &Report, u64)> {
+        let age = |report: &Report| report.age(self.now).unwrap_or_default() / MS;
+        let couplers = self.couplers.iter().map(move |one| (&one.orders, &one.report, age(&one.report)));
+        let devices = self.mapping.devices.iter().zip(couplers);
+        devices.map(|(device, (orders, report, age))| (device, orders, report, age))
+    }
+
+    /// Note the events of the newest reports; `inputs` are those of the controller.
+    pub fn note_changes(&mut self, inputs: &DeviceInputs) {
+        let Self { couplers, mapping, events, now, .. } = self;
+        for (index, (coupler, device)) in couplers.iter_mut().zip(&mapping.devices).enumerate() {
+            let report = &coupler.report;
+            let gap = |since: u64| u32::try_from(now.saturating_sub(since) / MS).unwrap_or(u32::MAX);
+            let what = match (coupler.state, report.state) {
+                (before, State::Ended(confirmed)) if before != report.state => {
+                    Some(Happened::Ended(confirmed))
+                }
+                (_, State::Tripped(trip)) if !matches!(coupler.state, State::Tripped(_)) => {
+                    Some(Happened::Tripped(trip))
+                }
+                (State::Tripped(_), State::Running) => Some(Happened::Released),
+                (State::Running, State::Stale) => {
+                    Some(Happened::Stale(gap(report.read_at.unwrap_or_default())))
+                }
+                (State::Stale, State::Running) => Some(Happened::Back(gap(coupler.read_at))),
+                _ if report.counters.refused_releases != coupler.refused => Some(Happened::Refused),
+                _ => None,
+            };
+            if report.state != State::Running || coupler.state == State::Running {
+                coupler.read_at = report.read_at.unwrap_or_default();
+            }
+            (coupler.state, coupler.refused) = (report.state, report.counters.refused_releases);
+            events.extend(what.map(|what| {
+                let is_stale = matches!(what, Happened::Stale(_));
+                let held = if is_stale { readings(mapping, index, inputs) } else { Vec::new() };
+                FieldEvent { device: device.name.clone(), what, held }
+            }));
+        }
+    }
+}
+
+/// The readings of the converters of a device that are not forces, by their points.
+fn readings(mapping: &Mapping, device: usize, inputs: &DeviceInputs) -> Vec<(String, i64)> {
+    let points = mapping.inputs.iter().filter(|point| point.device() == Some(device));
+    let converters = points.filter_map(|point| match point.target {
+        Target::Word(input) if input.kind() == Kind::Converter => {
+            Some((point.name.clone(), input.read(inputs)))
+        }
+        _ => None,
+    });
+    converters.collect()
+}

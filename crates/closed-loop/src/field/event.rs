@@ -1,0 +1,91 @@
+//! Events of couplers in a run.
+
+use std::fmt;
+
+use couplers::Trip;
+
+#[derive(Clone, Debug, PartialEq)]
+pub struct FieldEvent {
+    pub device: String,
+    pub what: Happened,
+    /// The readings of converters that a stale device keeps, by their points.
+    pub held: Vec<(String, i64)>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Happened {
+    /// The device has not answered for this time, ms.
+    Stale(u32),
+    /// The device answers again after this time, ms, and continues.
+    Back(u32),
+    /// The outputs of the device are safe until an operator releases it.
+    Tripped(Trip),
+    Released,
+    /// The release was refused: an output that must be off at rest is commanded, or the device does not answer.
+    Refused,
+    /// The run has ended. True if the device has confirmed its last outputs.
+    Ended(bool),
+}
+
+impl FieldEvent {
+    #[must_use]
+    pub const fn code(&self) -> &'static str {
+        match self.what {
+            Happened::Stale(_) => "io.stale",
+            Happened::Back(_) => "io.back",
+            Happened::Tripped(_) => "io.tripped",
+            Happened::Released => "io.released",
+            Happened::Refused => "io.refused",
+            Happened::Ended(_) => "io.ended",
+        }
+    }
+}
+
+impl fmt::Display for FieldEvent {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { device, what, held } = self;
+        match what {
+            Happened::Stale(ms) => {
+                write!(f, "{device} has not answered for {ms} ms; its inputs keep their values")?;
+                for (index, (point, value)) in held.iter().enumerate() {
+                    write!(f, "{} {point} {value}", if index == 0 { ":" } else { "," })?;
+                }
+                Ok(())
+            }
+            Happened::Back(ms) => write!(f, "{device} answers again after {ms} ms"),
+            Happened::Tripped(Trip::Gap(ms)) => write!(
+                f,
+                "{device} was not written for {ms} ms: its outputs are safe until an operator sends `io go {device}`"
+            ),
+            Happened::Tripped(trip) => write!(
+                f,
+                "{device} is tripped, since {}: its outputs are safe until an operator sends `io go {device}`",
+                cause(*trip)
+            ),
+            Happened::Released => write!(f, "{device} is released"),
+            Happened::Refused => write!(
+                f,
+                "{device} is not released: it does not answer, or an output is on that may not be on at rest"
+            ),
+            Happened::Ended(true) => write!(f, "{device} has confirmed that its outputs are safe"),
+            Happened::Ended(false) => write!(
+                f,
+                "{device} has not confirmed that its outputs are safe: its watchdog makes them so, if it has one"
+            ),
+        }
+    }
+}
+
+/// The reason of a trip, as the end of a sentence.
+const fn cause(trip: Trip) -> &'static str {
+    match trip {
+        Trip::Gap(_) => "it was not written in time",
+        Trip::Outputs => "its outputs are not those that were written",
+        Trip::Settings => "its settings are not those that were made",
+        Trip::Refused(_) => "it refused a write",
+        Trip::Terminals(_) => "its terminals report an error",
+        Trip::Frozen => "the counter of its program stands still",
+        Trip::NoOrders => "the controller gave no orders",
+        Trip::Ordered => "an operator, or the safety circuit, asked for it",
+    }
+}
