@@ -282,6 +282,59 @@ pub struct LinkTestArguments {
     pub json: bool,
 }
 
+/// A mapping of the data directory.
+#[derive(Clone, Debug, Args)]
+pub struct MappingArgument {
+    /// The mapping NAME of the data directory (data/field/NAME.toml), or FILE (docs/field.md)
+    #[arg(value_name = "NAME|FILE")]
+    pub mapping: PathBuf,
+    /// The data.
+    #[command(flatten)]
+    pub data: DataArgument,
+}
+
+/// Arguments of `io-test`.
+#[derive(Clone, Debug, Args)]
+pub struct IoTestArguments {
+    /// The mapping.
+    #[command(flatten)]
+    pub mapping: MappingArgument,
+    /// Seconds for which the inputs are read
+    #[arg(long, value_name = "N", default_value_t = 10, value_parser = clap::value_parser!(u32).range(1..=3600))]
+    pub seconds: u32,
+    /// Test each output alone, after a question: it is on for a second
+    #[arg(long)]
+    pub outputs: bool,
+    /// Measure the time from the last write to the fallback of each coupler, after a question
+    #[arg(long)]
+    pub watchdog: bool,
+    /// Print one JSON object on standard output, and nothing else there
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// Arguments of `io-release`.
+#[derive(Clone, Debug, Args)]
+pub struct IoReleaseArguments {
+    /// The mapping.
+    #[command(flatten)]
+    pub mapping: MappingArgument,
+}
+
+/// Arguments of `io-calibrate`.
+#[derive(Clone, Debug, Args)]
+pub struct IoCalibrateArguments {
+    /// The mapping.
+    #[command(flatten)]
+    pub mapping: MappingArgument,
+    /// The input, such as grip.potentiometer
+    #[arg(value_name = "POINT")]
+    pub point: String,
+    /// Counts of the two states [default: those of the mapping]
+    #[arg(long, value_name = "COUNTS", num_args = 2)]
+    pub counts: Vec<f64>,
+}
+
 /// Arguments of `latency`.
 #[derive(Clone, Debug, Args)]
 pub struct LatencyArguments {

@@ -4,8 +4,9 @@ use clap::{Parser, Subcommand};
 
 use crate::rcs_run::{
     arguments::{
-        BoardArguments, CheckArguments, InitArguments, JobsArguments, LatencyArguments, LinkTestArguments,
-        PoseArguments, RunArguments, SendArguments, StatusArguments,
+        BoardArguments, CheckArguments, InitArguments, IoCalibrateArguments, IoReleaseArguments,
+        IoTestArguments, JobsArguments, LatencyArguments, LinkTestArguments, PoseArguments, RunArguments,
+        SendArguments, StatusArguments,
     },
     campaign::CampaignArguments,
     new::NewArguments,
@@ -61,6 +62,12 @@ pub enum Command {
     /// Exchange frames with a robot at a serial port and judge the link; the robot is commanded to the position it
     /// reports
     LinkTest(LinkTestArguments),
+    /// Test the couplers of a mapping over TCP: identity, watchdog, times, inputs; outputs only if you ask for it
+    IoTest(IoTestArguments),
+    /// Switch off outputs that an earlier controller has left on, after a question per coupler
+    IoRelease(IoReleaseArguments),
+    /// Read an input in two known states, and print `raw` and `counts` for the mapping
+    IoCalibrate(IoCalibrateArguments),
     /// Run one board of a run that was started with --boards manual
     Board(BoardArguments),
     /// Load task data, jobs and the cell description; print what was loaded, and all errors and warnings

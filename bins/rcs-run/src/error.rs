@@ -51,6 +51,9 @@ pub enum Error {
     Fork(String),
     #[error("{0}")]
     Campaign(String),
+    /// Couplers cannot be tested, released or calibrated.
+    #[error("{0}")]
+    Field(String),
     /// The simulated robot has no port.
     #[error("the simulated robot has no line to test: name a port with --robot serial:PATH")]
     NoLinkToTest,

@@ -20,6 +20,7 @@ pub mod error;
 mod explain;
 mod init;
 mod interrupt;
+mod io;
 mod jobs;
 mod last_lines;
 mod latency;
@@ -54,6 +55,9 @@ pub fn execute(cli: Cli) -> Result<ExitCode, Error> {
         Some(Command::Run(arguments)) => run::run(&arguments),
         Some(Command::Board(arguments)) => board::board(&arguments),
         Some(Command::LinkTest(arguments)) => link_test::link_test(&arguments),
+        Some(Command::IoTest(arguments)) => io::test(&arguments),
+        Some(Command::IoRelease(arguments)) => io::release(&arguments),
+        Some(Command::IoCalibrate(arguments)) => io::calibrate(&arguments),
         Some(Command::Check(arguments)) => check::check(&arguments),
         Some(Command::Jobs(arguments)) => jobs::jobs(&arguments),
         Some(Command::Tables) => tables::tables(),

@@ -5,4 +5,5 @@ mod command_line;
 mod common;
 mod console;
 mod database;
+mod io;
 mod odd_files;

@@ -1,0 +1,180 @@
+//! `rcs-run io-test`, `io-release` and `io-calibrate`: couplers over TCP without a run.
+//!
+//! Each command takes the devices of a mapping for itself, so it is refused while a run has them. A [`Probe`] is a
+//! session with a device in this thread. A question to the person lasts longer than the watchdog, so no session stays
+//! open during one.
+
+mod calibrate;
+mod outputs;
+mod release;
+mod tally;
+mod test;
+
+use std::{
+    io::{self, BufRead as _, Write as _},
+    thread,
+    time::{Duration, Instant},
+};
+
+use couplers::{Mode, Orders, OutWords, Refusal, Report, Session, State};
+use diagnostics::FIELDS;
+use executive::{
+    clock::{Monotonic, Time as _},
+    field::{DeviceError, Lock, TcpLink},
+};
+use field::Mapping;
+use rcs_core::Plain as _;
+
+pub use self::{calibrate::calibrate, release::release, test::test};
+use runtime::StartError;
+
+use crate::rcs_run::{arguments::MappingArgument, error::Error};
+
+/// Time between two exchanges.
+const PERIOD: Duration = Duration::from_millis(20);
+/// Longest time for the set-up of a device, beyond its watchdog: one of an earlier run must fire first.
+const SET_UP: Duration = Duration::from_secs(3);
+/// Number of exchanges after which the end of a session is confirmed, or not.
+const ENDING: usize = 15;
+
+/// A mapping whose devices belong to this process until it is dropped.
+pub struct Bench {
+    pub mapping: Mapping,
+    _locks: Vec<Lock>,
+}
+
+impl Bench {
+    /// Read a mapping, and take its devices.
+    ///
+    /// # Errors
+    /// [`Error::Start`] if the mapping cannot be used, or another process has a device.
+    pub fn open(argument: &MappingArgument) -> Result<Self, Error> {
+        let path = FIELDS.find(&argument.mapping, &argument.data).map_err(StartError::from)?;
+        let mapping = runtime::field::read(&path)?;
+        let lock = |device: &field::Device| {
+            let in_use = |source| StartError::FieldDevice { device: device.name.clone(), source };
+            Lock::take(device.address, device.plan.unit).map_err(in_use)
+        };
+        let locks = mapping.devices.iter().map(lock).collect::<Result<_, _>>()?;
+        Ok(Self { mapping, _locks: locks })
+    }
+
+    /// A session with a device that is set up; with [`Mode::Watch`] it has written no output.
+    ///
+    /// # Errors
+    /// The hindrance.
+    pub fn probe(&self, index: usize, mode: Mode) -> Result<Probe, Hindrance> {
+        let device = &self.mapping.devices[index];
+        let text = |error: DeviceError| Hindrance::new(format!("{}: {error}", device.name));
+        let mut probe = Probe::new(device, mode).map_err(text)?;
+        let limit = SET_UP + Duration::from_millis(device.plan.watchdog_ms.into());
+        let begun = Instant::now();
+        loop {
+            probe.exchange();
+            let report = probe.report();
+            if matches!(report.state, State::Running | State::Tripped(_)) {
+                return Ok(probe);
+            }
+            if begun.elapsed() >= limit {
+                let now = u64::try_from(Monotonic.now().as_nanos()).unwrap_or(u64::MAX);
+                let why = runtime::field::hindrance(&self.mapping, index, report, now);
+                let text = why.unwrap_or_else(|| format!("{} is not ready", device.name));
+                let on = (report.refusal == Some(Refusal::OutputsOn)).then_some(report.acknowledged);
+                return Err(Hindrance { text, on });
+            }
+            thread::sleep(PERIOD);
+        }
+    }
+}
+
+/// Why a device cannot be set up.
+#[derive(Debug)]
+pub struct Hindrance {
+    /// A sentence with the device.
+    pub text: String,
+    /// Its outputs, if some are on that may not be on at rest.
+    pub on: Option<OutWords>,
+}
+
+impl Hindrance {
+    const fn new(text: String) -> Self {
+        Self { text, on: None }
+    }
+}
+
+/// A session with a device, in this thread.
+pub struct Probe {
+    link: TcpLink,
+    session: Session,
+    pub orders: Orders,
+}
+
+impl Probe {
+    fn new(device: &field::Device, mode: Mode) -> Result<Self, DeviceError> {
+        let timeout = Duration::from_millis(device.timeout_ms.into());
+        let link = TcpLink::new(device.address, device.plan.unit, timeout);
+        let session = Session::new(device.plan.clone())?;
+        Ok(Self { link, session, orders: Orders { tick: 0, mode, go: 0, words: OutWords::ZERO } })
+    }
+
+    /// Carry out one exchange. Returns its duration.
+    pub fn exchange(&mut self) -> Duration {
+        self.orders.tick += 1;
+        let begun = Instant::now();
+        self.session.exchange(&mut self.link, &self.orders);
+        begun.elapsed()
+    }
+
+    /// Carry out exchanges for some time.
+    pub fn exchange_for(&mut self, time: Duration) {
+        let begun = Instant::now();
+        while begun.elapsed() < time {
+            self.exchange();
+            thread::sleep(PERIOD);
+        }
+    }
+
+    pub const fn report(&self) -> &Report {
+        self.session.report()
+    }
+
+    pub const fn link(&mut self) -> &mut TcpLink {
+        &mut self.link
+    }
+
+    /// End: outputs become safe, except those that may be on at rest. Returns true if the device has confirmed them.
+    pub fn end(mut self) -> bool {
+        self.orders.mode = Mode::End;
+        for _ in 0..ENDING {
+            self.exchange();
+            if let State::Ended(confirmed) = self.report().state {
+                return confirmed;
+            }
+            thread::sleep(PERIOD);
+        }
+        false
+    }
+}
+
+/// Ask a question on standard error. Anything but `y` or `yes` is a no, also the end of the input.
+pub fn ask(question: &str) -> io::Result<bool> {
+    let mut terminal = io::stderr();
+    write!(terminal, "{question} [y/N] ")?;
+    terminal.flush()?;
+    Ok(matches!(line()?.as_str(), "y" | "yes"))
+}
+
+/// Ask for the Enter key. Returns false at the end of the input.
+pub fn wait_for_enter(text: &str) -> io::Result<bool> {
+    let mut terminal = io::stderr();
+    write!(terminal, "{text}, then press Enter: ")?;
+    terminal.flush()?;
+    let mut line = String::new();
+    Ok(io::stdin().lock().read_line(&mut line)? > 0)
+}
+
+fn line() -> io::Result<String> {
+    let mut line = String::new();
+    io::stdin().lock().read_line(&mut line)?;
+    Ok(line.trim().to_lowercase())
+}

@@ -1,0 +1,176 @@
+//! `rcs-run io-test`, `io-release` and `io-calibrate` with emulated couplers over TCP.
+
+use std::{
+    fs,
+    io::{Read as _, Write as _},
+    net::{Ipv4Addr, SocketAddr},
+    path::PathBuf,
+    process::{Output, Stdio},
+};
+
+use couplers::{Emulated, Kind};
+use executive::field::{Lock, Station};
+use serde_json::Value;
+use tempfile::TempDir;
+
+use crate::common::{command, root};
+
+const ADDRESSES: [&str; 3] = ["127.0.0.1:21502", "127.0.0.1:21503", "127.0.0.1:21504"];
+const ARM: usize = 0;
+/// `grip.supply` in the first output word of the arm.
+const SUPPLY: u16 = 1 << 7;
+
+/// Three couplers, and the shipped mapping with their addresses.
+struct Cell {
+    stations: Vec<Station>,
+    directory: TempDir,
+}
+
+impl Cell {
+    fn new() -> Self {
+        let local = SocketAddr::from((Ipv4Addr::LOCALHOST, 0));
+        let open = |_| Station::open(local, Emulated::new(Kind::Bk9000, 1, 32, 16)).unwrap();
+        let stations: Vec<Station> = ADDRESSES.iter().map(open).collect();
+        let mut text = fs::read_to_string(root().join("data/field/station.toml")).unwrap();
+        for (address, station) in ADDRESSES.iter().zip(&stations) {
+            text = text.replace(address, &station.address().to_string());
+        }
+        let directory = tempfile::tempdir().unwrap();
+        fs::write(directory.path().join("cell.toml"), text).unwrap();
+        Self { stations, directory }
+    }
+
+    fn mapping(&self) -> PathBuf {
+        self.directory.path().join("cell.toml")
+    }
+
+    /// Run a command on the mapping, with answers to its questions.
+    fn run(&self, words: &[&str], answers: &str) -> Output {
+        let path = self.mapping();
+        let mut arguments = vec![words[0], path.to_str().unwrap()];
+        arguments.extend(&words[1..]);
+        let mut child = command(&arguments)
+            .stdin(Stdio::piped())
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped())
+            .spawn()
+            .unwrap();
+        child.stdin.take().unwrap().write_all(answers.as_bytes()).unwrap();
+        child.wait_with_output().unwrap()
+    }
+
+    fn output(&self) -> u16 {
+        self.stations[ARM].with(|coupler| coupler.outputs()[0])
+    }
+
+    fn writes(&self) -> u64 {
+        self.stations.iter().map(|station| station.with(|coupler| coupler.writes())).sum()
+    }
+}
+
+fn json(output: &Output) -> Value {
+    serde_json::from_slice(&output.stdout).unwrap_or_else(|error| panic!("{error}: {output:?}"))
+}
+
+#[test]
+fn test_of_inputs_gives_every_point_a_verdict_and_writes_no_output() {
+    let cell = Cell::new();
+    let output = cell.run(&["io-test", "--seconds", "1", "--json"], "");
+    assert_eq!(output.status.code(), Some(0), "{output:?}");
+    let tally = json(&output);
+    let devices = tally["devices"].as_array().unwrap();
+    assert_eq!(devices.len(), 3);
+    for device in devices {
+        assert_eq!((&device["verdict"], &device["identity"]), (&"good".into(), &"BK9000emulate".into()));
+        assert!(device["exchanges"].as_u64() >= Some(50), "{device}");
+    }
+    let inputs = tally["inputs"].as_array().unwrap();
+    let potentiometer = inputs.iter().find(|input| input["name"] == "grip.potentiometer").unwrap();
+    assert_eq!(potentiometer["verdict"], "steady", "a sensor without noise is suspicious");
+    assert!(inputs.iter().any(|input| input["name"] == "vise.PFIXTURE.opened"), "points of the workstation");
+    assert_eq!(cell.writes(), 0);
+}
+
+#[test]
+fn absent_coupler_is_named_and_fails_the_test() {
+    let mut cell = Cell::new();
+    let address = cell.stations.remove(ARM).address();
+    let output = cell.run(&["io-test", "--seconds", "1", "--json"], "");
+    assert_eq!(output.status.code(), Some(1), "{output:?}");
+    let arm = &json(&output)["devices"][ARM];
+    assert_eq!(arm["verdict"], "not-ready");
+    let expected = format!("arm at {address}: it does not accept a connection");
+    assert_eq!(arm["hindrance"], expected.as_str());
+}
+
+#[test]
+fn outputs_are_written_only_after_a_yes() {
+    let cell = Cell::new();
+    let output = cell.run(&["io-test", "--seconds", "1", "--outputs"], "n\n");
+    assert_eq!((output.status.code(), cell.writes()), (Some(2), 0), "{output:?}");
+    let output = cell.run(&["io-test", "--seconds", "1", "--outputs", "--watchdog", "--json"], "y\ny\ny\n");
+    assert_eq!(output.status.code(), Some(0), "{output:?}");
+    let tally = json(&output);
+    let verdicts: Vec<_> = tally["outputs"].as_array().unwrap().iter().map(|one| &one["verdict"]).collect();
+    assert_eq!(verdicts[0], "good");
+    assert!(verdicts[1..].iter().all(|verdict| *verdict == "skipped"), "{verdicts:?}");
+    let fallback = tally["devices"][ARM]["fallback_ms"].as_u64().unwrap();
+    assert!((450..1400).contains(&fallback), "the watchdog is set to 500 ms, found {fallback} ms");
+    assert_eq!(cell.output(), 0);
+}
+
+#[test]
+fn outputs_of_an_earlier_controller_are_released_after_a_yes() {
+    let cell = Cell::new();
+    cell.stations[ARM].with(|coupler| coupler.outputs_mut()[0] = SUPPLY);
+    let output = cell.run(&["io-release"], "n\n");
+    assert_eq!((output.status.code(), cell.output()), (Some(1), SUPPLY), "{output:?}");
+    let output = cell.run(&["io-release"], "y\n");
+    assert_eq!((output.status.code(), cell.output()), (Some(0), 0), "{output:?}");
+    let text = String::from_utf8(output.stdout).unwrap();
+    assert!(text.contains("arm: safe, and confirmed"), "{text}");
+    assert!(text.contains("fixture: no output is on"), "{text}");
+    let questions = String::from_utf8(output.stderr).unwrap();
+    assert!(questions.contains("arm: grip.supply on"), "{questions}");
+}
+
+#[test]
+fn devices_of_another_process_are_refused() {
+    let cell = Cell::new();
+    let _lock = Lock::take(cell.stations[ARM].address(), 1).unwrap();
+    let output = cell.run(&["io-test", "--seconds", "1"], "");
+    assert_eq!(output.status.code(), Some(2), "{output:?}");
+    let text = String::from_utf8(output.stderr).unwrap();
+    assert!(text.contains("arm: another process of this machine controls the device"), "{text}");
+}
+
+#[test]
+fn calibration_prints_the_line_between_two_states() {
+    let cell = Cell::new();
+    let sense = |raw: u16| cell.stations[ARM].with(|coupler| coupler.inputs_mut()[0] = raw);
+    let path = cell.mapping();
+    let arguments = ["io-calibrate", path.to_str().unwrap(), "grip.potentiometer", "--counts", "205", "2305"];
+    let mut child = command(&arguments)
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let (mut answers, mut questions) = (child.stdin.take().unwrap(), child.stderr.take().unwrap());
+    let mut asked = Vec::new();
+    for (raw, counts) in [(1000, "205"), (30_000, "2305")] {
+        while !String::from_utf8_lossy(&asked).contains(&format!("to {counts} counts")) {
+            let mut byte = [0];
+            assert_eq!(questions.read(&mut byte).unwrap(), 1, "{}", String::from_utf8_lossy(&asked));
+            asked.push(byte[0]);
+        }
+        sense(raw);
+        answers.write_all(b"\n").unwrap();
+    }
+    let output = child.wait_with_output().unwrap();
+    assert_eq!(output.status.code(), Some(0));
+    let text = String::from_utf8(output.stdout).unwrap();
+    assert_eq!(text, "\"grip.potentiometer\": raw = [1000, 30000], counts = [205, 2305]\n");
+    let output = cell.run(&["io-calibrate", "grip.supply"], "");
+    assert_eq!(output.status.code(), Some(2), "an output has no line");
+}
