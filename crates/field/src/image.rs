@@ -39,6 +39,9 @@ impl Seen {
     }
 }
 
+/// The input of the safety circuit.
+const SAFETY: &str = "safety.ok";
+
 /// Age after which a device is lost, ms: 25 ticks.
 pub const LOST_MS: u32 = 1000;
 
@@ -69,8 +72,8 @@ impl Mapping {
         inputs.field = health;
     }
 
-    /// Writes the outputs of the controller into the words of the devices. Outputs of the workstation keep their safe
-    /// value.
+    /// Writes the outputs of the controller into the words of the devices. Outputs of the workstation get their safe
+    /// value; [`collect_station`](Self::collect_station) writes them.
     pub fn collect(&self, outputs: &DeviceOutputs, images: &mut [OutWords]) {
         for point in &self.outputs {
             let Some(image) = images.get_mut(point.slot.device) else { continue };
@@ -101,6 +104,58 @@ impl Mapping {
             let raw = point.line_of(gripper).map_or(counts, |line| line.raw(counts));
             slot.put(&mut image.words, raw);
         }
+    }
+
+    /// Writes the outputs of the workstation into the words of the devices. `values` has one for each of the mapping's
+    /// outputs; those of other outputs are not used.
+    pub fn collect_station(&self, values: &[i64], images: &mut [OutWords]) {
+        for (point, value) in self.outputs.iter().zip(values).filter(|(point, _)| point.is_station()) {
+            if let Some(image) = images.get_mut(point.slot.device) {
+                point.slot.put(&mut image.words, *value);
+            }
+        }
+    }
+
+    /// The other end of [`collect_station`](Self::collect_station).
+    pub fn spread_station(&self, images: &[OutWords], values: &mut [i64]) {
+        for (point, value) in self.outputs.iter().zip(values).filter(|(point, _)| point.is_station()) {
+            if let Some(image) = images.get(point.slot.device) {
+                *value = point.slot.get(&image.words);
+            }
+        }
+    }
+
+    /// Puts what the sensors of the workstation show into the words of the devices. `values` has one for each of the
+    /// mapping's inputs.
+    pub fn sample_station(&self, values: &[i64], images: &mut [InWords]) {
+        for (point, value) in self.inputs.iter().zip(values).filter(|(point, _)| point.is_station()) {
+            if let Origin::Slot(slot) = point.from
+                && let Some(image) = images.get_mut(slot.device)
+            {
+                slot.put(&mut image.words, *value);
+            }
+        }
+    }
+
+    /// The value of an input of the workstation; `None` while it is older than its `stale_ms`.
+    #[must_use]
+    pub fn station_value(&self, input: usize, devices: &[Seen]) -> Option<i64> {
+        let point = self.inputs.get(input)?;
+        match point.from {
+            Origin::Fixed(value) => Some(value),
+            Origin::Slot(slot) => {
+                let seen = devices.get(slot.device)?;
+                let is_old = seen.connection(point.stale_ms).is_old();
+                if is_old { point.then } else { Some(slot.get(&seen.words.words)) }
+            }
+        }
+    }
+
+    /// True if the safety circuit is open, or if its input is late. A mapping without `safety.ok` has none.
+    #[must_use]
+    pub fn is_safety_open(&self, devices: &[Seen]) -> bool {
+        let input = self.inputs.iter().position(|point| point.name == SAFETY);
+        input.is_some_and(|input| self.station_value(input, devices) != Some(1))
     }
 
     /// The outputs of a device that are not safe in its image and may not be on while nothing moves.

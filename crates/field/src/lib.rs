@@ -12,6 +12,8 @@
 //!   DeviceInputs  --sample-->  words
 //! ```
 //!
+//! [`Lines`] executes the `**` lines of a job by the points of vise, machine, drum and trays.
+//!
 //! The state of a device and of its connection is in [`couplers`], which a device's [`Plan`](couplers::Plan) goes to.
 //! There are no sockets, threads and clocks here, and after the start no allocation: ages are given in milliseconds.
 //! An input that is older than its `stale_ms` keeps its last value, or gets its value `then`, and its group is reported
@@ -20,11 +22,13 @@
 #![forbid(unsafe_code)]
 
 mod image;
+mod lines;
 mod mapping;
 mod scale;
 
 pub use self::{
     image::Seen,
+    lines::{Condition, Failure, Lines, Sequence, Setting, Why},
     mapping::{Device, InPoint, Mapping, OutPoint, Presence, Target},
     scale::{Format, Line},
 };

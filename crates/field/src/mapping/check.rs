@@ -2,6 +2,7 @@
 
 mod devices;
 mod groups;
+mod lines;
 mod points;
 mod spans;
 
@@ -51,5 +52,6 @@ pub(super) fn build(sheet: &Sheet, stand_ins: &StandIns, problems: &mut Problems
     devices.lay_out(&taken, &mut inputs, &taken_out, &mut outputs, problems);
     let presence = groups::presence(sheet, stand_ins, problems);
     groups::check_holds(sheet, stand_ins, problems);
-    Mapping { name: sheet.name.clone(), devices: devices.list, inputs, outputs, presence }
+    let lines = lines::lines(sheet, stand_ins, &inputs, &outputs, problems);
+    Mapping { name: sheet.name.clone(), devices: devices.list, inputs, outputs, presence, lines }
 }

@@ -21,6 +21,8 @@ pub(super) struct Sheet {
     pub groups: BTreeMap<String, String>,
     #[serde(default)]
     pub holds: BTreeMap<String, String>,
+    #[serde(default)]
+    pub line: Vec<SequenceForm>,
 }
 
 #[derive(Deserialize)]
@@ -90,4 +92,32 @@ pub(super) struct OutForm {
     pub safe: i64,
     #[serde(default)]
     pub rest: bool,
+}
+
+/// A `[[line]]`: how the devices execute a line of a job.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct SequenceForm {
+    pub line: String,
+    pub ask: Option<String>,
+    #[serde(default)]
+    pub needs: Vec<String>,
+    #[serde(default)]
+    pub sets: BTreeMap<String, i64>,
+    #[serde(default)]
+    pub begun: Vec<String>,
+    #[serde(default = "begun_within_s")]
+    pub begun_within_s: u16,
+    pub done: Vec<String>,
+    #[serde(default, rename = "while")]
+    pub during: Vec<String>,
+    #[serde(default)]
+    pub fault: Vec<String>,
+    pub within_s: u16,
+    #[serde(default)]
+    pub then: BTreeMap<String, i64>,
+}
+
+const fn begun_within_s() -> u16 {
+    5
 }

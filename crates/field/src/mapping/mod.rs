@@ -20,6 +20,12 @@
 //!
 //! [groups]
 //! pedestal = "absent"                 # or "simulated", which is what a group without points is
+//!
+//! [[line]]                            # how the devices execute a line of a job
+//! line = "vise close PFIXTURE"
+//! sets = { "vise.PFIXTURE.close" = 1 }
+//! done = ["vise.PFIXTURE.clamped", "!vise.PFIXTURE.opened"]
+//! within_s = 10
 //! ```
 //!
 //! A group of devices is mapped whole or not at all. Parsing reports all mistakes of a file at once.
@@ -38,7 +44,10 @@ use diagnostics::{
 use interfaces::point::{Group, Input, Kind, Output};
 
 use self::form::Sheet;
-use crate::scale::{Format, Line};
+use crate::{
+    lines::Sequence,
+    scale::{Format, Line},
+};
 
 pub(crate) const KIND: FileKind = FileKind {
     whole: "the file",
@@ -59,6 +68,8 @@ pub struct Mapping {
     pub devices: Vec<Device>,
     pub inputs: Vec<InPoint>,
     pub outputs: Vec<OutPoint>,
+    /// How the devices execute lines of jobs.
+    pub lines: Vec<Sequence>,
     /// How each group of devices is present, in the order of [`Group::ALL`].
     presence: [Presence; Group::ALL.len()],
 }
@@ -167,6 +178,11 @@ impl InPoint {
         self.line
     }
 
+    /// True for an input of vise, machine, drum, trays or supply.
+    pub(crate) const fn is_station(&self) -> bool {
+        matches!(self.target, Target::Station)
+    }
+
     /// The ends of a converter, which mean a broken wire.
     pub(crate) fn ends(&self) -> Option<&RangeInclusive<i64>> {
         match self.target {
@@ -186,9 +202,15 @@ pub struct OutPoint {
     pub rest: bool,
     pub(crate) group: Group,
     pub(crate) slot: Slot,
+    pub(crate) range: RangeInclusive<i64>,
 }
 
 impl OutPoint {
+    /// True for an output to vise, machine or drum.
+    pub(crate) const fn is_station(&self) -> bool {
+        matches!(self.target, Target::Station)
+    }
+
     #[must_use]
     pub const fn device(&self) -> usize {
         self.slot.device
@@ -226,6 +248,7 @@ impl Mapping {
             devices: Vec::new(),
             inputs: Vec::new(),
             outputs: Vec::new(),
+            lines: Vec::new(),
             presence: [Presence::Simulated; Group::ALL.len()],
         }
     }

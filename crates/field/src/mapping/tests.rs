@@ -69,8 +69,8 @@ fn shipped_station_maps_every_point_but_the_camera() {
         mapping.inputs.iter().filter(move |point| matches!(point.target, Target::Word(_)) == wanted)
     };
     let mappable = Input::all().filter(|input| !matches!(input.kind(), Kind::Cable | Kind::Camera)).count();
-    assert_eq!((words(true).count(), words(false).count()), (mappable, 18));
-    assert_eq!(mapping.outputs.len(), Output::all().count() + 9);
+    assert_eq!((words(true).count(), words(false).count()), (mappable, 26));
+    assert_eq!(mapping.outputs.len(), Output::all().count() + 11);
     assert_eq!(mapping.groups(Presence::Simulated).collect::<Vec<_>>(), [Group::Vision]);
     assert!(mapping.outputs.iter().all(|point| point.safe == 0));
 }

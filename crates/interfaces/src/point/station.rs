@@ -48,7 +48,7 @@ static WRITTEN: [Row; 9] = [
     ("drum.tool", "", Group::Drum, NUMBER),
 ];
 
-/// A presence sensor of a tray, `tray.UNIT.SECTOR`.
+/// A presence sensor of a tray, `tray.UNIT.SECTOR`; sector 0 of a unit without sectors.
 static TRAY: Row = ("tray.", "", Group::Trays, 1);
 
 impl<'n> Station<'n> {
@@ -58,7 +58,7 @@ impl<'n> Station<'n> {
         READ.iter().find_map(|row| Self::of(row, name)).or_else(|| {
             let place = name.strip_prefix(TRAY.0)?;
             let (unit, sector) = place.split_once('.')?;
-            let is_sector = sector.parse::<u8>().is_ok_and(|sector| sector > 0);
+            let is_sector = sector.parse::<u8>().is_ok();
             (is_place(unit) && is_sector).then_some(Self { row: &TRAY, place })
         })
     }
@@ -118,7 +118,7 @@ mod tests {
             assert_eq!((found.group(), found.place), (group, place), "{name}");
         }
         for name in
-            ["vise.clamped", "vise..clamped", "vise.A.B.clamped", "tray.UNIT_1", "tray.UNIT_1.0", "drum"]
+            ["vise.clamped", "vise..clamped", "vise.A.B.clamped", "tray.UNIT_1", "tray.UNIT_1.x", "drum"]
         {
             assert_eq!(Station::read(name), None, "{name}");
         }

@@ -171,6 +171,7 @@ pub(super) fn output(
         rest: form.rest,
         group: point.group(),
         slot,
+        range,
     })
 }
 

@@ -1,0 +1,414 @@
+//! Lines of a job that the devices of the workstation execute: outputs are set, inputs show the progress.
+//!
+//! ```text
+//!              needs hold              begun          done, which was off before
+//!   begin ──► Checking ──► Setting ──► Running ─────────────────────────────────► ended
+//!                 │ sets are written    │ then is written, so that no start output stays on
+//!                 └──────────┴──────────┴──► failed: fault, `while` lost, too late, tripped device
+//! ```
+//!
+//! An input that is late neither fulfils nor breaks a condition. `done` counts only after `begun`, after it was seen
+//! off, or, without `begun`, after it has held for [`SETTLE_TICKS`]: an input left on by the last cycle ends no line.
+//! A line that was interrupted after it had begun continues without a second start. The state has no clock: one call
+//! of [`Lines::step`] is one tick.
+
+use std::fmt;
+
+use rcs_core::tick::TICK_MS;
+
+use crate::{image::Seen, mapping::Mapping};
+
+/// Ticks for which `done` must hold if it was on before the outputs were set, and the line has no `begun`. CHOSEN: 1 s,
+/// longer than any of its devices needs to leave its limit switch.
+pub const SETTLE_TICKS: u64 = 1000 / TICK_MS;
+const TICKS_PER_S: u64 = 1000 / TICK_MS;
+
+/// How the devices execute a line: the entry `[[line]]` of a mapping.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Sequence {
+    /// The words of the line without `**`, separated by one space.
+    pub line: String,
+    /// What the operator is asked to do; empty if the devices do it.
+    pub ask: String,
+    /// Conditions before the outputs are set.
+    pub needs: Vec<Condition>,
+    pub sets: Vec<Setting>,
+    /// The device has taken the order.
+    pub begun: Vec<Condition>,
+    pub done: Vec<Condition>,
+    /// Conditions that must hold from the setting of the outputs to the end.
+    pub during: Vec<Condition>,
+    /// Inputs that end the line with a failure.
+    pub fault: Vec<Condition>,
+    /// Outputs after `begun`, or at the end of a line without `begun`, or of one that failed.
+    pub then: Vec<Setting>,
+    pub begun_within_s: u16,
+    pub within_s: u16,
+}
+
+/// An input of the workstation, and the value that it must have.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Condition {
+    /// Index in the inputs of the mapping.
+    pub input: usize,
+    pub value: i64,
+}
+
+/// An output of the workstation, and its value.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Setting {
+    /// Index in the outputs of the mapping.
+    pub output: usize,
+    pub value: i64,
+}
+
+/// A line with single spaces, as entries and jobs are compared.
+#[must_use]
+pub fn normalized(line: &str) -> String {
+    line.split_whitespace().collect::<Vec<_>>().join(" ")
+}
+
+/// Why a line has failed.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Failure {
+    pub line: String,
+    pub why: Why,
+}
+
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Why {
+    /// The mapping has no entry for the line.
+    NoEntry,
+    /// This other line is still executed.
+    Occupied(String),
+    /// A condition of `needs` does not hold.
+    Needs(Observed),
+    /// An input of `fault` is on.
+    Fault(Observed),
+    /// A condition of `while` is lost.
+    Lost(Observed),
+    /// This condition of `begun` did not hold in time, s.
+    NotBegun(Observed, u16),
+    /// This condition of `done` did not hold in time, s.
+    NotDone(Observed, u16),
+    /// This device was tripped before the line had begun, so it is unknown whether the line has begun.
+    Unknown(String),
+    /// This device was tripped after the line had begun.
+    Interrupted(String),
+    /// This device is tripped; the line can begin again.
+    Tripped(String),
+}
+
+/// A point and its value when a line failed.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Observed {
+    pub point: String,
+    /// `None`: not read in time.
+    pub found: Option<i64>,
+    pub expected: i64,
+}
+
+impl fmt::Display for Observed {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { point, found, expected } = self;
+        match found {
+            Some(found) => write!(f, "{point} is {found}, {expected} was expected"),
+            None => write!(f, "{point} was not read, {expected} was expected"),
+        }
+    }
+}
+
+impl fmt::Display for Failure {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { line, why } = self;
+        match why {
+            Why::NoEntry => write!(f, "`{line}` has no [[line]] in the mapping, and its devices are real"),
+            Why::Occupied(other) => write!(f, "`{line}` cannot begin: `{other}` is still executed"),
+            Why::Needs(what) => write!(f, "`{line}` cannot begin: {what}"),
+            Why::Fault(what) => {
+                write!(f, "`{line}`: the device reports a fault: {} is {}", what.point, what.expected)
+            }
+            Why::Lost(what) => write!(f, "`{line}` is no longer safe: {what}"),
+            Why::NotBegun(what, s) => write!(f, "`{line}` has not begun within {s} s: {what}"),
+            Why::NotDone(what, s) => write!(f, "`{line}` has not ended within {s} s: {what}"),
+            Why::Unknown(device) => write!(
+                f,
+                "`{line}`: {device} is tripped, and it is unknown whether the line has begun: look; `job skip` if it has \
+                 ended, `job go` starts it again"
+            ),
+            Why::Tripped(device) => {
+                write!(
+                    f,
+                    "`{line}`: {device} is tripped; after `io go {device}`, `job go` begins the line again"
+                )
+            }
+            Why::Interrupted(device) => write!(
+                f,
+                "`{line}`: {device} is tripped; after `io go {device}`, `job go` waits for the end without a second start"
+            ),
+        }
+    }
+}
+
+impl std::error::Error for Failure {}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Phase {
+    /// The outputs are not set yet: an input of `needs` is late.
+    Checking,
+    /// The outputs are set; `begun` was not seen.
+    Setting,
+    /// The line has begun, or has no `begun`.
+    Running,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Current {
+    /// Index in the lines of the mapping.
+    entry: usize,
+    phase: Phase,
+    /// Ticks since the beginning of the line, and of the phase.
+    ticks: u64,
+    in_phase: u64,
+    /// `done` was seen off since the line began.
+    was_off: bool,
+    /// Ticks for which `done` has held.
+    held: u64,
+}
+
+/// The lines that the devices execute: the present one, and the outputs of all.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Lines {
+    /// One value for each output of the mapping; only those of the workstation are used.
+    outputs: Vec<i64>,
+    current: Option<Current>,
+    /// A line that had begun when a device was tripped.
+    interrupted: Option<usize>,
+    failure: Option<Failure>,
+}
+
+impl Lines {
+    /// No line; all outputs are safe.
+    #[must_use]
+    pub fn new(mapping: &Mapping) -> Self {
+        let outputs = mapping.outputs.iter().map(|point| point.safe).collect();
+        Self { outputs, current: None, interrupted: None, failure: None }
+    }
+
+    /// One value for each output of the mapping; only those of the workstation are used.
+    #[must_use]
+    pub fn outputs(&self) -> &[i64] {
+        &self.outputs
+    }
+
+    #[must_use]
+    pub const fn is_busy(&self) -> bool {
+        self.current.is_some()
+    }
+
+    /// The failure of the last line, until the next one begins.
+    #[must_use]
+    pub const fn failure(&self) -> Option<&Failure> {
+        self.failure.as_ref()
+    }
+
+    /// What the operator is asked to do now.
+    #[must_use]
+    pub fn asks<'m>(&self, mapping: &'m Mapping) -> Option<&'m str> {
+        let entry = self.current.and_then(|current| mapping.lines.get(current.entry))?;
+        Some(entry.ask.as_str()).filter(|ask| !ask.is_empty())
+    }
+
+    /// Begins a line. Its conditions are checked by [`step`](Self::step).
+    ///
+    /// # Errors
+    /// [`Failure`] if the mapping has no entry for the line, or another one is executed.
+    pub fn begin(&mut self, mapping: &Mapping, line: &str) -> Result<(), Failure> {
+        let failed = |why| Failure { line: line.to_owned(), why };
+        if let Some(other) = self.current.and_then(|current| mapping.lines.get(current.entry)) {
+            return Err(failed(Why::Occupied(other.line.clone())));
+        }
+        let entry = mapping.lines.iter().position(|sequence| sequence.line == line);
+        let entry = entry.ok_or_else(|| failed(Why::NoEntry))?;
+        self.failure = None;
+        let continues = self.interrupted.take() == Some(entry);
+        let phase = if continues { Phase::Running } else { Phase::Checking };
+        self.current = Some(Current { entry, phase, ticks: 0, in_phase: 0, was_off: continues, held: 0 });
+        Ok(())
+    }
+
+    /// Carries out one tick of the present line.
+    pub fn step(&mut self, mapping: &Mapping, devices: &[Seen]) {
+        let Some(mut current) = self.current else { return };
+        let Some(sequence) = mapping.lines.get(current.entry) else { return };
+        let facts = Facts::of(mapping, sequence, devices);
+        current.ticks += 1;
+        current.in_phase += 1;
+        current.was_off |= facts.done == Held::No;
+        current.held = if facts.done == Held::Yes { current.held + 1 } else { 0 };
+        match decide(&current, sequence, &facts) {
+            Decision::Wait => self.current = Some(current),
+            Decision::Set => {
+                self.write(&sequence.sets);
+                let phase = if sequence.begun.is_empty() { Phase::Running } else { Phase::Setting };
+                self.current = Some(Current { phase, in_phase: 0, held: 0, ..current });
+            }
+            Decision::Begun => {
+                self.write(&sequence.then);
+                self.current = Some(Current { phase: Phase::Running, in_phase: 0, was_off: true, ..current });
+            }
+            Decision::End => {
+                self.write(&sequence.then);
+                self.current = None;
+            }
+            Decision::Fail(why) => {
+                if matches!(why, Why::Interrupted(_)) {
+                    self.interrupted = Some(current.entry);
+                }
+                self.failure = Some(Failure { line: sequence.line.clone(), why });
+                self.current = None;
+                if current.phase != Phase::Checking {
+                    self.write(&sequence.then);
+                    self.release(mapping, sequence);
+                }
+            }
+        }
+    }
+
+    fn write(&mut self, settings: &[Setting]) {
+        for setting in settings {
+            if let Some(output) = self.outputs.get_mut(setting.output) {
+                *output = setting.value;
+            }
+        }
+    }
+
+    /// Sets the outputs of a failed line that may not be on at rest to their safe value.
+    fn release(&mut self, mapping: &Mapping, sequence: &Sequence) {
+        for setting in &sequence.sets {
+            let point = mapping.outputs.get(setting.output).filter(|point| !point.rest);
+            if let Some((point, output)) = point.zip(self.outputs.get_mut(setting.output)) {
+                *output = point.safe;
+            }
+        }
+    }
+}
+
+/// Whether a list of conditions holds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Held {
+    Yes,
+    No,
+    /// An input is late, and no other one breaks the list.
+    Late,
+}
+
+/// What the inputs show about a line in a tick.
+#[derive(Debug)]
+struct Facts {
+    /// A tripped device of the line.
+    tripped: Option<String>,
+    needs: Held,
+    begun: Held,
+    done: Held,
+    /// The first conditions that do not hold, for messages.
+    missing_need: Option<Observed>,
+    missing_begun: Option<Observed>,
+    missing_done: Option<Observed>,
+    lost: Option<Observed>,
+    fault: Option<Observed>,
+}
+
+impl Facts {
+    fn of(mapping: &Mapping, sequence: &Sequence, devices: &[Seen]) -> Self {
+        let observed = |condition: &Condition| Observed {
+            point: mapping.inputs.get(condition.input).map_or_else(String::new, |point| point.name.clone()),
+            found: mapping.station_value(condition.input, devices),
+            expected: condition.value,
+        };
+        let holds = |condition: &Condition| {
+            mapping.station_value(condition.input, devices).map(|found| found == condition.value)
+        };
+        let all = |conditions: &[Condition]| {
+            let held: Vec<Option<bool>> = conditions.iter().map(holds).collect();
+            match (held.contains(&Some(false)), held.contains(&None)) {
+                (true, _) => Held::No,
+                (false, true) => Held::Late,
+                (false, false) => Held::Yes,
+            }
+        };
+        let missing = |conditions: &[Condition]| {
+            conditions.iter().find(|condition| holds(condition) != Some(true)).map(observed)
+        };
+        let first = |conditions: &[Condition], state: bool| {
+            conditions.iter().find(|condition| holds(condition) == Some(state)).map(observed)
+        };
+        let inputs = [&sequence.needs, &sequence.begun, &sequence.done, &sequence.during, &sequence.fault];
+        let read = inputs.into_iter().flatten().filter_map(|one| mapping.inputs.get(one.input)?.device());
+        let written = sequence.sets.iter().filter_map(|one| Some(mapping.outputs.get(one.output)?.device()));
+        let mut used = read.chain(written);
+        let is_tripped = |device: &usize| devices.get(*device).is_some_and(|seen| seen.is_tripped);
+        let tripped = used.find(is_tripped).and_then(|device| mapping.devices.get(device));
+        Self {
+            tripped: tripped.map(|device| device.name.clone()),
+            needs: all(&sequence.needs),
+            begun: all(&sequence.begun),
+            done: all(&sequence.done),
+            missing_need: missing(&sequence.needs),
+            missing_begun: missing(&sequence.begun),
+            missing_done: missing(&sequence.done),
+            lost: first(&sequence.during, false),
+            fault: first(&sequence.fault, true),
+        }
+    }
+}
+
+#[derive(Debug)]
+enum Decision {
+    Wait,
+    /// Write the outputs of the line.
+    Set,
+    /// The device has taken the order.
+    Begun,
+    End,
+    Fail(Why),
+}
+
+/// The rows of the diagram above; the first that applies decides.
+fn decide(current: &Current, sequence: &Sequence, facts: &Facts) -> Decision {
+    let Facts { tripped, needs, begun, done, .. } = facts;
+    let is_late = current.ticks >= u64::from(sequence.within_s) * TICKS_PER_S;
+    let begins_late = current.in_phase >= u64::from(sequence.begun_within_s) * TICKS_PER_S;
+    let has_settled = sequence.begun.is_empty() && current.held >= SETTLE_TICKS;
+    let is_done = *done == Held::Yes && (current.was_off || has_settled);
+    let missing = |observed: &Option<Observed>, why: fn(Observed) -> Why| {
+        observed.clone().map_or(Decision::Wait, |what| Decision::Fail(why(what)))
+    };
+    match (current.phase, tripped) {
+        (Phase::Checking, Some(device)) => Decision::Fail(Why::Tripped(device.clone())),
+        (Phase::Setting, Some(device)) => Decision::Fail(Why::Unknown(device.clone())),
+        (Phase::Running, Some(device)) if sequence.begun.is_empty() => {
+            Decision::Fail(Why::Tripped(device.clone()))
+        }
+        (Phase::Running, Some(device)) => Decision::Fail(Why::Interrupted(device.clone())),
+        _ if facts.fault.is_some() => missing(&facts.fault, Why::Fault),
+        (Phase::Setting | Phase::Running, _) if facts.lost.is_some() => missing(&facts.lost, Why::Lost),
+        (Phase::Checking, _) if *needs == Held::No => missing(&facts.missing_need, Why::Needs),
+        (Phase::Checking, None) if *needs == Held::Yes => Decision::Set,
+        (Phase::Setting, _) if *begun == Held::Yes => Decision::Begun,
+        (Phase::Setting | Phase::Running, _) if is_done => Decision::End,
+        (Phase::Setting, _) if begins_late => {
+            let late = |what| Decision::Fail(Why::NotBegun(what, sequence.begun_within_s));
+            facts.missing_begun.clone().map_or(Decision::Wait, late)
+        }
+        (Phase::Checking, _) if is_late => missing(&facts.missing_need, Why::Needs),
+        _ if is_late => {
+            let late = |what| Decision::Fail(Why::NotDone(what, sequence.within_s));
+            facts.missing_done.clone().map_or(Decision::Wait, late)
+        }
+        _ => Decision::Wait,
+    }
+}
+
+#[cfg(test)]
+mod tests;
