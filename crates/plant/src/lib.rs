@@ -85,7 +85,7 @@ mod world;
 
 pub use cell::{
     Cell, CellError, CellEvent, Droop, Holders, LinkPose, Placement, RestoreError, RingState, SaveError,
-    WorkstationAction, WorkstationError, part_link,
+    WorkstationAction, WorkstationError, devices, part_link,
 };
 pub use description::CellDescription;
 pub use ideal::Ideal;

@@ -153,6 +153,27 @@ impl Vise {
         !self.stopped && (self.gap - self.target).abs() > 1e-9
     }
 
+    /// The opening of the selected program at which the jaw rests, or closed jaws on a part. `None` while it moves, at
+    /// the opening of another program, and where a part stops jaws that are not closing.
+    #[must_use]
+    pub fn resting(&self) -> Option<Jaws> {
+        let program = self.step(self.program);
+        let is_at = |gap: f64, jaws: Jaws| (gap - jaws.gap(program)).abs() < 1e-6;
+        if self.moving() {
+            return None;
+        }
+        if self.stopped {
+            return Some(Jaws::Closed).filter(|jaws| is_at(self.target, *jaws));
+        }
+        [Jaws::Open, Jaws::Partial, Jaws::Closed].into_iter().find(|jaws| is_at(self.gap, *jaws))
+    }
+
+    /// Name of the selected program.
+    #[must_use]
+    pub fn program(&self) -> &str {
+        &self.step(self.program).name
+    }
+
     /// True if a part stops the jaw.
     #[must_use]
     pub fn stopped(&self) -> bool {

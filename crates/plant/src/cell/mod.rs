@@ -2,6 +2,7 @@
 
 mod changing;
 mod clearing;
+pub mod devices;
 mod drumming;
 mod event;
 mod handling;

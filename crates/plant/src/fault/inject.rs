@@ -143,7 +143,7 @@ impl Injector {
             }
         }
         // Without air supply, a valve that is stuck open passes no air.
-        if self.active().any(|what| *what == What::AirLost) {
+        if self.air_lost() {
             cut_air(&mut arrives);
         }
         arrives
@@ -169,6 +169,12 @@ impl Injector {
                 running.disturb(sensor, disorder, tick, inputs);
             }
         }
+    }
+
+    /// True if the air supply has failed.
+    #[must_use]
+    pub fn air_lost(&self) -> bool {
+        self.active().any(|what| *what == What::AirLost)
     }
 
     /// True if the hydraulics have failed.

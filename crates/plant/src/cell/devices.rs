@@ -1,0 +1,462 @@
+//! Vise, machines, drum and trays as devices behind points: outputs of a controller move them, and sensors show their
+//! state. They act on the same vise, parts and drum as [`Cell::workstation`].
+//!
+//! | device | outputs | behaviour |
+//! |---|---|---|
+//! | vise | `open`, `partial`, `close`, `program` | bistable: it stays where it is while all three outputs are off |
+//! | machine | `start`, `program` | a rising `start` begins a cycle of [`MACHINING_TICKS`]; afterwards the part is machined |
+//! | drum | `grip`, `release`, `tool` | a new number brings the tool of that pocket to the fingers, once |
+//! | trays | none | a sensor per sector |
+//!
+//! The numbers of programs and pockets are those of a [`Programs`], since the cell description has names.
+
+use interfaces::point::Station;
+use interfaces::station::EStop;
+use rcs_core::tick::TICK_MS;
+
+use super::{Cell, WorkstationAction};
+use crate::{CellDescription, vise::Jaws};
+
+/// Duration of a cycle of the machine. CHOSEN: 3 s, so that a job takes little longer than with a machine that is done at
+/// once.
+pub const MACHINING_TICKS: u64 = 3000 / TICK_MS;
+/// A machine reports a fault for this time. CHOSEN: 5 s, in which its own operator acknowledges it.
+const FAULT_TICKS: u64 = 5000 / TICK_MS;
+/// The robot is clear of a machine if its fingertips are farther than this from the part's place, in. CHOSEN: more than
+/// a gripper with a part.
+const CLEAR: f64 = 20.0;
+
+/// Numbers of programs and pockets, with their names in the cell description.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Programs {
+    /// Programs of the vise.
+    pub vise: Vec<(i64, String)>,
+    /// Programs of the machines: number, location, blank and part.
+    pub machine: Vec<(i64, [String; 3])>,
+    /// Tools in the pockets of the drum.
+    pub drum: Vec<(i64, String)>,
+}
+
+/// Why the cell has no device for a point, or for a program.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum DeviceError {
+    #[error("{point}: the cell description has {expected}")]
+    NoDevice { point: String, expected: String },
+    /// A program with a name that the cell does not have.
+    #[error("program {number}: {why}")]
+    Program { number: i64, why: String },
+}
+
+/// An output that a device follows.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Output {
+    Vise(Jaws),
+    ViseProgram,
+    Start(usize),
+    MachineProgram(usize),
+    Grip,
+    Release,
+    Tool,
+}
+
+/// A sensor of a device.
+#[derive(Clone, Debug, PartialEq)]
+enum Sensor {
+    Vise(Jaws),
+    ViseProgram,
+    Ready(usize),
+    Busy(usize),
+    Done(usize),
+    Fault(usize),
+    Clear(usize),
+    Gripped,
+    Released,
+    Tool,
+    Tray(String, u16),
+    Air,
+    Safety,
+    /// An input of the controller's own records.
+    None,
+}
+
+#[derive(Clone, Debug, Default)]
+struct Machine {
+    location: String,
+    start: bool,
+    program: i64,
+    /// Ticks of the cycle that are left, and its program.
+    cycle: Option<(u64, i64)>,
+    done: bool,
+    /// Ticks for which the fault is still reported.
+    fault: u64,
+}
+
+/// The devices, with the outputs and sensors of a mapping.
+#[derive(Clone, Debug)]
+pub struct Devices {
+    programs: Programs,
+    outputs: Vec<Option<Output>>,
+    sensors: Vec<Sensor>,
+    machines: Vec<Machine>,
+    /// The opening and the program that the vise was given last.
+    vise: Option<(Jaws, i64)>,
+    vise_program: i64,
+    asked: Option<Jaws>,
+    fingers: [bool; 2],
+    pocket: i64,
+    /// Pockets whose tool was brought to the fingers.
+    emptied: Vec<i64>,
+    messages: Vec<String>,
+    /// The emergency stop of the safety circuit is pressed, in addition to those of the robot.
+    estop: bool,
+}
+
+impl Devices {
+    /// Devices for the points with these names: outputs of the controller, and its inputs. Names of the controller's own
+    /// records are permitted, and not used.
+    ///
+    /// # Errors
+    /// [`DeviceError`] for a point or a program of a device that the cell does not have.
+    pub fn new<'n>(
+        cell: &CellDescription,
+        programs: Programs,
+        outputs: impl IntoIterator<Item = &'n str>,
+        inputs: impl IntoIterator<Item = &'n str>,
+    ) -> Result<Self, DeviceError> {
+        check(&programs, cell)?;
+        let mut devices = Self {
+            programs,
+            outputs: Vec::new(),
+            sensors: Vec::new(),
+            machines: Vec::new(),
+            vise: None,
+            vise_program: 0,
+            asked: None,
+            fingers: [false; 2],
+            pocket: 0,
+            emptied: Vec::new(),
+            messages: Vec::new(),
+            estop: false,
+        };
+        for name in outputs {
+            let output =
+                Station::written(name).map(|point| devices.output(name, &point, cell)).transpose()?;
+            devices.outputs.push(output);
+        }
+        for name in inputs {
+            let sensor = Station::read(name).map(|point| devices.sensor(name, &point, cell)).transpose()?;
+            devices.sensors.push(sensor.unwrap_or(Sensor::None));
+        }
+        Ok(devices)
+    }
+
+    fn output(
+        &mut self,
+        name: &str,
+        point: &Station<'_>,
+        cell: &CellDescription,
+    ) -> Result<Output, DeviceError> {
+        let (device, last) = ends(name);
+        Ok(match (device, last) {
+            ("vise", "open") => self.vise_at(name, point, cell).map(|()| Output::Vise(Jaws::Open))?,
+            ("vise", "partial") => self.vise_at(name, point, cell).map(|()| Output::Vise(Jaws::Partial))?,
+            ("vise", "close") => self.vise_at(name, point, cell).map(|()| Output::Vise(Jaws::Closed))?,
+            ("vise", _) => self.vise_at(name, point, cell).map(|()| Output::ViseProgram)?,
+            ("machine", "start") => Output::Start(self.machine_at(name, point, cell)?),
+            ("machine", _) => Output::MachineProgram(self.machine_at(name, point, cell)?),
+            (_, "grip") => Output::Grip,
+            (_, "release") => Output::Release,
+            _ => Output::Tool,
+        })
+    }
+
+    fn sensor(
+        &mut self,
+        name: &str,
+        point: &Station<'_>,
+        cell: &CellDescription,
+    ) -> Result<Sensor, DeviceError> {
+        let (device, last) = ends(name);
+        Ok(match (device, last) {
+            ("vise", "opened") => self.vise_at(name, point, cell).map(|()| Sensor::Vise(Jaws::Open))?,
+            ("vise", "partial") => self.vise_at(name, point, cell).map(|()| Sensor::Vise(Jaws::Partial))?,
+            ("vise", "clamped") => self.vise_at(name, point, cell).map(|()| Sensor::Vise(Jaws::Closed))?,
+            ("vise", _) => self.vise_at(name, point, cell).map(|()| Sensor::ViseProgram)?,
+            ("machine", "ready") => Sensor::Ready(self.machine_at(name, point, cell)?),
+            ("machine", "busy") => Sensor::Busy(self.machine_at(name, point, cell)?),
+            ("machine", "done") => Sensor::Done(self.machine_at(name, point, cell)?),
+            ("machine", "fault") => Sensor::Fault(self.machine_at(name, point, cell)?),
+            ("machine", _) => Sensor::Clear(self.machine_at(name, point, cell)?),
+            ("tray", _) => tray_at(name, point, cell)?,
+            ("drum", "gripped") => Sensor::Gripped,
+            ("drum", "released") => Sensor::Released,
+            ("drum", _) => Sensor::Tool,
+            ("air", _) => Sensor::Air,
+            _ => Sensor::Safety,
+        })
+    }
+
+    fn vise_at(&self, name: &str, point: &Station<'_>, cell: &CellDescription) -> Result<(), DeviceError> {
+        cell.has_vise_at(point.place).map_err(|_| DeviceError::NoDevice {
+            point: name.to_owned(),
+            expected: format!("its vise at {}", cell.vise.location),
+        })
+    }
+
+    /// Index of the machine at the place of a point.
+    fn machine_at(
+        &mut self,
+        name: &str,
+        point: &Station<'_>,
+        cell: &CellDescription,
+    ) -> Result<usize, DeviceError> {
+        if let Some(index) = self.machines.iter().position(|machine| machine.location == point.place) {
+            return Ok(index);
+        }
+        let known = cell.machine_at(point.place, "");
+        known
+            .map_err(|error| DeviceError::NoDevice { point: name.to_owned(), expected: error.to_string() })?;
+        self.machines.push(Machine { location: point.place.to_owned(), ..Machine::default() });
+        Ok(self.machines.len() - 1)
+    }
+
+    /// Presses the emergency stop of the safety circuit, or releases it. It does not act on the simulated T3.
+    pub const fn press_estop(&mut self, pressed: bool) {
+        self.estop = pressed;
+    }
+
+    /// What the devices report to their operator, since the last call.
+    pub fn messages(&mut self) -> Vec<String> {
+        std::mem::take(&mut self.messages)
+    }
+
+    /// Follows the outputs of the controller, one value for each, for a tick. Call it before the cell is advanced.
+    pub fn follow(&mut self, cell: &mut Cell, values: &[i64]) {
+        let outputs: Vec<(Output, i64)> = self
+            .outputs
+            .iter()
+            .zip(values)
+            .filter_map(|(output, value)| Some(((*output)?, *value)))
+            .collect();
+        let mut openings = Vec::new();
+        for (output, value) in outputs {
+            match output {
+                Output::Vise(jaws) if value != 0 => openings.push(jaws),
+                Output::Vise(_) => {}
+                Output::ViseProgram => self.vise_program = value,
+                Output::Start(index) => self.start(cell, index, value != 0),
+                Output::MachineProgram(index) => {
+                    if let Some(machine) = self.machines.get_mut(index) {
+                        machine.program = value;
+                    }
+                }
+                Output::Grip => self.finger(cell, 0, value != 0),
+                Output::Release => self.finger(cell, 1, value != 0),
+                Output::Tool => self.turn_drum(cell, value),
+            }
+        }
+        // Valves that contradict each other move nothing.
+        self.asked = if let [jaws] = openings[..] { Some(jaws) } else { None };
+        self.move_vise(cell);
+        for index in 0..self.machines.len() {
+            self.work(cell, index);
+        }
+    }
+
+    fn move_vise(&mut self, cell: &mut Cell) {
+        let Some(jaws) = self.asked else { return };
+        let asked = (jaws, self.vise_program);
+        if self.vise == Some(asked) || cell.vise.moving() {
+            return;
+        }
+        let program = self.programs.vise.iter().find(|(number, _)| *number == asked.1);
+        let program = program.map(|(_, name)| WorkstationAction::ViseProgram { name: name.clone() });
+        let opening = match jaws {
+            Jaws::Open => WorkstationAction::ViseOpen,
+            Jaws::Partial => WorkstationAction::VisePartial,
+            Jaws::Closed => WorkstationAction::ViseClose,
+        };
+        match program.iter().chain([&opening]).try_for_each(|action| cell.workstation(action)) {
+            Ok(()) => self.vise = Some(asked),
+            Err(error) => self.messages.push(error.to_string()),
+        }
+    }
+
+    fn start(&mut self, cell: &Cell, index: usize, on: bool) {
+        let Some(machine) = self.machines.get_mut(index) else { return };
+        let rises = on && !std::mem::replace(&mut machine.start, on);
+        if !rises || machine.cycle.is_some() {
+            return;
+        }
+        (machine.done, machine.fault) = (false, 0);
+        let known = self
+            .programs
+            .machine
+            .iter()
+            .any(|(number, [location, ..])| *number == machine.program && *location == machine.location);
+        if known && is_clear(cell, &machine.location) {
+            machine.cycle = Some((MACHINING_TICKS, machine.program));
+            return;
+        }
+        machine.fault = FAULT_TICKS;
+        let why = if known {
+            "the robot is not clear of it".to_owned()
+        } else {
+            format!("it has no program {}", machine.program)
+        };
+        self.messages.push(format!("the machine at {} does not start: {why}", machine.location));
+    }
+
+    /// A tick of a machine.
+    fn work(&mut self, cell: &mut Cell, index: usize) {
+        let Some(machine) = self.machines.get_mut(index) else { return };
+        machine.fault = machine.fault.saturating_sub(1);
+        let Some((left, program)) = machine.cycle else { return };
+        let failed = if is_clear(cell, &machine.location) {
+            if left > 1 {
+                machine.cycle = Some((left - 1, program));
+                return;
+            }
+            let known = self
+                .programs
+                .machine
+                .iter()
+                .find(|(number, [location, ..])| *number == program && *location == machine.location);
+            known.and_then(|(_, [location, from, to])| {
+                let action = WorkstationAction::Machine {
+                    from: from.clone(),
+                    to: to.clone(),
+                    location: location.clone(),
+                };
+                cell.workstation(&action).err().map(|error| error.to_string())
+            })
+        } else {
+            Some("the robot came near".to_owned())
+        };
+        machine.cycle = None;
+        machine.done = failed.is_none();
+        if let Some(why) = failed {
+            machine.fault = FAULT_TICKS;
+            self.messages.push(format!("the machine at {} stops: {why}", machine.location));
+        }
+    }
+
+    /// The outputs of the drum's fingers: 0 closes, 1 opens.
+    fn finger(&mut self, cell: &mut Cell, index: usize, on: bool) {
+        let Some(last) = self.fingers.get_mut(index) else { return };
+        let rises = on && !std::mem::replace(last, on);
+        if rises && let Err(error) = cell.set_drum_fingers(index == 0) {
+            self.messages.push(error.to_string());
+        }
+    }
+
+    fn turn_drum(&mut self, cell: &mut Cell, pocket: i64) {
+        if std::mem::replace(&mut self.pocket, pocket) == pocket || self.emptied.contains(&pocket) {
+            return;
+        }
+        let Some((_, tool)) = self.programs.drum.iter().find(|(number, _)| *number == pocket) else { return };
+        match cell.workstation(&WorkstationAction::DrumTool { part: tool.clone() }) {
+            Ok(()) => self.emptied.push(pocket),
+            Err(error) => self.messages.push(error.to_string()),
+        }
+    }
+
+    /// What the sensors show, one value for each input; 0 for inputs of the controller's own records.
+    pub fn sense(&self, cell: &Cell, values: &mut Vec<i64>) {
+        let parts = if self.sensors.iter().any(|sensor| matches!(sensor, Sensor::Tray(..))) {
+            cell.parts()
+        } else {
+            Vec::new()
+        };
+        let machine = |index: &usize| self.machines.get(*index);
+        values.clear();
+        values.extend(self.sensors.iter().map(|sensor| match sensor {
+            Sensor::Vise(jaws) => i64::from(cell.vise.resting() == Some(*jaws)),
+            Sensor::ViseProgram => {
+                let name = cell.vise.program();
+                self.programs.vise.iter().find(|(_, known)| known == name).map_or(0, |(number, _)| *number)
+            }
+            Sensor::Ready(index) => {
+                i64::from(machine(index).is_some_and(|machine| machine.cycle.is_none() && machine.fault == 0))
+            }
+            Sensor::Busy(index) => i64::from(machine(index).is_some_and(|machine| machine.cycle.is_some())),
+            Sensor::Done(index) => i64::from(machine(index).is_some_and(|machine| machine.done)),
+            Sensor::Fault(index) => i64::from(machine(index).is_some_and(|machine| machine.fault > 0)),
+            Sensor::Clear(index) => {
+                i64::from(machine(index).is_some_and(|machine| is_clear(cell, &machine.location)))
+            }
+            Sensor::Gripped => i64::from(cell.drum_closed()),
+            Sensor::Released => i64::from(!cell.drum_closed()),
+            Sensor::Tool => {
+                let tool = parts_name_in_drum(cell);
+                let pocket = self.programs.drum.iter().find(|(_, name)| Some(name.as_str()) == tool);
+                pocket.map_or(0, |(number, _)| *number)
+            }
+            Sensor::Tray(unit, sector) => {
+                let there =
+                    |part: &crate::PartState| !part.held && part.location == *unit && part.sector == *sector;
+                i64::from(parts.iter().any(there))
+            }
+            Sensor::Air => i64::from(!cell.faults.air_lost()),
+            Sensor::Safety => i64::from(!EStop::ALL.iter().any(|site| cell.t3().is_pressed(*site))),
+            Sensor::None => 0,
+        }));
+    }
+}
+
+/// The first and the last word of a point's name.
+fn ends(name: &str) -> (&str, &str) {
+    let first = name.split('.').next().unwrap_or_default();
+    (first, name.rsplit('.').next().unwrap_or_default())
+}
+
+fn tray_at(name: &str, point: &Station<'_>, cell: &CellDescription) -> Result<Sensor, DeviceError> {
+    let place = point.place.split_once('.').and_then(|(unit, sector)| Some((unit, sector.parse().ok()?)));
+    let there = place.filter(|(unit, sector)| {
+        let tray = cell.tray(unit).is_some_and(|tray| tray.sector(*sector).is_some());
+        tray || cell.nest.iter().any(|nest| nest.location == *unit && nest.sector == *sector)
+    });
+    there.map(|(unit, sector)| Sensor::Tray(unit.to_owned(), sector)).ok_or_else(|| {
+        let units = cell.tray.iter().map(|tray| format!("{} with {} sectors", tray.unit, tray.sectors.len()));
+        DeviceError::NoDevice { point: name.to_owned(), expected: units.collect::<Vec<_>>().join(", ") }
+    })
+}
+
+/// Checks the names of all programs.
+fn check(programs: &Programs, cell: &CellDescription) -> Result<(), DeviceError> {
+    let vise = programs
+        .vise
+        .iter()
+        .map(|(number, name)| (*number, WorkstationAction::ViseProgram { name: name.clone() }));
+    let machine = programs.machine.iter().map(|(number, [location, from, to])| {
+        let (location, from, to) = (location.clone(), from.clone(), to.clone());
+        (*number, WorkstationAction::Machine { from, to, location })
+    });
+    let drum = programs
+        .drum
+        .iter()
+        .map(|(number, part)| (*number, WorkstationAction::DrumTool { part: part.clone() }));
+    for (number, action) in vise.chain(machine).chain(drum) {
+        let admitted = cell.admits(&action);
+        admitted.map_err(|error| DeviceError::Program { number, why: error.to_string() })?;
+    }
+    Ok(())
+}
+
+/// True if the fingertips of the robot are far from a place.
+fn is_clear(cell: &Cell, location: &str) -> bool {
+    let place = match cell.description.machine_at(location, "") {
+        Ok(super::order::Machine::Nest(nest)) => nest.frame().position,
+        _ => cell.vise.frame().position,
+    };
+    (cell.tool().position - place).norm() > CLEAR
+}
+
+/// Name of the tool at the fingers of the drum.
+fn parts_name_in_drum(cell: &Cell) -> Option<&str> {
+    let pocketed = cell.drum.tool?;
+    cell.parts.get(pocketed.part).map(|part| part.kind.name.as_str())
+}
+
+#[cfg(test)]
+mod tests;
