@@ -6,9 +6,11 @@ use clap::Parser;
 use depc::Limits;
 use executive::egm::EgmOptions;
 use programs::pages::{DataArgument, fault_file};
+use sessions::network::Address;
 
 /// The simulated T3 controller behind a pseudo-terminal: opens as a serial port, speaks DEPC. With --egm a robot
-/// with ABB's Externally Guided Motion takes its place; with --emulate it is such a robot itself.
+/// with ABB's Externally Guided Motion takes its place; with --emulate it is such a robot itself. With --station it is
+/// the whole simulated cell, behind the Modbus couplers of a mapping, EGM and vision.
 #[derive(Debug, Parser)]
 #[command(
     name = "rcs-cell",
@@ -29,14 +31,15 @@ Examples:
   rcs-cell --link /tmp/t3 --egm 6510   a gateway: the robot with EGM that sends to UDP port 6510, as a T3
   rcs-cell --emulate egm:6510          an EGM robot that sends to UDP port 6510 of this machine
   rcs-cell --emulate egm:10.0.0.7:6510,gain=10,loss=5,jitter=10    to another machine, over a bad network
+  rcs-cell --station station --egm-robot 6510 --vision unix:/tmp/rcs.sock    the whole cell
   rcs-cell --link /tmp/t3 < start.txt  commands from a file; `wait 4` waits between them
 
 Exit status: 0 ended by quit, the end of input or a signal; 1 the pseudo-terminal failed; 2 usage, or \
-the path cannot be used. The reason is the last line on standard error."
+the path, the mapping or an address cannot be used. The reason is the last line on standard error."
 )]
 pub struct Cli {
     /// Path of the symbolic link to the pseudo-terminal; no other file may be there
-    #[arg(long, value_name = "PATH", required_unless_present = "emulate")]
+    #[arg(long, value_name = "PATH", required_unless_present_any = ["emulate", "station"])]
     pub link: Option<PathBuf>,
     /// Connect the host to the EGM robot that sends to this UDP port: PORT or ADDRESS:PORT, then options after commas
     ///
@@ -51,6 +54,17 @@ pub struct Cli {
     /// silent-at, silent-for=S, seed=N.
     #[arg(long, value_name = "egm:PORT", conflicts_with_all = ["link", "auto", "faults"])]
     pub emulate: Option<EgmTarget>,
+    /// The simulated cell behind the couplers of a mapping: a name in data/field, or a file. Modbus TCP servers listen at
+    /// the addresses of the mapping; the robot is --egm-robot, the camera --vision (docs/real-cell.md)
+    #[arg(long, value_name = "NAME|FILE", conflicts_with_all = ["link", "egm", "emulate", "auto", "faults"])]
+    pub station: Option<PathBuf>,
+    /// The robot of the station: an EGM robot that sends to this UDP port: PORT or ADDRESS:PORT, then options after commas
+    /// as for --emulate
+    #[arg(long, value_name = "PORT", requires = "station", value_parser = EgmOptions::to_emulate)]
+    pub egm_robot: Option<EgmOptions>,
+    /// The camera of the station is the neighbour `vision` of a run: unix:PATH of its --network
+    #[arg(long, value_name = "ADDRESS", requires = "station")]
+    pub vision: Option<Address>,
     /// The data.
     #[command(flatten)]
     pub data: DataArgument,
@@ -61,7 +75,8 @@ pub struct Cli {
     /// limits apply per period
     #[arg(long, value_name = "MS", default_value = "40", value_parser = period)]
     pub period: Limits,
-    /// Seed of the joints' distances from HOME at start-up and of their alignment errors
+    /// Seed of the joints' distances from HOME at start-up and of their alignment errors; of the noise of a station's
+    /// sensors and of the places of its parts
     #[arg(long, value_name = "N", default_value_t = 1)]
     pub seed: u64,
     /// Fault plan for the bytes on the line: a name in the data directory, or a file (TOML); its ticks are steps of the
@@ -114,6 +129,24 @@ mod tests {
             &["--emulate", "egm:6510,slack=20,from=x"],
             &["--link", "x", "--egm", "6510,gain=5"],
             &["--link", "x", "--egm", "6510", "--auto"],
+        ] {
+            assert_eq!(cli(wrong).expect_err("refused").exit_code(), 2, "{wrong:?}");
+        }
+    }
+
+    #[test]
+    fn robot_and_camera_of_a_station_need_the_station() {
+        programs::shipped::carry();
+        let cli = |arguments: &[&str]| Cli::try_parse_from(["rcs-cell"].iter().chain(arguments));
+        assert!(
+            cli(&["--station", "station", "--egm-robot", "6510,loss=5", "--vision", "unix:/tmp/x"]).is_ok()
+        );
+        for wrong in [
+            &["--link", "x", "--egm-robot", "6510"][..],
+            &["--emulate", "egm:6510", "--vision", "unix:/tmp/x"],
+            &["--station", "station", "--link", "x"],
+            &["--station", "station", "--egm-robot", "egm:6510"],
+            &["--station", "station", "--vision", "/tmp/x"],
         ] {
             assert_eq!(cli(wrong).expect_err("refused").exit_code(), 2, "{wrong:?}");
         }

@@ -7,7 +7,6 @@ use std::{
     io::{self, BufRead as _},
     net::{Ipv4Addr, SocketAddr, UdpSocket},
     sync::{
-        Arc,
         atomic::{AtomicBool, Ordering},
         mpsc::{self, Receiver},
     },
@@ -81,13 +80,17 @@ impl Emulation {
         })
     }
 
-    /// Runs until `quit` or a signal.
+    /// Runs until the command `quit` or a signal. `lines` are commands, and `observe` gets the robot after each cycle.
     ///
     /// # Errors
     /// [`io::Error`] of the socket.
-    pub fn run(&mut self, stop: &Arc<AtomicBool>) -> io::Result<()> {
+    pub fn run(
+        &mut self,
+        stop: &AtomicBool,
+        lines: &Receiver<String>,
+        mut observe: impl FnMut(&EgmRobot),
+    ) -> io::Result<()> {
         stdout_line!("[egm] sends to {}; help lists the commands", self.host);
-        let lines = typed();
         let mut next = CYCLE_NS;
         while !stop.load(Ordering::Relaxed) {
             while let Ok(line) = lines.try_recv() {
@@ -108,6 +111,7 @@ impl Emulation {
             while now >= next {
                 next += CYCLE_NS;
                 self.cycle(now);
+                observe(&self.robot);
             }
             while let Some((_, datagram)) = self.to_host.arrived(now) {
                 self.send(&datagram)?;
@@ -197,8 +201,8 @@ fn is_quiet(error: &io::Error) -> bool {
     matches!(error.kind(), WouldBlock | Interrupted | ConnectionRefused)
 }
 
-/// Lines of standard input. The robot keeps running when standard input ends.
-fn typed() -> Receiver<String> {
+/// Lines of standard input. The program keeps running when standard input ends.
+pub fn typed() -> Receiver<String> {
     let (sender, lines) = mpsc::channel();
     thread::spawn(move || {
         for line in io::stdin().lock().lines().map_while(Result::ok) {

@@ -1,5 +1,5 @@
-//! `rcs-cell`: the simulated T3 controller behind a pseudo-terminal, a gateway to an EGM robot, or an emulated EGM
-//! robot.
+//! `rcs-cell`: the simulated T3 controller behind a pseudo-terminal, a gateway to an EGM robot, an emulated EGM robot, or
+//! the whole simulated cell behind Modbus couplers, EGM and vision ([`mod@station`]).
 //!
 //! Any DEPC host can open the terminal like the serial line of a Cincinnati Milacron T3: start-up at the console as in
 //! IV.3.3, the DEPC function of appendix A on the line, 9600 baud.
@@ -22,6 +22,7 @@ mod host_line;
 mod line;
 mod pty;
 mod shell;
+mod station;
 
 use std::{
     path::Path,
@@ -33,7 +34,7 @@ use depc::fault::{FaultKind, Plan, Rule};
 use diagnostics::{FAULTS, Source};
 use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
 
-use crate::{cli::Cli, emulate::Emulation, gateway::Gateway, pty::Pty, shell::Shell};
+use crate::{cli::Cli, emulate::Emulation, gateway::Gateway, pty::Pty, shell::Shell, station::Station};
 
 /// Exit status if the pseudo-terminal fails during the run.
 const FAILED: u8 = 1;
@@ -48,6 +49,15 @@ fn main() -> ExitCode {
         if let Err(error) = signal_hook::flag::register(signal, Arc::clone(&stop)) {
             return fail(UNUSABLE, &format!("the signal handler cannot be installed: {error}"));
         }
+    }
+    if let Some(mapping) = &cli.station {
+        return match Station::new(&cli, mapping) {
+            Ok(mut station) => match station.run(&stop) {
+                Ok(()) => ExitCode::SUCCESS,
+                Err(reason) => fail(FAILED, &reason),
+            },
+            Err(reason) => fail(UNUSABLE, &reason),
+        };
     }
     let Some(link) = &cli.link else { return emulate(&cli, &stop) };
     let plan = match cli.faults.as_deref().map(|name| plan(name, &cli.data)).transpose() {
@@ -71,11 +81,11 @@ fn main() -> ExitCode {
     }
 }
 
-/// Runs an emulated robot, if the command line asks for one instead of a link.
+/// Runs an emulated robot, if the command line asks for one instead of a link or a station.
 fn emulate(cli: &Cli, stop: &Arc<AtomicBool>) -> ExitCode {
-    let target = cli.emulate.as_ref().ok_or_else(|| "--link or --emulate is needed".to_owned());
+    let target = cli.emulate.as_ref().ok_or_else(|| "--link, --emulate or --station is needed".to_owned());
     match target.and_then(|target| Emulation::new(target, &cli.data)) {
-        Ok(mut emulation) => match emulation.run(stop) {
+        Ok(mut emulation) => match emulation.run(stop, &emulate::typed(), |_| ()) {
             Ok(()) => ExitCode::SUCCESS,
             Err(error) => fail(FAILED, &format!("the socket has failed: {error}")),
         },

@@ -21,6 +21,7 @@
 pub mod account;
 pub mod contacts;
 pub mod course;
+pub mod devices;
 pub mod failure;
 pub mod field;
 pub mod generations;

@@ -3,9 +3,12 @@
 
 use modbus::{Bits, Error, Exception, Request, Tables, Words, server};
 
+use rcs_core::Plain as _;
+
 use crate::{
     MS,
     kind::{Kind, bk9000},
+    plan::{InWords, OutWords, Plan, Span},
 };
 
 /// Number of registers of process data in each direction.
@@ -87,6 +90,50 @@ impl Emulated {
             fallbacks: 0,
             previous: Answer { bytes: [0; modbus::MOST_FRAME_BYTES], length: 0 },
         }
+    }
+
+    /// A coupler as delivered, with the registers of a plan. `None` for a plan that is not of registers, which this
+    /// coupler does not have.
+    #[must_use]
+    pub fn of(plan: &Plan) -> Option<Self> {
+        let length = |spans: &[Span], first: u16| match spans {
+            [] => Some(0),
+            [span] if !span.area.has_bits() => {
+                let length = span.first.checked_add(span.count)?.checked_sub(first)?;
+                Some(length).filter(|length| usize::from(*length) <= WORDS)
+            }
+            _ => None,
+        };
+        let facts = plan.kind.facts();
+        let inputs = length(&plan.reads, *facts.inputs.start())?;
+        let outputs = length(&plan.writes, *facts.outputs.start())?;
+        Some(Self::new(plan.kind, plan.unit, inputs, outputs)).filter(|_| plan.kind == Kind::Bk9000)
+    }
+
+    /// Puts an image of the inputs into the registers of a plan.
+    pub fn show(&mut self, plan: &Plan, image: &InWords) {
+        let first = *plan.kind.facts().inputs.start();
+        for span in &plan.reads {
+            let registers = self.inputs.iter_mut().skip(usize::from(span.first.saturating_sub(first)));
+            registers.zip(image.words).take(span.words()).for_each(|(register, word)| *register = word);
+        }
+    }
+
+    /// The outputs as an image of a plan, at the time of the last call of [`Self::advance`] or [`Self::answer`].
+    #[must_use]
+    pub fn image(&self, plan: &Plan) -> OutWords {
+        let mut image = OutWords::ZERO;
+        let first = *plan.kind.facts().outputs.start();
+        for span in &plan.writes {
+            let registers = self.outputs.iter().skip(usize::from(span.first.saturating_sub(first)));
+            image
+                .words
+                .iter_mut()
+                .zip(registers)
+                .take(span.words())
+                .for_each(|(word, register)| *word = *register);
+        }
+        image
     }
 
     /// The registers of the inputs, which the devices write.

@@ -40,7 +40,7 @@ impl Seen {
 }
 
 /// The input of the safety circuit.
-const SAFETY: &str = "safety.ok";
+pub const SAFETY: &str = "safety.ok";
 
 /// Age after which a device is lost, ms: 25 ticks.
 pub const LOST_MS: u32 = 1000;
@@ -151,11 +151,19 @@ impl Mapping {
         }
     }
 
-    /// True if the safety circuit is open, or if its input is late. A mapping without `safety.ok` has none.
+    /// True if the safety circuit is open. A late input says nothing: its device trips if it stays away. A mapping without
+    /// `safety.ok` has no safety circuit.
     #[must_use]
     pub fn is_safety_open(&self, devices: &[Seen]) -> bool {
-        let input = self.inputs.iter().position(|point| point.name == SAFETY);
-        input.is_some_and(|input| self.station_value(input, devices) != Some(1))
+        let point = self.inputs.iter().find(|point| point.name == SAFETY);
+        point.is_some_and(|point| {
+            let seen = point.device().and_then(|device| devices.get(device));
+            let fresh = seen.filter(|seen| !seen.connection(point.stale_ms).is_old());
+            match point.from {
+                Origin::Fixed(value) => value == 0,
+                Origin::Slot(slot) => fresh.is_some_and(|seen| slot.get(&seen.words.words) == 0),
+            }
+        })
     }
 
     /// The outputs of a device that are not safe in its image and may not be on while nothing moves.

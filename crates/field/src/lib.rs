@@ -27,7 +27,7 @@ mod mapping;
 mod scale;
 
 pub use self::{
-    image::Seen,
+    image::{SAFETY, Seen},
     lines::{Condition, Failure, Lines, Sequence, Setting, Why},
     mapping::{Device, InPoint, Mapping, OutPoint, Presence, Target},
     scale::{Format, Line},

@@ -206,7 +206,7 @@ impl Lines {
         self.current.is_some()
     }
 
-    /// The failure of the last line, until the next one begins.
+    /// The failure of a line, for one tick.
     #[must_use]
     pub const fn failure(&self) -> Option<&Failure> {
         self.failure.as_ref()
@@ -230,7 +230,6 @@ impl Lines {
         }
         let entry = mapping.lines.iter().position(|sequence| sequence.line == line);
         let entry = entry.ok_or_else(|| failed(Why::NoEntry))?;
-        self.failure = None;
         let continues = self.interrupted.take() == Some(entry);
         let phase = if continues { Phase::Running } else { Phase::Checking };
         self.current = Some(Current { entry, phase, ticks: 0, in_phase: 0, was_off: continues, held: 0 });
@@ -239,6 +238,7 @@ impl Lines {
 
     /// Carries out one tick of the present line.
     pub fn step(&mut self, mapping: &Mapping, devices: &[Seen]) {
+        self.failure = None;
         let Some(mut current) = self.current else { return };
         let Some(sequence) = mapping.lines.get(current.entry) else { return };
         let facts = Facts::of(mapping, sequence, devices);

@@ -12,7 +12,7 @@
 //! * [`link`]: the connection to a coupler;
 //! * [`lock`]: one process of this machine at a time writes a device;
 //! * [`neighbour`]: whether the system can deliver old packets after a loss of its link;
-//! * [`station`]: a server with an emulated coupler, for tests.
+//! * [`station`]: a server with an emulated coupler.
 
 pub mod device;
 pub mod latest;
@@ -25,5 +25,5 @@ pub use self::{
     device::{Device, DeviceError},
     link::TcpLink,
     lock::Lock,
-    station::{Station, StationError},
+    station::{Clients, Station, StationError},
 };

@@ -5,7 +5,7 @@ use std::{
     net::{SocketAddr, TcpListener, TcpStream},
     sync::{
         Arc, Mutex, MutexGuard, PoisonError,
-        atomic::{AtomicBool, AtomicU64, Ordering},
+        atomic::{AtomicBool, AtomicU64, AtomicUsize, Ordering},
     },
     thread::{self, JoinHandle},
     time::Duration,
@@ -18,6 +18,10 @@ use crate::clock::{Monotonic, Time};
 
 /// Longest wait for a request before a thread looks at faults and at the end.
 const WAIT: Duration = Duration::from_millis(2);
+/// Connections that a coupler accepts at a time; it closes further ones. CHOSEN.
+pub const MOST_CONNECTIONS: usize = 3;
+/// A connection without a byte for this time is closed: its client may have lost its power. CHOSEN.
+const IDLE: Duration = Duration::from_secs(10);
 
 /// Why a station cannot be opened.
 #[derive(Debug, thiserror::Error)]
@@ -27,6 +31,14 @@ pub struct StationError {
     source: io::Error,
 }
 
+impl StationError {
+    /// Why the address cannot be used.
+    #[must_use]
+    pub fn kind(&self) -> ErrorKind {
+        self.source.kind()
+    }
+}
+
 struct Shared {
     coupler: Mutex<Emulated>,
     /// The network is down: nothing arrives, and nothing is answered.
@@ -34,6 +46,29 @@ struct Shared {
     /// Number of restarts, changed while the coupler is locked: connections of an earlier one are closed.
     restarts: AtomicU64,
     stop: AtomicBool,
+    traffic: Traffic,
+}
+
+/// What clients do.
+#[derive(Debug, Default)]
+struct Traffic {
+    connections: AtomicUsize,
+    refused: AtomicU64,
+    /// Connections that were closed because of bytes that are no request.
+    garbled: AtomicU64,
+    requests: AtomicU64,
+}
+
+/// Connections and requests of a station.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Clients {
+    /// Open connections.
+    pub connections: usize,
+    /// Connections that were refused because there were too many.
+    pub refused: u64,
+    /// Connections that were closed because of bytes that are no request.
+    pub garbled: u64,
+    pub requests: u64,
 }
 
 impl Shared {
@@ -65,6 +100,7 @@ impl Station {
             is_cut: AtomicBool::new(false),
             restarts: AtomicU64::new(0),
             stop: AtomicBool::new(false),
+            traffic: Traffic::default(),
         });
         let served = Arc::clone(&shared);
         let thread = thread::Builder::new()
@@ -85,6 +121,18 @@ impl Station {
         let mut coupler = self.shared.coupler();
         coupler.advance(now());
         action(&mut coupler)
+    }
+
+    /// Connections and requests since the start.
+    #[must_use]
+    pub fn clients(&self) -> Clients {
+        let traffic = &self.shared.traffic;
+        Clients {
+            connections: traffic.connections.load(Ordering::Relaxed),
+            refused: traffic.refused.load(Ordering::Relaxed),
+            garbled: traffic.garbled.load(Ordering::Relaxed),
+            requests: traffic.requests.load(Ordering::Relaxed),
+        }
     }
 
     /// Cuts the network, or joins it. Requests that were sent in between arrive when it is joined, unless the client
@@ -122,10 +170,19 @@ fn accept(listener: &TcpListener, shared: &Arc<Shared>) {
         match listener.accept() {
             Ok((stream, _)) => {
                 threads.retain(|thread| !thread.is_finished());
+                if threads.len() >= MOST_CONNECTIONS {
+                    shared.traffic.refused.fetch_add(1, Ordering::Relaxed);
+                    continue;
+                }
                 let shared = Arc::clone(shared);
                 let spawned = thread::Builder::new().name("connection".into()).spawn(move || {
+                    shared.traffic.connections.fetch_add(1, Ordering::Relaxed);
+                    let ended = serve(stream, &shared);
                     // An error ends the connection, as the coupler would.
-                    let _ = serve(stream, &shared);
+                    if ended.is_err_and(|error| error.kind() == ErrorKind::InvalidData) {
+                        shared.traffic.garbled.fetch_add(1, Ordering::Relaxed);
+                    }
+                    shared.traffic.connections.fetch_sub(1, Ordering::Relaxed);
                 });
                 threads.extend(spawned);
             }
@@ -142,26 +199,31 @@ fn serve(mut stream: TcpStream, shared: &Shared) -> io::Result<()> {
     stream.set_nonblocking(false)?;
     stream.set_nodelay(true)?;
     stream.set_read_timeout(Some(WAIT))?;
+    // A client that reads no answers loses its connection.
+    stream.set_write_timeout(Some(IDLE))?;
     let restarts = shared.restarts.load(Ordering::Relaxed);
     let (mut received, mut filled) = ([0; MOST_FRAME_BYTES], 0);
     let mut answer = [0; MOST_FRAME_BYTES];
+    let mut heard = Monotonic.now();
     while !shared.stop.load(Ordering::Relaxed) && shared.restarts.load(Ordering::Relaxed) == restarts {
         match stream.read(&mut received[filled..]) {
             Ok(0) => return Ok(()),
-            Ok(read) => filled += read,
+            Ok(read) => (filled, heard) = (filled + read, Monotonic.now()),
+            Err(_) if Monotonic.now().saturating_sub(heard) > IDLE => return Ok(()),
             Err(error) if matches!(error.kind(), ErrorKind::WouldBlock | ErrorKind::TimedOut) => {}
             Err(error) => return Err(error),
         }
         if shared.is_cut.load(Ordering::Relaxed) {
             continue;
         }
-        while let Some(frame) = mbap::first_frame(&received[..filled]).map_err(io::Error::other)? {
+        while let Some(frame) = mbap::first_frame(&received[..filled]).map_err(invalid)? {
             let used = frame.len();
             let mut coupler = shared.coupler();
             if shared.restarts.load(Ordering::Relaxed) != restarts {
                 return Ok(());
             }
-            let length = coupler.answer(now(), frame, &mut answer).map_err(io::Error::other)?;
+            let length = coupler.answer(now(), frame, &mut answer).map_err(invalid)?;
+            shared.traffic.requests.fetch_add(1, Ordering::Relaxed);
             drop(coupler);
             stream.write_all(&answer[..length])?;
             received.copy_within(used..filled, 0);
@@ -169,4 +231,8 @@ fn serve(mut stream: TcpStream, shared: &Shared) -> io::Result<()> {
         }
     }
     Ok(())
+}
+
+fn invalid(error: modbus::Error) -> io::Error {
+    io::Error::new(ErrorKind::InvalidData, error)
 }

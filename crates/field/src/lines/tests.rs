@@ -101,6 +101,9 @@ impl Bench {
             let now = self.output();
             self.starts += u32::from(now & START != 0 && self.last & START == 0);
             self.last = now;
+            if self.lines.failure().is_some() {
+                break;
+            }
         }
         self
     }

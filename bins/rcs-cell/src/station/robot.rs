@@ -1,0 +1,74 @@
+//! The EGM robot of a station, in its own thread.
+
+use std::{
+    io,
+    path::Path,
+    sync::{
+        Arc, Mutex, PoisonError,
+        atomic::{AtomicBool, Ordering},
+        mpsc::{Sender, channel},
+    },
+    thread::{self, JoinHandle},
+};
+
+use executive::egm::EgmOptions;
+use geometry::kinematics::{HOME_JOINTS, Joints};
+
+use crate::{cli::EgmTarget, emulate::Emulation};
+
+pub struct Robot {
+    joints: Arc<Mutex<Joints>>,
+    buttons: Sender<String>,
+    stop: Arc<AtomicBool>,
+    thread: Option<JoinHandle<io::Result<()>>>,
+}
+
+impl Robot {
+    /// Starts a robot that sends to the port of `options`.
+    ///
+    /// # Errors
+    /// A sentence for messages.
+    pub fn start(options: &EgmOptions, data: &Path) -> Result<Self, String> {
+        let mut emulation = Emulation::new(&EgmTarget(options.clone()), data)?;
+        let joints = Arc::new(Mutex::new(HOME_JOINTS));
+        let (buttons, pressed) = channel();
+        let stop = Arc::new(AtomicBool::new(false));
+        let (ended, shown) = (Arc::clone(&stop), Arc::clone(&joints));
+        let thread = thread::Builder::new()
+            .name("robot".into())
+            .spawn(move || {
+                emulation.run(&ended, &pressed, |robot| {
+                    *shown.lock().unwrap_or_else(PoisonError::into_inner) = *robot.joints();
+                })
+            })
+            .map_err(|error| format!("no thread for the robot: {error}"))?;
+        Ok(Self { joints, buttons, stop, thread: Some(thread) })
+    }
+
+    /// Angles of the joints now, rad.
+    pub fn joints(&self) -> Joints {
+        *self.joints.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Presses a button: a command of `rcs-cell --emulate`.
+    pub fn press(&self, button: &str) {
+        // After the end of the thread its failure is reported.
+        let _ = self.buttons.send(button.to_owned());
+    }
+
+    /// The failure of its socket, once.
+    pub fn failure(&mut self) -> Option<io::Error> {
+        let thread = self.thread.take_if(|thread| thread.is_finished())?;
+        thread.join().unwrap_or_else(|_| Err(io::Error::other("its thread has panicked"))).err()
+    }
+}
+
+impl Drop for Robot {
+    fn drop(&mut self) {
+        self.stop.store(true, Ordering::Relaxed);
+        if let Some(thread) = self.thread.take() {
+            // Its failure would have been reported.
+            let _ = thread.join();
+        }
+    }
+}

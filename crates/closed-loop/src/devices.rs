@@ -1,0 +1,190 @@
+//! Lines of a job by the devices of the workstation, where a mapping has them; and the simulated devices behind the
+//! emulated couplers.
+//!
+//! ```text
+//!   `** vise close PFIXTURE` ──► field::Lines ──outputs──► couplers ──► plant's Devices ──► vise of the cell
+//!                                          ◄───inputs───          ◄──            ◄──
+//! ```
+
+use std::sync::Arc;
+
+use field::{Failure, Lines, Mapping, Presence, Seen, Sequence, Setting};
+use interfaces::{point::Group, station::ViseOpening};
+use plant::{
+    CellDescription,
+    devices::{DeviceError, Devices, Programs},
+};
+use taskdata::load::job::{Drum, Workstation as Action};
+
+/// The words of a line that devices can execute: without the place of a part in a tray, which is vision's affair.
+/// `None` for a line that no device executes.
+#[must_use]
+pub fn device_line(action: &Action) -> Option<String> {
+    Some(match action {
+        Action::Tray { location, object, .. } => {
+            format!("tray {} {} {object}", location.name, location.sector.unwrap_or_default())
+        }
+        Action::Vise { opening, location, program } => {
+            let opening = match opening {
+                ViseOpening::Partial => "partial",
+                ViseOpening::Close => "close",
+                ViseOpening::Open => "open",
+            };
+            let line = format!("vise {opening} {}", location.name);
+            program.map_or(line.clone(), |program| format!("{line} {program}"))
+        }
+        Action::Machine { blank, part, location } => format!("machine {blank} {part} {}", location.name),
+        Action::Drum(Drum::Grip) => "drum grip".to_owned(),
+        Action::Drum(Drum::Release) => "drum release".to_owned(),
+        Action::Drum(Drum::Tool(tool)) => format!("drum tool {tool}"),
+        Action::Joystick(_)
+        | Action::Press(_)
+        | Action::Release(_)
+        | Action::Panel(_)
+        | Action::Table(_)
+        | Action::Resolvers(_)
+        | Action::Load { .. }
+        | Action::Wait { .. }
+        | Action::HandOver => return None,
+    })
+}
+
+/// The group of devices that an action of a job needs.
+#[must_use]
+pub const fn group(action: &Action) -> Option<Group> {
+    match action {
+        Action::Tray { .. } => Some(Group::Trays),
+        Action::Vise { .. } => Some(Group::Vise),
+        Action::Machine { .. } => Some(Group::Machine),
+        Action::Drum(_) => Some(Group::Drum),
+        Action::Joystick(_) => Some(Group::Joystick),
+        Action::Table(_) => Some(Group::Table),
+        Action::Resolvers(_) => Some(Group::Resolvers),
+        Action::Press(_)
+        | Action::Release(_)
+        | Action::Panel(_)
+        | Action::Load { .. }
+        | Action::Wait { .. }
+        | Action::HandOver => None,
+    }
+}
+
+/// Why a mapping cannot execute an action of a job; `None` if it can, or if the cell executes it.
+#[must_use]
+pub fn refusal(mapping: &Mapping, action: &Action) -> Option<String> {
+    let group = group(action)?;
+    match mapping.presence(group) {
+        Presence::Simulated => None,
+        Presence::Absent => Some(format!("the mapping says that there is no {}", group.name())),
+        Presence::Mapped | Presence::Fixed => {
+            let Some(line) = device_line(action) else {
+                return Some(format!("{} is a real device: operate it by hand", group.name()));
+            };
+            let has_entry = mapping.lines.iter().any(|sequence| sequence.line == line);
+            (!has_entry).then(|| format!("the mapping has no [[line]] with line = \"{line}\""))
+        }
+    }
+}
+
+/// The numbers that the lines of a mapping give to programs and tools.
+#[must_use]
+pub fn programs(mapping: &Mapping) -> Programs {
+    let mut programs = Programs::default();
+    for Sequence { line, sets, .. } in &mapping.lines {
+        let number = |name: &str| {
+            let named = |setting: &&Setting| {
+                mapping.outputs.get(setting.output).is_some_and(|point| point.name == name)
+            };
+            sets.iter().find(named).map(|setting| setting.value).filter(|value| *value != 0)
+        };
+        match line.split(' ').collect::<Vec<_>>()[..] {
+            ["vise", _, location, program] => {
+                let number = number(&format!("vise.{location}.program"));
+                programs.vise.extend(number.map(|number| (number, program.to_owned())));
+            }
+            ["machine", blank, part, location] => {
+                let number = number(&format!("machine.{location}.program"));
+                let words = [location, blank, part].map(str::to_owned);
+                programs.machine.extend(number.map(|number| (number, words)));
+            }
+            ["drum", "tool", tool] => {
+                programs.drum.extend(number("drum.tool").map(|number| (number, tool.to_owned())));
+            }
+            _ => {}
+        }
+    }
+    programs
+}
+
+/// The simulated devices with the points of a mapping.
+///
+/// # Errors
+/// [`DeviceError`] for a point or a program of a device that the cell does not have.
+pub fn simulated(mapping: &Mapping, cell: &CellDescription) -> Result<Devices, DeviceError> {
+    let outputs = mapping.outputs.iter().map(|point| point.name.as_str());
+    let inputs = mapping.inputs.iter().map(|point| point.name.as_str());
+    Devices::new(cell, programs(mapping), outputs, inputs)
+}
+
+/// The lines of a job that devices execute, and the words between them and the couplers.
+#[derive(Clone, Debug)]
+pub struct StationLines {
+    mapping: Arc<Mapping>,
+    lines: Lines,
+    /// Line whose request to the operator was reported.
+    asked: bool,
+}
+
+impl StationLines {
+    #[must_use]
+    pub fn new(mapping: Arc<Mapping>) -> Self {
+        let lines = Lines::new(&mapping);
+        Self { mapping, lines, asked: false }
+    }
+
+    /// True if the devices of an action are behind couplers: the cell does not execute it.
+    #[must_use]
+    pub fn executes(&self, action: &Action) -> bool {
+        group(action).is_some_and(|group| self.mapping.presence(group) != Presence::Simulated)
+    }
+
+    /// Begins a line.
+    ///
+    /// # Errors
+    /// A sentence with the reason.
+    pub fn begin(&mut self, action: &Action) -> Result<(), String> {
+        if let Some(refusal) = refusal(&self.mapping, action) {
+            return Err(refusal);
+        }
+        let line = device_line(action).unwrap_or_default();
+        self.asked = false;
+        self.lines.begin(&self.mapping, &line).map_err(|failure| failure.to_string())
+    }
+
+    /// Carries out one tick of the present line.
+    pub fn step(&mut self, devices: &[Seen<'_>]) {
+        self.lines.step(&self.mapping, devices);
+    }
+
+    /// One value for each output of the mapping: see [`Mapping::collect_station`].
+    #[must_use]
+    pub fn outputs(&self) -> &[i64] {
+        self.lines.outputs()
+    }
+
+    #[must_use]
+    pub const fn is_busy(&self) -> bool {
+        self.lines.is_busy()
+    }
+
+    #[must_use]
+    pub const fn failure(&self) -> Option<&Failure> {
+        self.lines.failure()
+    }
+
+    /// What the operator is asked to do, once per line.
+    pub fn news(&mut self) -> Option<String> {
+        let asks = self.lines.asks(&self.mapping)?;
+        (!std::mem::replace(&mut self.asked, true)).then(|| asks.to_owned())
+    }
+}
