@@ -162,7 +162,7 @@ impl StationLines {
     }
 
     /// Carries out one tick of the present line.
-    pub fn step(&mut self, devices: &[Seen<'_>]) {
+    pub fn step(&mut self, devices: &[Seen]) {
         self.lines.step(&self.mapping, devices);
     }
 

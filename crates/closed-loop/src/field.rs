@@ -15,8 +15,12 @@ mod event;
 use std::sync::Arc;
 
 use couplers::{Emulated, InWords, MS, OutWords, PlanError, Simulated, State};
-use field::Mapping;
+use field::{Mapping, SAFETY};
 use interfaces::{DeviceInputs, DeviceOutputs};
+use plant::{
+    Cell,
+    devices::{DeviceError, Devices},
+};
 use rcs_core::{
     Plain as _,
     tick::{TICK_MS, Tick},
@@ -36,10 +40,6 @@ const TIMEOUT_MS: u16 = 6;
 /// Times at which the outputs of the end are written and read back: longer than the time limit of a session.
 const ENDING_STEP_MS: usize = 20;
 const ENDING_STEPS: usize = 12;
-/// Registers of an emulated coupler in each direction.
-const WORDS: usize = 256;
-/// First register of the outputs of an emulated coupler.
-const OUTPUTS: usize = 0x0800;
 
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum FieldError {
@@ -49,6 +49,9 @@ pub enum FieldError {
     /// Only couplers with process data are emulated.
     #[error("{device}: only devices of the kind bk9000 with registers can be simulated")]
     NotEmulated { device: String },
+    /// The cell has no device for a point of the mapping.
+    #[error(transparent)]
+    Devices(#[from] DeviceError),
     #[error("{device} is not ready after its set-up")]
     NotReady { device: String },
 }
@@ -85,6 +88,11 @@ pub struct SimulatedField {
     desk: Desk,
     simulated: Vec<Simulated>,
     now: u64,
+    /// Vise, machines, drum and trays behind the couplers.
+    devices: Option<Devices>,
+    /// What arrives at these devices, and what their sensors show: a value for each output and input of the mapping.
+    arrived: Vec<i64>,
+    sensed: Vec<i64>,
 }
 
 impl SimulatedField {
@@ -94,7 +102,11 @@ impl SimulatedField {
     /// [`FieldError`] if a device cannot be simulated.
     pub fn new(mapping: Arc<Mapping>, inputs: &DeviceInputs) -> Result<Self, FieldError> {
         let simulated = mapping.devices.iter().map(simulated).collect::<Result<_, _>>()?;
-        let mut field = Self { desk: Desk::new(mapping), simulated, now: 0 };
+        let arrived = vec![0; mapping.outputs.len()];
+        // Without devices the safety circuit is closed.
+        let sensed = mapping.inputs.iter().map(|point| i64::from(point.name == SAFETY)).collect();
+        let desk = Desk::new(mapping);
+        let mut field = Self { desk, simulated, now: 0, devices: None, arrived, sensed };
         field.sense(inputs);
         for tick in 0..SET_UP_MS / TICK_MS {
             for offset in EXCHANGES_MS {
@@ -111,6 +123,43 @@ impl SimulatedField {
         Ok(field)
     }
 
+    /// With the devices of a cell behind the couplers.
+    #[must_use]
+    pub fn with_devices(mut self, devices: Devices, cell: &Cell) -> Self {
+        devices.sense(cell, &mut self.sensed);
+        self.devices = Some(devices);
+        self
+    }
+
+    /// Move the devices of the workstation by the outputs that have arrived at them. Call it between
+    /// [`write`](Self::write) and the tick of the cell.
+    pub fn move_devices(&mut self, cell: &mut Cell) {
+        let images = self.images();
+        self.desk.mapping().spread_station(&images, &mut self.arrived);
+        if let Some(devices) = &mut self.devices {
+            devices.follow(cell, &self.arrived);
+        }
+    }
+
+    /// Read the sensors of the devices. Call it between the tick of the cell and [`read`](Self::read).
+    pub fn sense_devices(&mut self, cell: &Cell) {
+        if let Some(devices) = &self.devices {
+            devices.sense(cell, &mut self.sensed);
+        }
+    }
+
+    /// What the devices report to their operator, since the last call.
+    pub fn messages(&mut self) -> Vec<String> {
+        self.devices.as_mut().map(Devices::messages).unwrap_or_default()
+    }
+
+    /// The outputs of the couplers.
+    fn images(&self) -> Vec<OutWords> {
+        let devices = &self.desk.mapping().devices;
+        let couplers = self.simulated.iter().zip(devices);
+        couplers.map(|(simulated, planned)| simulated.coupler().image(&planned.plan)).collect()
+    }
+
     /// The outputs of a tick as they arrive at the valves. `is_cut` is true for devices without a connection.
     pub fn write(
         &mut self,
@@ -125,9 +174,7 @@ impl SimulatedField {
         }
         self.exchange((slot + EXCHANGES_MS[0]) * MS);
         let mut arriving = *outputs;
-        let mapping = self.desk.mapping();
-        let images: Vec<OutWords> = self.simulated.iter().zip(&mapping.devices).map(at_the_valves).collect();
-        mapping.spread(&images, &mut arriving);
+        self.desk.mapping().spread(&self.images(), &mut arriving);
         arriving
     }
 
@@ -159,12 +206,9 @@ impl SimulatedField {
         let mapping = self.desk.mapping();
         let mut images = vec![InWords::ZERO; self.simulated.len()];
         mapping.sample(inputs, &mut images);
+        mapping.sample_station(&self.sensed, &mut images);
         for ((simulated, image), planned) in self.simulated.iter_mut().zip(images).zip(&mapping.devices) {
-            let registers = simulated.coupler_mut().inputs_mut();
-            if let Some(span) = planned.plan.reads.first() {
-                let there = registers.iter_mut().skip(usize::from(span.first)).take(span.words());
-                there.zip(image.words).for_each(|(register, word)| *register = word);
-            }
+            simulated.coupler_mut().show(&planned.plan, &image);
         }
     }
 
@@ -182,34 +226,10 @@ impl SimulatedField {
 
 fn simulated(planned: &field::Device) -> Result<Simulated, FieldError> {
     let plan = &planned.plan;
-    let registers = |spans: &[couplers::Span], first: usize| {
-        let end = |span: &couplers::Span| (usize::from(span.first) + span.words()).checked_sub(first);
-        match spans {
-            [] => Some(0),
-            [span] if !span.area.has_bits() => end(span).filter(|end| *end <= WORDS),
-            _ => None,
-        }
-    };
-    let sizes = registers(&plan.reads, 0).zip(registers(&plan.writes, OUTPUTS));
-    let sizes = sizes.filter(|_| plan.kind == couplers::Kind::Bk9000);
-    let sizes =
-        sizes.and_then(|(inputs, outputs)| Some((u16::try_from(inputs).ok()?, u16::try_from(outputs).ok()?)));
     let name = || planned.name.clone();
-    let (inputs, outputs) = sizes.ok_or_else(|| FieldError::NotEmulated { device: name() })?;
-    let coupler = Emulated::new(plan.kind, plan.unit, inputs, outputs);
+    let coupler = Emulated::of(plan).ok_or_else(|| FieldError::NotEmulated { device: name() })?;
     Simulated::new(plan.clone(), coupler, TIMEOUT_MS)
         .map_err(|source| FieldError::Plan { device: name(), source })
-}
-
-/// The outputs of a coupler as an image.
-fn at_the_valves((simulated, planned): (&Simulated, &field::Device)) -> OutWords {
-    let mut image = OutWords::ZERO;
-    if let Some(span) = planned.plan.writes.first() {
-        let first = usize::from(span.first).saturating_sub(OUTPUTS);
-        let registers = simulated.coupler().outputs().iter().skip(first).take(span.words());
-        image.words.iter_mut().zip(registers).for_each(|(word, register)| *word = *register);
-    }
-    image
 }
 
 #[cfg(test)]

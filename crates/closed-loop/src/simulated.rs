@@ -91,13 +91,17 @@ fn advance(
     let mut outputs = *outputs;
     if let Some(Field::Simulated(field)) = workstation.field.as_deref_mut() {
         outputs = field.write(tick, &outputs, |device| cell.is_device_cut(device));
+        field.move_devices(cell);
     }
     let mut inputs = match is_elsewhere {
         true => cell.step_following(moved, &outputs),
         false => line.advance(tick, cell, &outputs),
     };
     match workstation.field.as_deref_mut() {
-        Some(Field::Simulated(field)) => inputs = field.read(tick, &inputs),
+        Some(Field::Simulated(field)) => {
+            field.sense_devices(&workstation.cell);
+            inputs = field.read(tick, &inputs);
+        }
         Some(Field::External(desk)) => {
             desk.apply(&mut inputs);
             desk.note_changes(&inputs);

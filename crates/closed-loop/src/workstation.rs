@@ -18,6 +18,9 @@ const SETTLING_LIMIT: u64 = 120_000 / TICK_MS;
 const NO_HAND_OVER: &str = "no workstation controller can connect to this run; \
                             --network ADDRESS --outside workstation --stand-alone lets one";
 
+/// The emergency of an open safety circuit.
+const SAFETY_OPEN: &str = "the safety circuit is open: safety.ok is 0";
+
 #[derive(Clone, Debug)]
 pub struct Emergency {
     pub tick: Tick,
@@ -142,6 +145,24 @@ impl SimulatedWorkstation {
         self.begin(action, line)
     }
 
+    /// Begin a line that devices behind couplers execute. Returns false for one that the cell executes; a person fills the
+    /// trays of the simulated cell.
+    fn begin_by_devices(&mut self, action: &Action) -> Result<bool, String> {
+        let Some(field) = self.field.as_deref_mut() else { return Ok(false) };
+        let is_simulated = matches!(field, Field::Simulated(_));
+        let lines = field.desk_mut().lines_mut();
+        if !lines.executes(action) {
+            return Ok(false);
+        }
+        lines.begin(action)?;
+        Ok(!(is_simulated && matches!(action, Action::Tray { .. })))
+    }
+
+    /// True while a line is executed by devices behind couplers.
+    fn is_executed_by_devices(&self) -> bool {
+        self.field.as_deref().is_some_and(|field| field.desk().lines().is_busy())
+    }
+
     fn translate(&self, action: &Action) -> Result<Vec<WorkstationAction>, String> {
         let at_the_robot = matches!(action, Action::Press(_) | Action::Release(_) | Action::Panel(_));
         if at_the_robot && self.state.robot_elsewhere {
@@ -207,6 +228,9 @@ impl Workstation for SimulatedWorkstation {
             Action::HandOver if !self.state.hands_over => return Err(NO_HAND_OVER.to_owned()),
             _ => {}
         }
+        if self.begin_by_devices(action)? {
+            return Ok(());
+        }
         for action in self.translate(action)? {
             let next = self.cell.next_part_number();
             self.cell.workstation(&action).map_err(|error| error.to_string())?;
@@ -216,17 +240,27 @@ impl Workstation for SimulatedWorkstation {
     }
 
     fn busy(&self) -> bool {
-        self.cell.workstation_busy()
+        self.cell.workstation_busy() || self.is_executed_by_devices()
+    }
+
+    /// The [[line]] of a mapping has a time limit of its own.
+    fn has_own_time_limit(&self) -> bool {
+        self.is_executed_by_devices()
     }
 
     fn fault(&self) -> Option<String> {
-        self.state.fault.clone()
+        let failure = self.field.as_deref().and_then(|field| field.desk().lines().failure());
+        self.state.fault.clone().or_else(|| failure.map(ToString::to_string))
     }
 
     /// The emergency as text, from the loss of pressure to FAULT RESET.
     fn emergency(&self) -> Option<String> {
         let faulted = self.cell.t3().stage() == Stage::Faulted;
-        let droop = self.cell.droop().filter(|droop| faulted && droop.cause.is_emergency())?;
+        let droop = self.cell.droop().filter(|droop| faulted && droop.cause.is_emergency());
+        let Some(droop) = droop else {
+            let is_open = self.field.as_deref().is_some_and(|field| field.desk().is_safety_open());
+            return is_open.then(|| SAFETY_OPEN.to_owned());
+        };
         // Adding zero turns -0.0 into 0.0.
         let [x, y, z] = droop.position.map(|inches| (inches * 10.0).round() / 10.0 + 0.0);
         Some(format!("{}, with the hand at ({x:.1} {y:.1} {z:.1} in)", droop.cause))

@@ -54,6 +54,9 @@ pub enum StartError {
     FaultsAtPort,
     #[error("the field I/O cannot begin: {0}")]
     Field(#[from] closed_loop::field::FieldError),
+    /// The mapping cannot execute lines of the job: one sentence per line.
+    #[error("the mapping of --field cannot execute the job: {}", .0.join("; "))]
+    LinesWithoutDevices(Vec<String>),
     /// Couplers over TCP need a clock in real time.
     #[error(
         "couplers over TCP need real time: add --clock real, or use --field sim:NAME for emulated couplers"

@@ -4,6 +4,7 @@ mod port;
 
 use std::path::Path;
 
+use closed_loop::devices;
 use diagnostics::{FIELDS, Source};
 use executive::egm::Peer;
 use field::{Mapping, Presence};
@@ -12,15 +13,13 @@ use os_io::files;
 use plant::fault::{FaultPlan, What};
 
 use sessions::network::Role;
+use taskdata::load::{Job, Step};
 
 pub use self::port::{FieldPort, hindrance};
 use crate::{
     config::{FieldConfig, RobotKind, RunConfig},
     error::StartError,
 };
-
-/// Groups that a mapping can have, but that this version executes only in the simulated cell.
-const ONLY_SIMULATED: [Group; 5] = [Group::Vise, Group::Machine, Group::Drum, Group::Trays, Group::Supply];
 
 /// Reads the mapping of a run. Also returns its text.
 ///
@@ -77,6 +76,25 @@ pub fn check_cuts(
     Ok(())
 }
 
+/// The lines of a job that a mapping cannot execute, with the reasons.
+#[must_use]
+pub fn refused_lines(mapping: &Mapping, job: &Job) -> Vec<String> {
+    let refused = job.steps.iter().filter_map(|line| {
+        let (Step::Workstation(action) | Step::After { action, .. }) = &line.step else { return None };
+        devices::refusal(mapping, action).map(|why| format!("`{}`: {why}", line.text))
+    });
+    refused.collect()
+}
+
+/// Checks that the mapping of a run can execute all lines of its job.
+///
+/// # Errors
+/// [`StartError::LinesWithoutDevices`].
+pub fn check_job(mapping: &Mapping, job: &Job) -> Result<(), StartError> {
+    let refused = refused_lines(mapping, job);
+    if refused.is_empty() { Ok(()) } else { Err(StartError::LinesWithoutDevices(refused)) }
+}
+
 /// The parts of a run that are simulated: groups of devices, and the robot.
 #[must_use]
 pub fn simulated(config: &RunConfig, mapping: &Mapping) -> Vec<&'static str> {
@@ -93,7 +111,7 @@ pub fn simulated(config: &RunConfig, mapping: &Mapping) -> Vec<&'static str> {
 
 /// True if the words of a group pass through the couplers.
 fn carries(mapping: &Mapping, group: Group) -> bool {
-    mapping.presence(group) != Presence::Simulated && !ONLY_SIMULATED.contains(&group)
+    mapping.presence(group) != Presence::Simulated
 }
 
 /// Messages of a run with couplers at its start.

@@ -7,8 +7,8 @@ use std::{
 };
 
 use closed_loop::{
-    JobPlayer,
-    field::{Field, SimulatedField},
+    JobPlayer, devices,
+    field::{Field, FieldError, SimulatedField},
 };
 use depc::fault::Plan;
 use diagnostics::JOBS;
@@ -118,6 +118,9 @@ impl Setup {
         let (mapping, mapping_text) =
             mapping.map_or_else(Default::default, |(mapping, text)| (Some(mapping), text));
         crate::field::check_cuts(&faults.cell, config, mapping.as_ref())?;
+        if let Some(mapping) = &mapping {
+            crate::field::check_job(mapping, &job)?;
+        }
         for line in mapping.iter().flat_map(|mapping| crate::field::introduction(config, mapping)) {
             observer.message(&line);
         }
@@ -143,8 +146,9 @@ impl Setup {
         let field = match mapping {
             Some(mapping) if config.has_real_devices() => Some(Couplers::Tcp(FieldPort::open(mapping)?)),
             Some(mapping) => {
+                let devices = devices::simulated(&mapping, &description).map_err(FieldError::from)?;
                 let field = SimulatedField::new(Arc::new(mapping), &cell.inputs())?;
-                Some(Couplers::Simulated(field))
+                Some(Couplers::Simulated(field.with_devices(devices, &cell)))
             }
             None => None,
         };

@@ -8,6 +8,7 @@ use interfaces::{DeviceInputs, DeviceOutputs, point::Kind};
 use rcs_core::{Plain as _, tick::Tick};
 
 use super::{FieldEvent, Happened};
+use crate::devices::StationLines;
 
 #[derive(Clone, Debug)]
 struct Coupler {
@@ -30,7 +31,12 @@ pub struct Desk {
     seen: Vec<Seen>,
     now: u64,
     events: Vec<FieldEvent>,
+    /// Lines of the job that devices of the workstation execute.
+    lines: StationLines,
 }
+
+/// Name of the person who is asked, in events.
+const OPERATOR: &str = "operator";
 
 impl Desk {
     /// Couplers that are being set up: nothing is written yet.
@@ -42,6 +48,7 @@ impl Desk {
         let seen = Seen { words: report.inputs, age_ms: None, is_tripped: false };
         let count = mapping.devices.len();
         Self {
+            lines: StationLines::new(Arc::clone(&mapping)),
             mapping,
             couplers: vec![coupler; count],
             images: vec![OutWords::ZERO; count],
@@ -66,6 +73,7 @@ impl Desk {
     /// The orders of a tick, with its outputs. Does not allocate.
     pub fn order(&mut self, tick: Tick, outputs: &DeviceOutputs) {
         self.mapping.collect(outputs, &mut self.images);
+        self.mapping.collect_station(self.lines.outputs(), &mut self.images);
         for (coupler, image) in self.couplers.iter_mut().zip(&self.images) {
             (coupler.orders.tick, coupler.orders.words) = (tick.0, *image);
         }
@@ -121,6 +129,35 @@ impl Desk {
         let index = self.mapping.device(name);
         let coupler = index.and_then(|index| self.couplers.get_mut(index));
         coupler.map(|coupler| change(&mut coupler.orders)).is_some()
+    }
+
+    /// The lines of the job that devices of the workstation execute.
+    #[must_use]
+    pub const fn lines(&self) -> &StationLines {
+        &self.lines
+    }
+
+    pub const fn lines_mut(&mut self) -> &mut StationLines {
+        &mut self.lines
+    }
+
+    /// True if the safety circuit is open.
+    #[must_use]
+    pub fn is_safety_open(&self) -> bool {
+        self.mapping.is_safety_open(&self.seen)
+    }
+
+    /// Carry out a tick of the present line. An open safety circuit makes the outputs of all devices safe, until they
+    /// are released.
+    fn advance_lines(&mut self) {
+        self.lines.step(&self.seen);
+        if self.is_safety_open() {
+            let running = self.couplers.iter_mut().filter(|coupler| coupler.orders.mode == Mode::Run);
+            running.for_each(|coupler| coupler.orders.mode = Mode::Safe);
+        }
+        let asks = self.lines.news().map(Happened::Asks);
+        let held = Vec::new();
+        self.events.extend(asks.map(|what| FieldEvent { device: OPERATOR.to_owned(), what, held }));
     }
 
     /// The events since the last call.
@@ -180,8 +217,10 @@ impl Desk {
         devices.map(|(device, (orders, report, age))| (device, orders, report, age))
     }
 
-    /// Note the events of the newest reports; `inputs` are those of the controller.
+    /// Note the events of the newest reports, and carry out a tick of the present line; `inputs` are those of the
+    /// controller.
     pub fn note_changes(&mut self, inputs: &DeviceInputs) {
+        self.advance_lines();
         let Self { couplers, mapping, events, now, .. } = self;
         for (index, (coupler, device)) in couplers.iter_mut().zip(&mapping.devices).enumerate() {
             let report = &coupler.report;

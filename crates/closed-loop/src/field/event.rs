@@ -12,7 +12,7 @@ pub struct FieldEvent {
     pub held: Vec<(String, i64)>,
 }
 
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Happened {
     /// The device has not answered for this time, ms.
     Stale(u32),
@@ -23,6 +23,8 @@ pub enum Happened {
     Released,
     /// The release was refused: an output that must be off at rest is commanded, or the device does not answer.
     Refused,
+    /// A line of the job needs a person.
+    Asks(String),
     /// The run has ended. True if the device has confirmed its last outputs.
     Ended(bool),
 }
@@ -30,12 +32,13 @@ pub enum Happened {
 impl FieldEvent {
     #[must_use]
     pub const fn code(&self) -> &'static str {
-        match self.what {
+        match &self.what {
             Happened::Stale(_) => "io.stale",
             Happened::Back(_) => "io.back",
             Happened::Tripped(_) => "io.tripped",
             Happened::Released => "io.released",
             Happened::Refused => "io.refused",
+            Happened::Asks(_) => "io.asks",
             Happened::Ended(_) => "io.ended",
         }
     }
@@ -67,6 +70,7 @@ impl fmt::Display for FieldEvent {
                 f,
                 "{device} is not released: it does not answer, or an output is on that may not be on at rest"
             ),
+            Happened::Asks(request) => write!(f, "the job waits until a person has done this: {request}"),
             Happened::Ended(true) => write!(f, "{device} has confirmed that its outputs are safe"),
             Happened::Ended(false) => write!(
                 f,

@@ -62,6 +62,11 @@ pub trait Workstation {
     /// True while an action is in progress.
     fn busy(&self) -> bool;
 
+    /// True while an action has a time limit of its own, which replaces that of the job.
+    fn has_own_time_limit(&self) -> bool {
+        false
+    }
+
     /// The fault of the workstation as a sentence, if any.
     fn fault(&self) -> Option<String>;
 
@@ -369,7 +374,7 @@ impl Hwsc {
         };
         if finished {
             Some(Ok(()))
-        } else if ticks >= self.time_limit {
+        } else if ticks >= self.time_limit && (commanding || !workstation.has_own_time_limit()) {
             Some(Err(JobFailure::TimeLimit(self.time_limit)))
         } else {
             None
