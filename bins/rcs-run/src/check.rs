@@ -56,6 +56,8 @@ struct Outcome {
     blocks: usize,
     records: serde_json::Map<String, serde_json::Value>,
     jobs: Vec<String>,
+    /// Jobs that a mapping cannot execute: a run with it is refused.
+    not_by_field: Vec<String>,
     findings: Vec<Finding>,
     /// The findings by the datum that is probably wrong, the worst datum first.
     data: Vec<OfDatum>,
@@ -151,6 +153,8 @@ struct Checked {
     /// Reports with their titles: task data, jobs, cell description, faults and robots.
     reports: Vec<(String, Diagnostics)>,
     jobs: Vec<String>,
+    /// Jobs that a mapping cannot execute, with the reasons.
+    not_by_field: Vec<String>,
     /// The cell, if its description has no errors.
     cell: Option<Cell>,
 }
@@ -188,6 +192,7 @@ impl Checked {
             reports.push((format!("job {name}"), report));
             names.push(name);
         }
+        let not_by_field = not_by_field(data, &sound);
         if let (Ok(store), Some((cell, source))) = (&store, &cell) {
             let known = flights.of(source);
             let (of_jobs, of_stored) = ways::of_all(&sound, store, cell.description(), &known);
@@ -206,7 +211,7 @@ impl Checked {
             reports.push(("field I/O".to_owned(), mappings(data)));
         }
         reports.push(("robots".to_owned(), robots(data)));
-        Self { reports, jobs: names, cell: cell.map(|(cell, _)| cell) }
+        Self { reports, jobs: names, not_by_field, cell: cell.map(|(cell, _)| cell) }
     }
 
     fn findings(&self) -> Vec<&Diagnostic> {
@@ -248,6 +253,9 @@ impl Checked {
         for (what, report) in &self.reports {
             text += &shown(&format!("{what}: {}\n", report.summary().trim_end()));
         }
+        for refused in &self.not_by_field {
+            text += &shown(&format!("{refused}\n"));
+        }
         text
     }
 
@@ -267,6 +275,7 @@ impl Checked {
             blocks: data.map_or(0, |report| report.blocks),
             records: loaded.map(|one| (one.file.to_owned(), one.records.into())).collect(),
             jobs: self.jobs.clone(),
+            not_by_field: self.not_by_field.clone(),
             findings: all().flat_map(|report| report.diagnostics()).map(Finding::from).collect(),
             data: self.by_datum(),
             reach: None,
@@ -328,6 +337,23 @@ fn mappings(data: &Path) -> Diagnostics {
         }
     }
     all
+}
+
+/// The jobs that a mapping of a data directory cannot execute. A directory may have mappings of several cells, so this
+/// is no error of the data.
+fn not_by_field(data: &Path, jobs: &[Job]) -> Vec<String> {
+    let mut refused = Vec::new();
+    for path in FIELDS.all(data) {
+        // A wrong mapping is a finding of its own.
+        let Ok(mapping) = field::read(&path) else { continue };
+        let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+        refused.extend(jobs.iter().filter_map(|job| {
+            let lines = field::refused_lines(&mapping, job);
+            let why = lines.first()?;
+            Some(format!("{} is refused with --field {name}: {why}", job.name))
+        }));
+    }
+    refused
 }
 
 /// The findings in the robot files of a data directory.

@@ -3,6 +3,7 @@
 use std::{
     fmt::Write as _,
     fs,
+    path::Path,
     sync::{Arc, Mutex},
 };
 
@@ -65,10 +66,30 @@ fn cut(devices: &[&str], at: u64, ticks: u64) -> (RunOutcome, Codes) {
     (outcome, codes)
 }
 
+/// The shipped mapping after a change.
+fn mapping(change: impl FnOnce(String) -> String) -> (tempfile::TempDir, FieldConfig) {
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path().join("changed.toml");
+    let text = fs::read_to_string(Path::new(DATA).join("field/station.toml")).unwrap();
+    fs::write(&path, change(text)).unwrap();
+    let field = FieldConfig::simulated(path);
+    (directory, field)
+}
+
+/// Without the devices of the workstation, whose lines the cell then executes at once.
+fn without_workstation(text: String) -> String {
+    let points = text.split("\n# Lines of jobs").next().unwrap().lines();
+    let is_kept = |line: &&str| {
+        !["vise.", "machine.", "tray."].iter().any(|group| line.starts_with(&format!("\"{group}")))
+    };
+    points.filter(is_kept).map(|line| format!("{line}\n")).collect()
+}
+
 #[test]
 fn couplers_without_a_fault_leave_the_cell_unchanged() {
+    let (_directory, field) = mapping(without_workstation);
     let mut plain = Run::new(RunConfig { field: None, ..config() }, Box::new(())).unwrap();
-    let mut through = Run::new(config(), Box::new(())).unwrap();
+    let mut through = Run::new(RunConfig { field: Some(field), ..config() }, Box::new(())).unwrap();
     loop {
         let more = [plain.step(), through.step()];
         assert_eq!(more[0], more[1], "tick {}", plain.last_tick());
@@ -84,6 +105,42 @@ fn couplers_without_a_fault_leave_the_cell_unchanged() {
     assert!(outcome.is_finished());
     let field = outcome.result.field.expect("couplers");
     assert!(field.devices.iter().all(|device| device.confirmed), "safe outputs at the end: {field}");
+}
+
+#[test]
+fn lines_are_executed_by_the_devices_behind_the_couplers() {
+    for job in ["linkbar", "clevis", "turned-part", "tool-change"] {
+        let codes = Codes::default();
+        let config = RunConfig { job: job.into(), ..config() };
+        let outcome = Run::new(config, Box::new(codes.clone())).unwrap().complete();
+        assert!(outcome.is_finished(), "{job}: {:?}", outcome.ending);
+        assert!(codes.count("io.asks") > 0, "a person fills the trays");
+        for code in LOST {
+            assert_eq!(codes.count(code), 0, "{job}: {code}");
+        }
+    }
+}
+
+#[test]
+fn job_with_a_line_without_an_entry_is_refused() {
+    let (_directory, field) =
+        mapping(|text| text.replace("line = \"vise close PFIXTURE\"", "line = \"vise close OTHER\""));
+    let refused = Run::new(RunConfig { field: Some(field), ..config() }, Box::new(())).err().unwrap();
+    assert!(matches!(&refused, StartError::LinesWithoutDevices(lines) if lines.len() == 2), "{refused}");
+    let said = "`** vise close PFIXTURE`: the mapping has no [[line]] with line = \"vise close PFIXTURE\"";
+    assert!(refused.to_string().contains(said), "{refused}");
+}
+
+#[test]
+fn trip_during_machining_ends_the_run_without_a_second_start() {
+    let undisturbed = Run::new(config(), Box::new(())).unwrap().complete();
+    let machining = undisturbed.steps.iter().find(|step| step.text.contains("machine")).unwrap();
+    let machined = machining.began.0;
+    let (outcome, codes) = cut(&["fixture"], machined + 30, 50);
+    assert!(!outcome.is_finished());
+    assert_eq!(codes.count("io.tripped"), 1);
+    let said = format!("{:?}", outcome.ending);
+    assert!(said.contains("fixture is tripped; after `io go fixture`, `job go` waits for the end"), "{said}");
 }
 
 #[test]

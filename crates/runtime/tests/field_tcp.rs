@@ -11,7 +11,7 @@ use std::{
 
 use couplers::{Emulated, InWords, Kind};
 use executive::field::Station;
-use field::Mapping;
+use field::{Mapping, SAFETY};
 use interfaces::device::GroupHealth;
 use os_io::alloc::Counting;
 use plant::{Cell, CellDescription};
@@ -71,6 +71,9 @@ impl Couplers {
         let mapping: Mapping = runtime::field::read(&self.mapping()).unwrap();
         let mut images = [InWords::ZERO; DEVICES.len()];
         mapping.sample(&inputs, &mut images);
+        // The safety circuit is closed, and the devices of the workstation are off.
+        let closed: Vec<i64> = mapping.inputs.iter().map(|point| i64::from(point.name == SAFETY)).collect();
+        mapping.sample_station(&closed, &mut images);
         for ((station, image), device) in self.stations.iter().zip(images).zip(&mapping.devices) {
             let first = usize::from(device.plan.reads[0].first);
             station.with(|coupler| {

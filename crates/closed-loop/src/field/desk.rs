@@ -112,8 +112,14 @@ impl Desk {
         self.mapping.apply(&self.seen, inputs);
     }
 
-    /// Release a tripped device. Returns false for an unknown name.
+    /// Release a tripped device; refused while the safety circuit is open. Returns false for an unknown name.
     pub fn release(&mut self, name: &str) -> bool {
+        if self.is_safety_open() {
+            let is_known = self.mapping.device(name).is_some();
+            let event = FieldEvent { device: name.to_owned(), what: Happened::Refused, held: Vec::new() };
+            self.events.extend(is_known.then_some(event));
+            return is_known;
+        }
         self.with_orders(name, |orders| {
             orders.mode = Mode::Run;
             orders.go = orders.go.wrapping_add(1);

@@ -21,7 +21,8 @@ pub enum Happened {
     /// The outputs of the device are safe until an operator releases it.
     Tripped(Trip),
     Released,
-    /// The release was refused: an output that must be off at rest is commanded, or the device does not answer.
+    /// The release was refused: an output that must be off at rest is commanded, the device does not answer, or the safety
+    /// circuit is open.
     Refused,
     /// A line of the job needs a person.
     Asks(String),
@@ -68,7 +69,8 @@ impl fmt::Display for FieldEvent {
             Happened::Released => write!(f, "{device} is released"),
             Happened::Refused => write!(
                 f,
-                "{device} is not released: it does not answer, or an output is on that may not be on at rest"
+                "{device} is not released: it does not answer, an output is on that may not be on at rest, or the \
+                 safety circuit is open"
             ),
             Happened::Asks(request) => write!(f, "the job waits until a person has done this: {request}"),
             Happened::Ended(true) => write!(f, "{device} has confirmed that its outputs are safe"),

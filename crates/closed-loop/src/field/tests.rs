@@ -175,3 +175,26 @@ fn points_are_shown_with_raw_words_and_ages() {
         "{text}"
     );
 }
+
+#[test]
+fn open_safety_circuit_makes_all_outputs_safe() {
+    let mut bench = Bench::new();
+    bench.steps(10, &closing(), "");
+    let inputs = &bench.field.desk.mapping().inputs;
+    let safety = inputs.iter().position(|point| point.name == SAFETY).unwrap();
+    bench.field.sensed[safety] = 0;
+    let (valves, _) = bench.steps(3, &closing(), "");
+    assert_eq!((valves.grip.bits, valves.tool_grip.close), (0, false));
+    assert!(bench.field.desk.release("arm"));
+    let (valves, _) = bench.steps(3, &closing(), "");
+    assert_eq!((valves.grip.bits, valves.tool_grip.close), (0, false), "not while it is open");
+    bench.field.sensed[safety] = 1;
+    let at_rest = DeviceOutputs { grip: Default::default(), ..closing() };
+    let (valves, _) = bench.steps(3, &at_rest, "");
+    assert!(!valves.tool_grip.close, "not before a release");
+    assert!(bench.field.desk.release("arm"));
+    let (valves, _) = bench.steps(3, &at_rest, "");
+    assert!(valves.tool_grip.close);
+    let tripped = ["io.tripped"; 3];
+    assert_eq!(bench.codes(), [&tripped[..], &["io.refused", "io.released"]].concat());
+}
