@@ -25,4 +25,5 @@ mod replays;
 mod seeds;
 mod survival;
 mod traces;
+mod two_programs;
 mod why;

@@ -264,7 +264,11 @@ impl Devices {
     }
 
     fn move_vise(&mut self, cell: &mut Cell) {
-        let Some(jaws) = self.asked else { return };
+        let Some(jaws) = self.asked else {
+            // A person may move the jaws while no valve is on.
+            self.vise = None;
+            return;
+        };
         let asked = (jaws, self.vise_program);
         if self.vise == Some(asked) || cell.vise.moving() {
             return;
@@ -284,7 +288,7 @@ impl Devices {
 
     fn start(&mut self, cell: &Cell, index: usize, on: bool) {
         let Some(machine) = self.machines.get_mut(index) else { return };
-        let rises = on && !std::mem::replace(&mut machine.start, on);
+        let rises = !std::mem::replace(&mut machine.start, on) && on;
         if !rises || machine.cycle.is_some() {
             return;
         }
@@ -344,7 +348,7 @@ impl Devices {
     /// The outputs of the drum's fingers: 0 closes, 1 opens.
     fn finger(&mut self, cell: &mut Cell, index: usize, on: bool) {
         let Some(last) = self.fingers.get_mut(index) else { return };
-        let rises = on && !std::mem::replace(last, on);
+        let rises = !std::mem::replace(last, on) && on;
         if rises && let Err(error) = cell.set_drum_fingers(index == 0) {
             self.messages.push(error.to_string());
         }
