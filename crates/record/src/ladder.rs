@@ -3,7 +3,10 @@
 //! A viewer shows it as a table. It is written when the command, the report or the deciding row of a process
 //! changes, and repeated with the buffers.
 
-use std::io::{Seek, Write};
+use std::{
+    borrow::Cow,
+    io::{Seek, Write},
+};
 
 use interfaces::{CommonMemory, Decided, Fault, HwsCommand, ProcessId};
 use levels::ladder::{Ladder, ProcessInfo};
@@ -21,15 +24,15 @@ messages! {
     /// A process of the ladder.
     LadderLevel {
         /// Its name, as the manual writes it.
-        process: &'static str,
+        process: Cow<'static, str>,
         /// Its command, with objects and places. A point for T3 Interface is only named: there is one per tick.
         command: String,
         /// The word of its report.
-        status: &'static str,
+        status: Cow<'static, str>,
         /// Why it failed; empty if it did not.
-        reason: &'static str,
+        reason: Cow<'static, str>,
         /// The table of the row that fired last; empty before the first.
-        table: &'static str,
+        table: Cow<'static, str>,
         /// The row.
         row: u32,
         /// Its action.
@@ -110,11 +113,11 @@ fn level(id: ProcessId, process: &ProcessInfo, hws: &HwsCommand, memory: &Common
     };
     let row = header.decided.and_then(|decided| process.row(decided));
     LadderLevel {
-        process: process.name,
+        process: process.name.into(),
         command,
-        status: said.report,
-        reason: if said.fault.is_none() { "" } else { said.fault.text() },
-        table: row.map_or("", |(table, _)| table.name),
+        status: said.report.into(),
+        reason: if said.fault.is_none() { "" } else { said.fault.text() }.into(),
+        table: row.map_or("", |(table, _)| table.name).into(),
         row: row.map_or(0, |(_, row)| row.number.into()),
         action: row.map_or_else(String::new, |(_, row)| row.call().to_string()),
         step: header.step.unwrap_or_default().as_str().to_owned(),
@@ -135,7 +138,7 @@ mod tests {
         let state = state(&HwsCommand::default(), &memory);
         assert_eq!(state.processes.len(), ProcessId::ALL.len());
         let emove = &state.processes[2];
-        assert_eq!((emove.process, emove.row, emove.reason), ("E-move", 1, Reason::NoTrajectory.text()));
+        assert_eq!((&*emove.process, emove.row, &*emove.reason), ("E-move", 1, Reason::NoTrajectory.text()));
         assert!(state.processes.iter().all(|level| level.process == "E-move" || level.reason.is_empty()));
         assert!(emove.command.starts_with("MOV-TO-LOC") && !emove.table.is_empty(), "{emove:?}");
     }

@@ -4,14 +4,18 @@
 //! A message has the whole state, so that a reader needs only the last one. It is written when the state
 //! changes, and repeated with the buffers.
 
-use std::io::{Seek, Write};
+use std::{
+    borrow::Cow,
+    io::{Seek, Write},
+};
 
 use mcap::McapResult;
 use rcs_core::tick::Tick;
 
 use crate::{
     channels::Output,
-    proto::typed::{self, messages},
+    proto::typed::{self, Message, messages},
+    reader::Log,
 };
 
 /// Topic of the lines of the job.
@@ -52,7 +56,7 @@ messages! {
     JobState {
         /// `plays`, `waits` for an operator, `over`, `failed`, `ends` (the robot is brought to rest), or `outside`: a
         /// workstation controller in another process commands.
-        phase: &'static str,
+        phase: Cow<'static, str>,
         /// Number of the line that was begun last; 0 before the first.
         index: u32,
         /// Number of lines.
@@ -65,7 +69,7 @@ messages! {
         /// The tick after which the step was begun.
         began: u64,
         /// `executing`, `finished`, `error`, `error as expected`, `interrupted`; empty before the first step.
-        outcome: &'static str,
+        outcome: Cow<'static, str>,
         /// Duration of the step, ticks; 0 while it is executed.
         ticks: u64,
         /// Why the job waits or has failed.
@@ -81,7 +85,7 @@ messages! {
     /// Who commands the robot.
     Commander {
         /// `job`, `operator`, or `workstation controller`.
-        source: &'static str,
+        source: Cow<'static, str>,
         /// Name of the operator in command, whose requests alone are accepted, except stops; empty for none.
         operator: String,
         /// Names of the connected operators.
@@ -206,6 +210,61 @@ pub enum View {
     Couplers(Couplers),
 }
 
+/// A state with a channel of its own.
+pub trait State: Message + Default + PartialEq {
+    const TOPIC: &'static str;
+}
+
+macro_rules! states {
+    ($($of:ty: $topic:expr;)+) => { $(
+        impl State for $of {
+            const TOPIC: &'static str = $topic;
+        }
+    )+ };
+}
+
+states! {
+    JobLines: JOB_LINES;
+    JobState: JOB_STATE;
+    Commander: COMMANDER;
+    Controller: CONTROLLER;
+    Parts: PARTS;
+    Places: PLACES;
+    Couplers: FIELD;
+}
+
+/// A state over the ticks of a log. Repetitions of a message are left out.
+#[derive(Clone, Debug, Default)]
+pub struct Changes<S>(Vec<(Tick, S)>);
+
+impl<S: State> Changes<S> {
+    /// The changes of a state in a log; none if the log has no such channel.
+    #[must_use]
+    pub fn of(log: &Log) -> Self {
+        let mut changes: Vec<(Tick, S)> = Vec::new();
+        for (tick, data) in log.messages(S::TOPIC) {
+            let state = typed::decode(&data);
+            if changes.last().is_none_or(|(_, last)| *last != state) {
+                changes.push((tick, state));
+            }
+        }
+        Self(changes)
+    }
+
+    /// The state in a tick; `None` before the first message.
+    #[must_use]
+    pub fn at(&self, tick: Tick) -> Option<&S> {
+        let end = self.0.partition_point(|(from, _)| *from <= tick);
+        self.0.get(end.checked_sub(1)?).map(|(_, state)| state)
+    }
+
+    /// The last state.
+    #[must_use]
+    pub fn last(&self) -> Option<&S> {
+        self.0.last().map(|(_, state)| state)
+    }
+}
+
 /// Number of kinds of [`View`].
 pub const KINDS: usize = 7;
 
@@ -251,21 +310,18 @@ struct Channel {
 
 impl Views {
     pub fn open<W: Write + Seek>(output: &mut Output<W>) -> McapResult<Self> {
-        fn channel<M: typed::Message, W: Write + Seek>(
-            output: &mut Output<W>,
-            topic: &str,
-        ) -> McapResult<Channel> {
-            let id = output.protobuf(topic, &typed::name::<M>(), &typed::descriptor_set::<M>())?;
+        fn channel<S: State>(output: &mut Output<impl Write + Seek>) -> McapResult<Channel> {
+            let id = output.protobuf(S::TOPIC, &typed::name::<S>(), &typed::descriptor_set::<S>())?;
             Ok(Channel { id, last: Vec::new(), written: Tick::BEFORE_START })
         }
         Ok(Self([
-            channel::<JobLines, W>(output, JOB_LINES)?,
-            channel::<JobState, W>(output, JOB_STATE)?,
-            channel::<Commander, W>(output, COMMANDER)?,
-            channel::<Controller, W>(output, CONTROLLER)?,
-            channel::<Parts, W>(output, PARTS)?,
-            channel::<Places, W>(output, PLACES)?,
-            channel::<Couplers, W>(output, FIELD)?,
+            channel::<JobLines>(output)?,
+            channel::<JobState>(output)?,
+            channel::<Commander>(output)?,
+            channel::<Controller>(output)?,
+            channel::<Parts>(output)?,
+            channel::<Places>(output)?,
+            channel::<Couplers>(output)?,
         ]))
     }
 

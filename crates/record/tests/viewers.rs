@@ -9,7 +9,7 @@ use prost_types::{DescriptorProto, FileDescriptorSet, field_descriptor_proto::Ty
 use rcs_core::tick::Tick;
 use record::{
     CellFrame, CellModel, End, Epoch, Link, Pace, Recorder, Setup, Shown,
-    views::{JOB_STATE, JobState, View},
+    views::{Changes, JOB_STATE, JobState, View},
 };
 use serde_json::Value;
 
@@ -145,7 +145,14 @@ fn states_are_logged_on_change_and_in_the_last_tick() {
     for topic in ["/task/status", "/task/row", "/ladder", "/instruments"] {
         assert_eq!(ticks(&log, topic), [1, 30], "{topic}");
     }
-    let lines: Vec<_> =
-        record::Log::open(&path).unwrap().lines().map(|line| (line.tick, line.text)).collect();
+    let log = record::Log::open(&path).unwrap();
+    let changes = Changes::<JobState>::of(&log);
+    let index = |tick| changes.at(Tick(tick)).map(|state| state.index);
+    assert_eq!(
+        [index(2), index(3), index(6), index(7), index(31)],
+        [None, Some(1), Some(1), Some(2), Some(2)]
+    );
+    assert_eq!(changes.last().map(|state| state.text.as_str()), Some("== PAUSE"));
+    let lines: Vec<_> = log.lines().map(|line| (line.tick, line.text)).collect();
     assert_eq!(lines, [(Tick(3), "line 1 of 2: ** vise open PFIXTURE".to_owned())]);
 }

@@ -1,16 +1,18 @@
 //! Publishes the state of the simulated cell to other programs: [`CellView`], filled after each tick.
 
-use ::neighbours::workstation::player::BegunStep;
 use closed_loop::failure::Failure;
 use executive::memory::{
     Text,
-    cell::{CellView, ControllerView, JobView, Lamps, LatenessView, PARTS, PartView, TableView},
+    cell::{
+        CellView, CommanderView, ControllerView, JobView, Lamps, LatenessView, PARTS, PartView, TableView,
+    },
 };
 use plant::{
     Cell, EStop, PartState, TablePanel,
     t3::{Stage, T3Controller},
 };
 use rcs_core::{name::Name16, tick::Tick};
+use record::views::{Commander, JobState};
 
 use crate::pace::Pace;
 
@@ -24,22 +26,25 @@ pub struct View {
 }
 
 impl View {
-    /// Fill the view with the cell after `tick`. `warning` is the last warning on the screen of the robot controller;
-    /// `place` is the number of the job's last begun line and the number of its lines; `steps` are all begun steps.
+    /// Fill the view with the cell after `tick`. `warning` is the last warning on the screen of the robot controller.
+    /// `sank` is true if the arm has lost its pressure in this tick.
     pub fn look(
         &mut self,
         tick: Tick,
-        cell: &Cell,
-        warning: Option<&Failure>,
-        (place, steps): ((usize, usize), &[BegunStep]),
+        (cell, warning, sank): (&Cell, Option<&Failure>, bool),
+        (job, commander): (&JobState, &Commander),
         pace: &Pace,
     ) -> &CellView {
         let parts = cell.parts();
         let (fingers, force) = cell.fingers();
         let (hand, hand_force) = cell.pedestal_fingers();
+        let controller = controller(cell.t3(), warning, tick, &self.shown.controller);
         self.shown = CellView {
             tick,
-            controller: controller(cell.t3(), warning, tick, &self.shown.controller),
+            controller: ControllerView {
+                cut_tick: cut_tick(&self.shown.controller, &controller, tick, sank),
+                ..controller
+            },
             table: table(cell.table_panel()),
             joints: cell.joints(),
             tool: cell.tool().position.into(),
@@ -50,7 +55,20 @@ impl View {
             gripper: cell.gripper(),
             part_count: count(parts.len()),
             parts: shown(&parts),
-            job: job(place, steps),
+            job: JobView {
+                lines: job.lines,
+                begun: job.index,
+                line: Text::clipped(&job.text),
+                began: Tick(job.began),
+                phase: Text::clipped(&job.phase),
+                reason: Text::clipped(&job.reason),
+            },
+            commander: CommanderView {
+                source: Text::clipped(&commander.source),
+                operator: Text::clipped(&commander.operator),
+                is_stopped: commander.is_stopped,
+                by_hand: commander.by_hand,
+            },
             lateness: lateness(self.shown.lateness, tick, pace),
         };
         &self.shown
@@ -87,9 +105,20 @@ pub fn controller(
         screen,
         screen_tick,
         cut: t3.cut().map_or_else(Text::default, |cut| Text::clipped(&cut.to_string())),
+        cut_tick: Tick::BEFORE_START,
         estops: std::array::from_fn(|at| EStop::ALL.get(at).is_some_and(|site| t3.is_pressed(*site))),
         aligned: t3.aligned(),
         at_rest: t3.at_rest(),
+    }
+}
+
+/// The tick in which the arm loses its pressure. A button is pressed after the tick, so it takes effect in the next.
+fn cut_tick(before: &ControllerView, now: &ControllerView, tick: Tick, sank: bool) -> Tick {
+    match now.cut.as_str() {
+        "" => Tick::BEFORE_START,
+        _ if before.cut == now.cut => before.cut_tick,
+        _ if sank => tick,
+        _ => tick.next(),
     }
 }
 
@@ -116,16 +145,6 @@ fn shown(parts: &[PartState]) -> [PartView; PARTS] {
         };
     }
     views
-}
-
-fn job((begun, lines): (usize, usize), steps: &[BegunStep]) -> JobView {
-    let last = steps.last();
-    JobView {
-        lines: count(lines),
-        begun: count(begun),
-        line: last.map_or_else(Text::default, |step| Text::clipped(&step.text)),
-        began: last.map_or(Tick::BEFORE_START, |step| step.began),
-    }
 }
 
 /// Lateness of the ticks. The statistics over all ticks take too long for every tick, so they are updated once

@@ -60,6 +60,7 @@ pub use self::{
     repeat::RepeatError,
     run::{Run, RunOutcome},
     verdict::Ending,
+    views::controller_state,
 };
 
 /// Commit of the sources of this build.

@@ -64,11 +64,11 @@ impl Viewed {
             self.lines = lines;
             self.note(View::JobLines(job_lines(around.job, job)), &mut log);
         }
-        self.note(View::JobState(job_state(around)), &mut log);
-        self.note(View::Commander(commander(around)), &mut log);
+        self.note(View::JobState(job_state(around.neighbours, around.waits)), &mut log);
+        self.note(View::Commander(commander(around.neighbours, around.operator, around.memory)), &mut log);
         if around.has_controller {
             self.console = controller(around.cell.t3(), around.warning, around.tick, &self.console);
-            self.note(View::Controller(console(&self.console)), &mut log);
+            self.note(View::Controller(controller_state(&self.console)), &mut log);
         }
         self.note(View::Parts(parts(around.cell)), &mut log);
         if let Some(desk) = around.field {
@@ -97,8 +97,8 @@ fn job_lines(name: &str, job: Option<&Hwsc>) -> JobLines {
     JobLines { name: name.to_owned(), lines: lines.collect() }
 }
 
-fn job_state(around: &Around<'_>) -> JobState {
-    let Around { neighbours, waits, .. } = around;
+/// The progress of the job. `waits` is the reason why it waits, if it does.
+pub fn job_state(neighbours: &Neighbours, waits: Option<&WaitReason>) -> JobState {
     let (phase, failure, reason) = match neighbours.job().map(|job| (job.progress(), job.is_waiting())) {
         None => ("outside", None, String::new()),
         Some((Progress::Over, _)) => ("over", None, String::new()),
@@ -112,7 +112,7 @@ fn job_state(around: &Around<'_>) -> JobState {
     };
     let (index, lines) = neighbours.place();
     let state = JobState {
-        phase,
+        phase: phase.into(),
         index: count(index),
         lines: count(lines),
         reason,
@@ -127,7 +127,7 @@ fn job_state(around: &Around<'_>) -> JobState {
         text: step.text.clone(),
         is_command: step.is_command,
         began: step.began.0,
-        outcome: step.outcome.text(),
+        outcome: step.outcome.text().into(),
         ticks: if is_executed { 0 } else { step.ticks },
         retry: retry.map_or(0, |retry| retry.number),
         retries: retry.map_or(0, |retry| retry.of),
@@ -135,24 +135,27 @@ fn job_state(around: &Around<'_>) -> JobState {
     }
 }
 
-fn commander(around: &Around<'_>) -> Commander {
-    let (operator, connected, is_stopped) = around.operator.present();
-    let waits = around.neighbours.job().is_some_and(Hwsc::is_waiting);
+/// Who commands the robot.
+pub fn commander(neighbours: &Neighbours, operator: &Operator, memory: &CommonMemory) -> Commander {
+    let (operator, connected, is_stopped) = operator.present();
+    let waits = neighbours.job().is_some_and(Hwsc::is_waiting);
     let source = match operator {
-        _ if around.neighbours.are_commanding() => "workstation controller",
+        _ if neighbours.are_commanding() => "workstation controller",
         Some(_) if waits => "operator",
         _ => "job",
     };
     Commander {
-        source,
+        source: source.into(),
         operator: operator.unwrap_or_default().to_owned(),
         connected: connected.to_vec(),
         is_stopped,
-        by_hand: is_led(around.memory),
+        by_hand: is_led(memory),
     }
 }
 
-fn console(view: &ControllerView) -> Controller {
+/// The published console of the robot controller as a state of the log.
+#[must_use]
+pub fn controller_state(view: &ControllerView) -> Controller {
     let lamps = view.lamps;
     let pressed = EStop::ALL.iter().zip(view.estops).filter(|(_, is_pressed)| *is_pressed);
     Controller {

@@ -2,11 +2,12 @@
 
 use std::path::PathBuf;
 
+use closed_loop::account::Kind;
 use executive::memory::{Attached, RunName, cell::CellView};
 use interfaces::ProcessId;
 use levels::ladder::Ladder;
 use rcs_core::tick::Tick;
-use runtime::{LogTarget, Run, RunConfig};
+use runtime::{Ending, LogTarget, Run, RunConfig};
 
 fn config(test: &str) -> RunConfig {
     let data = PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../../data"));
@@ -38,12 +39,37 @@ fn cell_view_shows_the_state_of_the_cell() {
         (view.job.line.as_str(), view.job.begun, view.job.lines),
         ("== MOVE LINKBAR1_BH +2 UNIT_1 4 +2 PFIXTURE 0 -- 0", 3, 13)
     );
+    assert_eq!((view.job.phase.as_str(), view.commander.source.as_str()), ("plays", "job"));
     assert!(view.job.began > Tick(70) && view.job.began < Tick(80), "{:?}", view.job);
     assert_eq!((view.gripper, view.part_count), (Some(1), 1));
     let part = &view.parts[0];
     assert_eq!((part.name.as_str(), part.location.as_str(), part.sector), ("LINKBAR1_BH", "UNIT_1", 4));
     assert!(view.tool[0] < -40.0 && view.fingers[0] > 2.5, "{view:?}");
     assert_eq!(view.lateness, Default::default(), "a run in fast clock has no grid");
+}
+
+/// A button is pressed after a tick; the pressure is lost in the next one, which the account of the run names.
+#[test]
+fn tick_of_an_emergency_stop_is_that_of_the_account() {
+    let directory = tempfile::tempdir().expect("a directory can be made");
+    let job = directory.path().join("stops.job");
+    std::fs::write(&job, "** after 60 estop pedestal\n== MOVE -- +0 -- 0 +0 SAFE 0 -- 0\n")
+        .expect("it can be written");
+    let (mut config, mut shown) = (config("estop"), Vec::new());
+    config.job = job.display().to_string();
+    let name = config.name.clone().expect("it has one");
+    let mut run = Run::new(config, Box::new(())).expect("the data are sound");
+    let reader = Attached::open(&name).expect("the run shows its buffers");
+    while run.step() {
+        shown.extend(reader.cell().expect("it is legal").map(|view| (view.tick, view.controller)));
+    }
+    let (first, pressed) =
+        shown.iter().find(|(_, shown)| !shown.cut.as_str().is_empty()).expect("it is pressed");
+    assert!(pressed.lamps.fault_reset && pressed.cut.as_str().contains("near the pedestal"), "{pressed:?}");
+    assert_eq!(pressed.cut_tick, first.next());
+    assert!(shown.iter().all(|(tick, shown)| tick < first || shown.cut_tick == pressed.cut_tick));
+    let Ending::Failed(account) = run.finish().ending else { panic!("an emergency stop ends the job") };
+    assert_eq!((account.first.kind, account.first.tick), (Kind::EmergencyStop, pressed.cut_tick));
 }
 
 #[test]

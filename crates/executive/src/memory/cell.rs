@@ -40,6 +40,8 @@ pub struct CellView {
     pub parts: [PartView; PARTS],
     /// The job.
     pub job: JobView,
+    /// Who commands.
+    pub commander: CommanderView,
     /// Delays of ticks.
     pub lateness: LatenessView,
 }
@@ -57,6 +59,8 @@ pub struct ControllerView {
     pub screen_tick: Tick,
     /// Cause of the loss of pressure; empty under pressure.
     pub cut: Text<48>,
+    /// The tick in which the pressure is lost: that after the press of a button. [`Tick::BEFORE_START`] under pressure.
+    pub cut_tick: Tick,
     /// Emergency stops that are pressed (III.6): control panel, teach pendant, terminals, joystick box, pedestal.
     pub estops: [bool; 5],
     /// Axes with an asterisk on the screen.
@@ -123,6 +127,23 @@ pub struct JobView {
     pub line: Text<96>,
     /// The tick after which it was begun.
     pub began: Tick,
+    /// `plays`, `waits` for an operator, `over`, `failed`, `ends`, or `outside`: a workstation controller commands.
+    pub phase: Text<16>,
+    /// Why the job waits or has failed.
+    pub reason: Text<96>,
+}
+
+/// Who commands the robot.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub struct CommanderView {
+    /// `job`, `operator`, or `workstation controller`.
+    pub source: Text<24>,
+    /// Name of the operator in command; empty for none.
+    pub operator: Text<32>,
+    /// An operator has stopped the robot: the velocity knob is at 0 until `go`.
+    pub is_stopped: bool,
+    /// The joystick box has the robot.
+    pub by_hand: bool,
 }
 
 /// Delays of the beginnings of ticks on the 40 ms grid, microseconds; all 0 in a run without one. All except `last` are

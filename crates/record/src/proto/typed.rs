@@ -1,13 +1,15 @@
-//! Messages of structs: one definition for the fields, their protobuf descriptors and the encoding.
+//! Messages of structs: one definition for the fields, their protobuf descriptors, encoding and decoding.
 //!
 //! The messages of buffers have the schema of their records ([`super::descriptor`]). Those here have texts and
 //! lists of any length, which a record cannot contain.
+
+use std::borrow::Cow;
 
 use prost_types::{DescriptorProto, FieldDescriptorProto, field_descriptor_proto::Type};
 
 use super::{
     descriptor::{self, encode_set, field, file, repeated, typed_field},
-    wire,
+    wire::{self, Fields},
 };
 
 pub trait Value {
@@ -15,6 +17,9 @@ pub trait Value {
     fn describe(name: &str, number: i32, messages: &mut Vec<DescriptorProto>) -> FieldDescriptorProto;
 
     fn put(&self, number: u32, out: &mut Vec<u8>);
+
+    /// Take a value from the wire. A list is extended by it; a value of another wire type is ignored.
+    fn take(&mut self, value: wire::Value<'_>);
 }
 
 pub trait Message {
@@ -25,6 +30,9 @@ pub trait Message {
     fn fields(messages: &mut Vec<DescriptorProto>) -> Vec<FieldDescriptorProto>;
 
     fn put_fields(&self, out: &mut Vec<u8>);
+
+    /// Take the value of the field with this number. Fields of newer versions are ignored.
+    fn take_field(&mut self, number: u64, value: wire::Value<'_>);
 }
 
 #[must_use]
@@ -48,6 +56,14 @@ pub fn encode(message: &impl Message) -> Vec<u8> {
     out
 }
 
+/// The message in these bytes, up to the first malformed field. Missing fields have their defaults.
+#[must_use]
+pub fn decode<M: Message + Default>(data: &[u8]) -> M {
+    let mut message = M::default();
+    message.take(wire::Value::Bytes(data));
+    message
+}
+
 fn add<M: Message>(messages: &mut Vec<DescriptorProto>) {
     if messages.iter().all(|known| known.name() != M::NAME) {
         let fields = M::fields(messages);
@@ -56,7 +72,7 @@ fn add<M: Message>(messages: &mut Vec<DescriptorProto>) {
 }
 
 macro_rules! scalars {
-    ($($of:ty: $kind:ident, |$value:ident, $number:ident, $out:ident| $put:expr;)+) => { $(
+    ($($of:ty: $kind:ident, |$value:ident, $number:ident, $out:ident| $put:expr, $wire:pat => $taken:expr;)+) => { $(
         impl Value for $of {
             fn describe(name: &str, number: i32, _: &mut Vec<DescriptorProto>) -> FieldDescriptorProto {
                 field(name, number, Type::$kind)
@@ -66,17 +82,29 @@ macro_rules! scalars {
                 let $value = self;
                 $put
             }
+
+            fn take(&mut self, value: wire::Value<'_>) {
+                if let $wire = value {
+                    *self = $taken;
+                }
+            }
         }
     )+ };
 }
 
 scalars! {
-    bool: Bool, |value, number, out| wire::unsigned(number, u64::from(*value), out);
-    u32: Uint32, |value, number, out| wire::unsigned(number, u64::from(*value), out);
-    u64: Uint64, |value, number, out| wire::unsigned(number, *value, out);
-    f64: Double, |value, number, out| wire::double(number, *value, out);
-    String: String, |value, number, out| wire::bytes(number, value.as_bytes(), out);
-    &'static str: String, |value, number, out| wire::bytes(number, value.as_bytes(), out);
+    bool: Bool, |value, number, out| wire::unsigned(number, u64::from(*value), out),
+        wire::Value::Number(found) => found != 0;
+    u32: Uint32, |value, number, out| wire::unsigned(number, u64::from(*value), out),
+        wire::Value::Number(found) => u32::try_from(found).unwrap_or(u32::MAX);
+    u64: Uint64, |value, number, out| wire::unsigned(number, *value, out),
+        wire::Value::Number(found) => found;
+    f64: Double, |value, number, out| wire::double(number, *value, out),
+        wire::Value::Bytes(found) => found.try_into().map_or(0.0, f64::from_le_bytes);
+    String: String, |value, number, out| wire::bytes(number, value.as_bytes(), out),
+        wire::Value::Bytes(found) => String::from_utf8_lossy(found).into_owned();
+    Cow<'static, str>: String, |value, number, out| wire::bytes(number, value.as_bytes(), out),
+        wire::Value::Bytes(found) => Cow::Owned(String::from_utf8_lossy(found).into_owned());
 }
 
 impl<M: Message> Value for M {
@@ -88,16 +116,28 @@ impl<M: Message> Value for M {
     fn put(&self, number: u32, out: &mut Vec<u8>) {
         wire::nested(number, out, |out| self.put_fields(out));
     }
+
+    fn take(&mut self, value: wire::Value<'_>) {
+        if let wire::Value::Bytes(data) = value {
+            Fields(data).for_each(|(number, value)| self.take_field(number, value));
+        }
+    }
 }
 
 /// A list of texts or messages.
-impl<V: Value> Value for Vec<V> {
+impl<V: Value + Default> Value for Vec<V> {
     fn describe(name: &str, number: i32, messages: &mut Vec<DescriptorProto>) -> FieldDescriptorProto {
         repeated(V::describe(name, number, messages))
     }
 
     fn put(&self, number: u32, out: &mut Vec<u8>) {
         self.iter().for_each(|value| value.put(number, out));
+    }
+
+    fn take(&mut self, value: wire::Value<'_>) {
+        let mut next = V::default();
+        next.take(value);
+        self.push(next);
     }
 }
 
@@ -126,6 +166,13 @@ macro_rules! messages {
                 let mut numbers = 1..;
                 $( $crate::proto::typed::Value::put(&self.$field, numbers.next().unwrap_or_default(), out); )+
             }
+
+            fn take_field(&mut self, number: u64, value: $crate::proto::wire::Value<'_>) {
+                let mut numbers = 1..;
+                $( if numbers.next() == Some(number) {
+                    return $crate::proto::typed::Value::take(&mut self.$field, value);
+                } )+
+            }
         }
     )+ };
 }
@@ -141,7 +188,7 @@ mod tests {
         /// For the test.
         Inner { is_on: bool, x: f64, }
         /// For the test.
-        Outer { name: String, count: u32, list: Vec<Inner>, words: Vec<&'static str>, one: Inner, }
+        Outer { name: String, count: u32, list: Vec<Inner>, words: Vec<Cow<'static, str>>, one: Inner, }
     }
 
     #[test]
@@ -172,7 +219,7 @@ mod tests {
             name: "A".into(),
             count: 300,
             list: vec![inner(0.0), inner(1.0)],
-            words: vec!["b", ""],
+            words: vec!["b".into(), "".into()],
             one: Inner::default(),
         };
         let expected: &[&[u8]] = &[
@@ -185,5 +232,16 @@ mod tests {
             &[0x2A, 11, 0x08, 0, 0x11, 0, 0, 0, 0, 0, 0, 0, 0],
         ];
         assert_eq!(encode(&message), expected.concat());
+        assert_eq!(decode::<Outer>(&expected.concat()), message);
+    }
+
+    #[test]
+    fn unknown_fields_and_wrong_wire_types_are_ignored() {
+        let mut data = encode(&Outer { count: 7, ..Outer::default() });
+        wire::bytes(9, b"of a newer version", &mut data);
+        wire::bytes(2, b"not a number", &mut data);
+        let found = decode::<Outer>(&data);
+        assert_eq!(found, Outer { count: 7, ..Outer::default() });
+        assert_eq!(decode::<Outer>(&[0x0A, 200]), Outer::default(), "the text is cut off");
     }
 }

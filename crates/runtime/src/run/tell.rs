@@ -8,11 +8,16 @@ use closed_loop::{
 };
 use interfaces::CommonMemory;
 use neighbours::data_system::DataSystem;
-use plant::CellEvent;
+use plant::{CellEvent, t3::RobotEvent};
 use rcs_core::tick::Tick;
 
 use super::Run;
-use crate::{egm::EgmPort, event::Event, live::Live, views::Around};
+use crate::{
+    egm::EgmPort,
+    event::Event,
+    live::Live,
+    views::{Around, commander, job_state},
+};
 
 impl Run {
     /// Report an event outside the cell's ticks to the log and the observer.
@@ -64,9 +69,14 @@ impl Run {
         if self.robot.is_elsewhere() {
             return;
         }
-        let job = (self.neighbours.place(), self.neighbours.begun_steps());
-        let (cell, warning) = (&self.closed.workstation.cell, self.warning.as_ref());
-        self.runner.show_cell(|| self.view.look(tick, cell, warning, job, &self.pace));
+        let (cell, memory) = (&self.closed.workstation.cell, self.closed.memory());
+        let sank = |event: &Event| matches!(event, Event::Cell(CellEvent::Robot(RobotEvent::Sinks(_))));
+        let robot = (cell, self.warning.as_ref(), self.fresh.iter().any(sank));
+        let (neighbours, operator, waits) = (&self.neighbours, &self.operator, self.waits.as_ref());
+        self.runner.show_cell(|| {
+            let (job, by) = (job_state(neighbours, waits), commander(neighbours, operator, memory));
+            self.view.look(tick, robot, (&job, &by), &self.pace)
+        });
     }
 
     /// The end of a command shows that the cause of an earlier stop is gone.
