@@ -5,9 +5,12 @@
 
 use std::{env, fmt::Write as _, fs, process::Command};
 
+use data_encoding::BASE64;
+use flate2::read::ZlibDecoder;
 use record::replay;
+use runtime::result::FailureResult;
 use serde_json::{Value, json};
-use whole_system_tests::{Outcome, Scratch, rcs_log, run, run_with};
+use whole_system_tests::{Outcome, Scratch, rcs_console, rcs_log, run, run_with};
 
 enum Ends {
     /// The job finishes with its part in place.
@@ -91,8 +94,42 @@ fn ask(outcome: &Outcome, arguments: &[&str]) -> String {
     String::from_utf8_lossy(&output.expect("rcs-log can be started").stdout).into_owned()
 }
 
-/// Assert that all programs name the same first failure: the last line of the run, `info`, `why` and the console's
-/// `c`.
+/// The answer of `why` in the page of a run, as the browser reads it.
+fn of_page(outcome: &Outcome) -> Value {
+    let path = outcome.log.with_extension("html");
+    let written = Command::new(rcs_log()).arg("page").arg(&outcome.log).arg("-o").arg(&path).output();
+    assert!(written.expect("rcs-log can be started").status.success());
+    let page = fs::read_to_string(&path).expect("the page is written");
+    let (_, data) = page.split_once("id=\"log-data\"").expect("the page has a log");
+    let data = data.split(['<', '>']).nth(1).expect("the element has a text");
+    let data = BASE64.decode(data.trim().as_bytes()).expect("it is encoded");
+    let copy = record::Log::from_bytes(&path, data).expect("it is a log");
+    let why = &copy.attachment("why.json.deflate").expect("the page has the answer").data;
+    serde_json::from_reader(ZlibDecoder::new(why.as_slice())).expect("it is JSON")
+}
+
+/// The lines of the console's band in the picture of a failure.
+fn of_console(outcome: &Outcome, failure: &FailureResult) -> Vec<String> {
+    let tick = failure.account.first.shown_at().to_string();
+    let mut console = Command::new(rcs_console());
+    console.args(["--colour", "never", "--once", "ladder", "--tick", &tick, "--log"]).arg(&outcome.log);
+    let output = console.output().expect("rcs-console can be started");
+    String::from_utf8_lossy(&output.stdout).lines().skip(1).take(3).map(str::to_owned).collect()
+}
+
+/// Assert that the console shows the first failure as the state in its picture.
+fn assert_shown_by_console(what: &str, outcome: &Outcome, failure: &FailureResult) {
+    let band = of_console(outcome, failure);
+    let is_stop = outcome.result["failure"]["kind"] == "emergency-stop";
+    let state = if is_stop { "XX E-STOP" } else { "!! FAULT" };
+    let begin: String = failure.account.first.text.chars().take(40).collect();
+    assert!(band[0].contains(state) && band[0].contains(&begin), "{what}: {state} {begin:?} in {band:?}");
+    assert!(band[1].contains("line ") || outcome.result["commands"] == json!([]), "{what}: {band:?}");
+    assert!(band[2].starts_with(" next: "), "{what}: {band:?}");
+}
+
+/// Assert that all programs name the same first failure: the last line of the run, `info`, `why`, the page, and the
+/// console. An injected fault is no part of it.
 pub fn assert_same_account(what: &str, outcome: &Outcome) {
     let answer = |arguments: &[&str]| -> Value {
         serde_json::from_str(&ask(outcome, arguments)).unwrap_or_else(|error| panic!("{what}: {error}"))
@@ -110,6 +147,23 @@ pub fn assert_same_account(what: &str, outcome: &Outcome) {
         outcome.last_words
     );
     assert!(outcome.last_words.contains(text), "{what}: {}", outcome.last_words);
+    let page = of_page(outcome);
+    assert_eq!(page, why, "{what}: the page has another answer than rcs-log why");
+    let result: FailureResult = serde_json::from_value(failure.clone()).expect("one schema");
+    let chain = serde_json::to_value(result.chain.as_ref().expect("a run attaches its chain")).expect("JSON");
+    assert_eq!(
+        (&info["failure"]["chain"], &why["world"]["commands"]),
+        (&chain, &chain["commands"]),
+        "{what}"
+    );
+    for field in ["tick", "text", "commands", "causes", "consequences"] {
+        assert_eq!(why["failure"][field], chain["report"][field], "{what}: {field}");
+    }
+    assert_eq!(info["failure"]["remedy"], failure["remedy"], "{what}");
+    assert_shown_by_console(what, outcome, &result);
+    let first_cause = &why["failure"]["first_cause"];
+    let is_fault = |told: &Value| told.as_str().is_some_and(|text| text.contains("fault 1 begins"));
+    assert!(!is_fault(&failure["text"]) && !is_fault(first_cause), "{what}: {failure} {first_cause}");
     for told in [&info["failure"], &why["world"]] {
         for field in ["tick", "kind", "process", "text", "followed"] {
             assert_eq!(told[field], failure[field], "{what}: {field} in {told}");

@@ -100,8 +100,15 @@ fn pulled_cable_is_explained() {
         &[
             "not responding",
             "link_ready was true, then false at tick 201",
-            "the faults of the run, at tick 2",
+            "Injected faults, which this run was to simulate:",
         ],
+    );
+    let (answer, _) = why(&outcome);
+    assert!(answer["faults"][0]["tick"].as_u64().is_some_and(|tick| tick <= 200), "{answer}");
+    let account = [&answer["failure"]["first_cause"], &answer["world"]];
+    assert!(
+        account.iter().all(|part| !part.to_string().contains("fault")),
+        "a fault is beside the account: {account:?}"
     );
 }
 

@@ -11,7 +11,13 @@ use closed_loop::account::Account;
 use interfaces::t3i::LinkCounters;
 use os_io::text::amount;
 use rcs_core::tick::{TICK_S, Tick};
-use record::{Log, proto::foxglove::Level};
+use record::{
+    Log,
+    proto::foxglove::Level,
+    tables,
+    views::{Changes, JobState},
+};
+use runtime::result::FailureResult;
 use serde::Serialize;
 
 use crate::{
@@ -47,10 +53,11 @@ pub struct Info {
     result: Option<String>,
     digest: Option<String>,
     commands: Vec<CommandStory>,
+    /// The last line of the job that was begun, as `line 5 of 13: ...`; `None` in the log of an older program.
+    job: Option<String>,
     link: Link,
-    /// The first failure and its consequences.
-    #[serde(rename = "failure")]
-    account: Option<Account>,
+    /// The first failure, its consequences, and what led there.
+    failure: Option<FailureResult>,
     /// Facts that the run recorded at its end: parts, faults, verdicts.
     facts: BTreeMap<String, String>,
     /// Number of warnings and of errors on `/log`.
@@ -116,7 +123,7 @@ pub fn info(arguments: &Arguments) -> Result<ExitCode, Error> {
 /// # Errors
 /// [`Error::Read`] if the log cannot be read, [`Error::Empty`] without a tick.
 pub fn summary(log: &Log, path: &Path) -> Result<Info, Error> {
-    let (mut chronicle, mut link) = (Chronicle::default(), Link::default());
+    let (mut chronicle, mut link) = (Chronicle::new(tables::of_log(log).0), Link::default());
     let (mut ticks, mut missing, mut last) = (0, 0, Tick::BEFORE_START);
     let (mut times, mut overruns) = (Vec::new(), 0);
     walk(log, path, |moment| {
@@ -136,7 +143,7 @@ pub fn summary(log: &Log, path: &Path) -> Result<Info, Error> {
     }
     let level = |level| log.lines().filter(|line| line.level == level).count();
     let end = |key: &str| log.end.as_ref().and_then(|end| end.get(key)).cloned();
-    let account = chronicle.account(log);
+    let failure = chronicle.failed(log);
     Ok(Info {
         file: path.display().to_string(),
         bytes: log.size(),
@@ -152,11 +159,19 @@ pub fn summary(log: &Log, path: &Path) -> Result<Info, Error> {
         commands: chronicle.commands,
         link,
         facts: facts(log),
-        account,
+        job: job(log),
+        failure,
         warnings: level(Level::Warning),
         errors: level(Level::Error),
         attachments: log.attachments.iter().map(|attachment| attachment.name.clone()).collect(),
     })
+}
+
+/// The last line of the job that was begun.
+fn job(log: &Log) -> Option<String> {
+    let changes = Changes::<JobState>::of(log);
+    let JobState { index, lines, text, outcome, .. } = changes.last().filter(|job| job.lines > 0)?;
+    Some(format!("line {index} of {lines}: {text}, {outcome}"))
 }
 
 /// Entries of the end record that the recorder itself writes.
@@ -192,6 +207,7 @@ impl fmt::Display for Info {
             _ => "the log has no end: the run was killed, or its log could not be written".to_owned(),
         };
         writeln!(f, "ended      {end}")?;
+        self.job.iter().try_for_each(|job| writeln!(f, "job        {job}"))?;
         writeln!(
             f,
             "length     {}, {:.1} s; {} missing; {:.1} MB, {}, {}",
@@ -236,8 +252,9 @@ impl fmt::Display for Info {
             let remark = command.remark();
             writeln!(f, "{tick:>6} {begin:>7.1} {length:>6.1}  {status:<10} {}{remark}", command.text)?;
         }
-        let Some(account) = &self.account else { return Ok(()) };
+        let Some(FailureResult { account, remedy, .. }) = &self.failure else { return Ok(()) };
         writeln!(f)?;
-        account.sentences().try_for_each(|sentence| writeln!(f, "{sentence}"))
+        account.sentences().try_for_each(|sentence| writeln!(f, "{sentence}"))?;
+        remedy.iter().try_for_each(|remedy| writeln!(f, "To do: {remedy}"))
     }
 }

@@ -3,13 +3,15 @@
 use std::path::Path;
 
 use closed_loop::{
-    account::{Account, Alarms, has_worked},
+    account::{Alarms, has_worked},
+    chain::Processes,
     failure::{Failure, Watch},
 };
 use interfaces::{CommonMemory, ExternalInputs, hws::HwsReport};
 use levels::ladder::Ladder;
 use rcs_core::{plain::from_bytes, tick::Tick};
 use record::{Log, ReadError, Timing, reader::LoggedTick};
+use runtime::result::FailureResult;
 use serde::Serialize;
 
 use crate::Error;
@@ -107,19 +109,39 @@ impl CommandStory {
 }
 
 /// The commands of a run, and its failure.
-#[derive(Default)]
 pub struct Chronicle {
     /// Commands in order.
     pub commands: Vec<CommandStory>,
     /// The reason why the last failed command failed.
     pub failure: Option<Failure>,
+    processes: Processes,
     watch: Box<Watch>,
     alarms: Alarms,
     number: u32,
     last: Option<HwsReport>,
 }
 
+/// For the commands alone: its failure has the tables of this program.
+impl Default for Chronicle {
+    fn default() -> Self {
+        Self::new(Ladder::processes())
+    }
+}
+
 impl Chronicle {
+    /// An empty chronicle. `processes` are those of the log.
+    pub fn new(processes: Processes) -> Self {
+        Self {
+            commands: Vec::new(),
+            failure: None,
+            processes,
+            watch: Box::default(),
+            alarms: Alarms::default(),
+            number: 0,
+            last: None,
+        }
+    }
+
     /// Records a tick.
     pub fn note(&mut self, moment: &Moment) {
         self.watch.observe(moment.tick, &moment.external, &moment.before, &moment.after);
@@ -145,22 +167,23 @@ impl Chronicle {
             command.unconfirmed = status.unconfirmed.text();
         }
         if self.last != Some(status.report) && status.report == HwsReport::Error {
-            self.failure = self.watch.failure(Ladder::processes());
+            self.failure = self.watch.failure(self.processes);
             self.failure.iter().cloned().for_each(|failure| self.alarms.failed(failure));
         }
         self.last = Some(status.report);
     }
 
-    /// The first failure in the run of the log and its consequences: as the run has written it at its end, or
-    /// from the lines of a killed run. `None` without a failure.
-    pub fn account(&self, log: &Log) -> Option<Account> {
-        if let Some(account) = log.end.as_ref().and_then(Account::of_facts) {
-            return account;
+    /// What went wrong in the run of the log: as the run has attached it at its end, or from the lines of a killed run.
+    /// `None` without a failure.
+    pub fn failed(&self, log: &Log) -> Option<FailureResult> {
+        if let Some(failed) = FailureResult::of_log(log) {
+            return failed;
         }
         let mut alarms = self.alarms.clone();
         for line in log.lines() {
             alarms.line(line.tick, &line.source, &line.code, &line.text);
         }
-        alarms.account()
+        let account = alarms.account()?;
+        Some(FailureResult { account, line: None, remedy: None, chain: None })
     }
 }

@@ -12,7 +12,7 @@ use std::{
 use interfaces::{CommonMemory, ExternalInputs};
 use levels::ladder::Ladder;
 use rcs_core::{Plain, digest::Digest, name::Name16, tick::Tick};
-use record::{CellFrame, CellModel, End, Epoch, Pace, Recorder, Setup};
+use record::{CellFrame, CellModel, End, Epoch, Pace, Recorder, Setup, explanation};
 use taskdata::files::TaskData;
 use tempfile::TempDir;
 
@@ -53,7 +53,8 @@ impl Scratch {
         let text = |key: &str, value: &str| (key.to_owned(), value.to_owned());
         let run = [text("program", "test"), text("job", "nothing"), text("seed", "7")].into();
         let cell = Some(CellModel::default());
-        let setup = Setup { epoch: Epoch::Fixed, run, cell, ..Setup::default() };
+        let attachments = explanation::attachments().into();
+        let setup = Setup { epoch: Epoch::Fixed, run, attachments, cell };
         let mut recorder = Recorder::start(&path, Pace::Wait, setup).expect("the log begins");
         let (mut ladder, mut memory, mut digest) =
             (Ladder::default(), CommonMemory::default(), Digest::new());

@@ -4,3 +4,4 @@ mod command_line;
 mod damaged;
 mod fork;
 mod serve;
+mod tables;

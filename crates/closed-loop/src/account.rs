@@ -4,7 +4,7 @@
 //! 5,000 ticks later a process reports an empty gripper. [`Account`] orders them. The first one is the cause in the
 //! world; the others followed.
 //!
-//! The run makes its account at its end and writes it into the log. A live view, or the log of a killed run, has no
+//! The run makes its account at its end and attaches it to the log. A live view, or the log of a killed run, has no
 //! account: there [`Alarms`] collects the same failures from the visible events.
 
 use std::{collections::BTreeMap, fmt, iter};
@@ -66,6 +66,19 @@ impl Kind {
         }
     }
 
+    /// The action of a person before the job can continue, if the kind alone gives it. The reason of a process has its
+    /// own remedy.
+    #[must_use]
+    pub const fn remedy(self) -> Option<&'static str> {
+        match self {
+            Self::Collision | Self::Lost | Self::Misplaced | Self::FalseReport => {
+                Some("put the cell in order")
+            }
+            Self::Device => Some("repair the device"),
+            _ => None,
+        }
+    }
+
     /// The kind of the event with this code in `/log`; `None` if the event is not a failure.
     #[must_use]
     pub fn of_code(code: &str) -> Option<Self> {
@@ -112,7 +125,7 @@ impl Failure {
     }
 }
 
-/// Key of the account in the metadata at the end of a log.
+/// Key of the account in the metadata at the end of the log of an older program.
 const FACT: &str = "account";
 
 /// The first failure of a run, and those that followed.
@@ -161,13 +174,6 @@ impl Account {
             Some(json) => serde_json::from_str(json).ok().map(Some),
             None => facts.get("result").is_some_and(|result| result == "finished").then_some(None),
         }
-    }
-
-    /// The account as a fact for the metadata at the end of a log.
-    #[must_use]
-    pub fn fact(&self) -> (&'static str, String) {
-        // An account contains only text and numbers, which JSON can represent.
-        (FACT, serde_json::to_string(self).unwrap_or_default())
     }
 
     pub fn failures(&self) -> impl Iterator<Item = &Failure> {

@@ -19,6 +19,7 @@
 //! `rcs-run run` adds clock, log, boards, robots and neighbours; `rcs-run campaign` forks the loop.
 
 pub mod account;
+pub mod chain;
 pub mod contacts;
 pub mod course;
 pub mod devices;

@@ -48,7 +48,7 @@ pub fn of_log(log: &Log, name: &str) -> Option<Value> {
     serde_json::from_slice(&text).ok()
 }
 
-/// The decision tables of all processes: `[{process, tables: [{name, doc, source, steps, variables, actions, rows}]}]`.
+/// The decision tables of all processes: `[{process, tables: [{name, doc, source, steps, variables, digits, actions, rows}]}]`.
 #[must_use]
 pub fn tables() -> Value {
     let process = |process: &levels::ladder::ProcessInfo| {
@@ -56,6 +56,15 @@ pub fn tables() -> Value {
         json!({ "process": process.name, "tables": tables })
     };
     Ladder::processes().iter().map(process).collect()
+}
+
+/// The action of a person before the same command can succeed, by the reasons of a log; by those of this program if the
+/// log has none. `None` if PAUSE and the same command may be enough.
+#[must_use]
+pub fn remedy(log: &Log, reason: &str) -> Option<String> {
+    let reasons = of_log(log, REASONS).unwrap_or_else(reasons);
+    let known = reasons.as_array()?.iter().find(|known| known["text"] == reason)?;
+    known["remedy"].as_str().map(str::to_owned)
 }
 
 /// The reasons of failures: `[{code, text, remedy}]`; without a remedy if PAUSE and the same command may be enough.
@@ -75,8 +84,9 @@ fn table(table: &'static Table) -> Value {
         "name": table.name,
         "doc": prose(table.doc.iter().copied()),
         "source": format!("{}:{}", table.file, table.line),
-        "steps": table.steps.map_or(Value::Array(Vec::new()), values),
+        "steps": table.steps.map_or(Value::Array(Vec::new()), |of| of.variants.iter().map(step).collect()),
         "variables": table.asked().map(variable).collect::<Value>(),
+        "digits": table.variables.iter().map(digit).collect::<Value>(),
         "actions": table.actions.iter().filter_map(|it| action(it, table.rows)).collect::<Value>(),
         "rows": table.rows.iter().map(row).collect::<Value>(),
     })
@@ -94,6 +104,17 @@ fn action(action: &ActionText, rows: &[Row]) -> Option<Value> {
     let arguments: Value = arguments.collect();
     let named = json!({ "name": action.name, "doc": prose([action.doc]), "arguments": arguments });
     (!naming.is_empty()).then_some(named)
+}
+
+/// A step with its code in the header of the process.
+fn step(variant: &VariantSchema) -> Value {
+    json!({ "name": variant.name, "doc": prose([variant.doc]), "code": variant.code })
+}
+
+/// A variable of the number that stores the values of all variables ([`rcs_core::table::Variables::code`]), also one that
+/// no row tests.
+fn digit(variable: &'static Variable) -> Value {
+    json!({ "name": variable.name, "values": variable.values.variants.len() })
 }
 
 fn values(of: &EnumSchema) -> Value {

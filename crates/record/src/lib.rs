@@ -12,7 +12,7 @@
 //! * [`mod@replay`]: runs the control processes on the recorded inputs and compares every output buffer of every
 //!   tick, bit for bit.
 //! * [`views`], [`ladder`], [`instruments`], [`rows`]: the state of the run for viewers.
-//! * [`explanation`]: tables and reasons, with which a log explains itself.
+//! * [`explanation`], [`tables`]: tables and reasons, with which a log explains itself.
 //! * [`layout`], [`delta`]: byte images and their differences.
 //! * [`proto`]: the messages of the channels.
 //!
@@ -52,6 +52,7 @@ mod rotation;
 pub mod rows;
 pub mod scene;
 pub mod sink;
+pub mod tables;
 pub mod tap;
 pub mod trail;
 pub mod views;

@@ -10,12 +10,14 @@ use std::{collections::BTreeMap, path::PathBuf};
 
 use closed_loop::{
     account::Account,
+    chain::Chain,
     contacts::{Collision, NearMiss},
     truth::TruthResult,
 };
 use neighbours::workstation::player::Retry;
 use plant::PartState;
-use serde::Serialize;
+use record::{Log, explanation};
+use serde::{Deserialize, Serialize};
 
 pub use self::{
     cell::{CellFaultResult, ContactResult, EmergencyResult, EventResult, Events, ItemResult},
@@ -60,7 +62,8 @@ pub fn bare(line: &str) -> String {
     line.trim_start_matches("==").trim_start().to_owned()
 }
 
-#[derive(Clone, Debug, Serialize)]
+/// What went wrong in a run: in its result, and attached to its log.
+#[derive(Clone, Debug, Deserialize, Serialize)]
 pub struct FailureResult {
     /// The first failure and its consequences.
     #[serde(flatten)]
@@ -68,15 +71,25 @@ pub struct FailureResult {
     /// The line of the job, or the command, in progress at the first failure.
     pub line: Option<String>,
     /// The operator's action before the job can continue; `None` if PAUSE and the same command may be enough.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub remedy: Option<&'static str>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub remedy: Option<String>,
+    /// What led to the failure; `None` in a log of an older program.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub chain: Option<Chain>,
 }
 
 impl FailureResult {
-    /// A failure in a line, with its remedy.
+    /// What went wrong in the run of a log, as the run has attached it at its end: `Some(None)` for a successful run,
+    /// `None` for a killed one.
     #[must_use]
-    pub fn new(account: &Account, line: Option<&str>, remedy: Option<&'static str>) -> Self {
-        Self { account: account.clone(), line: line.map(str::to_owned), remedy }
+    pub fn of_log(log: &Log) -> Option<Option<Self>> {
+        if let Some(file) = log.attachment(explanation::FAILURE)
+            && let Ok(failure) = serde_json::from_slice(&file.data)
+        {
+            return Some(Some(failure));
+        }
+        let account = log.end.as_ref().and_then(Account::of_facts)?;
+        Some(account.map(|account| Self { account, line: None, remedy: None, chain: None }))
     }
 }
 
@@ -199,7 +212,6 @@ impl RunResult {
         }
         if let Some(failure) = &self.failure {
             facts.push(("failed_at", failure.account.first.tick.to_string()));
-            facts.push(failure.account.fact());
             facts.extend(failure.line.iter().map(|line| ("line", line.clone())));
         }
         if let Some(verdict) = &self.realtime {

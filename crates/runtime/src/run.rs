@@ -14,6 +14,7 @@ use ::neighbours::workstation::player::{self, WaitReason};
 use closed_loop::{ClosedLoop, Given, RobotInputs};
 use closed_loop::{
     account::{Alarms, Kind},
+    chain::History,
     failure::Failure,
     rest::RestWatch,
 };
@@ -87,6 +88,8 @@ pub struct Run {
     pub(crate) alarms: Alarms,
     /// The status of Task after the last tick.
     task: HwsStatus,
+    /// What the processes did, for the chain of a failure.
+    history: History,
     /// The state of the cell for other programs.
     view: Box<View>,
     /// The states of the run that were logged last, and the reason why the job waits, if it does.
@@ -247,6 +250,7 @@ impl Run {
             }
             log.tick(tick, &external, &memory, || self.closed.course().levels().state());
         }
+        self.history.note(tick, &external, &memory);
         self.runner.stage_times_mut().mark(Stage::Log);
         let moved = self.moved();
         let settled = self.closed.settle(moved.as_ref());

@@ -241,3 +241,16 @@ fn sensor_name(sensor: &SensorPara) -> String {
     };
     format!("\"{}\" ({what})", sensor.name)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn values_that_processes_read_are_inputs() {
+        let leaves = layout::leaves(ExternalInputs::STRUCT);
+        for read in ProcessId::ALL.iter().flat_map(|process| process.reads()) {
+            assert!(leaves.iter().any(|leaf| leaf.path.starts_with(read)), "{read}");
+        }
+    }
+}

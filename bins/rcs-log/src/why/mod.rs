@@ -2,14 +2,15 @@
 //!
 //! The explanation begins with the first failure in the world ([`world`]): a contact, a lost part, a warning of
 //! the robot controller, or a line of the workstation that could not be executed. A failure is explained as a
-//! chain of causes over the ticks ([`chain`]): the commands that led to the failed process, each with its row;
-//! the inputs of the devices during the command ([`evidence`]); events in the cell; the first cause; and the
-//! reports up to Task. All statements come from buffers and rows of the log ([`history`]), without guesses.
+//! chain of causes over the ticks ([`closed_loop::chain`]): the commands that led to the failed process, each with its
+//! row; the inputs of the devices during the command ([`evidence`]); events in the cell; the first cause; and the
+//! reports up to Task. All statements come from buffers, rows and tables of the log, without guesses.
+//!
+//! A fault that was injected is a circumstance of a simulated run. It is listed in addition, and is never a cause.
 
-mod chain;
 mod data;
 mod evidence;
-mod history;
+mod rung;
 mod world;
 
 use std::{
@@ -20,23 +21,16 @@ use std::{
 
 use closed_loop::{
     account::Account,
-    failure::{self, Failure},
+    chain::{self, Chain, History, Link, Processes, Report, Root},
+    failure::Failure,
 };
-use levels::ladder::{Ladder, ProcessId};
+use levels::ladder::ProcessId;
 use rcs_core::tick::{TICK_S, Tick};
-use record::{
-    Log,
-    proto::foxglove::Level,
-    rows::{beside, values_text},
-};
+use record::{Log, explanation as attached, proto::foxglove::Level, tables};
+use runtime::result::FailureResult;
 use serde::Serialize;
 
-pub use self::{chain::Link, history::History};
-use self::{
-    chain::Root,
-    history::{because, conditions, effect, info},
-    world::World,
-};
+use self::{rung::Rung, world::World};
 use crate::{
     Answer, Error, print,
     story::{Chronicle, Moment, open, walk},
@@ -47,9 +41,9 @@ const LINES_BEFORE: usize = 12;
 /// Number of lines about cell and link shown with a failure.
 const LINES_MEANWHILE: usize = 8;
 
-/// Sources of lines about events around the robot: the cell and injected faults. Such a line has the tick after
-/// the event.
-const EVENTS: [&str; 2] = ["cell", FAULT];
+/// Source of lines about events in the cell. Such a line has the tick after the event.
+const CELL: &str = "cell";
+/// Source of lines about injected faults.
 const FAULT: &str = "fault";
 
 /// Arguments of `why`.
@@ -69,10 +63,17 @@ pub struct Arguments {
 pub struct Explanation {
     tick: u64,
     seconds: f64,
+    /// What a reader must know if the log does not have the decision tables of this program.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    tables: Option<&'static str>,
     /// The first failure in the world; `None` if a tick was requested.
     world: Option<World>,
     /// The failure that began in this tick; `None` if a tick was requested.
     failure: Option<Story>,
+    /// The action of a person before the job can continue, if it is known.
+    remedy: Option<String>,
+    /// Injected faults up to the tick, oldest first.
+    faults: Vec<LineBefore>,
     /// The ending of the run, if it was not the failure of a process.
     ended: Option<String>,
     /// Log lines before the tick, oldest first; for a failure, the events of cell and link during the command.
@@ -80,28 +81,18 @@ pub struct Explanation {
     levels: Vec<Rung>,
 }
 
+/// A failure that a process reports.
 #[derive(Debug, Serialize)]
 pub struct Story {
-    /// Tick in which the failure began.
-    pub tick: u64,
-    pub text: String,
-    /// The commands that led to the failed process, from the workstation controller down.
-    pub commands: Vec<Link>,
-    /// The causes, from the failure to the first cause.
-    pub causes: Vec<Link>,
+    #[serde(flatten)]
+    report: Report,
     /// Process and tick of the first cause, in a sentence.
-    pub first_cause: String,
+    first_cause: String,
     /// Inputs of the devices during the command.
-    pub evidence: Vec<String>,
-    /// The reports of the failure up to Task.
-    pub consequences: Vec<Link>,
-}
-
-/// A failure, and the tick from which events in the cell can be related to it.
-pub struct Told {
-    pub story: Story,
-    /// Tick of the first command that led to the failure.
-    pub begun: u64,
+    evidence: Vec<String>,
+    /// Tick of the first command that led to the failure: events in the cell can be related to it from then on.
+    #[serde(skip)]
+    begun: u64,
 }
 
 #[derive(Debug, Serialize)]
@@ -111,37 +102,13 @@ struct LineBefore {
     text: String,
 }
 
-/// Action of a process in a tick.
-#[derive(Debug, Serialize)]
-struct Rung {
-    process: String,
-    command: String,
-    /// The process was not executed, because it was dormant or held.
-    held: bool,
-    /// Tick in which the row fired, if the process has not decided since.
-    old: Option<u64>,
-    /// Values of the state variables of the table when the row fired.
-    values: Option<String>,
-    /// Rows of other tables that fired in the same execution of the process, with their values.
-    beside: Vec<String>,
-    table: Option<String>,
-    row: Option<u8>,
-    /// Conditions of the row: its step and state variables, with the values for which it fired.
-    conditions: Vec<String>,
-    /// Action of the row, with its parameters.
-    action: Option<String>,
-    /// Next step, if the row changes it.
-    next: Option<String>,
-    /// Step of the command after the row; empty for none.
-    step: String,
-    /// Action and next step as text.
-    #[serde(skip)]
-    effect: String,
-}
-
 pub fn why(arguments: &Arguments) -> Result<ExitCode, Error> {
     let log = open(&arguments.file)?;
-    print(&explanation(&log, &arguments.file, arguments.tick)?, arguments.answer.json)?;
+    let explanation = explanation(&log, &arguments.file, arguments.tick)?;
+    if let Some(remark) = explanation.tables {
+        os_io::stderr_line!("rcs-log: {}: {remark}", arguments.file.display());
+    }
+    print(&explanation, arguments.answer.json)?;
     Ok(ExitCode::SUCCESS)
 }
 
@@ -150,27 +117,44 @@ pub fn why(arguments: &Arguments) -> Result<ExitCode, Error> {
 /// # Errors
 /// [`Error::Read`] if the log cannot be read, [`Error::NoTick`] if it does not have the tick.
 pub fn explanation(log: &Log, path: &Path, requested: Option<u64>) -> Result<Explanation, Error> {
-    let (chronicle, history) = read(log, path)?;
-    let account = chronicle.account(log).filter(|_| requested.is_none());
-    let reported = match &account {
-        Some(account) => account.of_process().cloned(),
+    let (processes, origin) = tables::of_log(log);
+    let (chronicle, history) = read(log, path, processes)?;
+    let failed = chronicle.failed(log).filter(|_| requested.is_none());
+    let reported = match &failed {
+        Some(failed) => failed.account.of_process().cloned(),
         None => chronicle.failure.filter(|_| requested.is_none()),
     };
-    let told = reported.and_then(|failure| tell(log, &history, &failure, account.as_ref()));
-    let failed_at = told.as_ref().map(|told| told.story.tick);
-    let world = account.map(|account| world::first(log, &history, account));
-    let first = world.as_ref().map(|world| world.account.first.tick.0);
-    let tick = requested.or(failed_at).or(first);
+    let chain = failed.as_ref().map(|failed| chain_of(failed, &history));
+    let account = failed.as_ref().map(|failed| &failed.account);
+    let attached = chain.as_ref().and_then(|chain| chain.report.clone());
+    let story = reported.as_ref().and_then(|failure| tell(log, &history, failure, account, attached));
+    let remedy = failed.as_ref().and_then(|failed| failed.remedy.clone()).or_else(|| {
+        let process = ProcessId::from_text(&reported.as_ref()?.process)?;
+        let report = history.report(process, reported.as_ref()?.tick.0)?;
+        attached::remedy(log, report.reason)
+    });
+    let of_kind = || account.and_then(|account| account.first.kind.remedy()).map(str::to_owned);
+    let remedy = remedy.or_else(of_kind);
+    let first = account.map(|account| account.first.tick.0);
+    let world = failed.zip(chain).map(|(failed, chain)| world::first(log, failed.account, &chain));
+    let tick = requested.or(story.as_ref().map(|story| story.report.tick)).or(first);
     let moment = find(log, path, tick)?;
-    Ok(explain(log, &moment, world, told))
+    let mut explanation = explain(log, &moment, world, story, processes);
+    (explanation.tables, explanation.remedy) = (origin.remark(), remedy);
+    Ok(explanation)
+}
+
+/// What led to a failure: as the run has attached it, or from the ticks of the log.
+fn chain_of(failed: &FailureResult, history: &History) -> Chain {
+    failed.chain.clone().unwrap_or_else(|| Chain::of(&failed.account, history))
 }
 
 /// Reads the commands of a log and the history of every process.
-fn read(log: &Log, path: &Path) -> Result<(Chronicle, History), Error> {
-    let (mut chronicle, mut history) = (Chronicle::default(), History::default());
+fn read(log: &Log, path: &Path, processes: Processes) -> Result<(Chronicle, History), Error> {
+    let (mut chronicle, mut history) = (Chronicle::new(processes), History::new(processes));
     walk(log, path, |moment| {
         chronicle.note(moment);
-        history.note(moment);
+        history.note(moment.tick, &moment.external, &moment.after);
         true
     })?;
     Ok((chronicle, history))
@@ -181,46 +165,41 @@ fn read(log: &Log, path: &Path) -> Result<(Chronicle, History), Error> {
 /// # Errors
 /// [`Error::Read`] if the log cannot be read.
 pub fn last_command(log: &Log, path: &Path) -> Result<Option<Link>, Error> {
-    let (chronicle, history) = read(log, path)?;
-    let account = chronicle.account(log);
-    let reported = account.as_ref().map_or(chronicle.failure, |account| account.of_process().cloned());
-    let mut commands = account.map_or_else(Vec::new, |account| world::first(log, &history, account).commands);
-    if commands.is_empty() {
-        let told = reported.and_then(|failure| tell(log, &history, &failure, None));
-        commands = told.map_or_else(Vec::new, |told| told.story.commands);
+    let (chronicle, history) = read(log, path, tables::of_log(log).0)?;
+    if let Some(failed) = chronicle.failed(log) {
+        return Ok(chain_of(&failed, &history).last_command().cloned());
     }
-    Ok(commands.pop())
+    let report = chronicle.failure.and_then(|failure| Report::of(&failure, &history));
+    Ok(report.and_then(|(_, mut report)| report.commands.pop()))
 }
 
 /// Explains a failure that a process began to report in a tick, from its commands to its first cause. `account`
-/// has the earlier failures.
-pub fn tell(log: &Log, history: &History, failure: &Failure, account: Option<&Account>) -> Option<Told> {
-    let at = ProcessId::from_text(&failure.process)?;
-    let (tick, text) = (failure.tick.0, failure.text.clone());
-    let (root, causes) = chain::down(history, at, tick);
-    let commands = chain::commands(history, root);
+/// has the earlier failures; `attached` is its report in the log.
+fn tell(
+    log: &Log,
+    history: &History,
+    failure: &Failure,
+    account: Option<&Account>,
+    attached: Option<Report>,
+) -> Option<Story> {
+    let (root, found) = Report::of(failure, history)?;
+    let report = attached.unwrap_or(found);
     let since = history.command(root.process, root.tick).map_or(1, |command| command.tick);
-    let begun = commands.iter().find(|link| link.process != "HWSC").map_or(since, |link| link.tick);
+    let begun = report.commands.iter().find(|link| link.process != "HWSC").map_or(since, |link| link.tick);
     let found = evidence::gather(log, root.process, since, root.tick);
-    let mut first_cause = match account.map(|account| &account.first) {
+    let first_cause = match account.map(|account| &account.first) {
         Some(first) if first != failure => {
             format!("{} at tick {}: {}", first.kind.text(), first.tick, first.text)
         }
         _ => first_cause(history, root, since, &found),
     };
-    let injected = log.lines().filter(|line| line.source == FAULT && line.tick.0 <= root.tick + 1).last();
-    if let Some(line) = injected {
-        first_cause += &format!("; the faults of the run, at tick {}: {}", line.tick, line.text);
-    }
     let evidence = found.guard.into_iter().chain(found.devices).collect();
-    let consequences = chain::up(history, at, tick);
-    let story = Story { tick, text, commands, causes, first_cause, evidence, consequences };
-    Some(Told { story, begun })
+    Some(Story { report, first_cause, evidence, begun })
 }
 
 /// The end of the trace, in a sentence.
 fn first_cause(history: &History, root: Root, since: u64, found: &evidence::Evidence) -> String {
-    let name = info(root.process).name;
+    let name = history.info(root.process).name;
     let seconds = root.tick.saturating_sub(since) as f64 * TICK_S;
     let trying = format!("{seconds:.2} s after its command");
     match (&found.guard, history.report(root.process, root.tick)) {
@@ -251,54 +230,43 @@ fn find(log: &Log, path: &Path, tick: Option<u64>) -> Result<Moment, Error> {
     found.ok_or_else(|| Error::NoTick { path: path(), tick: tick.unwrap_or_default(), first, last: last.0 })
 }
 
-fn explain(log: &Log, moment: &Moment, world: Option<World>, told: Option<Told>) -> Explanation {
-    let levels = Ladder::processes().iter().zip(ProcessId::ALL).map(|(process, id)| {
-        let header = moment.after.header(*id);
-        let command = failure::command(*id, &moment.external.hws, &moment.before);
-        let fired = process.fired(header);
-        let row = fired.map(|fired| fired.row);
-        let step = header.step.unwrap_or_default();
-        Rung {
-            process: process.name.to_owned(),
-            command,
-            held: header.republished,
-            old: header.basis.filter(|_| header.age() > Some(0)).map(|basis| basis.tick.0),
-            values: fired.and_then(|fired| Some(values_text(fired.table, fired.values?))),
-            beside: beside(process, header).collect(),
-            table: fired.map(|fired| fired.table.name.to_owned()),
-            row: row.map(|row| row.number),
-            conditions: fired.as_ref().map_or_else(Vec::new, conditions),
-            action: row.map(|row| row.call().to_string()),
-            next: row.and_then(|row| row.next).map(str::to_owned),
-            step: step.to_string(),
-            effect: row.map_or_else(String::new, |row| effect(row, step.as_str())),
-        }
+fn explain(
+    log: &Log,
+    moment: &Moment,
+    world: Option<World>,
+    failure: Option<Story>,
+    processes: Processes,
+) -> Explanation {
+    let begun = failure.as_ref().map(|story| story.begun);
+    let last = moment.tick.0 + u64::from(world.is_some() || begun.is_some());
+    let lines: Vec<_> = log.lines().filter(|line| line.tick.0 <= last).collect();
+    let shown = |line: &record::reader::LogLine| {
+        let (source, text) = (line.source.clone(), line.text.clone());
+        LineBefore { tick: line.tick.0, source, text }
+    };
+    let is_fault = |line: &&record::reader::LogLine| line.source == FAULT;
+    let mut faults: Vec<LineBefore> = lines.iter().filter(is_fault).map(shown).collect();
+    faults.drain(..faults.len().saturating_sub(LINES_MEANWHILE));
+    let other = lines.iter().filter(|line| !is_fault(line)).filter(|line| match begun {
+        // The chain already contains commands and failures.
+        Some(begun) => line.tick.0 >= begun && (line.source == CELL || line.level == Level::Warning),
+        None => line.level != Level::Debug,
     });
-    let (failure, begun) = told.map_or((None, None), |told| (Some(told.story), Some(told.begun)));
-    let mut before: Vec<LineBefore> = log
-        .lines()
-        .filter(|line| line.tick.0 <= moment.tick.0 + u64::from(begun.is_some()))
-        .filter(|line| match begun {
-            // The chain already contains commands and failures.
-            Some(begun) => {
-                line.tick.0 >= begun
-                    && (EVENTS.contains(&line.source.as_str()) || line.level == Level::Warning)
-            }
-            None => line.level != Level::Debug,
-        })
-        .map(|line| LineBefore { tick: line.tick.0, source: line.source, text: line.text })
-        .collect();
+    let mut before: Vec<LineBefore> = other.map(shown).collect();
     let ended = log.end.as_ref().and_then(|end| end.get("result")).filter(|_| failure.is_none()).cloned();
     let most = if failure.is_some() { LINES_MEANWHILE } else { LINES_BEFORE };
     before.drain(..before.len().saturating_sub(most));
     Explanation {
         tick: moment.tick.0,
         seconds: moment.tick.0 as f64 * TICK_S,
+        tables: None,
         world,
         failure,
+        remedy: None,
+        faults,
         ended,
         before,
-        levels: levels.collect(),
+        levels: rung::all(moment, processes),
     }
 }
 
@@ -308,7 +276,9 @@ impl fmt::Display for Explanation {
             for sentence in world.account.sentences() {
                 writeln!(f, "{sentence}.")?;
             }
-            let told = self.failure.as_ref().is_some_and(|story| story.text == world.account.first.text);
+            self.remedy(f)?;
+            let told =
+                self.failure.as_ref().is_some_and(|story| story.report.text == world.account.first.text);
             if !told {
                 links("The commands that led there:", &world.commands, f)?;
             }
@@ -322,8 +292,12 @@ impl fmt::Display for Explanation {
                     writeln!(f, "The run ended: {ended}")?;
                 }
                 writeln!(f, "No control process has reported a failure.\n\nBefore it:")?;
-                self.lines(f)?;
+                lines(&self.before, f)?;
             }
+        }
+        if !self.faults.is_empty() {
+            writeln!(f, "\nInjected faults, which this run was to simulate:")?;
+            lines(&self.faults, f)?;
         }
         writeln!(f, "\nIn tick {} ({:.2} s), from Task down:", self.tick, self.seconds)?;
         self.levels.iter().try_for_each(|level| write!(f, "{level}"))
@@ -332,25 +306,31 @@ impl fmt::Display for Explanation {
 
 impl Explanation {
     fn tell(&self, story: &Story, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Story { report, first_cause, evidence, .. } = story;
         if self.world.is_none() {
-            writeln!(f, "Failure at tick {} ({:.2} s). {}.", self.tick, self.seconds, story.text)?;
+            writeln!(f, "Failure at tick {} ({:.2} s). {}.", self.tick, self.seconds, report.text)?;
+            self.remedy(f)?;
         }
-        writeln!(f, "First cause: {}.", story.first_cause)?;
-        links("The commands that led there:", &story.commands, f)?;
-        links("From the failure to its cause, each because of the next:", &story.causes, f)?;
-        list("What was sensed while it tried:", &story.evidence, f)?;
+        writeln!(f, "First cause: {first_cause}.")?;
+        links("The commands that led there:", &report.commands, f)?;
+        links("From the failure to its cause, each because of the next:", &report.causes, f)?;
+        list("What was sensed while it tried:", evidence, f)?;
         if !self.before.is_empty() {
             writeln!(f, "\nMeanwhile, in the cell and on the link:")?;
-            self.lines(f)?;
+            lines(&self.before, f)?;
         }
-        links("What followed:", &story.consequences, f)
+        links("What followed:", &report.consequences, f)
     }
 
-    fn lines(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        self.before.iter().try_for_each(|LineBefore { tick, source, text }| {
-            writeln!(f, "  tick {tick:>6}  {source:<12} {text}")
-        })
+    fn remedy(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.remedy.iter().try_for_each(|remedy| writeln!(f, "To do: {remedy}."))
     }
+}
+
+fn lines(lines: &[LineBefore], f: &mut fmt::Formatter<'_>) -> fmt::Result {
+    lines.iter().try_for_each(|LineBefore { tick, source, text }| {
+        writeln!(f, "  tick {tick:>6}  {source:<12} {text}")
+    })
 }
 
 /// Links under a title; empty without links.
@@ -366,19 +346,4 @@ fn list(title: &str, lines: &[String], f: &mut fmt::Formatter<'_>) -> fmt::Resul
     }
     writeln!(f, "\n{title}")?;
     lines.iter().try_for_each(|line| writeln!(f, "  {line}"))
-}
-
-impl fmt::Display for Rung {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let command = if self.command.is_empty() { "nothing" } else { &self.command };
-        let held = if self.held { " (not stepped: dormant or held)" } else { "" };
-        writeln!(f, "  {:<14} executes {command}{held}", self.process)?;
-        let (Some(table), Some(row)) = (&self.table, self.row) else { return Ok(()) };
-        let old = self.old.map_or_else(String::new, |tick| format!("no row since tick {tick}, when it was "));
-        writeln!(f, "  {:<14} {old}{table} row {row}: {}, {}", "", self.effect, because(&self.conditions))?;
-        if let Some(values) = self.values.as_ref().filter(|values| !values.is_empty()) {
-            writeln!(f, "  {:<14} values: {values}", "")?;
-        }
-        self.beside.iter().try_for_each(|row| writeln!(f, "  {:<14} also {row}", ""))
-    }
 }

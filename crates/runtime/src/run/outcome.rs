@@ -2,6 +2,7 @@
 
 use ::neighbours::workstation::player::BegunStep;
 use closed_loop::field::Field;
+use closed_loop::chain::Chain;
 use os_io::shell;
 use os_io::text::amount;
 use rcs_core::tick::TICK_S;
@@ -118,7 +119,12 @@ impl Run {
             failure: match ending {
                 Ending::Failed(account) => {
                     let line = self.neighbours.line_at(account.first.tick);
-                    Some(FailureResult::new(account, line, self.remedy))
+                    Some(FailureResult {
+                        account: account.clone(),
+                        line: line.map(str::to_owned),
+                        remedy: self.remedy.map(str::to_owned),
+                        chain: Some(Chain::of(account, &self.history)),
+                    })
                 }
                 Ending::Finished | Ending::Stopped | Ending::StoppedByUser => None,
             },

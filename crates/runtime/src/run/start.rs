@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use closed_loop::{ClosedLoop, account::Alarms, rest::RestWatch};
+use closed_loop::{ClosedLoop, account::Alarms, chain::History, rest::RestWatch};
 use depc::host::{PATIENCE_TICKS, RESTART_TICKS};
 use diagnostics::FAULTS;
 use executive::{
@@ -10,6 +10,7 @@ use executive::{
     runner::Runner,
 };
 use interfaces::hws::HwsStatus;
+use levels::ladder::Ladder;
 use rcs_core::tick::Tick;
 use sessions::network::Role;
 
@@ -197,6 +198,7 @@ impl Run {
             warning: None,
             alarms: Alarms::default(),
             task: HwsStatus::default(),
+            history: History::new(Ladder::processes()),
             view: Box::default(),
             viewed: Viewed::default(),
             waits: None,

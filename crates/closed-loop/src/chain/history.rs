@@ -1,14 +1,20 @@
 //! The history of every process in a run: changes of its commands, rows and reports.
 
-use closed_loop::failure;
-use interfaces::{Decided, Header};
-use levels::ladder::{Ladder, PROCESS_COUNT, ProcessId, ProcessInfo};
+use interfaces::{CommonMemory, Decided, ExternalInputs, Header};
+use levels::ladder::{PROCESS_COUNT, ProcessId, ProcessInfo};
 use rcs_core::{
     name::Name16,
     table::{self, Condition, Row, Values},
+    tick::Tick,
 };
 
-use crate::story::Moment;
+use crate::failure;
+
+/// Names and tables of all processes, in the order of common memory.
+pub type Processes = &'static [ProcessInfo; PROCESS_COUNT];
+
+/// Entries that are kept of each kind, so that the history of a run without an end does not grow.
+const KEPT: usize = 4096;
 
 /// A command, valid from the tick of its writing.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -42,35 +48,53 @@ pub struct Reported {
 }
 
 /// The history of all processes in a run.
-#[derive(Default)]
 pub struct History {
+    processes: Processes,
+    /// Id of the end effector of Prim's commands, with the tick from which it is valid.
+    grippers: Vec<(u64, Option<u8>)>,
     commands: [Vec<Commanded>; PROCESS_COUNT],
     rows: [Vec<Fired>; PROCESS_COUNT],
     reports: [Vec<Reported>; PROCESS_COUNT],
 }
 
 impl History {
-    /// Records a tick.
-    pub fn note(&mut self, moment: &Moment) {
-        let tick = moment.tick.0;
+    /// An empty history. `processes` are those that made the decisions: of this program, or of the log.
+    #[must_use]
+    pub fn new(processes: Processes) -> Self {
+        Self {
+            processes,
+            grippers: Vec::new(),
+            commands: Default::default(),
+            rows: Default::default(),
+            reports: Default::default(),
+        }
+    }
+
+    /// Records a tick: its external inputs, and common memory after it.
+    pub fn note(&mut self, tick: Tick, external: &ExternalInputs, memory: &CommonMemory) {
+        let tick = tick.0;
+        let gripper = memory.emove.prim.end_effector_id;
+        if self.grippers.last().is_none_or(|(_, last)| *last != gripper) {
+            keep(&mut self.grippers, (tick, gripper));
+        }
         for process in ProcessId::ALL.iter().copied() {
             let at = process.position();
-            let Header { decided, step, basis, .. } = *moment.after.header(process);
+            let Header { decided, step, basis, .. } = *memory.header(process);
             let rows = &mut self.rows[at];
             if rows.last().is_none_or(|last| (last.decided, last.step) != (decided, step)) {
-                rows.push(Fired { tick, decided, values: basis.map(|basis| basis.values), step });
+                keep(rows, Fired { tick, decided, values: basis.map(|basis| basis.values), step });
             }
-            let said = moment.after.said(process);
+            let said = memory.said(process);
             let (report, reason) = (said.report, said.fault.text());
             let reports = &mut self.reports[at];
             if reports.last().is_none_or(|last| (last.report, last.reason) != (report, reason)) {
-                reports.push(Reported { tick, report, reason });
+                keep(reports, Reported { tick, report, reason });
             }
-            let number = moment.after.command_number(process).unwrap_or(moment.external.hws.number);
+            let number = memory.command_number(process).unwrap_or(external.hws.number);
             let commands = &mut self.commands[at];
             if number != commands.last().map_or(0, |last| last.number) {
-                let text = failure::command(process, &moment.external.hws, &moment.after);
-                commands.push(Commanded { tick, number, text });
+                let text = failure::command(process, &external.hws, memory);
+                keep(commands, Commanded { tick, number, text });
             }
         }
     }
@@ -91,22 +115,48 @@ impl History {
     pub fn report(&self, process: ProcessId, tick: u64) -> Option<&Reported> {
         latest(&self.reports[process.position()], tick, |report| report.tick)
     }
+
+    /// Id of the end effector of Prim's command that was read in a tick.
+    pub(super) fn gripper(&self, tick: u64) -> Option<u8> {
+        latest(&self.grippers, tick.saturating_sub(1), |(from, _)| *from)?.1
+    }
+
+    /// Name and tables of a process.
+    #[must_use]
+    pub fn info(&self, process: ProcessId) -> &'static ProcessInfo {
+        &self.processes[process.position()]
+    }
+
+    pub(super) fn row_of(&self, process: ProcessId, fired: &Fired) -> Option<table::Fired> {
+        let (table, row) = self.info(process).row(fired.decided?)?;
+        Some(table::Fired { table, row, values: fired.values })
+    }
+
+    /// A row as text: `table QC-DETACH row 3: Unlock, then Unlocking, because step is Lowering, lock is Locked`.
+    pub(super) fn row_words(&self, process: ProcessId, fired: &Fired) -> String {
+        match self.row_of(process, fired) {
+            None => "by no row of a table".to_owned(),
+            Some(row) => {
+                let effect = effect(row.row, fired.step.unwrap_or_default().as_str());
+                let because = because(&conditions(&row));
+                format!("table {} row {}: {effect}, {because}", row.table.name, row.row.number)
+            }
+        }
+    }
+}
+
+/// Adds an entry. At twice the number of entries to keep, the older half is removed.
+fn keep<T>(entries: &mut Vec<T>, entry: T) {
+    if entries.len() >= 2 * KEPT {
+        entries.drain(..KEPT);
+    }
+    entries.push(entry);
 }
 
 /// The last entry at or before a tick.
 fn latest<T>(entries: &[T], tick: u64, tick_of: impl Fn(&T) -> u64) -> Option<&T> {
     let end = entries.partition_point(|entry| tick_of(entry) <= tick);
     entries.get(end.checked_sub(1)?)
-}
-
-/// Name and tables of a process.
-pub fn info(process: ProcessId) -> &'static ProcessInfo {
-    &Ladder::processes()[process.position()]
-}
-
-pub fn row_of(process: ProcessId, fired: &Fired) -> Option<table::Fired> {
-    let (table, row) = info(process).row(fired.decided?)?;
-    Some(table::Fired { table, row, values: fired.values })
 }
 
 /// The values for which a row fired, as text: `step is Start`, `gripper is None`.
@@ -141,38 +191,25 @@ pub fn because(conditions: &[String]) -> String {
     }
 }
 
-/// A row as text: `table QC-DETACH row 3: Unlock, then Unlocking, because step is Lowering, lock is Locked`.
-pub fn row_words(process: ProcessId, fired: &Fired) -> String {
-    match row_of(process, fired) {
-        None => "by no row of a table".to_owned(),
-        Some(row) => {
-            let effect = effect(row.row, fired.step.unwrap_or_default().as_str());
-            let because = because(&conditions(&row));
-            format!("table {} row {}: {effect}, {because}", row.table.name, row.row.number)
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use interfaces::ExternalInputs;
     use levels::execution::{Buffer, EXECUTE, Outcome};
     use rcs_core::{handshake::Arrival, table::Variables as _};
-
-    #[test]
-    fn values_that_processes_read_are_inputs() {
-        let leaves = record::layout::leaves(ExternalInputs::STRUCT);
-        for read in ProcessId::ALL.iter().flat_map(|process| process.reads()) {
-            assert!(leaves.iter().any(|leaf| leaf.path.starts_with(read)), "{read}");
-        }
-    }
 
     #[test]
     fn the_latest_entry_counts() {
         let entries = [3, 7, 9];
         let at = |tick| latest(&entries, tick, |entry| *entry).copied();
         assert_eq!([at(2), at(3), at(8), at(100)], [None, Some(3), Some(7), Some(9)]);
+    }
+
+    #[test]
+    fn long_history_keeps_its_end() {
+        let mut entries = Vec::new();
+        (0..3 * KEPT).for_each(|entry| keep(&mut entries, entry));
+        assert!((KEPT..=2 * KEPT).contains(&entries.len()), "{}", entries.len());
+        assert_eq!(entries.last(), Some(&(3 * KEPT - 1)));
     }
 
     #[test]

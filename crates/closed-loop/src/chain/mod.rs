@@ -1,4 +1,5 @@
-//! Traces a failure back over the ticks to its first cause.
+//! What led to a failure, and what it led to: the commands before it, the trace to its first cause, and the reports up
+//! to Task.
 //!
 //! The trace begins with the process that first reported the reason which Task received. The row that fired when that
 //! process began to report it has new conditions: those that were false in the previous tick. If a process below
@@ -6,14 +7,25 @@
 //! the tick of its report. It ends at a process with no such report from below. The cause is then a device, a limit, or
 //! data. From this process, the commands are traced upwards: who gave each command, when, and by which row.
 
+mod history;
+
 use interfaces::t3i::LinkFault;
 use levels::ladder::{PROCESS_COUNT, ProcessId};
 use rcs_core::table::{Condition, Fired, Row};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
-use super::history::{self, History, condition, info, row_of, row_words};
+pub use history::{Fired as FiredRow, History, Processes, because, conditions, effect};
 
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+use crate::{
+    account::{Account, Kind},
+    failure::Failure,
+};
+use history::condition;
+
+/// End effector id of the gripper whose hand is the process Grip.
+const PARTS_GRIPPER: u8 = 1;
+
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Link {
     pub tick: u64,
     pub process: String,
@@ -27,9 +39,80 @@ pub struct Root {
     pub tick: u64,
 }
 
+/// What led to the failures of a run.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Chain {
+    /// The commands that led to the first failure, from the workstation controller down; empty if no command can have
+    /// caused it.
+    pub commands: Vec<Link>,
+    /// The first failure that a process reports, if any.
+    pub report: Option<Report>,
+}
+
+/// A failure that a process reports, with its causes and consequences.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Report {
+    /// Tick in which the process began to report it.
+    pub tick: u64,
+    pub text: String,
+    /// The commands that led to the process of the first cause, from the workstation controller down.
+    pub commands: Vec<Link>,
+    /// The causes, from the report to the first cause.
+    pub causes: Vec<Link>,
+    /// The reports of the failure up to Task.
+    pub consequences: Vec<Link>,
+}
+
+impl Chain {
+    /// The chain of an account.
+    #[must_use]
+    pub fn of(account: &Account, history: &History) -> Self {
+        let Failure { tick, kind, .. } = account.first;
+        let root = kind.mover(history.gripper(tick.0)).map(|process| Root { process, tick: tick.0 });
+        Self {
+            commands: root.map_or_else(Vec::new, |root| commands(history, root)),
+            report: account
+                .of_process()
+                .and_then(|failure| Report::of(failure, history))
+                .map(|(_, report)| report),
+        }
+    }
+
+    /// The last command that led to the first failure, if any.
+    #[must_use]
+    pub fn last_command(&self) -> Option<&Link> {
+        self.commands.last().or_else(|| self.report.as_ref()?.commands.last())
+    }
+}
+
+impl Report {
+    /// The report of a failure, and where its trace ends; `None` if the failure is not that of a process.
+    #[must_use]
+    pub fn of(failure: &Failure, history: &History) -> Option<(Root, Self)> {
+        let (process, tick) = (ProcessId::from_text(&failure.process)?, failure.tick.0);
+        let (root, causes) = down(history, process, tick);
+        let (commands, consequences) = (commands(history, root), up(history, process, tick));
+        Some((root, Self { tick, text: failure.text.clone(), commands, causes, consequences }))
+    }
+}
+
+impl Kind {
+    /// The lowest process whose command can have caused a failure of this kind: the gripper for a part that it lost, T3I
+    /// for a warning of the robot controller, Prim for all other motion; `None` if no command can have caused it.
+    #[must_use]
+    pub const fn mover(self, gripper: Option<u8>) -> Option<ProcessId> {
+        match (self, gripper) {
+            (Self::EmergencyStop | Self::Power | Self::Link | Self::Device | Self::Program, _) => None,
+            (Self::RobotController, _) => Some(ProcessId::T3i),
+            (Self::Lost, Some(PARTS_GRIPPER)) => Some(ProcessId::Grip),
+            _ => Some(ProcessId::Prim),
+        }
+    }
+}
+
 /// Traces a report down to a process with no report from below. The links are in the order of the trace: the last one
 /// is the first cause.
-pub fn down(history: &History, process: ProcessId, tick: u64) -> (Root, Vec<Link>) {
+fn down(history: &History, process: ProcessId, tick: u64) -> (Root, Vec<Link>) {
     let (mut root, mut links) = (Root { process, tick }, Vec::new());
     // The ladder has four levels above the link, so a longer trace would be a cycle.
     for _ in 0..PROCESS_COUNT {
@@ -53,7 +136,8 @@ fn below(history: &History, at: Root) -> Option<Root> {
     found.map(|(process, report)| Root { process, tick: report.tick })
 }
 
-/// Returns true if `reason` is a failure. T3I reports `no error` for success, the other processes an empty text.
+/// True if `reason` is a failure. T3I reports `no error` for success, the other processes an empty text.
+#[must_use]
 pub fn has_failed(process: ProcessId, reason: &str) -> bool {
     let none = if process == ProcessId::T3i { LinkFault::None.text() } else { "" };
     reason != none
@@ -69,12 +153,12 @@ fn report(history: &History, at: Root) -> Link {
         None => "has reported nothing yet".to_owned(),
     };
     if let Some(fired) = history.row(at.process, at.tick) {
-        text += &format!(" ({})", row_words(at.process, fired));
+        text += &format!(" ({})", history.row_words(at.process, fired));
         if let Some(news) = news(history, at, fired) {
             text += &format!("; new in this tick: {news}");
         }
     }
-    Link { tick: at.tick, process: info(at.process).name.to_owned(), text }
+    Link { tick: at.tick, process: history.info(at.process).name.to_owned(), text }
 }
 
 /// The conditions of a row that the previous row lacks: the reasons why it fired. `None` unless it fired for
@@ -89,7 +173,7 @@ fn news(history: &History, at: Root, fired: &history::Fired) -> Option<String> {
         return None;
     }
     let last = history.row(at.process, seen)?;
-    let (now, before) = (row_of(at.process, fired)?, row_of(at.process, last)?);
+    let (now, before) = (history.row_of(at.process, fired)?, history.row_of(at.process, last)?);
     // A table consulted first that decides now had passed on the decision before, by a row that no header names.
     let is_above = before.table.name != now.table.name;
     let passed = now.table.rows.iter().filter(|row| is_above && row.action == CONSULT);
@@ -109,18 +193,23 @@ fn changed<'a>(before: impl Iterator<Item = &'a Row>, now: &Fired) -> Vec<String
 }
 
 /// The commands that led to a process, from the workstation controller down, each with its tick and row.
-pub fn commands(history: &History, at: Root) -> Vec<Link> {
+fn commands(history: &History, at: Root) -> Vec<Link> {
     let (mut links, mut next) = (Vec::new(), Some((at.process, at.tick)));
     while let Some((receiver, tick)) = next {
         let Some(command) = history.command(receiver, tick) else { break };
         let commander = receiver.commander();
         let by =
             commander.and_then(|commander| history.row(commander, command.tick).map(|row| (commander, row)));
-        let name = commander.map_or("HWSC", |commander| info(commander).name);
-        let reason =
-            by.map_or_else(String::new, |(commander, fired)| format!(" ({})", row_words(commander, fired)));
-        let text =
-            format!("commands {}: {}, number {}{reason}", info(receiver).name, command.text, command.number);
+        let name = commander.map_or("HWSC", |commander| history.info(commander).name);
+        let reason = by.map_or_else(String::new, |(commander, fired)| {
+            format!(" ({})", history.row_words(commander, fired))
+        });
+        let text = format!(
+            "commands {}: {}, number {}{reason}",
+            history.info(receiver).name,
+            command.text,
+            command.number
+        );
         links.push(Link { tick: command.tick, process: name.to_owned(), text });
         next = commander.map(|commander| (commander, command.tick));
     }
@@ -129,7 +218,7 @@ pub fn commands(history: &History, at: Root) -> Vec<Link> {
 }
 
 /// The path of the failure upwards from a process to Task: process and tick of each report.
-pub fn up(history: &History, from: ProcessId, tick: u64) -> Vec<Link> {
+fn up(history: &History, from: ProcessId, tick: u64) -> Vec<Link> {
     let (mut links, mut at, mut tick) = (Vec::new(), from, tick);
     while let Some(commander) = at.commander() {
         let Some(report) = (tick + 1..=tick + 3)
@@ -147,26 +236,17 @@ pub fn up(history: &History, from: ProcessId, tick: u64) -> Vec<Link> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::story::Moment;
     use interfaces::{CommonMemory, Decided, ExternalInputs, Header, Reason, StatusReport, prim::PrimReport};
+    use levels::ladder::Ladder;
     use rcs_core::tick::Tick;
 
     /// The history of ticks, each changed by a closure.
     fn history(changes: &[fn(&mut ExternalInputs, &mut CommonMemory)]) -> History {
         let (mut history, mut external, mut memory) =
-            (History::default(), ExternalInputs::default(), CommonMemory::default());
+            (History::new(Ladder::processes()), ExternalInputs::default(), CommonMemory::default());
         for (tick, change) in (1..).zip(changes) {
-            let before = memory;
             change(&mut external, &mut memory);
-            history.note(&Moment {
-                tick: Tick(tick),
-                gap: 0,
-                external,
-                before,
-                after: memory,
-                timing: None,
-                world: None,
-            });
+            history.note(Tick(tick), &external, &memory);
         }
         history
     }
@@ -220,6 +300,28 @@ mod tests {
         let said: Vec<_> =
             up(&missed(), ProcessId::Emove, 6).into_iter().map(|link| (link.tick, link.process)).collect();
         assert_eq!(said, [(7, "Subtask".to_owned()), (8, "Task".to_owned())]);
+    }
+
+    #[test]
+    fn chain_of_a_collision_has_the_commands_of_prim_and_the_later_report() {
+        let collision =
+            Failure::outside(Tick(5), Kind::Collision, "cell", "the robot ran into the tray".into());
+        let process = Failure {
+            table: Some("MOTION".into()),
+            ..Failure::outside(Tick(6), Kind::Process, "E-move", "not detached".into())
+        };
+        let account = Account::of([process, collision]).unwrap();
+        let chain = Chain::of(&account, &missed());
+        let named = |links: &[Link]| links.iter().map(|link| link.process.clone()).collect::<Vec<_>>();
+        assert_eq!(named(&chain.commands), ["HWSC", "Task", "Subtask", "E-move"]);
+        let report = chain.report.as_ref().unwrap();
+        assert_eq!((report.tick, report.text.as_str()), (6, "not detached"));
+        assert_eq!(named(&report.causes), ["E-move", "Prim"]);
+        assert_eq!(named(&report.consequences), ["Subtask", "Task"]);
+        assert_eq!(chain.last_command(), chain.commands.last());
+        let stop =
+            Account::of([Failure::outside(Tick(5), Kind::EmergencyStop, "T3", "pressed".into())]).unwrap();
+        assert_eq!(Chain::of(&stop, &missed()), Chain::default(), "no command presses a button");
     }
 
     /// A row of one of Subtask's tables.
