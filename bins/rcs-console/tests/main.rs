@@ -3,4 +3,5 @@
 mod band;
 mod procedures;
 mod screens;
+mod stage;
 mod terminal;

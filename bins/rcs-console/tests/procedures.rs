@@ -1,73 +1,33 @@
 //! The procedures: steps that the console detects, confirmations by the operator, and requests to the run.
 
-use std::path::Path;
-
 use executive::memory::{
     Text,
-    cell::{CellView, ControllerView, Lamps},
+    cell::{ControllerView, Lamps},
 };
 use geometry::pose::WireFrame;
-use interfaces::{
-    CommonMemory, ExternalInputs, ProcessId, prim::PrimVerb, subtask::SubtaskVerb, t3i::T3iReport,
-};
+use interfaces::{ProcessId, prim::PrimVerb, subtask::SubtaskVerb, t3i::T3iReport};
 use programs::rcs_console::{
     model::{Key, Model, Operating, Screen, procedures::ALL},
     once,
-    picture::Picture,
-    source::{About, Cell, Source, State},
-    story::Story,
     view::Look,
 };
-use rcs_core::tick::Tick;
+
+use crate::stage::Stage;
 
 const PLAIN: Look = Look { colour: false, ascii: false };
 const HOME: WireFrame =
     WireFrame { tool: [0, -7142, -1485], wrist_to_tool: [0, -2121, -2121], tool_to_finger: [3000, 0, 0] };
 
-/// A run with one fixed picture and one fixed cell.
-struct Stage {
-    picture: Picture,
-    view: Option<CellView>,
-    story: Story,
-}
-
-impl Source for Stage {
-    fn about(&self) -> About<'_> {
-        About { name: "demo", state: State::Runs, result: None, damage: None }
-    }
-
-    fn refresh(&mut self) {}
-
-    fn range(&self) -> Option<(u64, u64)> {
-        Some((1, self.picture.tick.0))
-    }
-
-    fn picture(&self, _: u64) -> Option<Picture> {
-        Some(self.picture.clone())
-    }
-
-    fn story(&self) -> &Story {
-        &self.story
-    }
-
-    fn cell(&self, _: u64) -> Cell {
-        self.view.map_or(Cell::NotPublished, |view| Cell::Shown(Box::new(view)))
-    }
-}
-
 impl Stage {
     /// A run in which all processes execute PAUSE, and the robot controller is at a stage.
     fn at(stage: &str) -> Self {
-        let (external, memory) = (ExternalInputs::default(), CommonMemory::default());
-        let picture = Picture { tick: Tick(100), external, memory, timing: None };
-        let mut made = Self { picture, view: Some(CellView::default()), story: Story::new(99) };
+        let mut made = Self::new();
         made.turn_to(stage);
         made.picture.external.hws.command = rcs_core::name::Name16::clipped("PAUSE");
         made.picture.memory.task.subtask.command = SubtaskVerb::Pause;
         made.picture.memory.subtask.emove.command = interfaces::emove::EmoveVerb::Pause;
         made.picture.memory.emove.prim.command = PrimVerb::Pause;
         made.picture.memory.t3i.status.resolver_frame = Some(HOME);
-        made.pass(1);
         made
     }
 
@@ -76,13 +36,6 @@ impl Stage {
             let lamps = Lamps { hydraulics_on: stage == "DEPC", ..Lamps::default() };
             let (stage, at_rest) = (Text::clipped(stage), true);
             view.controller = ControllerView { stage, at_rest, lamps, ..ControllerView::default() };
-        }
-    }
-
-    fn pass(&mut self, ticks: u64) {
-        self.picture.tick = Tick(self.picture.tick.0 + ticks);
-        for process in ProcessId::ALL {
-            self.picture.memory.header_mut(*process).stamp = self.picture.tick;
         }
     }
 
@@ -190,23 +143,20 @@ fn start_up_is_detected_step_by_step() {
     stage.turn_to("manual");
     look(&mut model, &mut stage);
     assert_eq!([word(&model, "8"), word(&model, "9"), cursor(&model)], ["seen", "", "9"]);
-    stage.view.as_mut().unwrap().controller.aligned = [true; 6];
+    stage.view().controller.aligned = [true; 6];
     look(&mut model, &mut stage);
     assert_eq!(word(&model, "9"), "seen");
     stage.turn_to("auto, at HOME");
-    stage.view.as_mut().unwrap().controller.aligned = [true; 6];
+    stage.view().controller.aligned = [true; 6];
     look(&mut model, &mut stage);
-    let shown = screen(&model, &stage);
-    let page = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/console.md");
-    let page = std::fs::read_to_string(page).expect("the page is there");
-    assert!(page.contains(&format!("```text\n{shown}```")), "docs/console.md must show:\n{shown}");
+    insta::assert_snapshot!("procedure-start-up", screen(&model, &stage));
     assert_eq!([word(&model, "10"), word(&model, "11"), cursor(&model)], ["seen", "seen", "12"]);
 }
 
 #[test]
 fn after_step_14_stopped_boards_may_run() {
     let mut stage = Stage::at("DEPC");
-    stage.view.as_mut().unwrap().controller.aligned = [true; 6];
+    stage.view().controller.aligned = [true; 6];
     stage.hold(&[ProcessId::Emove, ProcessId::Prim], true);
     stage.picture.memory.prim.t3i.frame = HOME;
     stage.picture.memory.t3i.status.frame_feedback = HOME;
@@ -272,7 +222,7 @@ fn step_is_skipped_with_a_reason_and_restored() {
     assert_eq!([word(&model, "2"), cursor(&model)], ["left", "3"]);
     assert_eq!(asked(&mut model), "note III.6 2: Prim is held: left out, no time");
     stage.turn_to("fault");
-    let controller = &mut stage.view.as_mut().unwrap().controller;
+    let controller = &mut stage.view().controller;
     controller.estops[2] = true;
     controller.cut = Text::clipped("the E-stop near the terminals was pressed");
     look(&mut model, &mut stage);

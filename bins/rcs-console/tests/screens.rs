@@ -387,38 +387,29 @@ fn one_enter_starts_no_job() {
     assert_eq!(asked(&mut model), "job go");
 }
 
-/// The pictures of the documentation are those of this run, with one process at the cursor. `RCS_PAGES=write`
-/// writes them.
+/// The screen in the documentation is that of this run. `RCS_PAGES=write` writes it.
 #[test]
-fn the_page_shows_these_screens() {
+fn the_page_shows_the_ladder_of_this_log() {
     let log = log();
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/console.md");
     let page = std::fs::read_to_string(&path).expect("the page is there");
-    let shown: Vec<&str> = page
-        .split("```text\n")
-        .skip(1)
-        .filter_map(|block| block.split_once("```").map(|(picture, _)| picture))
-        .collect();
-    let looking = Screen::ALL.into_iter().take(4);
-    let looking =
-        looking.map(|kind| once::screen_text(&model(kind, ProcessId::Emove, FAILURE, &log), &log, PLAIN));
-    let run = Operated(As(Recorded::open(&LOG.1).expect("the log can be read"), State::Runs));
-    let operating =
-        [Screen::Terminal, Screen::Panels].map(|kind| once::screen_text(&operating(kind, &run), &run, PLAIN));
-    let drawn: Vec<String> = looking.chain(operating).collect();
+    let (before, rest) = page.split_once("```text\n").expect("the page shows a screen");
+    let (shown, after) = rest.split_once("```").expect("the screen ends");
+    let drawn = once::screen_text(&model(Screen::Ladder, ProcessId::Emove, FAILURE, &log), &log, PLAIN);
     if std::env::var_os("RCS_PAGES").is_some_and(|value| value == "write") {
-        let written = shown
-            .iter()
-            .zip(&drawn)
-            .fold(page.clone(), |page, (shown, drawn)| page.replacen(shown, drawn, 1));
+        let written = format!("{before}```text\n{drawn}```{after}");
         std::fs::write(&path, written).expect("the page can be written");
         return;
     }
-    for (shown, drawn) in shown.iter().zip(&drawn) {
-        assert_eq!(shown, drawn);
-    }
-    // `procedures.rs` makes the last picture.
-    assert_eq!(shown.len(), drawn.len() + 1);
+    assert_eq!(shown, drawn);
+    assert!(!after.contains("```text"), "one screen is compared");
+}
+
+#[test]
+fn operator_has_terminal_and_panels() {
+    let run = Operated(As(log(), State::Runs));
+    insta::assert_snapshot!("terminal", screen(&operating(Screen::Terminal, &run), &run));
+    insta::assert_snapshot!("panels", screen(&operating(Screen::Panels, &run), &run));
 }
 
 /// A console that shows a log and has the blocks of the data.

@@ -2,25 +2,23 @@
 
 use closed_loop::{account::Kind, failure::Failure};
 use interfaces::{
-    Fault, ProcessId,
-    device::KNOB_FULL,
-    emove::Holding,
-    hws::HwsReport,
-    operator::BOARDS,
-    station::{BoxFrame, EStop},
+    Fault, ProcessId, device::KNOB_FULL, emove::Holding, hws::HwsReport, operator::BOARDS, station::BoxFrame,
 };
 use os_io::units::shown;
 use rcs_core::tick::TICK_S;
+use record::views::{Controller, JobState};
 
 use super::{Model, Place};
 use crate::rcs_console::{
     picture::{Absence, Picture},
-    source::{About, Cell, Source, State},
+    source::{About, Source, State},
     story::process_named,
 };
 
 const PAUSE: &str = "PAUSE";
 const FINISHED: &str = "finished";
+/// Phase of a job that waits for an operator.
+const WAITS: &str = "waits";
 /// Ticks over which the speed of the hand is measured.
 const SPEED_TICKS: u64 = 5;
 /// A hand that is slower is at rest, in/s.
@@ -108,7 +106,11 @@ struct Scene<'a> {
     source: &'a dyn Source,
     about: &'a About<'a>,
     picture: &'a Picture,
-    cell: Cell,
+    job: Option<JobState>,
+    /// Who commands.
+    commander: Option<String>,
+    /// The simulated robot controller.
+    controller: Option<Controller>,
     /// What went wrong up to this tick, unless work has continued since.
     failure: Option<Failure>,
 }
@@ -140,10 +142,13 @@ pub fn band(model: &Model, source: &dyn Source) -> Band {
     };
     let tick = picture.tick.0;
     let (cell, failure) = (source.cell(tick), source.story().failure(tick));
-    let scene = Scene { model, source, about: &about, picture, cell, failure };
+    let (job, commander, controller) = (cell.job(), cell.commander(), cell.controller());
+    let scene = Scene { model, source, about: &about, picture, job, commander, controller, failure };
     let Finding { condition, why, next } =
         CHECKS.iter().find_map(|check| check(&scene)).unwrap_or_else(|| running(&scene));
     let next = match role {
+        // Nobody can act on a log; its failures have their own next steps.
+        "RECORDED" if matches!(condition, Condition::Stopped | Condition::Paused) => String::new(),
         "VIEWER" if !next.is_empty() && condition != Condition::NoData => {
             format!("{next} (with --operate)")
         }
@@ -173,16 +178,17 @@ fn finished(scene: &Scene<'_>) -> Option<Finding> {
 
 fn emergency(scene: &Scene<'_>) -> Option<Finding> {
     const NEXT: &str = "7, procedure III.6: release the button, then start the robot again";
-    if let Cell::Shown(view) = &scene.cell
-        && let Some((site, _)) = EStop::ALL.iter().zip(view.controller.estops).find(|(_, is_in)| *is_in)
-    {
-        return Some(Finding::new(Condition::EStop, format!("the E-stop {} is pressed", site.place()), NEXT));
+    let failure = scene.failure.as_ref().filter(|failure| failure.kind == Kind::EmergencyStop);
+    let next = match failure {
+        _ if scene.is_live() => NEXT.to_owned(),
+        Some(failure) => scene.next_in_log(failure),
+        None => String::new(),
+    };
+    if let Some(site) = scene.controller.as_ref().and_then(|controller| controller.pressed.first()) {
+        return Some(Finding::new(Condition::EStop, format!("the E-stop {site} is pressed"), next));
     }
-    let failure = scene.failure.as_ref().filter(|failure| failure.kind == Kind::EmergencyStop)?;
-    scene.lacks_pressure().then(|| {
-        let next = if scene.is_live() { NEXT.to_owned() } else { scene.next_in_log(failure) };
-        Finding::new(Condition::EStop, failure.text.clone(), next)
-    })
+    let failure = failure.filter(|_| scene.lacks_pressure())?;
+    Some(Finding::new(Condition::EStop, failure.text.clone(), next))
 }
 
 fn failed(scene: &Scene<'_>) -> Option<Finding> {
@@ -234,9 +240,9 @@ fn stopped(scene: &Scene<'_>) -> Option<Finding> {
     if external.devices.joystick.velocity == 0 {
         return stopped("the velocity knob is at 0".to_owned(), "Space turns it back".to_owned());
     }
-    let Cell::Shown(view) = &scene.cell else { return None };
-    match view.controller.cut.as_str() {
-        "" if view.controller.lamps.hold => {
+    let controller = scene.controller.as_ref()?;
+    match controller.cut.as_str() {
+        "" if controller.lamps.hold => {
             stopped("HOLD is on at the robot controller".to_owned(), "6: `panel hold off`".to_owned())
         }
         "" => None,
@@ -256,7 +262,10 @@ fn paused(scene: &Scene<'_>) -> Option<Finding> {
         return paused(format!("the joystick box is on, frame {frame}"), "6: x switches it off");
     }
     let before = scene.failure.as_ref().map_or_else(String::new, |failure| format!("; {}", failure.text));
-    if scene.model.job_waits() {
+    let waiting = scene.job.as_ref().filter(|job| job.phase == WAITS);
+    if scene.model.job_waits() || waiting.is_some() {
+        let reason = waiting.map(|job| &job.reason).filter(|reason| before.is_empty() && !reason.is_empty());
+        let before = reason.map_or(before, |reason| format!(": {reason}"));
         return paused(format!("the job waits{before}"), "`:job go` continues the job");
     }
     match (external.hws.number, external.hws.command.as_str()) {
@@ -285,28 +294,22 @@ impl Scene<'_> {
 
     /// True if the robot has no pressure, or if no data show it.
     fn lacks_pressure(&self) -> bool {
-        match &self.cell {
-            Cell::Shown(view) => !view.controller.cut.as_str().is_empty(),
-            Cell::NotPublished | Cell::Recorded { .. } => true,
+        match &self.controller {
+            Some(controller) => !controller.cut.is_empty(),
+            None => true,
         }
     }
 
     /// The operator's action before the same command can succeed, if it is known.
     fn to_do(&self, failure: &Failure) -> Option<&'static str> {
-        match failure.kind {
-            Kind::Collision | Kind::Lost | Kind::Misplaced | Kind::FalseReport => {
-                Some("put the cell in order")
+        failure.kind.remedy().or_else(|| {
+            let process = process_named(&failure.process)?;
+            let picture = self.source.picture(self.source.story().shown_at(failure))?;
+            match picture.fault(process)? {
+                Fault::Reason(reason) => reason.remedy(),
+                Fault::Link(_) => None,
             }
-            Kind::Device => Some("repair the device"),
-            _ => {
-                let process = process_named(&failure.process)?;
-                let picture = self.source.picture(self.source.story().shown_at(failure))?;
-                match picture.fault(process)? {
-                    Fault::Reason(reason) => reason.remedy(),
-                    Fault::Link(_) => None,
-                }
-            }
-        }
+        })
     }
 
     fn next_in_run(&self, failure: &Failure) -> String {
@@ -335,10 +338,8 @@ impl Scene<'_> {
     fn facts(&self) -> Vec<String> {
         let external = &self.picture.external;
         let mut facts = Vec::new();
-        match &self.cell {
-            Cell::Shown(view) if view.job.lines > 0 => {
-                facts.push(format!("line {} of {}", view.job.begun, view.job.lines));
-            }
+        match &self.job {
+            Some(job) if job.lines > 0 => facts.push(format!("line {} of {}", job.index, job.lines)),
             _ => facts.push(format!("command {}", external.hws.number)),
         }
         facts.push(match self.picture.memory.subtask.status.held {
@@ -365,9 +366,9 @@ impl Scene<'_> {
             });
         }
         facts.push(self.about.name.to_owned());
-        if let Some(who) = self.model.operating.as_ref().and_then(|operating| operating.commander()) {
-            facts.push(format!("{who} commands"));
-        }
+        let asked = || self.model.operating.as_ref().and_then(|operating| operating.commander());
+        let who = self.commander.clone().or_else(|| asked().map(str::to_owned));
+        facts.extend(who.map(|who| format!("{who} commands")));
         facts
     }
 

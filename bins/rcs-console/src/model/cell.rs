@@ -2,13 +2,12 @@
 
 use std::f64::consts::TAU;
 
-use executive::memory::cell::{CellView, JobView, PartView};
 use geometry::kinematics::{JOINT_NAMES, Joints, T3};
 use interfaces::{
     CommonMemory,
     device::{DeviceInputs, RESOLVER_COUNTS},
-    station::EStop,
 };
+use record::views::{Controller, JobState, Part};
 
 use super::{Section, Text, Tone, drawing::Drawing};
 use crate::rcs_console::{picture::Picture, source::Cell};
@@ -154,18 +153,29 @@ fn parts(cell: &Cell) -> Section {
         Cell::NotPublished => {
             vec![Text::new(Tone::Faint, " the robot is at a port: no simulated cell shows them")]
         }
-        Cell::Recorded { parts, .. } => parts
-            .iter()
-            .map(|(name, [x, y, z])| Text::plain(format!(" {name:<17} {x:>8.2} {y:>8.2} {z:>8.2} in")))
-            .collect(),
-        Cell::Shown(view) => view.parts.iter().filter(|part| part.id > 0).map(part).collect(),
+        Cell::Recorded(cell) => {
+            cell.parts.iter().map(|(part, position)| self::part(part, *position)).collect()
+        }
+        Cell::Shown(view) => {
+            let shown = view.parts.iter().filter(|part| part.id > 0).map(|part| {
+                let state = Part {
+                    name: part.name.to_string(),
+                    location: part.location.to_string(),
+                    sector: part.sector.into(),
+                    held: part.held,
+                    clamped: part.clamped,
+                    ..Part::default()
+                };
+                self::part(&state, part.position)
+            });
+            shown.collect()
+        }
     };
     let none = vec![Text::new(Tone::Faint, " none has been delivered yet")];
     Section::new("parts, as the simulated cell has them", if lines.is_empty() { none } else { lines })
 }
 
-fn part(part: &PartView) -> Text {
-    let [x, y, z] = part.position;
+fn part(part: &Part, [x, y, z]: [f64; 3]) -> Text {
     let held = match (part.held, part.clamped) {
         (true, _) => ", held by the gripper",
         (_, true) => ", held by the vise",
@@ -173,68 +183,75 @@ fn part(part: &PartView) -> Text {
     };
     let sector = if part.sector > 0 { format!(" sector {}", part.sector) } else { String::new() };
     let place = format!("{}{sector}{held}", part.location);
-    Text::plain(format!(" {:<17} {x:>8.2} {y:>8.2} {z:>8.2} in  {place}", part.name.as_str()))
+    Text::plain(format!(" {:<17} {x:>8.2} {y:>8.2} {z:>8.2} in  {place}", part.name).trim_end())
 }
 
-/// Further information of the source: E-stops, robot controller and job of a run; clearance and contacts of a log.
+/// E-stops, robot controller and job; then what only a live run has, or only a log.
 fn surroundings(cell: &Cell) -> Section {
-    let faint = |text: &str| vec![Text::new(Tone::Faint, text)];
+    let faint = |text: &str| Text::new(Tone::Faint, text);
+    let mut lines = match cell.controller() {
+        Some(controller) => controller_lines(&controller),
+        None => vec![faint(" the E-stops are at the robot")],
+    };
+    lines.extend(cell.job().map(|job| Text::plain(format!(" {}", progress(&job)))));
     match cell {
-        Cell::NotPublished => Section::new("E-stops and clearances", faint(" they are at the robot")),
-        Cell::Recorded { clearance, contacts, .. } => {
-            let mut lines = vec![match clearance {
-                Some(clearance) => Text::plain(format!(" closest in the whole run: {clearance}")),
-                None => Text::new(Tone::Faint, " the log does not tell the closest clearance"),
-            }];
-            if let Some(contacts) = contacts {
-                lines.push(Text::new(Tone::Trouble, format!("!! contacts: {contacts}")));
-            }
-            lines.extend(faint(" E-stops are in its messages, on screen 3"));
-            Section::new("E-stops and clearances", lines)
+        Cell::NotPublished => {}
+        Cell::Shown(view) => {
+            lines.push(Text::plain(format!(" vise {:.2} in", view.vise_opening)));
+            lines.push(faint(" clearances are in the log of the run"));
         }
-        Cell::Shown(view) => Section::new("E-stops, robot controller, job", shown(view)),
+        Cell::Recorded(log) => {
+            if log.job.is_none() {
+                lines = vec![faint(
+                    " the log of an older program has no E-stops, no robot controller and no job",
+                )];
+            }
+            lines.push(match &log.clearance {
+                Some(clearance) => Text::plain(format!(" closest in the whole run: {clearance}")),
+                None => faint(" the log has no closest clearance"),
+            });
+            let contacts = log.contacts.iter();
+            lines.extend(
+                contacts.map(|contacts| Text::new(Tone::Trouble, format!("!! contacts: {contacts}"))),
+            );
+        }
     }
+    Section::new("E-stops, robot controller, job", lines)
 }
 
-fn shown(view: &CellView) -> Vec<Text> {
-    let pressed: Vec<&str> = EStop::ALL
-        .iter()
-        .zip(view.controller.estops)
-        .filter_map(|(site, is_in)| is_in.then_some(site.text()))
-        .collect();
-    let estops = match &pressed[..] {
-        [] => Text::plain(" E-stops: all five are out"),
-        pressed => Text::new(Tone::Trouble, format!("!! E-stop is in: {}", pressed.join(", "))),
-    };
-    let mut lines = vec![estops];
-    if !view.controller.cut.as_str().is_empty() {
-        lines.push(Text::new(Tone::Trouble, format!("!! no pressure: {}", view.controller.cut)));
+fn controller_lines(controller: &Controller) -> Vec<Text> {
+    let Controller { stage, pressed, cut, screen, screen_tick, .. } = controller;
+    let mut lines = vec![match pressed.is_empty() {
+        true => Text::plain(" E-stops: all five are out"),
+        false => Text::new(Tone::Trouble, format!("!! E-stop is pressed: {}", pressed.join(", "))),
+    }];
+    if !cut.is_empty() {
+        lines.push(Text::new(Tone::Trouble, format!("!! no pressure: {cut}")));
     }
-    lines.push(Text::plain(format!(" robot controller: {}", view.controller.stage)));
-    if !view.controller.screen.as_str().is_empty() {
-        let text =
-            format!("!! its screen since tick {}: {}", view.controller.screen_tick, view.controller.screen);
-        lines.push(Text::new(Tone::Trouble, text));
+    lines.push(Text::plain(format!(" robot controller: {stage}")));
+    if !screen.is_empty() {
+        lines.push(Text::new(Tone::Trouble, format!("!! its screen since tick {screen_tick}: {screen}")));
     }
-    lines.push(Text::plain(format!(" {}", progress(&view.job))));
-    lines.push(Text::plain(format!(" vise {:.2} in", view.vise_opening)));
-    lines.push(Text::new(Tone::Faint, " clearances are in the log of the run"));
     lines
 }
 
 /// The line of the job, and the last step that was begun.
-fn progress(job: &JobView) -> String {
-    match (job.lines, job.line.as_str()) {
+fn progress(job: &JobState) -> String {
+    match (job.lines, job.text.as_str()) {
         (_, "") => "job: nothing has begun yet".to_owned(),
         (0, step) => format!("workstation controller: {step}"),
-        (lines, step) => format!("job: line {} of {lines}; last {step}", job.begun),
+        (lines, step) => format!("job: line {} of {lines}; last {step}", job.index),
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use executive::memory::Text as MemoryText;
+    use crate::rcs_console::source::RecordedCell;
+    use executive::memory::{
+        Text as MemoryText,
+        cell::{CellView, PartView},
+    };
 
     #[test]
     fn angles_are_shifted_into_the_limits() {
@@ -261,24 +278,42 @@ mod tests {
     }
 
     #[test]
-    fn cell_screen_names_states_in_text() {
+    fn run_and_log_show_the_same_states_and_parts() {
         let mut view = CellView::default();
         let text =
-            |view: &CellView| shown(view).into_iter().map(|line| line.text).collect::<Vec<_>>().join("\n");
-        assert!(text(&view).contains("all five are out") && !text(&view).contains("!!"));
+            |section: Section| section.lines.into_iter().map(|line| line.text).collect::<Vec<_>>().join("\n");
+        let shown = |view: &CellView| text(surroundings(&Cell::Shown(Box::new(*view))));
+        assert!(shown(&view).contains("all five are out") && !shown(&view).contains("!!"));
         view.controller.estops[3] = true;
-        assert!(text(&view).contains("!! E-stop is in: joystick-box"));
+        view.job.lines = 3;
+        view.job.begun = 2;
+        view.job.line = MemoryText::clipped("PAUSE");
         view.parts[0] = PartView { id: 1, held: true, position: [1.0, 2.0, 3.5], ..PartView::default() };
-        let lines = parts(&Cell::Shown(Box::new(view))).lines;
-        assert_eq!(lines.len(), 1);
-        assert!(lines[0].text.contains("3.50 in") && lines[0].text.contains("held by the gripper"));
+        let live = Cell::Shown(Box::new(view));
+        let part = Part { held: true, ..Part::default() };
+        let log = RecordedCell {
+            job: live.job(),
+            controller: live.controller(),
+            parts: vec![(part, [1.0, 2.0, 3.5])],
+            ..RecordedCell::default()
+        };
+        let log = Cell::Recorded(Box::new(log));
+        for cell in [&live, &log] {
+            let said = text(surroundings(cell));
+            assert!(said.contains("!! E-stop is pressed: on the joystick box"), "{said}");
+            assert!(said.contains("job: line 2 of 3; last PAUSE"), "{said}");
+        }
+        assert_eq!(text(parts(&live)), text(parts(&log)));
+        assert!(text(parts(&log)).contains("3.50 in") && text(parts(&log)).contains("held by the gripper"));
+        let old = text(surroundings(&Cell::Recorded(Box::default())));
+        assert!(old.contains("older program has no E-stops"), "{old}");
     }
 
     #[test]
     fn progress_names_the_line_and_the_last_step() {
-        let mut job = JobView { lines: 1, begun: 1, ..JobView::default() };
+        let mut job = JobState { lines: 1, index: 1, ..JobState::default() };
         assert_eq!(progress(&job), "job: nothing has begun yet");
-        job.line = MemoryText::clipped("PAUSE");
+        job.text = "PAUSE".into();
         assert_eq!(progress(&job), "job: line 1 of 1; last PAUSE");
         job.lines = 0;
         assert_eq!(progress(&job), "workstation controller: PAUSE");

@@ -120,7 +120,7 @@ fn lateness(cell: &Cell) -> Text {
                 " begins late {last:.1} us in this tick; p50 {p50:.1}  p99 {p99:.1}  max {max:.1} us"
             ))
         }
-        Cell::NotPublished | Cell::Recorded { .. } => {
+        Cell::NotPublished | Cell::Recorded(_) => {
             Text::new(Tone::Faint, " how late a tick began is not told here; rcs-run prints it at the end")
         }
     }

@@ -8,7 +8,7 @@ use interfaces::{
     device::{DeviceInputs, JoystickBox, KNOB_FULL, PedestalSensors, TABLE_STEPS_PER_TENTH},
     grip::Felt,
     pedestal::PedestalVerb,
-    station::{BoxFrame, EStop, Stepped},
+    station::{BoxFrame, Stepped},
 };
 
 use super::{
@@ -138,18 +138,15 @@ fn joystick_box(joystick: &JoystickBox, recording: bool, operating: Option<&Oper
 }
 
 fn controller(cell: &Cell) -> Vec<Text> {
-    let view = match cell {
-        Cell::Shown(view) => view,
-        Cell::NotPublished => {
-            let text = " robot     not simulated here: its panel and its E-stops are at the robot";
-            return vec![Text::new(Tone::Faint, text)];
-        }
-        Cell::Recorded { .. } => {
-            let text = " robot     a log has no panel; the messages of the controller are on screen 3";
-            return vec![Text::new(Tone::Faint, text)];
-        }
+    let Some(t3) = cell.controller() else {
+        let text = match cell {
+            Cell::Recorded(log) if log.job.is_none() => {
+                " robot     this log of an older program has no panel"
+            }
+            _ => " robot     not simulated here: its panel and its E-stops are at the robot",
+        };
+        return vec![Text::new(Tone::Faint, text)];
     };
-    let t3 = &view.controller;
     let lit = |on: bool, name: &'static str| on.then_some(name);
     let lamps = [
         lit(t3.lamps.power, "POWER"),
@@ -160,18 +157,18 @@ fn controller(cell: &Cell) -> Vec<Text> {
         lit(t3.lamps.hold, "HOLD"),
     ];
     let lamps: Vec<_> = lamps.into_iter().flatten().collect();
-    let aligned: String = t3.aligned.iter().map(|axis| if *axis { '*' } else { '.' }).collect();
-    let pressed: Vec<_> =
-        t3.estops.iter().zip(EStop::ALL).filter(|(is_in, _)| **is_in).map(|(_, site)| site.text()).collect();
-    let estops = match pressed.is_empty() {
-        true => Text::plain(format!(" E-stops   all five are out   aligned {aligned}")),
-        false => {
-            Text::new(Tone::Trouble, format!("!!E-stops   in: {}   aligned {aligned}", pressed.join(", ")))
-        }
+    let aligned = match cell {
+        Cell::Shown(view) => view.controller.aligned.map(|axis| if axis { "*" } else { "." }).concat(),
+        Cell::NotPublished | Cell::Recorded(_) => String::new(),
+    };
+    let aligned = if aligned.is_empty() { aligned } else { format!("   aligned {aligned}") };
+    let estops = match t3.pressed.is_empty() {
+        true => Text::plain(format!(" E-stops   all five are out{aligned}")),
+        false => Text::new(Tone::Trouble, format!("!!E-stops   pressed: {}{aligned}", t3.pressed.join(", "))),
     };
     let mut lines =
         vec![Text::plain(format!(" robot     stage {}   lit: {}", t3.stage, lamps.join(", "))), estops];
-    if !t3.screen.as_str().is_empty() {
+    if !t3.screen.is_empty() {
         lines.push(Text::plain(format!(" screen    {}", t3.screen)));
     }
     lines
@@ -248,6 +245,8 @@ fn keys(operating: &Operating) -> Section {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::rcs_console::source::RecordedCell;
+    use record::views::{Controller, JobState};
 
     fn text(lines: Vec<Text>) -> String {
         lines.into_iter().map(|line| line.text).collect::<Vec<_>>().join("\n")
@@ -279,9 +278,16 @@ mod tests {
     }
 
     #[test]
-    fn log_is_not_a_robot_at_a_port() {
-        let log = Cell::Recorded { parts: Vec::new(), clearance: None, contacts: None };
-        assert!(!text(controller(&log)).contains("at the robot"));
+    fn panel_of_a_log_is_that_of_its_robot_controller() {
+        let shown = |log: RecordedCell| text(controller(&Cell::Recorded(Box::new(log))));
+        assert!(shown(RecordedCell::default()).contains("older program"));
+        let recorded =
+            Some(Controller { pressed: vec!["near the pedestal".into()], ..Controller::default() });
+        let log =
+            RecordedCell { job: Some(JobState::default()), controller: recorded, ..RecordedCell::default() };
+        assert!(shown(log).contains("!!E-stops   pressed: near the pedestal"));
+        let at_a_port = RecordedCell { job: Some(JobState::default()), ..RecordedCell::default() };
+        assert!(shown(at_a_port).contains("its E-stops are at the robot"));
         assert!(text(controller(&Cell::NotPublished)).contains("its E-stops are at the robot"));
     }
 }

@@ -82,9 +82,7 @@ impl Live {
         self.pictures.push_back(picture);
         // The cell is published after the tick. If it cannot be read now, it is read with the next tick.
         if let Ok(Some(cell)) = self.run.cell() {
-            let tick = cell.tick.min(self.pictures.back().map_or(cell.tick, |picture| picture.tick)).next();
-            let lines = self.cells.back().map_or_else(Vec::new, |before| seen::lines(before, &cell, tick));
-            self.story.tell(lines);
+            self.story.tell(seen::lines(self.cells.back(), &cell));
             if self.cells.len() == KEPT {
                 self.cells.pop_front();
             }

@@ -9,6 +9,8 @@ pub use live::Live;
 pub use recorded::Recorded;
 
 use executive::memory::cell::CellView;
+use record::views::{Commander, Controller, JobState, Part};
+use runtime::controller_state;
 use taskdata::load::Source as Blocks;
 
 use crate::rcs_console::{picture::Picture, story::Story};
@@ -74,11 +76,68 @@ pub enum Cell {
     NotPublished,
     /// The published state of a simulated cell.
     Shown(Box<CellView>),
-    Recorded {
-        /// Name and position in inches of each part that has moved or been delivered.
-        parts: Vec<(String, [f64; 3])>,
-        /// Closest clearance and contacts of the whole run; `None` before its end, or if the log has none.
-        clearance: Option<String>,
-        contacts: Option<String>,
-    },
+    Recorded(Box<RecordedCell>),
+}
+
+/// State of the cell in a log. The log of an older program has only the positions of the parts.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct RecordedCell {
+    pub job: Option<JobState>,
+    pub commander: Option<Commander>,
+    /// The simulated robot controller; `None` also with a robot at a port.
+    pub controller: Option<Controller>,
+    /// Each part in the cell, with its position, in.
+    pub parts: Vec<(Part, [f64; 3])>,
+    /// Closest clearance and contacts of the whole run; `None` before its end, or if the log has none.
+    pub clearance: Option<String>,
+    pub contacts: Option<String>,
+}
+
+impl Cell {
+    /// Progress of the job, if the source has it.
+    #[must_use]
+    pub fn job(&self) -> Option<JobState> {
+        match self {
+            Self::NotPublished => None,
+            Self::Shown(view) => Some(JobState {
+                phase: view.job.phase.to_string().into(),
+                index: view.job.begun,
+                lines: view.job.lines,
+                text: view.job.line.to_string(),
+                began: view.job.began.0,
+                reason: view.job.reason.to_string(),
+                ..JobState::default()
+            }),
+            Self::Recorded(cell) => cell.job.clone(),
+        }
+    }
+
+    /// Who commands, as a clause's subject; `None` if the source does not have it.
+    #[must_use]
+    pub fn commander(&self) -> Option<String> {
+        let Commander { source, operator, .. } = match self {
+            Self::NotPublished => return None,
+            Self::Shown(view) => Commander {
+                source: view.commander.source.to_string().into(),
+                operator: view.commander.operator.to_string(),
+                ..Commander::default()
+            },
+            Self::Recorded(cell) => cell.commander.clone()?,
+        };
+        match (&*source, operator) {
+            ("", _) => None,
+            ("job" | "operator", operator) if !operator.is_empty() => Some(operator),
+            (source, _) => Some(format!("the {source}")),
+        }
+    }
+
+    /// The simulated robot controller, if the source has it.
+    #[must_use]
+    pub fn controller(&self) -> Option<Controller> {
+        match self {
+            Self::NotPublished => None,
+            Self::Shown(view) => Some(controller_state(&view.controller)),
+            Self::Recorded(cell) => cell.controller.clone(),
+        }
+    }
 }

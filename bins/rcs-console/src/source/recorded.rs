@@ -5,15 +5,23 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use closed_loop::account::Account;
-use record::{Attachment, Log, ReadError};
+use rcs_core::tick::Tick;
+use record::{
+    Attachment, Log, ReadError,
+    tables::{self, Origin},
+    views::{Changes, Commander, Controller, JobState, Part, Parts},
+};
+use runtime::result::FailureResult;
 use taskdata::load::Source as Blocks;
 
-use super::{About, Cell, Source, State, deltas::Deltas};
+use super::{About, Cell, RecordedCell, Source, State, deltas::Deltas};
 use crate::rcs_console::{error::ConsoleError, picture::Picture, story::Story};
 
 /// Metres to inches.
 const INCHES: f64 = 1.0 / 0.0254;
+/// The screens have only the tables of this program.
+const OTHER_TABLES: &str =
+    "the log has other decision tables than this program, which it shows: use `rcs-log why LOG`";
 /// Prefix of the names of links that are parts.
 const PART: &str = "part_";
 
@@ -25,7 +33,12 @@ pub struct Recorded {
     name: String,
     deltas: Deltas,
     story: Story,
-    parts: BTreeMap<String, Places>,
+    /// Positions of the links of parts, by their names.
+    places: BTreeMap<String, Places>,
+    parts: Changes<Parts>,
+    job: Changes<JobState>,
+    commander: Changes<Commander>,
+    controller: Changes<Controller>,
     result: Option<String>,
     clearance: Option<String>,
     contacts: Option<String>,
@@ -64,9 +77,12 @@ impl Recorded {
             story.note(before.as_ref().unwrap_or(&picture), &picture);
             before = Some(picture);
         }
+        if tables::of_log(&log).1 == Origin::Log {
+            damage.get_or_insert_with(|| OTHER_TABLES.to_owned());
+        }
         story.tell(log.lines());
-        if let Some(account) = log.end.as_ref().and_then(Account::of_facts) {
-            story.end(account);
+        if let Some(failed) = FailureResult::of_log(&log) {
+            story.end(failed.map(|failed| failed.account));
         }
         if deltas.range().is_none() {
             return Err(ConsoleError::Empty(path.to_owned()));
@@ -79,7 +95,11 @@ impl Recorded {
             name,
             deltas,
             story,
-            parts: parts(&log),
+            places: places(&log),
+            parts: Changes::of(&log),
+            job: Changes::of(&log),
+            commander: Changes::of(&log),
+            controller: Changes::of(&log),
             result,
             clearance,
             contacts,
@@ -108,7 +128,7 @@ fn blocks(log: &Log) -> Vec<Blocks> {
 }
 
 /// Positions of the parts, tick by tick.
-fn parts(log: &Log) -> BTreeMap<String, Places> {
+fn places(log: &Log) -> BTreeMap<String, Places> {
     let mut parts: BTreeMap<String, Places> = BTreeMap::new();
     for (tick, moved) in log.places() {
         for (link, place) in moved.into_iter().filter(|(link, _)| link.name.starts_with(PART)) {
@@ -151,16 +171,22 @@ impl Source for Recorded {
     }
 
     fn cell(&self, tick: u64) -> Cell {
-        let at = |(name, places): (&String, &Places)| {
+        let known = self.parts.at(Tick(tick));
+        let at = |(frame, places): (&String, &Places)| {
             let end = places.partition_point(|(from, _)| *from <= tick);
             let (_, place) = places.get(end.checked_sub(1)?)?;
+            let part = known.and_then(|known| known.parts.iter().find(|part| part.frame == *frame));
+            let unknown = || Part { name: frame.clone(), ..Part::default() };
             // A part that has not been delivered yet is at the origin of the world.
-            (*place != [0.0; 3]).then(|| (name.clone(), *place))
+            (*place != [0.0; 3]).then(|| (part.cloned().unwrap_or_else(unknown), *place))
         };
-        Cell::Recorded {
-            parts: self.parts.iter().filter_map(at).collect(),
+        Cell::Recorded(Box::new(RecordedCell {
+            job: self.job.at(Tick(tick)).cloned(),
+            commander: self.commander.at(Tick(tick)).cloned(),
+            controller: self.controller.at(Tick(tick)).cloned(),
+            parts: self.places.iter().filter_map(at).collect(),
             clearance: self.clearance.clone(),
             contacts: self.contacts.clone(),
-        }
+        }))
     }
 }

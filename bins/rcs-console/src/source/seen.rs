@@ -12,24 +12,27 @@ const FLOOR: &str = "floor";
 /// Code of a warning of the robot controller, as in a log.
 const WARNING: &str = "cell.warning";
 
-/// The events between two views, as the lines of a log, in the tick after the second view.
-pub fn lines(before: &CellView, now: &CellView, tick: Tick) -> Vec<LogLine> {
-    let (was, is) = (&before.controller, &now.controller);
+/// The events between two views, as the lines of a log: with the tick after that of the event. Before the first view
+/// only a loss of pressure that lasts is an event.
+pub fn lines(before: Option<&CellView>, now: &CellView) -> Vec<LogLine> {
+    let cut_before = before.map_or(Tick::BEFORE_START, |before| before.controller.cut_tick);
+    let is = &now.controller;
     let mut lines = Vec::new();
-    if was.cut != is.cut
+    if is.cut_tick > cut_before
         && let Some(cut) = cut(is.cut.as_str())
     {
-        // A button is pressed between two ticks, so the pressure is lost in the second.
-        let tick = if matches!(cut, Cut::EStop(_)) { tick.next() } else { tick };
-        lines.push(line(tick, CellEvent::Robot(RobotEvent::Sinks(cut))));
+        lines.push(line(is.cut_tick.next(), CellEvent::Robot(RobotEvent::Sinks(cut))));
     }
-    if !is.screen.as_str().is_empty() && (was.screen, was.screen_tick) != (is.screen, is.screen_tick) {
+    let Some(before) = before else { return lines };
+    // While FAULT RESET is lit the screen has the error of the lamp, which is not an event.
+    if !is.lamps.fault_reset && is.screen_tick > before.controller.screen_tick {
         let (level, source, text) = (Level::Error, "cell".to_owned(), is.screen.to_string());
-        lines.push(LogLine { tick, level, source, text, code: WARNING.to_owned() });
+        lines.push(LogLine { tick: is.screen_tick.next(), level, source, text, code: WARNING.to_owned() });
     }
     let lies = |part: &PartView| part.id > 0 && part.location.as_str() == FLOOR;
     let fell = before.parts.iter().zip(&now.parts).filter(|(was, is)| lies(is) && !lies(was));
-    lines.extend(fell.map(|(_, part)| line(tick, CellEvent::Fell { part: part.name.to_string() })));
+    let fell = fell.map(|(_, part)| CellEvent::Fell { part: part.name.to_string() });
+    lines.extend(fell.map(|event| line(now.tick.next(), event)));
     lines
 }
 
@@ -56,22 +59,52 @@ mod tests {
     use executive::memory::Text;
     use rcs_core::name::Name16;
 
+    /// A view after a tick, with a text of the screen and the cause of a loss of pressure.
+    fn view(tick: u64, (screen, screen_tick): (&str, u64), cut: Option<(Cut, u64)>) -> CellView {
+        let mut view = CellView { tick: Tick(tick), ..CellView::default() };
+        view.controller.screen = Text::clipped(screen);
+        view.controller.screen_tick = Tick(screen_tick);
+        if let Some((cut, tick)) = cut {
+            view.controller.cut = Text::clipped(&cut.to_string());
+            view.controller.cut_tick = Tick(tick);
+            view.controller.lamps.fault_reset = true;
+        }
+        view
+    }
+
+    fn codes_and_ticks(lines: &[LogLine]) -> Vec<(&str, u64)> {
+        lines.iter().map(|line| (line.code.as_str(), line.tick.0)).collect()
+    }
+
     #[test]
-    fn losses_of_pressure_and_parts_become_lines_once() {
-        let before = CellView::default();
-        let mut now = before;
-        now.controller.cut = Text::clipped(&Cut::EStop(EStop::JoystickBox).to_string());
-        now.controller.screen = Text::clipped("the T3 controller shows WD1");
+    fn warnings_and_fallen_parts_become_lines_once() {
+        let before = view(6, ("", 0), None);
+        let mut now = view(7, ("the T3 controller shows WD1", 5), None);
         let (id, name) = (1, Name16::clipped("LINKBAR1"));
         now.parts[0] = PartView { id, name, location: Name16::clipped(FLOOR), ..PartView::default() };
-        let said = lines(&before, &now, Tick(8));
-        let codes: Vec<_> = said.iter().map(|line| line.code.as_str()).collect();
-        assert_eq!(codes, ["cell.emergency", WARNING, "cell.fell"]);
-        let ticks: Vec<_> = said.iter().map(|line| line.tick).collect();
-        assert_eq!(ticks, [Tick(9), Tick(8), Tick(8)], "as in the log of the run");
+        let said = lines(Some(&before), &now);
+        assert_eq!(codes_and_ticks(&said), [(WARNING, 6), ("cell.fell", 8)], "as in the log of the run");
+        assert_eq!(lines(Some(&now), &now), []);
+        assert_eq!(lines(Some(&now), &before), [], "a repair is not an event");
+    }
+
+    /// The lamp lights up in the tick in which the button is pressed, one tick before the arm loses its pressure.
+    #[test]
+    fn emergency_stop_is_one_line_in_the_tick_of_the_log() {
+        let cause = Some((Cut::EStop(EStop::JoystickBox), 8));
+        let before = view(6, ("the T3 controller shows WD1", 3), None);
+        let pressed = view(7, ("ERROR-E22", 7), cause);
+        let said = lines(Some(&before), &pressed);
+        assert_eq!(codes_and_ticks(&said), [("cell.emergency", 9)]);
         assert!(said[0].text.contains("the E-stop on the joystick box was pressed"), "{said:?}");
-        assert_eq!(lines(&now, &now, Tick(9)), []);
-        assert_eq!(lines(&now, &before, Tick(9)), [], "a repair is not an event");
+        assert_eq!(
+            lines(Some(&before), &view(12, ("ERROR-E22", 7), cause)),
+            said,
+            "also if views were missed"
+        );
+        assert_eq!(lines(None, &pressed), said, "also for a console that starts later");
+        let reset = view(20, ("the T3 controller shows WD1", 3), None);
+        assert_eq!(lines(Some(&pressed), &reset), [], "the warning is an old one");
     }
 
     /// The views must contain the texts in full; otherwise the cause of a loss is not found.

@@ -159,7 +159,7 @@ impl Sight<'_> {
     pub(super) fn shown(&self) -> Option<&executive::memory::cell::ControllerView> {
         match self.cell {
             Cell::Shown(view) => Some(&view.controller),
-            Cell::NotPublished | Cell::Recorded { .. } => None,
+            Cell::NotPublished | Cell::Recorded(_) => None,
         }
     }
 
