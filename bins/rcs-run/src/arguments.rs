@@ -160,6 +160,9 @@ pub struct RunArguments {
     /// Let web pages of this origin connect to the live view, such as http://localhost:8080; may be given several times
     #[arg(long, value_name = "ORIGIN", requires = "live")]
     pub live_origin: Vec<Origin>,
+    /// Unix socket for rcs-gateway page, which shows the live view to persons on a network: unix:PATH
+    #[arg(long, value_name = "ADDRESS", requires = "live")]
+    pub live_socket: Option<Address>,
     /// Let other programs read the buffers in shared memory
     #[arg(long, value_enum, default_value_t = Switch::On)]
     pub shared_memory: Switch,
@@ -232,6 +235,7 @@ impl RunArguments {
             unchecked: own.unchecked,
             live: own.live,
             live_origins: own.live_origin,
+            live_socket: own.live_socket,
             shared_memory: own.shared_memory == Switch::On,
             ..RunConfig::new(own.data.unwrap_or_else(default_data), own.job)
         }

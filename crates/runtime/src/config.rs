@@ -96,6 +96,9 @@ pub struct RunConfig {
     /// Origins of web pages that may connect as viewers, in addition to Foxglove's.
     #[serde(with = "as_text::list")]
     pub live_origins: Vec<Origin>,
+    /// Unix socket at which `rcs-gateway page` connects to the live view.
+    #[serde(with = "as_text::option")]
+    pub live_socket: Option<Address>,
     pub remarks: BTreeMap<String, String>,
     /// Share the buffers with other programs.
     pub shared_memory: bool,
@@ -142,6 +145,7 @@ impl RunConfig {
             unchecked: false,
             live: None,
             live_origins: Vec::new(),
+            live_socket: None,
             remarks: BTreeMap::new(),
             shared_memory: true,
             on_stuck: None,
@@ -453,6 +457,7 @@ mod tests {
             ticks: Some(50),
             live: Some(0),
             live_origins: vec!["http://localhost:8080".parse().unwrap()],
+            live_socket: Some("unix:/run/t3-live.sock".parse().unwrap()),
             ..RunConfig::new("cell", "clevis")
         };
         let text = toml::to_string(&config).unwrap();

@@ -10,7 +10,7 @@ use plant::CellError;
 use record::RecordError;
 use sessions::{
     data_system::{OutboxError, StoreError},
-    network::listener::ListenError,
+    network::{Address, listener::ListenError},
 };
 use taskdata::load::Diagnostics;
 
@@ -140,6 +140,8 @@ pub enum StartError {
     LiveWithoutLog,
     #[error("viewers cannot connect at 127.0.0.1:{port}: {source}; --live PORT names another port")]
     Live { port: u16, source: io::Error },
+    #[error("rcs-gateway cannot connect at {address}: {source}; --live-socket unix:PATH names another path")]
+    LiveSocket { address: Address, source: io::Error },
     /// A thread of the run cannot be started.
     #[error("a thread of the run cannot be started: {0}")]
     Thread(#[source] io::Error),

@@ -132,8 +132,13 @@ impl Live {
             ..Options::default()
         };
         let server = Server::start(port, options, self.feed.clone());
-        let server =
+        let mut server =
             server.map_err(|source| StartError::Live { port: config.live.unwrap_or_default(), source })?;
+        if let Some(address) = &config.live_socket {
+            let opened = server.admit_gateway(address.path());
+            opened.map_err(|source| StartError::LiveSocket { address: address.clone(), source })?;
+            observer.message(&format!("rcs-gateway page can connect at {address}"));
+        }
         let hint = match config.clock {
             ClockKind::Fast => "; the run does not wait for viewers; use --clock real to watch it",
             ClockKind::Real => "",

@@ -3,6 +3,7 @@
 use std::{
     io::{ErrorKind, Read, Write},
     net::{SocketAddr, TcpStream},
+    os::unix::net::UnixStream,
     sync::mpsc::channel,
     thread,
     time::{Duration, Instant},
@@ -10,9 +11,13 @@ use std::{
 
 use record::{Tap, tap::Channel};
 use serde_json::{Value, json};
-use sessions::live::{Feed, Options, Port, Server, server::CLIENTS};
+use sessions::live::{
+    Feed, Options, Port, Server,
+    commands::{Access, Token},
+    server::CLIENTS,
+};
 use tungstenite::{
-    Error, Message, WebSocket,
+    Error, HandshakeError, Message, WebSocket,
     client::IntoClientRequest,
     http::{HeaderValue, header},
     protocol::frame::coding::CloseCode,
@@ -164,6 +169,77 @@ fn only_the_page_of_the_same_port_may_connect() {
         let refused = try_connect(server.address(), Some(&foreign), "foxglove.sdk.v1").map(|_| ());
         assert_eq!(refused.unwrap_err().0, 403, "{foreign}");
     }
+}
+
+/// A WebSocket of a gateway with headers; the status if it is refused.
+fn enter(
+    socket: &std::path::Path,
+    headers: &[(&'static str, &'static str)],
+) -> Result<WebSocket<UnixStream>, u16> {
+    let mut request = "ws://localhost".into_client_request().unwrap();
+    request.headers_mut().insert(header::SEC_WEBSOCKET_PROTOCOL, HeaderValue::from_static("foxglove.sdk.v1"));
+    for (name, value) in headers {
+        request.headers_mut().append(*name, HeaderValue::from_static(value));
+    }
+    let stream = UnixStream::connect(socket).unwrap();
+    stream.set_read_timeout(Some(Duration::from_secs(10))).unwrap();
+    match tungstenite::client(request, stream) {
+        Ok((socket, _)) => Ok(socket),
+        Err(HandshakeError::Failure(Error::Http(response))) => Err(response.status().as_u16()),
+        Err(error) => panic!("{error}"),
+    }
+}
+
+#[test]
+fn gateway_names_the_person_and_the_role() {
+    let place = tempfile::tempdir().unwrap();
+    let socket = place.path().join("live.sock");
+    let access = Access { socket: place.path().join("none.sock"), token: Token::random().unwrap() };
+    let (mut server, _tap) = serve(Options { access: Some(access), ..Options::default() });
+    server.admit_gateway(&socket).unwrap();
+    let person = |role| [("rcs-person", "anna"), ("rcs-role", role)];
+    for (role, access, name) in [("operator", "granted", "page1.anna"), ("viewer", "none", "page2.anna")] {
+        let mut socket = enter(&socket, &person(role)).unwrap();
+        let mut ask = || {
+            let names = ["/viewer/name", "/operator/access"];
+            let ask = json!({ "op": "getParameters", "parameterNames": names, "id": "1" }).to_string();
+            socket.send(Message::text(ask)).unwrap();
+            loop {
+                let text: Value = match socket.read().unwrap() {
+                    Message::Text(text) => serde_json::from_str(&text).unwrap(),
+                    _ => continue,
+                };
+                if text["op"] == "parameterValues" {
+                    return text["parameters"].clone();
+                }
+            }
+        };
+        let expected = json!([
+            { "name": "/operator/access", "value": access },
+            { "name": "/viewer/name", "value": name },
+        ]);
+        assert_eq!(ask(), expected);
+    }
+    assert_eq!(enter(&socket, &[]).map(drop), Err(400), "a gateway names the person");
+    assert_eq!(enter(&socket, &person("owner")).map(drop), Err(400));
+    // A program at the port of this machine is a viewer with a token, whatever it says.
+    let claims = "GET / HTTP/1.1\r\nHost: localhost\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n\
+                  Sec-WebSocket-Version: 13\r\nSec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n\
+                  Sec-WebSocket-Protocol: foxglove.sdk.v1\r\nRcs-Person: anna\r\nRcs-Role: operator\r\n\r\n";
+    let mut stream = TcpStream::connect(server.address()).unwrap();
+    stream.write_all(claims.as_bytes()).unwrap();
+    // A masked text of a client: the access.
+    let ask = br#"{"op":"getParameters","parameterNames":["/operator/access"],"id":"1"}"#;
+    stream.write_all(&[&[0x81, 0x80 | ask.len() as u8, 0, 0, 0, 0], &ask[..]].concat()).unwrap();
+    stream.set_read_timeout(Some(Duration::from_secs(10))).unwrap();
+    let (mut all, mut part) = (String::new(), [0; 4096]);
+    while !all.contains("parameterValues") {
+        let count = stream.read(&mut part).unwrap();
+        all.push_str(&String::from_utf8_lossy(&part[..count]));
+    }
+    assert!(all.contains(r#""value":"token""#), "{all}");
+    drop(server);
+    assert!(!socket.exists());
 }
 
 #[test]

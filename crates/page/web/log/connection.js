@@ -19,8 +19,9 @@ const PATIENCE = 3000;
 /** The service for any line of an operator. */
 const REQUEST = '/operator/request';
 const TOKEN = '/operator/token';
-/** Name of this client among the operators, and the seconds of the past that it wants. */
+/** Name of this client among the operators, whether it may send requests, and the seconds of the past that it wants. */
 const NAME = '/viewer/name';
+const ACCESS = '/operator/access';
 const PAST = '/viewer/past';
 /** Most seconds of the past that the server keeps. */
 const KEPT = 60;
@@ -155,7 +156,7 @@ export class Connection {
   text(message) {
     if (message.op === 'serverInfo') {
       this.receiver.begin(message);
-      this.send({ op: 'getParameters', parameterNames: [NAME], id: NAME });
+      this.send({ op: 'getParameters', parameterNames: [NAME, ACCESS], id: NAME });
       this.send({ op: 'setParameters', parameters: [{ name: PAST, value: this.missed() }] });
     } else if (message.op === 'advertise') this.advertised(message.channels);
     else if (message.op === 'advertiseServices') {
@@ -166,7 +167,11 @@ export class Connection {
     } else if (message.op === 'serviceCallFailure') {
       this.answered(message.callId, (call) => call.reject(new Error(message.message)));
     } else if (message.op === 'parameterValues' && message.id === NAME) {
-      this.name = String(message.parameters[0]?.value ?? '');
+      const values = new Map(message.parameters.map((/** @type {any} */ it) => [it.name, it.value]));
+      this.name = String(values.get(NAME) ?? '');
+      // A gateway has checked the person: no token is needed.
+      if (values.get(ACCESS) === 'granted') this.right = 'accepted';
+      this.receiver.changed();
     } else if (message.op === 'parameterValues' && message.id === TOKEN) {
       this.right = 'accepted';
       this.receiver.changed();

@@ -24,7 +24,7 @@ use crate::live::{
     options::{Notices, Options},
     outgoing::Outgoing,
     protocol::{self, StatusLevel},
-    session::{Action, Rights, Session},
+    session::{Action, Requests, Rights, Session},
     silence::Silence,
 };
 
@@ -107,17 +107,18 @@ impl Client {
         queue: Arc<Queue>,
         options: &Options,
         name: Name,
+        requests: Requests,
     ) -> Self {
         let now = Instant::now();
         let Options { knob, access, patience, notices, .. } = options;
-        let token = access.as_ref().map(|access| access.token.clone());
+        let access = access.as_ref().filter(|_| requests.are_offered());
         Self {
             socket,
             feed,
             queue,
             outgoing: Outgoing::default(),
-            session: Session::new(Rights { knob: knob.clone(), token, name: name.to_string() }),
-            access: access.clone(),
+            session: Session::new(Rights { knob: knob.clone(), requests, name: name.to_string() }),
+            access: access.cloned(),
             operator: None,
             name,
             patience: *patience,

@@ -4,12 +4,70 @@ use std::{
     io::{self, ErrorKind, Read, Write},
     mem,
     net::TcpStream,
+    os::unix::net::UnixStream,
     time::{Duration, Instant},
 };
 
+/// The stream of a client.
+#[derive(Debug)]
+pub enum Stream {
+    /// A program of this machine.
+    Local(TcpStream),
+    /// The gateway, which connects for a person on the network. It belongs to the user of this process.
+    Gateway(UnixStream),
+}
+
+impl Stream {
+    pub fn set_nonblocking(&self) -> io::Result<()> {
+        match self {
+            Self::Local(stream) => stream.set_nonblocking(true),
+            Self::Gateway(stream) => stream.set_nonblocking(true),
+        }
+    }
+
+    fn limit(&self, writing: Duration) -> io::Result<()> {
+        match self {
+            Self::Local(stream) => {
+                stream.set_nodelay(true)?;
+                stream.set_write_timeout(Some(writing))
+            }
+            Self::Gateway(stream) => stream.set_write_timeout(Some(writing)),
+        }
+    }
+
+    fn read(&self, buffer: &mut [u8], limit: Option<Duration>) -> io::Result<usize> {
+        match self {
+            Self::Local(stream) => {
+                limit.map_or(Ok(()), |limit| stream.set_read_timeout(Some(limit)))?;
+                (&*stream).read(buffer)
+            }
+            Self::Gateway(stream) => {
+                limit.map_or(Ok(()), |limit| stream.set_read_timeout(Some(limit)))?;
+                (&*stream).read(buffer)
+            }
+        }
+    }
+}
+
+impl Write for Stream {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        match self {
+            Self::Local(stream) => stream.write(bytes),
+            Self::Gateway(stream) => stream.write(bytes),
+        }
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        match self {
+            Self::Local(stream) => stream.flush(),
+            Self::Gateway(stream) => stream.flush(),
+        }
+    }
+}
+
 /// A connection. During the handshake, reads wait up to a time limit and then fail; afterwards they never wait.
 pub struct Connection {
-    stream: TcpStream,
+    stream: Stream,
     until: Option<Instant>,
     /// True if the last write was blocked.
     is_full: bool,
@@ -19,16 +77,15 @@ pub struct Connection {
 
 impl Connection {
     /// A connection with a time limit for its handshake.
-    pub fn new(stream: TcpStream, handshake: Duration) -> io::Result<Self> {
-        stream.set_nodelay(true)?;
-        stream.set_write_timeout(Some(handshake))?;
+    pub fn new(stream: Stream, handshake: Duration) -> io::Result<Self> {
+        stream.limit(handshake)?;
         Ok(Self { stream, until: Some(Instant::now() + handshake), is_full: false, has_drained: false })
     }
 
     /// Ends the handshake: reads and writes never wait from now on.
     pub fn never_wait(&mut self) -> io::Result<()> {
         self.until = None;
-        self.stream.set_nonblocking(true)
+        self.stream.set_nonblocking()
     }
 
     /// Returns true if a write has succeeded after a blocked one since the last call: the client has read.
@@ -39,14 +96,11 @@ impl Connection {
 
 impl Read for Connection {
     fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
-        if let Some(until) = self.until {
-            let left = until.saturating_duration_since(Instant::now());
-            if left.is_zero() {
-                return Err(ErrorKind::TimedOut.into());
-            }
-            self.stream.set_read_timeout(Some(left))?;
+        let left = self.until.map(|until| until.saturating_duration_since(Instant::now()));
+        if left.is_some_and(|left| left.is_zero()) {
+            return Err(ErrorKind::TimedOut.into());
         }
-        self.stream.read(buffer)
+        self.stream.read(buffer, left)
     }
 }
 

@@ -9,6 +9,7 @@
 //! * [`session`]: the session of one client, without I/O;
 //! * [`feed`]: channels, the newest message of each, and a queue per client;
 //! * `http`: the first request of a connection, and the page for browsers;
+//! * [`person`]: a person on the network, for whom the gateway connects;
 //! * [`server`]: listens on this machine, with one thread per client.
 //!
 //! The run never waits for a client. A full queue drops its oldest messages and counts them. A client that does
@@ -28,6 +29,7 @@ mod http;
 pub mod options;
 pub mod origin;
 mod outgoing;
+pub mod person;
 pub mod protocol;
 pub mod server;
 pub mod session;

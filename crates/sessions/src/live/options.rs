@@ -2,10 +2,15 @@
 
 use std::{sync::mpsc::Sender, time::Duration};
 
-use crate::live::{
-    commands::{Access, Knob},
-    origin::Origin,
-    protocol::ServerInfo,
+use crate::{
+    live::{
+        commands::{Access, Knob},
+        origin::Origin,
+        person::{Person, Role},
+        protocol::ServerInfo,
+        session::Requests,
+    },
+    operator::Name,
 };
 
 /// Time without reading after which a client is disconnected.
@@ -30,6 +35,27 @@ pub struct Options {
     pub access: Option<Access>,
     /// Receives the reasons of disconnects, if set.
     pub notices: Option<Notices>,
+}
+
+impl Options {
+    /// Whether the requests of a client are sent to the run.
+    #[must_use]
+    pub fn requests(&self, person: Option<&Person>) -> Requests {
+        match (&self.access, person.map(|person| person.role)) {
+            (None, _) => Requests::Closed,
+            (Some(_), Some(Role::Viewer)) => Requests::OnlyViewer,
+            (Some(_), Some(Role::Operator)) => Requests::Granted,
+            (Some(access), None) => Requests::Token(access.token.clone()),
+        }
+    }
+}
+
+/// The name of a client among the operators of a run: `viewer-3`, or `page3.anna` for a person.
+pub(crate) fn name(number: u64, person: Option<Person>) -> Option<Name> {
+    match person {
+        Some(person) => Some(person.name.from(&format!("page{number}."))),
+        None => format!("viewer-{number}").parse().ok(),
+    }
 }
 
 impl Default for Options {

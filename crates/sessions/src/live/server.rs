@@ -3,6 +3,8 @@
 use std::{
     io,
     net::{Ipv4Addr, SocketAddr, TcpListener, TcpStream},
+    os::unix::net::UnixStream,
+    path::Path,
     sync::{
         Arc,
         atomic::{AtomicBool, AtomicU64, AtomicUsize, Ordering},
@@ -11,6 +13,7 @@ use std::{
     time::{Duration, Instant},
 };
 
+use sockets::{Acceptor, check_user};
 use tungstenite::{
     Error, WebSocket,
     handshake::server::{Request, Response, create_response, write_response},
@@ -20,11 +23,12 @@ use tungstenite::{
 
 use crate::live::{
     client::Client,
-    connection::Connection,
+    connection::{Connection, Stream},
     feed::Feed,
     http::{self, First, Refusal},
-    options::Options,
+    options::{self, Options},
     origin::Origin,
+    person::Person,
     protocol::SUBPROTOCOLS,
 };
 
@@ -56,10 +60,10 @@ impl Port {
 #[derive(Debug)]
 pub struct Server {
     address: SocketAddr,
-    feed: Feed,
+    admission: Admission,
     stop: Arc<AtomicBool>,
-    open: Arc<AtomicUsize>,
     thread: Option<JoinHandle<()>>,
+    gateway: Option<Acceptor>,
 }
 
 impl Server {
@@ -79,17 +83,22 @@ impl Server {
         }
         let Port(listener) = port;
         let address = listener.local_addr()?;
-        let (stop, open) = (Arc::new(AtomicBool::new(false)), Arc::new(AtomicUsize::new(0)));
-        let accept = Accept {
-            listener,
-            options: Arc::new(options),
-            feed: feed.clone(),
-            stop: stop.clone(),
-            open: open.clone(),
-            viewers: Arc::default(),
-        };
+        let stop = Arc::new(AtomicBool::new(false));
+        let admission =
+            Admission { options: Arc::new(options), feed, open: Arc::default(), viewers: Arc::default() };
+        let accept = Accept { listener, admission: admission.clone(), stop: stop.clone() };
         let thread = thread::Builder::new().name("live".into()).spawn(move || accept.run())?;
-        Ok(Self { address, feed, stop, open, thread: Some(thread) })
+        Ok(Self { address, admission, stop, thread: Some(thread), gateway: None })
+    }
+
+    /// Also serves the persons for whom a gateway of this user connects at a Unix socket.
+    ///
+    /// # Errors
+    /// The errors of [`Acceptor::start`].
+    pub fn admit_gateway(&mut self, path: &Path) -> io::Result<()> {
+        let admission = self.admission.clone();
+        self.gateway = Some(Acceptor::start(path, "live gateway", move |stream| admission.enter(stream))?);
+        Ok(())
     }
 
     /// The address on which the server listens.
@@ -101,14 +110,15 @@ impl Server {
 
 impl Drop for Server {
     fn drop(&mut self) {
-        self.feed.finish();
+        self.gateway = None;
+        self.admission.feed.finish();
         self.stop.store(true, Ordering::Relaxed);
         // The thread checks `stop` at the next connection.
         if TcpStream::connect(self.address).is_ok() {
             let _ = self.thread.take().map(JoinHandle::join);
         }
         let until = Instant::now() + LAST;
-        while self.open.load(Ordering::Acquire) > 0 && Instant::now() < until {
+        while self.admission.open.load(Ordering::Acquire) > 0 && Instant::now() < until {
             thread::sleep(Duration::from_millis(5));
         }
     }
@@ -116,12 +126,8 @@ impl Drop for Server {
 
 struct Accept {
     listener: TcpListener,
-    options: Arc<Options>,
-    feed: Feed,
+    admission: Admission,
     stop: Arc<AtomicBool>,
-    open: Arc<AtomicUsize>,
-    /// Number of viewers so far, without requests for the page.
-    viewers: Arc<AtomicU64>,
 }
 
 impl Accept {
@@ -132,15 +138,34 @@ impl Accept {
                 return;
             }
             match accepted {
-                Ok((stream, _)) => self.admit(stream),
+                Ok((stream, _)) => self.admission.admit(Stream::Local(stream)),
                 // The client has already disconnected, or no more files can be opened. The server continues in
                 // both cases.
                 Err(_) => thread::sleep(AGAIN),
             }
         }
     }
+}
 
-    fn admit(&self, stream: TcpStream) {
+/// Opens a thread for each client, up to a limit.
+#[derive(Clone, Debug)]
+struct Admission {
+    options: Arc<Options>,
+    feed: Feed,
+    open: Arc<AtomicUsize>,
+    /// Number of viewers so far, without requests for the page.
+    viewers: Arc<AtomicU64>,
+}
+
+impl Admission {
+    /// Admits a gateway of this user; another one gets no answer.
+    fn enter(&self, stream: UnixStream) {
+        if check_user(&stream).is_ok() {
+            self.admit(Stream::Gateway(stream));
+        }
+    }
+
+    fn admit(&self, stream: Stream) {
         if self.open.load(Ordering::Acquire) >= CLIENTS {
             return refuse(stream);
         }
@@ -164,15 +189,16 @@ impl Drop for Open {
     }
 }
 
-fn refuse(mut stream: TcpStream) {
+fn refuse(mut stream: Stream) {
     let why = format!("{CLIENTS} viewers are connected: close one first\n");
     // The answer is small and usually fits; otherwise the client gets none.
-    if stream.set_nonblocking(true).is_ok() {
+    if stream.set_nonblocking().is_ok() {
         http::send_refusal(&mut stream, &(StatusCode::SERVICE_UNAVAILABLE, why));
     }
 }
 
-fn serve(stream: TcpStream, options: &Options, feed: Feed, viewers: &AtomicU64) {
+fn serve(stream: Stream, options: &Options, feed: Feed, viewers: &AtomicU64) {
+    let is_gateway = matches!(stream, Stream::Gateway(_));
     let Ok(mut connection) = Connection::new(stream, HANDSHAKE) else { return };
     let First { request, rest } = match http::read(&mut connection) {
         Ok(first) => first,
@@ -186,8 +212,10 @@ fn serve(stream: TcpStream, options: &Options, feed: Feed, viewers: &AtomicU64) 
             Err(refusal) => http::send_refusal(&mut connection, &refusal),
         };
     }
-    let response = match shake_hands(&request, &options.origins) {
-        Ok(response) => response,
+    let person = is_gateway.then(|| Person::of(request.headers())).transpose();
+    let shaken = person.and_then(|person| Ok((person, shake_hands(&request, &options.origins)?)));
+    let (person, response) = match shaken {
+        Ok(shaken) => shaken,
         Err(refusal) => return http::send_refusal(&mut connection, &refusal),
     };
     if write_response(&mut connection, &response).is_err() {
@@ -199,9 +227,10 @@ fn serve(stream: TcpStream, options: &Options, feed: Feed, viewers: &AtomicU64) 
         .max_frame_size(Some(MESSAGE));
     let socket = WebSocket::from_partially_read(connection, rest, Role::Server, Some(limits));
     let number = viewers.fetch_add(1, Ordering::Relaxed).saturating_add(1);
-    let Ok(name) = format!("viewer-{number}").parse() else { return };
+    let requests = options.requests(person.as_ref());
+    let Some(name) = options::name(number, person) else { return };
     let (queue, channels) = feed.join();
-    Client::new(socket, feed, queue, options, name).run(vec![options.info.encode(), channels]);
+    Client::new(socket, feed, queue, options, name, requests).run(vec![options.info.encode(), channels]);
 }
 
 /// Checks the origin of a client, and chooses the subprotocol.

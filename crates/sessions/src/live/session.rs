@@ -35,6 +35,9 @@ const QUOTED: usize = 60;
 /// Answer to a request if the run accepts none.
 const NO_REQUESTS: &str =
     "this run accepts no requests of viewers: it needs --clock real and an operator (docs/operator.md)";
+/// Answer to a request of a person who is a viewer.
+const ONLY_VIEWER: &str =
+    "the gateway has admitted this person as a viewer: rcs-gateway person sets the role";
 /// Answer to a request without a valid token.
 const NO_TOKEN: &str = "the token that the run has printed was expected";
 
@@ -80,12 +83,43 @@ pub enum Reply {
     },
 }
 
+/// Whether the requests of a client are sent to the run.
+#[derive(Clone, Debug, Default)]
+pub enum Requests {
+    /// The run accepts none.
+    #[default]
+    Closed,
+    /// The gateway has admitted a person who may only watch.
+    OnlyViewer,
+    /// A request must contain the token.
+    Token(Token),
+    /// The gateway has admitted a person who may operate.
+    Granted,
+}
+
+impl Requests {
+    /// Returns true if the client can send requests.
+    #[must_use]
+    pub const fn are_offered(&self) -> bool {
+        matches!(self, Self::Token(_) | Self::Granted)
+    }
+
+    /// Checks that the run gets requests of the client with this token.
+    fn check(&self, is_token: impl FnOnce(&Token) -> bool) -> Result<(), &'static str> {
+        match self {
+            Self::Closed => Err(NO_REQUESTS),
+            Self::OnlyViewer => Err(ONLY_VIEWER),
+            Self::Token(token) if !is_token(token) => Err(NO_TOKEN),
+            Self::Token(_) | Self::Granted => Ok(()),
+        }
+    }
+}
+
 #[derive(Clone, Debug, Default)]
 pub struct Rights {
     /// The velocity knob; `None` for a log.
     pub knob: Option<Knob>,
-    /// The token that a request must contain; `None` if the run accepts no requests.
-    pub token: Option<Token>,
+    pub requests: Requests,
     /// The name under which the run knows the client as an operator.
     pub name: String,
 }
@@ -123,7 +157,7 @@ impl Session {
     /// The first message to the client, which advertises services.
     #[must_use]
     pub fn services(&self) -> Option<String> {
-        self.rights.token.as_ref()?;
+        self.rights.requests.are_offered().then_some(())?;
         let services: Vec<Value> =
             (1..).zip(SERVICES).map(|(number, service)| service.advertised(number)).collect();
         Some(protocol::advertise_services(&services))
@@ -200,12 +234,13 @@ impl Session {
     fn parameters(&self, names: &[String], id: Option<&str>) -> String {
         let knob = self.rights.knob.as_ref().map(|knob| (VELOCITY, json!(knob.get())));
         let accepted = if self.has_token { "accepted" } else { "" };
-        let token = self.rights.token.as_ref().map(|_| (TOKEN, json!(accepted)));
+        let has_parameter = matches!(self.rights.requests, Requests::Token(_));
+        let token = has_parameter.then(|| (TOKEN, json!(accepted)));
         let [none, needed, granted] = ACCESS_WORDS;
-        let access = match &self.rights.token {
-            None => none,
-            Some(_) if self.has_token => granted,
-            Some(_) => needed,
+        let access = match self.rights.requests {
+            Requests::Closed | Requests::OnlyViewer => none,
+            Requests::Token(_) if !self.has_token => needed,
+            Requests::Token(_) | Requests::Granted => granted,
         };
         let own = [(ACCESS, json!(access)), (NAME, json!(self.rights.name)), (PAST, json!(self.past_s))];
         let all = knob.into_iter().chain(token).chain(own).filter(|(name, _)| is_wanted(names, name));
@@ -229,16 +264,19 @@ impl Session {
                 .into_iter()
                 .collect();
         }
-        let Some(token) = &self.rights.token else { return self.wrong(NO_REQUESTS) };
+        if let Err(why) = self.rights.requests.check(|_| true) {
+            return self.wrong(why);
+        }
+        let is_given = |token: &Token| value.as_str().is_some_and(|given| token.is(given));
         match name.as_str() {
-            TOKEN if value.as_str().is_some_and(|given| token.is(given)) => {
+            TOKEN if self.rights.requests.check(is_given).is_ok() => {
                 self.has_token = true;
                 id.map(|id| Action::Text(self.parameters(&[TOKEN.to_owned()], Some(id))))
                     .into_iter()
                     .collect()
             }
             TOKEN => self.wrong(NO_TOKEN),
-            VELOCITY if !self.has_token => {
+            VELOCITY if self.rights.requests.check(|_| self.has_token).is_err() => {
                 self.wrong(&format!("{NO_TOKEN}: set it as the parameter {TOKEN} first"))
             }
             VELOCITY => match knob(value) {
@@ -265,7 +303,7 @@ impl Session {
 
     /// The line for the run that corresponds to a call, or the reason why the call is refused.
     fn line(&self, asked: &ServiceCall) -> Result<String, String> {
-        let token = self.rights.token.as_ref().ok_or(NO_REQUESTS)?;
+        self.rights.requests.check(|_| true)?;
         let wanted =
             Service::of(asked.service).ok_or_else(|| format!("there is no service {}", asked.service))?;
         if asked.encoding != "json" {
@@ -274,7 +312,7 @@ impl Session {
         let payload = serde_json::from_slice(&asked.payload);
         let Payload { token: given, line } =
             payload.map_err(|_| "an object with the field `token` was expected".to_owned())?;
-        if !token.is(&given) {
+        if self.rights.requests.check(|token| token.is(&given)).is_err() {
             return Err(format!("{NO_TOKEN} in the field `token`"));
         }
         Ok(wanted.line.map_or(line, str::to_owned))
@@ -411,15 +449,15 @@ mod tests {
 
     const SECRET: &str = "/operator/token";
 
+    fn with(requests: Requests, knob: &Knob) -> Session {
+        Session::new(Rights { knob: Some(knob.clone()), requests, name: String::new() })
+    }
+
     fn permitted() -> (Session, String, Knob) {
         let (token, knob) = (Token::random().unwrap(), Knob::default());
         knob.set(1000);
         let word = token.reveal().to_owned();
-        (
-            Session::new(Rights { knob: Some(knob.clone()), token: Some(token), ..Rights::default() }),
-            word,
-            knob,
-        )
+        (with(Requests::Token(token), &knob), word, knob)
     }
 
     fn call(session: &mut Session, service: u32, payload: &Value) -> Vec<Action> {
@@ -465,6 +503,24 @@ mod tests {
         assert_eq!(session.services(), None);
         assert!(failure_of(&call(&mut session, 4, &json!({ "token": "" }))).contains("accepts no requests"));
         assert!(status_of(&set(&mut session, VELOCITY, json!(5))).contains("accepts no requests"));
+    }
+
+    #[test]
+    fn person_operates_without_a_token_unless_it_is_a_viewer() {
+        let knob = Knob::default();
+        let mut operator = with(Requests::Granted, &knob);
+        assert!(operator.services().is_some());
+        assert_eq!(value_of(&mut operator, ACCESS), "granted");
+        let asked = call(&mut operator, 4, &json!({}));
+        assert!(matches!(&asked[..], [Action::Ask { line, .. }] if line == "PAUSE"), "{asked:?}");
+        let turned = set(&mut operator, VELOCITY, json!(5));
+        assert!(matches!(&turned[..], [Action::Ask { .. }]), "{turned:?}");
+        let mut viewer = with(Requests::OnlyViewer, &knob);
+        assert_eq!(viewer.services(), None);
+        assert_eq!(value_of(&mut viewer, ACCESS), "none");
+        assert!(failure_of(&call(&mut viewer, 4, &json!({}))).contains("as a viewer"));
+        assert!(status_of(&set(&mut viewer, VELOCITY, json!(5))).contains("as a viewer"));
+        assert!(status_of(&set(&mut viewer, SECRET, json!("0"))).contains("as a viewer"));
     }
 
     fn set(session: &mut Session, name: &str, value: Value) -> Vec<Action> {
