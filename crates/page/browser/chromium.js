@@ -21,11 +21,11 @@ const FLAGS = [
 ];
 
 export class Browser {
-  /** @param {string} program */
-  constructor(program) {
+  /** @param {string} program @param {string[]} flags in addition to the usual ones */
+  constructor(program, flags = []) {
     this.home = mkdtempSync(join(tmpdir(), 'page-'));
     const root = process.getuid?.() === 0 ? ['--no-sandbox'] : [];
-    this.process = spawn(program, [...FLAGS, ...root, `--user-data-dir=${this.home}`, 'about:blank'], {
+    this.process = spawn(program, [...FLAGS, ...flags, ...root, `--user-data-dir=${this.home}`, 'about:blank'], {
       stdio: ['ignore', 'ignore', 'ignore', 'pipe', 'pipe'],
     });
     this.number = 0;

@@ -119,7 +119,9 @@ function watching(live) {
       h('b', {}, 'You watch. '),
       offered
         ? 'To operate, enter the token that the run printed when it started.'
-        : 'This run accepts no requests from here; start it with --operator network.',
+        : person(live) === null
+          ? 'This run accepts no requests from here; start it with --operator network.'
+          : 'To operate, log in as an operator; the run needs --operator network.',
     ),
     offered
       ? h('input', {
@@ -133,8 +135,20 @@ function watching(live) {
     offered
       ? h('button', { class: 'filled', type: 'submit' }, right === 'asked' ? 'Asked' : 'Operate')
       : null,
-    h('div', { class: 'note' }, NOTE),
+    h('div', { class: 'note' }, NOTE, account(live)),
   );
+}
+
+/** Who is logged in at the gateway; null without a gateway. @param {import('./session.js').Session} live */
+function person(live) {
+  return location.protocol === 'https:' ? live.connection.name.replace(/^page\d+\./, '') : null;
+}
+
+/** The way to the gateway's login. @param {import('./session.js').Session} live */
+function account(live) {
+  const name = person(live);
+  if (name === null) return null;
+  return [' ', h('a', { href: '/login' }, live.isConnected ? `${name}: log out` : 'Log in again')];
 }
 
 /**
@@ -222,7 +236,7 @@ function commanding({ run, live, ui }, does, size) {
       small('leave', does.leave, 'Leave'),
     ),
     size === 'phone' && live?.answer?.refused ? answered(live) : null,
-    h('div', { class: 'note' }, NOTE),
+    h('div', { class: 'note' }, NOTE, live && account(live)),
   );
 }
 
