@@ -156,14 +156,35 @@ test('operator_stops_goes_pauses_turns_the_knob_and_sends_lines', async () => {
   await live.end();
 });
 
-test('lost_connection_shows_and_comes_back', async (t) => {
+/** Notes when the page shows that the connection is lost. */
+const WATCH_LOSS = `{
+  window.lostAt = 0;
+  const observer = new MutationObserver(() => {
+    if (!(${state('NO CONNECTION')})) return;
+    window.lostAt = Date.now();
+    observer.disconnect();
+  });
+  observer.observe(document.body, { subtree: true, childList: true, characterData: true });
+}`;
+
+test('lost_connection_shows_within_a_second_and_comes_back', async (t) => {
   const live = await Live.start();
   const page = await browser.open(`${live.address}#view=operate&token=${live.token}`);
   await page.until(`document.querySelector('.large.stop')`);
-  live.process.kill('SIGSTOP');
-  const begin = Date.now();
-  await page.until(state('NO CONNECTION'));
-  t.diagnostic(`the page has seen the loss after ${Date.now() - begin} ms`);
+  // The least of three: a machine that is busy with other things is no fault of the page.
+  const times = [];
+  for (let run = 0; run < 3; run++) {
+    if (run > 0) {
+      live.process.kill('SIGCONT');
+      await page.until(state('RUNNING'));
+    }
+    await page.value(WATCH_LOSS);
+    const begin = Date.now();
+    live.process.kill('SIGSTOP');
+    times.push((await page.until('window.lostAt')) - begin);
+  }
+  t.diagnostic(`the page shows the loss after ${times.join(', ')} ms`);
+  assert.ok(Math.min(...times) < 1000, `${times}`);
   assert.equal(await page.value(`document.querySelectorAll('.large:not([aria-disabled])').length`), 0);
   assert.match(await page.text('.notice.lost'), /The robot may still be moving/);
   live.process.kill('SIGCONT');
@@ -198,9 +219,13 @@ test('failed_log_opens_at_its_cause_with_the_chain', async () => {
 test('ten_pages_beside_a_run_change_no_bit', async () => {
   // Ten pages on few processors can cost slots of the grid, which stop the robot by default.
   const ticks = ['--ticks', '700', '--json', '--operator', 'none', '--overrun', 'count'];
-  const alone = spawnSync(join(PROGRAMS, 'rcs-run'), ['linkbar', '--clock', 'real', '--log', 'none', ...ticks], {
-    cwd: scratch,
-  });
+  const alone = spawnSync(
+    join(PROGRAMS, 'rcs-run'),
+    ['linkbar', '--clock', 'real', '--log', 'none', ...ticks],
+    {
+      cwd: scratch,
+    },
+  );
   const live = await Live.start(ticks);
   const pages = await Promise.all(
     [...Array(10)].map(() => browser.open(live.address, { width: 700, height: 500 })),

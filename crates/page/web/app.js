@@ -30,6 +30,9 @@ const HIDDEN = 1000;
 /** Topics without which no picture of the cell can be drawn. */
 const PICTURE = ['/meshes', '/tf', '/tf_static', '/names'];
 
+/** Parts of the page that not every view shows. */
+const PANES = ['hierarchy', 'side', 'controls', 'why', 'time', 'table'];
+
 class Page {
   /** @param {Run} run @param {Session | null} live */
   constructor(run, live) {
@@ -111,7 +114,7 @@ class Page {
       theme = this.ui.theme;
       this.ui.theme = 'light';
       this.draw();
-      this.cell?.copy();
+      this.cell?.copy(this, this.colour);
     });
     addEventListener('afterprint', () => {
       this.ui.theme = theme;
@@ -130,7 +133,6 @@ class Page {
   advance() {
     const { run, ui, live } = this;
     if (!live) return;
-    live.connection.watch();
     const { log } = live;
     if (log.last > run.last) {
       run.update();
@@ -232,6 +234,7 @@ class Page {
       }
     }
     if (this.dirty) this.draw();
+    else if (this.cell?.isDue) this.cell.paint(this, this.colour);
     requestAnimationFrame((next) => this.frame(next));
   }
 
@@ -248,6 +251,11 @@ class Page {
     [app.dataset.view, app.dataset.tab] = [ui.view, ui.tab];
     app.className = this.classes();
     app.setAttribute('aria-busy', 'false');
+    // First what is read of the page, then what is written: each change between two reads costs a layout.
+    const isOpen = new Map(PANES.map((id) => [id, isShown(byId(id))]));
+    const pane = byId('table');
+    const em = parseFloat(getComputedStyle(root).fontSize) / 14;
+    const room = { width: pane.clientWidth, height: pane.clientHeight, em };
     patch(byId('bar'), ...bar(this));
     patch(byId('tabs'), ...tabs(this));
     const panes = /** @type {[string, () => import('./view/dom.js').Children[]][]} */ ([
@@ -258,14 +266,14 @@ class Page {
       ['time', () => timePane(this, size)],
     ]);
     for (const [id, content] of panes) {
-      if (isShown(byId(id))) patch(byId(id), ...content());
+      if (isOpen.get(id)) patch(byId(id), ...content());
     }
-    if (isShown(byId('table'))) this.drawTable(size);
-    if (isShown(byId('hierarchy'))) {
+    if (isOpen.get('table')) this.drawTable(size, room);
+    if (isOpen.get('hierarchy')) {
       for (const canvas of byId('hierarchy').querySelectorAll('canvas'))
         paintStrip(this, canvas, canvas.dataset.strip ?? '', this.colour);
     }
-    if (isShown(byId('time')))
+    if (isOpen.get('time'))
       paintTimeline(this, /** @type {HTMLCanvasElement} */ (byId('timeline')), size, this.colour);
     this.cell?.draw(this, this.colour);
     this.dirty = false;
@@ -279,8 +287,11 @@ class Page {
     return `app is-live${stale}${ui.following ? '' : ' is-past'}`;
   }
 
-  /** @param {import('./view/dom.js').Size} size */
-  drawTable(size) {
+  /**
+   * @param {import('./view/dom.js').Size} size
+   * @param {{ width: number, height: number, em: number }} room
+   */
+  drawTable(size, room) {
     const { ui } = this;
     const pane = byId('table');
     const panels = h(
@@ -301,8 +312,7 @@ class Page {
       patch(pane, ...messagesPane(this, panels));
       return showLast(pane);
     }
-    const em = parseFloat(getComputedStyle(document.documentElement).fontSize) / 14;
-    patch(pane, ...tablePane(this, choice, { width: pane.clientWidth, height: pane.clientHeight, em }));
+    patch(pane, ...tablePane(this, choice, room));
     const shown = consultation(this);
     if (!shown) return;
     pane.classList.toggle('bad', shown.failed);
@@ -351,12 +361,14 @@ async function watch(name, bytes) {
   /** @type {Page | null} */
   let page = null;
   const live = new Session(log, () => {
-    if (page) page.dirty = true;
+    if (!page) return;
+    // A lost connection is shown now, and not in the next frame.
+    if (live.loss) page.draw();
+    else page.dirty = true;
   });
   const start = byId('start');
   start.hidden = false;
   const begin = () => {
-    live.connection.watch();
     if (log.last === 0) {
       patch(
         start,

@@ -89,6 +89,8 @@ export class Renderer {
     this.sphere = sphere();
     this.view = new Float32Array(16);
     this.size = [1, 1];
+    /** Is passed when the graphics processor has drawn the last picture. @type {WebGLSync | null} */
+    this.fence = null;
   }
 
   /** Put all meshes into one set of buffers. @param {import('./glb.js').Mesh[]} meshes */
@@ -169,6 +171,18 @@ export class Renderer {
     this.drawBodies(theme, eye);
     this.drawMarks(picture, eye);
     gl.bindVertexArray(null);
+    this.fence = gl.fenceSync(gl.SYNC_GPU_COMMANDS_COMPLETE, 0);
+    gl.flush();
+  }
+
+  /** Returns true while the graphics processor draws the last picture. */
+  get isBusy() {
+    const { gl, fence } = this;
+    if (!fence) return false;
+    if (gl.getSyncParameter(fence, gl.SYNC_STATUS) === gl.UNSIGNALED) return true;
+    gl.deleteSync(fence);
+    this.fence = null;
+    return false;
   }
 
   /** Write the places and tints of the bodies into their texture. @param {Picture} picture */

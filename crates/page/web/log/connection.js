@@ -11,7 +11,9 @@ const CODE = { message: 1, time: 2, response: 3, request: 2 };
 /** Topics that the page does not read: bytes for programs, and what it computes from other topics. */
 const LEFT_OUT = ['/replay', '/trail', '/t3i/link_tx', '/robot_description'];
 /** Silence after which the connection counts as lost, milliseconds. */
-const SILENCE = 850;
+const SILENCE = 700;
+/** Time between two looks at the connection, milliseconds. With the silence this stays well below a second. */
+export const LOOK = 50;
 /** Pauses before the attempts to connect again, milliseconds; the last one repeats. */
 const PAUSES = [250, 500, 1000, 2000];
 /** Time limit of an answer, milliseconds: that of the run, and the way. */
@@ -89,7 +91,7 @@ export class Connection {
     };
   }
 
-  /** Check for silence, and connect again when it is time. Call it often. */
+  /** Check for silence, and connect again when it is time. Call it every `LOOK` milliseconds. */
   watch() {
     const now = performance.now();
     const { heard } = this;

@@ -9,12 +9,15 @@ import { stateOf } from '../log/state.js';
 import { bareLength, length } from '../log/units.js';
 import { byId, h, isShown, patch } from './dom.js';
 import { instruments } from './instruments.js';
+import { Labels } from './labels.js';
 
 /** @typedef {import('../cell/matrix.js').Point} Point */
 
 const TOOL_POINT = 'tool_point';
 /** Ticks of the trail, and ticks between its points. */
 const TRAIL = { ticks: 500, step: 5 };
+/** Places of the tool point that are kept. */
+const KEPT = 8192;
 /** Ticks for which a picture of the camera stays in the cell. */
 const PICTURE_TICKS = 250;
 /** Radius of a mark at a contact, metres: from far, from near, and of a permitted one. */
@@ -42,15 +45,18 @@ export class CellView {
     this.canvas = /** @type {HTMLCanvasElement} */ (byId('gl'));
     this.moving = new Reader(run.log, '/tf');
     this.frames = new Frames(this.moving.messages(), run.log.series('/tf_static').messages);
+    /** Places of the tool point by tick. @type {Map<number, Point>} */
+    this.places = new Map();
     this.turn = { azimuth: 0, elevation: 0, distance: 1 };
+    /** The picture is not the one of the shown tick. */
+    this.isDue = false;
     /** @type {Renderer | null} */
     this.renderer = null;
     this.trouble = '';
-    try {
-      this.renderer = new Renderer(this.canvas, run.log.series('/meshes').latest(run.last)?.entities ?? []);
-    } catch (error) {
-      this.trouble = error instanceof Error ? error.message : String(error);
-    }
+    this.prepare();
+    // A tablet takes the graphics context from a page in the background.
+    this.canvas.addEventListener('webglcontextlost', (event) => event.preventDefault());
+    this.canvas.addEventListener('webglcontextrestored', () => this.prepare());
     this.names = (run.log.series('/names').latest(run.last)?.entities ?? []).flatMap(
       (/** @type {any} */ entity) => {
         const [text] = entity.texts;
@@ -70,6 +76,17 @@ export class CellView {
     this.urls = new Map();
   }
 
+  /** Hand the meshes to the graphics processor. */
+  prepare() {
+    const { log, last } = this.run;
+    try {
+      this.renderer = new Renderer(this.canvas, log.series('/meshes').latest(last)?.entities ?? []);
+      this.isDue = true;
+    } catch (error) {
+      this.trouble = error instanceof Error ? error.message : String(error);
+    }
+  }
+
   /**
    * Turn the camera by a drag, or move it nearer.
    * @param {number} right
@@ -87,6 +104,7 @@ export class CellView {
     const { log } = this.run;
     this.moving = new Reader(log, '/tf');
     this.frames = new Frames(this.moving.messages(), log.series('/tf_static').messages);
+    this.places.clear();
   }
 
   /** Put the camera where its button puts it. */
@@ -97,19 +115,39 @@ export class CellView {
   /** @param {import('./ui.js').Context} context @param {Record<string, string>} colour */
   draw(context, colour) {
     if (!isShown(byId('cell'))) return;
-    const { ui, run } = context;
-    for (const { tick, data } of this.moving.messages()) this.frames.add(tick, data);
-    const contacts = run.contactsAt(ui.tick);
-    const collision = contacts.filter((it) => !it.permitted).sort((a, b) => b.depth - a.depth)[0];
-    if (this.renderer) {
-      this.renderer.draw(this.picture(context, contacts, colour));
-      patch(byId('labels'), ...this.labels(context, collision));
-    }
+    const { ui } = context;
+    this.paint(context, colour);
     patch(byId('cell-overlay'), this.overlay(context));
     const room =
       innerWidth > 700 && ui.view !== 'operate' && !ui.big && !(innerWidth < 1200 && ui.view === 'explain');
     byId('instruments').hidden = !room;
     if (room) patch(byId('instruments'), ...instruments(context));
+  }
+
+  /**
+   * Draw the picture and its labels. If the graphics processor still draws the last picture, it becomes due:
+   * more pictures than can be drawn would delay everything else that the page shows.
+   * @param {import('./ui.js').Context} context
+   * @param {Record<string, string>} colour
+   */
+  paint(context, colour) {
+    for (const { tick, data } of this.moving.messages()) this.frames.add(tick, data);
+    if (!this.renderer) return;
+    this.isDue = this.renderer.isBusy;
+    if (!this.isDue) this.paintNow(context, colour, this.renderer);
+  }
+
+  /**
+   * @param {import('./ui.js').Context} context
+   * @param {Record<string, string>} colour
+   * @param {Renderer} renderer
+   */
+  paintNow(context, colour, renderer) {
+    const { ui, run } = context;
+    const contacts = run.contactsAt(ui.tick);
+    const collision = contacts.filter((it) => !it.permitted).sort((a, b) => b.depth - a.depth)[0];
+    renderer.draw(this.picture(context, contacts, colour));
+    patch(byId('labels'), ...this.labels(context, collision));
   }
 
   /**
@@ -127,11 +165,7 @@ export class CellView {
     for (const { mover, permitted } of contacts) {
       if (!permitted) tints.set(mover, { colour: rgb(colour.flt), amount: 0.5 });
     }
-    const trail = [];
-    for (let tick = Math.max(0, ui.tick - TRAIL.ticks); tick <= ui.tick; tick += TRAIL.step) {
-      const place = this.frames.place(TOOL_POINT, tick);
-      if (place) trail.push(place);
-    }
+    const trail = this.trail(ui.tick);
     return {
       matrices: renderer.bodies.map(({ frame }) =>
         frame === WORLD ? IDENTITY : this.frames.matrix(frame, ui.tick),
@@ -148,6 +182,21 @@ export class CellView {
       light: ui.theme === 'light',
       camera: this.camera(ui, contacts.find((it) => !it.permitted)?.point ?? null),
     };
+  }
+
+  /** Where the tool point was, up to a tick. @param {number} tick */
+  trail(tick) {
+    if (this.places.size > KEPT) this.places.clear();
+    const points = [];
+    const first = Math.max(0, Math.ceil((tick - TRAIL.ticks) / TRAIL.step) * TRAIL.step);
+    for (let at = first; at < tick; at += TRAIL.step) {
+      const place = this.places.get(at) ?? this.frames.place(TOOL_POINT, at);
+      if (!place) continue;
+      this.places.set(at, place);
+      points.push(place);
+    }
+    const now = this.frames.place(TOOL_POINT, tick);
+    return now ? [...points, now] : points;
   }
 
   /**
@@ -226,9 +275,14 @@ export class CellView {
     return labels.shown;
   }
 
-  /** Copy the picture for paper: a browser prints the frame before the present one. */
-  copy() {
+  /**
+   * Copy the picture for paper: a browser prints the frame before the present one.
+   * @param {import('./ui.js').Context} context
+   * @param {Record<string, string>} colour
+   */
+  copy(context, colour) {
     if (!this.renderer) return;
+    this.paintNow(context, colour, this.renderer);
     const paper = /** @type {HTMLImageElement} */ (byId('paper'));
     paper.src = this.canvas.toDataURL();
     paper.hidden = false;
@@ -331,51 +385,6 @@ function notices(run, ui, live) {
     `${live.ago(ui.tick)} `,
     h('button', { 'data-do': 'live' }, 'back to LIVE'),
   );
-}
-
-/** Labels that do not cover each other. */
-class Labels {
-  /** @param {number[]} size of the picture, pixels */
-  constructor([width, height]) {
-    this.width = width;
-    this.height = height;
-    /** @type {{ left: number, top: number, right: number, bottom: number }[]} */
-    this.used = [];
-    /** @type {import('./dom.js').Element[]} */
-    this.shown = [];
-  }
-
-  /**
-   * @param {string} kind
-   * @param {[number, number] | null} at
-   * @param {string[]} lines
-   * @param {[number, number]} offset
-   * @param {boolean} always show it even where another label is
-   */
-  add(kind, at, lines, [right, down], always) {
-    if (!at || at[0] < 0 || at[0] > this.width || at[1] < 0 || at[1] > this.height) return;
-    const half = (Math.max(...lines.map((line) => line.length)) * 6.7 + 18) / 2;
-    const x = Math.max(half + 4, Math.min(this.width - half - 4, at[0] + right));
-    const tall = 9 * lines.length;
-    const y = Math.max(tall + 4, Math.min(this.height - tall - 4, at[1] + down));
-    const box = { left: x - half, top: y - tall, right: x + half, bottom: y + tall };
-    const covers = this.used.some(
-      (it) =>
-        box.left < it.right + 4 && box.right + 4 > it.left && box.top < it.bottom && box.bottom > it.top,
-    );
-    if (covers && !always) return;
-    this.used.push(box);
-    const style = `transform:translate(${x.toFixed(1)}px,${y.toFixed(1)}px) translate(-50%,-50%)`;
-    const [first, ...rest] = lines;
-    this.shown.push(
-      h(
-        'span',
-        { class: kind, style },
-        first,
-        rest.map((line) => h('small', {}, line)),
-      ),
-    );
-  }
 }
 
 /** `#rrggbb` as numbers from 0 to 1. @param {string} colour @returns {[number, number, number]} */

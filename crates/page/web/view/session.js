@@ -1,6 +1,6 @@
 // A run in progress: its connection, what arrives, and what the person at the page asks of it.
 
-import { Connection } from '../log/connection.js';
+import { Connection, LOOK } from '../log/connection.js';
 import { seconds, TICK_S } from '../log/units.js';
 
 /** Nanoseconds of a tick. */
@@ -39,6 +39,8 @@ export class Session {
       },
     });
     this.takeToken();
+    // A timer, and not the frames: a browser that draws slowly, or not at all, must see a silence in time.
+    setInterval(() => this.connection.watch(), LOOK);
   }
 
   /** Tick of a time. @param {bigint} time */
