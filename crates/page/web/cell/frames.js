@@ -2,13 +2,17 @@
 //
 // `/tf` has a quarter of a million transforms in a run of 20 minutes, so they are read here without objects.
 
-import { fields } from '../log/protobuf.js';
+import { textOf } from '../log/bytes.js';
+import { wireOf } from '../log/protobuf.js';
 import { multiply, IDENTITY, ofPose } from './matrix.js';
 
 /** The frame of fixed bodies. */
 export const WORLD = 'world';
 /** Numbers of a pose: x, y, z in metres, and the quaternion w, x, y, z. */
 const SIZE = 7;
+/** Places in a pose of the fields of a vector and of a quaternion. */
+const POSITION = [0, 1, 2];
+const ROTATION = [4, 5, 6, 3];
 
 /** The poses of a frame in its parent over time. */
 class Track {
@@ -42,26 +46,30 @@ export class Frames {
   constructor(moving, fixed) {
     /** @type {Map<string, Track>} */
     this.tracks = new Map();
+    this.names = new Names();
+    /** The pose that is being read. */
+    this.pose = Array(SIZE).fill(0);
     for (const { tick, data } of [...fixed, ...moving]) this.add(tick, data);
   }
 
   /** @param {number} tick @param {Uint8Array} data a `foxglove.FrameTransforms` */
   add(tick, data) {
-    for (const [, body] of fields(data)) {
-      if (!(body instanceof Uint8Array)) continue;
+    const { names, pose } = this;
+    for (const list = wireOf(data); list.next();) {
+      if (!list.isBlock) continue;
       let [parent, child] = ['', ''];
-      const pose = [0, 0, 0, 0, 0, 0, 0];
-      for (const [number, value] of fields(body)) {
-        if (!(value instanceof Uint8Array)) continue;
-        if (number === 2) parent = ascii(value);
-        else if (number === 3) child = ascii(value);
-        else if (number === 4) read(value, pose, [0, 1, 2]);
-        else if (number === 5) read(value, pose, [4, 5, 6, 3]);
+      pose.fill(0);
+      for (const wire = list.inside(); wire.next();) {
+        if (!wire.isBlock) continue;
+        if (wire.number === 2) parent = names.of(wire);
+        else if (wire.number === 3) child = names.of(wire);
+        else if (wire.number === 4) read(wire, pose, POSITION);
+        else if (wire.number === 5) read(wire, pose, ROTATION);
       }
       let track = this.tracks.get(child);
       if (!track) this.tracks.set(child, (track = new Track(parent)));
       track.ticks.push(tick);
-      track.poses.push(...pose);
+      for (const value of pose) track.poses.push(value);
     }
   }
 
@@ -94,19 +102,42 @@ export class Frames {
   }
 }
 
-/** A name of letters and digits. @param {Uint8Array} bytes */
-function ascii(bytes) {
-  return String.fromCharCode(...bytes);
+/** Names of frames: each is made of its bytes once. */
+class Names {
+  constructor() {
+    /** @type {Map<number, string>} */
+    this.known = new Map();
+  }
+
+  /** The name in a field. @param {import('../log/protobuf.js').Wire} wire */
+  of(wire) {
+    const { view, from, to } = wire;
+    let hash = to - from;
+    for (let at = from; at < to; at++) hash = (hash * 31 + view.getUint8(at)) | 0;
+    const known = this.known.get(hash);
+    if (known !== undefined && isText(known, view, from, to)) return known;
+    const name = textOf(wire.block);
+    this.known.set(hash, name);
+    return name;
+  }
+}
+
+/** @param {string} text @param {DataView} view @param {number} from @param {number} to */
+function isText(text, view, from, to) {
+  if (text.length !== to - from) return false;
+  for (let at = from; at < to; at++) if (text.charCodeAt(at - from) !== view.getUint8(at)) return false;
+  return true;
 }
 
 /**
  * Read the doubles of a vector or a quaternion into a pose.
- * @param {Uint8Array} data
+ * @param {import('../log/protobuf.js').Wire} of
  * @param {number[]} pose
  * @param {number[]} places
  */
-function read(data, pose, places) {
-  for (const [number, value] of fields(data)) {
-    if (typeof value === 'number' && number <= places.length) pose[places[number - 1]] = value;
+function read(of, pose, places) {
+  for (const wire = of.inside(); wire.next();) {
+    if (!wire.isBlock && wire.number > 0 && wire.number <= places.length)
+      pose[places[wire.number - 1]] = wire.value;
   }
 }

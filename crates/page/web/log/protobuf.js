@@ -43,37 +43,85 @@ const REPEATED = 3;
 const DEPTH_LIMIT = 32;
 
 /**
- * The fields of a message: number and value. A value is a number, or bytes that the reader interprets.
- * @param {Uint8Array} bytes
- * @returns {Generator<[number, number | Uint8Array, number]>} number, value, wire type
+ * Walks through the fields of a message, in place: a log has millions of them.
+ *
+ * After `next`, `number` is the number of the field. A number is in `value`; other fields are the bytes from `from` to
+ * `to`, which are a text, a message or packed numbers.
  */
-export function* fields(bytes) {
-  const view = new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength);
-  let at = 0;
-  const varint = () => {
+export class Wire {
+  /** @param {DataView} view @param {number} from @param {number} to */
+  constructor(view, from, to) {
+    this.view = view;
+    this.at = from;
+    this.end = to;
+    this.number = 0;
+    this.value = 0;
+    this.from = 0;
+    this.to = 0;
+    /** The field is bytes. */
+    this.isBlock = false;
+  }
+
+  /** Move to the next field; false at the end. @throws {RangeError} if the message is damaged */
+  next() {
+    if (this.at >= this.end) return false;
+    const key = this.varint();
+    this.number = Math.floor(key / 8);
+    const wire = key % 8;
+    this.isBlock = wire === 2;
+    if (wire === 0) {
+      this.value = this.varint();
+      return true;
+    }
+    const size = wire === 1 ? 8 : wire === 5 ? 4 : wire === 2 ? this.varint() : NaN;
+    if (!(this.at + size <= this.end)) throw new RangeError('a message ends in the middle of a field');
+    this.from = this.at;
+    this.at += size;
+    this.to = this.at;
+    if (wire === 1) this.value = this.view.getFloat64(this.from, true);
+    else if (wire === 5) this.value = this.view.getUint32(this.from, true);
+    return true;
+  }
+
+  varint() {
+    const { view, end } = this;
     let [value, scale] = [0, 1];
     for (;;) {
-      const byte = bytes[at++];
-      if (byte === undefined) throw new RangeError('a message ends in the middle of a number');
+      if (this.at >= end) throw new RangeError('a message ends in the middle of a number');
+      const byte = view.getUint8(this.at++);
       value += (byte & 0x7f) * scale;
       if (byte < 0x80) return value;
       scale *= 128;
     }
-  };
-  while (at < bytes.length) {
-    const key = varint();
-    const [number, wire] = [Math.floor(key / 8), key % 8];
-    if (wire === 0) {
-      yield [number, varint(), wire];
-      continue;
-    }
-    const size = wire === 1 ? 8 : wire === 5 ? 4 : wire === 2 ? varint() : NaN;
-    if (!(at + size <= bytes.length)) throw new RangeError('a message ends in the middle of a field');
-    if (wire === 1) yield [number, view.getFloat64(at, true), wire];
-    else if (wire === 5) yield [number, view.getUint32(at, true), wire];
-    else yield [number, bytes.subarray(at, at + size), wire];
-    at += size;
   }
+
+  /** The fields of the message in this field. */
+  inside() {
+    return new Wire(this.view, this.from, this.to);
+  }
+
+  /** The bytes of this field, not copied. */
+  get block() {
+    return new Uint8Array(this.view.buffer, this.view.byteOffset + this.from, this.to - this.from);
+  }
+}
+
+/** The fields of a message. @param {Uint8Array} bytes */
+export function wireOf(bytes) {
+  return new Wire(new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength), 0, bytes.length);
+}
+
+/**
+ * The fields of a message as a list: number and value.
+ * @param {Uint8Array} bytes
+ * @returns {Parts}
+ */
+function fields(bytes) {
+  /** @type {Parts} */
+  const found = [];
+  for (const wire = wireOf(bytes); wire.next();)
+    found.push([wire.number, wire.isBlock ? wire.block : wire.value]);
+  return found;
 }
 
 /**
@@ -86,7 +134,7 @@ export function typesOf(descriptors) {
   const types = { messages: new Map(), enums: new Map() };
   for (const [, file] of fields(descriptors)) {
     if (!(file instanceof Uint8Array)) continue;
-    const parts = [...fields(file)];
+    const parts = fields(file);
     const prefix = `.${text(parts, 2)}`;
     for (const body of blocks(parts, 4)) addMessage(body, prefix, types);
     for (const body of blocks(parts, 5)) addEnum(body, prefix, types);
@@ -96,12 +144,12 @@ export function typesOf(descriptors) {
 
 /** @param {Uint8Array} body @param {string} prefix @param {Types} types */
 function addMessage(body, prefix, types) {
-  const parts = [...fields(body)];
+  const parts = fields(body);
   const name = `${prefix}.${text(parts, 1)}`;
   /** @type {Map<number, Field>} */
   const found = new Map();
   for (const field of blocks(parts, 2)) {
-    const of = [...fields(field)];
+    const of = fields(field);
     const number = value(of, 3);
     found.set(number, {
       name: text(of, 1),
@@ -119,12 +167,12 @@ function addMessage(body, prefix, types) {
 
 /** @param {Uint8Array} body @param {string} prefix @param {Types} types */
 function addEnum(body, prefix, types) {
-  const parts = [...fields(body)];
-  const values = blocks(parts, 2).map((of) => [...fields(of)]);
+  const parts = fields(body);
+  const values = blocks(parts, 2).map(fields);
   types.enums.set(`${prefix}.${text(parts, 1)}`, new Map(values.map((of) => [value(of, 2), text(of, 1)])));
 }
 
-/** @typedef {[number, number | Uint8Array, number][]} Parts */
+/** @typedef {[number, number | Uint8Array][]} Parts */
 
 /** @param {Parts} parts @param {number} number @returns {Uint8Array[]} */
 function blocks(parts, number) {
@@ -155,7 +203,7 @@ export function decoder(schema) {
       type.blank[field.name] = field.repeated ? [] : blank(field, types);
     }
   }
-  return (data, only) => decode(types, `.${schema.name}`, data, 0, only);
+  return (data, only) => decode(types, `.${schema.name}`, wireOf(data), 0, only);
 }
 
 /** The value of an absent field. @param {Field} field @param {Types} types */
@@ -171,25 +219,25 @@ function blank(field, types) {
 /**
  * @param {Types} types
  * @param {string} name
- * @param {Uint8Array} data
+ * @param {Wire} wire
  * @param {number} depth
  * @param {string} [only]
  */
-function decode(types, name, data, depth, only) {
+function decode(types, name, wire, depth, only) {
   const type = types.messages.get(name);
   if (!type || depth > DEPTH_LIMIT) return null;
   const message = { ...type.blank };
-  for (const [number, raw, wire] of fields(data)) {
-    const field = type.fields.get(number);
+  while (wire.next()) {
+    const field = type.fields.get(wire.number);
     if (!field || (only !== undefined && field.name !== only)) continue;
     if (!field.repeated) {
-      message[field.name] = single(types, field, raw, depth);
+      message[field.name] = single(types, field, wire, depth);
       continue;
     }
     const list = message[field.name] === type.blank[field.name] ? [] : message[field.name];
     message[field.name] = list;
-    if (wire === 2 && raw instanceof Uint8Array && isNumber(field.kind)) unpack(types, field, raw, list);
-    else list.push(single(types, field, raw, depth));
+    if (wire.isBlock && isNumber(field.kind)) unpack(types, field, wire, list);
+    else list.push(single(types, field, wire, depth));
   }
   return message;
 }
@@ -203,36 +251,31 @@ function isNumber(kind) {
  * Append the numbers of a packed field.
  * @param {Types} types
  * @param {Field} field
- * @param {Uint8Array} raw
+ * @param {Wire} wire
  * @param {any[]} list
  */
-function unpack(types, field, raw, list) {
-  const view = new DataView(raw.buffer, raw.byteOffset, raw.byteLength);
+function unpack(types, field, { view, from, to }, list) {
   const size = { [KIND.double]: 8, [KIND.fixed64]: 8, [KIND.float]: 4, [KIND.fixed32]: 4 }[field.kind];
   if (size) {
-    for (let at = 0; at + size <= raw.length; at += size) {
+    for (let at = from; at + size <= to; at += size) {
       list.push(size === 8 ? view.getFloat64(at, true) : view.getUint32(at, true));
     }
     return;
   }
-  let [number, scale] = [0, 1];
-  for (const byte of raw) {
-    number += (byte & 0x7f) * scale;
-    scale *= 128;
-    if (byte < 0x80) {
-      list.push(single(types, field, number, 0));
-      [number, scale] = [0, 1];
-    }
-  }
+  for (const packed = new Wire(view, from, to); packed.at < to;)
+    list.push(numberOf(types, field, packed.varint()));
 }
 
-/** @param {Types} types @param {Field} field @param {number | Uint8Array} raw @param {number} depth */
-function single(types, field, raw, depth) {
-  if (raw instanceof Uint8Array) {
-    if (field.kind === KIND.string) return textOf(raw);
-    if (field.kind === KIND.message) return decode(types, field.type, raw, depth + 1);
-    return raw;
-  }
+/** @param {Types} types @param {Field} field @param {Wire} wire @param {number} depth */
+function single(types, field, wire, depth) {
+  if (!wire.isBlock) return numberOf(types, field, wire.value);
+  if (field.kind === KIND.string) return textOf(wire.block);
+  if (field.kind === KIND.message) return decode(types, field.type, wire.inside(), depth + 1);
+  return wire.block;
+}
+
+/** @param {Types} types @param {Field} field @param {number} raw */
+function numberOf(types, field, raw) {
   if (field.kind === KIND.bool) return raw !== 0;
   if (field.kind === KIND.enum) return types.enums.get(field.type)?.get(raw) ?? String(raw);
   if (field.kind === KIND.sint32 || field.kind === KIND.sint64) {

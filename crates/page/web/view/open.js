@@ -57,7 +57,9 @@ function inside(id) {
   if (!element) return null;
   const text = atob(element.textContent ?? '');
   element.remove();
-  return Uint8Array.from(text, (letter) => letter.charCodeAt(0));
+  const bytes = new Uint8Array(text.length);
+  for (let at = 0; at < text.length; at++) bytes[at] = text.charCodeAt(at);
+  return bytes;
 }
 
 /**

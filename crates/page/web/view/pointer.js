@@ -3,8 +3,7 @@
 import { seconds, duration } from '../log/units.js';
 import { seek, zoom } from './actions.js';
 import { byId, h, patch, windowSize } from './dom.js';
-import { overviewHeight, RULER, strips } from './timeline.js';
-import { Scale } from './timeline-paint.js';
+import { overviewHeight, RULER, Scale, strips } from './timeline.js';
 import { scoreTick } from './score.js';
 import { wholeRun } from './ui.js';
 

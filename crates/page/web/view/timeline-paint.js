@@ -1,11 +1,10 @@
 // Paints the timeline: overview, ruler, bars, events, curves, and the flag of the present tick.
 
-import { clock, seconds, TICK_S } from '../log/units.js';
+import { seconds } from '../log/units.js';
 import { context2d } from './dom.js';
-import { overviewHeight, RULER, strips } from './timeline.js';
+import { overviewHeight, RULER, Scale, strips } from './timeline.js';
 import { wholeRun } from './ui.js';
 
-const STEPS = [0.04, 0.2, 0.4, 1, 2, 5, 10, 20, 30, 60, 120, 300];
 /** Greatest values of the curves: in/s, and lb. */
 const MOST = { speed: 14, force: 50 };
 
@@ -17,25 +16,8 @@ const KIND = { move: 'k-move', hand: 'k-hand', look: 'k-look', change: 'k-chg', 
  * @typedef {{ x: number, text: string, look: Look, left: number, width: number }} Flag
  */
 
-/** Where ticks are in the timeline. */
-export class Scale {
-  /** @param {[number, number]} window @param {number} width */
-  constructor([first, last], width) {
-    this.first = first;
-    this.last = last;
-    this.width = width;
-  }
-
-  /** @param {number} tick */
-  x(tick) {
-    return ((tick - this.first) / (this.last - this.first)) * this.width;
-  }
-
-  /** @param {number} x */
-  tick(x) {
-    return this.first + (x / this.width) * (this.last - this.first);
-  }
-}
+/** What does not change while the page moves in time, painted once. */
+const still = { canvas: document.createElement('canvas'), key: '' };
 
 /**
  * @param {import('./ui.js').Context} context
@@ -44,26 +26,50 @@ export class Scale {
  * @param {Record<string, string>} colour
  */
 export function paintTimeline(context, canvas, size, colour) {
-  const { ui } = context;
+  const { run, ui } = context;
   const [width, height] = [canvas.clientWidth, canvas.clientHeight];
   const painter = context2d(canvas, width, height);
   if (!painter || width === 0) return;
-  const paint = new Painter(context, painter, new Scale(ui.window, width), height, colour);
-  painter.textBaseline = 'middle';
   const overview = overviewHeight(context, size);
-  if (overview) paint.overview(overview);
+  const key = [
+    width,
+    height,
+    canvas.width,
+    ui.window,
+    ui.view,
+    ui.theme,
+    size,
+    run.last,
+    run.lines.length,
+  ].join();
+  if (key !== still.key) {
+    still.key = key;
+    const below = context2d(still.canvas, width, height);
+    if (below) paintStill(new Painter(context, below, new Scale(ui.window, width), height, colour), size);
+  }
+  painter.drawImage(still.canvas, 0, 0, width, height);
+  const paint = new Painter(context, painter, new Scale(ui.window, width), height, colour);
+  if (overview) paint.present(overview);
   const flags = paint.flags();
   paint.ruler(overview, flags);
+  paint.paintFlags(flags, overview);
+}
+
+/** @param {Painter} paint @param {import('./dom.js').Size} size */
+function paintStill(paint, size) {
+  const { context, to, colour, scale } = paint;
+  const overview = overviewHeight(context, size);
+  if (overview) paint.overview(overview);
+  paint.seconds(overview);
   let top = overview + RULER;
   for (const strip of strips(context, size)) {
-    painter.fillStyle = colour.line;
-    painter.fillRect(0, top + strip.height, width, 1);
+    to.fillStyle = colour.line;
+    to.fillRect(0, top + strip.height, scale.width, 1);
     if (strip.lane) paint.lane(strip.lane, top, strip.height);
     else if (strip.id === 'events') paint.events(top + strip.height / 2);
     else paint.curve(strip.id, top, strip.height);
     top += strip.height + 1;
   }
-  paint.paintFlags(flags, overview);
 }
 
 class Painter {
@@ -71,10 +77,12 @@ class Painter {
    * @param {import('./ui.js').Context} context @param {CanvasRenderingContext2D} to @param {Scale} scale
    * @param {number} height @param {Record<string, string>} colour
    */
-  constructor({ run, ui }, to, scale, height, colour) {
-    this.run = run;
-    this.ui = ui;
+  constructor(context, to, scale, height, colour) {
+    this.context = context;
+    this.run = context.run;
+    this.ui = context.ui;
     this.to = to;
+    to.textBaseline = 'middle';
     this.scale = scale;
     this.height = height;
     this.colour = colour;
@@ -105,22 +113,28 @@ class Painter {
     to.strokeStyle = colour.t2;
     to.lineWidth = 1;
     to.strokeRect(Math.round(left) + 0.5, top + 0.5, Math.max(3, Math.round(right - left) - 1), inner - 1);
+  }
+
+  /** The present tick in the overview. @param {number} height */
+  present(height) {
+    const { run, ui, to, colour, scale } = this;
+    const x = new Scale(wholeRun(run), scale.width).x(ui.tick);
     to.fillStyle = colour.acc;
-    to.fillRect(all.x(ui.tick) - 1, top - 2, 2, inner + 4);
+    to.fillRect(x - 1, 1, 2, height - 4);
+  }
+
+  /** Lines at the marks of the ruler. @param {number} top */
+  seconds(top) {
+    this.to.fillStyle = this.colour.line;
+    for (const [x] of this.scale.marks()) this.to.fillRect(x, top + RULER - 2, 1, this.height);
   }
 
   /** @param {number} top @param {Flag[]} flags that cover times */
   ruler(top, flags) {
     const { to, scale, colour } = this;
-    const span = (scale.last - scale.first) * TICK_S;
-    const step = STEPS.find((it) => (it / span) * scale.width > 72) ?? 300;
     to.font = this.font(400);
-    for (let at = Math.ceil((scale.first * TICK_S) / step); at * step <= scale.last * TICK_S + 1e-6; at++) {
-      const x = Math.round(scale.x((at * step) / TICK_S));
-      to.fillStyle = colour.line;
-      to.fillRect(x, top + RULER - 2, 1, this.height);
-      to.fillStyle = colour.t3;
-      const text = clock(at * step, step < 1 ? 2 : 0);
+    to.fillStyle = colour.t3;
+    for (const [x, text] of this.scale.marks()) {
       const [left, right] = [x + 4, x + 4 + to.measureText(text).width];
       const covered = flags.some((flag) => left < flag.left + flag.width + 3 && right > flag.left - 3);
       if (right < scale.width && !covered) to.fillText(text, left, top + RULER / 2);

@@ -2,7 +2,7 @@
 
 import { decisionAt } from '../log/rows.js';
 import { TABLED } from '../log/processes.js';
-import { force, seconds, speed } from '../log/units.js';
+import { clock, force, seconds, speed, TICK_S } from '../log/units.js';
 import { h } from './dom.js';
 import { icon } from './icons.js';
 import { speedAt } from './side.js';
@@ -10,6 +10,8 @@ import { speedAt } from './side.js';
 /** Heights, pixels. */
 export const RULER = 20;
 export const OVERVIEW = 26;
+/** Times between marks of the ruler, seconds. */
+const STEPS = [0.04, 0.2, 0.4, 1, 2, 5, 10, 20, 30, 60, 120, 300];
 
 /**
  * @typedef {{ id: string, name: string, height: number, lane: import('../log/lanes.js').Lane | null }}
@@ -30,6 +32,37 @@ const KINDS = [
   ['change', 'changes gripper'],
   ['pause', 'pauses'],
 ];
+
+/** Where ticks are in the timeline. */
+export class Scale {
+  /** @param {[number, number]} window @param {number} width */
+  constructor([first, last], width) {
+    this.first = first;
+    this.last = last;
+    this.width = width;
+  }
+
+  /** @param {number} tick */
+  x(tick) {
+    return ((tick - this.first) / (this.last - this.first)) * this.width;
+  }
+
+  /** @param {number} x */
+  tick(x) {
+    return this.first + (x / this.width) * (this.last - this.first);
+  }
+
+  /** The marks of the ruler: place and text. @returns {[number, string][]} */
+  marks() {
+    const span = (this.last - this.first) * TICK_S;
+    const step = STEPS.find((it) => (it / span) * this.width > 72) ?? 300;
+    /** @type {[number, string][]} */
+    const found = [];
+    for (let at = Math.ceil((this.first * TICK_S) / step); at * step <= this.last * TICK_S + 1e-6; at++)
+      found.push([Math.round(this.x((at * step) / TICK_S)), clock(at * step, step < 1 ? 2 : 0)]);
+    return found;
+  }
+}
 
 /**
  * The lanes that the present view has room for.
