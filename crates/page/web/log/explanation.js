@@ -3,6 +3,7 @@
 // `why.json` has it as sentences, as `rcs-log why --json` prints them. They are split here for the view.
 
 import { idOf } from './processes.js';
+import { reportedChain } from './reports.js';
 
 /**
  * @typedef {object} Link
@@ -34,7 +35,8 @@ export function remedyOf(run) {
  */
 export function chainOf(run) {
   const { why, cause } = run;
-  if (!why || !cause) return [];
+  if (!cause) return [];
+  if (!why) return reportedChain(run);
   const faults = run.lines
     .filter((line) => line.source === 'fault' && line.tick <= cause.tick)
     .map((line) => event(line.tick, 'cell', 'In the cell', line.text));

@@ -5,6 +5,7 @@ import { JobProgress, jobLines, lineAt } from './job.js';
 import { Lanes } from './lanes.js';
 import { commandsOf, lineOf } from './messages.js';
 import { TABLED } from './processes.js';
+import { Reports } from './reports.js';
 import { lastUpTo, Reader } from './series.js';
 import { reasonText, word } from './state.js';
 import { TICK_S } from './units.js';
@@ -60,7 +61,11 @@ export class Run {
     /** Changes of what vision reports. @type {{ tick: number, status: string }[]} */
     this.vision = [];
     this.failures = failuresOf(this.why, this.reasons);
-    /** What went wrong first; null if the run finished. */
+    this.reports = new Reports();
+    /**
+     * What went wrong first; without `why.json` the first report of the last failure; null if nothing failed.
+     * @type {import('./account.js').Failure | null}
+     */
     this.cause = this.failures[0] ?? null;
     /** @type {RunEvent[]} */
     this.events = [];
@@ -91,6 +96,10 @@ export class Run {
     const lines = [...readers.log.fresh()].map(([tick, message]) => lineOf(tick, message));
     const orders = commandsOf(lines);
     append(this.lines, lines);
+    if (!this.why) {
+      this.reports.add(lines);
+      this.cause = this.reports.first;
+    }
     for (const [id, list] of orders) {
       const known = this.orders.get(id);
       if (known) append(known, list);
@@ -165,6 +174,42 @@ export class Run {
     return this.contacts.flatMap((it) => it.contacts).find((it) => !it.permitted)?.point ?? null;
   }
 
+  /**
+   * Where vision was to find a part and did not: the part, its location, and the place in metres; null if it did.
+   * @param {number} tick
+   * @returns {{ part: string, location: string, place: Point } | null}
+   */
+  missed(tick) {
+    const seen = this.vision[lastUpTo(this.vision, tick, (it) => it.tick)]?.status ?? 'idle';
+    if (/^(idle|busy|done)$/.test(seen)) return null;
+    const orders = this.orders.get('task') ?? [];
+    const order = orders[lastUpTo(orders, tick, (it) => it.tick)]?.text ?? '';
+    const [, part, location, sector] = /^\S+ (\S+) at (\S+)(?: sector (\d+))?/.exec(order) ?? [];
+    const places = this.log.series('/cell/places').latest(tick)?.places ?? [];
+    const found = places.find(
+      (/** @type {any} */ it) => it.location === location && it.sector === Number(sector ?? 0),
+    );
+    if (!found) return null;
+    return {
+      part,
+      location: sector ? `${location} sector ${sector}` : location,
+      place: [found.x, found.y, found.z],
+    };
+  }
+
+  /**
+   * The parts in the cell: frame, name, and where they are in words.
+   * @param {number} tick
+   * @returns {{ frame: string, name: string, where: string }[]}
+   */
+  parts(tick) {
+    const parts = this.log.series('/cell/parts').latest(tick)?.parts ?? [];
+    return parts.map((/** @type {any} */ { frame, name, location, sector, held, clamped }) => {
+      const place = location && sector > 0 ? `${location} sector ${sector}` : location;
+      return { frame, name, where: held ? 'held' : clamped ? `clamped in ${place}` : place };
+    });
+  }
+
   /** The velocity knob, in percent. @param {number} tick */
   knob(tick) {
     const devices = this.log.series('/external/devices').latest(tick);
@@ -200,7 +245,8 @@ export class Run {
     const pressed = this.view('/cell/controller', tick)?.pressed ?? [];
     const { cause } = this;
     const noted = (/** @type {string} */ text) => [note, text].filter(Boolean).join(', ');
-    if (cause && tick >= cause.tick) {
+    // A run in progress may have recovered since.
+    if (cause && this.why && tick >= cause.tick) {
       const mode = cause.kind === 'emergency-stop' ? 'estop' : 'fault';
       return { mode, title: cause.name.toUpperCase(), detail: noted(`since tick ${cause.tick}`) };
     }

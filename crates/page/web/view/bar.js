@@ -101,7 +101,7 @@ function job(run, tick, mode) {
   const place = at < 0 ? 'Before the job' : `Line ${at + 1} of ${run.job.length}`;
   const { cause } = run;
   const waits = run.view('/job/state', tick)?.reason;
-  const reason = cause && tick >= cause.tick ? cause.title : waits || undefined;
+  const reason = cause && run.why && tick >= cause.tick ? cause.title : waits || undefined;
   return h(
     'div',
     { class: 'job' },

@@ -10,6 +10,7 @@ import { bareLength, length } from '../log/units.js';
 import { byId, h, isShown, patch } from './dom.js';
 import { instruments } from './instruments.js';
 import { Labels } from './labels.js';
+import { notices } from './notices.js';
 
 /** @typedef {import('../cell/matrix.js').Point} Point */
 
@@ -256,7 +257,21 @@ export class CellView {
         true,
       );
     }
-    if (!CAMERAS[ui.camera].target) return labels.shown;
+    const missed = run.missed(ui.tick);
+    if (missed) {
+      const at = renderer.project(missed.place);
+      if (at) labels.ring(at);
+      labels.add('label miss', at, [`${missed.part} is expected here`, missed.location], [0, -46], true);
+    }
+    const isNear = !CAMERAS[ui.camera].target;
+    for (const { frame, name, where } of run.parts(ui.tick)) {
+      const at = this.frames.place(frame, ui.tick);
+      // A part that is not in the cell yet is at the origin of the world.
+      if (!at || Math.hypot(...at) < 1e-3 || name === missed?.part) continue;
+      const lines = isNear && where ? [name, where] : [name];
+      labels.add('label part', renderer.project(at), lines, [0, isNear ? 44 : 18], false);
+    }
+    if (isNear) return labels.shown;
     const command = stateOf(run, 'emove', ui.tick).command;
     for (const { text, frame, place: at } of this.names) {
       const matrix = frame === WORLD ? IDENTITY : this.frames.matrix(frame, ui.tick);
@@ -344,47 +359,6 @@ export class CellView {
     this.urls.set(index, url);
     return url;
   }
-}
-
-/**
- * That the picture is not the present one: the page looks back, or nothing arrives.
- * @param {import('../log/run.js').Run} run
- * @param {import('./ui.js').Ui} ui
- * @param {import('./session.js').Session} live
- */
-function notices(run, ui, live) {
-  const { loss } = live;
-  if (loss?.state === 'ended') {
-    return h(
-      'div',
-      { class: 'notice lost', role: 'alert' },
-      h('h2', {}, 'The run has ended'),
-      h('p', {}, 'This page keeps what it has seen, and begins again with the next run at this address.'),
-      h('p', { class: 'dim' }, 'rcs-log open LOG shows the whole run, with the chain of causes.'),
-    );
-  }
-  if (loss) {
-    return h(
-      'div',
-      { class: 'notice lost', role: 'alert' },
-      h('h2', {}, 'No connection to the controller'),
-      h(
-        'p',
-        {},
-        `The picture is of tick ${run.last}, ${loss.ago}. `,
-        h('b', {}, 'The robot may still be moving.'),
-      ),
-      h('p', {}, 'STOP cannot be sent from here. Use the emergency stop at the robot.'),
-      loss.attempt ? h('p', { class: 'dim' }, `Trying again: ${loss.attempt}`) : null,
-    );
-  }
-  if (ui.following) return null;
-  return h(
-    'div',
-    { class: 'looking-back' },
-    `${live.ago(ui.tick)} `,
-    h('button', { 'data-do': 'live' }, 'back to LIVE'),
-  );
 }
 
 /** `#rrggbb` as numbers from 0 to 1. @param {string} colour @returns {[number, number, number]} */

@@ -79,7 +79,8 @@ function card({ run, ui }, id, kind = '') {
   const process = processOf(id);
   const state = stateOf(run, id, ui.tick);
   const [verb, rest] = firstWord(state.command);
-  const isCause = run.cause?.process === id && ui.tick >= run.cause.tick;
+  const { cause } = run;
+  const isCause = cause?.process === id && ui.tick >= cause.tick && state.condition === 'failed';
   const classes = [
     'card',
     KIND[state.condition],

@@ -14,6 +14,13 @@ export class Labels {
     this.shown = [];
   }
 
+  /** A ring around a place. @param {[number, number]} at */
+  ring([x, y]) {
+    this.shown.push(
+      h('i', { class: 'ring-mark', style: `transform:translate(${x.toFixed(1)}px,${y.toFixed(1)}px)` }),
+    );
+  }
+
   /**
    * @param {string} kind
    * @param {[number, number] | null} at

@@ -171,7 +171,10 @@ function head({ ui }, shown, panels, folds) {
       shown.table.name,
       h('small', {}, `table ${shown.number}`),
     ),
-    chips.length ? h('div', { class: 'chips' }, h('small', {}, 'also'), chips) : null,
+    // The word stays with the first chip: if that has no room, neither has the word.
+    chips.length
+      ? h('div', { class: 'chips' }, h('span', {}, h('small', {}, 'also'), chips[0]), chips.slice(1))
+      : null,
     h('div', { class: 'sp' }),
     folds || ui.allRows
       ? h(

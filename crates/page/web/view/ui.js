@@ -65,7 +65,8 @@ export function wholeRun(run) {
 
 /** @param {import('../log/run.js').Run} run @param {boolean} isLive @returns {Ui} */
 export function firstUi(run, isLive) {
-  const cause = run.cause;
+  // A page of a run begins with the present.
+  const cause = isLive ? null : run.cause;
   return {
     view: cause ? 'trace' : 'explain',
     tab: cause ? 'time' : 'cell',

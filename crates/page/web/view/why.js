@@ -53,7 +53,7 @@ function failure({ run, ui }) {
       'div',
       { class: 'scroll', tabindex: 0 },
       part('Commands down, reports up', null),
-      chainOf(run).map((link) => line(link, ui)),
+      chainOf(run).map((link) => line(link, ui, run.why ? 'FIRST CAUSE' : 'FIRST REPORT')),
       evidence.length
         ? part(
             `What ${processOf(reporter ?? '').name} sensed while it tried`,
@@ -66,13 +66,15 @@ function failure({ run, ui }) {
             data.map((/** @type {string} */ text) => plain(text)),
           )
         : null,
-      part('Try a remedy in the log', [
-        h(
-          'div',
-          { class: 'plain mono' },
-          `rcs-log fork ${run.log.name} --tick ${Math.max(1, cause.tick - 100)} --set '…'`,
-        ),
-      ]),
+      run.why
+        ? part('Try a remedy in the log', [
+            h(
+              'div',
+              { class: 'plain mono' },
+              `rcs-log fork ${run.log.name} --tick ${Math.max(1, cause.tick - 100)} --set '…'`,
+            ),
+          ])
+        : null,
     ),
   ];
 }
@@ -83,8 +85,12 @@ function remedy(run) {
   return next ? h('p', { class: 'remedy' }, h('b', {}, 'Next: '), next) : null;
 }
 
-/** @param {import('../log/explanation.js').Link} link @param {import('./ui.js').Ui} ui */
-function line(link, ui) {
+/**
+ * @param {import('../log/explanation.js').Link} link
+ * @param {import('./ui.js').Ui} ui
+ * @param {string} badge of the first failure
+ */
+function line(link, ui, badge) {
   const kind = { command: '', cause: 'first-cause', report: 'up', cell: 'world', then: 'then' }[link.kind];
   const selected =
     ui.tick === link.tick && (link.process === null || link.process === ui.process) ? 'sel' : '';
@@ -107,7 +113,7 @@ function line(link, ui) {
         link.kind === 'cell' ? icon('flag') : null,
         h('b', {}, link.from),
         link.to ? [h('span', { class: 'ar' }, 'orders'), h('b', {}, link.to)] : null,
-        link.kind === 'cause' ? h('span', { class: 'badge' }, 'FIRST CAUSE') : null,
+        link.kind === 'cause' ? h('span', { class: 'badge' }, badge) : null,
         link.kind === 'then' ? h('span', { class: 'badge' }, 'THEN') : null,
       ),
       h('span', { class: 'cm' }, link.text.replace(/^reports /, '')),
@@ -204,7 +210,11 @@ function finished({ run, ui, live }) {
             },
             h('span', { class: 't' }, clock(command.first_tick * TICK_S, 0)),
             h('span', { class: 'cm' }, command.text),
-            h('span', { class: 'dim' }, duration(command.last_tick - command.first_tick)),
+            h(
+              'span',
+              { class: 'dim' },
+              command.last_tick === Infinity ? 'executing' : duration(command.last_tick - command.first_tick),
+            ),
           ),
         ),
       ),
