@@ -184,7 +184,7 @@ export class Run {
     if (/^(idle|busy|done)$/.test(seen)) return null;
     const orders = this.orders.get('task') ?? [];
     const order = orders[lastUpTo(orders, tick, (it) => it.tick)]?.text ?? '';
-    const [, part, location, sector] = /^\S+ (\S+) at (\S+)(?: sector (\d+))?/.exec(order) ?? [];
+    const [, part, location, sector] = /^\S+ (\S+) from ([^ :]+)(?::(\d+))?/.exec(order) ?? [];
     const places = this.log.series('/cell/places').latest(tick)?.places ?? [];
     const found = places.find(
       (/** @type {any} */ it) => it.location === location && it.sector === Number(sector ?? 0),
@@ -195,6 +195,11 @@ export class Run {
       location: sector ? `${location} sector ${sector}` : location,
       place: [found.x, found.y, found.z],
     };
+  }
+
+  /** Where vision was to find a part when the run failed; null if it failed otherwise. */
+  get expected() {
+    return this.cause && this.missed(this.cause.tick);
   }
 
   /**

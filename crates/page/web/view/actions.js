@@ -1,7 +1,7 @@
 // What buttons and keys do.
 
 import { PROCESSES } from '../log/processes.js';
-import { wholeRun, windowOf } from './ui.js';
+import { camerasOf, wholeRun, windowOf } from './ui.js';
 
 /** Ticks of a second. */
 const SECOND = 25;
@@ -112,8 +112,6 @@ function troubles(run) {
   return run.events.filter((event) => event.weight >= 3).map((event) => event.tick);
 }
 
-const CAMERAS = ['cell', 'gripper', 'top', 'contact'];
-
 /**
  * Carry out an action such as `seek:623:emove`.
  * @param {import('./ui.js').Context} context
@@ -219,7 +217,7 @@ export function act(context, action, phone) {
       [ui.camera, ui.turned] = [first, false];
       break;
     case 'nextCamera': {
-      const shown = CAMERAS.filter((it) => it !== 'contact' || run.collision);
+      const shown = camerasOf(run);
       [ui.camera, ui.turned] = [shown[(shown.indexOf(ui.camera) + 1) % shown.length], false];
       break;
     }

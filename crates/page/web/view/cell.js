@@ -11,6 +11,7 @@ import { byId, h, isShown, patch } from './dom.js';
 import { instruments } from './instruments.js';
 import { Labels } from './labels.js';
 import { notices } from './notices.js';
+import { camerasOf } from './ui.js';
 
 /** @typedef {import('../cell/matrix.js').Point} Point */
 
@@ -25,8 +26,8 @@ const PICTURE_TICKS = 250;
 const BALL = { far: 0.05, near: 0.022, permitted: 0.012 };
 
 /**
- * Where the buttons put the camera: radians, metres. Without a target it follows the tool point, or a
- * contact.
+ * Where the buttons put the camera: radians, metres. Without a target it follows the tool point, a contact, or
+ * the place where a part was expected.
  * @typedef {{ azimuth: number, elevation: number, distance: number, target: Point | null }} Place
  * @typedef {{ name: string } & Place} Preset
  * @type {Record<string, Preset>}
@@ -35,6 +36,7 @@ export const CAMERAS = {
   cell: { name: 'Cell', azimuth: -1.6, elevation: 0.46, distance: 6.5, target: [0.42, -0.62, -0.34] },
   gripper: { name: 'Gripper', azimuth: -1.2, elevation: 0.3, distance: 1.9, target: null },
   top: { name: 'Top', azimuth: -Math.PI / 2, elevation: 1.5, distance: 8.2, target: [0.35, -0.6, -0.6] },
+  place: { name: 'Place', azimuth: -1.3, elevation: 0.5, distance: 2.7, target: null },
   contact: { name: 'Contact', azimuth: -1.05, elevation: 0.34, distance: 1.75, target: null },
 };
 const DISTANCE = { least: 0.4, most: 14 };
@@ -58,6 +60,7 @@ export class CellView {
     // A tablet takes the graphics context from a page in the background.
     this.canvas.addEventListener('webglcontextlost', (event) => event.preventDefault());
     this.canvas.addEventListener('webglcontextrestored', () => this.prepare());
+    new ResizeObserver(() => (this.isDue = true)).observe(this.canvas);
     this.names = (run.log.series('/names').latest(run.last)?.entities ?? []).flatMap(
       (/** @type {any} */ entity) => {
         const [text] = entity.texts;
@@ -117,12 +120,13 @@ export class CellView {
   draw(context, colour) {
     if (!isShown(byId('cell'))) return;
     const { ui } = context;
-    this.paint(context, colour);
-    patch(byId('cell-overlay'), this.overlay(context));
     const room =
       innerWidth > 700 && ui.view !== 'operate' && !ui.big && !(innerWidth < 1200 && ui.view === 'explain');
     byId('instruments').hidden = !room;
     if (room) patch(byId('instruments'), ...instruments(context));
+    patch(byId('cell-overlay'), this.overlay(context));
+    // At the end, since the instruments change the size of the picture.
+    this.paint(context, colour);
   }
 
   /**
@@ -159,7 +163,7 @@ export class CellView {
    */
   picture({ ui }, contacts, colour) {
     const renderer = /** @type {Renderer} */ (this.renderer);
-    const near = ui.camera === 'contact' || ui.camera === 'gripper';
+    const near = !CAMERAS[ui.camera].target;
     const tints = new Map();
     for (const name of ui.pointed ? processOf(ui.pointed).meshes : [])
       tints.set(name, { colour: rgb(colour.acc), amount: 0.55 });
@@ -210,6 +214,7 @@ export class CellView {
     const { clientWidth, clientHeight } = this.canvas;
     const aspect = clientWidth / Math.max(1, clientHeight);
     const followed = (ui.camera === 'contact' && (contact ?? this.run.collision)) ||
+      (ui.camera === 'place' && this.run.expected?.place) ||
       this.frames.place(TOOL_POINT, ui.tick) || [0, 0, 0];
     const target = /** @type {Point} */ (preset.target ?? [followed[0], followed[1], followed[2] + 0.12]);
     // A narrow picture of the whole cell needs more distance, and looks more from above.
@@ -308,7 +313,6 @@ export class CellView {
    * @param {import('./ui.js').Context} context
    */
   overlay({ run, ui, live }) {
-    const cameras = Object.entries(CAMERAS).filter(([id]) => id !== 'contact' || run.collision);
     return [
       this.trouble ? h('p', { class: 'trouble' }, this.trouble) : null,
       live ? notices(run, ui, live) : null,
@@ -319,11 +323,11 @@ export class CellView {
         h(
           'div',
           { class: 'choice', role: 'group', 'aria-label': 'camera' },
-          cameras.map(([id, { name }]) =>
+          camerasOf(run).map((id) =>
             h(
               'button',
               { 'data-do': `camera:${id}`, 'aria-pressed': String(ui.camera === id && !ui.turned) },
-              name,
+              CAMERAS[id].name,
             ),
           ),
         ),

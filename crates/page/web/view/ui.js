@@ -40,6 +40,20 @@ export const VIEWS = /** @type {[View, string, string][]} */ ([
   ['trace', 'time', 'Trace'],
 ]);
 
+/**
+ * The places of the camera that a run has something for.
+ * @param {import('../log/run.js').Run} run
+ */
+export function camerasOf(run) {
+  return [
+    'cell',
+    'gripper',
+    'top',
+    ...(run.expected ? ['place'] : []),
+    ...(run.collision ? ['contact'] : []),
+  ];
+}
+
 /** Ticks in the timeline of a run in progress. */
 const LIVE_WINDOW = 1500;
 
@@ -79,7 +93,8 @@ export function firstUi(run, isLive) {
     window: isLive
       ? [Math.max(0, run.last - LIVE_WINDOW * 0.7), run.last + LIVE_WINDOW * 0.3]
       : windowOf(run),
-    camera: cause?.kind === 'collision' && run.collision ? 'contact' : 'cell',
+    camera:
+      cause?.kind === 'collision' && run.collision ? 'contact' : cause && run.expected ? 'place' : 'cell',
     turned: false,
     allRows: false,
     filter: '',
