@@ -25,7 +25,6 @@ impl Point {
 }
 
 impl Walk<'_> {
-    /// The points of a route; `end` gives its goal.
     pub(crate) fn points(
         &self,
         depart: PathId,
@@ -55,7 +54,6 @@ impl Walk<'_> {
         points
     }
 
-    /// The record of a target, with its name.
     pub(crate) fn datum(&self, target: Target) -> Option<Datum> {
         let (data, origins) = (&self.data, self.store.origins());
         let (name, at) = match target {
@@ -69,7 +67,7 @@ impl Walk<'_> {
         Some(Datum { name, at: *at? })
     }
 
-    /// The record that gives the goal of a command: the movetable of the grip there, or else the pose of the location.
+    /// The movetable of the grip there, or else the pose of the location.
     pub(crate) fn end_datum(&self, command: &EmoveCommand) -> Option<Datum> {
         let data = &self.data;
         let place = command.site.place();
@@ -114,7 +112,7 @@ impl Walk<'_> {
         phase.used.extend(records.into_iter().flatten());
     }
 
-    /// The records of the object of a command at a location, whether or not there is a path to it.
+    /// Adds the records of the object there, even without a path to it.
     pub(crate) fn use_object(&self, phase: &mut Phase, command: &EmoveCommand, location: &Location) {
         let (data, origins, place) = (&self.data, self.store.origins(), &location.place);
         let Some(object) = &command.object else { return };
@@ -147,7 +145,6 @@ impl Walk<'_> {
         self.entry(phase, "pose", &origins.poses, pose);
     }
 
-    /// Adds the entries of grip, view, depart, trajectory and approach.
     pub(crate) fn path_entries(
         &self,
         phase: &mut Phase,

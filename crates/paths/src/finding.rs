@@ -9,22 +9,19 @@ use crate::{
 
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Finding {
-    /// `path.joint`, `path.contact`, `path.link`, `path.grip`, `path.place`, `path.gripper` or `path.margin`.
+    /// `path.joint`, `.contact`, `.link`, `.grip`, `.place`, `.gripper` or `.margin`.
     pub code: &'static str,
-    /// True for an error: the motion fails or collides. False for a warning: the motion comes close to that.
+    /// True: the motion fails or collides. False: it comes close to that.
     pub error: bool,
-    /// Line number in the job, from 1.
-    pub line: u32,
-    /// Description of the problem: what, where, and by how much.
+    pub line: u32, // from 1
     pub message: String,
     pub help: Option<String>,
-    /// The records that give the two ends of the segment: one of them is probably wrong. Empty if the finding is about
-    /// the order of the lines.
+    /// The records of the two ends: one is probably wrong. Empty if the order of the lines is wrong.
     pub data: Vec<Datum>,
     /// Identifies the same finding in other walks.
     #[serde(skip)]
     pub key: String,
-    /// Severity: of two findings with the same key, the one with the greater value is kept.
+    /// Severity: the greater of two findings with one key is kept.
     #[serde(skip)]
     pub depth: f64,
 }
@@ -32,20 +29,16 @@ pub struct Finding {
 #[derive(Clone, Debug, Serialize)]
 pub struct Segment {
     pub from: String,
-    /// Name of the point at its end.
     pub to: String,
-    /// Part of the route: depart, trajectory, approach or goal.
-    pub part: &'static str,
-    /// Name of the joint that comes nearest to a limit.
+    pub part: &'static str, // depart, trajectory, approach or goal
     pub joint: &'static str,
-    /// Margin of that joint, degrees.
     pub margin_deg: f64,
-    /// The closest approach of an obstacle; `None` if none comes within the reported distance.
+    /// `None`: no obstacle within the reported distance.
     pub nearest: Option<Passing>,
 }
 
 impl Segment {
-    /// Keeps the smaller margins and clearances of this and another flight of the segment.
+    /// Keeps the smaller margins and clearances.
     pub fn merge(&mut self, other: &Self) {
         if other.margin_deg < self.margin_deg {
             (self.joint, self.margin_deg) = (other.joint, other.margin_deg);
@@ -57,16 +50,13 @@ impl Segment {
     }
 }
 
-/// A phase with the results of its flight.
 #[derive(Clone, Debug, Serialize)]
 pub struct Walked {
     pub plan: Phase,
-    /// Segments of the phase, up to the end of the flight.
-    pub segments: Vec<Segment>,
+    pub segments: Vec<Segment>, // up to the end of the flight
 }
 
 impl Walked {
-    /// A phase without a flight.
     #[must_use]
     pub const fn of(plan: Phase) -> Self {
         Self { plan, segments: Vec::new() }

@@ -16,47 +16,35 @@ use plant::{arm::Arm, description::Actuators};
 use rcs_core::tick::TICK_S;
 use taskdata::files::TrajPara;
 
-/// Ticks from passing a through point until Prim has its next goal (docs/design/motion.md "Flying on").
-const FLIES_ON: u32 = 2;
-/// Ticks for which Prim must see the robot at rest (docs/design/motion.md "Rest").
-const SETTLES: u32 = 3;
-/// Longest motion, ticks: ten minutes.
-const LONGEST: u32 = 15_000;
-/// Greatest number of ticks until the servos come to rest.
-const LAG: u32 = 100;
+const FLIES_ON: u32 = 2; // docs/design/motion.md "Flying on"
+const SETTLES: u32 = 3; // docs/design/motion.md "Rest"
+const LONGEST: u32 = 15_000; // ticks: ten minutes
+const LAG: u32 = 100; // ticks until the servos come to rest
 
-/// Why a flight ends before its goal.
+/// Why a flight ends early.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Trouble {
-    /// The joints cannot reach the position.
     Joints {
-        /// The problem, with the name that the robot controller uses.
         problem: JointProblem,
-        /// Joint from 0, and degrees beyond its limit; `None` if the position is out of reach.
+        /// Joint from 0, and degrees beyond its limit; `None`: out of reach.
         joint: Option<(usize, f64)>,
-        /// Tool point, inches, world.
-        at: [f64; 3],
+        at: [f64; 3], // tool point, inches, world
     },
-    /// The position cannot be encoded as DEPC words.
-    Words,
-    /// A parameter of the motion is not positive, so that the motion would never end.
+    Words, // no DEPC words for the position
+    /// A parameter is not positive: the motion would never end.
     Parameters,
-    /// The motion takes longer than ten minutes.
     Endless,
 }
 
-/// Result of the motion to a point.
 #[derive(Clone, Debug)]
 pub struct Flown {
-    /// Ticks since the previous point.
-    pub ticks: u32,
-    /// Number of these ticks in which the limits of the link slowed the robot.
+    pub ticks: u32, // since the previous point
+    /// Ticks in which the limits of the link slowed the robot.
     pub held_back: u32,
-    /// The joint that comes nearest to a limit, with its margin.
-    pub margin: Margin,
+    pub margin: Margin, // of the joint nearest to a limit
 }
 
-/// The simulated robot: the last position sent to its controller, and the arm.
+/// A simulated robot: the last position sent to its controller, and the arm.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Robot {
     position: Position,
@@ -65,7 +53,7 @@ pub struct Robot {
 }
 
 impl Robot {
-    /// A robot at rest at the given joint angles, radians; `None` if its position cannot be encoded as DEPC words.
+    /// A robot at rest, joint angles in radians; `None` if DEPC words cannot encode the position.
     #[must_use]
     pub fn standing(actuators: &Actuators, joints: &Joints) -> Option<Self> {
         let plate = Plate::from_frame(&T3.forward_plate(joints), &Plate::default()).ok()?;
@@ -85,13 +73,12 @@ impl Robot {
         self.position.tool()
     }
 
-    /// Simulates one tick of the arm, and calls `look` with its joint angles.
+    /// Simulates one tick; `look` receives the joint angles.
     fn tick(&mut self, look: &mut impl FnMut(&Joints)) {
         self.arm.advance(TICK_S, false, &[]);
         look(self.arm.joints());
     }
 
-    /// Moves to a point of Prim as T3 Interface does: as fast as the link allows. Returns the number of ticks.
     fn command(&mut self, point: &Frame, look: &mut impl FnMut(&Joints)) -> Result<u32, Trouble> {
         for ticks in 1..LONGEST {
             let next = step(&self.position, point, &T3, &LinkLimits::NBS).map_err(|_| Trouble::Words)?;
@@ -111,9 +98,8 @@ impl Robot {
         Err(Trouble::Endless)
     }
 
-    /// Moves through the points to the last one and comes to rest. Calls `look` in each tick with the index of the
-    /// point and the joint angles of the arm, radians. Returns the results for each point, and why the flight ended
-    /// early.
+    /// Moves through the points to rest at the last. In each tick `look` gets the index of the point and the joint
+    /// angles, radians. Returns the results per point, and why the flight ended early.
     pub fn fly(
         &mut self,
         points: &[(Frame, TrajPara)],
@@ -164,14 +150,14 @@ impl Robot {
     }
 }
 
-/// The joint that is farthest beyond a limit at an unreachable position, from 0, and degrees beyond it.
+/// The joint farthest beyond a limit, from 0, and degrees beyond it.
 fn beyond(plate: &Plate, near: &Joints) -> Option<(usize, f64)> {
     let joints = T3.inverse(&plate.to_tool(&T3), near).ok()?;
     let margin = T3.margin(&joints);
     (margin.radians < 0.0).then(|| (margin.joint, -margin.radians.to_degrees()))
 }
 
-/// Number of ticks of Prim's motion from rest at a frame to each point, without the limits of link and arm.
+/// Ticks of Prim's motion from rest to each point, without the limits of link and arm.
 #[must_use]
 pub fn time(start: &Frame, points: &[(Frame, TrajPara)]) -> Vec<u32> {
     let mut motion = PrimMotion::at_rest(start);

@@ -1,5 +1,5 @@
-//! The records that a change of the gripper needs (V.3.1 GET-ENDEFF, V.2.1 QC-ATTACH and QC-DETACH). Subtask and E-move
-//! would refuse the change for the same reasons, but only when the job has begun.
+//! The records that a change of the gripper needs (V.3.1 GET-ENDEFF, V.2.1 QC-ATTACH and QC-DETACH), checked before
+//! the job begins. Subtask and E-move check them only on the way.
 
 use std::fmt;
 
@@ -12,18 +12,13 @@ use taskdata::{
 
 use crate::{finding::Finding, plan::Datum};
 
-/// Grip of a gripper's object that is on the robot (VII.7.3).
-pub const WORN: i32 = 1;
-/// Grip of a gripper's object with which the bare robot takes it.
-pub const TAKEN: i32 = 2;
-/// The relative moves that put a gripper into its holster, in order.
-pub const PUT: [&str; 3] = ["QCD-DOWN", "QCD-SEAT", "QCD-UP"];
-/// The relative moves that take it out, in order.
+pub const WORN: i32 = 1; // of a gripper's object on the robot (VII.7.3)
+pub const TAKEN: i32 = 2; // with which the bare robot takes a gripper
+pub const PUT: [&str; 3] = ["QCD-DOWN", "QCD-SEAT", "QCD-UP"]; // moves into the holster, in order
+/// The moves out of the holster, in order.
 pub const TAKE: [&str; 5] = ["QCA-FAST", "QCA-SLOW", "QCA-BACK", "QCA-LIFT", "QCA-UP"];
-/// The objects of the grippers with `endeff-id#` 1 to 3.
-const GRIPPERS: [&str; 3] = ["GRIPPER-1", "GRIPPER-2", "GRIPPER-3"];
+const GRIPPERS: [&str; 3] = ["GRIPPER-1", "GRIPPER-2", "GRIPPER-3"]; // `endeff-id#` 1 to 3
 
-/// A record that the task data need for the change of a gripper, and do not have.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Lacking {
     pub gripper: Name16,
@@ -32,14 +27,10 @@ pub struct Lacking {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum What {
-    /// It is no object, or has no such grip.
-    Grip(i32),
-    /// It is assigned to no location point.
-    Holster,
-    /// The grip has no movetable at the holster.
-    Movetable(i32, Name10),
-    /// There is no approach with the grip.
-    Approach(i32, Name10),
+    Grip(i32),              // no such object or grip
+    Holster,                // assigned to no location point
+    Movetable(i32, Name10), // none for the grip at the holster
+    Approach(i32, Name10),  // none with the grip
     Move(&'static str, Name10),
 }
 
@@ -58,7 +49,6 @@ impl fmt::Display for Lacking {
 }
 
 impl Lacking {
-    /// What to write into the task data.
     #[must_use]
     pub fn help(&self) -> String {
         let Self { gripper, what } = self;
@@ -73,8 +63,7 @@ impl Lacking {
         }
     }
 
-    /// The finding of a command, and the record that it blames: the gripper's, or that of the object which needs the
-    /// gripper.
+    /// The finding names the record of the gripper, or of the object that needs it.
     #[must_use]
     pub fn finding(&self, command: &HwsCommand, store: &Store) -> Finding {
         finding(&self.to_string(), Some(self.help()), self.datum(command, store))
@@ -92,7 +81,6 @@ impl Lacking {
     }
 }
 
-/// A finding about the change of a gripper.
 #[must_use]
 pub fn finding(message: &str, help: Option<String>, datum: Option<Datum>) -> Finding {
     Finding {
@@ -107,15 +95,14 @@ pub fn finding(message: &str, help: Option<String>, datum: Option<Datum>) -> Fin
     }
 }
 
-/// The gripper that a command has to fetch, by its end effector id; `None` if the attached one is right, or any is.
+/// End effector id to fetch; `None` if the attached gripper is right, or any is.
 #[must_use]
 pub fn wanted(command: &HwsCommand, attached: Option<u8>, data: &TaskData<'_>) -> Option<u8> {
     let grips = data.obj_grips(&command.object?)?;
     u8::try_from(grips.endeff_id).ok().filter(|id| *id != 0 && Some(*id) != attached)
 }
 
-/// The first missing record for fetching a gripper and leaving the attached one; `None` if there are all. Then it does
-/// not allocate.
+/// The first missing record for a change of gripper. Does not allocate if there is none.
 #[must_use]
 pub fn lacking(attached: Option<u8>, wanted: u8, data: &TaskData<'_>) -> Option<Lacking> {
     let put =
@@ -132,17 +119,13 @@ fn moves(id: u8, at: &Location, names: &[&'static str], data: &TaskData<'_>) -> 
     }
 }
 
-/// The object of the gripper with an end effector id.
 #[must_use]
 pub fn object_of(id: u8) -> Name16 {
     let name = usize::from(id).checked_sub(1).and_then(|at| GRIPPERS.get(at));
     Name16::clipped(name.copied().unwrap_or_default())
 }
 
-/// The holster of a gripper: the location point that is assigned to its object (VII.7.3).
-///
-/// # Errors
-/// [`Lacking`] if the task data do not have it, or no motion to it with the grip.
+/// The location point that is assigned to the gripper's object (VII.7.3).
 pub fn holster(id: u8, grip: i32, data: &TaskData<'_>) -> Result<Location, Lacking> {
     let gripper = object_of(id);
     let lacks = |what| Lacking { gripper, what };

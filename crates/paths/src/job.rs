@@ -1,5 +1,4 @@
-//! Walks the lines of a job in order: checks the path of each, and then updates the state of the cell and the held
-//! part.
+//! Walks the lines of a job in order: checks each path, then updates the cell and the held part.
 
 use geometry::kinematics::T3;
 use interfaces::HwsCommand;
@@ -29,7 +28,6 @@ use crate::{
     walk::Walk,
 };
 
-/// Limits of the check, as text for reports.
 pub const NOT_CHECKED: [&str; 6] = [
     "where a guarded move ends: joints are checked over its whole length, clearances are not",
     "slip of a part in the fingers, and the position of a part that is dropped or pushed",
@@ -38,10 +36,9 @@ pub const NOT_CHECKED: [&str; 6] = [
     "faults of sensors, valves and the link",
     "the lag of the resolvers; the lag of the servos is included",
 ];
-/// Greatest distance from a location point at which the robot is there at the start, in.
-const STANDS: f64 = 0.5;
-/// Positions checked for a part delivered at random in its sector: x and y as shares of the greatest offset, and the
-/// angle in degrees. Rotations by half a turn are equivalent for two fingers.
+const STANDS: f64 = 0.5; // in: the robot is at the location point
+/// Tried positions of a part in its sector: x and y as shares of the greatest offset, angle in degrees. Half a turn is
+/// the same for two fingers.
 const TRIED: [[f64; 3]; 12] = [
     [0.0, 0.0, 22.5],
     [0.0, 0.0, 45.0],
@@ -57,17 +54,13 @@ const TRIED: [[f64; 3]; 12] = [
     [1.0, 1.0, 95.0],
 ];
 
-/// A line of a job with the results of its check.
 #[derive(Clone, Debug, Serialize)]
 pub struct JobLine {
-    /// Line number in the file, from 1.
-    pub line: u32,
+    pub line: u32, // from 1
     pub text: String,
     pub phases: Vec<Walked>,
-    /// The part that the robot holds after the line.
     pub holds: Option<String>,
-    /// Number of positions of the part that were checked.
-    pub tried: usize,
+    pub tried: usize, // positions of the part
 }
 
 impl JobLine {
@@ -78,18 +71,15 @@ impl JobLine {
     }
 }
 
-/// A job with the results of its check.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct WalkedJob {
     pub job: String,
     pub lines: Vec<JobLine>,
     pub findings: Vec<Finding>,
-    /// Parts of the job that were not checked, with the reasons.
     pub not_checked: Vec<String>,
 }
 
 impl WalkedJob {
-    /// The least clearance in the job.
     #[must_use]
     pub fn nearest(&self) -> Option<&Passing> {
         let segments = self.lines.iter().flat_map(|line| &line.phases).flat_map(|phase| &phase.segments);
@@ -99,13 +89,13 @@ impl WalkedJob {
     }
 }
 
-/// Walks a job. The job must be checked against the task data. `known` is the cache of flights in the same cell.
+/// The job must be valid for the task data. `known` caches flights in the same cell.
 #[must_use]
 pub fn walk_job(job: &Job, store: &Store, room: &Room, known: &Known) -> WalkedJob {
     walk(job, store, room, known, true)
 }
 
-/// Walks a job with each part in the middle of its sector only: a quarter of the time of [`walk_job`].
+/// Tries only the middle of each sector: four times faster than [`walk_job`].
 #[must_use]
 pub fn walk_job_once(job: &Job, store: &Store, room: &Room) -> WalkedJob {
     walk(job, store, room, &Known::default(), false)
@@ -160,7 +150,7 @@ fn walk(job: &Job, store: &Store, room: &Room, known: &Known, tries: bool) -> Wa
     walked
 }
 
-/// The state at the start of a run, with the robot at its location point; `None` if it is not at one.
+/// `None` if the robot is not at a location point.
 fn start<'a>(store: &'a Store, room: &'a Room, known: &'a Known) -> Option<State<'a>> {
     let joints = room.cell().robot.start_joints();
     let tool = T3.forward(&joints);
@@ -175,8 +165,7 @@ fn start<'a>(store: &'a Store, room: &'a Room, known: &'a Known) -> Option<State
     Some(State::new(room, known, Walk::new(store, &location), robot))
 }
 
-/// Walks a command. If its part lies at random in its sector, and with `tries_all`, several positions of the part are
-/// checked.
+/// With `tries_all`, tries several positions of a part at random in its sector.
 fn command_line(
     state: &mut State<'_>,
     command: &HwsCommand,
@@ -211,7 +200,7 @@ fn command_line(
                 "with the part {:.2}, {:.2} in from the middle of its sector, turned by {angle:.1} degrees: ",
                 placement[0], placement[1]
             );
-            // The outer corners of a sector are improbable, so a failure only there is a warning, not an error.
+            // A failure only in the outer corners is improbable: a warning.
             let often = x == 0.0 && y == 0.0;
             all.extend(more.into_iter().map(|one| {
                 let (message, error) = (lies.clone() + &one.message, one.error && often);
@@ -232,7 +221,7 @@ fn command_line(
             None => worst.push((number, finding)),
         }
     }
-    // Walks the positions with errors again to find via points; the cache supplies the flights already checked.
+    // Walks the failures again to find via points. The cache supplies checked flights.
     for (number, mut one) in tries.into_iter().enumerate() {
         if !worst.iter().any(|(of, finding)| *of == number && finding.error) {
             continue;
@@ -248,7 +237,6 @@ fn command_line(
 }
 
 impl JobLine {
-    /// Keeps the smaller margins and clearances of other walks of the same command.
     fn merge(&mut self, others: &[Walked]) {
         for (phase, other) in self.phases.iter_mut().zip(others) {
             for (segment, other) in phase.segments.iter_mut().zip(&other.segments) {
@@ -258,7 +246,6 @@ impl JobLine {
     }
 }
 
-/// Walks a command; returns its phases and their findings.
 fn run(state: &mut State<'_>, command: &HwsCommand) -> (Vec<Walked>, Vec<Finding>) {
     let data = *state.walk.data();
     let worn = state.layout.gripper;
@@ -296,7 +283,6 @@ fn run(state: &mut State<'_>, command: &HwsCommand) -> (Vec<Walked>, Vec<Finding
     (phases, findings)
 }
 
-/// The finding of a motion to or from a holster that cannot be planned.
 fn no_way(missing: &str, step: &Step, phase: &Phase) -> Finding {
     let name = match step {
         Step::Go { location, .. } | Step::Relative { location, .. } => location.name.to_string(),
@@ -306,7 +292,7 @@ fn no_way(missing: &str, step: &Step, phase: &Phase) -> Finding {
     finding(&format!("{}: {missing}", phase.what), None, datum)
 }
 
-/// Applies an action of the workstation. Returns false if the position of the robot is then unknown.
+/// Returns false if the robot's position is then unknown.
 fn act(state: &mut State<'_>, action: &Workstation) -> bool {
     match action {
         Workstation::Tray { location, object, offset } => {
@@ -341,7 +327,7 @@ pub struct Random {
     pub location: Location,
 }
 
-/// A part of the given name at the given frame; `None` if the cell has no such part.
+/// `None` if the cell has no such part.
 #[must_use]
 pub fn placed(room: &Room, object: &Name16, frame: geometry::frame::Frame) -> Option<Placed> {
     let kind = room.cell().part(object.as_str())?.clone();

@@ -1,5 +1,4 @@
-//! Checks a phase: simulates its motion as planned, and back as after an interruption (docs/design/recovery.md "On the
-//! way"), and converts problems to findings.
+//! Checks a phase: its motion forward, and back as after an interruption (docs/design/recovery.md "On the way").
 
 use std::sync::Arc;
 
@@ -21,16 +20,14 @@ use crate::{
     steps::Step,
 };
 
-/// A joint margin below this gives a warning, degrees.
-pub const LEAST_MARGIN: f64 = 0.5;
+pub const LEAST_MARGIN: f64 = 0.5; // degrees; below it, a warning
 
-/// Greatest distance between the middle of the fingers and of a part held by the closed jaws of the vise, in (ASSUMED).
-/// Beyond it the fingers cannot centre the part, and it slips when the jaws open.
+/// Greatest offset of fingers from a part in the closed vise, in (ASSUMED). Beyond it the part slips when the jaws
+/// open.
 const BESIDE: f64 = 0.015;
 
 impl State<'_> {
-    /// Checks the motion of a phase under the given commands of E-move and Subtask. Contacts are checked only if
-    /// `clear`: the positions of other bodies are known.
+    /// `commands` are those of E-move and Subtask. Contacts are checked only if `clear`: all positions are known.
     pub fn fly(&mut self, phase: Phase, commands: [&'static str; 2], clear: bool) -> (Walked, Vec<Finding>) {
         if phase.legs.is_empty() || phase.missing.is_some() {
             return (Walked::of(phase), Vec::new());
@@ -61,7 +58,7 @@ impl State<'_> {
         (Walked { plan: phase, segments }, findings)
     }
 
-    /// The finding of a grasp that is off the middle of a part held by the vise.
+    /// The finding of a grasp off the middle of a part in the vise.
     pub(crate) fn beside(&self, step: &Step, phase: &Phase) -> Option<Finding> {
         let Step::Fingers { verb: EmoveVerb::GraspObj, object: Some(object), .. } = step else { return None };
         let tool = self.robot.tool();
@@ -86,7 +83,7 @@ impl State<'_> {
         })
     }
 
-    /// Opening of the fingers at the end of a phase, in.
+    /// Opening of the fingers at the end, in.
     fn opening(&self, phase: &Phase) -> f64 {
         let gripper = self.room.worn(&self.layout);
         match (phase.opening_in, gripper) {
@@ -145,8 +142,7 @@ impl State<'_> {
                 });
             };
             if let Some(touched) = &seen.touched {
-                // For a part rotated by half a turn, the other finger touches: the key does not distinguish the
-                // fingers.
+                // After half a turn the other finger touches, so the key omits the side.
                 let mover = touched.mover.trim_start_matches("left_").trim_start_matches("right_");
                 let key = format!("{mover} {}", touched.obstacle);
                 add("path.contact", true, touched.to_string(), key, -touched.clearance_in);
@@ -168,7 +164,7 @@ impl State<'_> {
         findings
     }
 
-    /// Suggests a via point of the stored trajectories that makes the path free, if there is one.
+    /// Suggests a via point of the stored trajectories that frees the path.
     fn help(&self, phase: &Phase, failed: &Outcome, clear: bool) -> String {
         let worst = failed.seen.iter().position(|seen| seen.touched.is_some());
         let at = worst.unwrap_or(failed.flown.len().saturating_sub(1));
@@ -196,7 +192,6 @@ impl State<'_> {
     }
 }
 
-/// Names and frames of the via poses of all trajectories.
 fn vias<'a>(data: &TaskData<'a>) -> impl Iterator<Item = (Name10, Frame)> + use<'a> {
     let data = *data;
     let points = data.trajectories.iter().flat_map(move |record| data.path(record.path));
@@ -215,8 +210,7 @@ struct Ends {
     from: String,
     to: String,
     entry: Option<String>,
-    /// The records that give the end and the start.
-    data: [Option<Datum>; 2],
+    data: [Option<Datum>; 2], // of the end and the start
 }
 
 fn names(phase: &Phase) -> Vec<Ends> {
@@ -248,7 +242,7 @@ fn segments(phase: &Phase, outcome: &Outcome) -> Vec<Segment> {
     .collect()
 }
 
-/// The path back from the goal to the end of the depart leg; each segment has the slower parameters of its ends.
+/// The path from the goal to the end of the depart leg, with the slower parameters of each segment's ends.
 fn backwards(phase: &Phase, departs: usize) -> (Points, Vec<Ends>) {
     let legs = &phase.legs;
     let mut list = Vec::new();
@@ -267,7 +261,7 @@ fn backwards(phase: &Phase, departs: usize) -> (Points, Vec<Ends>) {
     (Points { list, opens: 0 }, names)
 }
 
-/// Text, key and depth of the finding for a flight that ended early.
+/// Text, key and depth of the finding.
 pub(crate) fn in_words(trouble: Trouble) -> (String, String, f64) {
     match trouble {
         Trouble::Joints { problem, joint, at: [x, y, z] } => {

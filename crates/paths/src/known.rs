@@ -1,5 +1,4 @@
-//! Cache of checked flights: a flight is not simulated again, in another job or with a part elsewhere, if the bodies
-//! near it are the same.
+//! Caches flights: one is simulated again only if the bodies near it have changed.
 
 use std::{
     collections::HashMap,
@@ -20,34 +19,28 @@ use crate::{
     survey::{SIGHT, Seen, Survey},
 };
 
-/// Points, and the index from which the fingers have the opening of the goal.
+/// `opens`: index from which the fingers have the opening of the goal.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Points {
     pub list: Vec<(Frame, TrajPara)>,
     pub opens: usize,
 }
 
-/// Inputs of a flight, except the bodies near it.
+/// All inputs of a flight except the bodies near it.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Asked {
     pub robot: Robot,
     pub gripper: Option<u8>,
     pub held: Option<Placed>,
     pub points: Points,
-    /// Opening of the fingers at the start and at the goal, inches.
-    pub openings: [f64; 2],
-    /// Commands of E-move and Subtask.
-    pub commands: [&'static str; 2],
-    /// Commands of E-move and Subtask that brought the robot to its start.
-    pub before: Vec<[&'static str; 2]>,
-    /// True if clearances are checked.
-    pub clear: bool,
-    /// True if the check ends at the first contact.
-    pub tries: bool,
+    pub openings: [f64; 2],             // inches, at start and goal
+    pub commands: [&'static str; 2],    // of E-move and Subtask
+    pub before: Vec<[&'static str; 2]>, // the commands that brought the robot to its start
+    pub clear: bool,                    // clearances are checked
+    pub tries: bool,                    // the check ends at the first contact
 }
 
 impl Asked {
-    /// Hash of the inputs: equal inputs give equal numbers.
     fn number(&self) -> u64 {
         let mut hasher = DefaultHasher::new();
         let tool = self.robot.tool().position;
@@ -60,7 +53,6 @@ impl Asked {
     }
 }
 
-/// Results of a flight: end state, segments, clearances.
 #[derive(Debug)]
 pub(crate) struct Outcome {
     pub robot: Robot,
@@ -90,7 +82,7 @@ fn fly(asked: &Asked, room: &Room, layout: &Layout, devices: &[Body]) -> (Outcom
         while seen.len() < leg {
             seen.push(survey.take());
         }
-        // The fingers need time: on the leg on which they close, the check still uses the wider opening.
+        // On the leg on which the fingers close, the wider opening applies.
         if leg > points.opens || (leg == points.opens && at_goal > opening) {
             survey.open(*at_goal);
         }
@@ -111,7 +103,6 @@ struct Flight {
 }
 
 impl Flight {
-    /// Returns true for the same flight with the same bodies near it.
     fn answers(&self, asked: &Asked, devices: &[Body]) -> bool {
         let mut near = devices.iter().filter(|body| self.swept.passes(body, SIGHT));
         self.asked == *asked
@@ -120,14 +111,14 @@ impl Flight {
     }
 }
 
-/// Cache of the flights in one cell, for one check or for several with different task data.
+/// Cached flights in one cell, for any task data.
 #[derive(Debug, Default)]
 pub struct Known {
     flights: Mutex<HashMap<u64, Arc<Mutex<Vec<Flight>>>>>,
 }
 
 impl Known {
-    /// The outcome of a flight in a layout of the cell. Waits if another thread is checking the same flight.
+    /// Waits if another thread checks the same flight.
     pub(crate) fn outcome(&self, asked: Asked, room: &Room, layout: &Layout) -> Arc<Outcome> {
         let devices = room.devices(layout);
         let alike = Arc::clone(locked(&self.flights).entry(asked.number()).or_default());
@@ -143,7 +134,7 @@ impl Known {
     }
 }
 
-/// Locks the cache, even after a panic in another thread: entries are always complete.
+/// Locks even after a panic in another thread: entries are always complete.
 fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }

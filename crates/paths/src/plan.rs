@@ -8,14 +8,12 @@ use taskdata::{
     load::At,
 };
 
-/// An entry of the task data that a path uses.
 #[derive(Clone, Debug, Serialize)]
 pub struct Entry {
     pub what: &'static str,
     pub at: String,
 }
 
-/// A record of the task data that has a name.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Datum {
     pub name: String,
@@ -25,70 +23,52 @@ pub struct Datum {
 
 #[derive(Clone, Debug, Serialize)]
 pub struct Leg {
-    /// Part of the route: depart, trajectory, approach or goal.
-    pub part: &'static str,
+    pub part: &'static str, // depart, trajectory, approach or goal
     pub point: String,
-    /// Tool point, inches, world.
-    pub position_in: [f64; 3],
-    /// Direction of the gripper axis, world.
-    pub axis: [f64; 3],
+    pub position_in: [f64; 3], // tool point, inches, world
+    pub axis: [f64; 3],        // gripper axis, world
     pub acc_fac: i32,
     pub vel_max: i32,
-    /// `smooth-acc`.
-    pub smooth: i32,
+    pub smooth: i32, // `smooth-acc`
     pub brk_dst: i32,
-    /// Ticks from the previous point to this one.
-    pub ticks: u32,
-    /// Name of the joint that is nearest to a limit; `None` if the arm cannot reach the pose.
-    pub joint: Option<&'static str>,
-    /// Margin of that joint, degrees; negative beyond the limit.
-    pub margin_deg: Option<f64>,
-    /// File, block and line of the point.
-    pub entry: Option<String>,
-    /// The pose, movetable or location point that gives the point.
+    pub ticks: u32,                  // from the previous point
+    pub joint: Option<&'static str>, // nearest to a limit; `None`: out of reach
+    pub margin_deg: Option<f64>,     // degrees; negative beyond the limit
+    pub entry: Option<String>,       // file, block and line
     #[serde(skip)]
-    pub datum: Option<Datum>,
-    /// Tool frame, inches, world.
+    pub datum: Option<Datum>, // pose, movetable or location point
     #[serde(skip)]
-    pub frame: Frame,
+    pub frame: Frame, // tool frame, inches, world
 }
 
 impl Leg {
-    /// Parameters of the segment that ends at the point.
+    /// Parameters of the segment that ends here.
     #[must_use]
     pub const fn parameters(&self) -> TrajPara {
         TrajPara { acc_fac: self.acc_fac, vel_max: self.vel_max, smooth: self.smooth, brk_dst: self.brk_dst }
     }
 }
 
-/// One command of E-move, or of a neighbour.
+/// One command of E-move or of a neighbour.
 #[derive(Clone, Debug, Serialize)]
 pub struct Phase {
     pub what: String,
-    /// Opening commanded during the motion, inches.
-    pub opening_in: Option<f64>,
-    /// The entries of the task data that it uses.
+    pub opening_in: Option<f64>, // inches
     pub entries: Vec<Entry>,
-    /// The points of its path; empty if the robot does not move.
-    pub legs: Vec<Leg>,
-    /// Why the phase cannot be planned; `None` if it can.
-    pub missing: Option<String>,
-    /// The places of all records that it uses.
+    pub legs: Vec<Leg>,          // empty if the robot does not move
+    pub missing: Option<String>, // why it cannot be planned
     #[serde(skip)]
-    pub used: Vec<At>,
-    /// Name of the point at its start.
+    pub used: Vec<At>, // all records in use
     #[serde(skip)]
     pub start: String,
-    /// Tool frame at its start, inches, world.
     #[serde(skip)]
-    pub from: Frame,
-    /// True if a sensor ends the motion, at a position that is not known beforehand.
+    pub from: Frame, // tool frame, inches, world
+    /// A sensor ends the motion, at an unknown position.
     #[serde(skip)]
     pub guarded: bool,
 }
 
 impl Phase {
-    /// A phase without motion.
     #[must_use]
     pub fn standing(what: String) -> Self {
         Self {
@@ -104,7 +84,6 @@ impl Phase {
         }
     }
 
-    /// Duration of the motion, ticks.
     #[must_use]
     pub fn ticks(&self) -> u32 {
         self.legs.iter().map(|leg| leg.ticks).sum()

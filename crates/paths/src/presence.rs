@@ -1,5 +1,5 @@
-//! Checks what must be true in the cell before a step: a part for the fingers, open jaws and drum for a part that is
-//! carried away, support for a part that is released.
+//! Conditions in the cell before a step: a part to grasp, open jaws and drum for a carried part, support for a
+//! released one.
 
 use geometry::units::Length;
 use interfaces::emove::EmoveVerb;
@@ -10,12 +10,11 @@ use plant::{
 
 use crate::{finding::Finding, state::State, steps::Step};
 
-/// Greatest fall of a released part, in (ASSUMED; the depart and release points of the shipped data leave at most
-/// 0.15).
+/// Greatest fall of a released part, in (ASSUMED; shipped data: at most 0.15).
 const DROP: f64 = 0.5;
 
 impl State<'_> {
-    /// The problem that prevents a step although its path is free.
+    /// The problem that prevents a step with a free path.
     pub(crate) fn hindrance(&self, step: &Step) -> Option<Finding> {
         match *step {
             Step::Go { .. } => self.in_jaws(),
@@ -48,7 +47,7 @@ impl State<'_> {
         Some(Placed { frame: self.robot.tool().compose(&held.frame), ..held.clone() })
     }
 
-    /// The finding if the robot would carry away a part that the closed jaws of the vise hold.
+    /// The vise still holds the part.
     fn in_jaws(&self) -> Option<Finding> {
         let part = self.carried()?;
         let (_, closed) = self.room.vise_seat(self.layout.program, &part)?;
@@ -62,7 +61,7 @@ impl State<'_> {
         })
     }
 
-    /// The finding if the robot would pull a tool that the drum grips.
+    /// The drum still grips the tool.
     fn in_drum(&self) -> Option<Finding> {
         self.drum_grips.then(|| {
             finding(
@@ -72,7 +71,7 @@ impl State<'_> {
         })
     }
 
-    /// The finding if the robot would release a part without support.
+    /// The released part has no support.
     fn in_the_air(&self) -> Option<Finding> {
         let part = self.carried().filter(|part| self.room.nest_seat(part).is_none())?;
         let mut movers = self.room.movers(&self.layout, self.robot.joints());

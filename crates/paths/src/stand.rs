@@ -1,5 +1,4 @@
-//! Checks a pose: the joint angles, the joint that is nearest to a limit, and the obstacle nearest to the robot in the
-//! cell at the start of a run.
+//! Checks a pose: joint angles, limits, and the nearest obstacle in the cell at the start of a run.
 
 use std::fmt;
 
@@ -18,26 +17,20 @@ use plant::{
 use serde::Serialize;
 use taskdata::files::TaskData;
 
-/// Greatest reported distance of an obstacle from the robot, inches.
-const NEAR: f64 = 12.0;
-/// Greatest number of named poses in the answer.
-const NAMED: usize = 3;
+const NEAR: f64 = 12.0; // inches
+const NAMED: usize = 3; // in the answer
 
-/// A checked pose. Angles are in degrees, lengths in inches.
+/// Angles in degrees, lengths in inches.
 #[derive(Clone, Debug, Serialize)]
 pub struct Standing {
-    /// Wrist, tool and finger point, 0.01 in.
-    pub points: [[i32; 3]; 3],
-    /// Angles of the six joints; `None` if the arm cannot reach the pose.
-    pub joints: Option<[f64; 6]>,
-    /// Why the arm cannot reach the pose.
+    pub points: [[i32; 3]; 3],    // wrist, tool and finger point, 0.01 in
+    pub joints: Option<[f64; 6]>, // `None`: out of reach
     pub unreachable: Option<String>,
-    /// The joint nearest to a limit, and its margin; negative beyond the limit.
+    /// Joint nearest to a limit; negative beyond it.
     pub margin: Option<(&'static str, f64)>,
-    /// Part of the robot, nearest obstacle in the cell at the start of a run, and their distance; negative if they
-    /// touch.
+    /// Part of the robot, nearest obstacle and their distance; negative if they touch.
     pub clearance: Option<(String, String, f64)>,
-    /// The nearest named poses, with the distances of their tool points.
+    /// The nearest poses, with the distances of their tool points.
     pub named: Vec<(String, f64)>,
 }
 
@@ -57,7 +50,7 @@ impl Standing {
         let clearance = joints.and_then(|joints| {
             let layout: Layout = room.at_start();
             let contacts = room.look(&room.movers(&layout, &joints), &room.devices(&layout), NEAR);
-            // The robot's own links are always near each other, so they are reported only if they touch.
+            // The robot's own links are always near each other.
             let counts = |contact: &Contact| contact.touches() || contact.obstacle_kind != Kind::Arm;
             let nearest =
                 contacts.into_iter().filter(counts).max_by(|one, other| one.depth.total_cmp(&other.depth))?;
@@ -80,7 +73,6 @@ impl Standing {
         })
     }
 
-    /// Returns true if the robot can stand in this pose.
     #[must_use]
     pub fn is_usable(&self) -> bool {
         let touches = |(_, _, inches): &(String, String, f64)| *inches < 0.0;
@@ -100,7 +92,7 @@ impl fmt::Display for Standing {
         }
         if let Some(joints) = self.joints {
             let words = JOINT_NAMES.iter().zip(joints).map(|(name, angle)| {
-                // Adding zero converts a negative zero to zero.
+                // Adding zero removes the sign of a negative zero.
                 format!("{name} {:.1}", (angle * 10.0).round() / 10.0 + 0.0)
             });
             writeln!(f, "joints  {} degrees", words.collect::<Vec<_>>().join(", "))?;
@@ -129,7 +121,7 @@ impl fmt::Display for Standing {
     }
 }
 
-/// The form of a pose in task data (VII.1): three lines.
+/// The form of a pose (VII.1): three lines.
 #[must_use]
 pub fn pose_form(name: &str, movetable: &str, pose: &Pose) -> Vec<String> {
     let [wrist, tool, finger] =
@@ -137,8 +129,8 @@ pub fn pose_form(name: &str, movetable: &str, pose: &Pose) -> Vec<String> {
     vec![wrist, tool, format!("{finger}   -pose-   {movetable:<11} {name}")]
 }
 
-/// The lines of a movetable from one frame to another (VII.2): a translation in tool coordinates, a rotation about the
-/// tool point, a roll. Lines without effect are left out, except the first.
+/// A translation in tool coordinates, a rotation about the tool point, a roll (VII.2). Omits lines without effect,
+/// except the first.
 #[must_use]
 pub fn movetable_between(from: &Frame, to: &Frame) -> Vec<MovetableLine> {
     let back = from.rotation.inverse();
@@ -157,7 +149,7 @@ pub fn movetable_between(from: &Frame, to: &Frame) -> Vec<MovetableLine> {
     std::iter::once(moved).chain(turns).collect()
 }
 
-/// The form of a movetable in task data (VII.2), one text line for each of its lines.
+/// The form of a movetable (VII.2).
 #[must_use]
 pub fn movetable_form(name: &str, lines: &[MovetableLine]) -> Vec<String> {
     let last = lines.len().saturating_sub(1);

@@ -21,39 +21,32 @@ use crate::{
     walk::Walk,
 };
 
-/// Greatest distance of a part from its expected position, in; beyond it the part is missing.
-const THERE: f64 = 8.0;
+const THERE: f64 = 8.0; // in: farther from its expected position a part is missing
 
 #[derive(Clone, Debug)]
 pub struct State<'a> {
     pub room: &'a Room,
     pub known: &'a Known,
-    /// Position of the robot in the task data, and the planning of its paths.
+    /// The robot's position in the task data, and its paths.
     pub walk: Walk<'a>,
     pub robot: Robot,
     pub layout: Layout,
-    /// The held object, and its grip.
-    pub held: Option<(Name16, i32)>,
-    /// Parts that were delivered at random positions of their sectors.
-    pub random: Vec<Random>,
-    /// True if a failed flight is repeated with additional via points.
+    pub held: Option<(Name16, i32)>, // with its grip
+    pub random: Vec<Random>,         // parts at random in their sectors
+    /// A failed flight is repeated with more via points.
     pub advises: bool,
-    /// True if the robot cannot continue, because its controller has stopped.
+    /// The robot's controller has stopped.
     pub stranded: bool,
-    /// Commands that brought the robot to its position.
-    pub before: Vec<[&'static str; 2]>,
-    /// The object that the pedestal holds or is about to receive.
-    regrip: Option<Name16>,
-    /// Object and location of the last motion.
-    last: Option<(Name16, Location)>,
-    /// True if the drum grips a tool.
+    pub before: Vec<[&'static str; 2]>, // the commands that brought the robot here
+    regrip: Option<Name16>,             // at the pedestal, or about to arrive
+    last: Option<(Name16, Location)>,   // of the last motion
     pub(crate) drum_grips: bool,
-    /// Parts that were not at their locations, each reported once, and the parts machined from them.
+    /// Missing parts, each reported once, and parts machined from them.
     pub(crate) lacking: Vec<Name16>,
 }
 
 impl<'a> State<'a> {
-    /// The state after the start-up of the robot, with open fingers.
+    /// After start-up, with open fingers.
     #[must_use]
     pub fn new(room: &'a Room, known: &'a Known, walk: Walk<'a>, robot: Robot) -> Self {
         let mut layout = room.at_start();
@@ -76,8 +69,7 @@ impl<'a> State<'a> {
         }
     }
 
-    /// Places a part in a sector; with `again`, moves it to another position there. Returns false if the cell has no
-    /// such location.
+    /// With `again`, moves the part within its sector. Returns false if the cell has no such location.
     pub fn deliver(&mut self, object: &Name16, at: &Location, aside: [f64; 3], again: bool) -> bool {
         let cell = self.room.cell();
         let Some(kind) = cell.part(object.as_str()) else { return false };
@@ -90,7 +82,6 @@ impl<'a> State<'a> {
         true
     }
 
-    /// Index of the part of this name that is nearest to a frame.
     pub(crate) fn nearest(&self, object: &Name16, frame: &Frame) -> Option<usize> {
         let away = |part: &Placed| (part.frame.position - frame.position).norm();
         let named =
@@ -102,7 +93,6 @@ impl<'a> State<'a> {
             .map(|(index, _)| index)
     }
 
-    /// Moves the jaws of the vise.
     pub fn move_vise(&mut self, opening: ViseOpening, program: Option<&Name16>) {
         let programs = &self.room.cell().vise.program;
         let named = program.and_then(|name| programs.iter().position(|one| one.name == name.as_str()));
@@ -118,7 +108,6 @@ impl<'a> State<'a> {
         }
     }
 
-    /// Replaces a blank by the part machined from it.
     pub fn machine(&mut self, blank: &Name16, part: &Name16) {
         let next = self.room.cell().part(part.as_str());
         let is = |one: &&mut Placed| one.kind.name == blank.as_str();
@@ -142,11 +131,11 @@ impl<'a> State<'a> {
         }
     }
 
-    /// Executes a step; `task` is the command of Task that it belongs to.
+    /// `task` is the command of Task to which the step belongs.
     pub fn step(&mut self, step: &Step, task: &str) -> (Walked, Vec<Finding>) {
         let hindrance = self.hindrance(step);
         let (walked, mut findings) = self.make(step, task);
-        // A missing or clamped part also causes contacts; only the cause is reported.
+        // A missing or clamped part also causes contacts: only the cause is reported.
         if let Some(hindrance) = hindrance {
             findings = vec![hindrance];
         }
@@ -178,8 +167,7 @@ impl<'a> State<'a> {
                         _ => "INSERT-TOOL",
                     },
                 };
-                // Moves that begin at the end of a guarded move also have an unknown position. INS-NEAR ends at its
-                // goal, or has failed.
+                // After a guarded move the position is unknown. INS-NEAR ends at its goal, or has failed.
                 let known = match name {
                     "QCD-UP" | "REL-BACK" => false,
                     "INS-NEAR" => true,
@@ -200,7 +188,6 @@ impl<'a> State<'a> {
         }
     }
 
-    /// Applies the changes of a step without motion of the robot.
     fn stand(&mut self, step: &Step) {
         match *step {
             Step::Fingers { verb: EmoveVerb::GraspObj, object, grip } => {
@@ -215,8 +202,7 @@ impl<'a> State<'a> {
                 self.before = vec![["RELEASE", ""]];
             }
             Step::GraspTool => {
-                // The ends of the guarded moves are unknown, so the fingers are assumed to be at the drum's tool
-                // position.
+                // The end of a guarded move is unknown: the fingers are taken to be at the drum's tool position.
                 let drum = self.room.cell().drum.pose.frame();
                 if let Some((object, drum)) = self.tool_in_drum().zip(drum) {
                     self.grasp(&object, 1, &drum);
@@ -247,7 +233,7 @@ impl<'a> State<'a> {
         Some(Name16::clipped(&part.kind.name))
     }
 
-    /// Grasps the nearest part of this name, with the tool frame at `tool`.
+    /// Grasps the nearest part of this name; `tool` is the tool frame.
     fn grasp(&mut self, object: &Name16, grip: i32, tool: &Frame) {
         self.held = Some((*object, grip));
         let Some(index) = self.nearest(object, tool) else {
@@ -265,7 +251,7 @@ impl<'a> State<'a> {
         self.layout.held = Some(Placed { frame, ..part });
     }
 
-    /// Releases the held part and opens the fingers to `opening`, in, or fully with `None`.
+    /// Opens the fingers to `opening`, in; fully with `None`.
     fn release(&mut self, opening: Option<f64>) {
         self.held = None;
         if let Some(held) = self.layout.held.take() {
@@ -277,7 +263,7 @@ impl<'a> State<'a> {
         self.open(opening.unwrap_or(f64::INFINITY));
     }
 
-    /// Sets the opening of the fingers, in, within the limits of the gripper.
+    /// Opening in inches, limited by the gripper.
     fn open(&mut self, opening: f64) {
         if let Some(gripper) = self.room.worn(&self.layout) {
             self.layout.opening = opening.clamp(gripper.opening[0], gripper.opening[1]);
@@ -322,7 +308,7 @@ impl<'a> State<'a> {
         }
     }
 
-    /// Simulates the camera: finds the object at the location that the robot looks at.
+    /// Simulates the camera at the location that the robot looks at.
     fn locate(&mut self) -> Phase {
         let seen = self.last.and_then(|(object, location)| {
             let part = self.layout.parts.get(self.nearest(&object, &location.frame)?)?;
@@ -336,9 +322,8 @@ impl<'a> State<'a> {
     }
 }
 
-/// The part frame that vision answers (V.2.1 LOCATE-OBJ): in the plane of the location, at the middle of the part,
-/// rotated by at most a quarter turn so that tool Y lies across the wider side for grip 1 and across the narrower side
-/// for other grips (VII.7.6).
+/// The part frame from vision (V.2.1 LOCATE-OBJ): in the plane of the location, turned by at most 90 degrees until
+/// tool Y lies across the wider side for grip 1, the narrower for others (VII.7.6).
 fn found(place: &Frame, part: &Placed, grip: i32) -> Frame {
     let aside = part.frame.position - place.position;
     let at = Vector::new(0.0, aside.dot(&place.y()), aside.dot(&place.z()));

@@ -9,59 +9,45 @@ use taskdata::files::{Location, LookupError, RefType, TaskData};
 
 use crate::holster::{Lacking, PUT, TAKE, TAKEN, WORN, holster, object_of};
 
-/// Location at which the Active Pedestal holds an object (V.3.1 FIX-GRIP).
-const PEDESTAL: &str = "PEDESTAL";
-/// Location at which the robot waits while the pedestal turns.
-const PEDESTAL_SAFE: &str = "PED-SAFE";
-/// Location of the tool transfer to the drum.
-const TOOL_TRANSFER: &str = "TOOL-TRNS";
+const PEDESTAL: &str = "PEDESTAL"; // holds an object (V.3.1 FIX-GRIP)
+const PEDESTAL_SAFE: &str = "PED-SAFE"; // the robot waits here while the pedestal turns
+const TOOL_TRANSFER: &str = "TOOL-TRNS"; // tool transfer to the drum
 
-/// A command of E-move, or of a neighbour while the robot is at rest.
+/// A command of E-move, or of a neighbour while the robot rests.
 #[derive(Clone, Copy, Debug)]
 pub enum Step {
-    /// The robot moves to a location.
     Go {
         verb: EmoveVerb,
-        /// The object that determines grip, approach and depart; `None` for a location without an object.
+        /// Gives grip, approach and depart.
         object: Option<Name16>,
         grip: i32,
         location: Location,
     },
-    /// A relative move, given by name, at a location.
+    /// A named move, at a location.
     Relative {
         name: &'static str,
         location: Location,
     },
-    /// The fingers grasp or release an object.
     Fingers {
         verb: EmoveVerb,
         object: Option<Name16>,
         grip: i32,
     },
-    /// The camera looks for the object.
     Locate,
     Pedestal(PedestalVerb),
-    /// The quick change meets the gripper with this end effector id in its holster.
-    Engage(u8),
-    /// The robot leaves the gripper with this end effector id in its holster.
-    Leave(u8),
-    /// The robot takes the gripper with this end effector id from its holster.
-    Take(u8),
-    /// The tool gripper opens around a tool in the drum.
+    Engage(u8), // end effector id, in its holster
+    Leave(u8),  // end effector id
+    Take(u8),   // end effector id
     LetGoTool,
-    /// The tool gripper closes on a tool in the drum.
     GraspTool,
-    /// Another step without motion of the robot.
     Other(&'static str),
 }
 
 /// Commands of Subtask to the pedestal (V.3.1 FIX-GRIP).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PedestalVerb {
-    /// Open the hand, and turn the table to receive the object.
-    PreGrip,
-    /// Close the hand on the object.
-    Grip,
+    PreGrip, // hand open, table turned
+    Grip,    // hand closed
     Flip,
     Release,
 }
@@ -151,7 +137,6 @@ impl Maker<'_> {
         self.data.resolve_location(&name, sector, self.command.object.as_ref())
     }
 
-    /// The held object with its grip, if it is the object of the command.
     fn held_object(&self) -> Option<(Name16, i32)> {
         self.held.filter(|(object, _)| Some(*object) == self.command.object)
     }
@@ -169,7 +154,7 @@ impl Maker<'_> {
         Ok(Step::Go { verb: EmoveVerb::MovToLoc, object: None, grip: 0, location })
     }
 
-    /// Adds GET-OBJECT: locate the object if vision is used there, move to it, grasp it.
+    /// Adds GET-OBJECT: looks first if vision is used there.
     fn get(&self, steps: &mut Vec<Step>) -> Result<(), LookupError> {
         let (command, grip) = (self.command, self.command.source_grip);
         if self.held_object().is_some() {
@@ -223,8 +208,7 @@ impl Maker<'_> {
         Ok(())
     }
 
-    /// Adds POSITION, which goes to the source, or to the destination if the source is null (SPECNOTES.md,
-    /// contradiction 24).
+    /// Adds POSITION to the source, or to the destination if that is null (SPECNOTES.md, contradiction 24).
     fn position(&self, steps: &mut Vec<Step>) -> Result<(), LookupError> {
         let c = self.command;
         let (name, sector, grip) = if c.source.is_none() {
@@ -265,7 +249,7 @@ pub fn exchange(own: Option<u8>, wanted: u8, data: &TaskData<'_>) -> Result<Vec<
     Ok(steps)
 }
 
-/// The motion to the holster of a gripper, and its location.
+/// The motion to a holster, and its location.
 fn to_holster(id: u8, grip: i32, data: &TaskData<'_>) -> Result<(Step, Location), Lacking> {
     let location = holster(id, grip, data)?;
     let object = Some(object_of(id));

@@ -26,17 +26,13 @@ use crate::{
 
 #[derive(Clone, Debug)]
 pub struct StoredFinding {
-    /// File, block and line of the segment's end.
-    pub at: At,
-    /// Description of the problem: what, where, and by how much.
+    pub at: At, // end of the segment
     pub message: String,
 }
 
-/// Results of the check of the stored trajectories.
 #[derive(Clone, Debug, Default)]
 pub struct Stored {
-    /// Number of checked segments, each forward and back.
-    pub segments: usize,
+    pub segments: usize, // each forward and back
     pub findings: Vec<StoredFinding>,
 }
 
@@ -48,8 +44,7 @@ struct Fixed {
     at: At,
 }
 
-/// Checks the segments of all trajectories. The task data must be valid. `known` is the cache of flights in the same
-/// cell.
+/// The task data must be valid. `known` caches flights in the same cell.
 #[must_use]
 pub fn walk_stored(store: &Store, room: &Room, known: &Known) -> Stored {
     let data = store.view();
@@ -90,10 +85,10 @@ pub fn walk_stored(store: &Store, room: &Room, known: &Known) -> Stored {
     stored
 }
 
-/// The fastest parameters, used where a point has none of its own.
+/// Parameters where a point has none of its own.
 const FREE: TrajPara = TrajPara { acc_fac: 4, vel_max: 100, smooth: 8, brk_dst: 0 };
 
-/// The end of a trajectory if it is a location point: the last point of its depart, or the first of its approach.
+/// An end that is a location point: its last depart point or first approach point.
 fn end_of(data: &TaskData<'_>, end: Reference, direction: Direction, at: At) -> Option<Fixed> {
     let id = (end.kind == RefType::LocationPoint).then(|| LocptId::new(end.number))?;
     let (point, place) = (data.locpt(id)?, Place::point(id));
@@ -115,7 +110,7 @@ fn fixed(data: &TaskData<'_>, point: &PathPoint, at: At) -> Option<Fixed> {
     Some(Fixed { name: name.to_string(), frame, parameters, at })
 }
 
-/// The finding of a straight segment; `None` if there is none.
+/// The finding of a straight segment.
 fn segment(room: &Room, known: &Known, from: &Frame, to: &Frame, parameters: TrajPara) -> Option<String> {
     let joints = T3.within_limits(&T3.inverse(from, &HOME_JOINTS).ok()?);
     let robot = Robot::standing(&Actuators::from(&room.cell().robot), &joints)?;
@@ -128,7 +123,7 @@ fn segment(room: &Room, known: &Known, from: &Frame, to: &Frame, parameters: Tra
         held: None,
         points: Points { list: vec![(*to, parameters)], opens: 0 },
         openings: [opening, opening],
-        // Without commands no contact is permitted: contacts at the ends of a segment belong to the approaches there.
+        // Without commands no contact is permitted: contacts at the ends belong to the approaches.
         commands: ["", ""],
         before: Vec::new(),
         clear: true,

@@ -1,5 +1,4 @@
-//! Finds contacts and clearances of arm, gripper and held part during a flight, with the contact permits of the cell
-//! description, as in a run.
+//! Contacts and clearances of arm, gripper and held part, with the contact permits of the cell, as in a run.
 
 use std::{collections::BTreeMap, fmt};
 
@@ -13,30 +12,23 @@ use plant::{
 use serde::Serialize;
 
 pub const MARGIN: f64 = 2.0;
-/// Distance within which pairs are checked, in. A greater distance allows skipping more ticks, but makes each check
-/// slower.
+/// Inches. A greater distance skips more ticks, but makes each check slower.
 pub(crate) const SIGHT: f64 = 4.0;
-/// A permitted contact ends at this distance, in.
-const FREE: f64 = 0.05;
-/// Additional depth of permitted contacts for a held part in the nest or vise that it is put into or taken from, in
-/// (ASSUMED), because its position in the fingers depends on vision.
+const FREE: f64 = 0.05; // in: ends a permitted contact
+/// More depth for a part in nest or vise, in (ASSUMED): its place in the fingers depends on vision.
 pub const FIT: f64 = 0.02;
-/// Additional depth of permitted contacts between the fingers and a part that they push, in (ASSUMED), because the part
-/// lies as it was dropped.
+/// More depth for a pushed part, in (ASSUMED): it lies as it fell.
 const PUSH_FIT: f64 = 0.05;
-/// Greatest displacement of any point of the robot per radian of each joint, in: base to roll.
+/// Greatest displacement of any point of the robot, in per radian of each joint, base to roll.
 const LEVERS: Joints = [105.0, 105.0, 65.0, 30.0, 27.0, 12.0];
 
-/// Two bodies that touch or pass each other.
+/// Two bodies that touch or pass.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Passing {
-    /// Body of the robot, or the part that it carries.
-    pub mover: String,
+    pub mover: String, // body of the robot, or its part
     pub obstacle: String,
-    /// Distance, inches; negative if they touch.
-    pub clearance_in: f64,
-    /// Position, inches, world.
-    pub position_in: [f64; 3],
+    pub clearance_in: f64,     // negative if they touch
+    pub position_in: [f64; 3], // inches, world
 }
 
 impl From<&Contact> for Passing {
@@ -65,35 +57,27 @@ impl fmt::Display for Passing {
 /// The least clearance and the deepest contact of a leg.
 #[derive(Clone, Debug, Default)]
 pub struct Seen {
-    /// The closest passing within [`MARGIN`].
-    pub nearest: Option<Passing>,
-    /// The deepest contact that is not permitted.
-    pub touched: Option<Passing>,
+    pub nearest: Option<Passing>, // within [`MARGIN`]
+    pub touched: Option<Passing>, // not permitted
 }
 
-/// Surveys flights in a fixed layout.
 #[derive(Debug)]
 pub struct Survey<'a> {
     room: &'a Room,
     layout: Layout,
     devices: &'a [Body],
-    /// Volume in which the robot was checked.
     swept: Swept,
-    /// Commands of E-move and Subtask.
-    commands: [&'static str; 2],
+    commands: [&'static str; 2], // of E-move and Subtask
     /// Greatest depth of each permitted contact, by pair of bodies.
     allowed: BTreeMap<(String, String), f64>,
-    /// Joint angles of the last check.
     at: Joints,
-    /// Displacement of the robot, in, up to which no further check is needed.
-    free: f64,
+    free: f64, // in: displacement without a further check
     leg: Option<usize>,
     seen: Seen,
 }
 
 impl<'a> Survey<'a> {
-    /// A survey of a layout with its devices. At the start (joint angles in radians), contacts are permitted as by the
-    /// earlier commands `before` that brought the robot there.
+    /// Joint angles in radians. `before`, the commands that brought the robot here, permit contacts at the start.
     #[must_use]
     pub fn new(
         room: &'a Room,
@@ -128,33 +112,30 @@ impl<'a> Survey<'a> {
         survey
     }
 
-    /// Returns the result of the motion to a point, and resets it.
     pub fn take(&mut self) -> Seen {
         (self.leg, self.free) = (None, 0.0);
         std::mem::take(&mut self.seen)
     }
 
-    /// Returns true if the motion to the present point has a contact that is not permitted.
+    /// True if the motion to the present point has a forbidden contact.
     #[must_use]
     pub const fn touches(&self) -> bool {
         self.seen.touched.is_some()
     }
 
-    /// The volume in which the robot was checked.
     #[must_use]
     pub fn into_swept(self) -> Swept {
         self.swept
     }
 
-    /// Sets the opening of the fingers, in.
+    /// Opening of the fingers, in.
     pub fn open(&mut self, opening: f64) {
         if self.layout.opening != opening {
             (self.layout.opening, self.free) = (opening, 0.0);
         }
     }
 
-    /// Checks the robot on its way to a point. Skips the check if the robot has moved too little for a smaller
-    /// clearance.
+    /// Skips the check if the robot has moved too little for a smaller clearance.
     pub fn look(&mut self, leg: usize, joints: &Joints) {
         let begins = self.leg != Some(leg);
         let moved: f64 = joints
@@ -186,7 +167,7 @@ impl<'a> Survey<'a> {
         (self.at, self.free) = (*joints, least - known.max(0.0));
     }
 
-    /// Returns true if the contact is permitted, or was permitted and has not ended.
+    /// Remains true while a permitted contact lasts.
     fn permitted(&mut self, contact: &Contact) -> bool {
         let permits = &self.room.cell().contact;
         let most = permits.during(contact.mover(), contact.obstacle(), self.commands);
@@ -206,7 +187,7 @@ impl<'a> Survey<'a> {
         if -contact.depth < MARGIN && nearer(&self.seen.nearest) {
             self.seen.nearest = Some(Passing::from(contact));
         }
-        // The position of a part in the fingers is not known more exactly than [`FIT`].
+        // The position of a part in the fingers is known only to [`FIT`].
         let sure = contact.mover_kind != Kind::HeldPart || contact.depth > FIT;
         if contact.touches() && sure && nearer(&self.seen.touched) {
             self.seen.touched = Some(Passing::from(contact));

@@ -10,18 +10,14 @@ use crate::{
     walk::Walk,
 };
 
-/// The robot before a command.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Present {
-    /// Where it is; the default if that is not known.
-    pub place: RobotPlace,
+    pub place: RobotPlace, // default: unknown
     pub gripper: Option<u8>,
-    /// The held object with its grip, if it is known.
-    pub held: Option<(Name16, i32)>,
+    pub held: Option<(Name16, i32)>, // with its grip, if known
 }
 
-/// The places of the records that a command uses, on its way from where the robot is. A command whose names are not in
-/// the task data uses none.
+/// The records that a command uses from the robot's place; none if a name is unknown.
 #[must_use]
 pub fn used(command: &HwsCommand, store: &Store, present: &Present) -> Vec<At> {
     let data = store.view();

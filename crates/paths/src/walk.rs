@@ -1,5 +1,4 @@
-//! Plans the path of the robot through the steps of a command: each goal and each via point, with the routes of E-move
-//! and the times of Prim's motion.
+//! Plans a command's path: goals and via points, with E-move's routes and Prim's times.
 
 use geometry::{
     frame::Frame,
@@ -41,7 +40,7 @@ use crate::{
 
 /// Text of LOCATE-OBJ if the position of the object is unknown.
 const LOCATE: &str = "LOCATE-OBJ: taken to be found in the middle of its place";
-/// Numbers for the variable records of E-move in a route: its start and its goal.
+/// Numbers of E-move's variable records in a route: start and goal.
 const DEPARTURE: u32 = u32::MAX - 1;
 const GOAL: u32 = u32::MAX;
 
@@ -50,12 +49,11 @@ pub struct Walk<'a> {
     pub(crate) store: &'a Store,
     pub(crate) data: TaskData<'a>,
     place: RobotPlace,
-    /// The frame of the object that vision has found, for the next motion.
-    found: Option<Frame>,
+    found: Option<Frame>, // from vision, for the next motion
 }
 
 impl<'a> Walk<'a> {
-    /// Begins at a location without an object.
+    /// Starts at a location without an object.
     #[must_use]
     pub fn new(store: &'a Store, start: &Location) -> Self {
         Self::at(store, robot_at(GoneTo::Location, start, &start.frame))
@@ -66,18 +64,15 @@ impl<'a> Walk<'a> {
         Self { store, data: store.view(), place, found: None }
     }
 
-    /// Uses other task data from now on.
     pub fn load(&mut self, store: &'a Store) {
         (self.store, self.data) = (store, store.view());
     }
 
-    /// The position of the robot, as E-move keeps it.
     #[must_use]
     pub const fn place(&self) -> &RobotPlace {
         &self.place
     }
 
-    /// The store of the task data.
     #[must_use]
     pub const fn store(&self) -> &'a Store {
         self.store
@@ -88,14 +83,13 @@ impl<'a> Walk<'a> {
         &self.data
     }
 
-    /// Simulates LOCATE-OBJ (V.2.1) for an object at `object`: the camera moves straight over it, and the next
-    /// MOV-TO-OBJ uses this frame.
+    /// LOCATE-OBJ (V.2.1): the camera moves straight over `object`; the next MOV-TO-OBJ uses this frame.
     pub fn find(&mut self, object: &Frame, looked_at: &Frame) -> Phase {
         let mut phase =
             Phase { start: self.place.site.location.to_string(), ..Phase::standing(LOCATE.to_owned()) };
         self.found = Some(*object);
         let Ok(here) = self.place.pose.to_frame() else { return phase };
-        // The camera keeps its orientation and moves by the distance of the object from the middle of the picture.
+        // The camera keeps its orientation.
         let over = Frame { position: here.position + object.position - looked_at.position, ..here };
         let view = self.view_stop();
         if let Some(parameters) = view.filter(|_| over.distance(&here).inches > 0.0) {
@@ -108,8 +102,8 @@ impl<'a> Walk<'a> {
         phase
     }
 
-    /// Plans a step; the phase contains the reason if it is not possible. The walk then continues from the location of
-    /// the step, so that later steps can be checked too.
+    /// The phase contains the reason if a step is impossible. The walk continues from the step's location, so that
+    /// later steps are checked too.
     pub fn step(&mut self, step: &Step) -> Phase {
         match *step {
             Step::Go { verb, object, grip, location } => self.go(verb, object, grip, &location),
@@ -170,7 +164,7 @@ impl<'a> Walk<'a> {
                 (gone_to, grips.map_or(location.frame, |by| self.data.moved(&location.frame, by)))
             }
         };
-        // With the object E-move leaves as it came, until the fingers have released it.
+        // With the object E-move departs as it came, until the fingers release it.
         let gone_to = match gone_to {
             GoneTo::Object(brought) if verb == EmoveVerb::MovObjTo => GoneTo::Brought(brought),
             gone_to => gone_to,
@@ -189,7 +183,6 @@ impl<'a> Walk<'a> {
         Some(self.data.path(self.data.view_approach(&object, grip, &place)?).last()?.para)
     }
 
-    /// A phase that starts at the robot's position.
     fn moving(&self, what: String) -> Phase {
         let from = self.place.pose.to_frame().unwrap_or_else(|_| Frame::identity());
         Phase { start: self.place.site.location.to_string(), from, ..Phase::standing(what) }
@@ -224,7 +217,7 @@ impl<'a> Walk<'a> {
         Ok((goal, route))
     }
 
-    /// Adds the legs of a route with their times, and the entries of the task data that it uses.
+    /// Adds legs, times and task data entries.
     fn route(&self, phase: &mut Phase, command: &EmoveCommand, goal: &EmoveGoal, mut route: Route) {
         let departure = self.place.pose.to_frame().unwrap_or_else(|_| Frame::identity());
         let (depart, between, approach) = (route.depart, route.between, route.approach);
@@ -306,7 +299,6 @@ impl<'a> Walk<'a> {
     }
 }
 
-/// The reason with which E-move refuses a command whose path cannot be planned.
 fn refusal(route: Planning) -> Reason {
     match records((), &Records { route, ..Records::default() }) {
         Verdict::Decided(Decision { action: Action::Refuse(reason), .. }) => reason,
@@ -314,7 +306,6 @@ fn refusal(route: Planning) -> Reason {
     }
 }
 
-/// The legs with the number of ticks of each.
 fn timed(start: &Frame, mut legs: Vec<Leg>) -> Vec<Leg> {
     let points: Vec<_> = legs.iter().map(|leg| (leg.frame, leg.parameters())).collect();
     let ticks = time(start, &points);
@@ -323,7 +314,6 @@ fn timed(start: &Frame, mut legs: Vec<Leg>) -> Vec<Leg> {
     legs
 }
 
-/// Converts ticks to seconds.
 #[must_use]
 pub fn seconds(ticks: u32) -> f64 {
     f64::from(ticks) * TICK_S

@@ -14,14 +14,14 @@ use taskdata::load::{
     job::{Offset, Workstation},
 };
 
-/// Greatest distance of a planned point from that of an order to Prim, inches and radians: that of vision.
+/// Inches and radians: the accuracy of vision.
 const SAME: (f64, f64) = (0.02, 0.002);
 
 fn data() -> &'static Path {
     Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../data"))
 }
 
-/// A job whose parts lie in the middle of their sectors.
+/// A job whose parts are in the middle of their sectors.
 fn job(name: &str, store: &Store) -> Job {
     let path = data().join("jobs").join(format!("{name}.job"));
     let (mut job, _) = Job::load(&path, store).unwrap_or_else(|report| panic!("{report}"));
@@ -44,7 +44,7 @@ const fn has_route(verb: EmoveVerb) -> bool {
     )
 }
 
-/// The points that E-move orders Prim to move to for commands with routes, each with the command.
+/// The points that E-move orders, each with its command.
 fn ordered(job: &Job, store: &Store, room: &Room) -> Vec<(&'static str, Frame)> {
     let world = IdealWorkstation::new(Ideal::new(room, 1).expect("the cell is sound"));
     let (data, reloads) = (Arc::new(store.clone()), Arc::new(job.reloads.clone()));
@@ -68,7 +68,6 @@ fn ordered(job: &Job, store: &Store, room: &Room) -> Vec<(&'static str, Frame)> 
     }
 }
 
-/// The points of the planned paths of such commands.
 fn planned(job: &Job, store: &Store, room: &Room) -> Vec<(&'static str, Frame)> {
     let walked = walk_job_once(job, store, room);
     let phases = walked.lines.iter().flat_map(|line| &line.phases).map(|phase| &phase.plan);

@@ -22,7 +22,7 @@ fn walked(job: &str) -> WalkedJob {
     walk_job(&job, &store, &room, &Known::default())
 }
 
-/// Checks that a job has no findings and all its lines are checked.
+/// Checks that a job has no findings and all lines are checked.
 fn sound(job: &str) {
     let walked = walked(job);
     let said: Vec<&str> = walked.findings.iter().map(|one| one.message.as_str()).collect();
@@ -71,8 +71,6 @@ fn stored_routes() {
     assert_eq!(texts, [""; 0]);
 }
 
-/// The part that the robot holds after each line: the bar from the tray to the vise, and after machining back to the
-/// tray.
 #[test]
 fn a_held_part_moves_with_the_hand() {
     let walked = walked("linkbar");
@@ -80,7 +78,7 @@ fn a_held_part_moves_with_the_hand() {
     let [blank, bar] = ["LINKBAR1_BH with grip +2", "LINKBAR1 with grip +2"].map(Some);
     assert_eq!(held, [blank, None, None, None, bar, None]);
     assert_eq!(walked.lines[0].tried, 13, "the part lies anywhere in its sector");
-    // The bar passes between the jaws with 0.04 in on each side; there it is the body with the least clearance.
+    // 0.04 in on each side of the bar: the least clearance.
     let into = walked.lines[0].phases.last().and_then(|phase| phase.segments.last()).unwrap();
     let near = into.nearest.as_ref().unwrap();
     assert_eq!((near.mover.as_str(), near.obstacle.as_str()), ("LINKBAR1_BH", "fixed_jaw"));
@@ -88,7 +86,7 @@ fn a_held_part_moves_with_the_hand() {
     assert!(walked.nearest().is_some_and(|near| near.clearance_in > -0.01));
 }
 
-/// Checks the linkbar job from each sector against the statement in `data/README.md`.
+/// As `data/README.md` states for the linkbar job.
 #[test]
 fn each_sector_is_fit_or_not() {
     let (store, _) = Store::load(data()).unwrap_or_else(|report| panic!("{report}"));
@@ -111,13 +109,13 @@ fn each_sector_is_fit_or_not() {
     assert_eq!(unfit, [("UNIT_2", 3), ("UNIT_2", 4)]);
 }
 
-/// Loaded data apply to the lines after it; if loaded during a command, to the next command.
+/// Data loaded during a command apply to the next one.
 #[test]
 fn after_load_the_new_data_count() {
     let (store, _) = Store::load(data()).unwrap_or_else(|report| panic!("{report}"));
     let room = Room::new(&CellDescription::load(&data().join("cell.toml")).unwrap());
     let place = tempfile::tempdir().unwrap();
-    // A point inside the body of the vise, on the way to SAFE.
+    // Inside the body of the vise, on the way to SAFE.
     let low = "BLOCK# 1 OFFSET 22000
    3950 -4400 -800
    6950 -4400 -800

@@ -9,7 +9,7 @@ use paths::{
 use plant::{CellDescription, room::Room};
 use taskdata::load::{Diagnostics, Job, Source, Store, source::read_blocks_under};
 
-/// A mistake: its name, a job that it affects, the file, the original text, and its replacement.
+/// Name, job, file, original text, replacement.
 type Variant = (&'static str, &'static str, &'static str, &'static str, &'static str);
 
 const TRAJECTORIES: &str = "trajectories.blk";
@@ -234,12 +234,11 @@ fn data() -> &'static Path {
     Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../data"))
 }
 
-/// The first error of a report.
 fn first(report: &Diagnostics) -> String {
     report.errors().next().map_or(String::new(), |error| format!("{}: {}", error.place(), error.message()))
 }
 
-/// Walks the job with a mistake in the data; `Err` if the data are refused before the check of paths.
+/// `Err`: refused before the check of paths.
 fn walked(variant: &Variant, sources: &[Source], room: &Room) -> Result<WalkedJob, String> {
     let (name, job, file, from, to) = *variant;
     let mut sources = sources.to_vec();
