@@ -6,8 +6,7 @@ use std::fmt::Write as _;
 
 use clap::{Arg, Command};
 
-/// The page: a section for the program and one for each subcommand, with the usage, the arguments and the options. An
-/// argument that several commands have with the same text is described at the first of them.
+/// A section for the program and each subcommand. An argument common to several is described at the first.
 #[must_use]
 pub fn markdown(command: &Command) -> String {
     let mut command = command.clone();
@@ -17,7 +16,7 @@ pub fn markdown(command: &Command) -> String {
     page
 }
 
-/// `described` has the arguments described so far, each with its command.
+/// `described` has the arguments described so far, with their commands.
 fn section(command: &Command, depth: usize, described: &mut HashMap<String, String>, page: &mut String) {
     let name = command.get_bin_name().unwrap_or(command.get_name());
     let usage = command.clone().render_usage().to_string();
@@ -26,7 +25,7 @@ fn section(command: &Command, depth: usize, described: &mut HashMap<String, Stri
     add(page, format_args!("{} {name}\n\n{}\n", "#".repeat(depth), about.join("\n\n")));
     let usage: Vec<_> = usage.trim_start_matches("Usage: ").lines().map(str::trim).collect();
     add(page, format_args!("```text\n{}\n```\n", usage.join("\n")));
-    // An option that all subcommands take is listed once, at the program.
+    // Options of all subcommands are listed once, at the program.
     let shown = |argument: &&Arg| {
         let is_told = depth > 1 && argument.is_global_set();
         !argument.is_hide_set() && !is_told && !matches!(argument.get_id().as_str(), "help" | "version")
@@ -61,7 +60,7 @@ fn typed(argument: &Arg) -> String {
     argument.get_long().map_or_else(|| format!("`<{}>`", value()), |long| format!("`--{long}`"))
 }
 
-/// The argument as it is typed, and what is taken without it.
+/// The argument as typed, with its default.
 fn label(argument: &Arg) -> String {
     let values = argument.get_value_names().unwrap_or_default();
     let values = if argument.get_action().takes_values() {
@@ -78,7 +77,7 @@ fn label(argument: &Arg) -> String {
     if taken { format!("`{typed}` (default `{}`)", default.join(",")) } else { format!("`{typed}`") }
 }
 
-/// The help of an argument on one line, with its possible values.
+/// The help on one line, with the possible values.
 fn text(argument: &Arg) -> String {
     let help = argument.get_long_help().or(argument.get_help()).map(ToString::to_string).unwrap_or_default();
     let mut text = sentence(&help.split("\n\n").map(sentence).collect::<Vec<_>>().join(" "));
@@ -94,24 +93,22 @@ fn text(argument: &Arg) -> String {
     text
 }
 
-/// A text that a page of Markdown shows as it is.
 fn escaped(text: &str) -> String {
     text.replace('<', "\\<").replace('|', "\\|")
 }
 
-/// A paragraph of prose, or one with lines of its own, as it is.
+/// A paragraph of prose; other lines stay as they are.
 fn paragraph(text: &str) -> String {
     let own_lines = text.lines().any(|line| line.starts_with(' '));
     if own_lines { format!("```text\n{text}\n```") } else { escaped(&sentence(text)) }
 }
 
-/// A text on one line that ends like a sentence.
+/// One line that ends with a full stop.
 fn sentence(text: &str) -> String {
     let line = text.split_whitespace().collect::<Vec<_>>().join(" ");
     if line.is_empty() || line.ends_with(['.', ')', ':']) { line } else { line + "." }
 }
 
 fn add(page: &mut String, line: std::fmt::Arguments<'_>) {
-    // Writing into a string cannot fail.
-    let _ = writeln!(page, "{line}");
+    let _ = writeln!(page, "{line}"); // cannot fail
 }

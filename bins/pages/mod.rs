@@ -1,6 +1,4 @@
-//! What every program does before it begins.
-//!
-//! From its definition of the command line follow version, manual pages, shell completions and reference page.
+//! Version, manual pages, completions and reference page, from a program's command line.
 
 #![forbid(unsafe_code)]
 
@@ -30,27 +28,24 @@ pub use markdown::markdown;
 pub use removed::{KEYS_MOVED, RemovedTls};
 pub use values::{DataArgument, data_directory, default_data, fault_file, job, names, robot, with_names};
 
-/// The version, and the commit that the program was built from if that is known.
+/// With the commit, if known.
 pub const VERSION: &str = if env!("RCS_COMMIT").is_empty() {
     env!("CARGO_PKG_VERSION")
 } else {
     concat!(env!("CARGO_PKG_VERSION"), " (", env!("RCS_COMMIT"), ")")
 };
 
-/// The option that writes the pages; it stands first and alone.
-const GENERATE: &str = "generate";
+const GENERATE: &str = "generate"; // must be first and alone
 
-/// The option and the variable with the units that a person reads and types.
-const UNITS: &str = "units";
+const UNITS: &str = "units"; // option and variable
 const UNITS_VARIABLE: &str = "RCS_UNITS";
 
-/// Read the command line; with `--generate DIR` write the pages there and end the process. Sets the units of the
-/// process by `--units`, or else by `RCS_UNITS`.
+/// `--generate DIR` writes the pages and ends the process. Units: `--units`, else `RCS_UNITS`.
 #[must_use]
 pub fn parse<P: Parser>() -> P {
     let arguments: Vec<_> = env::args_os().map(length_as_value).collect();
     let mut command = command::<P>();
-    // Lengths in the other arguments have these units, so they are set first. A wrong value is refused below.
+    // Before the other arguments, which have these units. A wrong value is refused below.
     match units(&arguments, env::var_os(UNITS_VARIABLE)) {
         Ok(units) => units.show(),
         Err(wrong) => refuse(&command.error(ErrorKind::InvalidValue, wrong)),
@@ -69,7 +64,7 @@ pub fn parse<P: Parser>() -> P {
     let mut matches = command.try_get_matches_from_mut(&arguments).unwrap_or_else(|mut error| {
         let first = arguments.get(1);
         if let Some(near) = misspelt_subcommand(&command, first) {
-            // For clap the word is a job, which has no further words.
+            // clap takes the word for a job, which has no further words.
             if error.kind() == ErrorKind::ArgumentConflict {
                 let word = first.map(|word| word.to_string_lossy().into_owned()).unwrap_or_default();
                 error = clap::Error::new(ErrorKind::InvalidSubcommand).with_cmd(&command);
@@ -91,7 +86,7 @@ pub fn parse<P: Parser>() -> P {
     P::from_arg_matches_mut(&mut matches).unwrap_or_else(|error| refuse(&error.format(&mut command)))
 }
 
-/// What was expected in the place of a text that is no number; `None` for other errors.
+/// The expected form of a number.
 fn expected_number(source: &(dyn error::Error + 'static)) -> Option<&'static str> {
     if source.is::<ParseIntError>() {
         return Some("a whole number");
@@ -99,7 +94,7 @@ fn expected_number(source: &(dyn error::Error + 'static)) -> Option<&'static str
     source.is::<ParseFloatError>().then_some("a number")
 }
 
-/// A text that an error of the command line is about.
+/// The text that the error is about.
 fn given(error: &clap::Error, kind: ContextKind) -> Option<&str> {
     match error.get(kind) {
         Some(ContextValue::String(text)) => Some(text),
@@ -107,8 +102,7 @@ fn given(error: &clap::Error, kind: ContextKind) -> Option<&str> {
     }
 }
 
-/// Print an error of the command line and end the process. If an argument has control characters, they and the colours
-/// do not reach the terminal.
+/// Prints an error and ends the process. Control characters do not reach the terminal.
 fn refuse(error: &clap::Error) -> ! {
     let is_plain = |text: &str| plain(text) == text;
     let mut given = env::args_os().chain(env::var_os(UNITS_VARIABLE));
@@ -119,8 +113,7 @@ fn refuse(error: &clap::Error) -> ! {
     process::exit(error.exit_code())
 }
 
-/// The units of a command line: those of the option, else those of the variable, else inches. A wrong value of the
-/// option is left to the command line.
+/// Units of the option, or else of the variable, or else inches. A wrong option is refused later.
 ///
 /// # Errors
 /// The variable has a wrong value.
@@ -138,8 +131,7 @@ fn units(arguments: &[OsString], variable: Option<OsString>) -> Result<Units, St
     })
 }
 
-/// An argument, with a blank before it if it is a negative length with a unit, such as `-1813.8mm`: clap reads negative
-/// numbers as values, but anything else that begins with `-` as an option.
+/// Adds a blank before a negative length with a unit, `-1813.8mm`, which clap takes for an option.
 fn length_as_value(argument: OsString) -> OsString {
     let is_length = |text: &str| {
         text.starts_with('-') && text.parse::<f64>().is_err() && Units::Inches.length(text).is_ok()
@@ -150,23 +142,21 @@ fn length_as_value(argument: OsString) -> OsString {
     }
 }
 
-/// The value of an argument that is a length: in inches, typed in the units of the command line.
-///
+/// Inches, from a text in the units of the command line.
 /// # Errors
 /// What was expected.
 pub fn length(text: &str) -> Result<f64, String> {
     Units::of_process().length(text)
 }
 
-/// The subcommand that the first argument probably means, if it is none: a program that runs a job without a subcommand
-/// takes the word for a job, and refuses the options of the subcommand.
+/// The subcommand that was probably meant: a program that runs a job takes a misspelt one for the job.
 fn misspelt_subcommand<'c>(command: &'c Command, first: Option<&OsString>) -> Option<&'c str> {
     let first = first?.to_str()?;
     let names = || command.get_subcommands().map(Command::get_name);
     nearest(first, names()).filter(|_| names().all(|name| name != first))
 }
 
-/// The definition of a program with its version and `--generate`.
+/// Adds the version and `--generate`.
 #[must_use]
 pub fn command<P: Parser>() -> Command {
     let generate = Arg::new(GENERATE)
@@ -186,10 +176,10 @@ pub fn command<P: Parser>() -> Command {
     P::command().version(VERSION).arg(generate).arg(units)
 }
 
-/// Write `man/*.1`, `completions/*` and `PROGRAM.md` into a directory.
+/// Writes `man/*.1`, `completions/*` and `PROGRAM.md`.
 ///
 /// # Errors
-/// What the system says.
+/// Errors of the system.
 pub fn generate(command: &Command, directory: &Path) -> io::Result<()> {
     let name = command.get_name().to_owned();
     let (manual, completions) = (directory.join("man"), directory.join("completions"));

@@ -1,6 +1,4 @@
-//! Values of options that name data: the data directory, and the files that have a name in it.
-//!
-//! Shell completions offer the names of the default data directory. Other values are accepted, too.
+//! Values that name data. Completions offer the names of the default directory; others are valid too.
 
 use std::{
     ffi::OsStr,
@@ -16,7 +14,6 @@ use diagnostics::{FAULTS, JOBS, NamedFiles, ROBOTS};
 
 use crate::shipped;
 
-/// File of the cell description in a data directory.
 const CELL: &str = "cell.toml";
 
 #[must_use]
@@ -54,7 +51,7 @@ impl From<PathBuf> for DataArgument {
     }
 }
 
-/// A data directory: an existing directory, or `built-in`.
+/// An existing directory, or `built-in`.
 #[must_use]
 pub fn data_directory() -> impl TypedValueParser<Value = PathBuf> {
     PathBufValueParser::new().try_map(|named| {
@@ -73,31 +70,30 @@ pub fn data_directory() -> impl TypedValueParser<Value = PathBuf> {
     })
 }
 
-/// A fault file: a name in the data directory, or a path; if nothing has that path, a built-in file of that path.
+/// The name or path of a file, or else the path of a built-in one.
 #[must_use]
 pub fn fault_file() -> impl TypedValueParser<Value = PathBuf> {
     with_names(PathBufValueParser::new().map(shipped::resolve), || names(&FAULTS))
 }
 
-/// A job: a name in the data directory, or a path.
+/// A name or a path.
 #[must_use]
 pub fn job() -> impl TypedValueParser<Value = String> {
     with_names(NonEmptyStringValueParser::new(), || names(&JOBS))
 }
 
-/// A robot: a name in the data directory, or a path.
+/// A name or a path.
 #[must_use]
 pub fn robot() -> impl TypedValueParser<Value = String> {
     with_names(NonEmptyStringValueParser::new(), || names(&ROBOTS))
 }
 
-/// The names of a kind of file in the default data directory.
 #[must_use]
 pub fn names(kind: &NamedFiles) -> Vec<String> {
     kind.names(&default_data())
 }
 
-/// A parser whose completions are `names`.
+/// Offers `names` as completions.
 #[must_use]
 pub fn with_names<P: TypedValueParser>(
     parser: P,

@@ -6,12 +6,12 @@
 
 use nalgebra::{Matrix3, Rotation3, Unit, Vector3};
 
-/// A point or a direction, in inches or without unit, in world coordinates unless said otherwise.
+/// Inches or unitless; world coordinates by default.
 pub type Vector = Vector3<f64>;
-/// A rotation; its columns are the tool's X, Y and Z in world coordinates.
+/// The columns are the tool's X, Y, Z in world coordinates.
 pub type Rotation = Rotation3<f64>;
 
-/// Position in inches and orientation of the tool (or of the end plate, or of a part).
+/// Position in inches, and orientation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Frame {
     /// The tool point, inches.
@@ -108,8 +108,7 @@ pub struct Distance {
     pub radians: f64,
 }
 
-/// Inches of translation that weigh as much as one radian of rotation: the ratio of the DEPC limits 14 in/s and 1.0
-/// rad/s (A 2.3), so that one limit serves both.
+/// Translation in inches that weighs as one radian: the ratio of the DEPC limits 14 in/s and 1.0 rad/s (A 2.3).
 pub const INCHES_PER_RADIAN: f64 = 14.0;
 
 impl Distance {
@@ -128,9 +127,7 @@ pub fn norm(v: &Vector) -> f64 {
     libm::sqrt(v.dot(v))
 }
 
-/// The rotation vector (axis times angle in radians, angle up to pi) of a rotation.
-///
-/// Accurate for small angles and near half a turn, where the arc cosine of the trace loses digits.
+/// Axis times angle, radians, up to pi. Accurate near 0 and pi, where the arc cosine of the trace is not.
 #[must_use]
 #[inline]
 pub fn rotation_vector(rotation: &Rotation) -> Vector {
@@ -172,9 +169,7 @@ pub fn rotation_by(v: &Vector) -> Rotation {
     }
 }
 
-/// The rotation with tool X along `x` and tool Y as near to `y` as possible (Gram-Schmidt; X is kept).
-///
-/// `None` if the two are parallel or one of them is zero.
+/// Tool X along `x`, Y as near to `y` as possible (Gram-Schmidt); `None` if parallel or zero.
 #[must_use]
 #[inline]
 pub fn rotation_from_x_y(x: &Vector, y: &Vector) -> Option<Rotation> {

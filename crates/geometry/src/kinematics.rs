@@ -1,10 +1,8 @@
 //! Forward and inverse kinematics of the T3 arm in closed form.
 //!
-//! Joints: base, shoulder, elbow, pitch, yaw, roll. The axes of shoulder, elbow and pitch are parallel and horizontal,
-//! yaw is perpendicular to pitch, and roll runs along the gripper and intersects the yaw axis. The wrist is not
-//! spherical (`pitch_to_yaw`), but three parallel axes and a roll axis that intersects yaw still give a closed form.
-//! HOME (IV.3.3) determines the upper arm and the sum of the other lengths; how that sum is split is ASSUMED
-//! (SPECNOTES).
+//! Joints: base, shoulder, elbow, pitch, yaw, roll. Shoulder, elbow and pitch axes are parallel and horizontal; roll
+//! runs along the gripper and intersects yaw. The wrist is not spherical (`pitch_to_yaw`). HOME (IV.3.3) gives the
+//! upper arm and the sum of the other lengths; their split is ASSUMED (SPECNOTES).
 
 use core::{f64::consts::PI, fmt};
 
@@ -35,7 +33,6 @@ pub struct Arm {
     pub limits: [(f64, f64); 6],
 }
 
-/// Converts degrees to radians in constants.
 #[inline]
 const fn deg(degrees: f64) -> f64 {
     degrees * (PI / 180.0)
@@ -142,10 +139,8 @@ impl Arm {
         Frame { position, rotation }
     }
 
-    /// Joint angles, radians, for a tool frame (inches, world): arm in front, yaw within 90 degrees, elbow up. `near`
-    /// supplies the base angle where it is undetermined, and the turn of base and roll.
-    ///
-    /// Limits are not checked; see [`Arm::margin`].
+    /// Joint angles, radians, for a tool frame: arm in front, yaw within 90 degrees, elbow up, limits ignored. `near`
+    /// gives an undetermined base angle, and the turns of base and roll.
     ///
     /// # Errors
     /// [`ReachError`] if no joint angles exist.
@@ -230,7 +225,6 @@ impl Arm {
     }
 }
 
-/// `angle` reduced to (-pi, pi].
 #[inline]
 fn wrapped(angle: f64) -> f64 {
     turned_near(angle, 0.0)

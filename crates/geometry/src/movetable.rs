@@ -1,4 +1,4 @@
-//! Movetables: up to eight translations and rotations, each in the frame that results from the lines before it (VII.2).
+//! Movetables (VII.2): each line acts in the frame that results from the lines before it.
 
 use core::f64::consts::FRAC_PI_2;
 
@@ -82,9 +82,7 @@ fn pitch_yaw(pitch: i32, yaw: i32) -> Rotation {
 }
 
 impl Movetable {
-    /// The movetable of the given lines.
-    ///
-    /// `None` if there are more than [`MAX_LINES`].
+    /// `None` for more than [`MAX_LINES`] lines.
     #[must_use]
     #[inline]
     pub fn from_lines(lines: &[MovetableLine]) -> Option<Self> {
@@ -100,9 +98,7 @@ impl Movetable {
         self.lines.iter().fold(*frame, |f, line| line.apply(&f))
     }
 
-    /// The inverse of [`Self::apply`]: the frame that `apply` turns into `frame`.
-    ///
-    /// A camera at `view = table.apply(&place)` looks at `place = table.unapply(&view)`.
+    /// The frame that `apply` turns into `frame`, such as the place that a camera at `frame` looks at.
     #[must_use]
     #[inline]
     pub fn unapply(&self, frame: &Frame) -> Frame {
@@ -111,7 +107,7 @@ impl Movetable {
 }
 
 impl MovetableLine {
-    /// The inverse of `apply`: the frame that this line turns into `frame`.
+    /// Finds the frame that this line turns into `frame`.
     #[must_use]
     #[inline]
     fn unapply(&self, frame: &Frame) -> Frame {
@@ -132,8 +128,7 @@ impl MovetableLine {
     }
 }
 
-/// A tool frame that points straight down, tool Y along world -Y, as over a tray in direction -X of the robot; for
-/// tests and examples.
+/// A tool frame straight down, tool Y along world -Y: as over a tray at -X of the robot.
 #[must_use]
 #[inline]
 pub fn straight_down(position: Vector) -> Frame {
@@ -160,7 +155,7 @@ mod tests {
         ]);
         let at = grip.unwrap().apply(&fixture);
         assert!((at.position - Vector::new(68.15, -43.81, -3.0)).norm() < 1e-12);
-        // The fingers point up by 3 degrees: the body leans back to the robot.
+        // Up by 3 degrees: the body leans back.
         assert!((at.x().z - libm::sin(radians(300))).abs() < 1e-12);
     }
 
@@ -175,7 +170,7 @@ mod tests {
 
     #[test]
     fn rolled_trays_keep_their_order() {
-        // TRNG-SMTB (VIII.11): after a right-hand roll of -90 degrees, +Y leads along what was -Z.
+        // VIII.11: after a roll of -90 degrees, +Y leads along what was -Z.
         let tray = Frame::identity();
         let rolled = line(System::Roll, [-9000, 0, 0]).apply(&tray);
         assert!((rolled.y() - Vector::new(0.0, 0.0, -1.0)).norm() < 1e-12);

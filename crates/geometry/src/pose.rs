@@ -23,8 +23,7 @@ pub struct Pose {
     pub finger: [i32; 3],
 }
 
-/// A frame in RCS-II/T3 format (VI.1.2 frame-command-in): the tool point in hundredths of an inch, and two
-/// vectors of length 3000.
+/// VI.1.2 frame-command-in: tool point, 0.01 in, and two vectors of length 3000.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct WireFrame {
     /// Tool point, 0.01 in.
@@ -74,7 +73,7 @@ impl Pose {
         }
     }
 
-    /// The frame of the pose: tool point kept, X from wrist to tool, Y perpendicular to X towards the finger point.
+    /// Keeps the tool point; X from wrist to tool, Y perpendicular to X towards the finger point.
     ///
     /// # Errors
     /// [`PoseError::NoDirection`] if the points do not span a frame.
@@ -85,7 +84,7 @@ impl Pose {
         Ok(Frame { position: tool, rotation })
     }
 
-    /// How far the angle between the two directions differs from 90 degrees, radians (positive if it is wider).
+    /// The angle of the two directions minus 90 degrees, radians.
     ///
     /// # Errors
     /// [`PoseError::NoDirection`] if two of the points coincide.
@@ -114,7 +113,7 @@ impl WireFrame {
         }
     }
 
-    /// The frame: tool point in inches, and the rotation of the two vectors.
+    /// Tool point in inches, and rotation.
     ///
     /// # Errors
     /// [`PoseError::NoDirection`] if the vectors do not span a frame.
@@ -130,7 +129,6 @@ impl WireFrame {
 mod tests {
     use super::*;
 
-    /// Figure VII.1.
     const TOOL_TRNS: Pose =
         Pose { wrist: [6497, -2366, 1569], tool: [9495, -2475, 1595], finger: [9523, -1460, -1228] };
 
@@ -142,7 +140,7 @@ mod tests {
 
     #[test]
     fn home_in_rcs_format_is_the_manuals() {
-        // IV.3.3 step 11, exact to the tolerance of 4 counts that it gives.
+        // IV.3.3 step 11: within 4 counts.
         let home = Pose { wrist: [0, -5022, 636], tool: [0, -7145, -1483], finger: [3000, -7145, -1483] };
         let wire = WireFrame::from_frame(&home.to_frame().unwrap());
         assert_eq!(wire.tool, [0, -7145, -1483]);

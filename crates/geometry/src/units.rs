@@ -1,11 +1,8 @@
-//! Conversions between the manual's integers and the controller's inches and radians. No other module converts them
-//! (docs/design/units.md "Manual").
+//! The only conversions between the manual's integers, inches and radians (docs/design/units.md "Manual").
 
 use core::{f64::consts::PI, fmt};
 
-/// Hundredths of an inch per inch (VII.1).
 const PER_INCH: f64 = 100.0;
-/// Hundredths of a degree per half turn (VII.2).
 const PER_HALF_TURN: f64 = 18_000.0;
 
 /// Inches from hundredths of an inch.
@@ -36,9 +33,8 @@ pub fn hundredths_of_degree(radians: f64) -> i32 {
     rounded(radians * (PER_HALF_TURN / PI))
 }
 
-/// A length as text: a number with a decimal point, and its unit: `2.50 in`; two digits, or those of the format's
-/// precision. A program converts such texts for the person who reads them (docs/design/units.md "Text"): `in` after a
-/// number without a point is the preposition.
+/// A length as text with its unit, `2.50 in`: two digits, or the format's precision. The decimal point marks lengths
+/// for conversion (docs/design/units.md "Text").
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Length(
     /// Inches.

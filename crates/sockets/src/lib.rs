@@ -32,14 +32,12 @@ use rustix::{
     process::geteuid,
 };
 
-/// Bytes that are read at once.
-const CHUNK: usize = 8192;
-/// Pause after a connection that could not be accepted, for example because the system has no descriptor left.
+const CHUNK: usize = 8192; // read at once
+/// Pause after a failed accept: the system may lack descriptors.
 const PAUSE: Duration = Duration::from_millis(100);
 
-/// Checks that the other end of a stream belongs to the user of this process.
+/// Checks that the other end belongs to the user of this process.
 ///
-/// # Errors
 /// [`io::ErrorKind::PermissionDenied`], with both users.
 pub fn check_user(stream: &UnixStream) -> io::Result<()> {
     let (expected, found) = (geteuid(), sockopt::socket_peercred(stream)?.uid);
@@ -50,11 +48,10 @@ pub fn check_user(stream: &UnixStream) -> io::Result<()> {
     Err(io::Error::new(io::ErrorKind::PermissionDenied, why))
 }
 
-/// A connected socket. Nothing blocks except [`Line::wait`], [`Line::finish`] and [`Line::drain`], which have a limit.
+/// A connected socket. Only [`Line::wait`], [`Line::finish`] and [`Line::drain`] block, with a limit.
 #[derive(Debug)]
 pub struct Line {
     stream: UnixStream,
-    /// Bytes that the system has not accepted yet.
     pending: Vec<u8>,
 }
 
@@ -68,15 +65,12 @@ impl Line {
         Ok(Self { stream, pending: Vec::new() })
     }
 
-    /// Checks the user at the other end, as [`check_user`].
-    ///
-    /// # Errors
     /// As [`check_user`].
     pub fn check_user(&self) -> io::Result<()> {
         check_user(&self.stream)
     }
 
-    /// The stream, blocking again.
+    /// Makes the stream blocking again.
     ///
     /// # Errors
     /// Errors of the system.
@@ -85,13 +79,13 @@ impl Line {
         Ok(self.stream)
     }
 
-    /// True if the system has accepted all bytes to send.
+    /// True if the system has accepted all bytes.
     #[must_use]
     pub const fn is_flushed(&self) -> bool {
         self.pending.is_empty()
     }
 
-    /// Sends bytes, which are removed from `bytes`. The rest waits for the next call if the system does not accept all.
+    /// Sends bytes and removes them from `bytes`. The rest waits for the next call.
     ///
     /// # Errors
     /// Errors of the system.
@@ -109,7 +103,7 @@ impl Line {
         Ok(())
     }
 
-    /// Passes received bytes to `take`; false if the other side has closed the connection.
+    /// Returns false if the other side has closed the connection.
     ///
     /// # Errors
     /// Errors of the system.
@@ -122,14 +116,13 @@ impl Line {
                 Ok(count > 0)
             }
             Err(error) if matches!(error.kind(), WouldBlock | Interrupted) => Ok(true),
-            // The other side has closed it before it has read everything.
+            // The other side closed it before it had read everything.
             Err(error) if error.kind() == ConnectionReset => Ok(false),
             Err(error) => Err(error),
         }
     }
 
-    /// Waits until bytes can be read (returns true), pending bytes can be written, `wake` is readable, or the time
-    /// `until` is reached.
+    /// Waits until bytes arrive (true), pending bytes can be sent, `wake` is readable, or `until` is reached.
     ///
     /// # Errors
     /// Errors of the system.
@@ -141,7 +134,7 @@ impl Line {
             PollFd::from_borrowed_fd(wake.unwrap_or(socket), PollFlags::IN),
         ];
         let count = if wake.is_some() { 2 } else { 1 };
-        // Rounded up: a wait that ends before the time would be followed by many short ones.
+        // Rounded up: an early end would cause many short waits.
         let left =
             until.map(|until| until.saturating_duration_since(Instant::now()) + Duration::from_millis(1));
         let left = left.and_then(|left| Timespec::try_from(left).ok());
@@ -152,8 +145,7 @@ impl Line {
         }
     }
 
-    /// Sends the remaining bytes, and closes this direction, at the latest at the time `until`. The other side reads
-    /// these bytes, and then the end.
+    /// Sends the rest until `until`, then closes this direction.
     pub fn finish(&mut self, bytes: &mut Vec<u8>, until: Instant) {
         let mut sent = self.send(bytes);
         while sent.is_ok() && !self.is_flushed() && Instant::now() < until {
@@ -163,8 +155,8 @@ impl Line {
         let _ = self.stream.shutdown(Shutdown::Write);
     }
 
-    /// Reads and drops bytes after [`Line::finish`], until the other side has closed the connection or until a time. If
-    /// a socket is closed with unread bytes, the system may discard the bytes that it has sent.
+    /// After [`Line::finish`]: reads until the other side closes or `until`. A socket closed with unread bytes may
+    /// lose what it has sent.
     pub fn drain(&mut self, until: Instant) {
         let mut is_open = true;
         while is_open && Instant::now() < until {
@@ -175,7 +167,7 @@ impl Line {
     }
 }
 
-/// The file of a socket, with its identity: another program may have replaced the file since.
+/// The file with its identity: another program may replace it.
 #[derive(Debug)]
 struct SocketFile {
     path: PathBuf,
@@ -188,16 +180,15 @@ impl SocketFile {
         Ok(Self { path: path.to_owned(), identity: (found.dev(), found.ino()) })
     }
 
-    /// Removes the file, if it is still this one.
     fn remove(&self) {
         if Self::at(&self.path).is_ok_and(|found| found.identity == self.identity) {
-            // It may have been removed in the meantime.
+            // It may be removed already.
             let _ = fs::remove_file(&self.path);
         }
     }
 }
 
-/// Accepts connections at a path in a thread until it is dropped. Then the file of the socket is removed.
+/// Accepts connections in a thread. Dropping it removes the socket's file.
 #[derive(Debug)]
 pub struct Acceptor {
     socket: Arc<UnixListener>,
@@ -207,8 +198,7 @@ pub struct Acceptor {
 }
 
 impl Acceptor {
-    /// Listens at a path, with access for this user only. A socket at which nobody listens is replaced; a killed
-    /// process leaves one. The thread has the name `name`, and passes each connection to `admit`.
+    /// Replaces the dead socket of a killed process. `name` is the thread's; `admit` receives each connection.
     ///
     /// # Errors
     /// [`io::ErrorKind::AddrInUse`] if another program listens there; [`io::ErrorKind::AlreadyExists`] if there is a
@@ -244,10 +234,10 @@ impl Acceptor {
 impl Drop for Acceptor {
     fn drop(&mut self) {
         self.over.store(true, Ordering::Release);
-        // Wakes the thread, even if another program uses the path by now.
+        // Wakes the thread, even if another program uses the path now.
         let woken = rustix::net::shutdown(&*self.socket, rustix::net::Shutdown::Both);
         if let Some(thread) = self.thread.take().filter(|_| woken.is_ok()) {
-            // The thread returns nothing, and a panic in it was reported.
+            // A panic in it was reported.
             let _ = thread.join();
         }
         self.file.remove();
