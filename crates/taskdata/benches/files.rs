@@ -1,8 +1,6 @@
-//! Times of a load and of look-ups with 100,000 records of task data in one file, and in all files at once.
-//!
-//! The time of a load ends when the data are ready, before the memory is freed. Look-ups are timed warm (the
-//! same few records repeatedly), cold (all records in an order that no cache can predict; together they are
-//! several times as large as the caches of a core), and with the caches emptied. They do not allocate: that
+//! Times of a load and of look-ups with 100,000 records in one file, and in all files at once. A load ends when the
+//! data are ready. Look-ups are timed warm (a few records repeatedly), cold (all records, shuffled; several times the
+//! caches of a core), and with the caches emptied.
 //! part of the crate is built without `alloc`.
 
 use std::{fmt::Write, hint::black_box, time::Duration};
@@ -15,13 +13,10 @@ use taskdata::{
     load::{Source, Store},
 };
 
-/// Number of records in each of the files that grow with the number of parts.
-const RECORDS: u32 = 100_000;
-/// Number of bytes written to empty the caches.
-const DIRT: usize = 64 << 20;
+const RECORDS: u32 = 100_000; // in each file that grows with the number of parts
+const DIRT: usize = 64 << 20; // bytes written to empty the caches
 const AT_A_TIME: usize = 250;
-/// Number of lines in a block, and of blocks at an offset.
-const LINES: usize = 16;
+const LINES: usize = 16; // in a block, and blocks at an offset
 const BLOCKS: usize = 1000;
 
 fn blocks(offset: usize, lines: impl Iterator<Item = String>) -> Source {
@@ -37,7 +32,7 @@ fn blocks(offset: usize, lines: impl Iterator<Item = String>) -> Source {
     Source { name: format!("{offset}.blk"), text: text.into() }
 }
 
-/// Parts with two grips each, one at the fixture and one anywhere; a movetable and a location point for each part.
+/// Parts with two grips, one at the fixture and one anywhere; each has a movetable and a location point.
 fn sources() -> Vec<Source> {
     let place = "3800 -4400 -400 6800 -4400 -400 6800 -1400 -400 -pose- ... P
 -pt- F P ...
@@ -65,11 +60,11 @@ fn sources() -> Vec<Source> {
     ]
 }
 
-/// For each file, texts that give it 100,000 records, and the other files only the records that it needs.
+/// Texts that give one file 100,000 records, and the other files only the necessary ones.
 fn one_file_each() -> Vec<(&'static str, Vec<Source>)> {
     let pose = |name: &str| format!("3800 -4400 0 6800 -4400 0 6800 -1400 0 -pose- ... {name}");
     let all = || 0..RECORDS;
-    // Pairs of numbers, the first below `first`: 100,000 pairs together.
+    // Pairs of numbers, the first below `first`.
     let pairs = |first: u32| all().map(move |i| (i % first, i / first));
     let part = |i: u32| format!("-obj- PART{i} 2 300 60 30 350");
     let point = |i: u32| format!("-pt- L{i} P ...");
@@ -137,21 +132,21 @@ fn load(c: &mut Criterion, sources: &[Source]) {
     load.finish();
 }
 
-/// The names of all parts with even or with odd numbers, each far from the previous one.
+/// Names of all even or odd parts, each far from the previous one.
 fn shuffled(parity: u32) -> Vec<Name16> {
-    // 7919 and 100,000 have no common divisor: every name occurs.
+    // 7919 and 100,000 have no common divisor, so every name occurs.
     let numbers = (0..RECORDS).map(|i| i * 7919 % RECORDS).filter(|i| i % 2 == parity);
     numbers.map(|i| Name16::clipped(&format!("PART{i}"))).collect()
 }
 
-/// Processor time of this thread: other work on the computer disturbs it less.
+/// Processor time of this thread, which other work on the computer disturbs less.
 fn processor_time() -> Duration {
     clock_gettime(ClockId::ThreadCPUTime).try_into().expect("it counts up from zero")
 }
 
-/// Time a look-up by name, which returns a number from the record found.
+/// Times a look-up; `find` returns a number from the record found.
 fn look_up(c: &mut Criterion, what: &str, names: &[Name16], find: impl Fn(&Name16) -> u32) {
-    // Each look-up depends on the previous one, as in a tick. Otherwise the processor overlaps several.
+    // Each look-up depends on the previous one, or the processor would overlap them.
     let nothing = black_box(0);
     let chain = |names: &[Name16], times: u64| {
         let mut position = 0;

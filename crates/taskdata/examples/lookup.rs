@@ -1,5 +1,4 @@
-//! Load the task data of the project and look up a place in a tray:
-//! `cargo run --release -p taskdata --example lookup`.
+//! Looks up a place in a tray: `cargo run --release -p taskdata --example lookup`.
 
 #![expect(clippy::print_stdout, clippy::print_stderr, reason = "an example prints what it does")]
 
@@ -12,7 +11,6 @@ fn main() {
     let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../data");
     let (store, report) = match Store::load(&data) {
         Ok(loaded) => loaded,
-        // All errors of all files, each with its block and line.
         Err(report) => return eprintln!("{report}"),
     };
     print!("{}", report.summary());

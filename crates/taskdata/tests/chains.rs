@@ -1,5 +1,4 @@
-//! Chains of grips: the positions of clevis, turned part and tools after each transfer agree with the locations in the
-//! cell.
+//! Chains of grips: positions of clevis, turned part and tools after each transfer agree with the cell.
 
 use std::path::Path;
 
@@ -35,18 +34,18 @@ fn at(data: &TaskData<'_>, location: &str, sector: i32, object: &str) -> Locatio
         .unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// The tool frame of a grip at a location.
+/// The tool frame at a location.
 fn grip(data: &TaskData<'_>, object: &str, grip: i32, location: &str, sector: i32) -> Frame {
     data.grip_frame(&name(object), grip, &at(data, location, sector, object))
         .unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// The frame `inner` in the axes of `outer`.
+/// `inner` in the axes of `outer`.
 fn seen_from(outer: &Frame, inner: &Frame) -> Frame {
     outer.inverse().compose(inner)
 }
 
-/// Frame of a part that was gripped with the tool at `from` and released with the tool at `to`.
+/// The frame of a part, gripped with the tool at `from` and released at `to`.
 fn carried(part: &Frame, from: &Frame, to: &Frame) -> Frame {
     to.compose(&seen_from(from, part))
 }
@@ -58,7 +57,6 @@ fn assert_at(found: &Frame, position: [f64; 3], square: bool) {
     assert!(!square || found.distance(&Frame::identity()).radians < 1e-9, "{:?}", found.rotation);
 }
 
-/// Three numbers of a table of the cell description.
 fn numbers<const N: usize>(value: &toml::Value) -> [f64; N] {
     let all: Vec<f64> = value.as_array().unwrap().iter().map(|v| v.as_float().unwrap()).collect();
     all.try_into().unwrap()
@@ -78,17 +76,17 @@ fn taught(value: &toml::Value) -> Frame {
     Pose { wrist: point("wrist"), tool: point("tool"), finger: point("finger") }.to_frame().unwrap()
 }
 
-/// Centre of a part whose frame in the tray is on the floor, X down; `height`, in.
+/// The part's frame in the tray is on the floor, X down; `height`, in.
 fn lying(floor: &Frame, height: f64) -> Frame {
     floor.shifted(Vector::new(-height / 2.0, 0.0, 0.0))
 }
 
-/// Heights of the lying clevis, in: blank, half finished, finished; its width and its length.
+/// Heights of the lying clevis, in: blank, half finished, finished.
 const CLEVIS: [f64; 3] = [1.73, 1.68, 1.63];
 const CLEVIS_WIDTH: f64 = 2.56;
 const CLEVIS_LENGTH: f64 = 4.00;
 
-/// Position of a seated clevis of the given height, in the frame of the vise, in.
+/// The position of a seated clevis in the frame of the vise, in.
 fn clevis_seat(height: f64) -> [f64; 3] {
     let vise = &cell()["vise"];
     let programs = vise["program"].as_array().unwrap();
@@ -128,7 +126,7 @@ fn half_done_clevis_returns_turned_around() {
         &grip(&data, "LCLEVIS_IH", 1, "PFIXTURE", 0),
         &grip(&data, "LCLEVIS_IH", 1, "PEDESTAL", 0),
     );
-    // Its centre is on the axis of the table; the hand of the pedestal grips its lowest inch.
+    // On the axis of the table; the pedestal's hand grips the lowest inch.
     assert_at(&seen_from(&pedestal, &brought), [0.0, 0.0, 1.0], true);
     let half_turn = Frame {
         position: Vector::zeros(),
@@ -212,7 +210,7 @@ fn every_gripper_has_its_holster() {
         let gripper = format!("GRIPPER-{number}");
         assert_eq!(data.obj_grips(&name(&gripper)).unwrap().endeff_id, number);
         let rest = at(&data, holster, 0, &gripper).frame;
-        // 3 in above the holster with the gripper attached; without it, above the seat.
+        // 3 in above the holster with the gripper; without it, above the seat.
         assert_at(&seen_from(&rest, &grip(&data, &gripper, 1, holster, 0)), [-3.0, 0.0, 0.0], true);
         assert_at(&seen_from(&rest, &grip(&data, &gripper, 2, holster, 0)), [-3.0, 0.0, 1.5], true);
     }

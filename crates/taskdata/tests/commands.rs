@@ -1,4 +1,4 @@
-//! Blocks of commands for Task: LINE-LOAD finds the commands of the manual, and errors in the blocks are reported.
+//! Blocks of commands: LINE-LOAD finds those of the manual, and errors are reported.
 
 use std::path::Path;
 
@@ -12,7 +12,7 @@ fn store() -> Store {
     Store::load(data()).unwrap_or_else(|report| panic!("{report}")).0
 }
 
-/// The command in a line: verb and destination.
+/// Verb and destination.
 fn said(store: &Store, block: u32, line: usize) -> String {
     match store.line_load(block, line, line).unwrap().step {
         Step::Command(command) => {

@@ -1,4 +1,4 @@
-//! The data directory of the project loads, and its targets agree with the manual and the cell.
+//! The shipped data load, and their targets agree with the manual and the cell.
 
 use std::path::Path;
 
@@ -32,7 +32,7 @@ fn assert_near(frame: &Frame, position: [f64; 3], tolerance: f64) {
     }
 }
 
-/// The frame `inner` in the axes of `outer`.
+/// `inner` in the axes of `outer`.
 fn seen_from(outer: &Frame, inner: &Frame) -> Frame {
     outer.inverse().compose(inner)
 }
@@ -55,7 +55,6 @@ fn sectors_agree_with_the_cell() {
     }
 }
 
-/// Three numbers of a table of the cell description.
 fn numbers<const N: usize>(value: &toml::Value) -> [f64; N] {
     let all: Vec<f64> = value.as_array().unwrap().iter().map(|v| v.as_float().unwrap()).collect();
     all.try_into().unwrap()
@@ -90,14 +89,14 @@ fn blank_is_picked_tilted_and_is_upright_in_the_vise() {
     let blank = name("LINKBAR1_BH");
     let sector = at(&data, "UNIT_1", 4, "LINKBAR1_BH");
     let pick = data.grip_frame(&blank, 2, &sector).unwrap();
-    // 0.20 in above the tray floor, 2.10 in along tool Z, which points along world -X over a tray (VIII.9.5).
+    // 0.20 in above the floor, 2.10 in along tool Z, which is world -X over a tray (VIII.9.5).
     assert_near(&pick, [-52.85, 10.25, -16.35], 1e-9);
     let vise = at(&data, "PFIXTURE", 0, "LINKBAR1_BH");
     let placed = data.grip_frame(&blank, 2, &vise).unwrap();
     assert_near(&placed, [68.15, -43.81, -3.0], 1e-9);
     assert!((placed.x().z - radians(300).sin()).abs() < 1e-12);
 
-    // The gripper holds the bar as it was in the tray. After the motion to the vise the two tilts cancel.
+    // The gripper holds the bar as in the tray. At the vise the two tilts cancel.
     let bar = placed.compose(&seen_from(&pick, &sector.frame));
     let in_vise = seen_from(&vise.frame, &bar);
     assert!(in_vise.distance(&Frame::identity()).radians < 1e-12, "{in_vise:?}");
@@ -116,7 +115,7 @@ fn finished_part_is_released_just_above_the_tray() {
     let vise = at(&data, "PFIXTURE", 0, "LINKBAR1");
     let grasp = data.grip_frame(&part, 2, &vise).unwrap();
     assert_near(&grasp, [68.25, -43.85, -3.0], 1e-9);
-    // Seated, its rear face is 0.41 in behind the jaw front; 0.16 beyond the fingertips, while 0.20 is free under them.
+    // The rear face is 0.41 in behind the jaw front, 0.16 beyond the fingertips; 0.20 is free under them.
     let rear_beyond_tips = 0.41 - seen_from(&vise.frame, &grasp).position.x;
     let tray = at(&data, "UNIT_1", 1, "LINKBAR1");
     let tips_above_floor = data.grip_frame(&part, 2, &tray).unwrap().position.z - tray.frame.position.z;

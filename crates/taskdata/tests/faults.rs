@@ -1,4 +1,4 @@
-//! Task data with errors are used. Each error concerns the commands that use the wrong datum.
+//! Data with errors are used; each error concerns the commands that use the wrong datum.
 
 use std::path::Path;
 
@@ -6,7 +6,7 @@ use interfaces::HwsCommand;
 use rcs_core::name::Name16;
 use taskdata::load::{Source, Step, Store, job::own_command, source::read_blocks_under};
 
-/// The shipped data with one text of a file replaced.
+/// Replaces one text of a file.
 fn spoilt(file: &str, from: &str, to: &str) -> Store {
     let data = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../data"));
     let mut sources = read_blocks_under(data).0;

@@ -1,4 +1,4 @@
-//! The forms of the manual's figures can be read as printed, and the project's data agree with the figures.
+//! The manual's figures can be read as printed, and the shipped data agree with them.
 
 use std::{collections::BTreeMap, path::Path};
 
@@ -10,7 +10,7 @@ use taskdata::load::{
     source::{blocks, places_in_blocks, read_blocks_under},
 };
 
-/// Blocks of [`FIGURES`] that repeat another block (Figures VIII.7 and VIII.10), and the repeated block.
+/// Blocks of [`FIGURES`] that repeat another (Figures VIII.7 and VIII.10).
 const REPEATED: [(u32, u32); 2] = [(802, 702), (811, 711)];
 
 const FIGURES: &str = include_str!("figures.blk");
@@ -19,7 +19,7 @@ fn figures() -> Source {
     Source { name: "figures.blk".to_owned(), text: FIGURES.into() }
 }
 
-/// The words of each block, one line of text for each line of the block with words.
+/// One line of text per line of the block.
 fn block_words(sources: &[Source]) -> BTreeMap<BlockNumber, Vec<String>> {
     let mut found = BTreeMap::new();
     for (index, source) in sources.iter().enumerate() {
@@ -134,7 +134,7 @@ fn data_equal_the_figures_except_for_marked_readings() {
     );
 }
 
-/// The source of each block, from the first remark in it; empty without a remark.
+/// The source of each block, from the first remark in it; empty without one.
 fn origins(source: &Source) -> Vec<(BlockNumber, String)> {
     let (blocks, _) = blocks(0, source);
     let said = |start: u32| {
@@ -146,7 +146,7 @@ fn origins(source: &Source) -> Vec<(BlockNumber, String)> {
 
 #[test]
 fn every_block_of_the_data_names_its_source() {
-    // The figures of each block, according to the remark above it.
+    // According to the remark above the block.
     let mut figure_of: BTreeMap<BlockNumber, Vec<&str>> = BTreeMap::new();
     let printed = figures();
     for block in blocks(0, &printed).0 {

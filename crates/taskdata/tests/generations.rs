@@ -24,7 +24,7 @@ fn with(store: &Store, text: &str) -> Result<Store, String> {
     store.with_blocks(vec![source("more.blk", text)]).map(|(store, _)| store).map_err(|r| r.to_string())
 }
 
-/// Two fixtures and a part that is gripped at both, moved from the first to the second.
+/// Two fixtures, and a part that moves from the first to the second.
 const BASE: &str = "BLOCK# 600 OFFSET 21000
  3800 -4400 -400 6800 -4400 -400 6800 -1400 -400 -pose- ... F-P
  3800 -4400 600 6800 -4400 600 6800 -1400 600 -pose- ... G-P
@@ -38,7 +38,6 @@ BLOCK# 1 OFFSET 20000
  -appr obj PART 1 $$$ -ppt 5 40 8 100 mtb IN -ppt 4 5 40 0 stop
 ";
 
-/// Record numbers of all names of the base data.
 fn numbers(data: &TaskData<'_>) -> Vec<Option<u32>> {
     vec![
         data.pose_named(&name("F-P")).map(|id| id.number()),
@@ -80,7 +79,7 @@ BLOCK# 2 OFFSET 20000
     assert_eq!((at(&old), at(&new)), ((67.75, 40), (65.5, 20)));
     assert_eq!(next.place(next.origins().poses[0]), "more.blk, block 610 (offset 21000), line 0");
     assert_eq!(next.place(next.origins().poses[1]), "base.blk, block 600 (offset 21000), line 1");
-    // The first generation is unchanged, and the second is the base of a third.
+    // The first generation is unchanged; the second is the base of a third.
     assert_eq!(at(&base.view()), (67.75, 40));
     let third = with(&next, "BLOCK# 610 OFFSET 21000\n 1 t -75 0 0 -mtb- IN").unwrap();
     assert_eq!(at(&third.view()), (65.25, 20));
@@ -112,7 +111,7 @@ fn error_leaves_the_data_unchanged() {
         first("BLOCK# 2 OFFSET 20000\n 1 t 0 0 5 -mtb- IN\n 1 t 0 0 6 -mtb- IN\n"),
         "error: more.blk: block 2 (offset 20000), line 1, column 18: a movetable of this name is given twice"
     );
-    // The new movetable is correct by itself, but an old entry that uses it is not.
+    // The new movetable is correct, but an old entry that uses it is not.
     assert_eq!(
         first("BLOCK# 2 OFFSET 20000\n 1 t 4000 0 0 -mtb- IN\n"),
         "error: base.blk: block 1 (offset 20000), line 1, column 9: grip 1 of PART at F: out of reach by 17.26 in"
@@ -128,7 +127,7 @@ fn directory_may_name_loaded_blocks() {
     assert!(missing.contains("there is no block 7 (offset 20000)"), "{missing}");
 }
 
-/// A block with movetables and objects, by number, with the values of this generation.
+/// The values are those of this generation.
 fn text(block: u32, movetables: &[(u8, i32)], objects: &[(u8, u8)]) -> String {
     let mut out = String::new();
     let lines = movetables.iter().map(|(n, x)| format!(" 1 t {x} 0 0 -mtb- M{n}\n"));

@@ -207,8 +207,7 @@ fn grammar_lines_are_job_lines_and_documented() {
     let lines: Vec<String> = verbs.flat_map(|verb| lines_from(&[verb])).collect();
     assert!(lines.len() > 60, "{}", lines.len());
     for line in lines {
-        // Names and numbers that some words require.
-        let endings = ["", " 1", " 1 1 1", " PFIXTURE", " LINKBAR1"];
+        let endings = ["", " 1", " 1 1 1", " PFIXTURE", " LINKBAR1"]; // that some words require
         let read = endings.iter().any(|ending| load(&format!("** {line}{ending}")).is_ok());
         assert!(read, "{line}: {:?}", load(&format!("** {line}")));
         for word in line.split(' ').filter(|word| word.parse::<u8>().is_err()) {

@@ -1,4 +1,4 @@
-//! Look-ups in small data sets made for these tests: order of preference, sectors, and no panic for any input.
+//! Look-ups in small data sets: order of preference, sectors, and no panic for any input.
 
 use diagnostics::{Severity, Source};
 use geometry::frame::Frame;
@@ -13,7 +13,7 @@ fn source(text: &str) -> Source {
     Source { name: "test.blk".to_owned(), text: text.into() }
 }
 
-/// The text, broken between words into lines of at most 64 columns.
+/// The text in lines of at most 64 columns.
 fn folded(text: &str) -> String {
     let mut out = String::new();
     for line in text.lines() {
@@ -54,7 +54,7 @@ fn place(data: &TaskData<'_>, location: &str, sector: i32, object: &str) -> Plac
         .place
 }
 
-/// Two trays taught with a vertical gripper, a fixture, the three printed arrays, and an object assigned to each.
+/// Two trays taught with a vertical gripper, a fixture, the printed arrays, and an object for each.
 const CELL: &str = "
 BLOCK# 600 OFFSET 21000
  -6650 -550 1600  -6650 -550 -1400  -6650 -3550 -1400   -pose- ... A-P
@@ -91,7 +91,7 @@ fn printed_arrays_fit_the_tray_and_count_by_rows() {
         let mut before: Option<(i32, f64, f64)> = None;
         for sector in 1..=columns * rows {
             let frame = data.resolve_location(&name("A"), Some(sector), Some(&name(object))).unwrap().frame;
-            // Seen from the robot: right is world +Y and top is world -X, from the upper left-hand corner of the tray.
+            // From the robot: right is world +Y, top is world -X, from the upper left corner of the tray.
             let (right, down) = (frame.position.y - corner.position.y, frame.position.x - corner.position.x);
             assert!(
                 (0.0..21.0).contains(&right) && (0.0..21.0).contains(&down),
@@ -139,7 +139,7 @@ fn unknown_sector_is_reported_with_the_known_ones() {
     ));
 }
 
-/// All names of tray A in a grip form, the most exact first.
+/// The names of tray A in a grip form, most exact first.
 const PREFERENCE: [&str; 4] = ["lpt A", "arr SECTORS", "own BOTH", "$$$"];
 
 proptest! {
@@ -153,7 +153,7 @@ proptest! {
         let found = data.grip_movetable(&name("BAR"), 2, &place(&data, "A", 1, "BAR"));
         let expected = present.trailing_zeros();
         prop_assert_eq!(found, data.movetable_named(&name(&format!("G{expected}"))));
-        // At the fixture only the wild card applies, and another grip has no entry.
+        // Only the wild card applies; another grip has no entry.
         let fixture = place(&data, "F", 0, "BAR");
         let wild = if present & 8 != 0 { data.movetable_named(&name("G3")) } else { None };
         prop_assert_eq!(data.grip_movetable(&name("BAR"), 2, &fixture), wild);

@@ -1,7 +1,5 @@
-//! One error gives one message: the texts for the most frequent errors.
-//!
-//! Each case changes one piece of correct data, those of the linkbar and the clevis (tests/sound), and compares
-//! the whole report of the load.
+//! One error gives one message. Each case changes one piece of correct data (tests/sound) and compares the whole
+//! report.
 
 use std::path::Path;
 
@@ -11,7 +9,7 @@ fn sources() -> Vec<Source> {
     read_blocks_under(Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/sound"))).0
 }
 
-/// The report of a load in which `from` in a file is replaced by `to`, without the counts.
+/// Replaces `from` by `to` in a file; omits the counts.
 fn said(file: &str, from: &str, to: &str) -> String {
     let mut sources = sources();
     let source = sources.iter_mut().find(|s| s.name == file).unwrap();

@@ -1,4 +1,4 @@
-//! All files together, by record number and by name.
+//! All files of the task data, by record number and by name.
 
 use geometry::{frame::Frame, movetable::Movetable};
 use interfaces::record_number::{
@@ -16,10 +16,8 @@ use super::{
     },
 };
 
-/// The task data of a run: a view of the files and their indexes, as cheap to copy as a few pointers.
-///
-/// `load::Store` builds it outside the tick, and it does not change: blocks that are loaded while the robot
-/// runs create a new generation (docs/design/ownership.md "Reload").
+/// A view of files and indexes, as cheap to copy as a few pointers. `load::Store` builds it outside the tick, and
+/// never changes it: blocks loaded during a run create a new generation (docs/design/ownership.md "Reload").
 #[derive(Clone, Copy, Debug, Default)]
 pub struct TaskData<'a> {
     pub poses: &'a [PoseRecord],
@@ -27,7 +25,7 @@ pub struct TaskData<'a> {
     pub locpts: &'a [Locpt],
     pub arrays: &'a [Array],
     pub owners: &'a [Owner],
-    /// Members of the owners, grouped by owner, in the order of the forms.
+    /// The members, grouped by owner, in the order of the forms.
     pub members: &'a [Member],
     pub trajectories: &'a [Traj],
     pub traj_paras: &'a [TrajPara],
@@ -36,19 +34,16 @@ pub struct TaskData<'a> {
     pub objects: &'a [Object],
     pub end_effs: &'a [EndEffPara],
     pub obj_grips: &'a [ObjGrips],
-    /// The file of the object location form.
     pub obj_locs: &'a [ObjLoc],
     pub ped_paras: &'a [PedPara],
     pub grip_locs: &'a [GripLoc],
     pub visions: &'a [VisionPara],
-    /// The file of the approach/depart form.
     pub appr_depts: &'a [ApprDept],
     pub sensors: &'a [SensorPara],
     pub relative_moves: &'a [RelativeMove],
     pub indexes: Indexes<'a>,
 }
 
-/// The indexes of all files, with their keys and answers.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Indexes<'a> {
     pub poses: Index<'a>,
@@ -58,30 +53,21 @@ pub struct Indexes<'a> {
     pub owners: Index<'a>,
     pub members: Index<'a>,
     pub trajectory_names: Index<'a>,
-    /// TRAJ by start and end; the answer is the path.
-    pub trajectories: Index<'a>,
+    pub trajectories: Index<'a>, // by start and end; the answer is the path
     pub objects: Index<'a>,
-    /// END-EFF-PARA by name of the object and grip.
-    pub end_effs: Index<'a>,
-    /// OBJ-GRIPS by name of the object.
-    pub obj_grips: Index<'a>,
-    /// Object locations by the record number of the object.
-    pub obj_locs: Index<'a>,
-    /// PED-PARA by name of the object.
-    pub ped_paras: Index<'a>,
-    /// GRIP-LOC by name of the object, grip and location; the answer is the movetable.
-    pub grip_locs: PlaceIndex<'a>,
-    /// VISION-PARA by name of the object and location.
-    pub visions: PlaceIndex<'a>,
-    /// Approaches and departs by direction, name of the object, grip and location; the answer is the path.
+    pub end_effs: Index<'a>,       // by name of the object and grip
+    pub obj_grips: Index<'a>,      // by name of the object
+    pub obj_locs: Index<'a>,       // by record number of the object
+    pub ped_paras: Index<'a>,      // by name of the object
+    pub grip_locs: PlaceIndex<'a>, // by object, grip and location; the answer is the movetable
+    pub visions: PlaceIndex<'a>,   // by name of the object and location
+    /// Approaches and departs by direction, object, grip and location; the answer is the path.
     pub appr_depts: PlaceIndex<'a>,
     pub sensors: Index<'a>,
-    /// REL-MOVES by name and location.
-    pub relative_moves: PlaceIndex<'a>,
+    pub relative_moves: PlaceIndex<'a>, // by name and location
 }
 
 impl<'a> TaskData<'a> {
-    /// A pose (VII.1).
     #[must_use]
     pub fn pose(&self, id: PoseId) -> Option<&'a PoseRecord> {
         id.of(self.poses)
@@ -92,13 +78,13 @@ impl<'a> TaskData<'a> {
         self.indexes.poses.find(name_key(name)).map(PoseId::new)
     }
 
-    /// A movetable (VII.2); `None` for the null movetable.
+    /// Returns `None` for the null movetable.
     #[must_use]
     pub fn movetable(&self, id: MovtabId) -> Option<&'a Movetable> {
         id.of(self.movetables).map(|record| &record.movetable)
     }
 
-    /// The movetable with a name; `...` is [`MovtabId::NULL`].
+    /// The name `...` gives [`MovtabId::NULL`].
     #[must_use]
     pub fn movetable_named<const N: usize>(&self, name: &Name<N>) -> Option<MovtabId> {
         if name.as_str() == NULL_NAME {
@@ -107,25 +93,22 @@ impl<'a> TaskData<'a> {
         self.indexes.movetables.find(name_key(name)).map(MovtabId::new)
     }
 
-    /// A frame with a movetable applied; the null movetable changes nothing.
+    /// Applies a movetable; the null movetable changes nothing.
     #[must_use]
     pub fn moved(&self, frame: &Frame, by: MovtabId) -> Frame {
         self.movetable(by).map_or(*frame, |movetable| movetable.apply(frame))
     }
 
-    /// A location point (VII.3).
     #[must_use]
     pub fn locpt(&self, id: LocptId) -> Option<&'a Locpt> {
         id.of(self.locpts)
     }
 
-    /// The location point with a name.
     #[must_use]
     pub fn locpt_named<const N: usize>(&self, name: &Name<N>) -> Option<LocptId> {
         self.indexes.locpts.find(name_key(name)).map(LocptId::new)
     }
 
-    /// An array (VII.4).
     #[must_use]
     pub fn array(&self, id: ArrayId) -> Option<&'a Array> {
         id.of(self.arrays)
@@ -136,7 +119,6 @@ impl<'a> TaskData<'a> {
         self.indexes.arrays.find(name_key(name)).map(ArrayId::new)
     }
 
-    /// An owner (VII.5).
     #[must_use]
     pub fn owner(&self, id: OwnerId) -> Option<&'a Owner> {
         id.of(self.owners)
@@ -147,7 +129,7 @@ impl<'a> TaskData<'a> {
         self.indexes.owners.find(name_key(name)).map(OwnerId::new)
     }
 
-    /// The members of an owner in their order (VII.5).
+    /// The members in the order of the form (VII.5).
     #[must_use]
     pub fn members_of(&self, id: OwnerId) -> &'a [Member] {
         self.owner(id).and_then(|owner| run(self.members, owner.first, owner.count)).unwrap_or_default()
@@ -164,25 +146,24 @@ impl<'a> TaskData<'a> {
         id.of(self.traj_paras)
     }
 
-    /// The points of a path in their order; empty for a null path.
+    /// The points in order; none for a null path.
     #[must_use]
     pub fn path(&self, id: PathId) -> &'a [PathPoint] {
         id.of(self.paths).and_then(|path| run(self.path_points, path.first, path.count)).unwrap_or_default()
     }
 
-    /// The object with a name (VII.7.1).
     #[must_use]
     pub fn object_named<const N: usize>(&self, name: &Name<N>) -> Option<ObjectId> {
         self.indexes.objects.find(name_key(name)).map(ObjectId::new)
     }
 
-    /// An object's name record (VII.7.1).
+    /// The name record (VII.7.1).
     #[must_use]
     pub fn object_record(&self, id: ObjectId) -> Option<&'a Object> {
         id.of(self.objects)
     }
 
-    /// Grasp parameters of a grip of an object (VII.7.1), with their record number for `obj-para-^` (V.2.2).
+    /// Grasp parameters (VII.7.1) with the record number for `obj-para-^` (V.2.2).
     #[must_use]
     pub fn object<const N: usize>(&self, object: &Name<N>, grip: i32) -> FoundEndEff<'a> {
         let id = EndEffId::new(self.indexes.end_effs.find(grip_key(object, grip)?)?);
@@ -194,7 +175,7 @@ impl<'a> TaskData<'a> {
         id.of(self.end_effs)
     }
 
-    /// The gripper and the tray grip of an object (VII.7.2).
+    /// The gripper and the tray grip (VII.7.2).
     #[must_use]
     pub fn obj_grips<const N: usize>(&self, object: &Name<N>) -> Option<&'a ObjGrips> {
         self.obj_grips_id(object)?.of(self.obj_grips)
@@ -206,24 +187,24 @@ impl<'a> TaskData<'a> {
         self.indexes.obj_grips.find(name_key(object)).map(ObjGripsId::new)
     }
 
-    /// The parameters with which the Active Pedestal grips an object (VII.7.4), with their record number.
+    /// Grip parameters of the Active Pedestal (VII.7.4), with their record number.
     #[must_use]
     pub fn ped_para<const N: usize>(&self, object: &Name<N>) -> FoundPedPara<'a> {
         let id = PedParaId::new(self.indexes.ped_paras.find(name_key(object))?);
         Some((id, id.of(self.ped_paras)?))
     }
 
-    /// The sensor with a name (extension).
+    /// A sensor: an extension of the manual.
     #[must_use]
     pub fn sensor<const N: usize>(&self, name: &Name<N>) -> Option<&'a SensorPara> {
         SensorId::new(self.indexes.sensors.find(name_key(name))?).of(self.sensors)
     }
 }
 
-/// The name of the null movetable, and, in an array location form, for no pose (VII.2, VII.4).
+/// The null movetable, or no pose in an array location form (VII.2, VII.4).
 pub const NULL_NAME: &str = "...";
 
-/// `count` items from position `first`.
+/// `count` items from position `first`, from 0.
 fn run<T>(file: &[T], first: u32, count: u32) -> Option<&[T]> {
     let first = usize::try_from(first).ok()?;
     let count = usize::try_from(count).ok()?;

@@ -1,17 +1,14 @@
 //! Indexes: a look-up other than by record number reads one pilot and one slot, for any number of records.
 //!
-//! A key is three integers: usually a name, and a grip and a location packed into one integer. Keys of records
-//! that belong to an object contain the object's name, which saves a look-up of the object. The index is a
-//! perfect hash table, which the loader builds once: a hash selects one of many small buckets, the *pilot* of
-//! the bucket, one byte, is mixed into the hash, and the result selects the slot. The loader chooses the pilots
-//! so that no two keys share a slot. A look-up therefore needs no search: the pilots of 100,000 keys (33 kB)
-//! stay in the processor's cache, and the slot is one read of half a cache line. A slot contains the record
-//! number and, where look-ups need only one field of the record (the movetable of a grip, the path of an
-//! approach), also that field, so that the record itself need not be read.
+//! A key is three integers: usually a name, and a grip and a location packed into one. The index is a perfect hash
+//! table: a hash selects one of many small buckets, the bucket's *pilot*, one byte, is mixed into the hash, and the
+//! result selects the slot. The loader chooses pilots so that no two keys share a slot. The pilots of 100,000 keys (33
+//! kB) stay in the processor's cache; the slot is one read of half a cache line. It contains the record number and,
+//! where look-ups need only one field, that field.
 //!
-//! An entry that is valid at a location is looked up at several in turn: the location point, the array on it,
-//! the owners, the wild card. All such entries of one name and grip are in one slot of a [`PlaceIndex`], so
-//! that one cache line shows the locations with an entry.
+//! An entry valid at a location is looked up at the location point, the array on it, the owners, and the wild card in
+//! turn. All such entries of one name and grip share a slot of a [`PlaceIndex`], so one cache line shows the locations
+//! with an entry.
 
 use interfaces::record_number::ObjectId;
 use rcs_core::name::Name;
@@ -21,43 +18,38 @@ use super::{
     reference::{RefType, Reference},
 };
 
-/// The key of a look-up.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Key {
-    /// A name, or one or two references. It is two integers, because one of 128 bits would be aligned to 16
-    /// bytes and double the size of a [`Slot`].
+    /// A name, or one or two references. One integer of 128 bits would double the size of a [`Slot`] by its alignment.
     pub(crate) main: [u64; 2],
-    /// Grip, location or direction, or 0.
-    pub(crate) rest: u64,
+    pub(crate) rest: u64, // grip, location or direction, or 0
 }
 
-/// A key and its answer. Slots are 32 bytes, aligned so that none lies across two cache lines.
+/// A key and its answer: 32 bytes, aligned so that no slot lies across two cache lines.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[repr(align(32))]
 pub struct Slot {
     pub(crate) key: Key,
-    /// Number of the first record with the key; 0 for a slot without a key.
-    pub(crate) number: u32,
-    /// The field of the record that look-ups need; 0 if they use the record. For a key of several records: the
-    /// position, from 1, in [`Index::numbers`].
+    pub(crate) number: u32, // first record with the key; 0: no key
+    /// The field that look-ups need, or 0. For a key of several records: their position, from 1, in
+    /// [`Index::numbers`].
     pub(crate) answer: u32,
 }
 
 const _: () = assert!(size_of::<Slot>() == 32);
 
-/// Keys in slots, and the record numbers of keys that several records share. The loader builds it.
+/// Keys in slots. The loader builds the index.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Index<'a> {
     pub(crate) pilots: &'a [u8],
-    /// The slots, some of them empty.
-    pub(crate) slots: &'a [Slot],
-    /// For each key that several records share: their count, then their numbers, in the order of their entry.
+    pub(crate) slots: &'a [Slot], // some of them empty
+    /// For each key of several records: their count, then their numbers in the order of entry.
     pub(crate) numbers: &'a [u32],
     pub(crate) seed: u64,
     pub(crate) keys: usize,
 }
 
-/// The product of two numbers, upper and lower half.
+/// The product, upper and lower half.
 fn product(a: u64, b: u64) -> (u64, u64) {
     let product = u128::from(a).wrapping_mul(u128::from(b));
     (low(product >> 64), low(product))
@@ -67,12 +59,12 @@ fn low(value: u128) -> u64 {
     u64::try_from(value & u128::from(u64::MAX)).unwrap_or(0)
 }
 
-/// Scale a number from the range of 64 bits to the range below `end`.
+/// Scales a 64-bit number to the range below `end`.
 fn scaled(value: u64, end: usize) -> usize {
     usize::try_from(product(value, u64::try_from(end).unwrap_or(0)).0).unwrap_or(0)
 }
 
-/// The hash of a key: folded multiplications, each the exclusive or of the two halves of a product.
+/// Folded multiplications: the exclusive or of the two halves of a product.
 pub(crate) fn hash_of(key: Key, seed: u64) -> u64 {
     let fold = |(high, low): (u64, u64)| high ^ low;
     let [upper, lower] = key.main;
@@ -84,14 +76,12 @@ pub(crate) fn bucket_of(hash: u64, buckets: usize) -> usize {
     scaled(hash, buckets)
 }
 
-/// The slot of a hash in a bucket with this pilot.
 pub(crate) fn slot_of(hash: u64, pilot: u8, slots: usize) -> usize {
     let turned = hash ^ u64::from(pilot).wrapping_mul(0xA076_1D64_78BD_642F);
-    // The hashes of a bucket have equal upper bits; the product moves the lower bits up.
+    // The hashes of a bucket have equal upper bits, so the product moves the lower bits up.
     scaled(turned.wrapping_mul(0xE703_7ED1_A0B4_28DB), slots)
 }
 
-/// The only slot in which a key can be.
 fn slot_at<'a, S>(pilots: &[u8], slots: &'a [S], seed: u64, key: Key) -> Option<&'a S> {
     let hash = hash_of(key, seed);
     let pilot = *pilots.get(bucket_of(hash, pilots.len()))?;
@@ -103,7 +93,7 @@ impl<'a> Index<'a> {
         slot_at(self.pilots, self.slots, self.seed, key).filter(|slot| slot.key == key && slot.number > 0)
     }
 
-    /// The record number of a key; the first number, if several records share it.
+    /// The record number of a key; the first, if several records share the key.
     #[must_use]
     pub fn find(&self, key: Key) -> Option<u32> {
         self.slot(key).map(|slot| slot.number)
@@ -115,7 +105,7 @@ impl<'a> Index<'a> {
         self.slot(key).map(|slot| slot.answer)
     }
 
-    /// The numbers of all records with a key, in the order of their entry. Only for an index without answers.
+    /// All record numbers in the order of entry, in an index without answers.
     #[must_use]
     pub fn all(&self, key: Key) -> &'a [u32] {
         match self.slot(key) {
@@ -136,31 +126,23 @@ impl<'a> Index<'a> {
     }
 }
 
-/// Greatest number of entries in a [`Group`].
-pub(crate) const ENTRIES: usize = 3;
-/// Count of a group whose entries do not fit: they are in [`PlaceIndex::crowded`].
-pub(crate) const CROWDED: u32 = u32::MAX;
+pub(crate) const ENTRIES: usize = 3; // in a [`Group`]
+pub(crate) const CROWDED: u32 = u32::MAX; // the entries do not fit: see [`PlaceIndex::crowded`]
 
-/// An entry that is valid at a location.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct EntryAt {
-    /// The location, packed; 0 without an entry.
-    pub(crate) at: u32,
+    pub(crate) at: u32, // packed location; 0: no entry
     pub(crate) number: u32,
-    /// The field of the record that look-ups need.
-    pub(crate) answer: u32,
+    pub(crate) answer: u32, // the field that look-ups need
 }
 
 /// The entries of a key at all its locations, in one cache line.
 #[derive(Clone, Copy, Debug, Default)]
 #[repr(align(64))]
 pub struct Group {
-    /// The key without a location.
     pub(crate) key: Key,
-    /// The entries, in no particular order.
-    pub(crate) entries: [EntryAt; ENTRIES],
-    /// Number of entries, or [`CROWDED`]; 0 for a group without a key.
-    pub(crate) count: u32,
+    pub(crate) entries: [EntryAt; ENTRIES], // in no particular order
+    pub(crate) count: u32,                  // or [`CROWDED`]; 0: no key
 }
 
 const _: () = assert!(size_of::<Group>() == 64);
@@ -177,27 +159,26 @@ impl Group {
     }
 }
 
-/// A reference packed into 32 bits, never 0; `None` for no reference, or a record number beyond those of a file.
+/// Packs a reference into 32 bits, never 0; `None` for no reference, or a record number beyond the files.
 pub(crate) fn packed(at: Reference) -> Option<u32> {
     let kind = u32::from(at.kind.code());
     let known = kind > 0 && kind < 16 && at.number < 1 << 28 && (at.number > 0 || at.kind == RefType::Any);
     known.then_some((kind << 28) | at.number)
 }
 
-/// Entries that are valid at locations, by a key without the location. The loader builds it.
+/// Entries that are valid at locations, by a key without the location. Built by the loader.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct PlaceIndex<'a> {
     pub(crate) pilots: &'a [u8],
-    /// The slots, some of them empty.
-    pub(crate) groups: &'a [Group],
+    pub(crate) groups: &'a [Group], // some of them empty
     pub(crate) seed: u64,
-    /// The entries of keys that have too many for a group, by key and location.
+    /// Entries that do not fit into a group, by key and location.
     pub(crate) crowded: Index<'a>,
 }
 
 impl<'a> PlaceIndex<'a> {
-    /// The entry for the first location with one: the `exact` ones in turn, the `owners`, the wild card. The
-    /// location in the key is ignored.
+    /// The entry of the first location that has one: the `exact` ones in turn, the `owners`, the wild card. Ignores
+    /// the location in the key.
     pub(crate) fn first(
         &self,
         key: Key,
@@ -218,7 +199,7 @@ impl<'a> PlaceIndex<'a> {
                 return Some(*entry);
             }
         }
-        // Most entries name a location point or the wild card, so the owners of the point need not be read.
+        // Most entries name a location point or the wild card, so the owners need not be read.
         if group.names(RefType::Owner)
             && let Some(entry) = owners.find_map(|at| group.entry(at))
         {
@@ -234,11 +215,10 @@ impl Index<'_> {
     }
 }
 
-/// The bits of [`Key::rest`] that contain the location, in the keys of a [`PlaceIndex`].
+/// The bits of the location in [`Key::rest`], in the keys of a [`PlaceIndex`].
 const PLACE_BITS: u64 = (1 << 40) - 1;
 
 impl Key {
-    /// The key without its location.
     pub(crate) const fn without_place(self) -> Self {
         Self { rest: self.rest & !PLACE_BITS, ..self }
     }
@@ -247,7 +227,6 @@ impl Key {
         Self { rest: (self.rest & !PLACE_BITS) | reference_bits(at), ..self }
     }
 
-    /// The location in the key, packed.
     #[must_use]
     pub fn place(self) -> Option<u32> {
         let kind = u8::try_from((self.rest & PLACE_BITS) >> 32).ok().and_then(RefType::from_code)?;
@@ -255,15 +234,14 @@ impl Key {
     }
 }
 
-/// The record numbers of a key that several records share, at a position in [`Index::numbers`].
+/// Record numbers of a key of several records, at a position in [`Index::numbers`].
 pub(crate) fn run_at(numbers: &[u32], position: u32) -> Option<&[u32]> {
     let position = usize::try_from(position).ok()?;
     let count = *numbers.get(position.checked_sub(1)?)?;
     numbers.get(position..)?.get(..usize::try_from(count).ok()?)
 }
 
-/// A name packed into 128 bits. The bits of a text do not depend on the width of the name, so that a 16-character
-/// field of a command finds a 10-character name.
+/// The bits of a name do not depend on its width, so a 16-character field finds a 10-character name.
 fn name_bits<const N: usize>(name: &Name<N>) -> [u64; 2] {
     let mut bytes = [[0_u8; 8]; 2];
     for (slot, byte) in bytes.as_flattened_mut().iter_mut().zip(name.bytes()) {
@@ -272,12 +250,12 @@ fn name_bits<const N: usize>(name: &Name<N>) -> [u64; 2] {
     bytes.map(u64::from_be_bytes)
 }
 
-/// A reference packed into 40 bits.
+/// Packs a reference into 40 bits.
 fn reference_bits(reference: Reference) -> u64 {
     (u64::from(reference.kind.code()) << 32) | u64::from(reference.number)
 }
 
-/// A grip number packed into 8 bits; `None` beyond -128 to 127.
+/// Packs a grip into 8 bits; `None` beyond -128 to 127.
 fn grip_bits(grip: i32) -> Option<u64> {
     Some(u64::from(i8::try_from(grip).ok()?.cast_unsigned()))
 }
@@ -287,43 +265,41 @@ pub fn name_key<const N: usize>(name: &Name<N>) -> Key {
     Key { main: name_bits(name), rest: 0 }
 }
 
-/// The key of a reference, for members.
 #[must_use]
 pub fn reference_key(reference: Reference) -> Key {
     Key { main: [0, reference_bits(reference)], rest: 0 }
 }
 
-/// The key of a start and an end, for trajectories.
+/// The key of a trajectory.
 #[must_use]
 pub fn pair_key(start: Reference, end: Reference) -> Key {
     Key { main: [0, reference_bits(start)], rest: reference_bits(end) }
 }
 
-/// The key of an object by its record number.
 #[must_use]
 pub fn object_key(object: ObjectId) -> Key {
     Key { main: [0, u64::from(object.number())], rest: 0 }
 }
 
-/// The key of a grip of an object; `None` for a grip number beyond -128 to 127, which forms cannot have.
+/// Returns `None` for a grip beyond -128 to 127, which forms cannot have.
 #[must_use]
 pub fn grip_key<const N: usize>(object: &Name<N>, grip: i32) -> Option<Key> {
     Some(Key { main: name_bits(object), rest: grip_bits(grip)? })
 }
 
-/// The key of a grip of an object at a location; `None` as with [`grip_key`].
+/// Returns `None` as [`grip_key`].
 #[must_use]
 pub fn grip_at_key<const N: usize>(object: &Name<N>, grip: i32, at: Reference) -> Option<Key> {
     Some(Key { main: name_bits(object), rest: (grip_bits(grip)? << 40) | reference_bits(at) })
 }
 
-/// The key of a name at a location: the object's name for views, the name of a relative move.
+/// The key of a view, by the object's name, or of a relative move, by its name.
 #[must_use]
 pub fn name_at_key<const N: usize>(name: &Name<N>, at: Reference) -> Key {
     Key { main: name_bits(name), rest: reference_bits(at) }
 }
 
-/// The key of an approach to an object or to its view, or of a depart from it; `None` as with [`grip_key`].
+/// The key of an approach or depart at an object or its view; `None` as [`grip_key`].
 #[must_use]
 pub fn approach_key<const N: usize>(
     direction: Direction,
@@ -337,7 +313,7 @@ pub fn approach_key<const N: usize>(
     Some(Key { rest: (from << 48) | key.rest, ..key })
 }
 
-/// The key of an approach to a location itself, or of a depart from it. It contains no name.
+/// The key of an approach or depart at a location itself: it contains no name.
 #[must_use]
 pub fn plain_key(direction: Direction, at: Reference) -> Key {
     Key { main: [0; 2], rest: (u64::from(direction.code()) << 56) | reference_bits(at) }

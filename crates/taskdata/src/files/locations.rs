@@ -1,9 +1,8 @@
 //! From the location and the sector of a command to a frame (VII.3 to VII.5, V.4.2).
 //!
-//! A name can be a location point, an owner, an array, or a location point and an owner at once (UNIT_1: the
-//! corner of a tray, and the owner of the arrays that divide the tray). Without a sector the name means the
-//! location point. Sectors are counted in the array that is assigned to the object at that owner, left to right
-//! and top to bottom as seen from the robot (VII.4).
+//! A name can be a location point, an owner, an array, or both a location point and an owner (UNIT_1: the corner of a
+//! tray, and the owner of its arrays). Without a sector it means the location point. Sectors are counted in the array
+//! that is assigned to the object at that owner, left to right and top to bottom as seen from the robot (VII.4).
 
 use core::fmt;
 
@@ -21,21 +20,15 @@ use super::{
     reference::{RefType, Reference},
 };
 
-/// A location of a command, resolved.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Location {
-    /// Name of the location point, or of the static array.
-    pub name: Name10,
-    /// Place for the look-up of grips and trajectories.
-    pub place: Place,
-    /// Number of the sector, from 1; `None` if the location is not a sector.
-    pub sector: Option<i32>,
-    /// Frame of the location. World, inches.
-    pub frame: Frame,
+    pub name: Name10,        // location point or static array
+    pub place: Place,        // for the look-up of grips and trajectories
+    pub sector: Option<i32>, // from 1; `None`: not a sector
+    pub frame: Frame,        // world, inches
 }
 
 impl Location {
-    /// The location as buffers name it.
     #[must_use]
     pub const fn site(&self) -> Site {
         let Place { kind, locpt, array } = self.place;
@@ -43,31 +36,24 @@ impl Location {
     }
 }
 
-/// Why a location of a command, or a grip at it, is unknown.
+/// Why a location, or a grip at it, is unknown.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LookupError {
     /// No location point, owner or array has the name.
     UnknownLocation { name: Name16 },
     /// No object form has the name.
     UnknownObject { name: Name16 },
-    /// A sector of an owner with several arrays requires an object, which selects the array.
+    /// The owner has several arrays, and only an object can select one.
     ObjectNeeded { location: Name16, sector: i32 },
     /// No object location form assigns the object to a member of the owner (VII.7.3).
     NotAssigned { object: Name16, location: Name16 },
-    /// The location point is not divided into sectors.
+    /// The location point has no sectors.
     NoSectors { location: Name16, sector: i32 },
-    /// The array has no such sector.
-    SectorRange {
-        location: Name16,
-        array: Name10,
-        /// The requested sector, if any.
-        sector: Option<i32>,
-        /// The last sector; the first is 1.
-        last: i32,
-    },
+    /// The array has the sectors 1 to `last`.
+    SectorRange { location: Name16, array: Name10, sector: Option<i32>, last: i32 },
     /// The owner, such as UNIT, only groups locations.
     OwnerOnly { location: Name16 },
-    /// No grip location form names the grip of the object there, or anywhere with `$$$` (VII.7.5).
+    /// No grip location form has the grip there, or anywhere with `$$$` (VII.7.5).
     NoGrip { object: Name16, grip: i32, location: Name10 },
 }
 
@@ -104,13 +90,12 @@ impl fmt::Display for LookupError {
 
 impl core::error::Error for LookupError {}
 
-/// Convert a name of any width to the width of the errors.
 fn wide<const N: usize>(name: &Name<N>) -> Name16 {
     Name16::clipped(name.as_str())
 }
 
 impl<'a> TaskData<'a> {
-    /// The frame and the place of a location of a command (`"src-loc-16"` with `src-sector#` and so on, V.4.2).
+    /// Resolves a location of a command (`"src-loc-16"`, `src-sector#` and so on, V.4.2).
     ///
     /// # Errors
     /// [`LookupError`] with the missing name, or with the valid sectors.
@@ -137,8 +122,8 @@ impl<'a> TaskData<'a> {
         Ok(Location { name: locpt.name, place, sector: None, frame: locpt.frame })
     }
 
-    /// The location at an owner's member to which the object is assigned: a sector of an array at the owner's location
-    /// point, or a location point.
+    /// The member of an owner to which the object is assigned: a sector of an array at the owner's location point, or
+    /// a location point.
     fn at_owner<const N: usize, const M: usize>(
         &self,
         owner: OwnerId,
@@ -171,20 +156,20 @@ impl<'a> TaskData<'a> {
         Ok(Location { name: corner.name, place, sector, frame })
     }
 
-    /// The first member of an owner of arrays: the location point at which the arrays are used (VII.5).
+    /// The first member of an owner of arrays: the location point at which they are used (VII.5).
     fn tray_corner(&self, owner: OwnerId) -> Option<LocptId> {
         let first = self.members_of(owner).first()?.member;
         (first.kind == RefType::LocationPoint).then_some(LocptId::new(first.number))
     }
 
-    /// The array of an owner that has exactly one.
+    /// The array of an owner; `None` if there are several.
     fn only_array(&self, owner: OwnerId) -> Option<Reference> {
         let mut arrays = self.members_of(owner).iter().map(|m| m.member).filter(|m| m.kind == RefType::Array);
         let only = arrays.next()?;
         arrays.next().is_none().then_some(only)
     }
 
-    /// The member of an owner to which an object location form assigns an object (VII.7.3).
+    /// The member to which an object location form assigns an object (VII.7.3).
     fn assigned_member<const M: usize>(
         &self,
         owner: OwnerId,
@@ -197,8 +182,7 @@ impl<'a> TaskData<'a> {
             .ok_or(LookupError::NotAssigned { object: wide(object), location })
     }
 
-    /// The arrays and location points to which an object is assigned, in the order of the object location forms
-    /// (VII.7.3).
+    /// Arrays and location points in the order of the object location forms (VII.7.3).
     pub fn object_locations(&self, object: ObjectId) -> impl Iterator<Item = Reference> + use<'a> {
         let file = self.obj_locs;
         self.indexes
@@ -208,7 +192,6 @@ impl<'a> TaskData<'a> {
             .filter_map(move |&n| Some(ObjLocId::new(n).of(file)?.assigned))
     }
 
-    /// True if an owner has the member.
     #[must_use]
     pub fn is_member(&self, owner: OwnerId, member: Reference) -> bool {
         self.indexes.members.all(reference_key(member)).contains(&owner.number())
@@ -235,8 +218,8 @@ impl<'a> TaskData<'a> {
         })
     }
 
-    /// The frame of a sector: the base with the offset of the first sector, then one column step per column and
-    /// one row step per row before it. `None` if the array has no such sector.
+    /// The base with the offset of the first sector and the column and row steps to this one. `None` for a
+    /// sector that the array does not have.
     #[must_use]
     pub fn sector_frame(&self, array: &Array, base: &Frame, sector: i32) -> Option<Frame> {
         if sector < 1 || sector > array.sectors() {
@@ -251,16 +234,15 @@ impl<'a> TaskData<'a> {
         Some(repeat(repeat(first, array.column_step, column), array.row_step, row))
     }
 
-    /// The steps that lead from a sector out of its array, in the axes of the sector, in: to the place of a
-    /// next column or row. `None` in a direction with a neighbour. The base is that of
-    /// [`sector_frame`](Self::sector_frame); columns and rows are perpendicular.
+    /// The steps from a sector out of its array, in the axes of the sector, in; `None` in a direction with a
+    /// neighbour. The base is that of [`sector_frame`](Self::sector_frame); columns and rows are perpendicular.
     #[must_use]
     pub fn steps_out(&self, array: &Array, base: &Frame, sector: &Frame) -> [Option<Vector>; 4] {
         let first = self.moved(base, array.offset);
         let from_first = first.rotation.inverse() * (sector.position - first.position);
         let out = |step: MovtabId, count: i32| {
             let step = self.moved(&Frame::identity(), step).position;
-            // NaN for a step of zero, for which every comparison is false.
+            // A step of zero gives NaN, for which every comparison is false.
             let steps = from_first.dot(&step) / step.dot(&step);
             let last = f64::from(count.saturating_sub(1));
             [(steps < 0.5).then_some(-step), (steps > last - 0.5).then_some(step)]
@@ -270,11 +252,9 @@ impl<'a> TaskData<'a> {
         [left, right, top, bottom]
     }
 
-    /// The place of a location and an object, for a process that receives both but not the sector: below Task
-    /// the sector is only a goal pose (V.3.2, V.2.2).
-    ///
-    /// If an object location form assigns the object to an array there, the place has the array; otherwise it is the
-    /// location point. `None` if the name is unknown.
+    /// The place for a process that does not receive the sector: below Task, a sector is only a goal pose (V.3.2,
+    /// V.2.2). It has the array to which the object is assigned there, or else the location point. `None` for an
+    /// unknown name.
     #[must_use]
     pub fn place_named<const N: usize, const M: usize>(
         &self,
@@ -294,23 +274,23 @@ impl<'a> TaskData<'a> {
         }
     }
 
-    /// The references with which forms can name a place, the most exact first: the location point, the array on it, and
+    /// The references with which forms can name a place, most exact first: the location point, the array on it, and
     /// the owners of either (VII.5, VII.7.5).
     pub fn aliases(&self, place: &Place) -> impl Iterator<Item = Reference> + Clone + use<'a> {
         Self::exact(place).into_iter().filter(|r| r.number != 0).chain(self.owners(place))
     }
 
-    /// The location point of a place, and the array on it, or number 0.
+    /// The location point, and the array on it, or number 0.
     pub(super) const fn exact(place: &Place) -> [Reference; 2] {
         [Reference::location_point(place.locpt), Reference::array(place.array)]
     }
 
-    /// The owners of a place: of its location point, of the pose of the location point, or of a static array.
+    /// The owners of the location point, of its pose, or of a static array.
     pub(super) fn owners(&self, place: &Place) -> impl Iterator<Item = Reference> + Clone + use<'a> {
         let (data, place) = (*self, *place);
-        // The owners of an array on a tray are omitted: they include other trays that are divided in the same way.
+        // Owners of an array on a tray are omitted: they include other trays with the same division.
         let array = if place.locpt.is_null() { place.array } else { ArrayId::NULL };
-        // The record of the location point is read only if the other owners have no entry.
+        // The location point's record is read only if the other owners have no entry.
         (0..3)
             .map(move |step| match step {
                 0 => Reference::location_point(place.locpt),

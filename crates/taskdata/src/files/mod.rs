@@ -1,8 +1,7 @@
 //! The files of chapter VII and the look-ups of the control processes.
 //!
-//! A file is a slice of records; a record number counts from 1, and 0 is the null pointer of the manual's `…-^`
-//! variables. The files have perfect hash tables ([`index::Index`], [`index::PlaceIndex`]), so that a look-up by name,
-//! or by object, grip and location, reads one or two cache lines, for any number of records.
+//! A record number counts from 1, and 0 is the null pointer of the manual's `…-^` variables. A look-up by name, or by
+//! object, grip and location, reads one or two cache lines of a perfect hash table for any number of records.
 //!
 //! * [`records`], [`index`]: records, indexes; their numbers are [`interfaces::record_number`];
 //! * [`data`]: [`TaskData`], by number and by name;

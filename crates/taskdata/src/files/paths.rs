@@ -1,8 +1,7 @@
 //! Grips, views, approaches, departs and trajectories at a place (VII.6, VII.7).
 //!
-//! One rule applies to all: the entry for the exact location point has priority, then the one for the array on
-//! it, then the one for an owner, then the wild card `$$$` (VII.7.5). A trajectory needs an entry for both of
-//! its ends and has no wild card; it is used only from start to end.
+//! The entry for the exact location point has priority, then that for the array on it, for an owner, for the wild card
+//! `$$$` (VII.7.5). A trajectory needs an entry for both ends, has no wild card, and is used only from start to end.
 
 use geometry::frame::Frame;
 use interfaces::{
@@ -20,12 +19,11 @@ use super::{
 };
 
 impl<'a> TaskData<'a> {
-    /// The entry for the first alias of a place that has one, or for `$$$`.
     fn at_place(&self, index: &PlaceIndex<'a>, key: Key, place: &Place) -> Option<EntryAt> {
         index.first(key, Self::exact(place), self.owners(place))
     }
 
-    /// The movetable of a grip of an object at a place (VII.7.5); null if the form names `...`.
+    /// The movetable (VII.7.5); null if the form names `...`.
     #[must_use]
     pub fn grip_movetable<const N: usize>(
         &self,
@@ -37,17 +35,14 @@ impl<'a> TaskData<'a> {
         self.at_place(&self.indexes.grip_locs, key, place).map(|entry| MovtabId::new(entry.answer))
     }
 
-    /// The record number in GRIP-LOC for a grip of an object at a place (VII.7.5).
+    /// The record number in GRIP-LOC (VII.7.5).
     #[must_use]
     pub fn grip_loc<const N: usize>(&self, object: &Name<N>, grip: i32, place: &Place) -> Option<GripLocId> {
         let key = grip_at_key(object, grip, Reference::ANY)?;
         self.at_place(&self.indexes.grip_locs, key, place).map(|entry| GripLocId::new(entry.number))
     }
 
-    /// The tool frame in which an object at a location is held with a grip.
-    ///
-    /// # Errors
-    /// [`LookupError::NoGrip`] if no form has the grip there.
+    /// The tool frame for an object held with a grip.
     pub fn grip_frame<const N: usize>(
         &self,
         object: &Name<N>,
@@ -60,7 +55,7 @@ impl<'a> TaskData<'a> {
         Ok(self.moved(&location.frame, movetable))
     }
 
-    /// The view parameters of an object at a place (VII.7.6), with their record number for `obj-vision-para-^` (V.2.2).
+    /// View parameters (VII.7.6), with the record number for `obj-vision-para-^` (V.2.2).
     #[must_use]
     pub fn view<const N: usize>(
         &self,
@@ -77,19 +72,18 @@ impl<'a> TaskData<'a> {
         id.of(self.visions)
     }
 
-    /// The approach to an object with a grip at a place (VII.7.7). Its last point is [`Target::Stop`].
+    /// The approach to an object (VII.7.7). Its last point is [`Target::Stop`].
     #[must_use]
     pub fn approach<const N: usize>(&self, object: &Name<N>, grip: i32, place: &Place) -> Option<PathId> {
         self.appr_dept(Direction::Approach, RefType::Object, object, grip, place)
     }
 
-    /// The depart from an object with a grip at a place (VII.7.7).
     #[must_use]
     pub fn depart<const N: usize>(&self, object: &Name<N>, grip: i32, place: &Place) -> Option<PathId> {
         self.appr_dept(Direction::Depart, RefType::Object, object, grip, place)
     }
 
-    /// The approach to the place where the camera looks for an object (VII.7.7, type `vu`).
+    /// The approach to the camera's place (VII.7.7, type `vu`).
     #[must_use]
     pub fn view_approach<const N: usize>(
         &self,
@@ -100,7 +94,7 @@ impl<'a> TaskData<'a> {
         self.appr_dept(Direction::Approach, RefType::View, object, grip, place)
     }
 
-    /// The depart from the place where the camera looks for an object (VII.7.7, type `vu`).
+    /// The depart from the camera's place (VII.7.7, type `vu`).
     #[must_use]
     pub fn view_depart<const N: usize>(&self, object: &Name<N>, grip: i32, place: &Place) -> Option<PathId> {
         self.appr_dept(Direction::Depart, RefType::View, object, grip, place)
@@ -135,7 +129,7 @@ impl<'a> TaskData<'a> {
         self.at_place(&self.indexes.appr_depts, key, place).map(|entry| PathId::new(entry.answer))
     }
 
-    /// The relative move that a command looks for at a place (extension).
+    /// A relative move: an extension of the manual.
     #[must_use]
     pub fn relative_move<const N: usize>(&self, name: &Name<N>, place: &Place) -> Option<&'a RelativeMove> {
         let key = name_at_key(name, Reference::ANY);
@@ -143,27 +137,26 @@ impl<'a> TaskData<'a> {
         RelativeMoveId::new(entry.number).of(self.relative_moves)
     }
 
-    /// The path of the intermediate trajectory from one place to another (VII.6): entries for the exact names have
-    /// priority, then those for the owner of the end, of the start, of both.
+    /// The path of the intermediate trajectory (VII.6): the exact names have priority, then the owner of the end, of
+    /// the start, of both.
     #[must_use]
     pub fn trajectory(&self, from: &Place, to: &Place) -> Option<PathId> {
         self.between(from, to, |key| self.indexes.trajectories.answer(key)).map(PathId::new)
     }
 
-    /// The record number of the intermediate trajectory from one place to another.
     #[must_use]
     pub fn trajectory_id(&self, from: &Place, to: &Place) -> Option<TrajId> {
         self.between(from, to, |key| self.indexes.trajectories.find(key)).map(TrajId::new)
     }
 
-    /// The first pair of aliases of two places for which `find` has an answer.
+    /// The first pair of aliases for which `find` has an answer.
     fn between(&self, from: &Place, to: &Place, find: impl Fn(Key) -> Option<u32>) -> Option<u32> {
         let ends = self.aliases(to);
         self.aliases(from).find_map(|start| ends.clone().find_map(|end| find(pair_key(start, end))))
     }
 
-    /// The frame of a point of a path; `reference` is the frame of its movetables: the goal of an approach, the start
-    /// of a depart, the previous point of a trajectory. `None` if the point names a missing record.
+    /// The frame of a point; `None` if it names a missing record. `reference` is the goal of an approach, the start of
+    /// a depart, the previous point of a trajectory.
     #[must_use]
     pub fn point_frame(&self, point: &PathPoint, reference: &Frame) -> Option<Frame> {
         match point.target {
@@ -174,7 +167,6 @@ impl<'a> TaskData<'a> {
         }
     }
 
-    /// Name of an object for messages, or an empty name.
     #[must_use]
     pub fn object_name(&self, id: ObjectId) -> Name16 {
         self.object_record(id).map_or(Name16::EMPTY, |record| record.name)

@@ -11,89 +11,75 @@ use rcs_core::{
 
 use super::reference::{RefType, Reference};
 
-/// POSE: a pose form entry (VII.1).
+/// POSE (VII.1).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PoseRecord {
     pub name: Name10,
-    /// The nine integers as entered, 0.01 in.
-    pub pose: Pose,
-    /// Movetable that corrects the pose, null for `...`.
-    pub movetable: MovtabId,
-    /// Effective frame: from the points, made orthogonal (X kept), with the movetable applied. World, inches.
+    pub pose: Pose,          // as entered, 0.01 in
+    pub movetable: MovtabId, // corrects the pose; null for `...`
+    /// The frame of the points, made orthogonal (X kept), with the movetable applied. World, inches.
     pub frame: Frame,
 }
 
-/// MOVTAB: a movetable (VII.2).
+/// MOVTAB (VII.2).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MovtabRecord {
     pub name: Name10,
     pub movetable: Movetable,
 }
 
-/// LOCPT: a location point (VII.3).
+/// LOCPT (VII.3).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Locpt {
     pub name: Name10,
     pub pose: PoseId,
-    /// Movetable applied to the pose, null for `...`.
-    pub movetable: MovtabId,
-    /// The movetable applied to the effective frame of the pose. World, inches.
-    pub frame: Frame,
+    pub movetable: MovtabId, // null for `...`
+    pub frame: Frame,        // of the pose, with the movetable; world, inches
 }
 
 /// ARRAY-TABLE: the array dimension and array location forms of one array together (VII.4).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Array {
     pub name: Name10,
-    /// Number of dimensions, 1 or 2.
-    pub dimensions: i32,
-    /// Elements in the first dimension: the columns, left to right.
-    pub columns: i32,
-    /// Elements in the second dimension: the rows, top to bottom; 1 for one dimension.
-    pub rows: i32,
+    pub dimensions: i32, // 1 or 2
+    pub columns: i32,    // first dimension, left to right
+    pub rows: i32,       // second dimension, top to bottom; 1 for one dimension
     pub column_step: MovtabId,
-    /// Offset from row to row; null for one dimension.
-    pub row_step: MovtabId,
-    /// The form's `# pres`, kept as entered.
-    pub present: i32,
-    /// Base pose of a static array, null if the array belongs to owners.
-    pub pose: PoseId,
-    /// Offset of the first sector from the base pose, or from the owner's location point.
-    pub offset: MovtabId,
+    pub row_step: MovtabId, // null for one dimension
+    pub present: i32,       // the form's `# pres`, as entered
+    pub pose: PoseId,       // of a static array; null if it belongs to owners
+    pub offset: MovtabId,   // of the first sector from the base
 }
 
 impl Array {
-    /// Number of the last sector.
+    /// The number of the last sector.
     #[must_use]
     pub fn sectors(&self) -> i32 {
         self.columns.saturating_mul(self.rows)
     }
 }
 
-/// OWNER-ASCII-NAMES: an owner (VII.5). Its members are consecutive in the file of members.
+/// OWNER-ASCII-NAMES (VII.5). Members are consecutive in the file of members.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Owner {
     pub name: Name10,
-    /// Position from 0 of its first member.
-    pub first: u32,
+    pub first: u32, // position of the first member, from 0
     pub count: u32,
 }
 
-/// A member of an owner: location point, array or pose (VII.5).
+/// Location point, array or pose (VII.5).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Member {
     pub owner: OwnerId,
     pub member: Reference,
 }
 
-/// TRAJ: the path between two locations (VII.6).
+/// TRAJ (VII.6).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Traj {
     pub name: Name10,
-    /// Location point, array or owner where it starts.
-    pub start: Reference,
-    /// Location point, array or owner where it ends.
-    pub end: Reference,
+    pub start: Reference, // location point, array or owner
+    pub end: Reference,   // location point, array or owner
     pub path: PathId,
 }
 
@@ -111,36 +97,30 @@ pub struct TrajPara {
     pub brk_dst: i32,
 }
 
-/// The target of a point of a path (VII.6, VII.7.7).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Target {
     Pose(PoseId),
     LocationPoint(LocptId),
-    /// A movetable, applied to the reference: the goal of an approach, the start of a depart, the previous point of a
-    /// trajectory.
+    /// Applied to the goal of an approach, the start of a depart, or the previous point of a trajectory.
     Movetable(MovtabId),
-    /// The goal itself: the last point of an approach.
-    Stop,
+    Stop, // the goal: last point of an approach
 }
 
 /// PATH-PTS: a `-ppt` line (VII.6).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PathPoint {
-    /// Parameters of the segment that leads to the point.
-    pub para: TrajParaId,
+    pub para: TrajParaId, // of the segment that leads here
     pub target: Target,
 }
 
 /// A run of records of PATH-PTS.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Path {
-    /// Position from 0 of its first point.
-    pub first: u32,
-    /// Number of points; an empty path has no intermediate points.
-    pub count: u32,
+    pub first: u32, // position of the first point, from 0
+    pub count: u32, // 0: no intermediate points
 }
 
-/// OBJ-ASCII-NAMES: an object (VII.7.1).
+/// OBJ-ASCII-NAMES (VII.7.1).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Object {
     pub name: Name16,
@@ -283,7 +263,7 @@ pub enum SensorSource {
 }
 
 impl SensorSource {
-    /// True for a force or moment of the tool gripper, which has a threshold; the others are switches.
+    /// True for a force or moment of the tool gripper, which has a threshold. The others are switches.
     #[must_use]
     pub const fn is_force(self) -> bool {
         matches!(self, Self::Fx | Self::Fy | Self::Fz | Self::My)
@@ -321,8 +301,7 @@ pub struct RelativeMove {
     pub sensor: Name10,
 }
 
-/// A record with its number, as look-ups of parameters return it.
+/// A record with its number.
 pub type Numbered<'a, Id, T> = Option<(Id, &'a T)>;
-/// END-EFF-PARA with its number.
 pub type FoundEndEff<'a> = Numbered<'a, EndEffId, EndEffPara>;
 pub type FoundPedPara<'a> = Numbered<'a, PedParaId, PedPara>;

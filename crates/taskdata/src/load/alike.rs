@@ -18,10 +18,10 @@ const fn bits(reference: Reference) -> (u8, u32) {
     (reference.kind.code(), reference.number)
 }
 
-/// Each object that equals an earlier one except for its vision ids, after that one.
+/// Pairs: the object after the earlier one that it equals.
 #[must_use]
 pub fn alike(data: &TaskData<'_>) -> Vec<[ObjectId; 2]> {
-    // Only objects with views have vision ids; the others need not be compared.
+    // Only objects with views have vision ids.
     let mut ids: HashMap<ObjectId, Vec<i32>> = HashMap::new();
     for view in data.visions {
         ids.entry(view.object).or_default().push(view.id);

@@ -1,8 +1,6 @@
-//! The entries of a load, by form, in the order of their entry.
-//!
-//! The position of an entry gives its record number. In the next generation of the data, newer entries
-//! therefore take the positions of those that they replace, and the others are appended
-//! (docs/design/ownership.md "Reload"): existing records keep their numbers.
+//! The entries of a load, by form, in the order of their entry. The position gives the record number. In the next
+//! generation, newer entries take the positions of those that they replace, and others are appended: records keep
+//! their numbers (docs/design/ownership.md "Reload").
 
 use std::{
     collections::{HashMap, HashSet},
@@ -14,7 +12,6 @@ use super::entries::{
     OwnerEntry, PointAt, PoseEntry, RelativeEntry, SensorEntry, ShowEntry, TrajEntry, Typed, ViewEntry,
 };
 
-/// The entries of all blocks, by form.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Collected {
     pub files: Vec<FileEntry>,
@@ -37,7 +34,6 @@ pub(super) struct Collected {
 }
 
 impl Collected {
-    /// Add an entry to those of its form.
     pub fn add(&mut self, entry: Entry) {
         match entry {
             Entry::File(e) => self.files.push(e),
@@ -60,12 +56,9 @@ impl Collected {
         }
     }
 
-    /// These entries, with those of equal keys replaced by `newer` ones, and the other newer ones appended. No
-    /// entry is removed, except locations of an object: newer object location entries replace all earlier ones
-    /// of the object, because an object that has moved to other trays is no longer in the old ones.
-    ///
-    /// If `newer` has a key twice, the first replaces the entry, and the second is appended, so that linking finds the
-    /// duplicate.
+    /// Replaces entries by `newer` ones with the same key, and appends the others. Newer object location entries
+    /// replace all earlier ones of the object, which may have moved to other trays. If `newer` has a key twice, the
+    /// second is appended, so that linking finds the duplicate.
     pub fn with(&self, newer: Self) -> Self {
         let mut all = self.clone();
         replace(&mut all.files, newer.files, |e| e.file);
@@ -93,12 +86,11 @@ impl Collected {
     }
 }
 
-/// A type and a name as a key.
 const fn typed(typed: &Typed) -> (u8, rcs_core::name::Name16) {
     (typed.kind.code(), typed.name.name)
 }
 
-/// Replace entries by newer ones with the same key, and append the others.
+/// Replaces entries by newer ones with the same key, and appends the others.
 fn replace<T, K: Eq + Hash>(entries: &mut Vec<T>, newer: Vec<T>, key: impl Fn(&T) -> K) {
     if newer.is_empty() {
         return;

@@ -1,5 +1,5 @@
-//! Blocks of commands for Task (IV.3.3): offset 16000, which is Task's area (IV.2.7). A line that begins with `==` is a
-//! command, as in a job; LINE-LOAD puts it into Task's command buffer. Other lines are empty or comments.
+//! Blocks of commands for Task at offset 16000 (IV.2.7, IV.3.3). A line that begins with `==` is a command, as in a
+//! job; LINE-LOAD puts it into Task's command buffer. Other lines are comments.
 
 use std::{
     collections::{BTreeMap, btree_map::Entry},
@@ -14,14 +14,12 @@ use super::{
     source::{BLOCK_LINES, Block},
 };
 
-/// Offset of the area with Task's blocks (IV.2.7).
-pub const OFFSET: u32 = 16_000;
+pub const OFFSET: u32 = 16_000; // area of Task's blocks (IV.2.7)
 
 #[derive(Clone, Debug)]
 struct Lines {
     header: At,
-    /// The lines, from line 0 on.
-    lines: Vec<(At, String)>,
+    lines: Vec<(At, String)>, // from line 0
 }
 
 #[derive(Clone, Debug, Default)]
@@ -34,13 +32,11 @@ pub enum LineLoadError {
         number: u32,
         known: Vec<u32>,
     },
-    /// The block does not have these lines.
-    Lines(usize, usize),
-    /// The lines contain no command, or more than one.
+    Lines(usize, usize), // not in the block
+    /// The lines contain no command, or several.
     Count {
         number: u32,
-        /// First and last line.
-        lines: (usize, usize),
+        lines: (usize, usize), // first and last
         found: usize,
     },
     Command(OwnLineError),
@@ -70,7 +66,7 @@ impl fmt::Display for LineLoadError {
 impl std::error::Error for LineLoadError {}
 
 impl Commands {
-    /// Add a block; a second block with the same number is an error.
+    /// Adds a block; a second one with the same number is an error.
     pub(super) fn add(&mut self, block: &Block<'_>, problems: &mut Problems) {
         match self.0.entry(block.number.number) {
             Entry::Occupied(first) => {
@@ -88,14 +84,14 @@ impl Commands {
         self.0.keys().map(|number| BlockNumber { offset: OFFSET, number: *number })
     }
 
-    /// These blocks and newer ones, which replace those with the same numbers.
+    /// Replaces blocks by newer ones with the same numbers.
     pub(super) fn with(&self, newer: Self) -> Self {
         let mut all = self.0.clone();
         all.extend(newer.0);
         Self(all)
     }
 
-    /// Check that each line is a command with names of the task data, or a comment.
+    /// Checks that each line is a comment, or a command with names of the task data.
     pub(super) fn check(&self, store: &Store, problems: &mut Problems) {
         for (at, text) in self.0.values().flat_map(|block| &block.lines) {
             let text = text.trim();
@@ -121,7 +117,7 @@ fn is_command(text: &str) -> bool {
 }
 
 impl Store {
-    /// The command in lines of a block of commands: `block from to LINE-LOAD` (IV.3.3).
+    /// The command of `block from to LINE-LOAD` (IV.3.3).
     ///
     /// # Errors
     /// [`LineLoadError`].

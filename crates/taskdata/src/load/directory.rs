@@ -1,9 +1,7 @@
-//! Selection of the blocks to load by directory blocks, from the first block of the manual's boot (IV.2.10
-//! steps 9 and 10).
-//!
-//! The boot loads blocks 905 and 906 at offset 21000 (system data) and block 0 at offset 20000 (objects); these name
-//! further blocks with `n load` or `offset n OLOAD`, and so on. An area without such a root has no directory, and all
-//! its blocks are loaded in their order in the files. Blocks at offset 16000 contain commands ([`commands`]).
+//! Selects the blocks to load by directory blocks (IV.2.10 steps 9 and 10). The boot loads blocks 905 and 906 at
+//! offset 21000 (system data) and block 0 at offset 20000 (objects). These name further blocks with `n load` or
+//! `offset n OLOAD`. An area without such a root has no directory: all its blocks are loaded in their order in the
+//! files. Blocks at offset 16000 contain commands ([`commands`]).
 
 use std::collections::{BTreeSet, HashSet};
 
@@ -27,23 +25,20 @@ const ROOTS: [BlockNumber; 3] = [
     BlockNumber { offset: 20_000, number: 0 },
 ];
 
-/// Number of blocks that one processor reads at a time.
-const BLOCKS_AT_A_TIME: usize = 256;
+const BLOCKS_AT_A_TIME: usize = 256; // read by one processor at a time
 
 #[derive(Debug, Default)]
 pub(super) struct Read {
-    /// Entries in the order in which they were loaded.
-    pub(super) entries: Collected,
+    pub(super) entries: Collected, // in the order of the load
     /// Names in entries that could not be read.
     pub broken: HashSet<String>,
     pub blocks: BTreeSet<BlockNumber>,
     /// Blocks that were not loaded, and numbers without a block.
     pub orphans: Orphans,
-    /// Blocks of commands, which need no directory.
-    pub commands: Commands,
+    pub commands: Commands, // need no directory
 }
 
-/// Read the blocks to load from all sources from position `first` on; `known` are the blocks loaded before.
+/// Reads the blocks to load from source `first` on; `known` blocks were loaded before.
 pub(super) fn read(
     sources: &[Source],
     first: usize,
@@ -145,7 +140,7 @@ struct Content {
     problems: Problems,
 }
 
-/// Read the words of all blocks.
+/// Reads the words of all blocks.
 fn contents(blocks: &[Block<'_>]) -> impl Iterator<Item = Content> + use<> {
     let read = |block: &Block<'_>| {
         let mut problems = Problems::default();
@@ -153,7 +148,7 @@ fn contents(blocks: &[Block<'_>]) -> impl Iterator<Item = Content> + use<> {
         let open = problems.has_errors();
         let mut parsed = parse(&words, block.number, block.header, &mut problems);
         if open {
-            // Words in the open comment make no entries. The comment is already reported.
+            // Words in an open comment, which is already reported, make no entries.
             let hidden = block.lines.iter().flat_map(|line| line.text.split_whitespace());
             parsed.broken.extend(hidden.map(str::to_owned));
         }
@@ -166,8 +161,7 @@ fn contents(blocks: &[Block<'_>]) -> impl Iterator<Item = Content> + use<> {
 }
 
 struct Loader<'b, 'p> {
-    /// The blocks, without the contents of loaded blocks.
-    all: FxHashMap<BlockNumber, Content>,
+    all: FxHashMap<BlockNumber, Content>, // loaded ones without their contents
     known: &'b BTreeSet<BlockNumber>,
     read: Read,
     problems: &'p mut Problems,
@@ -178,8 +172,8 @@ impl Loader<'_, '_> {
         let roots: Vec<BlockNumber> = ROOTS.into_iter().filter(|root| self.all.contains_key(root)).collect();
         let directed: BTreeSet<u32> = roots.iter().map(|root| root.offset).collect();
         let undirected = order.iter().copied().filter(|block| !directed.contains(&block.offset));
-        // A stack of blocks to load, the next one on top. A block is read where it is named, as in FORTH, but
-        // without recursion, and a directory that names itself causes no endless loop.
+        // A stack, next block on top: a block is read where it is named, as in FORTH, but without recursion, so a
+        // directory that names itself causes no endless loop.
         let mut open: Vec<(BlockNumber, Option<At>)> =
             roots.into_iter().chain(undirected).map(|b| (b, None)).collect();
         open.reverse();
@@ -189,7 +183,7 @@ impl Loader<'_, '_> {
         }
     }
 
-    /// Load a block, unless it is already loaded. Returns the lines that name further blocks.
+    /// Loads a block once. Returns the lines that name further blocks.
     fn load(&mut self, number: BlockNumber, named: Option<At>) -> Vec<LoadLine> {
         let Some(block) = self.all.get_mut(&number) else {
             let line = named.filter(|_| !self.known.contains(&number));
@@ -211,7 +205,7 @@ impl Loader<'_, '_> {
         parsed.loads
     }
 
-    /// Report blocks that no directory names.
+    /// Reports blocks that no directory names.
     fn unloaded(&mut self, order: &[BlockNumber]) {
         for number in order.iter().filter(|number| !self.read.blocks.contains(number)) {
             if let Some(block) = self.all.remove(number) {

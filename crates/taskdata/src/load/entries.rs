@@ -12,38 +12,33 @@ pub struct Named<const N: usize> {
     pub at: At,
 }
 
-/// A type and a name, from the "type" and "name" columns of a form.
+/// A type and a name, from the columns of a form.
 #[derive(Clone, Copy, Debug)]
 pub struct Typed {
     pub kind: RefType,
-    /// The name; the word `$$$` itself for [`RefType::Any`].
-    pub name: Named<16>,
+    pub name: Named<16>, // the word `$$$` itself for [`RefType::Any`]
 }
 
 /// A `-ppt` line.
 #[derive(Clone, Copy, Debug)]
 pub struct PointEntry {
     pub para: TrajPara,
-    /// The point; `None` for `stop`.
-    pub target: Option<Typed>,
+    pub target: Option<Typed>, // `None` for `stop`
     pub at: At,
 }
 
 /// `-pose-` (VII.1).
 #[derive(Clone, Debug)]
 pub struct PoseEntry {
-    /// Wrist, tool and finger point: X, Y, Z, 0.01 in.
-    pub points: [[i32; 3]; 3],
+    pub points: [[i32; 3]; 3], // wrist, tool, finger point: X, Y, Z, 0.01 in
     pub at: At,
     pub movetable: Named<10>,
     pub name: Named<10>,
 }
 
-/// A movetable (VII.2).
 #[derive(Clone, Debug)]
 pub struct MovetableEntry {
-    /// Its lines, at most eight.
-    pub lines: Vec<MovetableLine>,
+    pub lines: Vec<MovetableLine>, // at most eight
     pub name: Named<10>,
 }
 
@@ -59,18 +54,12 @@ pub struct PointAt {
 #[derive(Clone, Debug)]
 pub struct ArrayEntry {
     pub name: Named<10>,
-    /// Number of dimensions, 1 or 2.
-    pub dimensions: i32,
-    /// Elements in the first dimension.
-    pub columns: i32,
-    /// Elements in the second dimension, or 1.
-    pub rows: i32,
-    /// Offset in the first dimension.
-    pub column_step: Named<10>,
-    /// Offset in the second dimension.
-    pub row_step: Option<Named<10>>,
-    /// `# pres`.
-    pub present: i32,
+    pub dimensions: i32,             // 1 or 2
+    pub columns: i32,                // elements of the first dimension
+    pub rows: i32,                   // elements of the second dimension, or 1
+    pub column_step: Named<10>,      // in the first dimension
+    pub row_step: Option<Named<10>>, // in the second dimension
+    pub present: i32,                // `# pres`
 }
 
 /// `-own-` (VII.5).
@@ -94,18 +83,15 @@ pub struct TrajEntry {
 pub struct ObjectEntry {
     pub name: Named<16>,
     pub grip: i32,
-    /// Place of name and grip number, to underline.
-    pub at: At,
-    /// Approach, grasp, force and depart, as in the form.
-    pub values: [i32; 4],
+    pub at: At,           // name and grip number, to underline
+    pub values: [i32; 4], // approach, grasp, force and depart
 }
 
-/// A record entered in Show mode, `:S … <= … :R >FILE` (VII.7.2, VII.7.4).
+/// A record of Show mode, `:S … <= … :R >FILE` (VII.7.2, VII.7.4).
 #[derive(Clone, Debug)]
 pub struct ShowEntry<const N: usize> {
     pub object: Named<16>,
-    /// The other variables, in the order of the record.
-    pub values: [i32; N],
+    pub values: [i32; N], // in the order of the record
 }
 
 /// `-o-loc-` (VII.7.3).
@@ -132,27 +118,20 @@ pub struct ViewEntry {
     pub id: i32,
     pub place: Typed,
     pub movetable: Named<10>,
-    /// Type of the frame to which the movetable is applied.
-    pub offset_from: RefType,
-    /// Expected range, mm.
-    pub range: i32,
-    /// `en`.
-    pub enabled: bool,
+    pub offset_from: RefType, // of the frame for the movetable
+    pub range: i32,           // expected, mm
+    pub enabled: bool,        // `en`
 }
 
 /// `-appr` or `-dept` (VII.7.7).
 #[derive(Clone, Debug)]
 pub struct ApprDeptEntry {
     pub direction: Direction,
-    /// Object, view of an object, or location.
-    pub subject: Typed,
-    /// Grip number, 0 for a location.
-    pub grip: i32,
-    /// Location of the object; `None` if the subject is itself a location.
-    pub place: Option<Typed>,
+    pub subject: Typed,       // object, view of an object, or location
+    pub grip: i32,            // 0 for a location
+    pub place: Option<Typed>, // `None`: the subject is itself a location
     pub points: Vec<PointEntry>,
-    /// Place from the compiling word to the location.
-    pub at: At,
+    pub at: At, // from the compiling word to the location
 }
 
 /// `-sen-` (extension): a sensor of a guarded move.
@@ -160,17 +139,14 @@ pub struct ApprDeptEntry {
 pub struct SensorEntry {
     pub name: Named<10>,
     pub source: SensorSource,
-    /// Number of the holster or beam.
-    pub which: i32,
-    /// Threshold of a force or moment, lb or in lb.
-    pub threshold: i32,
+    pub which: i32,     // of the holster or beam
+    pub threshold: i32, // of a force or moment, lb or in lb
 }
 
 /// `-rel-` (extension): a relative move of a command at a location.
 #[derive(Clone, Debug)]
 pub struct RelativeEntry {
-    /// Name that a command looks for.
-    pub name: Named<10>,
+    pub name: Named<10>, // that a command looks for
     pub place: Typed,
     pub para: TrajPara,
     pub movetable: Named<10>,
@@ -181,8 +157,7 @@ pub struct RelativeEntry {
 /// `-file-` (extension): the greatest number of records in a file.
 #[derive(Clone, Debug)]
 pub struct FileEntry {
-    /// The file, one of [`super::store::FILE_NAMES`].
-    pub file: &'static str,
+    pub file: &'static str, // one of [`super::store::FILE_NAMES`]
     pub records: usize,
     pub at: At,
 }
@@ -190,34 +165,21 @@ pub struct FileEntry {
 #[derive(Clone, Debug)]
 pub enum Entry {
     File(FileEntry),
-    /// VII.1.
-    Pose(PoseEntry),
-    /// VII.2.
-    Movetable(MovetableEntry),
-    /// VII.3.
-    Locpt(PointAt),
-    /// VII.4, dimensions.
-    Array(ArrayEntry),
-    /// VII.4, location.
-    ArrayAt(PointAt),
-    /// VII.5.
-    Owner(OwnerEntry),
-    /// VII.6.
-    Traj(TrajEntry),
-    /// VII.7.1.
-    Object(ObjectEntry),
-    /// VII.7.2: `endeff-id#`, `tray-grip#`.
-    ObjGrips(ShowEntry<2>),
-    /// VII.7.3.
-    ObjLoc(ObjLocEntry),
+    Pose(PoseEntry),           // VII.1
+    Movetable(MovetableEntry), // VII.2
+    Locpt(PointAt),            // VII.3
+    Array(ArrayEntry),         // VII.4, dimensions
+    ArrayAt(PointAt),          // VII.4, location
+    Owner(OwnerEntry),         // VII.5
+    Traj(TrajEntry),           // VII.6
+    Object(ObjectEntry),       // VII.7.1
+    ObjGrips(ShowEntry<2>),    // VII.7.2: `endeff-id#`, `tray-grip#`
+    ObjLoc(ObjLocEntry),       // VII.7.3
     /// VII.7.4: appr, grasp size, force, release size, table position, flip angle.
     PedPara(ShowEntry<6>),
-    /// VII.7.5.
-    Grip(GripEntry),
-    /// VII.7.6.
-    View(ViewEntry),
-    /// VII.7.7.
-    ApprDept(ApprDeptEntry),
+    Grip(GripEntry),         // VII.7.5
+    View(ViewEntry),         // VII.7.6
+    ApprDept(ApprDeptEntry), // VII.7.7
     Sensor(SensorEntry),
     Relative(RelativeEntry),
 }

@@ -1,9 +1,8 @@
 //! Errors of task data that are used nevertheless, and the commands that each error concerns.
 //!
-//! An error of a loaded record concerns the commands that use the record. Any other error may have removed
-//! entries of its block. If the block names objects, the error concerns the commands for these objects.
-//! Otherwise it concerns the commands that name something in that block, or use a record whose line does. If no
-//! names are known, it concerns all commands that use task data.
+//! The error of a record concerns the commands that use the record. Any other error may have removed entries of its
+//! block. It concerns the commands for the objects that the block names; otherwise those that use its names or
+//! records. Without known names it concerns all commands that use task data.
 
 use diagnostics::{At, Diagnostic, Source};
 use interfaces::HwsCommand;
@@ -11,35 +10,28 @@ use rcs_core::name::Name16;
 
 use super::{Store, source::blocks, verdict::is_bare};
 
-/// An error of the task data.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Fault {
     pub place: String,
-    /// The finding and the expectation, in one sentence.
-    pub message: String,
+    pub message: String, // finding and expectation, in one sentence
     scope: Scope,
 }
 
-/// The commands that an error concerns.
 #[derive(Clone, Debug, PartialEq, Eq)]
 enum Scope {
-    /// Those that use the record that is entered here.
-    Record(At),
-    /// Those for one of these objects.
-    Objects(Vec<String>),
-    /// Those that use one of these names.
-    Names(Vec<String>),
+    Record(At),           // that use the record entered here
+    Objects(Vec<String>), // for one of these objects
+    Names(Vec<String>),   // that use one of these names
     Any,
 }
 
 impl Fault {
-    /// An error of the record that is entered at a place.
     #[must_use]
     pub const fn of_record(at: At, place: String, message: String) -> Self {
         Self { place, message, scope: Scope::Record(at) }
     }
 
-    /// An error that a load or a later check has found in the data of a store.
+    /// An error that a check has found in the data of a store.
     #[must_use]
     pub fn found(diagnostic: &Diagnostic, store: &Store) -> Self {
         let scope = diagnostic.at().map_or(Scope::Any, |at| {
@@ -60,12 +52,12 @@ impl Fault {
         Self { place: diagnostic.place(), message: diagnostic.message().to_owned(), scope }
     }
 
-    /// True for the same error in another generation of the data.
+    /// True for the same error in another generation.
     pub(super) fn is_same(&self, other: &Self) -> bool {
         (&self.place, &self.message) == (&other.place, &other.message)
     }
 
-    /// Place and message in one line.
+    /// One line.
     #[must_use]
     pub fn in_line(&self) -> String {
         let colon = if self.place.is_empty() { "" } else { ": " };
@@ -74,7 +66,7 @@ impl Fault {
 }
 
 impl Store {
-    /// The errors that concern a command, which uses the records entered at the places of `used`.
+    /// The errors that concern a command; `used` has the places of its records.
     #[must_use]
     pub fn faults_of(&self, command: &HwsCommand, used: &[At]) -> Vec<&Fault> {
         if self.faults().next().is_none() || is_bare(command) {
@@ -100,7 +92,6 @@ impl Store {
         self.faults.iter().chain(&self.found)
     }
 
-    /// Add errors that another check has found.
     pub fn add_faults(&mut self, faults: impl IntoIterator<Item = Fault>) {
         self.found.extend(faults);
     }
@@ -113,7 +104,6 @@ fn line_at(at: At, sources: &[Source]) -> Option<&str> {
     source.text.get(begin..)?.lines().next()
 }
 
-/// The names in the block with a place.
 fn names_beside(at: At, sources: &[Source]) -> Vec<String> {
     let index = usize::try_from(at.source).unwrap_or(usize::MAX);
     let Some(source) = sources.get(index) else { return Vec::new() };
@@ -122,7 +112,7 @@ fn names_beside(at: At, sources: &[Source]) -> Vec<String> {
     block.lines.iter().flat_map(|line| names_in(line.text)).collect()
 }
 
-/// The names in a line: the words with a capital letter.
+/// The words with a capital letter.
 fn names_in(line: &str) -> impl Iterator<Item = String> + use<'_> {
     let is_name = |word: &&str| word.bytes().any(|byte| byte.is_ascii_uppercase());
     line.split_whitespace().filter(is_name).map(str::to_owned)

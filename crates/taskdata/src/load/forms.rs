@@ -19,25 +19,17 @@ use super::{
     store::{FILE_NAMES, FILE_RECORDS},
 };
 
-/// Range of a coordinate or a translation, 0.01 in: twice the reach of the arm.
-const COORDINATE: RangeInclusive<i32> = -20_000..=20_000;
-/// Range of a rotation, 0.01 degree.
-const ANGLE: RangeInclusive<i32> = -18_000..=18_000;
+const COORDINATE: RangeInclusive<i32> = -20_000..=20_000; // 0.01 in: twice the reach
+const ANGLE: RangeInclusive<i32> = -18_000..=18_000; // 0.01 degree
 pub(super) const GRIP: RangeInclusive<i32> = -99..=99;
-/// Range of the opening of a gripper, 0.01 in: the parts gripper opens to 5.00 in.
-pub(super) const OPENING: RangeInclusive<i32> = 0..=500;
-/// Range of a grasp force, lb.
-pub(super) const FORCE: RangeInclusive<i32> = 0..=200;
-/// Range of the number of elements in a dimension of an array.
-const ELEMENTS: RangeInclusive<i32> = 1..=100;
-/// Range of `vel-max`: 140 counts are the 14 in/s of the link (A 2.3).
-const VELOCITY: RangeInclusive<i32> = 1..=140;
-/// Range of `acc-fac` and `smooth-acc`.
-const FACTOR: RangeInclusive<i32> = 1..=1000;
-/// Range of `brk-dst`, 0.01 in.
-const BREAK_DISTANCE: RangeInclusive<i32> = 0..=5000;
+pub(super) const OPENING: RangeInclusive<i32> = 0..=500; // 0.01 in: the parts gripper opens to 5.00 in
+pub(super) const FORCE: RangeInclusive<i32> = 0..=200; // lb
+const ELEMENTS: RangeInclusive<i32> = 1..=100; // per dimension of an array
+const VELOCITY: RangeInclusive<i32> = 1..=140; // 140 counts are the link's 14 in/s (A 2.3)
+const FACTOR: RangeInclusive<i32> = 1..=1000; // `acc-fac` and `smooth-acc`
+const BREAK_DISTANCE: RangeInclusive<i32> = 0..=5000; // 0.01 in
 
-/// Types of the locations at which an entry can apply.
+/// Locations at which an entry can apply.
 pub(super) const PLACES: &[RefType] = &[RefType::LocationPoint, RefType::Array, RefType::Owner, RefType::Any];
 const ENDS: &[RefType] = &[RefType::LocationPoint, RefType::Array, RefType::Owner];
 const MEMBERS: &[RefType] = &[RefType::LocationPoint, RefType::Array, RefType::Pose];
@@ -47,8 +39,7 @@ const OFFSET_FROM: &[RefType] = &[RefType::LocationPoint, RefType::Array, RefTyp
 const SUBJECTS: &[RefType] =
     &[RefType::Object, RefType::View, RefType::LocationPoint, RefType::Array, RefType::Owner, RefType::Any];
 
-/// `-file- name records`: the declaration of a file (VII, blocks 100-199). The manual describes the purpose of
-/// declarations but prints none; this form is an extension.
+/// `-file- name records` (VII, blocks 100-199): the manual prints no declaration, so this form is an extension.
 pub fn file(p: &mut Parser<'_, '_>) -> Result<Entry, Skip> {
     let word = p.peek();
     let Some((word, file)) = word.and_then(|w| Some((w, *FILE_NAMES.iter().find(|f| **f == w.text)?))) else {
@@ -127,8 +118,7 @@ fn movetable_entry(p: &mut Parser<'_, '_>) -> Result<Entry, Skip> {
             return Err(p.expected("---- or -mtb- after the values of a line"));
         }
     }
-    // Most movetables, which are numerous, have one line.
-    lines.shrink_to_fit();
+    lines.shrink_to_fit(); // most have one line
     let name = p.name("name of the movetable")?;
     if let Some(at) = ninth {
         let message = format!("a movetable has at most {MAX_LINES} lines, {} has {}", name.name, lines.len());
@@ -137,7 +127,7 @@ fn movetable_entry(p: &mut Parser<'_, '_>) -> Result<Entry, Skip> {
     Ok(Entry::Movetable(MovetableEntry { lines, name }))
 }
 
-/// A coordinate system and its one to three values (Table VII.1).
+/// A coordinate system with one to three values (Table VII.1).
 fn movetable_line(p: &mut Parser<'_, '_>) -> Result<MovetableLine, Skip> {
     let word = p.peek().map_or("", |w| w.text);
     let Some(system) = System::from_text(word).filter(|s| *s != System::None) else {
@@ -176,7 +166,7 @@ pub fn array(p: &mut Parser<'_, '_>) -> Result<Entry, Skip> {
     let name = p.name("name of the array")?;
     let word = p.peek();
     let dimensions = p.integer("number of dimensions", 1..=2)?;
-    // With a wrong number of dimensions the meaning of the rest is unknown.
+    // With a wrong number of dimensions the rest has no known meaning.
     if word.is_some_and(|word| word.text.parse() != Ok(dimensions)) {
         return Err(Skip);
     }
@@ -221,8 +211,7 @@ fn points(p: &mut Parser<'_, '_>) -> Result<Vec<PointEntry>, Skip> {
         let target = if p.take_if("stop").is_some() { None } else { Some(p.typed("path point", POINTS)?) };
         points.push(PointEntry { para, target, at: word.at.to(p.last_at()) });
     }
-    // Most paths, which are numerous, have one or two points.
-    points.shrink_to_fit();
+    points.shrink_to_fit(); // most paths have one or two points
     Ok(points)
 }
 

@@ -1,7 +1,5 @@
-//! Forms that are not in the manual: sensors of guarded moves, and the relative moves of holsters and tool drum.
-//!
-//! In the manual both are code (V.1.1, V.3.1). Here they are data, like all dependences on the cell. The forms
-//! have the style of the manual:
+//! Forms for sensors of guarded moves and for relative moves at holsters and tool drum. They are extensions: in the
+//! manual both are code (V.1.1, V.3.1).
 //!
 //! ```text
 //! ( -sen-  "sensor"   source  which  threshold )
@@ -23,30 +21,24 @@ use super::{
     parser::{BEGINNINGS, Parser, Skip, is_compiling_word, is_integer},
 };
 
-/// The start of a relative move.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Beginning {
-    /// From the pose of the command's location.
-    Location,
-    /// From the end of another relative move of the same command.
-    After(&'static str),
+    Location,            // pose of the command's location
+    After(&'static str), // end of another relative move of the command
 }
 
-/// A relative move that a command of E-move looks up.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct KnownMove {
-    /// Its name in the task data.
     pub name: &'static str,
     pub from: Beginning,
-    /// True if a sensor guards it (GO-UNTIL, GO-WHILE).
-    pub guarded: bool,
+    pub guarded: bool, // by a sensor: GO-UNTIL, GO-WHILE
 }
 
 const fn known(name: &'static str, from: Beginning, guarded: bool) -> KnownMove {
     KnownMove { name, from, guarded }
 }
 
-/// All relative moves that commands look up (V.2.1), in the order in which a command makes them.
+/// All that commands look up (V.2.1), in the order of a command.
 pub const RELATIVE_MOVES: &[KnownMove] = &[
     known("QCD-DOWN", Beginning::Location, true),
     known("QCD-SEAT", Beginning::After("QCD-DOWN"), true),
@@ -68,20 +60,16 @@ pub const RELATIVE_MOVES: &[KnownMove] = &[
     known("REM-OUT", Beginning::Location, true),
 ];
 
-/// The relative move with a name, if a command looks it up.
+/// `None` if no command looks up the name.
 #[must_use]
 pub fn relative_move_named(name: &str) -> Option<&'static KnownMove> {
     RELATIVE_MOVES.iter().find(|known| known.name == name)
 }
 
-/// Range of a threshold, lb or in lb: well above the force of the tool gripper.
-const THRESHOLD: RangeInclusive<i32> = -1000..=1000;
-/// Numbers of the holsters: right, left and centre.
-const HOLSTER: RangeInclusive<i32> = 1..=3;
-/// One of the eight beams, or 0 for any (III.3.4).
-const BEAM: RangeInclusive<i32> = 0..=8;
+const THRESHOLD: RangeInclusive<i32> = -1000..=1000; // lb or in lb: well above the tool gripper's
+const HOLSTER: RangeInclusive<i32> = 1..=3; // right, left and centre
+const BEAM: RangeInclusive<i32> = 0..=8; // one of eight, or 0 for any (III.3.4)
 
-/// `-sen- "sensor" source which threshold`.
 pub(super) fn sensor(p: &mut Parser<'_, '_>) -> Result<Entry, Skip> {
     let name = p.name("name of the sensor")?;
     let Some(source) = p.peek().and_then(|w| SensorSource::from_text(w.text)) else {
@@ -122,8 +110,7 @@ pub(super) fn relative_move(p: &mut Parser<'_, '_>) -> Result<Entry, Skip> {
     Ok(Entry::Relative(RelativeEntry { name, place, para, movetable, sensor, at }))
 }
 
-/// True if the next word can be a sensor's name: neither the beginning of another entry, misspelt or not, nor
-/// a heading.
+/// False if the next word begins another entry, misspelt or not, or a heading.
 fn sensor_follows(p: &Parser<'_, '_>) -> bool {
     p.peek().is_some_and(|word| {
         let text = word.text;

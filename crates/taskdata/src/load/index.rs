@@ -1,43 +1,35 @@
-//! Building of the indexes of the files; [`crate::files::index`] describes the search.
-//!
-//! The keys are put into buckets of about three. Each bucket gets a pilot, the fullest bucket first, while most slots
-//! are free: the first of 256 pilots that maps all keys of the bucket to free slots. Without such a pilot, which for
-//! 100,000 keys happens less than once in a million times, the build starts again with another seed.
+//! Builds the indexes of [`crate::files::index`]. Keys are put into buckets of about three. Each bucket, the fullest
+//! first, gets the first of 256 pilots that maps its keys to free slots. If there is none, which for 100,000 keys
+//! happens less than once in a million times, the build starts again with another seed.
 
 use crate::files::{
     Index,
     index::{CROWDED, ENTRIES, EntryAt, Group, Key, PlaceIndex, Slot, bucket_of, hash_of, run_at, slot_of},
 };
 
-/// Average number of keys in a bucket.
-const KEYS_A_BUCKET: usize = 3;
-/// Greatest number of keys in a bucket; with more, the build starts again with another seed.
-const FULLEST: usize = 32;
+const KEYS_A_BUCKET: usize = 3; // average
+const FULLEST: usize = 32; // keys per bucket; with more, another seed is used
 
-/// A key of a record. Records may share a key.
+/// Records may share a key.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Pair {
     pub key: Key,
-    /// Number of the record from 1.
-    pub number: u32,
-    /// The field of the record that look-ups need; 0 in an index with shared keys.
-    pub answer: u32,
+    pub number: u32, // from 1
+    pub answer: u32, // the field that look-ups need; 0 with shared keys
 }
 
 trait Cells: Default {
-    /// A table of `slots` empty slots.
     fn empty(slots: usize) -> Self;
 
-    /// The key that determines the slot of a pair.
     fn key(pair: &Pair) -> Key {
         pair.key
     }
 
-    /// Fill a slot with all pairs of a key, in the order of their records.
+    /// All pairs of a key, in the order of their records.
     fn put<'p>(&mut self, slot: usize, pairs: impl Iterator<Item = &'p Pair> + Clone);
 }
 
-/// Cells, each found with the pilot of the bucket of its key.
+/// Each cell is found with the pilot of its key's bucket.
 #[derive(Clone, Debug, Default)]
 struct Table<C> {
     pilots: Vec<u8>,
@@ -48,22 +40,20 @@ struct Table<C> {
 #[derive(Clone, Copy, Debug, Default)]
 struct Spread {
     hash: u64,
-    /// Position of its pair, from 0.
-    pair: u32,
+    pair: u32, // of its pair, from 0
 }
 
 impl<C: Cells> Table<C> {
-    /// The table of keys in the order of their records.
+    /// Keys in the order of their records.
     fn new(pairs: &[Pair]) -> Self {
         if pairs.is_empty() {
             return Self::default();
         }
-        // One fifth of the slots stays free. Fewer would cost time here, more would cost cache.
+        // One fifth of the slots stays free: fewer would take longer here, more would fill the cache.
         let slots = pairs.len() + pairs.len() / 4 + 1;
         (0..).find_map(|seed| Self::placed(pairs, slots, seed)).unwrap_or_default()
     }
 
-    /// The table with this seed; `None` if a bucket has no pilot.
     fn placed(pairs: &[Pair], slots: usize, seed: u64) -> Option<Self> {
         let buckets = pairs.len() / KEYS_A_BUCKET + 1;
         let hashes: Vec<u64> = pairs.iter().map(|pair| hash_of(C::key(pair), seed)).collect();
@@ -80,7 +70,7 @@ impl<C: Cells> Table<C> {
         Some(table)
     }
 
-    /// Put the keys of a bucket, in which equal keys are neighbours, into slots. Returns its pilot.
+    /// Puts the keys of a bucket into slots; equal keys are neighbours. Returns the pilot.
     fn place(&mut self, pairs: &[Pair], keys: &[Spread], taken: &mut Taken) -> Option<u8> {
         let mut places = [Place::default(); FULLEST];
         let mut count = 0;
@@ -92,7 +82,7 @@ impl<C: Cells> Table<C> {
         for (run, &Place { slot, .. }) in keys.chunk_by(|a, b| a.hash == b.hash).zip(&places) {
             let run = run.iter().filter_map(|spread| pairs.get(long(spread.pair)));
             let key = C::key(run.clone().next()?);
-            // Two different keys with the same hash: another seed separates them.
+            // Another seed separates different keys with the same hash.
             if !run.clone().all(|pair| C::key(pair) == key) {
                 return None;
             }
@@ -102,7 +92,6 @@ impl<C: Cells> Table<C> {
     }
 }
 
-/// The cells of an [`Index`].
 #[derive(Clone, Debug, Default)]
 struct Numbered {
     slots: Vec<Slot>,
@@ -132,7 +121,6 @@ impl Cells for Numbered {
 pub(super) struct OwnedIndex(Table<Numbered>);
 
 impl OwnedIndex {
-    /// An index of keys in the order of their records.
     pub fn new(pairs: &[Pair]) -> Self {
         Self(Table::new(pairs))
     }
@@ -147,7 +135,7 @@ impl OwnedIndex {
         self.0.cells.slots.iter().filter(|slot| slot.number > 0).map(|slot| slot.key)
     }
 
-    /// For each key that several records share, the record numbers.
+    /// The record numbers of each key that records share.
     pub fn shared(&self) -> impl Iterator<Item = &[u32]> {
         let mut position = 1;
         std::iter::from_fn(move || {
@@ -158,11 +146,10 @@ impl OwnedIndex {
     }
 }
 
-/// The cells of a [`PlaceIndex`].
 #[derive(Clone, Debug, Default)]
 struct Grouped {
     groups: Vec<Group>,
-    /// Pairs of the keys that have too many locations for a group.
+    /// Keys with too many locations for a group.
     crowded: Vec<Pair>,
 }
 
@@ -179,7 +166,7 @@ impl Cells for Grouped {
         let (Some(first), Some(group)) = (pairs.clone().next(), self.groups.get_mut(slot)) else { return };
         let mut entries = [EntryAt::default(); ENTRIES];
         let mut free = entries.iter_mut();
-        // Two records for one location are an error, which the index of `crowded` keys finds.
+        // The index of `crowded` keys finds two records for one location.
         let mut known = [0; ENTRIES];
         let fits = pairs.clone().zip(0..).all(|(pair, i)| {
             let at = pair.key.place().filter(|at| !known.contains(at));
@@ -199,7 +186,7 @@ impl Cells for Grouped {
     }
 }
 
-/// An index by key and location that owns its tables.
+/// Owns its tables.
 #[derive(Clone, Debug, Default)]
 pub(super) struct OwnedPlaceIndex {
     table: Table<Grouped>,
@@ -207,7 +194,6 @@ pub(super) struct OwnedPlaceIndex {
 }
 
 impl OwnedPlaceIndex {
-    /// An index of keys with locations in the order of their records.
     pub fn new(pairs: &[Pair]) -> Self {
         let mut table: Table<Grouped> = Table::new(pairs);
         let crowded = OwnedIndex::new(&std::mem::take(&mut table.cells.crowded));
@@ -219,20 +205,19 @@ impl OwnedPlaceIndex {
         PlaceIndex { pilots, groups: &cells.groups, seed: *seed, crowded: self.crowded.view() }
     }
 
-    /// For each key that several records share at one location, the record numbers.
+    /// The record numbers of each key that records share at one location.
     pub fn shared(&self) -> impl Iterator<Item = &[u32]> {
         self.crowded.shared()
     }
 }
 
-/// A hash and the slot to which a pilot maps it.
 #[derive(Clone, Copy, Default)]
 struct Place {
     hash: u64,
     slot: usize,
 }
 
-/// Occupied slots, one bit each: small enough for the fastest cache, because they are tested often.
+/// Occupied slots, one bit each, so that they fit into the fastest cache.
 struct Taken {
     bits: Vec<u64>,
     slots: usize,
@@ -247,8 +232,7 @@ impl Taken {
         self.bits.get(slot / 64).is_some_and(|word| word & (1 << (slot % 64)) == 0)
     }
 
-    /// The first pilot that maps each hash to a free slot of its own. Marks these slots as occupied and stores them in
-    /// `hashes`.
+    /// The first pilot that maps each hash to a free slot. Marks the slots and stores them in `hashes`.
     fn pilot(&mut self, hashes: &mut [Place]) -> Option<u8> {
         let mut fits = |pilot: &u8| {
             (0..hashes.len()).all(|count| {
@@ -268,7 +252,7 @@ impl Taken {
     }
 }
 
-/// The keys, sorted by bucket, and the position where each bucket begins, followed by the end of the last one.
+/// The keys, sorted by bucket, and the start of each bucket, followed by the end of the last.
 fn spread(hashes: &[u64], buckets: usize) -> (Vec<Spread>, Vec<u32>) {
     let mut begins = vec![0_u32; buckets + 1];
     for &hash in hashes {
@@ -290,7 +274,7 @@ fn spread(hashes: &[u64], buckets: usize) -> (Vec<Spread>, Vec<u32>) {
     (spread, begins)
 }
 
-/// The buckets, the fullest first; `begins` has the position where each begins.
+/// Buckets, the fullest first; `begins` has their starts.
 fn fullest_first(begins: &[u32]) -> Vec<u32> {
     let emptiness = |range: &[u32]| match *range {
         [begin, end] => FULLEST.saturating_sub(long(end.saturating_sub(begin))),
@@ -315,7 +299,7 @@ fn fullest_first(begins: &[u32]) -> Vec<u32> {
     order
 }
 
-/// Replace each count by the sum of all counts up to it.
+/// Replaces each count by the sum up to it.
 fn add_up(counts: &mut [u32]) {
     let mut sum = 0;
     for count in counts {
@@ -338,7 +322,6 @@ mod tests {
     use proptest::prelude::*;
     use std::collections::BTreeMap;
 
-    /// Pairs of the keys with numbers from 1.
     fn numbered(keys: &[Key]) -> Vec<Pair> {
         keys.iter().zip(1..).map(|(&key, number)| Pair { key, number, answer: 0 }).collect()
     }

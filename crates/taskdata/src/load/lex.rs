@@ -1,8 +1,8 @@
 //! Words of a block, without comments.
 //!
 //! `%` at the beginning of a word makes the rest of the line a comment (IV.3.2). A word that begins with `(` begins a
-//! comment that ends with the next `)`, possibly on a later line; such comments do not nest (VIII.9; SPECNOTES.md, Task
-//! data). Words are separated by blanks, so `(` within a word, as in `A(B`, is part of a name.
+//! comment up to the next `)`, possibly on a later line, without nesting (VIII.9; SPECNOTES.md, Task data). Only
+//! blanks separate words, so `(` within a word, as in `A(B`, is part of a name.
 
 use diagnostics::{At, Problems};
 
@@ -10,14 +10,12 @@ use super::source::{Block, SourceLine};
 
 #[derive(Clone, Copy, Debug)]
 pub struct Word<'a> {
-    /// The text, without blanks.
-    pub text: &'a str,
+    pub text: &'a str, // without blanks
     pub at: At,
-    /// True if it is the first word of its line.
-    pub first: bool,
+    pub first: bool, // of its line
 }
 
-/// True for a separator of words. A tab also separates words, but is reported as an error of the block.
+/// A tab separates words, too, but is reported as an error of the block.
 const fn is_blank(byte: u8) -> bool {
     matches!(byte, b' ' | b'\t')
 }
@@ -26,12 +24,11 @@ fn short(value: usize) -> u32 {
     u32::try_from(value).unwrap_or(u32::MAX)
 }
 
-/// The place of a piece of a line.
 fn piece(line: &SourceLine<'_>, from: usize, length: usize) -> At {
     At { start: line.at.start.saturating_add(short(from)), length: short(length), ..line.at }
 }
 
-/// The words of one line, for text that is read line by line. An open comment ends with the line.
+/// An open comment ends with the line.
 #[must_use]
 pub fn words_of_line<'a>(line: &SourceLine<'a>) -> Vec<Word<'a>> {
     let mut words = Vec::new();
@@ -40,10 +37,9 @@ pub fn words_of_line<'a>(line: &SourceLine<'a>) -> Vec<Word<'a>> {
     words
 }
 
-/// Number of words per line for which space is reserved.
-const WORDS_A_LINE: usize = 8;
+const WORDS_A_LINE: usize = 8; // reserved
 
-/// The words of a block. An unclosed comment is an error.
+/// An unclosed comment is an error.
 pub fn words<'a>(block: &Block<'a>, problems: &mut Problems) -> Vec<Word<'a>> {
     let mut words = Vec::with_capacity(block.lines.len().saturating_mul(WORDS_A_LINE));
     let mut open = None;
@@ -61,12 +57,12 @@ pub fn words<'a>(block: &Block<'a>, problems: &mut Problems) -> Vec<Word<'a>> {
     words
 }
 
-/// Add the words of a line; `open` is the beginning of an unclosed comment in parentheses.
+/// `open` is the beginning of an unclosed comment in parentheses.
 fn scan<'a>(line: &SourceLine<'a>, open: &mut Option<At>, words: &mut Vec<Word<'a>>) {
     let bytes = line.text.as_bytes();
     let mut first = true;
     let mut position = 0;
-    // The position of the next byte with a property; lines are short, so the bytes are tested one by one.
+    // Lines are short, so the bytes are tested one by one.
     let next = |from: usize, meant: fn(u8) -> bool| {
         bytes.get(from..).and_then(|rest| rest.iter().position(|b| meant(*b))).map(|ahead| from + ahead)
     };
@@ -87,7 +83,7 @@ fn scan<'a>(line: &SourceLine<'a>, open: &mut Option<At>, words: &mut Vec<Word<'
             }
             Some(_) => {
                 position = next(begin, is_blank).unwrap_or(bytes.len());
-                // A blank is a character of one byte, so a word begins and ends at the boundary of a character.
+                // A blank is one byte, so a word begins and ends at a character boundary.
                 let text = line.text.get(begin..position).unwrap_or_default();
                 words.push(Word { text, at: piece(line, begin, text.len()), first });
                 first = false;

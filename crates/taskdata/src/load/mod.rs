@@ -1,17 +1,16 @@
 //! Reading, checking and linking task data (feature `load`).
 //!
-//! Each stage is a module, and every stage continues after an error, so that one load reports all errors:
+//! Every stage continues after an error, so one load reports all errors:
 //!
 //! 1. [`source`]: files into blocks; [`lex`]: blocks into words;
 //! 2. [`parse`], [`forms`] and [`guarded`]: words into [`entries`];
 //! 3. [`directory`]: selects the blocks to load (Figure VIII.12);
 //! 4. `link`: names into record numbers, duplicates, unknown names;
-//! 5. `check`: finds errors that would stop a command, and checks that the robot can reach every target;
-//! 6. [`store`]: the files; [`origins`]: where each record was entered; [`Diagnostics`]: all findings, with their
-//!    places.
+//! 5. `check`: errors that would stop a command, and targets out of reach;
+//! 6. [`store`]: the files; [`origins`]: where each record was entered; [`Diagnostics`]: all findings.
 //!
-//! [`mod@print`] writes entries as forms. [`job`] reads the job files, which are stored with the blocks, and
-//! [`commands`] reads the blocks with commands for Task. [`verdict`] checks a command against the task data.
+//! [`mod@print`] writes entries as forms; [`job`] reads job files; [`commands`] reads blocks of commands for Task;
+//! [`verdict`] checks a command against the task data.
 
 pub mod alike;
 mod check;
@@ -48,7 +47,7 @@ pub use origins::Origins;
 pub use store::Store;
 
 impl Store {
-    /// Load all files `*.blk` under a data directory.
+    /// Loads all files `*.blk` under a data directory.
     ///
     /// # Errors
     /// The report with every error of the data, if it has one.
@@ -67,8 +66,7 @@ impl Store {
         Self::default().loaded_with(sources, problems)
     }
 
-    /// Like [`Store::load`], but data with errors are also used: [`Store::faults_of`] lists the errors that
-    /// concern a command.
+    /// Data with errors are used, too: [`Store::faults_of`] lists the errors that concern a command.
     #[must_use]
     pub fn load_with_faults(directory: &Path) -> (Self, Diagnostics) {
         Self::load_part(directory).unwrap_or_else(|(part, report)| (part.store, *report))
@@ -81,7 +79,7 @@ impl Store {
         loaded.unwrap_or_else(|(part, report)| (part.store, *report))
     }
 
-    /// Load texts from another source, such as the attachments of a log.
+    /// Loads texts from another source, such as the attachments of a log.
     ///
     /// # Errors
     /// The report with every error of the data, if it has one.
@@ -89,19 +87,16 @@ impl Store {
         Self::default().with_blocks(sources)
     }
 
-    /// The next generation of the data: these data with more blocks loaded; `self` does not change
-    /// (docs/design/ownership.md "Reload").
+    /// The next generation of the data (docs/design/ownership.md "Reload"); `self` does not change. An entry with the
+    /// key of an existing one replaces it and keeps its record number; others are appended. Nothing is removed, except
+    /// the locations of an object, which newer object location entries replace. Paths, points, parameters and object
+    /// locations get new numbers.
     ///
-    /// An entry with the key of an existing entry (a pose of the same name, the same grip of the same object at
-    /// the same location …) replaces it and keeps its record number; other entries are appended. No entry is
-    /// removed, except the locations of an object, which its newer object location entries replace together.
-    /// Paths, their points and their parameters, which have no names, and object locations get new numbers.
-    ///
-    /// All blocks of the texts are loaded, like by `load` at a terminal, unless the texts have a root directory block.
-    /// A directory may also name blocks of these data. The whole new generation is checked, not only the new part.
+    /// All blocks of the texts are loaded, unless the texts have a root directory block, which may also name existing
+    /// blocks. The whole new generation is checked.
     ///
     /// # Errors
-    /// The report, if it has an error that these data lack. The new generation is then not made.
+    /// The report of an error that these data lack. There is no new generation then.
     pub fn with_blocks(&self, texts: Vec<Source>) -> Result<(Self, Diagnostics), Box<Diagnostics>> {
         let (part, report) = match self.loaded_with(texts, Problems::default()) {
             Ok(loaded) => return Ok(loaded),
@@ -117,7 +112,7 @@ impl Store {
         }
     }
 
-    /// The next generation; `problems` has the errors of unreadable files.
+    /// `problems` has the errors of unreadable files.
     fn loaded_with(
         &self,
         texts: Vec<Source>,
@@ -130,16 +125,16 @@ impl Store {
         linked.reported(self.sources.len())
     }
 
-    /// Like [`Store::with_blocks`], but without the check that the arm can reach the targets.
+    /// Like [`Store::with_blocks`], without the check of the reach.
     ///
     /// # Errors
-    /// The report, if it has an error. The new generation is then not made.
+    /// The report. There is no new generation then.
     pub fn with_blocks_untried(&self, texts: Vec<Source>) -> Result<(Self, Diagnostics), Box<Diagnostics>> {
         let linked = self.linked(texts, Problems::default());
         linked.reported(self.sources.len()).map_err(|(_, report)| report)
     }
 
-    /// Read, link and check everything except the reach.
+    /// Everything except the reach.
     fn linked(&self, texts: Vec<Source>, mut problems: Problems) -> Linked {
         let incomplete = problems.has_errors();
         let first = self.sources.len();
@@ -157,7 +152,7 @@ impl Store {
         let blocks = self.blocks.union(&read.blocks).copied().collect();
         let (faults, found) = (Vec::new(), self.found.clone());
         let store = Self { files, indexes, sources, entries, blocks, origins, commands, faults, found };
-        // Checks of several entries need records with known names, so errors of names are reported first.
+        // Checks of several entries need known names, so errors of names are reported first.
         let whole = !problems.has_errors();
         check::check(&store.view(), &store.origins, whole, &mut problems);
         if whole {
@@ -170,13 +165,12 @@ impl Store {
 struct Linked {
     store: Store,
     problems: Problems,
-    /// Number of blocks that were read.
-    blocks: usize,
+    blocks: usize, // that were read
     unread: HashSet<String>,
 }
 
 impl Linked {
-    /// The store and its report, or, if the report has an error, the readable part; `before`: number of earlier texts.
+    /// The store and report, or the readable part if there is an error. `before`: number of earlier texts.
     fn reported(self, before: usize) -> Result<(Store, Diagnostics), (Box<Part>, Box<Diagnostics>)> {
         let Self { mut store, problems, blocks, unread } = self;
         let failed = problems.has_errors();
@@ -197,8 +191,7 @@ pub struct Part {
 }
 
 impl Part {
-    /// True if an unknown name is probably a misspelling of `near`, the nearest known one. Any other name may
-    /// be in an unreadable entry.
+    /// Probably a misspelling of `near`, the nearest known name. Another name may be in an unreadable entry.
     fn is_slip(&self, name: &str, near: Option<&str>) -> bool {
         near.is_some() && !self.unread.iter().any(|word| word.starts_with(name))
     }

@@ -1,4 +1,4 @@
-//! Places at which records were entered: for messages, and to explain the robot's path.
+//! The places at which records were entered.
 
 use diagnostics::At;
 
@@ -8,32 +8,25 @@ pub struct Origins {
     pub poses: Vec<At>,
     pub movetables: Vec<At>,
     pub locpts: Vec<At>,
-    /// ARRAY-TABLE: the name in the dimension form.
-    pub arrays: Vec<At>,
+    pub arrays: Vec<At>, // the name in the dimension form
     pub owners: Vec<At>,
     pub members: Vec<At>,
     pub trajectories: Vec<At>,
-    /// OBJ-ASCII-NAMES: the first entry of the object.
-    pub objects: Vec<At>,
-    /// END-EFF-PARA: object and grip number.
-    pub end_effs: Vec<At>,
+    pub objects: Vec<At>,  // the object's first entry
+    pub end_effs: Vec<At>, // object and grip number
     pub obj_grips: Vec<At>,
-    /// The object location form: the object.
-    pub obj_locs: Vec<At>,
+    pub obj_locs: Vec<At>, // the object
     pub ped_paras: Vec<At>,
-    /// GRIP-LOC: from the object to the movetable.
-    pub grip_locs: Vec<At>,
-    /// VISION-PARA: from the object to the movetable.
-    pub visions: Vec<At>,
-    /// The approach/depart form: from the compiling word to the location.
-    pub appr_depts: Vec<At>,
+    pub grip_locs: Vec<At>,  // from the object to the movetable
+    pub visions: Vec<At>,    // from the object to the movetable
+    pub appr_depts: Vec<At>, // from the compiling word to the location
     pub path_points: Vec<At>,
     pub sensors: Vec<At>,
     pub relative_moves: Vec<At>,
 }
 
 impl Origins {
-    /// True if a record was entered at a place.
+    /// A record was entered at this place.
     #[must_use]
     pub fn contain(&self, at: At) -> bool {
         let all = [

@@ -1,5 +1,5 @@
-//! Blocks that no directory loads (orphans), and directory lines that name no existing block. All effects of one wrong
-//! or missing number are reported in one message: an entry is not reported for a name that only an orphan defines.
+//! Blocks that no directory loads (orphans), and directory lines without a block. One message reports all effects of a
+//! wrong or missing number: there is no report for a name that only an orphan defines.
 
 use std::collections::{BTreeMap, HashMap, HashSet};
 
@@ -8,42 +8,34 @@ use os_io::text::amount;
 
 use super::{entries::LoadLine, parse::Parsed, print, source::LAST_BLOCK};
 
-/// Greatest edit distance at which a number is treated as a misspelling of another.
-const SLIP: usize = 2;
+const SLIP: usize = 2; // greatest edit distance of a misspelt number
 
 /// A block that is not loaded.
 #[derive(Debug)]
 struct Orphan {
     number: BlockNumber,
     header: At,
-    /// The header of the loaded block with the same number.
-    first: Option<At>,
+    first: Option<At>, // header of the loaded block with this number
     loads: Vec<LoadLine>,
-    /// Names that are used elsewhere and defined in it, or in a block that only it loads.
+    /// Names used elsewhere and defined in it, or in a block that only it loads.
     needed: Vec<String>,
-    /// True if it was reported with another problem.
-    told: bool,
+    told: bool, // reported with another problem
 }
 
-/// Orphans, and directory lines without a block.
 #[derive(Debug, Default)]
 pub(super) struct Orphans {
     list: Vec<Orphan>,
-    /// Words of the orphans' entries, with the position in `list` of the first orphan that has the word.
+    /// Words of the orphans' entries, with the first orphan's position in `list`.
     words: HashMap<String, usize>,
-    /// Lines that name a missing block.
-    pub(super) missing: Vec<LoadLine>,
-    /// Lines that name an already loaded block.
-    pub(super) again: Vec<LoadLine>,
-    /// Loaded directory blocks, and the blocks that they name.
-    pub(super) directories: BTreeMap<BlockNumber, Vec<BlockNumber>>,
-    /// True if a file could not be read, which may contain any name and any block. An unknown name is then
-    /// reported only if it is probably a misspelling of a known one.
+    pub(super) missing: Vec<LoadLine>, // name a missing block
+    pub(super) again: Vec<LoadLine>,   // name an already loaded block
+    pub(super) directories: BTreeMap<BlockNumber, Vec<BlockNumber>>, // with the blocks that they name
+    /// An unreadable file may contain any name and block: an unknown name is reported only if it is probably misspelt.
     pub(super) incomplete: bool,
 }
 
 impl Orphans {
-    /// Add a block that is not loaded; `first` is the header of the loaded block with the same number.
+    /// `first` is the header of the loaded block with the same number.
     pub(super) fn add(&mut self, number: BlockNumber, header: At, parsed: Parsed, first: Option<At>) {
         let position = self.list.len();
         let printed = parsed.entries.iter().flat_map(print::form);
@@ -57,18 +49,17 @@ impl Orphans {
         self.list.push(orphan);
     }
 
-    /// True if a block is missing although all files were read. Unknown names may be in it, and are reported
-    /// when the block exists again.
+    /// A block is missing although all files were read. Unknown names may be in it: they are reported when it exists.
     pub(super) fn lack_blocks(&self) -> bool {
         !self.incomplete && !self.missing.is_empty()
     }
 
-    /// Words of the entries that are not loaded.
+    /// The words of entries that are not loaded.
     pub(super) fn words(&self) -> impl Iterator<Item = &String> {
         self.words.keys()
     }
 
-    /// True if an orphan has this name.
+    /// An orphan has this name.
     pub(super) fn have(&mut self, name: &str) -> bool {
         let orphan = self.words.get(name).and_then(|&position| self.list.get_mut(position));
         if let Some(orphan) = orphan {
@@ -80,7 +71,7 @@ impl Orphans {
         false
     }
 
-    /// Report all orphans and lines, after every name was looked up.
+    /// Reports orphans and lines, after every name was looked up.
     pub(super) fn report(mut self, problems: &mut Problems) {
         let below = self.gather();
         for line in std::mem::take(&mut self.missing) {
@@ -117,8 +108,8 @@ impl Orphans {
         }
     }
 
-    /// Mark orphans that another orphan names as reported with it. Returns the numbers of the naming orphans,
-    /// and the number of others that each one represents.
+    /// Marks orphans that another orphan names. Returns the naming ones, with the number of others that each
+    /// represents.
     fn gather(&mut self) -> BTreeMap<BlockNumber, usize> {
         let named: HashSet<BlockNumber> =
             self.list.iter().flat_map(|orphan| &orphan.loads).map(|line| line.block).collect();
@@ -149,12 +140,11 @@ impl Orphans {
         below
     }
 
-    /// Report a line that names a missing block.
     fn missing(&mut self, line: LoadLine, problems: &mut Problems) {
         if self.incomplete {
             return;
         }
-        // Its header may be unreadable, or its number invalid, which is already reported.
+        // Its header may be unreadable, or its number invalid: already reported.
         let unreadable = |o: &Orphan| {
             o.number.offset == BlockNumber::UNREADABLE
                 || o.number.offset == line.block.offset && o.number.number > LAST_BLOCK
@@ -184,7 +174,6 @@ impl Orphans {
         }
     }
 
-    /// Report a line that names an already loaded block.
     fn again(&mut self, line: LoadLine, problems: &mut Problems) {
         let message = format!("{} is loaded already", line.block);
         match self.meant(line.block).filter(|orphan| orphan.first.is_none()) {
@@ -213,8 +202,8 @@ impl Orphans {
         near.min_by_key(|orphan| slip(orphan))
     }
 
-    /// The loaded directory block that should name an orphan: the last one before it, or else the one that
-    /// names the nearest number. For an orphan that is itself a directory, one that names directories.
+    /// The loaded directory block that should name an orphan: the last one before it, or else the one that names the
+    /// nearest number. A directory belongs to one that names directories.
     fn directory_of(&self, orphan: &Orphan) -> Option<BlockNumber> {
         let is_directory = |block: &BlockNumber| self.directories.contains_key(block);
         let fits = |(directory, named): &(&BlockNumber, &Vec<BlockNumber>)| {

@@ -1,5 +1,4 @@
-//! Work on all processors with results in a fixed order, so that the report of a load, or of a replay, does not depend
-//! on the number of processors.
+//! Work on all processors with results in a fixed order, independent of the number of processors.
 
 use std::{
     iter::Flatten,
@@ -9,8 +8,7 @@ use std::{
     thread, vec,
 };
 
-/// The results of `work` on `0..count`, in this order. Each processor takes the next piece after finishing one;
-/// a single piece runs in the thread of the caller.
+/// Results of `work` on `0..count`, in order. A single piece runs in the caller's thread.
 ///
 /// # Panics
 /// If `work` panics.
@@ -45,7 +43,7 @@ pub fn map<T: Send>(count: usize, work: impl Fn(usize) -> T + Sync) -> Vec<T> {
     done.into_iter().map(|(_, result)| result).collect()
 }
 
-/// Like [`map`], for `count` items in pieces of at most `size`; `work` receives the range of positions of a piece.
+/// Like [`map`], in pieces of at most `size`; `work` receives the positions of a piece.
 pub(super) fn map_pieces<T: Send>(
     count: usize,
     size: usize,
@@ -57,10 +55,9 @@ pub(super) fn map_pieces<T: Send>(
     })
 }
 
-/// Number of items that one processor takes at a time in [`map_each`].
-const ITEMS_AT_A_TIME: usize = 2048;
+const ITEMS_AT_A_TIME: usize = 2048; // for one processor in [`map_each`]
 
-/// The results of `work` on all items, in their order.
+/// The results of `work` on all items, in order.
 pub(super) fn map_each<'i, I: Sync, T: Send>(
     items: &'i [I],
     work: impl Fn(&'i I) -> T + Sync,

@@ -1,8 +1,8 @@
 //! From words to entries: the compiling words of chapter VII.
 //!
-//! A form is read as in FORTH, word by word, regardless of columns. A compiling word takes the words after it (`-pt-`,
-//! `-obj-` …), or the numbers before it (`-pose-`, `-mtb-`). After an error the rest of the entry is skipped up to the
-//! next compiling word or the next line that begins with a number, so that one error gives one message.
+//! A form is read as in FORTH, word by word. A compiling word takes the words after it (`-pt-`, `-obj-` …), or the
+//! numbers before it (`-pose-`, `-mtb-`). After an error the entry is skipped up to the next compiling word or the
+//! next line that begins with a number: one error gives one message.
 
 use diagnostics::{At, BlockNumber, Problems, nearest};
 
@@ -16,15 +16,11 @@ use super::{
 
 #[derive(Debug, Default)]
 pub struct Parsed {
-    /// Entries in their order.
-    pub entries: Vec<Entry>,
-    /// Lines that name blocks to load.
-    pub loads: Vec<LoadLine>,
-    /// Names in unreadable entries, whose use is not a second error.
-    pub broken: Vec<String>,
+    pub entries: Vec<Entry>,  // in order
+    pub loads: Vec<LoadLine>, // name blocks to load
+    pub broken: Vec<String>,  // in unreadable entries, whose use is not a second error
 }
 
-/// Read the words of a block.
 pub fn parse(words: &[Word<'_>], block: BlockNumber, header: At, problems: &mut Problems) -> Parsed {
     let end = words.last().map_or(header, |w| w.at);
     let mut parser = Parser { words, next: 0, start: 0, block, end, problems, flawed: false };
@@ -50,19 +46,19 @@ pub fn parse(words: &[Word<'_>], block: BlockNumber, header: At, problems: &mut 
 }
 
 impl<'a> Parser<'a, '_> {
-    /// Read one entry, one load line, or a word without effect.
+    /// An entry, a load line, or a word without effect.
     fn entry(&mut self, word: Word<'a>, parsed: &mut Parsed) -> Result<Option<Entry>, Skip> {
         if is_integer(word.text) {
             return self.numbers_first(parsed);
         }
-        // A heading without parentheses, as in Figure VIII.10.
+        // A heading without parentheses (Figure VIII.10).
         if word.text.starts_with('"') {
             self.next += 1;
             return Ok(None);
         }
         self.next += 1;
         match word.text {
-            // Forms are always loaded into empty files, so ERASE-MOVTAB has no effect; FDEF only selects a vocabulary.
+            // Forms are loaded into empty files, so ERASE-MOVTAB has no effect. FDEF only selects a vocabulary.
             "ERASE-MOVTAB" | "FDEF" => Ok(None),
             "-pt-" => forms::point_at(self, "location point").map(|e| Some(Entry::Locpt(e))),
             "-ar-" => forms::point_at(self, "array").map(|e| Some(Entry::ArrayAt(e))),
@@ -100,7 +96,7 @@ impl<'a> Parser<'a, '_> {
         }
     }
 
-    /// Entries that begin with numbers: `n load`, `offset n OLOAD`, lines of movetables, poses.
+    /// `n load`, `offset n OLOAD`, lines of movetables, poses.
     fn numbers_first(&mut self, parsed: &mut Parsed) -> Result<Option<Entry>, Skip> {
         let second = self.peek_at(1).map_or("", |w| w.text);
         let third = self.peek_at(2).map_or("", |w| w.text);
@@ -126,7 +122,7 @@ impl<'a> Parser<'a, '_> {
         Ok(None)
     }
 
-    /// Skip to where the next entry can begin.
+    /// Skips to where the next entry can begin.
     fn recover(&mut self, start: usize) {
         if self.next == start {
             self.next += 1;

@@ -1,5 +1,3 @@
-//! The words of a block, taken from left to right.
-
 use std::{fmt::Display, ops::RangeInclusive};
 
 use diagnostics::{At, BlockNumber, Problems, Severity};
@@ -12,7 +10,7 @@ use super::{
     lex::Word,
 };
 
-/// Words that begin an entry or a part of one. None of them can be a name.
+/// They begin an entry or a part of one, and cannot be names.
 pub const COMPILING_WORDS: &[&str] = &[
     "-pose-",
     "----",
@@ -67,30 +65,27 @@ pub const BEGINNINGS: &[&str] = &[
     "==",
 ];
 
-/// The rest of the entry is unreadable, which is already reported.
+/// The rest of the entry is unreadable; the error is already reported.
 #[derive(Clone, Copy, Debug)]
 pub struct Skip;
 
-/// Reads the words of one block.
 pub struct Parser<'a, 'p> {
     pub(super) words: &'p [Word<'a>],
     pub(super) next: usize,
-    /// The first word of the present entry.
-    pub(super) start: usize,
+    pub(super) start: usize, // of the present entry
     pub(super) block: BlockNumber,
     pub(super) end: At,
     pub(super) problems: &'p mut Problems,
     pub(super) flawed: bool,
 }
 
-/// True if a word is one of [`COMPILING_WORDS`].
 #[must_use]
 pub fn is_compiling_word(text: &str) -> bool {
     // The first character excludes most names.
     text.starts_with(['-', ':', '>', '<', '=', 'F', 'E', 'l', 'L', 'O']) && COMPILING_WORDS.contains(&text)
 }
 
-/// True if a word is a whole number, with or without a sign.
+/// True for a whole number, with or without a sign.
 #[must_use]
 pub fn is_integer(text: &str) -> bool {
     let digits = text.strip_prefix(['+', '-']).unwrap_or(text);
@@ -98,7 +93,7 @@ pub fn is_integer(text: &str) -> bool {
 }
 
 impl<'a> Parser<'a, '_> {
-    /// The next word, without taking it.
+    /// Does not take the word.
     #[must_use]
     pub fn peek(&self) -> Option<Word<'a>> {
         self.words.get(self.next).copied()
@@ -116,18 +111,17 @@ impl<'a> Parser<'a, '_> {
         Some(word)
     }
 
-    /// Take the next word if it is this one.
     pub fn take_if(&mut self, text: &str) -> Option<Word<'a>> {
         if self.peek()?.text == text { self.take() } else { None }
     }
 
-    /// Report an error of an entry that is still readable to its end.
+    /// The rest of the entry is still readable.
     pub fn flaw(&mut self, code: &'static str, at: At, message: impl Into<String>, help: Option<String>) {
         self.flawed = true;
         self.problems.push(Severity::Error, code, at, message.into(), help);
     }
 
-    /// Report that something else was expected here.
+    /// Reports another word than expected.
     pub fn expected(&mut self, what: &str) -> Skip {
         let start = self.words.get(self.start).map_or(self.end, |w| w.at);
         let (at, found) = match self.peek() {
@@ -140,18 +134,18 @@ impl<'a> Parser<'a, '_> {
         Skip
     }
 
-    /// True if an unexpected word begins another entry, and is not the first of the present one.
+    /// An unexpected word begins another entry.
     fn is_next_entry(&self, word: Word<'_>) -> bool {
         let begins = word.first && (is_compiling_word(word.text) || is_integer(word.text));
         self.next > self.start && (begins || BEGINNINGS.contains(&word.text))
     }
 
-    /// Add to the last report the nearest known word; `what` is its kind.
+    /// Adds the nearest known word to the last report; `what` is its kind.
     pub fn nearest(&mut self, what: &str, word: &str) {
         self.problems.nearest(what, word);
     }
 
-    /// A whole number in a range. A number out of range is reported, and reading continues.
+    /// A number out of range is reported, and reading continues.
     pub fn integer(&mut self, what: impl Display, range: RangeInclusive<i32>) -> Result<i32, Skip> {
         let Some(word) = self.peek().filter(|w| is_integer(w.text)) else {
             return Err(self.expected(&what.to_string()));
@@ -169,7 +163,7 @@ impl<'a> Parser<'a, '_> {
         }
     }
 
-    /// A name. A name that is too long is reported, and reading continues.
+    /// A name that is too long is reported, and reading continues.
     pub fn name<const N: usize>(&mut self, what: impl Display) -> Result<Named<N>, Skip> {
         self.name_within(what, N)
     }
@@ -228,13 +222,13 @@ impl<'a> Parser<'a, '_> {
         Ok(Typed { kind, name: self.name_within(what, most)? })
     }
 
-    /// Place of the last word that was taken.
+    /// The place of the last word that was taken.
     #[must_use]
     pub fn last_at(&self) -> At {
         self.next.checked_sub(1).and_then(|i| self.words.get(i)).map_or(self.end, |w| w.at)
     }
 
-    /// Read a single word that was taken before.
+    /// Reads a word that was taken before.
     pub fn at_word<T>(
         &mut self,
         word: Word<'_>,
@@ -255,8 +249,8 @@ impl<'a> Parser<'a, '_> {
         result
     }
 
-    /// Skip an entry whose compiling word follows its numbers: up to `word` and the `names` words after it, but
-    /// not into the next entry that begins with a compiling word.
+    /// Skips an entry whose compiling word follows its numbers: to `word` and the `names` words after it, but not into
+    /// the next entry that begins with a compiling word.
     pub fn skip_past(&mut self, word: &str, names: usize) {
         while let Some(next) = self.peek() {
             if BEGINNINGS.contains(&next.text) {

@@ -1,8 +1,6 @@
-//! Prints entries as forms, from which they can be read again.
-//!
-//! The form is the manual's, with one line for each part with its own compiling word (`-ppt`, `-m-`, `----`). A
-//! form with more lines than a block is printed without line breaks between its parts. This always fits for an
-//! entry of a block, since an entry cannot be in two blocks.
+//! Prints entries as the manual's forms, which can be read again. Each part with a compiling word (`-ppt`, `-m-`,
+//! `----`) has its own line. If a form has more lines than a block, its parts are not separated by line breaks. This
+//! always fits, since an entry of a block fits into a block.
 
 use super::{
     entries::{
@@ -16,10 +14,10 @@ use super::{
 use crate::files::{RefType, TrajPara};
 use geometry::movetable::{MovetableLine, System};
 
-/// Blanks before the first word of a line; without them a form could be read as a listing with line numbers.
+/// Without this indent a form could be read as a listing with line numbers.
 const INDENT: &str = "  ";
 
-/// The lines of a form, none of more than 64 columns.
+/// The lines of a form, each of at most 64 columns.
 #[must_use]
 pub fn form(entry: &Entry) -> Vec<String> {
     let parts = parts(entry);
@@ -27,8 +25,8 @@ pub fn form(entry: &Entry) -> Vec<String> {
     if lines.len() <= BLOCK_LINES { lines } else { filled(&parts.concat()) }
 }
 
-/// Blocks with the forms of all entries, from block `first` at `offset` on. Block 999 is followed by block 0 of
-/// the next offset. An entry whose form has more lines than a block gets its own block, which cannot be loaded.
+/// Blocks from `first` at `offset` on. Block 999 is followed by block 0 of the next offset. An entry with more lines
+/// than a block gets its own block, which cannot be loaded.
 #[must_use]
 pub fn blocks<'e>(entries: impl IntoIterator<Item = &'e Entry>, offset: u32, first: u32) -> String {
     let (mut offset, mut number) = (offset, first);
@@ -51,7 +49,7 @@ pub fn blocks<'e>(entries: impl IntoIterator<Item = &'e Entry>, offset: u32, fir
     text
 }
 
-/// Lines filled with as many words as fit.
+/// Lines with as many words as fit.
 fn filled(words: &[String]) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
     for word in words {
@@ -66,7 +64,7 @@ fn filled(words: &[String]) -> Vec<String> {
     lines
 }
 
-/// The words of an entry, grouped by line.
+/// The words of each line.
 fn parts(entry: &Entry) -> Vec<Vec<String>> {
     match entry {
         Entry::File(e) => vec![file(e)],
@@ -155,7 +153,7 @@ fn array(e: &ArrayEntry) -> Vec<String> {
     words
 }
 
-/// A type and a name; the wild card has no name.
+/// The wild card has no name.
 fn typed(typed: &Typed) -> Vec<String> {
     if typed.kind == RefType::Any {
         words![typed.kind.text()]

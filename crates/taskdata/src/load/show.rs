@@ -23,7 +23,6 @@ pub(super) const PED_PARA: &[(&str, RangeInclusive<i32>)] = &[
     ("ped-flip-angle", -3600..=3600),
 ];
 
-/// `:S variable <= value … :R >FILE name` (VII.7.2, VII.7.4).
 pub fn show(p: &mut Parser<'_, '_>) -> Result<Entry, Skip> {
     let mut settings: Vec<(Word<'_>, Word<'_>)> = Vec::new();
     while p.take_if(":R").is_none() {
@@ -57,7 +56,7 @@ pub fn show(p: &mut Parser<'_, '_>) -> Result<Entry, Skip> {
     }
 }
 
-/// Put the settings into the order of a record; each variable is set once.
+/// The settings in the order of the record; each variable is set once.
 fn settings_of<const N: usize>(
     p: &mut Parser<'_, '_>,
     settings: &[(Word<'_>, Word<'_>)],
@@ -83,7 +82,7 @@ fn settings_of<const N: usize>(
     let value_of = |name: &str| settings.iter().find(|(v, _)| v.text == name).map(|(_, value)| *value);
     let missing: Vec<&str> = known().filter(|k| value_of(k).is_none()).collect();
     let Some(object) = value_of(name_variable).filter(|_| missing.is_empty()) else {
-        // If a variable is misspelt or set twice, another is missing too; only one of the errors is reported.
+        // If one variable is misspelt or set twice, another is missing: only one error is reported.
         if !misspelt {
             p.flaw("show.missing", file.at, format!("{} needs {}", file.text, missing.join(", ")), None);
         }

@@ -1,24 +1,18 @@
 //! Text files that contain blocks: the "disk" (IV.2.7).
 //!
-//! A file contains blocks, each with a header `BLOCK# 619 OFFSET 21000` and at most 16 lines of 64 columns.
-//! There are two extensions of the manual's disk. A line that begins with `%%` is a remark on the file: it does
-//! not belong to a block and may have any length, so that remarks do not change the blocks. The line numbers 0
-//! to 15 of a block copied from a listing are ignored.
+//! A block has a header `BLOCK# 619 OFFSET 21000` and at most 16 lines of 64 columns. Two extensions: a line that
+//! begins with `%%` is a remark outside the blocks, of any length; line numbers 0 to 15 of a copied listing are
+//! ignored.
 
 use std::{collections::BTreeSet, fs, io, os::unix::fs::MetadataExt as _, path::Path};
 
 use diagnostics::{At, BlockLines, BlockNumber, Places, Source, lines_of};
 use os_io::files;
 
-/// Greatest number of lines in a block.
-pub const BLOCK_LINES: usize = 16;
-/// The greatest number of a block; the next block is 0 of the next offset (IV.2.7).
-pub const LAST_BLOCK: u32 = 999;
-/// Greatest number of columns in a line.
-pub const BLOCK_COLUMNS: usize = 64;
-/// Begins a remark on the file.
-const REMARK: &str = "%%";
-/// Begins the header of a block.
+pub const BLOCK_LINES: usize = 16; // per block
+pub const LAST_BLOCK: u32 = 999; // then block 0 of the next offset (IV.2.7)
+pub const BLOCK_COLUMNS: usize = 64; // per line
+const REMARK: &str = "%%"; // on the file
 const HEADER: &str = "BLOCK#";
 
 /// A line of a block, without its line number.
@@ -30,8 +24,7 @@ pub struct SourceLine<'a> {
 
 #[derive(Clone, Debug)]
 pub struct Block<'a> {
-    /// Number and offset of the block.
-    pub number: BlockNumber,
+    pub number: BlockNumber, // with its offset
     pub header: At,
     pub lines: Vec<SourceLine<'a>>,
 }
@@ -39,23 +32,16 @@ pub struct Block<'a> {
 /// An error in the blocks of a source.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BlockFault {
-    /// A header without two numbers.
-    Header,
-    /// A block with a number above [`LAST_BLOCK`]: the number.
-    Number(u32),
-    /// Text before the first header.
-    NoHeader,
-    /// More than 16 lines.
-    TooManyLines,
-    /// A line of more than 64 columns: the number of columns.
-    TooWide(usize),
-    /// A character that is not ASCII.
-    NotAscii,
-    /// The first tab of a file: the number of lines with a tab.
-    Tab(usize),
+    Header,         // without two numbers
+    Number(u32),    // above [`LAST_BLOCK`]
+    NoHeader,       // text before the first header
+    TooManyLines,   // more than 16
+    TooWide(usize), // columns, more than 64
+    NotAscii,       // a character
+    Tab(usize),     // lines with a tab; reported at the first
 }
 
-/// Read one regular file; `shown` is its path in messages.
+/// `shown` is the path in messages.
 ///
 /// # Errors
 /// See [`files::read_text`].
@@ -63,11 +49,10 @@ pub fn read(path: &Path, shown: &str) -> io::Result<Source> {
     Ok(Source { name: shown.to_owned(), text: files::read_text(path)?.into() })
 }
 
-/// A path that cannot be read, and the error.
+/// A path and its error.
 pub type Unreadable = (String, io::Error);
 
-/// All files `*.blk` under a directory, sorted by path, with paths relative to the directory, and the paths that
-/// cannot be read.
+/// All files `*.blk` under a directory, sorted, with relative paths, and the paths that cannot be read.
 #[must_use]
 pub fn read_blocks_under(directory: &Path) -> (Vec<Source>, Vec<Unreadable>) {
     let (mut paths, mut unreadable) = (Vec::new(), Vec::new());
@@ -75,7 +60,7 @@ pub fn read_blocks_under(directory: &Path) -> (Vec<Source>, Vec<Unreadable>) {
     // A symbolic link can form a cycle: each directory is read once.
     let mut seen = BTreeSet::new();
     while let Some(folder) = open.pop() {
-        // Directories built into the program have no metadata, and no links.
+        // Built-in directories have no metadata, and no links.
         let identity = fs::metadata(&folder).map(|found| (found.dev(), found.ino()));
         if identity.is_ok_and(|identity| !seen.insert(identity)) {
             continue;
@@ -90,7 +75,7 @@ pub fn read_blocks_under(directory: &Path) -> (Vec<Source>, Vec<Unreadable>) {
                     }
                 }
             }
-            // A directory that cannot be listed is reported by its path.
+            // A directory that cannot be listed.
             Err(error) => unreadable.push((folder.display().to_string(), error)),
         }
     }
@@ -110,13 +95,12 @@ fn short(value: usize) -> u32 {
     u32::try_from(value).unwrap_or(u32::MAX)
 }
 
-/// True for a line that is a header, or is probably meant as one.
+/// A header, or a line that is probably meant as one.
 fn is_header(line: &str) -> bool {
     let start = line.trim_start().as_bytes().get(..HEADER.len());
     start.is_some_and(|start| start.eq_ignore_ascii_case(HEADER.as_bytes()))
 }
 
-/// The number and the offset in a header line.
 fn header_number(line: &str) -> Option<BlockNumber> {
     let mut words = line.split_whitespace();
     let (Some(HEADER), Some(number), Some("OFFSET"), Some(offset)) =
@@ -130,7 +114,7 @@ fn header_number(line: &str) -> Option<BlockNumber> {
     Some(BlockNumber { offset: offset.parse().ok()?, number: number.parse().ok()? })
 }
 
-/// The blocks of a source, and their errors. Blocks with errors are kept as far as they are readable.
+/// Keeps the readable part of blocks with errors.
 #[must_use]
 pub fn blocks(index: usize, source: &Source) -> (Vec<Block<'_>>, Vec<(At, BlockFault)>) {
     let mut found: Vec<Block<'_>> = Vec::new();
@@ -180,7 +164,7 @@ pub fn blocks(index: usize, source: &Source) -> (Vec<Block<'_>>, Vec<(At, BlockF
     (found, faults)
 }
 
-/// Places in files of blocks: by block, line of the block and column.
+/// Places by block, line of the block and column.
 #[must_use]
 pub fn places_in_blocks(sources: &[Source]) -> Places<'_> {
     Places::in_blocks(sources, |source| {
@@ -193,7 +177,7 @@ pub fn places_in_blocks(sources: &[Source]) -> Places<'_> {
     })
 }
 
-/// Remove empty lines at the end of a block and the line numbers of a listing, and check its size.
+/// Removes empty lines at the end and the line numbers of a listing, and checks the size.
 fn settle(block: &mut Block<'_>, faults: &mut Vec<(At, BlockFault)>) {
     while block.lines.last().is_some_and(|line| line.text.trim().is_empty()) {
         block.lines.pop();
@@ -207,7 +191,7 @@ fn settle(block: &mut Block<'_>, faults: &mut Vec<(At, BlockFault)>) {
         }
     }
     if let Some(line) = block.lines.iter().skip(BLOCK_LINES).find(|line| !line.text.trim().is_empty()) {
-        // The lines are kept, so that their contents are also checked.
+        // The lines are kept, so that their contents are checked, too.
         faults.push((line.at, BlockFault::TooManyLines));
     }
     for line in &block.lines {
@@ -224,11 +208,10 @@ fn settle(block: &mut Block<'_>, faults: &mut Vec<(At, BlockFault)>) {
     }
 }
 
-/// Width of a line number with its blanks, ` 4 `.
-const LISTING_WIDTH: usize = 3;
+const LISTING_WIDTH: usize = 3; // a line number with its blanks, ` 4 `
 
-/// True if every line begins with its own number in two columns, like the listings of the manual. A form cannot
-/// look like this: the numbers of a movetable's lines begin at 1.
+/// Every line begins with its own number in two columns, like the manual's listings. A form cannot look like this: the
+/// lines of a movetable begin at 1.
 fn is_listing(lines: &[SourceLine<'_>]) -> bool {
     if lines.first().is_none_or(|line| !line.text.starts_with(" 0")) {
         return false;

@@ -1,4 +1,4 @@
-//! The store, which owns the loaded files; [`TaskData`] is a view of them.
+//! Owns the loaded files; [`TaskData`] is a view of them.
 
 use std::collections::BTreeSet;
 
@@ -19,11 +19,10 @@ use super::{
     source::places_in_blocks,
 };
 
-/// Greatest number of records in a file (SPECNOTES.md, Task data). Beyond it, the error is the manual's FILE FULL.
-pub const FILE_RECORDS: usize = 100_000;
+pub const FILE_RECORDS: usize = 100_000; // per file (SPECNOTES.md, Task data); beyond it, FILE FULL
 
-/// Names of the files, for declarations. The manual has no names for the files of the object location form and
-/// of the approach/depart form, and lacks the last two files: these four names are of this project.
+/// For declarations. The names for object locations, approaches and departs, and the last two files are not in the
+/// manual.
 pub const FILE_NAMES: [&str; 18] = [
     "POSE",
     "MOVTAB",
@@ -45,7 +44,7 @@ pub const FILE_NAMES: [&str; 18] = [
     "REL-MOVES",
 ];
 
-/// The records of all files, described at [`TaskData`].
+/// See [`TaskData`].
 #[derive(Clone, Debug, Default)]
 pub(super) struct Files {
     pub poses: Vec<PoseRecord>,
@@ -71,7 +70,7 @@ pub(super) struct Files {
 }
 
 impl Files {
-    /// Number of records in each file, in the order of [`FILE_NAMES`].
+    /// Records per file, in the order of [`FILE_NAMES`].
     pub const fn records(&self) -> [usize; FILE_NAMES.len()] {
         [
             self.poses.len(),
@@ -96,7 +95,7 @@ impl Files {
     }
 }
 
-/// The indexes of all files; their keys are described at [`Indexes`].
+/// See [`Indexes`].
 #[derive(Clone, Debug, Default)]
 pub(super) struct OwnedIndexes {
     pub poses: OwnedIndex,
@@ -119,24 +118,21 @@ pub(super) struct OwnedIndexes {
     pub relative_moves: OwnedPlaceIndex,
 }
 
-/// Loaded task data: the files, their indexes and their source texts.
+/// The files, their indexes and their source texts.
 #[derive(Clone, Debug, Default)]
 pub struct Store {
     pub(super) files: Files,
     pub(super) indexes: OwnedIndexes,
     pub(super) sources: Vec<Source>,
-    /// The entries of the records, for the next generation.
-    pub(super) entries: Collected,
+    pub(super) entries: Collected, // for the next generation
     pub(super) blocks: BTreeSet<BlockNumber>,
     pub(super) origins: Origins,
     pub(super) commands: Commands,
     pub(super) faults: Vec<Fault>,
-    /// Errors found by other checks.
-    pub(super) found: Vec<Fault>,
+    pub(super) found: Vec<Fault>, // by other checks
 }
 
 impl Store {
-    /// The view for the control processes.
     #[must_use]
     pub fn view(&self) -> TaskData<'_> {
         let (files, indexes) = (&self.files, &self.indexes);
@@ -184,31 +180,29 @@ impl Store {
         }
     }
 
-    /// The files of read blocks, for a log: those of the first load, then those of each [`Store::with_blocks`] in turn.
+    /// Files for a log: those of the first load, then of each [`Store::with_blocks`].
     #[must_use]
     pub fn sources(&self) -> &[Source] {
         &self.sources
     }
 
-    /// The place where each record was entered.
     #[must_use]
     pub const fn origins(&self) -> &Origins {
         &self.origins
     }
 
-    /// Places in the texts that were loaded.
     #[must_use]
     pub fn places(&self) -> Places<'_> {
         places_in_blocks(&self.sources)
     }
 
-    /// A place in the texts as words: file, block and line; "?" for an unknown text.
+    /// File, block and line; "?" for an unknown text.
     #[must_use]
     pub fn place(&self, at: At) -> String {
         self.places().words(at)
     }
 
-    /// Number of records in each file, with the manual's names.
+    /// Records per file, with the manual's names.
     #[must_use]
     pub fn loaded(&self) -> Vec<Loaded> {
         let files = FILE_NAMES.iter().zip(self.files.records());

@@ -1,12 +1,9 @@
-//! Check of a frame: reach, joint limits, angle from vertical.
-
 use geometry::{
     frame::Frame,
     kinematics::{HOME_JOINTS, JOINT_NAMES, T3},
 };
 
-/// Angle from vertical below which there is a warning, degrees.
-const VERTICAL: f64 = 2.0;
+const VERTICAL: f64 = 2.0; // degrees: warning
 
 /// Degrees of the gripper axis from vertical, up or down.
 pub(super) fn from_vertical(frame: &Frame) -> f64 {
@@ -14,9 +11,8 @@ pub(super) fn from_vertical(frame: &Frame) -> f64 {
     axis.x.hypot(axis.y).atan2(axis.z.abs()).to_degrees()
 }
 
-/// True if the gripper axis is close enough to vertical for a warning.
 pub(super) fn is_vertical(frame: &Frame) -> bool {
-    // Most frames are far from vertical; for them the angle is not calculated.
+    // Most frames are far from vertical, so the angle need not be calculated.
     frame.x().z.abs() > 0.99 && from_vertical(frame) < VERTICAL
 }
 
@@ -27,7 +23,7 @@ pub(super) struct Fault {
     pub help: String,
 }
 
-/// Try a frame. The error names the joint beyond its limit and the excess, or the distance out of reach.
+/// Names the joint beyond its limit and the excess, or the distance out of reach.
 pub(super) fn fault(frame: &Frame) -> Option<Fault> {
     let joints = match T3.inverse(frame, &HOME_JOINTS) {
         Ok(joints) => T3.within_limits(&joints),

@@ -1,4 +1,4 @@
-//! Checks of relative moves: a command uses each, guarded moves have a sensor, and the robot can stop in time.
+//! Relative moves: each has a command, guarded ones a sensor and a speed that lets the robot stop in time.
 
 use diagnostics::nearest;
 use interfaces::device::{ADC_FULL_SCALE, FORCE_COUNTS_PER_LB, FORCE_ZERO, MOMENT_COUNTS_PER_IN_LB};
@@ -12,18 +12,13 @@ use super::{
     Findings, Origins, origin,
 };
 
-/// Time from the sensor's condition to the halt of the robot, s (docs/design/motion.md "Guarded speed").
-const HALT: f64 = 0.2;
-/// Increase of the force while the tool presses against a hard object, lb/in: stiffness of the arm (ASSUMED).
-const STIFFNESS: f64 = 2000.0;
-/// Lever arm from the tool point to the middle of the force sensor, in (ASSUMED, `data/cell.toml`).
-const LEVER: f64 = 8.0;
-/// Velocity of one count of `vel-max`, in/s (ASSUMED, as in `levels::prim::motion::limits`;
-/// docs/design/motion.md "Units").
+const HALT: f64 = 0.2; // s, from condition to rest (docs/design/motion.md "Guarded speed")
+const STIFFNESS: f64 = 2000.0; // lb/in of a hard object: the arm's stiffness (ASSUMED)
+const LEVER: f64 = 8.0; // in, tool point to force sensor (ASSUMED, `data/cell.toml`)
+/// in/s per count of `vel-max` (ASSUMED, as in `levels::prim::motion::limits`; docs/design/motion.md "Units").
 const VELOCITY_COUNT: f64 = 0.1;
 
-/// The greatest force or moment that an axis can read, lb or in lb: more is an overload, which stops the move with an
-/// error.
+/// Greatest readable force or moment, lb or in lb. An overload stops the move with an error.
 fn overload(source: SensorSource) -> f64 {
     let counts = f64::from(i32::from(ADC_FULL_SCALE) - FORCE_ZERO);
     match source {
@@ -32,7 +27,7 @@ fn overload(source: SensorSource) -> f64 {
     }
 }
 
-/// Increase of the reading until the robot stops, lb or in lb per in/s of speed.
+/// Increase of the reading until the robot stops, lb or in lb per in/s.
 fn growth(source: SensorSource) -> f64 {
     let force = HALT * STIFFNESS;
     if source == SensorSource::My { force * LEVER } else { force }
@@ -75,7 +70,7 @@ pub(super) fn check(data: &TaskData<'_>, origins: &Origins, findings: &mut Findi
     }
 }
 
-/// Report a sensor that belongs to another holster than that of the move: the holster of gripper n has the number n.
+/// Reports a sensor of another holster: the holster of gripper n has the number n.
 fn holster(data: &TaskData<'_>, record: &RelativeMove, at: super::At, findings: &mut Findings) {
     let of_holster = |source| matches!(source, SensorSource::Near | SensorSource::Seated);
     let Some(sensor) = data.sensor(&record.sensor).filter(|sensor| of_holster(sensor.source)) else { return };
@@ -93,7 +88,7 @@ fn holster(data: &TaskData<'_>, record: &RelativeMove, at: super::At, findings: 
     }
 }
 
-/// Warn of a guarded move that would overload the force sensor before the robot stops.
+/// Warns if the force sensor overloads before the robot stops.
 fn speed(data: &TaskData<'_>, record: &RelativeMove, at: super::At, findings: &mut Findings) {
     let (Some(sensor), Some(para)) = (data.sensor(&record.sensor), data.traj_para(record.para)) else {
         return;

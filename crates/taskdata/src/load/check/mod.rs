@@ -1,11 +1,11 @@
-//! Checks of linked data: they find errors that would stop a command during its motion before the first tick.
+//! Checks of linked data: errors that would otherwise stop a command during its motion.
 //!
 //! * [`trays`]: sectors within their trays;
 //! * [`sizes`]: openings in order, tray grips, flips;
 //! * [`routes`]: trajectories that no command can reach;
 //! * [`guarded`]: sensors and speeds of relative moves;
-//! * [`reach`]: the arm can reach every target of a command. The time is proportional to the number of targets, so the
-//!   check runs on all processors, and can be left out.
+//! * [`reach`]: the arm reaches every target of a command. It can be left out; its time grows with the number of
+//!   targets, so it uses all processors.
 
 mod arm;
 mod guarded;
@@ -26,7 +26,7 @@ use super::origins::Origins;
 
 pub(super) use reach::check as reach;
 
-/// All checks except that of the reach; only the checks of single objects unless `whole`, because names are missing.
+/// All checks except the reach. Unless `whole`, names are missing, so only single objects are checked.
 pub(super) fn check(data: &TaskData<'_>, origins: &Origins, whole: bool, problems: &mut Problems) {
     let mut findings = Findings::default();
     if whole {
@@ -41,7 +41,7 @@ pub(super) fn check(data: &TaskData<'_>, origins: &Origins, whole: bool, problem
     findings.report(problems);
 }
 
-/// The problem of an entry at the first location where it is wrong, and the number of further locations.
+/// An entry at the first location where it is wrong.
 #[derive(Debug)]
 struct Finding {
     severity: Severity,
@@ -49,17 +49,14 @@ struct Finding {
     at: At,
     message: String,
     help: String,
-    /// Number of further locations; `None` for an error that does not depend on a location.
-    more: Option<usize>,
+    more: Option<usize>, // further locations; `None`: does not depend on one
 }
 
-/// Findings, in the order in which they were made. An entry with the wild card can be wrong at every sector: it is
-/// listed once.
+/// Findings in order of discovery. A wild card can be wrong at every sector, and is listed once.
 #[derive(Debug, Default)]
 struct Findings {
     list: Vec<Finding>,
-    /// Position in `list` by source, first byte and code.
-    known: HashMap<(u32, u32, &'static str), usize>,
+    known: HashMap<(u32, u32, &'static str), usize>, // position in `list` by source, first byte and code
 }
 
 impl Findings {
@@ -80,7 +77,7 @@ impl Findings {
         }
     }
 
-    /// An error of an entry that does not depend on a location, reported once.
+    /// Reports an error that does not depend on a location.
     fn error_once(&mut self, code: &'static str, at: At, message: String, help: String) {
         self.add(Finding { severity: Severity::Error, code, at, message, help, more: None });
     }
@@ -103,12 +100,10 @@ impl Findings {
     }
 }
 
-/// The place where the record at a position was entered.
 fn origin(list: &[At], position: usize) -> At {
     list.get(position).copied().unwrap_or_default()
 }
 
-/// A location and its sector as text.
 fn shown(location: &Location) -> String {
     match location.sector {
         None => location.name.to_string(),
@@ -126,7 +121,7 @@ fn owners_of<'a>(data: &TaskData<'a>, member: Reference) -> impl Iterator<Item =
     data.indexes.members.all(reference_key(member)).iter().map(|&number| OwnerId::new(number))
 }
 
-/// All sectors of an array at an owner; none if the owner's first member is not a location point.
+/// All sectors of an array; none if the owner's first member is not a location point.
 fn sectors(data: &TaskData<'_>, owner: OwnerId, array_id: ArrayId) -> Vec<Location> {
     let corner = data.members_of(owner).first().and_then(|m| at_point(data, m.member));
     let (Some(array), Some(corner)) = (data.array(array_id), corner) else { return Vec::new() };
@@ -138,7 +133,7 @@ fn sectors(data: &TaskData<'_>, owner: OwnerId, array_id: ArrayId) -> Vec<Locati
     (1..=array.sectors()).filter_map(sector).collect()
 }
 
-/// All sectors of an array with a pose of its own.
+/// All sectors of an array with its own pose.
 fn static_sectors(data: &TaskData<'_>, array_id: ArrayId) -> Vec<Location> {
     let Some((array, pose)) = data.array(array_id).and_then(|a| Some((a, data.pose(a.pose)?))) else {
         return Vec::new();
@@ -151,7 +146,7 @@ fn static_sectors(data: &TaskData<'_>, array_id: ArrayId) -> Vec<Location> {
     (1..=array.sectors()).filter_map(sector).collect()
 }
 
-/// The locations at which an entry applies, if it names no object: points, members of an owner, sectors.
+/// The locations of an entry without an object: points, members of an owner, sectors.
 fn locations(data: &TaskData<'_>, at: Reference) -> Vec<Location> {
     match at.kind {
         RefType::LocationPoint => at_point(data, at).into_iter().collect(),
@@ -175,8 +170,7 @@ fn locations_of_member(data: &TaskData<'_>, owner: OwnerId, member: Reference) -
     }
 }
 
-/// The locations at which an object can be and an entry applies: the sectors and location points to which the
-/// object is assigned, or else the locations that the entry names.
+/// The sectors and location points to which the object is assigned, or else those that the entry names.
 fn locations_of(data: &TaskData<'_>, object: ObjectId, at: Reference) -> Vec<Location> {
     let mut found = Vec::new();
     for assigned in data.object_locations(object) {

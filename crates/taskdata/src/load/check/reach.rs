@@ -1,12 +1,11 @@
 //! Checks that the arm reaches every target of a command: reach, joint limits, angle from vertical.
 //!
-//! Targets are location points, objects in their sectors with each of their grips, views, and the points of the
-//! approaches, departs, trajectories and relative moves there. A base pose is not itself a target. If neither a
-//! derived target nor the pose can be reached, the error names the pose, because it is the cause.
+//! Targets are location points, objects in their sectors with each grip, views, and the points of approaches, departs,
+//! trajectories and relative moves there. If neither a derived target nor its base pose can be reached, the error
+//! names the pose, the cause.
 //!
-//! There is a warning if the gripper axis is within 2 degrees of vertical, where the Euler angles of the link
-//! are singular (VIII introduction). The corners of trays are taught with a vertical gripper, but are not
-//! checked, because the robot does not move to them (VIII.3).
+//! Within 2 degrees of vertical there is a warning: the Euler angles of the link are singular (VIII introduction).
+//! Corners of trays are vertical, but not checked, because the robot does not move to them (VIII.3).
 //!
 //! The wild card `$$$` is tried at the locations to which the object is assigned (VII.7.3).
 
@@ -31,10 +30,9 @@ use super::{
     at_point, locations, locations_of, origin, shown,
 };
 
-/// Number of entries that one processor tries at a time.
-const ENTRIES_AT_A_TIME: usize = 512;
+const ENTRIES_AT_A_TIME: usize = 512; // tried by one processor at a time
 
-/// Try all targets of data that were linked without error.
+/// Tries all targets. The data must be linked without error.
 pub(crate) fn check(data: &TaskData<'_>, origins: &Origins, problems: &mut Problems) {
     let mut findings = Findings::default();
     let reach = Reach::new(data, origins, &mut findings);
@@ -50,7 +48,7 @@ pub(crate) fn check(data: &TaskData<'_>, origins: &Origins, problems: &mut Probl
     findings.report(problems);
 }
 
-/// Try entries `0..count` on all processors; the findings are in the order of the entries.
+/// Tries entries `0..count` on all processors; findings are in the order of the entries.
 fn spread(count: usize, entry: impl Fn(usize, &mut Findings) + Sync) -> Findings {
     let mut findings = Findings::default();
     for piece in parallel::map_pieces(count, ENTRIES_AT_A_TIME, |range| {
@@ -63,15 +61,15 @@ fn spread(count: usize, entry: impl Fn(usize, &mut Findings) + Sync) -> Findings
     findings
 }
 
-/// Makes the text for a target. It is called only for a target with a problem.
+/// Called only for a target with a problem.
 type What<'a> = &'a dyn Fn() -> String;
 
 struct Reach<'a> {
     data: &'a TaskData<'a>,
     origins: &'a Origins,
-    /// Location points out of reach: targets derived from them are not reported again.
+    /// Points out of reach: targets derived from them are not reported again.
     bad_points: HashSet<LocptId>,
-    /// Trajectories that begin with a movetable, by their start, on which their points depend.
+    /// Trajectories that begin with a movetable, by start.
     relative_starts: HashMap<(u8, u32), Vec<TrajId>>,
 }
 
@@ -90,15 +88,14 @@ impl<'a> Reach<'a> {
         reach
     }
 
-    /// Location points at which arrays are used: the bases of sectors.
+    /// The bases of sectors.
     fn corners(&self) -> HashSet<LocptId> {
         let owners = (0..self.data.owners.len()).map(|i| self.data.members_of(OwnerId::at(i)));
         let of_arrays = owners.filter(|members| members.iter().any(|m| m.member.kind == RefType::Array));
         of_arrays.filter_map(|members| members.first()).map(|m| LocptId::new(m.member.number)).collect()
     }
 
-    /// Location points at which an object is gripped or viewed: the robot moves to the object, which may be tilted, and
-    /// not to the point.
+    /// Points at which objects are gripped or viewed: the robot moves to the object, which may be tilted.
     fn bases(&self) -> HashSet<LocptId> {
         let grips = self.data.grip_locs.iter().map(|entry| entry.at);
         let named = grips.chain(self.data.visions.iter().map(|entry| entry.at));
@@ -128,7 +125,7 @@ impl<'a> Reach<'a> {
         }
     }
 
-    /// Try a target that is derived from a pose. Returns true if it can be reached. Warns near the vertical.
+    /// True if the target can be reached. Warns near the vertical.
     fn target(&self, what: What<'_>, frame: &Frame, at: At, base: PoseId, findings: &mut Findings) -> bool {
         let reached = self.reached(what, frame, at, base, findings);
         if reached {
@@ -137,7 +134,7 @@ impl<'a> Reach<'a> {
         reached
     }
 
-    /// Try a frame that is derived from a pose. Returns true if it can be reached.
+    /// True if the frame can be reached.
     fn reached(&self, what: What<'_>, frame: &Frame, at: At, base: PoseId, findings: &mut Findings) -> bool {
         let Some(found) = fault(frame) else { return true };
         match self.data.pose(base).and_then(|pose| Some((pose.name, fault(&pose.frame)?))) {
@@ -158,8 +155,7 @@ impl<'a> Reach<'a> {
             .unwrap_or(PoseId::NULL)
     }
 
-    /// Try the points of a trajectory from the location points at which it can begin. [`Reach::departures`] tries them
-    /// from the objects that are gripped there.
+    /// Tries the location points at which a trajectory can begin; [`Reach::departures`] tries the objects there.
     fn trajectory(&self, i: usize, findings: &mut Findings) {
         let Some(record) = self.data.trajectories.get(i) else { return };
         let what = || format!("trajectory {}", record.name);
@@ -181,8 +177,7 @@ impl<'a> Reach<'a> {
         }
     }
 
-    /// Try the points of a path. All its movetables refer to `reference` if `fixed`, otherwise each to the
-    /// previous point.
+    /// Tries the points of a path. Movetables refer to `reference` if `fixed`, otherwise to the previous point.
     fn follow(&self, path: PathId, reference: &Frame, what: What<'_>, fixed: bool, findings: &mut Findings) {
         let data = self.data;
         let first = path.of(data.paths).map_or(0, |p| usize::try_from(p.first).unwrap_or(0));
@@ -194,7 +189,7 @@ impl<'a> Reach<'a> {
             let at = origin(&self.origins.path_points, first + i);
             let what = || format!("{}, {}", what(), self.point_name(point));
             match point.target {
-                // A vertical reference already has a warning; its points need no warning of their own.
+                // A vertical reference already has a warning.
                 Target::Movetable(_) if upright() => {
                     if let Some(fault) = fault(&frame) {
                         findings.error(fault.code, at, format!("{}: {}", what(), fault.message), fault.help);
@@ -206,7 +201,7 @@ impl<'a> Reach<'a> {
                 Target::Pose(id) => {
                     self.target(&what, &frame, at, id, findings);
                 }
-                // Its reach is checked with the location points. The robot moves to it here even if it is a corner.
+                // Its reach is checked with the location points. The robot moves to it even if it is a corner.
                 Target::LocationPoint(_) => vertical(&what, &frame, at, findings),
                 Target::Stop => {}
             }
@@ -229,14 +224,14 @@ impl<'a> Reach<'a> {
         locations.into_iter().filter(|location| !self.bad_points.contains(&location.place.locpt))
     }
 
-    /// Try a grip at all locations where it is valid, with its approach and depart.
+    /// Tries a grip at all valid locations, with approach and depart.
     fn grip(&self, i: usize, findings: &mut Findings) {
         let data = self.data;
         let Some(record) = data.grip_locs.get(i) else { return };
         let at = origin(&self.origins.grip_locs, i);
         let object = data.object_name(record.object);
         for location in self.good(locations_of(data, record.object, record.at)) {
-            // At this location a more exact entry may apply.
+            // A more exact entry may apply here.
             if data.grip_loc(&object, record.grip, &location.place).and_then(|id| id.index()) != Some(i) {
                 continue;
             }
@@ -261,7 +256,7 @@ impl<'a> Reach<'a> {
         }
     }
 
-    /// Try trajectories that begin relative to the object that the robot departs from.
+    /// Tries trajectories that begin relative to the object from which the robot departs.
     fn departures(&self, location: &Location, frame: &Frame, what: What<'_>, findings: &mut Findings) {
         if self.relative_starts.is_empty() {
             return;
@@ -276,15 +271,14 @@ impl<'a> Reach<'a> {
         }
     }
 
-    /// Try a view at all locations where it is valid, with its approach and depart. A view that refers to the object
-    /// has no frame before the object is found.
+    /// Tries a view at all valid locations, with approach and depart. A view relative to an object has no frame yet.
     fn view(&self, i: usize, findings: &mut Findings) {
         let data = self.data;
         let Some(record) = data.visions.get(i).filter(|r| r.offset_from != RefType::Object) else { return };
         let at = origin(&self.origins.visions, i);
         let object = data.object_name(record.object);
         for location in self.good(locations_of(data, record.object, record.at)) {
-            // At this location a more exact entry may apply.
+            // A more exact entry may apply here.
             if data.view(&object, &location.place).and_then(|(id, _)| id.index()) != Some(i) {
                 continue;
             }
@@ -308,7 +302,7 @@ impl<'a> Reach<'a> {
         }
     }
 
-    /// Try an approach to, or a depart from, a location itself. The wild card is tried at all location points.
+    /// Tries an approach or depart of a location itself. The wild card is tried at all location points.
     fn plain(&self, i: usize, findings: &mut Findings) {
         let data = self.data;
         let Some(record) = data.appr_depts.get(i) else { return };
@@ -326,7 +320,7 @@ impl<'a> Reach<'a> {
                 Direction::Approach => ("approach", data.approach_location(&location.place)),
                 Direction::Depart => ("depart", data.depart_location(&location.place)),
             };
-            // A corner that the robot cannot reach is not a target, and its approach is not checked either.
+            // The approach to an unreachable corner is not checked: it is not a target.
             if path == Some(record.path) && fault(&location.frame).is_none() {
                 let what = || format!("{word} of {}", shown(&location));
                 self.follow(record.path, &location.frame, &what, true, findings);
@@ -334,7 +328,7 @@ impl<'a> Reach<'a> {
         }
     }
 
-    /// Try the goal of a relative move at each location where it is valid.
+    /// Tries the goal of a relative move at each valid location.
     fn relative(&self, i: usize, findings: &mut Findings) {
         let data = self.data;
         let Some(record) = data.relative_moves.get(i) else { return };
@@ -349,7 +343,7 @@ impl<'a> Reach<'a> {
         }
     }
 
-    /// The frame at which a relative move begins: the location, or the end of the moves before it.
+    /// The start of a relative move: the location, or the end of the moves before.
     fn beginning(&self, record: &RelativeMove, location: &Location) -> Frame {
         let mut before: Vec<MovtabId> = Vec::new();
         let mut name = record.name;
@@ -361,7 +355,6 @@ impl<'a> Reach<'a> {
     }
 }
 
-/// Warn of a frame near the vertical.
 fn vertical(what: What<'_>, frame: &Frame, at: At, findings: &mut Findings) {
     if is_vertical(frame) {
         let degrees = from_vertical(frame);

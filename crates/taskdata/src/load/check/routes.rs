@@ -1,15 +1,12 @@
-//! Finds trajectories that no command can use: another entry is always found first, or both ends are one
-//! location (VII.6).
+//! Trajectories that no command can use: another entry always has priority, or both ends are one location (VII.6).
 
 use crate::files::{ArrayId, LocptId, OwnerId, Place, RefType, Reference, TaskData, TrajId};
 use interfaces::location::LocationKind;
 
 use super::{Findings, Origins, at_point, origin, owners_of};
 
-/// Greatest number of places of an end that are tried. An end with more places is treated as reachable.
-const TRIED: usize = 64;
+const TRIED: usize = 64; // per end; one with more places is treated as reachable
 
-/// Report each trajectory that no look-up finds.
 pub(super) fn check(data: &TaskData<'_>, origins: &Origins, findings: &mut Findings) {
     for (i, trajectory) in data.trajectories.iter().enumerate() {
         let id = TrajId::at(i);
@@ -50,7 +47,7 @@ pub(super) fn check(data: &TaskData<'_>, origins: &Origins, findings: &mut Findi
     }
 }
 
-/// The places to which the name of an end refers, at most about [`TRIED`].
+/// The places of an end, at most about [`TRIED`].
 fn places(data: &TaskData<'_>, end: Reference) -> Vec<Place> {
     match end.kind {
         RefType::LocationPoint => at_point(data, end).map(|l| l.place).into_iter().collect(),

@@ -1,5 +1,5 @@
-//! Checks of the numbers of object forms: openings in order, tray grips with an object form, flip angles other
-//! than 0 (VII.7.1, VII.7.2, VII.7.4).
+//! Object forms: openings in order, tray grips with an object form, flip angles other than 0 (VII.7.1, VII.7.2,
+//! VII.7.4).
 
 use crate::files::TaskData;
 
@@ -24,7 +24,7 @@ pub(super) fn check(data: &TaskData<'_>, origins: &Origins, findings: &mut Findi
     }
 }
 
-/// Report the tray grips that no object form has.
+/// Reports tray grips without an object form.
 pub(super) fn tray_grips(data: &TaskData<'_>, origins: &Origins, findings: &mut Findings) {
     for (i, record) in data.obj_grips.iter().enumerate() {
         let object = data.object_name(record.object);
@@ -39,7 +39,7 @@ pub(super) fn tray_grips(data: &TaskData<'_>, origins: &Origins, findings: &mut 
     }
 }
 
-/// Report an opening before or after a grasp that is smaller than the grasp size.
+/// Reports an opening before or after a grasp that is smaller than the grasp size.
 fn in_order(what: &str, grasp: i32, sizes: [(&str, i32); 2], at: super::At, findings: &mut Findings) {
     let narrow: Vec<String> = sizes
         .into_iter()

@@ -6,13 +6,11 @@ use crate::files::{ArrayId, RefType, Reference, TaskData};
 
 use super::{Findings, Origins, at_point, origin, owners_of};
 
-/// Length of the sides of a tray, inches. The manual gives no size. All three printed arrays fill a square of
-/// 21.00 with equal margins (VIII.6; SPECNOTES).
+/// Side of a tray, inches. ASSUMED: the three printed arrays fill a square of 21.00 with equal margins (VIII.6;
+/// SPECNOTES).
 const TRAY: f64 = 21.0;
-/// Tolerance for rounding of the integers of a form, inches.
 const ROUNDING: f64 = 0.01;
 
-/// Report each array that has a sector outside the tray at which it is used.
 pub(super) fn check(data: &TaskData<'_>, origins: &Origins, findings: &mut Findings) {
     for (i, array) in data.arrays.iter().enumerate() {
         let reference = Reference::array(ArrayId::at(i));
@@ -40,8 +38,8 @@ pub(super) fn check(data: &TaskData<'_>, origins: &Origins, findings: &mut Findi
     }
 }
 
-/// Distance of a sector beyond the tray that begins at a corner, in; negative inside. The corner's tool frame points
-/// down, and the tray extends along its -Y and -Z (VIII.6).
+/// Distance beyond the tray at a corner, in; negative inside. The corner's tool frame points down; the tray extends
+/// along its -Y and -Z (VIII.6).
 fn outside(corner: &Frame, sector: &Frame) -> f64 {
     let seen = corner.inverse().compose(sector).position;
     let beyond = |along: f64| (along - TRAY).max(-along);

@@ -1,11 +1,8 @@
-//! The words of a line of a job, and the values of its fields.
-
 use diagnostics::At;
 use rcs_core::name::Name16;
 
 use super::super::lex::Word;
 
-/// The words of one line, taken from left to right.
 pub(super) struct Fields<'a, 'w> {
     pub(super) words: &'w [Word<'a>],
     pub(super) next: usize,
@@ -16,7 +13,6 @@ impl<'a, 'w> Fields<'a, 'w> {
         Self { words, next: 0 }
     }
 
-    /// True if a word is left.
     pub(super) const fn more(&self) -> bool {
         self.next < self.words.len()
     }
@@ -27,14 +23,13 @@ impl<'a, 'w> Fields<'a, 'w> {
         word
     }
 
-    /// Take the next word if it is this one.
     pub(super) fn take_if(&mut self, text: &str) -> Option<Word<'a>> {
         let word = self.words.get(self.next).copied().filter(|word| word.text == text)?;
         self.next += 1;
         Some(word)
     }
 
-    /// Place of the next word, or of the last word if none is left.
+    /// The place of the next word, or of the last.
     pub(super) fn at(&self) -> At {
         self.words.get(self.next).or_else(|| self.words.last()).map_or_else(At::default, |w| w.at)
     }
@@ -46,7 +41,7 @@ pub(super) struct Number {
     pub(super) at: At,
 }
 
-/// A name field and its place; empty for `--`.
+/// A name; empty for `--`.
 #[derive(Clone, Copy)]
 pub(super) struct Field {
     pub(super) name: Name16,
@@ -64,7 +59,7 @@ impl Field {
 }
 
 impl Number {
-    /// The number, if it is not 0.
+    /// `None` for 0.
     pub(super) fn given(&self) -> Option<i32> {
         Some(self.value).filter(|value| *value != 0)
     }

@@ -1,10 +1,10 @@
 //! Job files: commands of the workstation controller, and actions of the workstation between them.
 //!
-//! A job is a text of lines. `==` begins a Task command with the nine fields of Figure VIII.4, which are the variables
-//! of V.4.2 without the serial number (SPECNOTES.md, contradiction 25): object, source grip, location and sector,
-//! destination grip, location and sector, end-at location and sector; `--` is a null field. A serial number may follow:
-//! `#17` (an extension), and `expect error` for a command that must fail (an extension). The manual has no other lines:
-//! vise, trays and machine belong to the HWSC, not to the robot. Lines that begin with `**` are such actions:
+//! A line that begins with `==` is a Task command with the nine fields of Figure VIII.4, the variables of V.4.2
+//! without the serial number (SPECNOTES.md, contradiction 25): object, source grip, location and sector, destination
+//! grip, location and sector, end-at location and sector; `--` is a null field. Extensions: a serial number, `#17`,
+//! and `expect error` for a command that must fail. Lines that begin with `**` are actions of the workstation, which
+//! the manual leaves to the HWSC:
 //!
 //! ```text
 //! ** tray UNIT_1 4 LINKBAR1_BH            a part is delivered into a sector, at a random position (seed of the run)
@@ -31,8 +31,8 @@
 //! ** after 50 joystick hold PRIM           any of these, 50 ticks after the next command was sent
 //! ```
 //!
-//! Commands, and the path from each to the next, are checked against the task data ([`verdict`](super::verdict)): a job
-//! that cannot run is refused before the first tick.
+//! Commands and their paths are checked against the task data ([`verdict`](super::verdict)): a job that cannot run is
+//! refused before the first tick.
 
 mod action;
 mod fields;
@@ -60,13 +60,11 @@ use super::{
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Step {
-    /// A command to Task, with number 0.
-    Command(HwsCommand),
+    Command(HwsCommand), // with number 0
     Workstation(Workstation),
-    /// An action while the robot executes the next command.
+    /// While the robot executes the next command.
     After {
-        /// Delay from the tick in which that command is sent, ticks.
-        ticks: u32,
+        ticks: u32, // after that command is sent
         action: Workstation,
     },
 }
@@ -74,28 +72,22 @@ pub enum Step {
 #[derive(Clone, Debug, PartialEq)]
 pub struct JobLine {
     pub step: Step,
-    /// The line as written, without its comment.
-    pub text: String,
-    /// Number of the line in the file, from 1.
-    pub line: u32,
-    /// True if the line ends with `expect error`: its command must end with an error, or the blocks that it
-    /// loads must not fit the cell.
+    pub text: String, // as written, without its comment
+    pub line: u32,    // from 1
+    /// The line ends with `expect error`: its command must fail, or its blocks must not fit the cell.
     pub expects_error: bool,
 }
 
 #[derive(Clone, Debug)]
 pub struct Job {
-    /// Name of the job: the file's name without its extension.
-    pub name: String,
-    /// The steps, in order.
-    pub steps: Vec<JobLine>,
-    /// The reloads of the lines `** load`, in order.
-    pub reloads: Vec<Reload>,
+    pub name: String,         // file name without its extension
+    pub steps: Vec<JobLine>,  // in order
+    pub reloads: Vec<Reload>, // of the lines `** load`, in order
     source: Source,
 }
 
 impl Job {
-    /// Read a job file and check it against the task data.
+    /// Reads a job file and checks it against the task data.
     ///
     /// # Errors
     /// The report with every error of the job, if it has one.
@@ -110,7 +102,7 @@ impl Job {
         }
     }
 
-    /// Check a job against task data that have errors: each line by itself, and names that are probably misspelt.
+    /// Checks a job against data with errors: each line by itself, and misspelt names.
     #[must_use]
     pub fn check_part(path: &Path, part: &Part) -> Diagnostics {
         let mut problems = Problems::default();
@@ -130,7 +122,7 @@ impl Job {
         Diagnostics::of_file(problems, &source)
     }
 
-    /// The job and its report. A job without lines is an error.
+    /// A job without lines is an error.
     fn with_a_line((job, report): (Self, Diagnostics)) -> Result<(Self, Diagnostics), Box<Diagnostics>> {
         if !job.steps.is_empty() {
             return Ok((job, report));
@@ -141,7 +133,7 @@ impl Job {
         Err(Box::new(report.with(Diagnostics::new(problems, Places::in_lines(sources), 0, Vec::new()))))
     }
 
-    /// Check a job from another source, such as the attachment of a log.
+    /// Checks a job from another source, such as the attachment of a log.
     ///
     /// # Errors
     /// The report, if it has an error.
@@ -167,7 +159,6 @@ impl Job {
         self.reloads.get(usize::try_from(number).ok()?.checked_sub(1)?)
     }
 
-    /// The text of the job.
     #[must_use]
     pub const fn source(&self) -> &Source {
         &self.source
@@ -179,7 +170,6 @@ fn empty(problems: &mut Problems) {
     problems.error_help("job.empty", At::default(), "the job has no line", help);
 }
 
-/// The lines of a job, each with its number from 1.
 fn source_lines(source: &Source) -> impl Iterator<Item = (u32, SourceLine<'_>)> {
     let short = |value: usize| u32::try_from(value).unwrap_or(u32::MAX);
     let line = move |(start, text): (usize, _)| SourceLine {

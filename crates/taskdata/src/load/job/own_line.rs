@@ -1,7 +1,6 @@
-//! A line from another process or an operator during the run, instead of from a job.
-//!
-//! Its meaning depends only on its words and the task data; the run itself handles `load OFFSET BLOCK` earlier. Parsing
-//! it opens no file, because that could take any time, and would reveal to the connected system which files exist.
+//! A line from another process or an operator during the run. Its meaning depends only on its words and the task data.
+//! It opens no file: that could take any time, and show connected systems which files exist. The run itself handles
+//! `load OFFSET BLOCK` earlier.
 
 use std::fmt;
 
@@ -21,18 +20,13 @@ use super::{
 
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum OwnLineError {
-    /// The line is empty.
-    Nothing,
-    /// `load FILE` is possible only in a job, whose blocks are read and checked before its first tick.
+    Nothing, // an empty line
+    /// `load FILE` is possible only in a job, whose blocks are checked before its first tick.
     Load,
-    /// `wait` is possible only in a job: it counts the ticks of the job.
-    Wait,
-    /// `after` is possible only in a job: it counts the ticks of the job.
-    After,
-    /// `workstation` is possible only in a job, which transfers the command.
-    HandOver,
-    /// The line is unreadable, or has unknown names; the message.
-    Unreadable(String),
+    Wait,               // only in a job, whose ticks it counts
+    After,              // only in a job, whose ticks it counts
+    HandOver,           // `workstation`: only in a job
+    Unreadable(String), // the message
 }
 
 impl fmt::Display for OwnLineError {
@@ -54,11 +48,10 @@ impl fmt::Display for OwnLineError {
 
 impl std::error::Error for OwnLineError {}
 
-/// The name of such a line in messages.
-const SOURCE: &str = "the line";
+const SOURCE: &str = "the line"; // in messages
 
-/// Read a command as in a job, with or without `==` before it. PAUSE, STARTUP and SHUTDOWN need no fields. The
-/// position of the robot and the held object are unknown here, and not checked.
+/// Reads a command as in a job, with or without `==`. PAUSE, STARTUP and SHUTDOWN need no fields. The robot's position
+/// and held object are unknown, and not checked.
 ///
 /// # Errors
 /// [`OwnLineError`].
@@ -66,7 +59,7 @@ pub fn own_command(text: &str, store: &Store) -> Result<JobLine, OwnLineError> {
     reported_command(text, store).map_err(|report| unreadable(&report))
 }
 
-/// Like [`own_command`], with the places in the text and the remedies of all findings.
+/// Like [`own_command`], with places and remedies of all findings.
 ///
 /// # Errors
 /// The report.
@@ -87,7 +80,6 @@ pub fn reported_command(text: &str, store: &Store) -> Result<JobLine, Box<Diagno
     }
 }
 
-/// True if a line begins like a command to Task.
 #[must_use]
 pub fn is_command(text: &str) -> bool {
     let text = text.trim_start();
@@ -108,7 +100,7 @@ fn unreadable(report: &Diagnostics) -> OwnLineError {
     OwnLineError::Unreadable(errors.join("; "))
 }
 
-/// Read a line as in a job, without the `**` before it.
+/// Reads a line as in a job, without the `**`.
 ///
 /// # Errors
 /// [`OwnLineError`].

@@ -1,6 +1,5 @@
-//! The lines of a job for keys and switches: the joystick box (III.3.3), the emergency stops (III.6), the robot
-//! controller (IV.3.3), the panel of the rotary table's controller (IV.1 step 3) and the resolver electronics (IV.3.3
-//! step 11). Their words are those of [`interfaces::station`].
+//! Lines of a job for keys and switches: joystick box (III.3.3), emergency stops (III.6), robot controller (IV.3.3),
+//! rotary table's controller (IV.1 step 3), resolver electronics (IV.3.3 step 11). Words: [`interfaces::station`].
 
 use interfaces::station::{
     BoxAction, BoxButton, BoxControl, BoxFrame, EStop, Key, Keyswitch, PanelControl, ResolverControl,
@@ -21,11 +20,9 @@ const ALIGN_FORM: &str = "** panel align, or with an AXIS from 1 to 6 behind it"
 const RUN_FORM: &str = "** table run+|run- TICKS";
 const TABLE_STEP_FORM: &str = "** table step+|step-, or with a COUNT behind it: a step is 0.01 degree";
 
-/// Full deflection of the stick, and full scale of the knob.
-const FULL: i32 = 1000;
+const FULL: i32 = 1000; // deflection of the stick, and scale of the knob
 
 impl Reader<'_, '_> {
-    /// Read the words after `joystick`.
     pub(super) fn joystick(&mut self, fields: &mut Fields<'_, '_>) -> Option<BoxAction> {
         self.forget();
         let controls = BoxControl::ALL.iter().map(|control| control.text());
@@ -64,18 +61,15 @@ impl Reader<'_, '_> {
         })
     }
 
-    /// The bit of a process.
     fn process(&mut self, fields: &mut Fields<'_, '_>) -> Option<u8> {
         Some(self.word::<Stepped>(fields, "process that the joystick box can hold")?.bit())
     }
 
-    /// Read the word after `estop` or `release`.
     pub(super) fn estop(&mut self, fields: &mut Fields<'_, '_>) -> Option<EStop> {
         self.forget();
         self.word(fields, "emergency stop")
     }
 
-    /// Read the words after `panel`.
     pub(super) fn panel(&mut self, fields: &mut Fields<'_, '_>) -> Option<Key> {
         self.forget();
         Some(match self.word(fields, "key of the robot controller")? {
@@ -105,7 +99,6 @@ impl Reader<'_, '_> {
         })
     }
 
-    /// Read the words after `resolvers`.
     pub(super) fn resolvers(&mut self, fields: &mut Fields<'_, '_>) -> Option<ResolverKey> {
         Some(match self.word(fields, "switch or button of the resolver electronics")? {
             ResolverControl::Manual => ResolverKey::Manual(true),
@@ -116,7 +109,6 @@ impl Reader<'_, '_> {
         })
     }
 
-    /// Read the words after `table`.
     pub(super) fn table(&mut self, fields: &mut Fields<'_, '_>) -> Option<TableKey> {
         let control = self.word(fields, "key of the rotary table's controller")?;
         let plus = matches!(control, TableControl::RunPlus | TableControl::StepPlus);
@@ -142,7 +134,6 @@ impl Reader<'_, '_> {
         Some(self.word::<Switch>(fields, what)? == Switch::On)
     }
 
-    /// Read one of the words of an enum.
     pub(super) fn word<T: Plain>(&mut self, fields: &mut Fields<'_, '_>, what: &str) -> Option<T> {
         let Schema::Enum(words) = T::SCHEMA else { return None };
         let known: Vec<&str> = words.variants.iter().map(|variant| variant.text).collect();
@@ -150,7 +141,7 @@ impl Reader<'_, '_> {
         from_bytes(&[code]).ok()
     }
 
-    /// Read one of several words; returns its index.
+    /// Returns the index of the word.
     pub(super) fn choice(
         &mut self,
         fields: &mut Fields<'_, '_>,
@@ -169,7 +160,7 @@ impl Reader<'_, '_> {
         found
     }
 
-    /// Read a number from `low` to 1000.
+    /// Reads a number from `low` to 1000.
     fn within(&mut self, fields: &mut Fields<'_, '_>, what: &str, low: i32, form: &str) -> Option<i16> {
         let number = self.number(fields, what, form)?;
         if !(low..=FULL).contains(&number.value) {

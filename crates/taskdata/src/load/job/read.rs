@@ -1,5 +1,3 @@
-//! The lines of a job, word by word.
-
 use diagnostics::{At, Problems, Severity, nearest};
 use interfaces::hws::{Checked, HwsCommand};
 use rcs_core::name::Name16;
@@ -20,15 +18,14 @@ use super::{
 
 pub(super) struct Reader<'s, 'p> {
     data: TaskData<'s>,
-    /// The readable part of data with errors. A missing name may be in the rest.
+    /// The readable part of data with errors; the rest may have a missing name.
     part: Option<&'s Part>,
-    /// The task data after each line that loads blocks, in the order of the lines.
-    reloads: std::vec::IntoIter<TaskData<'s>>,
+    reloads: std::vec::IntoIter<TaskData<'s>>, // after each line that loads blocks
     loaded: u32,
     pub(super) problems: &'p mut Problems,
-    /// The known state of the robot before the next command.
+    /// The known state of the robot.
     before: Before,
-    /// The last line with `after` that no command has followed.
+    /// The last line with `after`, if no command has followed.
     pub(super) after: Option<At>,
 }
 
@@ -38,18 +35,18 @@ impl<'s, 'p> Reader<'s, 'p> {
         Self { data, part: None, reloads: reloads.into_iter(), loaded: 0, problems, before, after: None }
     }
 
-    /// Report only errors that the missing data cannot explain; `part` is the readable part of the data.
+    /// Reports only errors that the unread data cannot explain; `part` is the readable part.
     pub(super) fn among(self, part: &'s Part) -> Self {
         Self { part: Some(part), ..self }
     }
 
-    /// Discard position and held object, which are unknown after a motion without a command.
+    /// Discards position and held object, which are unknown after a motion without a command.
     pub(super) fn forget(&mut self) {
         self.before = Before::unknown();
     }
 
-    /// A line loads blocks: from here on names are looked up in the new task data. Returns the number of the
-    /// reload, from 1; `None` if the blocks could not be loaded, which is already reported.
+    /// Later names are looked up in the new data. Returns the number of the reload, from 1; `None` if the blocks could
+    /// not be loaded, which is already reported.
     pub(super) fn reload(&mut self) -> Option<u32> {
         self.data = self.reloads.next()?;
         self.loaded += 1;
@@ -58,7 +55,7 @@ impl<'s, 'p> Reader<'s, 'p> {
 }
 
 impl Reader<'_, '_> {
-    /// Report errors that become known after the last line.
+    /// Errors that become known after the last line.
     pub(super) fn end(&mut self) {
         if let Some(at) = self.after {
             self.problems.error_help(
@@ -70,7 +67,7 @@ impl Reader<'_, '_> {
         }
     }
 
-    /// The step of line `number`; `None` for a line without a step, or an unreadable one, which is reported.
+    /// `None` for a line without a step, or an unreadable one, which is reported.
     pub(super) fn line(&mut self, number: u32, line: &SourceLine<'_>) -> Option<JobLine> {
         let words = words_of_line(line);
         let first = words.first()?;
@@ -102,8 +99,7 @@ impl Reader<'_, '_> {
         Some(JobLine { step, text: text.trim().to_owned(), line: number, expects_error })
     }
 
-    /// True if the line of a command, or one that loads blocks, ends with `expect error`; `None` if another word
-    /// follows `expect`, which is reported.
+    /// True for `expect error`; `None` if another word follows `expect`, which is reported.
     fn expects_error(&mut self, fields: &mut Fields<'_, '_>) -> Option<bool> {
         if fields.take_if("expect").is_none() {
             return Some(false);
@@ -116,7 +112,7 @@ impl Reader<'_, '_> {
         None
     }
 
-    /// Returns `None` if a word is left, which is reported.
+    /// `None` if a word is left, which is reported.
     pub(super) fn end_of_line(&mut self, fields: &mut Fields<'_, '_>) -> Option<()> {
         let Some(extra) = fields.take() else { return Some(()) };
         self.problems.error("job.fields", extra.at, format!("the line should end before {}", extra.text));
@@ -159,7 +155,7 @@ impl Reader<'_, '_> {
         self.number(fields, what, NINE_FIELDS)
     }
 
-    /// A whole number; `help` is the correct form of the line.
+    /// `help` is the correct form of the line.
     pub(super) fn number(&mut self, fields: &mut Fields<'_, '_>, what: &str, help: &str) -> Option<Number> {
         let at = fields.at();
         let Some(word) = fields.take() else {
@@ -174,7 +170,7 @@ impl Reader<'_, '_> {
         value.map(|value| Number { value, at: word.at })
     }
 
-    /// The command and its nine fields (V.4.2, Figure VIII.4).
+    /// Nine fields (V.4.2, Figure VIII.4).
     fn command(&mut self, fields: &mut Fields<'_, '_>) -> Option<HwsCommand> {
         self.after = None;
         let verb = self.field(fields, "a command")?;
@@ -223,7 +219,7 @@ impl Reader<'_, '_> {
         Some(command)
     }
 
-    /// The errors of a command. Data with errors only show which names are probably misspelt.
+    /// Data with errors only show which names are probably misspelt.
     fn judge(&mut self, command: &HwsCommand, fails: bool) -> Vec<Finding> {
         if let Some(part) = self.part {
             let mut findings = verdict::names_of(command, &self.data);
@@ -239,8 +235,7 @@ impl Reader<'_, '_> {
         findings
     }
 
-    /// The serial number of the object, if the line has one after its nine fields: `#17`. Another word there is
-    /// reported.
+    /// The serial number, `#17`, if the line has one after its nine fields. Reports another word.
     fn serial(&mut self, fields: &mut Fields<'_, '_>) -> Name16 {
         let word = fields.words.get(fields.next).filter(|word| word.text != "expect");
         let Some(word) = word.and_then(|_| fields.take()) else { return Name16::EMPTY };
@@ -263,7 +258,7 @@ impl Reader<'_, '_> {
         self.problems.error_help("name.unknown", at, format!("no {what} is named {name}"), help);
     }
 
-    /// True if the object is known. An unknown one is reported.
+    /// Reports an unknown object.
     pub(super) fn object(&mut self, field: Field) -> bool {
         find_object(&self.data, &field.name).map_err(|unfound| self.unfound(unfound, field, field.at)).is_ok()
     }
@@ -285,7 +280,7 @@ impl Reader<'_, '_> {
         found.map_err(|unfound| self.unfound(unfound, field, sector.at)).ok()
     }
 
-    /// Report a name that the task data lack, unless an unreadable entry may have it.
+    /// Reports an unknown name, unless an unreadable entry may have it.
     fn unfound(&mut self, unfound: Unfound, field: Field, sector: At) {
         let Unfound { code, message, help, near, is_sector } = unfound;
         if self.part.is_none_or(|part| part.is_slip(field.name.as_str(), near.as_deref())) {
@@ -295,8 +290,6 @@ impl Reader<'_, '_> {
     }
 }
 
-/// Help text for a command with wrong fields.
 const NINE_FIELDS: &str = "a command has nine fields: object, grip, location, sector, grip, location, sector, end-at, sector; -- is null";
 
-/// Greatest number in a job line.
-pub(super) const MOST: i32 = 36_000;
+pub(super) const MOST: i32 = 36_000; // in a job line

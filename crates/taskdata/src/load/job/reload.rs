@@ -1,6 +1,5 @@
-//! Lines `** load FILE`: blocks that are loaded during the run, so that later lines use other task data.
-//!
-//! Like the rest of the job, they are checked before the first tick: a job with an error in such a block is refused.
+//! Lines `** load FILE`, whose blocks change the task data of later lines. A job with an error in such a block is
+//! refused before the first tick.
 
 use std::path::Path;
 
@@ -11,16 +10,14 @@ use super::{
     source_lines,
 };
 
-/// A reload: the blocks, and the task data that include them.
 #[derive(Clone, Debug)]
 pub struct Reload {
     pub source: Source,
-    /// The task data after the reload.
-    pub store: Store,
+    pub store: Store, // after the reload
 }
 
-/// The reloads of a job in the order of their lines, each based on the previous one. File names are relative to
-/// the job's directory. A file that cannot be loaded is reported at its line, and changes nothing.
+/// Reloads in the order of their lines, each based on the previous one. File names are relative to the job's
+/// directory. A file that cannot be loaded is reported at its line, and changes nothing.
 pub(super) fn reloads(job: &Source, store: &Store, problems: &mut Problems) -> Vec<Reload> {
     let directory = Path::new(&job.name).parent().unwrap_or(Path::new(""));
     let mut loaded: Vec<Reload> = Vec::new();
@@ -57,7 +54,7 @@ pub(super) fn reloads(job: &Source, store: &Store, problems: &mut Problems) -> V
     loaded
 }
 
-/// Position of the file name among the words of a line that loads a file.
+/// The position of the file name among the words.
 fn file_of(words: &[&str]) -> Option<usize> {
     match words {
         ["**", "load", ..] => Some(2),

@@ -14,7 +14,6 @@ const WAIT_FORM: &str = "** wait TICKS; a tick is 40 ms";
 const AFTER_FORM: &str = "** after TICKS, then another line's words behind its **";
 
 impl Reader<'_, '_> {
-    /// Read the words after `**`.
     pub(super) fn workstation(&mut self, fields: &mut Fields<'_, '_>) -> Option<Step> {
         let at = fields.at();
         match self.word(fields, "step of the workstation")? {
@@ -35,7 +34,7 @@ impl Reader<'_, '_> {
         }
     }
 
-    /// Read a line that is not in a job. It cannot use the job's ticks, files or next command.
+    /// A line that is not in a job cannot use the job's ticks, files or next command.
     pub(super) fn own_line(&mut self, fields: &mut Fields<'_, '_>) -> Option<Workstation> {
         let known: Vec<Verb> = Verb::ALL.iter().copied().filter(|verb| !verb.is_of_job()).collect();
         let texts: Vec<&str> = known.iter().map(|verb| verb.text()).collect();
@@ -131,7 +130,6 @@ impl Reader<'_, '_> {
         self.number_from(fields, 1, what, form)
     }
 
-    /// Read a number of at least `low`.
     pub(super) fn number_from(
         &mut self,
         fields: &mut Fields<'_, '_>,

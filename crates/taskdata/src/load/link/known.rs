@@ -1,5 +1,5 @@
-//! Look-ups of declared names that do not report unknown ones, so that they can run on all processors at once.
-//! Entries with an unknown name are linked again one by one, with reports.
+//! Look-ups that do not report unknown names, so that they can run on all processors. Entries with an unknown name are
+//! linked again one by one, with reports.
 
 use geometry::frame::Frame;
 
@@ -18,17 +18,17 @@ use super::{
     sure,
 };
 
-/// The record number of a name in its index.
+/// The record number of a name.
 pub(super) fn named<const N: usize>(index: &OwnedIndex, name: &Named<N>) -> Option<u32> {
     index.view().find(name_key(&name.name))
 }
 
-/// True for the name of the null movetable. Compares bytes, which is faster, because there are many names.
+/// Compares bytes: faster for many names.
 fn is_null(name: &Named<10>) -> bool {
     name.name.bytes().strip_prefix(NULL_NAME.as_bytes()).is_some_and(|rest| rest.starts_with(&[0]))
 }
 
-/// The files and indexes built so far.
+/// Files and indexes built so far.
 #[derive(Clone, Copy)]
 pub(super) struct Known<'l> {
     pub(super) files: &'l Files,
@@ -47,7 +47,6 @@ impl Known<'_> {
         named(&self.indexes.objects, name).map(ObjectId::new)
     }
 
-    /// A type and a name as a reference.
     pub(super) fn reference(&self, typed: &Typed) -> Option<Reference> {
         let number = |index| named(index, &typed.name);
         Some(match typed.kind {
@@ -62,12 +61,11 @@ impl Known<'_> {
         })
     }
 
-    /// True if an object form has the grip (VII.7.1).
+    /// An object form has the grip (VII.7.1).
     pub(super) fn has_grip(&self, object: &Named<16>, grip: i32) -> bool {
         self.indexes.end_effs.view().find(sure(grip_key(&object.name, grip))).is_some()
     }
 
-    /// A frame with a movetable applied.
     pub(super) fn moved(&self, frame: &Frame, by: MovtabId) -> Frame {
         by.of(&self.files.movetables).map_or(*frame, |m| m.movetable.apply(frame))
     }
@@ -78,7 +76,7 @@ impl Known<'_> {
         Some(self.locpt_at(entry, pose, movetable))
     }
 
-    /// A location point at a pose that may be null, with a movetable.
+    /// The pose may be null.
     pub(super) fn locpt_at(&self, entry: &PointAt, pose: PoseId, movetable: MovtabId) -> Locpt {
         let base = pose.of(&self.files.poses).map_or_else(Frame::identity, |p| p.frame);
         Locpt { name: entry.name.name, pose, movetable, frame: self.moved(&base, movetable) }
@@ -95,7 +93,7 @@ impl Known<'_> {
         self.has_grip(&entry.object, entry.grip).then_some(record)
     }
 
-    /// The subject of an approach or depart, and its location.
+    /// The subject and its location.
     pub(super) fn subject(&self, entry: &ApprDeptEntry) -> Option<(Reference, Reference)> {
         let subject = self.reference(&entry.subject)?;
         let at = entry.place.as_ref().map_or(Some(subject), |place| self.reference(place))?;

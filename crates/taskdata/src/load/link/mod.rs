@@ -1,7 +1,7 @@
 //! From entries to records: names become record numbers.
 //!
 //! All names are declared before any is looked up, so the order of blocks does not matter. The index of a file finds
-//! both the names and the duplicates, which share a key.
+//! both names and duplicates, which share a key.
 
 mod guarded;
 mod known;
@@ -33,11 +33,9 @@ use super::{
 
 use known::Known;
 
-/// Greatest number of unknown names for which the nearest known one is searched. The search would take hours if
-/// all names were unknown.
+/// A search for the nearest names of all unknown ones would take hours.
 const NEAREST_FOR: usize = 200;
 
-/// Links the entries of a load.
 pub(super) struct Linker<'a> {
     broken: &'a HashSet<String>,
     orphans: &'a mut Orphans,
@@ -45,15 +43,14 @@ pub(super) struct Linker<'a> {
     files: Files,
     indexes: OwnedIndexes,
     origins: Origins,
-    /// Parameters that already have a record.
-    paras: FxHashMap<[i32; 4], TrajParaId>,
+    paras: FxHashMap<[i32; 4], TrajParaId>, // that already have a record
     unknown: usize,
-    /// For each unknown name and its expected kind: the place of its first use, and the number of uses.
+    /// Place of the first use and number of uses, by unknown name and expected kind.
     asked: BTreeMap<(String, String), (At, usize)>,
 }
 
-/// Make files and indexes from entries, and report problems. `broken` has the names in unreadable entries,
-/// `orphans` those in blocks that are not loaded. The last element of the result is the list of unknown names.
+/// Reports problems. `broken` has names in unreadable entries, `orphans` those in blocks that are not loaded. The last
+/// element of the result has the unknown names.
 pub(super) fn link(
     entries: &Collected,
     broken: &HashSet<String>,
@@ -81,27 +78,26 @@ pub(super) fn link(
     (linker.files, linker.indexes, linker.origins, unknown)
 }
 
-/// The keys of a file in the order of its records, and the places of the records.
+/// Keys in the order of the records, and their places.
 struct Keyed {
-    /// The kind of entry that must be unique, with its article.
-    what: &'static str,
+    what: &'static str, // of entry, which must be unique; with its article
     keys: Vec<Pair>,
     ats: Vec<At>,
 }
 
 impl Keyed {
-    /// An empty list, with space for about `records` records.
+    /// Space for about `records` records.
     fn with_capacity(what: &'static str, records: usize) -> Self {
         Self { what, keys: Vec::with_capacity(records), ats: Vec::with_capacity(records) }
     }
 
-    /// Add the key of the next record; `answer` is the field that look-ups need, 0 if they use the record.
+    /// `answer` is the field that look-ups need, or 0.
     fn push(&mut self, key: Key, answer: u32, at: At) {
         self.keys.push(Pair { key, number: number(self.keys.len()) + 1, answer });
         self.ats.push(at);
     }
 
-    /// Keys of records whose look-ups use the record.
+    /// Look-ups use the record, not an answer.
     fn new(what: &'static str, records: impl ExactSizeIterator<Item = (Key, At)>) -> Self {
         let mut keyed = Self::with_capacity(what, records.len());
         records.for_each(|(key, at)| keyed.push(key, 0, at));
@@ -116,7 +112,7 @@ impl Keyed {
     }
 }
 
-/// The key of a grip. It exists, because the form has checked its number.
+/// The form has checked the grip's number, so its key exists.
 fn sure(key: Option<Key>) -> Key {
     key.unwrap_or_default()
 }
@@ -126,7 +122,7 @@ fn number(position: usize) -> u32 {
 }
 
 impl Linker<'_> {
-    /// Indexes of lists, built in parallel, with the places of the records. Two records with one key are an error.
+    /// Builds indexes in parallel. Two records with one key are an error.
     fn indexed<const N: usize>(&mut self, lists: [Keyed; N]) -> [(OwnedIndex, Vec<At>); N] {
         let make = |i: usize| lists.get(i).map_or_else(OwnedIndex::default, |l| OwnedIndex::new(&l.keys));
         let mut made = parallel::map(N, make).into_iter();
@@ -137,7 +133,7 @@ impl Linker<'_> {
         })
     }
 
-    /// Like [`Linker::indexed`], for entries that are valid at locations.
+    /// Like [`Linker::indexed`], for entries at locations.
     fn indexed_at<const N: usize>(&mut self, lists: [Keyed; N]) -> [(OwnedPlaceIndex, Vec<At>); N] {
         let make =
             |i: usize| lists.get(i).map_or_else(OwnedPlaceIndex::default, |l| OwnedPlaceIndex::new(&l.keys));
@@ -149,7 +145,7 @@ impl Linker<'_> {
         })
     }
 
-    /// Report each record with the key of an earlier one; `shared` has the record numbers of each such key.
+    /// `shared` has the record numbers of each key that records share.
     fn twice<'n>(&mut self, what: &str, ats: &[At], shared: impl Iterator<Item = &'n [u32]>) {
         let at = |n: &u32| {
             let position = usize::try_from(n.saturating_sub(1)).ok();
@@ -162,12 +158,12 @@ impl Linker<'_> {
         }
     }
 
-    /// Declare all names, and the records that only need the name of an object, so that forms can be in any order.
+    /// All names, and records that only need an object's name: forms can be in any order.
     fn declare(&mut self, all: &Collected) {
         for null in all.movetables.iter().filter(|e| e.name.name.as_str() == NULL_NAME) {
             self.problems.error("name.null", null.name.at, "... is the null movetable and cannot be defined");
         }
-        // An object has one form entry per grip. The first declares its name.
+        // An object has one form entry per grip; the first declares its name.
         let mut seen = FxHashSet::with_capacity_and_hasher(all.objects.len(), Default::default());
         let objects: Vec<Named<16>> =
             all.objects.iter().map(|e| e.name).filter(|name| seen.insert(name.name)).collect();
@@ -202,7 +198,7 @@ impl Linker<'_> {
         (indexes.ped_paras, origins.ped_paras) = ped_paras;
     }
 
-    /// The record number of a name; reports an unknown name.
+    /// Reports an unknown name.
     fn find<const N: usize>(
         &mut self,
         what: &str,
@@ -244,7 +240,7 @@ impl Linker<'_> {
         None
     }
 
-    /// Add to the report of each unknown name the number of other entries that use it; returns all these names.
+    /// Adds the number of uses to the report of each unknown name; returns these names.
     fn count_unknown(&mut self) -> Vec<String> {
         let mut names = Vec::new();
         for ((_, name), (at, times)) in std::mem::take(&mut self.asked) {
@@ -258,7 +254,7 @@ impl Linker<'_> {
         names
     }
 
-    /// True if a name is in an entry that is unreadable or not loaded, which is already reported.
+    /// The name is in an entry that is unreadable or not loaded, which is already reported.
     fn has_elsewhere(&mut self, name: &str) -> bool {
         let longer = |broken: &String| broken.len() > name.len() && broken.starts_with(name);
         self.broken.contains(name)
@@ -282,7 +278,6 @@ impl Linker<'_> {
         self.find("object", name, |i| &i.objects).map(ObjectId::new)
     }
 
-    /// A type and a name as a reference.
     fn reference(&mut self, typed: Typed) -> Option<Reference> {
         let name = typed.name;
         Some(match typed.kind {
@@ -299,17 +294,15 @@ impl Linker<'_> {
         })
     }
 
-    /// Files and indexes, for look-ups on all processors.
     const fn known(&self) -> Known<'_> {
         Known { files: &self.files, indexes: &self.indexes }
     }
 
-    /// A frame with a movetable applied.
     fn moved(&self, frame: &Frame, by: MovtabId) -> Frame {
         self.known().moved(frame, by)
     }
 
-    /// Build the indexes whose keys are references to other records.
+    /// Indexes whose keys are references to other records.
     fn index_pairs(&mut self) {
         let by_member =
             |m: &Member| Pair { key: reference_key(m.member), number: m.owner.number(), answer: 0 };
@@ -328,7 +321,7 @@ impl Linker<'_> {
         }
     }
 
-    /// FILE FULL (VII): check that a file has no more records than its declaration allows.
+    /// FILE FULL (VII): no more records than the declaration allows.
     fn check_full(&mut self, all: &Collected) {
         let mut declared = FxHashMap::default();
         for entry in &all.files {
@@ -358,14 +351,14 @@ impl Linker<'_> {
     }
 }
 
-/// The names in an index, sorted.
+/// Sorted.
 fn names_of(index: &OwnedIndex) -> Vec<String> {
     let mut known: Vec<String> = index.keys().map(key_text).collect();
     known.sort_unstable();
     known
 }
 
-/// The name from which a key was made.
+/// The name from which the key was made.
 fn key_text(key: Key) -> String {
     key.main
         .map(u64::to_be_bytes)

@@ -29,7 +29,7 @@ impl Linker<'_> {
         let [grips, paths, views] = self.indexed_at([grips, paths, views]);
         let [locations] = self.indexed([locations]);
         let (indexes, origins) = (&mut self.indexes, &mut self.origins);
-        // An object may be assigned to members of several owners, but not twice to the same.
+        // An object may be assigned to members of several owners, but only once to each.
         origins.obj_locs = locations.1;
         (indexes.grip_locs, origins.grip_locs) = grips;
         (indexes.visions, origins.visions) = views;
@@ -122,7 +122,7 @@ impl Linker<'_> {
         keyed
     }
 
-    /// Report a grip without an object form, which gives its openings and its force (VII.7.1).
+    /// Reports a grip without an object form, which gives openings and force (VII.7.1).
     fn known_grip(&mut self, object: ObjectId, grip: i32, name: Named<16>) {
         if !self.known().has_grip(&name, grip) && !self.has_elsewhere(name.name.as_str()) {
             let grips: Vec<String> = self
@@ -161,7 +161,7 @@ impl Linker<'_> {
         keyed
     }
 
-    /// The subject of an approach or depart, and its location.
+    /// The subject and its location.
     fn subject(&mut self, entry: &ApprDeptEntry) -> Option<(Reference, Reference)> {
         let subject = self.reference(entry.subject);
         let at = entry.place.map_or(subject, |place| self.reference(place));

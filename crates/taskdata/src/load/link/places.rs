@@ -43,7 +43,7 @@ impl Linker<'_> {
             self.owner(OwnerId::at(i), entry);
         }
         for entry in &all.trajectories {
-            // An unknown end is reported; the record is kept, because the name index counts it.
+            // An unknown end is reported; its record is kept, because the name index counts it.
             let start = self.reference(entry.start).unwrap_or(Reference::NONE);
             let end = self.reference(entry.end).unwrap_or(Reference::NONE);
             let path = self.path(&entry.points);
@@ -52,7 +52,7 @@ impl Linker<'_> {
         }
     }
 
-    /// A pose with its effective frame. Points that are not orthogonal are corrected.
+    /// Corrects points that are not orthogonal.
     fn pose_record(&mut self, entry: &PoseEntry) -> PoseRecord {
         let [wrist, tool, finger] = entry.points;
         let pose = Pose { wrist, tool, finger };
@@ -85,7 +85,7 @@ impl Linker<'_> {
         }
     }
 
-    /// Combine the dimension form and the location form of each array (VII.4).
+    /// Combines dimension form and location form (VII.4).
     fn arrays(&mut self, all: &Collected) {
         let names = all.arrays_at.iter().map(|e| &e.name);
         let [(located, _)] = self.indexed([Keyed::names("an array location of this name", names)]);
@@ -161,7 +161,7 @@ impl Linker<'_> {
         self.files.owners.push(Owner { name: entry.name.name, first, count });
     }
 
-    /// Add the points of a path and their parameters. Equal parameters share a record.
+    /// Equal parameters share a record.
     pub(super) fn path(&mut self, entries: &[PointEntry]) -> PathId {
         let first = number(self.files.path_points.len());
         for entry in entries {
@@ -192,7 +192,7 @@ impl Linker<'_> {
         }
     }
 
-    /// The record of parameters. Equal parameters share a record.
+    /// Equal parameters share a record.
     pub(super) fn para(&mut self, para: TrajPara) -> TrajParaId {
         let next = TrajParaId::at(self.files.traj_paras.len());
         let id = *self.paras.entry([para.acc_fac, para.vel_max, para.smooth, para.brk_dst]).or_insert(next);

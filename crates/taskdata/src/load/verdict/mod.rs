@@ -1,9 +1,7 @@
-//! The verdict on a command to Task, before it is sent (V.4.1, V.4.2): whether the task data have its names and
-//! its required records, and whether its path exists.
-//!
-//! There is one verdict, with one text, for a line of a job, a request of an operator, a block of commands, a
-//! command in the mailbox of a workstation controller and `rcs-run check --explain`. It depends only on the
-//! command and the task data. Conditions of the cell, such as a lost object, are decided by Task alone.
+//! The verdict on a command to Task (V.4.1, V.4.2): the task data have its names and records, and its path exists. One
+//! verdict, with one text, serves lines of a job, requests of an operator, blocks of commands, the mailbox of a
+//! workstation controller and `rcs-run check --explain`. It does not depend on the cell: Task alone decides about
+//! conditions such as a lost object.
 //!
 //! * `names`: object, locations, sectors and grips exist;
 //! * `needs`: the fields that the command uses, and the records that it needs;
@@ -42,10 +40,9 @@ pub const TASK_COMMANDS: &[&str] = &[
     "SHUTDOWN",
 ];
 
-/// Commands whose fields Task does not read.
-const BARE: &[&str] = &["PAUSE", "STARTUP", "SHUTDOWN"];
+const BARE: &[&str] = &["PAUSE", "STARTUP", "SHUTDOWN"]; // Task does not read their fields
 
-/// The field of a command (V.4.2) that a finding is about.
+/// A field of a command (V.4.2).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Field {
     Command,
@@ -57,22 +54,16 @@ pub enum Field {
     Destination,
     DestinationSector,
     EndAt,
-    /// The sector of the end-at location.
-    EndAtSector,
+    EndAtSector, // of the end-at location
 }
 
-/// An error in a command.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Finding {
     pub field: Field,
-    /// Stable short name of the kind of problem.
-    pub code: &'static str,
-    /// The finding and the expectation, in one sentence.
-    pub message: String,
-    /// The remedy, or the nearest known name.
-    pub help: Option<String>,
-    /// For an unknown name: the name, and the nearest known one.
-    pub(super) unknown: Option<(Name16, Option<String>)>,
+    pub code: &'static str,                               // stable short name
+    pub message: String,                                  // finding and expectation, in one sentence
+    pub help: Option<String>,                             // remedy, or nearest known name
+    pub(super) unknown: Option<(Name16, Option<String>)>, // the name, and the nearest known one
 }
 
 /// The object that the robot holds between two commands.
@@ -81,12 +72,10 @@ pub(super) enum Held {
     #[default]
     Nothing,
     Object(Name16),
-    /// Unknown after actions of the operator or a failed command.
-    Unknown,
+    Unknown, // after an operator's actions or a failed command
 }
 
-/// The known state of the robot between two commands. The default is the start of a job: the robot holds
-/// nothing, and its location is unknown.
+/// The known state between two commands. Default: a job starts with an empty gripper at an unknown location.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Before {
     held: Held,
@@ -94,7 +83,7 @@ pub struct Before {
 }
 
 impl Before {
-    /// A completely unknown state. The verdict is then independent of the robot's location and load.
+    /// The verdict is then independent of the robot's location and load.
     #[must_use]
     pub const fn unknown() -> Self {
         Self { held: Held::Unknown, at: None }
@@ -103,20 +92,18 @@ impl Before {
 
 #[derive(Clone, Debug)]
 pub struct Verdict {
-    /// The errors, in the order of the fields; empty if the command passes.
-    pub findings: Vec<Finding>,
-    /// The known state of the robot after the command.
-    pub after: Before,
+    pub findings: Vec<Finding>, // in the order of the fields; empty: the command passes
+    pub after: Before,          // state of the robot after the command
 }
 
 impl Verdict {
-    /// The verdict on a command. It does not allocate for a command that passes.
+    /// Does not allocate for a command that passes.
     #[must_use]
     pub fn of(command: &HwsCommand, data: &TaskData<'_>, before: Before) -> Self {
         Self::judge(command, data, before, false)
     }
 
-    /// The verdict on a command that must fail. It may lack fields and records.
+    /// The command must fail, so it may lack fields and records.
     pub(super) fn of_failing(command: &HwsCommand, data: &TaskData<'_>, before: Before) -> Self {
         Self::judge(command, data, before, true)
     }
@@ -143,19 +130,19 @@ impl Verdict {
         Self { findings, after: Before { held, at } }
     }
 
-    /// True if the command has no error.
+    /// The command has no error.
     #[must_use]
     pub const fn passes(&self) -> bool {
         self.findings.is_empty()
     }
 }
 
-/// True for a command that uses no task data, such as PAUSE.
+/// The command uses no task data, such as PAUSE.
 pub(super) fn is_bare(command: &HwsCommand) -> bool {
     verb_of(&command.command).is_some_and(|verb| BARE.contains(&verb))
 }
 
-/// Only the names of a command, for task data with errors.
+/// Checks only the names, for task data with errors.
 pub(super) fn names_of(command: &HwsCommand, data: &TaskData<'_>) -> Vec<Finding> {
     let mut findings = Vec::new();
     match verb_of(&command.command) {
@@ -166,14 +153,14 @@ pub(super) fn names_of(command: &HwsCommand, data: &TaskData<'_>) -> Vec<Finding
     findings
 }
 
-/// Findings as one text: the reason of a refusal.
+/// The reason of a refusal.
 #[must_use]
 pub fn in_words(findings: &[Finding]) -> String {
     let words = |finding: &Finding| with_nearest(&finding.message, finding.help.as_deref());
     findings.iter().map(words).collect::<Vec<_>>().join("; ")
 }
 
-/// A message with its help, if that is the nearest known name.
+/// Adds the help if it is the nearest known name.
 pub(super) fn with_nearest(message: &str, help: Option<&str>) -> String {
     match help.filter(|help| help.starts_with("the nearest ")) {
         Some(nearest) => format!("{message} ({nearest})"),
@@ -181,8 +168,7 @@ pub(super) fn with_nearest(message: &str, help: Option<&str>) -> String {
     }
 }
 
-/// The command that a word means: the whole word, or its first ten characters, which all lower processes
-/// compare (SPECNOTES.md, contradiction 22).
+/// Compares the whole word, or its first ten characters like all lower processes (SPECNOTES.md, contradiction 22).
 fn verb_of(word: &Name16) -> Option<&'static str> {
     let means = |known: &&&str| word.as_str() == **known || word.as_str() == Name10::clipped(known).as_str();
     TASK_COMMANDS.iter().find(means).copied()

@@ -1,4 +1,4 @@
-//! The names of a command: its object, its locations with their sectors, and the grips of the object there.
+//! The names of a command: object, locations with sectors, and grips there.
 
 use diagnostics::nearest;
 use interfaces::HwsCommand;
@@ -11,17 +11,15 @@ use super::{
 };
 use crate::files::{Location, LookupError, TaskData};
 
-/// A name that the task data lack.
+/// A name that is not in the task data.
 pub(in crate::load) struct Unfound {
     pub code: &'static str,
     pub message: String,
     pub help: Option<String>,
     pub near: Option<String>,
-    /// True if the sector is wrong, not the name.
-    pub is_sector: bool,
+    pub is_sector: bool, // the sector is wrong, not the name
 }
 
-/// Check that an object is in the task data.
 pub(in crate::load) fn find_object(data: &TaskData<'_>, name: &Name16) -> Result<(), Unfound> {
     if data.object_named(name).is_some() {
         return Ok(());
@@ -38,7 +36,6 @@ pub(in crate::load) fn find_object(data: &TaskData<'_>, name: &Name16) -> Result
     })
 }
 
-/// Look up a location with its sector.
 pub(in crate::load) fn find_location(
     data: &TaskData<'_>,
     name: &Name16,
@@ -73,7 +70,7 @@ impl Unfound {
     }
 }
 
-/// Check all names; `None` for an unknown object, which prevents further checks.
+/// `None` for an unknown object, which prevents further checks.
 pub(super) fn look_up(
     command: &HwsCommand,
     data: &TaskData<'_>,
@@ -94,7 +91,7 @@ pub(super) fn look_up(
     })
 }
 
-/// Check only the names, without the grips.
+/// Checks only the names, without the grips.
 pub(super) fn names(command: &HwsCommand, data: &TaskData<'_>, findings: &mut Vec<Finding>) {
     if let Some(object) = &command.object
         && let Err(unfound) = find_object(data, object)
@@ -107,14 +104,13 @@ pub(super) fn names(command: &HwsCommand, data: &TaskData<'_>, findings: &mut Ve
     }
 }
 
-/// A location of a command, with the object that is handled there.
+/// A location, and the object that is handled there.
 struct NamedLocation {
     name: Option<Name16>,
     sector: Option<i32>,
     object: Option<Name16>,
     grip: i32,
-    /// Of the name, the sector and the grip.
-    fields: [Field; 3],
+    fields: [Field; 3], // of name, sector and grip
 }
 
 fn named_locations(command: &HwsCommand) -> [NamedLocation; 3] {
@@ -168,7 +164,7 @@ impl Names<'_, '_> {
         }
     }
 
-    /// A location with its sector, and with the object if its grip is known there.
+    /// Contains the object if its grip is known there.
     fn visit(&mut self, named: &NamedLocation) -> Option<Visit> {
         let location = self.location(named)?;
         let [field, _, of_grip] = named.fields;
@@ -177,7 +173,7 @@ impl Names<'_, '_> {
         Some(Visit { location, object: object.map(|object| (object, named.grip)), field })
     }
 
-    /// True if an object has a grip at a location. A missing grip is reported.
+    /// Reports a missing grip.
     fn has_grip(&mut self, object: &Name16, grip: i32, location: &Location, field: Field) -> bool {
         let data = self.data;
         let (message, help) = if data.object(object, grip).is_none() {

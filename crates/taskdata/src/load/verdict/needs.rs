@@ -1,6 +1,5 @@
-//! Preconditions of a command: the fields that its verb uses, the grips of its object, the data for a regrip on the
-//! Active Pedestal, a tool in the gripper (V.4.1, V.3.1 FIX-GRIP). Task and Subtask would refuse the command for the
-//! same reasons, but only when it is sent.
+//! Preconditions of a command: fields, grips, data for a regrip on the Active Pedestal, a tool in the gripper (V.4.1,
+//! V.3.1 FIX-GRIP). Task and Subtask would refuse it only when it is sent.
 
 use interfaces::HwsCommand;
 use rcs_core::name::{Name10, Name16};
@@ -8,16 +7,12 @@ use rcs_core::name::{Name10, Name16};
 use super::{Field, Finding, Held, finding};
 use crate::files::{ArrayId, Direction, LocptId, OwnerId, RefType, Reference, TaskData};
 
-/// Location at which the Active Pedestal grips an object (V.3.1 FIX-GRIP).
-const PEDESTAL: &str = "PEDESTAL";
-/// Location near the tool drum (V.4.1 ACQUIRE-TOOL).
-const NEAR_DRUM: &str = "TOOL-SAFE";
-/// Location where tools are passed to the drum.
-pub(super) const DRUM: &str = "TOOL-TRNS";
-/// `endeff-id#` of the tool gripper (VII.7.2).
-const TOOL_GRIPPER: i32 = 3;
+const PEDESTAL: &str = "PEDESTAL"; // grips an object (V.3.1 FIX-GRIP)
+const NEAR_DRUM: &str = "TOOL-SAFE"; // V.4.1 ACQUIRE-TOOL
+pub(super) const DRUM: &str = "TOOL-TRNS"; // tools are passed to the drum
+const TOOL_GRIPPER: i32 = 3; // `endeff-id#` (VII.7.2)
 
-/// A location of a command: its name, sector and grip, and the fields of the latter.
+/// Name, sector and grip, with the fields of the last two.
 struct Place {
     name: Option<Name16>,
     sector: Option<i32>,
@@ -29,8 +24,7 @@ struct Place {
 /// Checks a command whose object is known.
 pub(super) struct Needs<'c, 'd> {
     pub command: &'c HwsCommand,
-    /// The full word of the command.
-    pub verb: &'static str,
+    pub verb: &'static str, // the full word
     pub data: &'c TaskData<'d>,
     pub findings: &'c mut Vec<Finding>,
 }
@@ -81,7 +75,7 @@ impl Needs<'_, '_> {
         }
     }
 
-    /// The locations at which the verb uses a grip.
+    /// Locations at which the verb uses a grip.
     fn gripped(&self) -> [Option<Place>; 2] {
         match self.verb {
             "POSITION" if self.command.source.is_some() => [Some(self.source()), None],
@@ -92,7 +86,7 @@ impl Needs<'_, '_> {
         }
     }
 
-    /// Report missing data. Returns the held object after the command.
+    /// Returns the held object after the command.
     pub(super) fn check(&mut self, held: Held) -> Held {
         self.fields();
         self.sectors();
@@ -116,7 +110,7 @@ impl Needs<'_, '_> {
         self.findings.push(finding(field, "job.needs", message, Some(help.into())));
     }
 
-    /// Check that the command has the object and the locations that the verb needs.
+    /// The object and the locations that the verb needs.
     fn fields(&mut self) {
         let (verb, command) = (self.verb, self.command);
         let takes = self.is(&["TRANSFER", "REFIXTURE", "ACQUIRE"]);
@@ -143,7 +137,7 @@ impl Needs<'_, '_> {
         }
     }
 
-    /// Check that a location in a tray has a sector: the location point of a tray is only its corner (VIII.3).
+    /// A location in a tray needs a sector: its location point is only the corner (VIII.3).
     fn sectors(&mut self) {
         let places = match self.verb {
             "MOVE" | "REFIXTURE" => [Some(self.source()), Some(self.destination()), None],
@@ -173,7 +167,7 @@ impl Needs<'_, '_> {
         }
     }
 
-    /// Check that the command has a grip; +0 is not a grip.
+    /// +0 is not a grip.
     fn grips(&mut self) {
         let Some(object) = self.command.object else { return };
         for place in self.gripped().into_iter().flatten().filter(|place| place.grip == 0) {
@@ -183,7 +177,7 @@ impl Needs<'_, '_> {
         }
     }
 
-    /// Check the data for a regrip on the Active Pedestal, which different grips need.
+    /// Checks the data for a regrip, which different grips at source and destination need.
     fn regrip(&mut self) {
         let (data, command) = (self.data, self.command);
         let Some(object) = command.object.filter(|_| self.carries()) else { return };
@@ -231,8 +225,8 @@ impl Needs<'_, '_> {
         }
     }
 
-    /// Check that a TRANSFER does not end at the Active Pedestal: its hand grips only during a regrip (V.3.1 FIX-GRIP),
-    /// so the released object would fall.
+    /// A TRANSFER cannot end at the Active Pedestal: its hand grips only during a regrip (V.3.1 FIX-GRIP), so the
+    /// object would fall.
     fn pedestal(&mut self) {
         let to = self.command.destination.filter(|to| self.verb == "TRANSFER" && to.as_str() == PEDESTAL);
         if to.is_none() {
@@ -245,7 +239,7 @@ impl Needs<'_, '_> {
         self.error(Field::Destination, message, help);
     }
 
-    /// Check that a tool command handles a tool, and that the gripper holds this tool, or nothing before ACQUIRE-TOOL.
+    /// The command handles a tool, which the gripper holds; before ACQUIRE-TOOL it is empty.
     fn tool(&mut self, held: Held) {
         if !self.is_for_tools() {
             return;
@@ -287,7 +281,7 @@ impl Needs<'_, '_> {
         self.error(Field::Command, message, format!("{before} comes before it"));
     }
 
-    /// Check that the relative moves at the drum that the verb makes exist (V.2.1).
+    /// The relative moves at the drum exist (V.2.1).
     fn moves(&mut self) {
         let names: &[&str] = match self.verb {
             "INSERT-TOOL" => &["INS-FAR", "INS-NEAR", "INS-IN"],
@@ -323,7 +317,7 @@ pub(super) fn grips_of(data: &TaskData<'_>, object: &Name16) -> String {
     }
 }
 
-/// Help text: the locations at which a grip of an object has a movetable.
+/// Help text: locations with a movetable for a grip of an object.
 pub(super) fn places_of(data: &TaskData<'_>, object: &Name16, grip: i32) -> String {
     let id = data.object_named(object);
     let entries = data.grip_locs.iter().filter(|entry| Some(entry.object) == id && entry.grip == grip);
@@ -335,7 +329,7 @@ pub(super) fn places_of(data: &TaskData<'_>, object: &Name16, grip: i32) -> Stri
     }
 }
 
-/// Help text: the locations at which an object, or its view, can be approached with a grip.
+/// Help text: locations with an approach to an object, or to its view, with a grip.
 pub(super) fn approaches_of(data: &TaskData<'_>, kind: RefType, object: &Name16, grip: i32) -> String {
     let id = data.object_named(object).map(|id| id.number());
     let of_it = data.appr_depts.iter().filter(|entry| {
@@ -351,7 +345,7 @@ pub(super) fn approaches_of(data: &TaskData<'_>, kind: RefType, object: &Name16,
     }
 }
 
-/// Help text: the arrays and location points to which an object is assigned.
+/// Help text: arrays and location points to which an object is assigned.
 pub(super) fn assigned_to(data: &TaskData<'_>, object: &Name16) -> String {
     let id = data.object_named(object);
     let assigned = id.into_iter().flat_map(|id| data.object_locations(id));
@@ -363,7 +357,6 @@ pub(super) fn assigned_to(data: &TaskData<'_>, object: &Name16) -> String {
     }
 }
 
-/// The name of a location at which an entry applies.
 fn named(data: &TaskData<'_>, at: Reference) -> String {
     let name = match at.kind {
         RefType::LocationPoint => data.locpt(LocptId::new(at.number)).map(|point| point.name),

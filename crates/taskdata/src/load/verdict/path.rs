@@ -1,7 +1,5 @@
-//! The path of the robot through a command: each location must have a trajectory and an approach to the next.
-//!
-//! The path of a command to and from the Active Pedestal is not checked. For commands at the tool drum, only
-//! the path to the end-at location is checked. The check continues at the end of the command.
+//! The path of a command: each location must have a trajectory and an approach to the next. Paths to and from the
+//! Active Pedestal are not checked; for commands at the tool drum, only the path to the end-at location is.
 
 use rcs_core::name::Name16;
 
@@ -11,12 +9,10 @@ use super::{
 };
 use crate::files::{Location, RefType, TaskData};
 
-/// A location of a command.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Visit {
     pub location: Location,
-    /// The object that is handled there, and its grip number.
-    pub object: Option<(Name16, i32)>,
+    pub object: Option<(Name16, i32)>, // handled there, and grip number
     pub field: Field,
 }
 
@@ -27,18 +23,17 @@ pub(super) struct Visits {
     pub end_at: Option<Visit>,
 }
 
-/// Location of the robot between two commands, with object and grip number of the motion to it.
+/// The robot's location between two commands, with object and grip number of the motion there.
 #[derive(Clone, Copy, Debug)]
 pub struct Standing {
     location: Location,
     object: Option<(Name16, i32)>,
 }
 
-/// The path of the robot from its present location.
+/// The path from the robot's present location.
 pub(super) struct Route<'c, 'd> {
     pub data: &'c TaskData<'d>,
-    /// Location of the robot, if known.
-    pub last: Option<Standing>,
+    pub last: Option<Standing>, // of the robot, if known
     pub findings: &'c mut Vec<Finding>,
 }
 
@@ -47,7 +42,7 @@ impl Route<'_, '_> {
         self.findings.push(finding(field, "path.missing", message, Some(help)));
     }
 
-    /// Check the path of a command (V.4.1).
+    /// Checks the path of a command (V.4.1).
     pub(super) fn command(&mut self, verb: &str, visits: Visits) {
         let Visits { source, destination, end_at } = visits;
         let regrip = match (&source, &destination) {
@@ -70,7 +65,7 @@ impl Route<'_, '_> {
                 }
             }
             "ACQUIRE" => self.go(source),
-            // POSITION moves to an object at its location, or to a location (SPECNOTES.md, contradiction 24).
+            // To an object at its location, or to a location (SPECNOTES.md, contradiction 24).
             "POSITION" => self.go(source.or(destination)),
             "RELEASE-TOOL" | "REMOVE-TOOL" => {
                 self.last = self.at_the_drum();
@@ -81,8 +76,7 @@ impl Route<'_, '_> {
         }
     }
 
-    /// The transfer location of the drum, where the tool commands end (V.2.1); `None` if the task data lack it,
-    /// which is reported with the relative moves there.
+    /// Where tool commands end (V.2.1); `None`, if missing, is reported with the relative moves there.
     fn at_the_drum(&self) -> Option<Standing> {
         let location = self.data.resolve_location::<16, 16>(&Name16::clipped(DRUM), None, None).ok()?;
         Some(Standing { location, object: None })
@@ -124,7 +118,7 @@ impl Route<'_, '_> {
         self.last = Some(Standing { location, object });
     }
 
-    /// Check the path to the place of the camera, if vision must locate the object.
+    /// Checks the path to the camera's place, if vision must locate the object.
     fn view(&mut self, visit: &Visit, verb: &str) {
         let (data, place) = (self.data, &visit.location.place);
         let Some((object, _)) = visit.object.filter(|_| matches!(verb, "TRANSFER" | "MOVE" | "ACQUIRE"))
@@ -147,8 +141,8 @@ impl Route<'_, '_> {
     }
 }
 
-/// True if both are one location, such as sectors of one tray: a motion between them needs no trajectory
-/// (docs/design/motion.md "Same location").
+/// Sectors of one tray, for example: a motion between them needs no trajectory (docs/design/motion.md "Same
+/// location").
 fn same(one: &Location, other: &Location) -> bool {
     one.name == other.name
 }

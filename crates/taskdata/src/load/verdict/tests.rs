@@ -13,7 +13,7 @@ fn store() -> Store {
     Store::load(data).map_or_else(|report| panic!("{report}"), |(store, _)| store)
 }
 
-/// The command of an unchecked job line, as a mailbox delivers it.
+/// Unchecked, as a mailbox delivers it.
 fn command(fields: &str) -> HwsCommand {
     let words: Vec<&str> = fields.split_whitespace().collect();
     let name = |at: usize| Some(words[at]).filter(|word| *word != "--").map(Name16::clipped);
@@ -64,7 +64,7 @@ fn commands_from_line_request_and_mailbox_get_the_same_text() {
         assert!(found.contains(expected), "{fields}: {found}");
         let request = own_command(fields, &store).unwrap_err().to_string();
         assert_eq!(request, found, "{fields}");
-        // A line of a job after an action of the operator, which makes the held object unknown.
+        // The joystick makes the held object unknown.
         let text = format!("** joystick frame OFF\n== {fields}\n");
         let source = Source { name: "try.job".into(), text: text.into() };
         let report = Job::from_source(source, &store).unwrap_err();
