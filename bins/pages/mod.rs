@@ -113,10 +113,8 @@ fn refuse(error: &clap::Error) -> ! {
     process::exit(error.exit_code())
 }
 
-/// Units of the option, or else of the variable, or else inches. A wrong option is refused later.
-///
-/// # Errors
-/// The variable has a wrong value.
+/// Units of the option, or else of the variable, or else inches. A wrong option is refused later. Errors: the variable
+/// has a wrong value.
 fn units(arguments: &[OsString], variable: Option<OsString>) -> Result<Units, String> {
     let texts = || arguments.iter().skip(1).map(|argument| argument.to_str().unwrap_or_default());
     let option = format!("--{UNITS}");
@@ -142,9 +140,7 @@ fn length_as_value(argument: OsString) -> OsString {
     }
 }
 
-/// Inches, from a text in the units of the command line.
-/// # Errors
-/// What was expected.
+/// Inches, from a text in the units of the command line. Errors: what was expected.
 pub fn length(text: &str) -> Result<f64, String> {
     Units::of_process().length(text)
 }
@@ -177,9 +173,6 @@ pub fn command<P: Parser>() -> Command {
 }
 
 /// Writes `man/*.1`, `completions/*` and `PROGRAM.md`.
-///
-/// # Errors
-/// Errors of the system.
 pub fn generate(command: &Command, directory: &Path) -> io::Result<()> {
     let name = command.get_name().to_owned();
     let (manual, completions) = (directory.join("man"), directory.join("completions"));

@@ -64,10 +64,8 @@ impl PedestalVerb {
     }
 }
 
-/// The steps of a command; `held` is the object that the robot holds, with its grip, if known.
-///
-/// # Errors
-/// [`LookupError`] for an unknown location or object, with the known ones.
+/// The steps of a command; `held` is the object that the robot holds, with its grip, if known. Errors: [`LookupError`]
+/// for an unknown location or object, with the known ones.
 pub fn steps(
     command: &HwsCommand,
     held: Option<(Name16, i32)>,
@@ -232,10 +230,8 @@ impl Maker<'_> {
 }
 
 /// The steps of GET-ENDEFF (V.3.1): leave the attached gripper in its holster, and take the wanted one from its own.
-/// Grippers are given by end effector id; `own` is `None` for a bare robot.
-///
-/// # Errors
-/// [`Lacking`] if the task data do not have a holster.
+/// Grippers are given by end effector id; `own` is `None` for a bare robot. Errors: [`Lacking`] if the task data do
+/// not have a holster.
 pub fn exchange(own: Option<u8>, wanted: u8, data: &TaskData<'_>) -> Result<Vec<Step>, Lacking> {
     let mut steps = Vec::new();
     if let Some(own) = own {

@@ -57,9 +57,6 @@ pub struct Line {
 
 impl Line {
     /// Makes a stream non-blocking.
-    ///
-    /// # Errors
-    /// Errors of the system.
     pub fn new(stream: UnixStream) -> io::Result<Self> {
         stream.set_nonblocking(true)?;
         Ok(Self { stream, pending: Vec::new() })
@@ -71,9 +68,6 @@ impl Line {
     }
 
     /// Makes the stream blocking again.
-    ///
-    /// # Errors
-    /// Errors of the system.
     pub fn into_stream(self) -> io::Result<UnixStream> {
         self.stream.set_nonblocking(false)?;
         Ok(self.stream)
@@ -86,9 +80,6 @@ impl Line {
     }
 
     /// Sends bytes and removes them from `bytes`. The rest waits for the next call.
-    ///
-    /// # Errors
-    /// Errors of the system.
     pub fn send(&mut self, bytes: &mut Vec<u8>) -> io::Result<()> {
         self.pending.append(bytes);
         while !self.pending.is_empty() {
@@ -104,9 +95,6 @@ impl Line {
     }
 
     /// Returns false if the other side has closed the connection.
-    ///
-    /// # Errors
-    /// Errors of the system.
     pub fn receive(&mut self, take: impl FnOnce(&[u8])) -> io::Result<bool> {
         use io::ErrorKind::{ConnectionReset, Interrupted, WouldBlock};
         let mut buffer = [0; CHUNK];
@@ -123,9 +111,6 @@ impl Line {
     }
 
     /// Waits until bytes arrive (true), pending bytes can be sent, `wake` is readable, or `until` is reached.
-    ///
-    /// # Errors
-    /// Errors of the system.
     pub fn wait(&self, wake: Option<BorrowedFd<'_>>, until: Option<Instant>) -> io::Result<bool> {
         let write = if self.is_flushed() { PollFlags::empty() } else { PollFlags::OUT };
         let socket = self.stream.as_fd();
@@ -198,9 +183,7 @@ pub struct Acceptor {
 }
 
 impl Acceptor {
-    /// Replaces the dead socket of a killed process. `name` is the thread's; `admit` receives each connection.
-    ///
-    /// # Errors
+    /// Replaces the dead socket of a killed process. `name` is the thread's; `admit` receives each connection. Errors:
     /// [`io::ErrorKind::AddrInUse`] if another program listens there; [`io::ErrorKind::AlreadyExists`] if there is a
     /// file of another kind; errors of the system.
     pub fn start(

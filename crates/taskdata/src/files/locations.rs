@@ -95,10 +95,8 @@ fn wide<const N: usize>(name: &Name<N>) -> Name16 {
 }
 
 impl<'a> TaskData<'a> {
-    /// Resolves a location of a command (`"src-loc-16"`, `src-sector#` and so on, V.4.2).
-    ///
-    /// # Errors
-    /// [`LookupError`] with the missing name, or with the valid sectors.
+    /// Resolves a location of a command (`"src-loc-16"`, `src-sector#` and so on, V.4.2). Errors: [`LookupError`] with
+    /// the missing name, or with the valid sectors.
     pub fn resolve_location<const N: usize, const M: usize>(
         &self,
         name: &Name<N>,

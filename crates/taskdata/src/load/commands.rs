@@ -118,9 +118,6 @@ fn is_command(text: &str) -> bool {
 
 impl Store {
     /// The command of `block from to LINE-LOAD` (IV.3.3).
-    ///
-    /// # Errors
-    /// [`LineLoadError`].
     pub fn line_load(&self, number: u32, from: usize, to: usize) -> Result<JobLine, LineLoadError> {
         let known = || self.commands.0.keys().copied().collect();
         let block =

@@ -47,18 +47,13 @@ pub use origins::Origins;
 pub use store::Store;
 
 impl Store {
-    /// Loads all files `*.blk` under a data directory.
-    ///
-    /// # Errors
-    /// The report with every error of the data, if it has one.
+    /// Loads all files `*.blk` under a data directory. Errors: the report with every error of the data.
     pub fn load(directory: &Path) -> Result<(Self, Diagnostics), Box<Diagnostics>> {
         Self::load_part(directory).map_err(|(_, report)| report)
     }
 
-    /// Like [`Store::load`], but with the readable part of data with errors, for checks of jobs.
-    ///
-    /// # Errors
-    /// The readable part, and the report.
+    /// Like [`Store::load`], but with the readable part of data with errors, for checks of jobs. Errors: that part,
+    /// and the report.
     pub fn load_part(directory: &Path) -> Result<(Self, Diagnostics), (Box<Part>, Box<Diagnostics>)> {
         let (sources, unreadable) = source::read_blocks_under(directory);
         let mut problems = Problems::default();
@@ -79,10 +74,7 @@ impl Store {
         loaded.unwrap_or_else(|(part, report)| (part.store, *report))
     }
 
-    /// Loads texts from another source, such as the attachments of a log.
-    ///
-    /// # Errors
-    /// The report with every error of the data, if it has one.
+    /// Loads texts from another source, such as the attachments of a log. Errors: the report.
     pub fn from_sources(sources: Vec<Source>) -> Result<(Self, Diagnostics), Box<Diagnostics>> {
         Self::default().with_blocks(sources)
     }
@@ -93,10 +85,7 @@ impl Store {
     /// locations get new numbers.
     ///
     /// All blocks of the texts are loaded, unless the texts have a root directory block, which may also name existing
-    /// blocks. The whole new generation is checked.
-    ///
-    /// # Errors
-    /// The report of an error that these data lack. There is no new generation then.
+    /// blocks. The whole new generation is checked, and not made after an error that these data lack.
     pub fn with_blocks(&self, texts: Vec<Source>) -> Result<(Self, Diagnostics), Box<Diagnostics>> {
         let (part, report) = match self.loaded_with(texts, Problems::default()) {
             Ok(loaded) => return Ok(loaded),
@@ -126,9 +115,6 @@ impl Store {
     }
 
     /// Like [`Store::with_blocks`], without the check of the reach.
-    ///
-    /// # Errors
-    /// The report. There is no new generation then.
     pub fn with_blocks_untried(&self, texts: Vec<Source>) -> Result<(Self, Diagnostics), Box<Diagnostics>> {
         let linked = self.linked(texts, Problems::default());
         linked.reported(self.sources.len()).map_err(|(_, report)| report)

@@ -41,10 +41,7 @@ pub enum BlockFault {
     Tab(usize),     // lines with a tab; reported at the first
 }
 
-/// `shown` is the path in messages.
-///
-/// # Errors
-/// See [`files::read_text`].
+/// `shown` is the path in messages. Errors: see [`files::read_text`].
 pub fn read(path: &Path, shown: &str) -> io::Result<Source> {
     Ok(Source { name: shown.to_owned(), text: files::read_text(path)?.into() })
 }

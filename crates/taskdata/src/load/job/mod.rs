@@ -87,10 +87,8 @@ pub struct Job {
 }
 
 impl Job {
-    /// Reads a job file and checks it against the task data.
-    ///
-    /// # Errors
-    /// The report with every error of the job, if it has one.
+    /// Reads a job file and checks it against the task data. Errors: the report with every error of the job, if it has
+    /// one.
     pub fn load(path: &Path, store: &Store) -> Result<(Self, Diagnostics), Box<Diagnostics>> {
         match read(path, &path.display().to_string()) {
             Ok(source) => Self::from_source(source, store).and_then(Self::with_a_line),
@@ -134,9 +132,6 @@ impl Job {
     }
 
     /// Checks a job from another source, such as the attachment of a log.
-    ///
-    /// # Errors
-    /// The report, if it has an error.
     pub fn from_source(source: Source, store: &Store) -> Result<(Self, Diagnostics), Box<Diagnostics>> {
         let mut problems = Problems::default();
         let reloads = reload::reloads(&source, store, &mut problems);

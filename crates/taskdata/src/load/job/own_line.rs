@@ -52,17 +52,11 @@ const SOURCE: &str = "the line"; // in messages
 
 /// Reads a command as in a job, with or without `==`. PAUSE, STARTUP and SHUTDOWN need no fields. The robot's position
 /// and held object are unknown, and not checked.
-///
-/// # Errors
-/// [`OwnLineError`].
 pub fn own_command(text: &str, store: &Store) -> Result<JobLine, OwnLineError> {
     reported_command(text, store).map_err(|report| unreadable(&report))
 }
 
 /// Like [`own_command`], with places and remedies of all findings.
-///
-/// # Errors
-/// The report.
 pub fn reported_command(text: &str, store: &Store) -> Result<JobLine, Box<Diagnostics>> {
     let mut text = text.trim().trim_start_matches("==").trim_start().to_owned();
     if ["PAUSE", "STARTUP", "SHUTDOWN"].contains(&text.as_str()) {
@@ -101,9 +95,6 @@ fn unreadable(report: &Diagnostics) -> OwnLineError {
 }
 
 /// Reads a line as in a job, without the `**`.
-///
-/// # Errors
-/// [`OwnLineError`].
 pub fn own_line(text: &str, store: &Store) -> Result<Workstation, OwnLineError> {
     let words = words_of_line(&source_line(text));
     match words.first().map(|word| word.text) {
