@@ -1,5 +1,4 @@
-//! Speed of the link: writing and reading a frame, and a whole exchange of both ends over a line with and without
-//! faults.
+//! Speed of the link: writing and reading a frame, and an exchange of both ends with and without faults.
 
 use std::hint::black_box;
 
@@ -18,7 +17,6 @@ use rcs_core::tick::Tick;
 
 const HOME: Plate = Plate { words: [0, -6296, -635, -9000, 13495, 0] };
 
-/// A robot that reaches every commanded position exactly.
 struct Exact {
     joints: Joints,
     at: Plate,

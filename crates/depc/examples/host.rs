@@ -1,8 +1,6 @@
-//! A minimal DEPC host: it moves the robot 2 in up and back over a serial port.
-//!
-//! Run `cargo run --release --bin rcs-cell -- --link /tmp/t3 --auto` in one terminal, and
-//! `cargo run --release -p depc --example host /tmp/t3` in another. With a real robot, connect the host's DSR with
-//! the controller's DTR; a pseudo-terminal has no modem lines.
+//! A minimal DEPC host: it moves the robot 2 in up and back over a serial port. Run `cargo run --release --bin
+//! rcs-cell -- --link /tmp/t3 --auto` in one terminal, and `cargo run --release -p depc --example host /tmp/t3` in
+//! another. With a real robot, connect the host's DSR with the controller's DTR; a pseudo-terminal has no modem lines.
 
 #![expect(clippy::print_stdout, reason = "an example prints its results")]
 

@@ -1,12 +1,8 @@
 //! The controller's end of the link: the DEPC function of the T3 controller (A 2.3, A 2.4).
 //!
-//! The function starts in auto mode, reports the robot's position, and then accepts one command per period: it
-//! acknowledges, checks, and moves. If it cannot execute a command, the controller's screen shows a warning; the
-//! operator answers ENTER (restart) or CANCEL (end the function). A warning is not sent over the line: the host only
-//! gets no answer.
-//!
-//! The state machine is independent of the robot; it moves any implementation of [`Robot`]: the simulated T3, or a
-//! robot with another link.
+//! The function starts in auto mode, reports the robot's position, and then acknowledges, checks and executes one
+//! command per period, on any implementation of [`Robot`]. A command that it cannot execute causes a warning on its
+//! screen, which the operator answers with ENTER (restart) or CANCEL (end the function). The host gets no answer then.
 
 use rcs_core::Plain;
 
@@ -19,29 +15,24 @@ use crate::{
     wire::{Control, DataCommand, FRAME_BYTES, NO_FUNCTION, Report, Response},
 };
 
-/// The robot that the controller moves.
-///
-/// Positions are words of the line. A robot with a higher resolution gets the unrounded frames from
-/// [`crate::exact::ExactFrames`].
+/// The robot that the controller moves. Positions are words of the line; [`crate::exact::ExactFrames`] has the
+/// unrounded frames.
 pub trait Robot {
-    /// Present position of the robot, or the end of its present motion. Commanding it moves nothing, and the next
-    /// point starts from there.
+    /// Present position, or the end of the present motion. Commanding it moves nothing, and the next point starts
+    /// there.
     fn present(&mut self) -> Plate;
 
-    /// Set `goal` as the set point to reach within the coming period.
-    ///
-    /// # Errors
-    /// [`Refusal`] if the robot cannot reach it; the set point is unchanged, and the screen shows the warning.
+    /// Sets the position to reach within the coming period. After a refusal it is unchanged, and the screen shows the
+    /// warning.
     fn accept(&mut self, goal: &Plate) -> Result<(), Refusal>;
 
-    /// A warning of the robot itself. During a warning the controller accepts no command, and the function does not
-    /// start.
+    /// A warning of the robot itself, during which no command is accepted and the function does not start.
     fn warning(&self) -> Option<Warning> {
         None
     }
 
-    /// Stop: no further point follows. The function has ended or waits for an answer to a warning, or the host found
-    /// the robot off its path. From then on [`Self::present`] returns the place at which the robot comes to rest.
+    /// Stops: no further point follows, because the function has ended, shows a warning, or the host found the robot
+    /// off its path. From now on [`Self::present`] returns the place where the robot comes to rest.
     fn stop(&mut self) {}
 }
 
@@ -179,12 +170,12 @@ impl Controller {
         if before == ControllerState::Running && self.state != before {
             robot.stop();
         }
-        // A missing board drives no line; DEPC checks for it before it turns DTR on (A 2.3).
+        // A missing board drives no line; DEPC checks it before it turns DTR on (A 2.3).
         out.dtr = inputs.board && matches!(self.state, ControllerState::Running | ControllerState::Warning);
         out
     }
 
-    /// Start or restart the function: the checks in their order, then the report.
+    /// Starts or restarts the function: the checks in order, then the report.
     fn begin(
         &mut self,
         inputs: &ControllerInputs,
@@ -236,7 +227,7 @@ impl Controller {
         }
     }
 
-    /// ACK means that the command is understood; the check whether it can be executed follows (A 2.3).
+    /// ACK: the command is understood. The check whether it can be executed follows (A 2.3).
     fn execute(
         &mut self,
         inputs: &ControllerInputs,
@@ -313,7 +304,6 @@ mod tests {
 
     const HOME: Plate = Plate { words: [0, -6293, -636, -9000, 13500, 0] };
 
-    /// A robot that reaches every commanded position exactly.
     struct Exact {
         joints: Joints,
         at: Plate,
@@ -482,7 +472,7 @@ mod tests {
             let words = [n, -6293, -636, -9000, 13500, 0];
             let out = controller.step(&to(words, n.to_be_bytes()), &mut robot);
             assert_eq!((out.tx.as_slice(), out.moving), (&[0x06][..], true));
-            // The function of the previous command, whose position is now reached.
+            // The function of the previous command, whose position is reached.
             assert_eq!(out.function, (n - 1).to_be_bytes());
         }
     }
@@ -536,7 +526,6 @@ mod tests {
         assert_eq!((out.tx.length, out.dtr, controller.state()), (16, true, ControllerState::Running));
     }
 
-    /// A robot with its own warnings.
     struct Complaining {
         complaint: Option<Warning>,
         stopped: u32,

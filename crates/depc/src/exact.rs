@@ -1,9 +1,7 @@
-//! The unrounded frames: Prim's commands before rounding to 0.01 in and 0.01 degree.
-//!
-//! The words on the line command the robot. For a robot with a higher resolution this module finds the frame from
-//! which a position was rounded. It keeps Prim's last frames, each with the buffer that T3I received, and searches
-//! for the one whose buffer gives the words on the line. Without a match (a point that was scaled back, or a reported
-//! position), the words determine the frame.
+//! The unrounded frames: Prim's commands before rounding to 0.01 in and 0.01 degree. A robot with a higher resolution
+//! needs the frame from which a position on the line was rounded. This module keeps Prim's last frames, each with the
+//! buffer that T3I received, and finds the one whose buffer gives the words. Without a match (a scaled-back point, a
+//! reported position), the words determine the frame.
 
 use geometry::{
     frame::{Frame, Vector},
@@ -13,25 +11,19 @@ use geometry::{
 
 use crate::Plate;
 
-/// Number of stored frames: the queue of T3I, one frame in transit to it, and one on the line.
-const MOST_FRAMES: usize = 8;
+const MOST_FRAMES: usize = 8; // the queue of T3I, one in transit to it, one on the line
 
-/// A frame of Prim.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Kept {
-    /// As in the buffer of T3I, rounded.
-    wire: WireFrame,
-    /// Unrounded, from Prim.
-    exact: Frame,
-    /// True if it was returned before.
-    used: bool,
+    wire: WireFrame, // rounded, as in the buffer of T3I
+    exact: Frame,    // from Prim
+    used: bool,      // it was returned before
 }
 
 /// Prim's last frames.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ExactFrames {
-    /// The frames, newest first.
-    frames: [Option<Kept>; MOST_FRAMES],
+    frames: [Option<Kept>; MOST_FRAMES], // newest first
 }
 
 impl Default for ExactFrames {
@@ -41,8 +33,8 @@ impl Default for ExactFrames {
 }
 
 impl ExactFrames {
-    /// Store a frame: Prim commanded the tool frame `exact` (inches, world), and T3I received it as `wire`. It is
-    /// ignored if `wire` is not rounded from `exact`.
+    /// Stores a tool frame `exact` (inches, world) that T3I received as `wire`. Ignores it if `wire` is not its
+    /// rounding.
     pub fn offer(&mut self, wire: &WireFrame, exact: &Frame) {
         let newest = self.frames.iter().flatten().next();
         let known = newest.is_some_and(|newest| newest.wire == *wire && newest.exact == *exact);
@@ -54,9 +46,8 @@ impl ExactFrames {
         }
     }
 
-    /// The unrounded end-plate frame (inches, world) of a position; the frame of the words if none is stored.
-    /// Positions must arrive in the order of the frames: older frames than the found one are dropped. A repeated
-    /// position gives the next frame if it has the same words.
+    /// The unrounded end-plate frame (inches, world) of a position, or the frame of the words. Positions arrive in the
+    /// order of the frames, so older frames are dropped. A repeated position gives the next frame with the same words.
     pub fn plate_frame(&mut self, words: &Plate, arm: &Arm) -> Frame {
         let gives = |wire: &WireFrame| {
             let tool = wire.to_frame().ok();

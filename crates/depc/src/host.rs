@@ -1,17 +1,16 @@
 //! The host's end of the link, with which the T3 Interface process talks to the robot controller (A 2.3, VI.1).
 //!
-//! Each tick has two halves: [`Host::receive`] processes the received bytes and changes the state, [`Host::transmit`]
-//! sends at most one frame. Only one frame is outstanding at a time. An answer has no number, so the host never
-//! repeats a frame without an answer: the controller may have executed it. Instead it sends a restart, discards all
-//! bytes until a report with a correct checksum arrives, and continues from there. Only a NAK proves that the command
-//! was not executed; the host then sends the same bytes again.
+//! Each tick has two halves: [`Host::receive`] processes the received bytes, [`Host::transmit`] sends at most one
+//! frame. Only one frame is outstanding. An answer has no number, so the host never repeats a frame without an answer:
+//! the controller may have executed it. It sends a restart, discards all bytes until a valid report, and continues
+//! from there. Only a NAK proves that the command was not executed; then the host repeats it.
 //!
 //! A controller with DTR on and without answers may be in Hold, show a warning D1 to D6, have a dead receiver, or the
-//! wire may be cut: the host cannot distinguish these. It sends a restart once per second, and after the time of
-//! [`Host::set_patience`] it reports the link as failed.
+//! wire may be cut: the host cannot distinguish these. It sends a restart once per second, and reports the link as
+//! failed after the time of [`Host::set_patience`].
 //!
-//! A report has no number either. On a slow line several may be in transit, and the robot may have moved since the
-//! first. If more than one was requested, only the last is valid, and only after an answer time without another one.
+//! A report has no number either. If more than one was requested, only the last is valid, and only after an answer
+//! time without another one: on a slow line the robot may have moved since the first.
 
 mod start;
 
@@ -24,11 +23,10 @@ use crate::{
     wire::{Control, DataCommand, FRAME_BYTES, Response},
 };
 
-/// Ticks without an answer after which a frame is treated as lost (docs/design/link.md "Time-out"). Hold on the
-/// controller's panel looks the same, although it only delays the answer.
+/// Ticks without an answer after which a frame is lost (docs/design/link.md "Time-out"). Hold looks the same, although
+/// it only delays the answer.
 pub const ANSWER_TICKS: u16 = 3;
-/// Maximum number of bytes in a tick with a valid answer; more bytes may be noise.
-const ANSWER_BYTES: usize = 4;
+const ANSWER_BYTES: usize = 4; // per tick with a valid answer; more may be noise
 /// Maximum repetitions of a data command after NAKs; then the host restarts the link.
 pub const MOST_RETRIES: u8 = 3;
 /// Ticks between two unanswered restarts: 1 s (docs/design/link.md "Silence").
@@ -140,7 +138,7 @@ impl Host {
         Self { answer_ticks: answer_ticks.max(1), patience: PATIENCE_TICKS, ..Self::default() }
     }
 
-    /// Reset the counters and discard an outdated candidate report. The behaviour does not change.
+    /// Resets the counters and discards an outdated candidate report; the behaviour does not change.
     pub fn forget_past(&mut self) {
         self.counters = LinkCounters::default();
         if !self.has_candidate {
@@ -148,8 +146,7 @@ impl Host {
         }
     }
 
-    /// Set the time limit, in ticks with DTR on, for a report or for the answer to a cancel. Afterwards the link is
-    /// treated as failed. Initially [`PATIENCE_TICKS`].
+    /// Time limit, in ticks with DTR on, for a report or the answer to a cancel. Then the link has failed.
     pub const fn set_patience(&mut self, ticks: u16) {
         self.patience = ticks;
     }
@@ -202,8 +199,8 @@ impl Host {
         (self.attempts, self.starting, self.attempt) = (0, 0, LinkFault::None);
     }
 
-    /// Function bytes of the last lost data command with a function: the function may or may not have run, and the
-    /// command is not repeated. [`crate::wire::NO_FUNCTION`] if there was none.
+    /// Function bytes of the last lost data command, whose function may or may not have run;
+    /// [`crate::wire::NO_FUNCTION`] for none.
     #[must_use]
     pub const fn lost_function(&self) -> [u8; 2] {
         self.lost_function
@@ -221,8 +218,7 @@ impl Host {
     }
 
     /// Call before the first half of a tick if the port has not sent all bytes of the last one (`status-arg-out` 4,
-    /// VI.1.2). The frame on the line is incomplete and treated as lost: the port may have been blocked for longer
-    /// than the controller waits.
+    /// VI.1.2). The incomplete frame is lost: the port may have been blocked for longer than the controller waits.
     pub fn unsent(&mut self) -> HostEvent {
         match self.state {
             HostState::Waiting => self.lost(LinkFault::NotTransmitted),
@@ -275,7 +271,7 @@ impl Host {
     /// Second half of a tick: send a due frame or `intent`. Returns true if `intent` was sent.
     pub fn transmit(&mut self, intent: &Intent, tx: &mut LinkBytes) -> bool {
         match intent {
-            // The report that answers the previous restart answers this one too.
+            // The report to the previous restart answers this one, too.
             Intent::Restart if self.state == HostState::Starting && self.restarted => {}
             Intent::Restart => self.restart(),
             Intent::Cancel if self.is_running() => {
@@ -332,12 +328,9 @@ impl Host {
         sent
     }
 
-    /// Process one reply in the present state. A reply without meaning is ignored as noise: if it has replaced an
-    /// answer, no answer arrives.
-    ///
-    /// A report is valid only as the `last` reply of its tick: the controller sends nothing after it, and the
-    /// checksum cannot detect a report that lost an FF and was completed by the first FF of the next. An answer is
-    /// valid only in a tick with few bytes: it has no checksum, and may be a byte of a damaged report.
+    /// Processes one reply; one without meaning is ignored as noise. A report is valid only as the `last` reply of its
+    /// tick: the checksum cannot detect a report that lost an FF and was completed by the first FF of the next. An
+    /// answer is valid only in a tick with few bytes: it has no checksum, and may be a byte of a damaged report.
     fn take(&mut self, reply: Reply, last: bool) -> HostEvent {
         if reply == Reply::BadChecksum {
             count(&mut self.counters.checksum_errors);
@@ -375,16 +368,14 @@ impl Host {
                 self.resend_due = true;
                 HostEvent::None
             }
-            // An unrequested report: the controller has stopped with a warning and restarted (A 2.4), or the line is
-            // slow and more reports follow.
+            // The controller has stopped with a warning and restarted (A 2.4), or more reports follow on a slow line.
             (HostState::Ready | HostState::Waiting, Reply::Report(_)) => {
                 self.asked = 1;
                 self.lost(LinkFault::DepcError)
             }
             (HostState::Ready | HostState::Waiting, Reply::BadChecksum) => self.lost(LinkFault::Checksum),
             (HostState::Starting, Reply::BadChecksum) => {
-                // This was one of the reports in transit.
-                self.asked = self.asked.saturating_sub(1);
+                self.asked = self.asked.saturating_sub(1); // one of the reports in transit
                 self.restart_due = true;
                 self.has_candidate = false;
                 self.attempt = LinkFault::Checksum;

@@ -1,9 +1,8 @@
 //! The velocity limits of the controller (A 2.3): 14 in/s and 1.0 rad/s.
 //!
-//! The controller receives only the words on the line, so the limits apply to a step from one set of words to the
-//! next: the distance of the end plate, and each of D, E and R separately (ASSUMED; the appendix says "the commanded
-//! change in translation or orientation"). Both ends use the same integers, so each accepts exactly the steps that
-//! the other permits.
+//! The controller sees only words, so the limits apply to the step between two sets of words: the distance of the end
+//! plate, and D, E and R separately (ASSUMED; the appendix says "the commanded change in translation or orientation").
+//! Both ends use the same integers, so each accepts exactly the steps that the other permits.
 
 use core::fmt;
 
@@ -11,14 +10,12 @@ use rcs_core::Plain;
 
 use crate::{Error, Plate, plate::angle_between};
 
-/// Translation limit: 14 in/s = 0.0014 counts of 0.01 in per microsecond, here in ten-thousandths of a count.
+/// 14 in/s = 0.0014 counts of 0.01 in per microsecond, in ten-thousandths of a count.
 const TRANSLATION_PER_US: u64 = 14;
-/// Ten-thousandths of a count, squared.
-const TRANSLATION_UNIT_SQUARED: u64 = 10_000 * 10_000;
-/// Orientation limit: 1 rad/s = 0.00572957795 counts of 0.01 degree per microsecond, here in 1e-11 of a count.
+const TRANSLATION_UNIT_SQUARED: u64 = 10_000 * 10_000; // ten-thousandths of a count, squared
+/// 1 rad/s = 0.00572957795 counts of 0.01 degree per microsecond, in 1e-11 of a count.
 const ORIENTATION_PER_US: u64 = 572_957_795;
-/// 1e11.
-const ORIENTATION_UNIT: u64 = 100_000_000_000;
+const ORIENTATION_UNIT: u64 = 100_000_000_000; // 1e11
 
 /// The limits for one period of the link.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
@@ -52,10 +49,7 @@ impl Limits {
     /// The period of the appendix (A 2.3): 19.76 ms; 0.27 in and 1.13 degrees.
     pub const APPENDIX: Self = Self { period_us: 19_760 };
 
-    /// Limits for a period in milliseconds.
-    ///
-    /// # Errors
-    /// [`Error::BadPeriod`] if it is not a multiple of 10 ms from 10 to 1000 (VI.1).
+    /// Limits for a period in ms: a multiple of 10 from 10 to 1000 (VI.1), else [`Error::BadPeriod`].
     pub const fn new(period_ms: u16) -> Result<Self, Error> {
         if period_ms == 0 || period_ms > 1000 || !period_ms.is_multiple_of(10) {
             return Err(Error::BadPeriod { milliseconds: period_ms });
@@ -90,10 +84,7 @@ impl Limits {
         i32::try_from(scaled.checked_div(ORIENTATION_UNIT).unwrap_or_default()).unwrap_or(i32::MAX)
     }
 
-    /// Check that the controller accepts a step between two positions.
-    ///
-    /// # Errors
-    /// The exceeded limit, translation first.
+    /// Checks that the controller accepts a step. Errors: the exceeded limit, translation first.
     pub fn check(&self, from: &Plate, to: &Plate) -> Result<(), Exceeded> {
         let ([x, y, z, d, e, r], [to_x, to_y, to_z, to_d, to_e, to_r]) = (from.words, to.words);
         let squared: u64 = [(x, to_x), (y, to_y), (z, to_z)]

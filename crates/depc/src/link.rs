@@ -2,8 +2,7 @@
 
 use rcs_core::Plain;
 
-/// Maximum number of bytes on the DEPC line per direction and tick: 9600 baud give 38, and queued bytes in a receiver
-/// need room.
+/// Bytes per direction and tick: 9600 baud give 38, and queued bytes in a receiver need room.
 pub const LINK_BYTES: usize = 64;
 
 /// Bytes of one tick on a serial line.

@@ -1,7 +1,7 @@
 //! The coding of a position on the line.
 //!
-//! Appendix A says only "12 bytes of world coordinates"; VI.1 says that they are those of the end plate, in Cartesian
-//! and Euler form. ASSUMED (SPECNOTES): six signed words, X, Y, Z in 0.01 in and D, E, R in 0.01 degree, with
+//! VI.1 says that the "12 bytes of world coordinates" of appendix A are those of the end plate, in Cartesian and Euler
+//! form. ASSUMED (SPECNOTES): six signed words, X, Y, Z in 0.01 in and D, E, R in 0.01 degree, with
 //!
 //! ```text
 //! rotation = Rz(D) Ry(E - 90) Rx(R)      D: azimuth of the gripper axis about world +Z
@@ -9,11 +9,9 @@
 //!                                        R: roll about the gripper axis
 //! ```
 //!
-//! Thus a vertical gripper is the pole of the angles, about which the manual warns.
-//!
-//! E is between 0 and 180 degrees. D and R continue from one position to the next without jumps of 360 degrees.
-//! Before a word overflows it changes by 360, and both ends compare modulo 360. At the pole D has no meaning and
-//! keeps its value.
+//! A vertical gripper is the pole of the angles, about which the manual warns. E is between 0 and 180 degrees. D and R
+//! continue without jumps of 360 degrees. Before a word overflows it changes by 360, and both ends compare modulo 360.
+//! At the pole D has no meaning and keeps its value.
 
 use core::f64::consts::PI;
 
@@ -27,8 +25,7 @@ use rcs_core::Plain;
 
 use crate::Error;
 
-/// A full turn, 0.01 degree.
-const TURN: i32 = 36_000;
+const TURN: i32 = 36_000; // 0.01 degree
 /// Half a turn, 0.01 degree; also the E of a gripper that points straight down.
 pub const HALF_TURN: i32 = 18_000;
 
@@ -39,8 +36,7 @@ pub struct Plate {
     pub words: [i16; 6],
 }
 
-/// The shortest rotation from angle word `from` to angle word `to`, modulo 360 degrees: -18000 to 17999, in 0.01
-/// degree.
+/// The shortest rotation between two angle words, modulo 360 degrees: -18000 to 17999, 0.01 degree.
 #[must_use]
 pub fn angle_between(from: i16, to: i16) -> i32 {
     shortest(i32::from(to).saturating_sub(i32::from(from)))
@@ -61,18 +57,15 @@ pub fn angle_word(angle: i32, near: i16) -> i16 {
         .unwrap_or_default()
 }
 
-/// Rz(D) Ry(E - 90): the rotation without roll. Angles in 0.01 degree.
+/// Rz(D) Ry(E - 90): the rotation without roll. 0.01 degree.
 fn pointing(d: i32, e: i32) -> Rotation {
     Rotation3::from_axis_angle(&Vector::z_axis(), radians(d))
         * Rotation3::from_axis_angle(&Vector::y_axis(), radians(e) - PI / 2.0)
 }
 
 impl Plate {
-    /// The words of an end-plate frame (inches, world), with D and R near those of `near`.
-    ///
-    /// # Errors
-    /// [`Error::OutOfRange`] if X, Y or Z exceeds a word, [`Error::NotFinite`] if a number is not finite. No value
-    /// wraps around.
+    /// The words of an end-plate frame (inches, world), with D and R near those of `near`. Errors:
+    /// [`Error::OutOfRange`] if X, Y or Z exceeds a word, [`Error::NotFinite`].
     pub fn from_frame(plate: &Frame, near: &Self) -> Result<Self, Error> {
         if !plate.is_finite() {
             return Err(Error::NotFinite);
@@ -89,18 +82,14 @@ impl Plate {
         } else {
             angle_word(hundredths_of_degree(libm::atan2(axis.y, axis.x)), near_d)
         };
-        // The roll is the remaining rotation after the rounded D and E, so their rounding errors do not accumulate
-        // near the pole.
+        // The roll is the rest after the rounded D and E, so their errors do not accumulate near the pole.
         let rolled_y = (pointing(i32::from(d), e).inverse() * plate.rotation) * Vector::y();
         let r = angle_word(hundredths_of_degree(libm::atan2(rolled_y.z, rolled_y.y)), near_r);
         let (x, y, z) = (word(0, plate.position.x)?, word(1, plate.position.y)?, word(2, plate.position.z)?);
         Ok(Self { words: [x, y, z, d, i16::try_from(e).unwrap_or_default(), r] })
     }
 
-    /// The words of a tool frame: the end plate of `arm` is one tool length behind the tool point.
-    ///
-    /// # Errors
-    /// Those of [`Plate::from_frame`].
+    /// The words of a tool frame, one tool length before the end plate of `arm`; see [`Plate::from_frame`].
     pub fn from_tool(tool: &Frame, arm: &Arm, near: &Self) -> Result<Self, Error> {
         Self::from_frame(&tool.shifted(Vector::new(-arm.plate_to_tool, 0.0, 0.0)), near)
     }

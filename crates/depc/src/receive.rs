@@ -1,8 +1,7 @@
 //! The receivers of both ends, which find frames in the received bytes.
 //!
 //! A byte may be changed, lost, duplicated or late. Each receiver holds a bounded number of bytes and finds the next
-//! frame after any garbage. It never waits for the end of an incomplete frame: a tick without bytes ends it (a frame
-//! takes 17 ms, a tick 40 ms).
+//! frame after any garbage. A tick without bytes (40 ms) ends an incomplete frame, which takes 17 ms.
 
 use rcs_core::Plain;
 
@@ -12,11 +11,10 @@ use crate::{
     wire::{Control, DataCommand, FRAME_BYTES, Report, Response, START},
 };
 
-/// Capacity of the controller's receiver board, bytes (ASSUMED; the appendix expects one command in it).
+/// Bytes of the controller's receiver board (ASSUMED; the appendix expects one command in it).
 pub const BOARD_BYTES: usize = 64;
-/// Ticks after which garbage gets a NAK even if the line is not quiet.
-const GARBLED_TICKS: u8 = 3;
-/// Maximum number of ticks for the bytes of one frame; later bytes may be another command in place of a lost byte.
+const GARBLED_TICKS: u8 = 3; // until garbage gets a NAK on a line that is not quiet
+/// Later bytes may be another command in place of a lost byte.
 const FRAME_TICKS: u8 = 2;
 
 /// A command received by the controller.
@@ -47,8 +45,7 @@ pub struct CommandReceiver {
 }
 
 impl CommandReceiver {
-    /// Add the bytes of a tick. Call it once per tick, also without bytes. Bytes that do not fit are treated as
-    /// garbage.
+    /// Adds the bytes of a tick, also none. Bytes that do not fit are garbage.
     pub fn accept(&mut self, rx: &LinkBytes) {
         let bytes = rx.as_slice();
         self.quiet = bytes.is_empty();
@@ -79,8 +76,8 @@ impl CommandReceiver {
         if first == START {
             return self.data();
         }
-        // Several restarts in a row are one: the host has only repeated it. Other bytes must not follow, as the host
-        // waits for an answer; the late end of a frame may begin with the byte of a cancel.
+        // Several restarts in a row are one, which the host has repeated. Other bytes must not follow, as the host
+        // waits for an answer: the late end of a frame may begin with the byte of a cancel.
         let same = held.iter().take_while(|byte| **byte == first).count();
         match Control::from_byte(first) {
             Some(control) if same == held.len() => {
@@ -114,8 +111,8 @@ impl CommandReceiver {
             }
             return None;
         };
-        // Only restarts may follow, as the host waits for an answer. Also, the checksum does not distinguish a frame
-        // from one that begins with the late end of its own first copy: both have the same exclusive or.
+        // Only restarts may follow. Also, a frame and one that begins with the late end of its own first copy have the
+        // same checksum.
         let behind = held.get(FRAME_BYTES..).unwrap_or_default();
         let alone = behind.iter().all(|byte| *byte == Control::Restart.byte());
         match DataCommand::parse(frame) {
@@ -216,13 +213,13 @@ impl ReplyReceiver {
         *self = Self::default();
     }
 
-    /// True if the bytes from `place` on can be the beginning of a report.
+    /// The bytes from `place` on can begin a report.
     fn may_begin(&self, place: usize) -> bool {
         let held = self.bytes.iter().take(usize::from(self.length)).skip(place);
         held.zip(Report::HEAD).all(|(byte, head)| *byte == head)
     }
 
-    /// Drop the first byte and all others before the next one that can begin a report.
+    /// Drops bytes up to the next one that can begin a report.
     fn resynchronise(&mut self) {
         let length = usize::from(self.length);
         let place = (1..length).find(|place| self.may_begin(*place)).unwrap_or(length);

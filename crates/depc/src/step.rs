@@ -1,14 +1,12 @@
-//! One period of the motion to a goal, along the straight line of the tool and within the velocity limits of the end
-//! plate.
+//! One period of the straight motion of the tool to a goal, within the velocity limits of the end plate.
 //!
-//! VI.1.1 POINT: "if the limit is exceeded, the motion is scaled back". The tool frame moves along a straight line
-//! (position linearly, rotation about one axis) from the end of the last step. A fixed number of bisections finds the
-//! fraction of the line. Each is checked with the *rounded* words, because the controller checks those. The unrounded
-//! frame is stored with the words, so rounding does not bend the line.
+//! VI.1.1 POINT: "if the limit is exceeded, the motion is scaled back". Position moves linearly, rotation about one
+//! axis. Bisections find the fraction of the line. The controller checks *rounded* words, so these are checked here.
+//! The unrounded frame is stored with the words, so rounding does not bend the line.
 //!
 //! At the pole (gripper straight up or down) only the sum or difference of D and R has a meaning. A line that leaves
-//! the pole in another direction than it arrived would need a jump of D. Instead, D and R turn together at the pole,
-//! at the limit and with the tool at rest, until D has the direction of the line. Thus every goal is reached.
+//! the pole in another direction than it arrived would need a jump of D. Instead, D and R turn together, at the limit
+//! and with the tool at rest, until D has the direction of the line. Thus every goal is reached.
 
 use geometry::{
     frame::{Frame, Vector, rotation_by, rotation_vector},
@@ -21,11 +19,9 @@ use crate::{
     plate::{HALF_TURN, angle_between, angle_word},
 };
 
-/// Number of bisections of a line: their resolution is 4e-5 in on the longest line between two positions. Fewer would
-/// miss a step past a pole, which may be a hundredth of a count.
+/// They resolve 4e-5 in on the longest line. Fewer would miss a step past a pole, which may be a hundredth of a count.
 const BISECTIONS: u32 = 24;
-/// An E within this of the pole (0.01 degree) is treated as the pole: correcting E moves the tool point by less than
-/// half a count.
+/// 0.01 degree: an E this near is the pole; correcting it moves the tool point by less than half a count.
 const POLE: i32 = 2;
 
 /// A position commanded to the controller: its words, and the tool frame before rounding.
@@ -76,7 +72,7 @@ struct StraightLine<'a> {
 }
 
 impl StraightLine<'_> {
-    /// The words at a fraction of the line, and the tool frame before rounding.
+    /// The words at a fraction of the line, and the unrounded tool frame.
     fn at(&self, fraction: f64) -> Result<(Plate, Frame), Error> {
         let tool = if fraction >= 1.0 {
             *self.goal
@@ -90,12 +86,8 @@ impl StraightLine<'_> {
     }
 }
 
-/// The step in one period from the last commanded position to the tool frame `goal` (inches, world).
-///
-/// The result never exceeds `limits`, and repeated steps reach every goal.
-///
-/// # Errors
-/// [`Error`] if the goal, or a position on the line, cannot be expressed in words.
+/// One period from the last commanded position towards the tool frame `goal` (inches, world), never beyond `limits`.
+/// Repeated steps reach every goal. Errors: [`Error`] if a position on the line has no words.
 pub fn step(from: &Position, goal: &Frame, arm: &Arm, limits: &Limits) -> Result<Step, Error> {
     let full = Plate::from_tool(goal, arm, &from.plate)?;
     if limits.check(&from.plate, &full).is_ok() {
@@ -104,8 +96,7 @@ pub fn step(from: &Position, goal: &Frame, arm: &Arm, limits: &Limits) -> Result
     let mut start = from.tool();
     let [.., e, _] = from.plate.words;
     if pole_near(e).is_some() {
-        // At the pole, rounding to words can change D by a full turn: there the words determine the rotation of the
-        // tool.
+        // At the pole, rounding can change D by a full turn: the words determine the rotation of the tool.
         start.rotation = from.plate.to_frame().rotation;
     }
     let line = StraightLine {
@@ -133,8 +124,7 @@ pub fn step(from: &Position, goal: &Frame, arm: &Arm, limits: &Limits) -> Result
     Ok(Step { position: position.unwrap_or_else(|| Position::rounded_to(plate, &tool)), reached: false })
 }
 
-/// The position with D and R turned, if the line begins at the pole and D differs by more than `near` (0.01 degree)
-/// from the direction in which it leaves.
+/// Turns D and R if the line leaves the pole in a direction that differs from D by more than `near` (0.01 degree).
 fn turn_at_the_pole(line: &StraightLine<'_>, limits: &Limits, near: i32) -> Result<Option<Position>, Error> {
     let [.., d, e, r] = line.from.words;
     let Some((pole, sense)) = pole_near(e) else { return Ok(None) };
@@ -152,8 +142,8 @@ fn turn_at_the_pole(line: &StraightLine<'_>, limits: &Limits, near: i32) -> Resu
     Ok(limits.check(line.from, &plate).is_ok().then(|| Position::rounded_to(plate, &tool)))
 }
 
-/// E of the pole near `e`, and the sign with which R turns with D there: straight down only R - D matters, straight
-/// up only R + D.
+/// E of the pole near `e`, and the sign with which R turns with D: straight down only R - D matters, straight up R +
+/// D.
 fn pole_near(e: i16) -> Option<(i16, i32)> {
     let e = i32::from(e);
     if e <= POLE {
@@ -192,7 +182,7 @@ mod tests {
         Plate { words }.to_tool(&T3)
     }
 
-    /// Step to the goal. Returns the intermediate positions.
+    /// Returns the intermediate positions.
     fn walk(from: Plate, goal: &Frame, most: usize) -> Vec<Plate> {
         let mut way = vec![from];
         let mut here = Position::reported(from, &T3);
@@ -209,7 +199,7 @@ mod tests {
         panic!("{from:?} does not come to {:?} in {most} steps: {:?}", goal, &way[way.len() - 5..]);
     }
 
-    /// Sufficient number of steps: those that the limits require, plus two turns of D and R at the poles.
+    /// Steps that the limits require, plus two turns of D and R at the poles.
     fn enough(from: &Plate, goal: &Frame) -> usize {
         let distance = from.to_tool(&T3).distance(goal);
         let plate = distance.inches + 12.0 * distance.radians;
@@ -243,7 +233,7 @@ mod tests {
 
     #[test]
     fn through_the_pole_d_and_r_turn_with_the_tool_still() {
-        // From a tilt of 5 degrees to the opposite tilt; the line passes exactly through straight down.
+        // From a tilt of 5 degrees to the opposite one, exactly through straight down.
         let from = Plate { words: [3000, -4000, 500, 0, 17_500, 3000] };
         let mut goal = from.to_tool(&T3);
         goal.rotation = rotation_by(&Vector::new(0.0, 10.0 * PI / 180.0, 0.0)) * goal.rotation;
@@ -259,7 +249,7 @@ mod tests {
         }
     }
 
-    /// D needs no more than the limit, and R, which turns with both D and the tool, slightly more.
+    /// R, which turns with both D and the tool, needs slightly more than the limit; D does not.
     #[test]
     fn pole_is_left_if_only_r_exceeds_the_limit() {
         let from = Plate { words: [1009, 2021, 2990, 13_308, 18_000, 7560] };

@@ -1,9 +1,8 @@
 //! The last positions sent, as a path, and the distance of a robot from it.
 //!
-//! A robot lags behind its commands, so its distance from the newest position is no criterion: at 10 in/s and a lag
-//! of 0.2 s a sound robot is 2 in behind. However, it is on the path that was sent a moment ago. The distance from
-//! the path within the expected lag is near zero for a sound robot at any speed. It grows if the robot falls farther
-//! behind, takes a short cut, or is moved by an external force.
+//! A robot lags behind its commands: at 10 in/s and a lag of 0.2 s a sound robot is 2 in behind the newest position,
+//! but near zero from the path within the expected lag. That distance grows if it falls farther behind, takes a short
+//! cut, or is moved by an external force.
 
 use core::f64::consts::FRAC_1_SQRT_2;
 
@@ -17,18 +16,16 @@ use crate::Plate;
 
 /// Positions in a track, one per period.
 pub const TRACK_POINTS: usize = 32;
-/// Greatest distance of a following robot from its path, in; for a rotation 2 degrees (docs/design/link.md
-/// "Following").
+/// Greatest distance from the path, in; for a rotation 2 degrees (docs/design/link.md "Following").
 pub const LIMIT_INCHES: f64 = 0.5;
 /// Default lag of a robot, ms: two and a half times the 80 ms of the T3's servos.
 pub const LAG_MS: u16 = 200;
 /// Greatest permitted lag, ms: a track of periods of 40 ms covers it.
 pub const MOST_LAG_MS: u16 = 1000;
-/// Periods between a sent position and the first reading that can show it.
-const READING_PERIODS: usize = 1;
+const READING_PERIODS: usize = 1; // between a sent position and a reading of it
 
-/// A frame as a point with twelve coordinates, in: the position and the tool axes. A rotation by a small angle equals
-/// [`INCHES_PER_RADIAN`] times the angle, as in [`geometry::frame::Distance::path`].
+/// Position and tool axes, in: a small angle equals [`INCHES_PER_RADIAN`] times the angle, as in
+/// [`geometry::frame::Distance::path`].
 type Coordinates = [f64; 12];
 
 /// The positions sent in the last periods, the newest first.
@@ -62,9 +59,9 @@ impl Track {
         self.points.iter().take(usize::from(self.count)).next()
     }
 
-    /// Distance of the tool frame `here` (inches, world) from the path within the expected lag, inches; one radian
-    /// equals [`INCHES_PER_RADIAN`]. `lag_ms` is the lag, `period_ms` the time between two positions; `here` is a
-    /// reading of the period after the newest position. `None` before the first position.
+    /// Distance of the tool frame `here` (inches, world) from the path within the lag, inches; one radian equals
+    /// [`INCHES_PER_RADIAN`]. `here` is read in the period after the newest position. `None` before the first
+    /// position.
     #[must_use]
     pub fn distance(&self, here: &Frame, lag_ms: u16, period_ms: u16, arm: &Arm) -> Option<f64> {
         let here = coordinates(here);
@@ -95,7 +92,7 @@ fn coordinates(frame: &Frame) -> Coordinates {
     all
 }
 
-/// Square of the distance from `here` to the line between two points.
+/// Squared distance from the line between two points.
 fn from_line(here: &Coordinates, a: &Coordinates, b: &Coordinates) -> f64 {
     let (mut way, mut along, mut square) = (0.0, 0.0, 0.0);
     for ((here, a), b) in here.iter().zip(a).zip(b) {
@@ -116,7 +113,7 @@ mod tests {
         kinematics::{HOME_JOINTS, T3},
     };
 
-    /// HOME, moved by `x` and `y` inches.
+    /// HOME, moved by inches.
     fn at(x: f64, y: f64) -> Frame {
         let home = T3.forward(&HOME_JOINTS);
         Frame { position: home.position + Vector::new(x, y, 0.0), ..home }
@@ -126,7 +123,7 @@ mod tests {
         Plate::from_tool(frame, &T3, &Plate::default()).unwrap()
     }
 
-    /// A path along X at 0.4 in per period.
+    /// Along X at 0.4 in per period.
     fn track(periods: u32) -> Track {
         let mut track = Track::default();
         track.begin(words(&at(0.0, 0.0)));

@@ -34,10 +34,8 @@ impl From<JointProblem> for Refusal {
     }
 }
 
-/// The joint angles (radians) for a position of the end plate, within the limits of `arm`.
-///
-/// # Errors
-/// [`JointProblem`] that the controller would show.
+/// Joint angles, radians, for an end-plate position within the limits of `arm`. Errors: the controller's
+/// [`JointProblem`].
 pub fn joints_for(arm: &Arm, goal: &Plate, near: &Joints) -> Result<Joints, JointProblem> {
     let joints = arm.inverse(&goal.to_tool(arm), near).map_err(|error| match error {
         ReachError::WristSingularity => JointProblem::WristSingularity,
@@ -101,9 +99,8 @@ pub enum Warning {
 }
 
 impl Warning {
-    /// True if a restart command of the host clears it. The appendix recommends this for D6, and the other joint
-    /// problems are similar. Warnings due to an operator, the wiring or an exceeded velocity limit need an ENTER
-    /// (ASSUMED).
+    /// True if a restart clears it: the appendix recommends this for D6, and other joint problems are similar.
+    /// Warnings of operator, wiring or velocity need an ENTER (ASSUMED).
     #[must_use]
     pub const fn host_can_restart(self) -> bool {
         matches!(self, Self::JointLimit | Self::ShoulderUp | Self::OtherJoint | Self::Wrist | Self::OffPath)

@@ -1,5 +1,5 @@
-//! With one fault per tick and direction the checksums detect every fault. The robot never jumps, no command is
-//! executed twice or lost silently, the controller never shows a warning, and the link recovers by itself.
+//! With one fault per tick and direction the checksums detect every fault: no jumps, no command executed twice or lost
+//! silently, no warning, and the link recovers by itself.
 
 mod session;
 
@@ -19,8 +19,8 @@ fn one_fault_a_tick(seed: u64) -> Plan {
         Rule::new(FaultKind::Delay).rate(4_000),
         Rule::new(FaultKind::Duplicate).rate(1_000),
         Rule::new(FaultKind::Truncate).rate(10_000),
-        // Noise to the controller causes an additional NAK; if an ACK is lost at the same time, the host repeats an
-        // executed command. Together they are two faults.
+        // Noise to the controller causes an additional NAK. With a lost ACK, that is two faults: the host would repeat
+        // an executed command.
         Rule::new(FaultKind::Insert).rate(10_000).byte(0x41).only(Direction::ToHost),
     ] {
         plan.add(rule).unwrap();

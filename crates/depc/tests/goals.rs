@@ -12,7 +12,7 @@ use geometry::{
 };
 use proptest::prelude::*;
 
-/// A robot whose joints reach every position, so only the velocity limits can refuse one.
+/// Only the velocity limits can refuse a position.
 struct Anywhere(Plate);
 
 impl Robot for Anywhere {
@@ -26,7 +26,7 @@ impl Robot for Anywhere {
     }
 }
 
-/// Goals far and near; every third one is at a pole or slightly off it.
+/// Far and near; every third is at a pole or slightly off it.
 fn goals() -> impl Strategy<Value = Vec<Frame>> {
     let point = || prop_oneof![-90.0_f64..90.0, -1.0_f64..1.0];
     let turn = || -3.1_f64..3.1;

@@ -1,15 +1,11 @@
-//! Ten thousand seeded fault plans, of all kinds and with any number of faults in a frame.
+//! Ten thousand seeded fault plans, of all kinds and with any number of faults in a frame. Always: no step exceeds the
+//! limits; the host reports a stopped controller; once the line is repaired and the operator has answered, the goal is
+//! reached.
 //!
-//! Always: the robot moves no farther in a period than the limits permit; the host reports a stopped controller; and
-//! once the line is repaired and the operator has answered, the link works again and the goal is reached.
-//!
-//! Unless the line deceives one of the ends: no command is executed twice or lost silently, every report is true, and
-//! the velocity limits give no warning. A checksum by exclusive or does not detect two changes of the same bit, and
-//! ACK, NAK, cancel and restart have no checksum at all (A 2.3). A line that stalls for longer than the host waits
-//! delivers commands that the host has given up. The run counts these cases; in all other sessions the invariants are
-//! strict.
-//!
-//! `DEPC_SCHEDULES` sets the number of plans.
+//! Unless the line deceives one end: no command is executed twice or lost silently, every report is true, and the
+//! limits give no warning. A checksum by exclusive or does not detect two changes of the same bit, ACK, NAK, cancel
+//! and restart have none (A 2.3), and a long stall delivers commands that the host has given up. These cases are
+//! counted. `DEPC_SCHEDULES` sets the number of plans.
 
 #![expect(clippy::print_stdout, reason = "the figures of a campaign are printed")]
 
@@ -21,14 +17,12 @@ use depc::{
 };
 use session::{Session, Truth};
 
-/// Number of plans in an ordinary run.
-const SCHEDULES: u64 = 10_000;
-/// Ticks in which a plan has faults.
-const FAULTY_TICKS: u64 = 120;
-/// Ticks for the link to recover: two answers of the operator, a stalled line, and the motion to the goal.
+const SCHEDULES: u64 = 10_000; // in an ordinary run
+const FAULTY_TICKS: u64 = 120; // with faults
+/// Two answers of the operator, a stalled line, and the motion to the goal.
 const MENDED_TICKS: u32 = 300;
 
-/// A random rule; it may be an invalid one.
+/// Possibly an invalid one.
 fn rule(numbers: &mut Numbers) -> Rule {
     let kinds = u32::try_from(FaultKind::ALL.len()).unwrap();
     let kind = FaultKind::ALL[numbers.below(kinds) as usize];
@@ -55,7 +49,7 @@ fn rule(numbers: &mut Numbers) -> Rule {
     rule
 }
 
-/// A plan of one to four rules, and the number of rules that were refused.
+/// One to four rules, and the number of refused ones.
 fn plan(seed: u64) -> (Plan, u64) {
     let mut numbers = Numbers::new(seed, 2);
     let (mut plan, mut refused) = (Plan::new(seed), 0);

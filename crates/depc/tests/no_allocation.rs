@@ -1,6 +1,4 @@
-//! Neither the ends nor the line with its faults allocates, over a session of good and bad ticks.
-//!
-//! This file has only one test, as every test in it would use the counting allocator.
+//! Ends, line and faults do not allocate. One test only, as every test in this file would use the counting allocator.
 
 use depc::link::LinkBytes;
 use depc::{
@@ -18,7 +16,6 @@ use rcs_core::tick::Tick;
 #[global_allocator]
 static ALLOCATOR: Counting = Counting;
 
-/// A robot that reaches every commanded position exactly.
 struct Exact {
     joints: Joints,
     at: Plate,

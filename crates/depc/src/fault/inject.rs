@@ -1,8 +1,7 @@
 //! The injector: applies the faults of a plan to the transmitted bytes.
 //!
-//! Each direction has its own random numbers and its own line, so faults in one are independent of the traffic in the
-//! other. A line holds bytes with their due ticks. They leave it in order, at most as many per tick as [`LinkBytes`]
-//! holds.
+//! Each direction has its own random numbers and its own line, so its faults are independent of the other. A line
+//! holds bytes with their due ticks, and releases them in order, at most [`LinkBytes`] per tick.
 
 use rcs_core::{Plain, tick::Tick};
 
@@ -25,8 +24,7 @@ pub struct Counts {
 }
 
 impl Counts {
-    /// Number of faults of a kind: bytes dropped, flipped, duplicated, inserted, delayed; ticks truncated; stalls;
-    /// losses of the signal. An extension of a stall or a loss is a new fault.
+    /// Faults of a kind. An extension of a stall or a loss of the signal is a new fault.
     #[must_use]
     pub fn of(&self, kind: FaultKind) -> u64 {
         self.by_kind.get(usize::from(kind.code())).copied().unwrap_or_default()
@@ -89,8 +87,7 @@ impl Injector {
         Self { plan: *plan, to_controller: line(Direction::ToController), to_host: line(Direction::ToHost) }
     }
 
-    /// Carry the bytes that one end sends in `tick` and the level of its DTR. Returns the bytes and level at the
-    /// other end.
+    /// Carries the bytes that one end sends in `tick`, and its DTR. Returns what the other end receives.
     pub fn carry(
         &mut self,
         direction: Direction,
@@ -138,14 +135,12 @@ struct Work<'a> {
     direction: Direction,
     tick: u64,
     line: &'a mut OneWay,
-    /// Maximum number of faults in the tick.
     most: u8,
-    /// Number of faults in this tick so far.
     struck: u8,
 }
 
 impl Work<'_> {
-    /// The active rule of a kind, if any. Every rule draws its own number, independent of others.
+    /// The active rule of a kind. Every rule draws its own number, independent of the others.
     fn strike(&mut self, kind: FaultKind) -> Option<Rule> {
         let mut struck = None;
         for rule in self.rules {
@@ -295,7 +290,7 @@ mod tests {
         Injector::new(&plan)
     }
 
-    /// The bytes and the signal at the host in ticks 0 to 9 if `sent` is sent in each of them.
+    /// Bytes and signal at the host in ticks 0 to 9 if `sent` is sent in each.
     fn ten(injector: &mut Injector, sent: &[u8]) -> Vec<(Vec<u8>, bool)> {
         (0..10)
             .map(|tick| {
@@ -378,7 +373,7 @@ mod tests {
         let lengths: Vec<_> = got.iter().map(|(bytes, _)| bytes.len()).collect();
         assert_eq!(lengths, [8, 8, 0, 0, 0, 0, 40, 8, 8, 8]);
         assert_eq!(got[6].0, ABC.repeat(5));
-        // A stall of a given length begins in one tick; bytes that exceed the capacity of a tick arrive in the next.
+        // Bytes that exceed the capacity of a tick arrive in the next.
         let lengths: Vec<_> =
             arrived(Rule::new(FaultKind::Stall).at(1).ticks(8), &[b'Z'; 16]).iter().map(Vec::len).collect();
         assert_eq!(lengths, [16, 0, 0, 0, 0, 0, 0, 0, 0, 64]);

@@ -1,7 +1,5 @@
-//! Faults on the line between the two ends. They are part of the product: users can test a host on a bad line.
-//!
-//! A [`Plan`] is a seed and some [`Rule`]s. An [`Injector`] applies it, by tick and direction, to the transmitted
-//! bytes and the modem signal. It is plain data without a clock: the same plan and traffic give the same faults.
+//! Faults on the line between the two ends, to test a host on a bad line. An [`Injector`] applies the [`Rule`]s of a
+//! [`Plan`], by tick and direction, to bytes and modem signal. The same plan and traffic give the same faults.
 //!
 //! | kind | acts on | effect | `ticks` |
 //! |---|---|---|---|
@@ -14,9 +12,9 @@
 //! | `stall` | each tick | no byte arrives; the bytes follow later, in order | the duration |
 //! | `cts-low` | each tick | the receiving end sees the other's DTR off | the duration |
 //!
-//! A rule acts with a *rate*, the probability per byte or tick; in a *window* of ticks; or both. In a window without
-//! a rate it acts on every byte or tick. Like a serial line, the injector does not reorder bytes. The order within a
-//! tick is: truncate; for each byte drop, flip, delay, duplicate; insert; stall.
+//! A rule acts with a *rate*, the probability per byte or tick; in a *window* of ticks; or both. In a window without a
+//! rate it acts on every byte or tick. Bytes keep their order. Order within a tick: truncate; for each byte drop,
+//! flip, delay, duplicate; insert; stall.
 
 mod inject;
 mod numbers;
@@ -80,7 +78,7 @@ impl FaultKind {
         matches!(self, Self::Delay | Self::Stall | Self::CtsLow)
     }
 
-    /// True if the fault acts only on bytes that were sent.
+    /// The fault acts only on bytes that were sent.
     const fn needs_bytes(self) -> bool {
         self.is_per_byte() || matches!(self, Self::Truncate | Self::Stall)
     }
@@ -179,12 +177,11 @@ impl Rule {
         if self.rate == 0 { ALWAYS } else { self.rate }
     }
 
-    /// The duration or its default, ticks.
     fn length(&self) -> u64 {
         u64::from(self.ticks.max(1))
     }
 
-    /// True if this rule drops every byte on which `other` could act.
+    /// This rule drops every byte on which `other` could act.
     fn hides(&self, other: &Self) -> bool {
         let directions = (!other.to_controller || self.to_controller) && (!other.to_host || self.to_host);
         let ticks =
@@ -196,7 +193,7 @@ impl Rule {
             && ticks
     }
 
-    /// Check the rule alone, independent of the others.
+    /// Checks the rule alone.
     fn check(&self) -> Result<(), Refusal> {
         let kind = self.kind;
         if !self.to_controller && !self.to_host {
@@ -245,8 +242,8 @@ impl Plan {
         Self { seed, ..Self::default() }
     }
 
-    /// The plan with at most `most` faults per tick and direction (at least 1). With one, no frame has two faults in
-    /// a tick, and the checksum detects every fault.
+    /// The plan with at most `most` faults per tick and direction (at least 1). With one, the checksum detects every
+    /// fault.
     #[must_use]
     pub const fn most_per_tick(mut self, most: u8) -> Self {
         self.most_per_tick = if most == 0 { 1 } else { most };
@@ -265,10 +262,7 @@ impl Plan {
         self.rules.get(..usize::from(self.count)).unwrap_or_default()
     }
 
-    /// Append a rule.
-    ///
-    /// # Errors
-    /// [`Refusal`] if the rule is invalid alone or together with earlier ones; the plan is unchanged.
+    /// Appends a rule. Refuses one that is invalid alone or together with earlier ones.
     pub fn add(&mut self, rule: Rule) -> Result<(), Refusal> {
         rule.check()?;
         for (number, other) in (1_u8..).zip(self.rules()) {

@@ -1,5 +1,4 @@
-//! Random numbers that depend only on the seed: PCG-XSH-RR 64/32 (O'Neill, 2014). The implementation is local so that
-//! a plan gives the same faults in every build and on every machine.
+//! Random numbers from a seed: PCG-XSH-RR 64/32 (O'Neill, 2014). Local, so that every build gives the same faults.
 
 use rcs_core::Plain;
 

@@ -16,8 +16,8 @@ impl Host {
         HostEvent::Started
     }
 
-    /// Process a NAK. If it arrives later than in the next tick, it may answer noise after a command whose ACK was
-    /// lost: then a position may be repeated, but not a function.
+    /// A NAK after the next tick may answer noise after a command whose ACK was lost: then a position may be repeated,
+    /// but not a function.
     pub(super) fn refused(&mut self) -> HostEvent {
         let ambiguous = self.waited > 1 && self.function() != NO_FUNCTION;
         if self.retries >= MOST_RETRIES || ambiguous {
@@ -35,8 +35,8 @@ impl Host {
                 count(&mut self.counters.timeouts);
                 self.lost(LinkFault::NotResponding)
             }
-            // On a slow line the reports to all restarts arrive one by one, and the first is outdated when the last
-            // arrives: a report is valid only if no other follows for longer than the time between two restarts.
+            // On a slow line the reports to all restarts arrive one by one, the first outdated: one is valid only if
+            // no other follows for longer than the time between two restarts.
             HostState::Starting if self.has_candidate => {
                 if self.waited > self.answer_ticks {
                     self.start(self.candidate)
@@ -55,7 +55,7 @@ impl Host {
                 self.resend_due = true;
                 HostEvent::None
             }
-            // DTR is on again, and the report of the starting function has not arrived.
+            // DTR is on again, and the report of the starting function is missing.
             HostState::Ended => {
                 self.begin_start();
                 (self.starting, self.attempt) = (0, LinkFault::None);
@@ -68,7 +68,7 @@ impl Host {
 
     pub(super) fn without_dtr(&mut self) -> HostEvent {
         if matches!(self.state, HostState::Cancelling | HostState::Ended) {
-            // The cancel was requested; do not wait for the ACK that accompanies the loss of DTR.
+            // Do not wait for the ACK that accompanies the loss of DTR.
             self.receiver.clear();
             self.state = HostState::Ended;
             (self.resend_due, self.waited) = (false, 0);
@@ -99,7 +99,7 @@ impl Host {
         HostEvent::Lost
     }
 
-    /// Drop the outstanding frame and send a restart in this tick.
+    /// Drops the outstanding frame.
     pub(super) fn restart(&mut self) {
         self.note_lost_function();
         self.resend_due = false;
@@ -113,7 +113,7 @@ impl Host {
         }
     }
 
-    /// Begin a start: DTR is on, or the link was lost. An intermittent DTR does not reset the time limit.
+    /// DTR is on, or the link was lost. An intermittent DTR does not reset the time limit.
     pub(super) fn begin_start(&mut self) {
         if self.is_running() {
             (self.starting, self.attempt) = (0, LinkFault::None);
@@ -122,7 +122,7 @@ impl Host {
         self.restarted = false;
     }
 
-    /// Count a tick with DTR on in a start, or in an unanswered cancel.
+    /// Counts a tick with DTR on in a start or an unanswered cancel.
     pub(super) fn be_patient(&mut self) {
         if !matches!(self.state, HostState::Starting | HostState::Cancelling) {
             return;
@@ -141,7 +141,7 @@ impl Host {
         }
     }
 
-    /// Function bytes of the last data command.
+    /// Of the last data command.
     pub(super) fn function(&self) -> [u8; 2] {
         DataCommand::parse(&self.frame).map_or(NO_FUNCTION, |command| command.function)
     }

@@ -10,7 +10,7 @@ fn position(function: [u8; 2]) -> Intent {
     Intent::Position(DataCommand { function, plate: HOME })
 }
 
-/// One tick: bytes in, bytes out.
+/// Bytes in, bytes out.
 fn tick(host: &mut Host, rx: &[u8], intent: &Intent) -> (HostEvent, Vec<u8>) {
     let (mut line, mut tx) = (LinkBytes::default(), LinkBytes::default());
     assert_eq!(line.extend(rx), rx.len());
@@ -75,7 +75,7 @@ fn unsent_bytes_of_the_port_are_lost_and_reported() {
     assert_eq!(tick(&mut host, &[0x06], &position(NO_FUNCTION)), (HostEvent::None, vec![0x05]));
     assert_eq!(tick(&mut host, &report(), &Intent::Idle).0, HostEvent::Started);
     host.forgive();
-    // A restart that the port does not send is repeated, and is the fault when the time limit is reached.
+    // A restart that the port does not send is repeated, and is the fault at the time limit.
     host.set_patience(4);
     tick(&mut host, &[], &Intent::Restart);
     for attempt in 1..=4 {
@@ -124,7 +124,7 @@ fn unanswered_start_is_repeated_once_per_second_until_the_time_limit() {
     host.forgive();
     assert_eq!(tick(&mut host, &[], &Intent::Restart).1, []);
     assert_eq!((host.fault(), host.is_silent()), (LinkFault::None, true));
-    // A report arrives as after the end of Hold: one for all restarts.
+    // As after the end of Hold: one report for all restarts.
     tick(&mut host, &report(), &Intent::Idle);
     for _ in 0..ANSWER_TICKS {
         tick(&mut host, &[], &Intent::Idle);

@@ -34,10 +34,7 @@ impl DataCommand {
         }
     }
 
-    /// Parse the data command in `bytes`.
-    ///
-    /// # Errors
-    /// [`Error::BadLength`], [`Error::BadHead`] or [`Error::BadChecksum`] if the bytes are not a data command.
+    /// Parses the bytes. Errors: [`Error::BadLength`], [`Error::BadHead`], [`Error::BadChecksum`].
     pub fn parse(bytes: &[u8]) -> Result<Self, Error> {
         let frame = <&[u8; FRAME_BYTES]>::try_from(bytes)
             .map_err(|_| Error::BadLength { expected: FRAME_BYTES, found: bytes.len() })?;

@@ -6,16 +6,14 @@ use crate::model::{Event, Panel, QUIET, Setting, State, Wrong};
 
 const NONE: u32 = u32::MAX;
 
-/// The next state without further faults, and whether that tick is good.
+/// The next state without further faults; true for a good tick.
 type Onward = (u32, bool);
 
-/// The result of a search, or the shortest path to an error.
 #[derive(Debug)]
 pub struct Found {
     pub states: usize,
     pub ticks: u64,
-    /// Ticks from any state to the next acknowledged command, or to a reported stop: without the operator, and with
-    /// an operator who answers at once.
+    /// Ticks to the next acknowledged command or reported stop, without the operator and with one who answers at once.
     pub alone: u32,
     pub helped: u32,
     pub wrong: Option<(Vec<Event>, Wrong)>,
@@ -25,7 +23,7 @@ pub struct Found {
 struct Space {
     known: HashMap<u64, u32>,
     from: Vec<(u32, Event)>,
-    /// The next state of each state: without the operator, and with help.
+    /// Without the operator, and with help.
     onward: Vec<[Onward; 2]>,
     ticks: u64,
 }
@@ -41,7 +39,7 @@ impl Space {
         (number, number == next)
     }
 
-    /// The ticks to a state, and an optional last one.
+    /// The events on the way to a state.
     fn way(&self, mut state: u32, last: Option<Event>) -> Vec<Event> {
         let mut way = Vec::from_iter(last);
         while let Some((before, event)) = self.from.get(state as usize).filter(|(before, _)| *before != NONE)
@@ -53,7 +51,7 @@ impl Space {
         way
     }
 
-    /// The maximum number of ticks from a state to its good end; or a state without one.
+    /// Ticks from a state to its good end, at most; or a state without one.
     fn longest(&self, which: usize) -> Result<u32, u32> {
         const OPEN: u32 = u32::MAX;
         let mut ticks = vec![0_u32; self.onward.len()];
@@ -85,7 +83,7 @@ impl Space {
     }
 }
 
-/// Search all states of a setting, breadth first.
+/// Breadth first, over all states.
 pub fn search(setting: &Setting) -> Found {
     let first = State::first(setting);
     let mut space = Space::default();

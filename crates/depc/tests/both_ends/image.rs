@@ -1,7 +1,5 @@
-//! The byte image that distinguishes states.
-//!
-//! Counters are omitted. Times and the number of requested reports are limited to the values beyond which the host
-//! makes no difference: otherwise no state would ever repeat.
+//! The byte image that distinguishes states, without counters. Times and requested reports end at values beyond which
+//! the host makes no difference: otherwise no state would repeat.
 
 use depc::host::{Host, HostState, RESTART_TICKS, START_ATTEMPTS};
 use rcs_core::{Plain, plain::Writer, reflect};
@@ -14,7 +12,7 @@ use std::{
 #[derive(Default)]
 pub struct Image(Vec<u8>);
 
-/// The modified fields of the host.
+/// Modified in the image.
 const NAMES: [&str; 9] = [
     "counters",
     "lost_function",
@@ -27,8 +25,7 @@ const NAMES: [&str; 9] = [
     "starting",
 ];
 
-/// Their bytes in the image of the host.
-static FIELDS: LazyLock<[Range<usize>; 9]> = LazyLock::new(|| NAMES.map(field));
+static FIELDS: LazyLock<[Range<usize>; 9]> = LazyLock::new(|| NAMES.map(field)); // in the image of the host
 
 fn field(name: &str) -> Range<usize> {
     let (mut start, mut end) = (usize::MAX, 0);
@@ -52,7 +49,7 @@ impl Image {
         value.encode(&mut Writer::new(&mut self.0[from..]));
     }
 
-    /// Add the host; `faults` is the number of remaining faults.
+    /// `faults` is the number of remaining faults.
     pub fn add_host(&mut self, host: &Host, faults: u8) {
         let from = self.0.len();
         self.add_plain(host);
@@ -60,8 +57,7 @@ impl Image {
         let [counters, lost_function, frame, candidate, has_candidate, waited, asked, attempts, starting] =
             FIELDS.clone();
         image[counters].fill(0);
-        // It is only reported to the user, and does not affect the behaviour.
-        image[lost_function].fill(0);
+        image[lost_function].fill(0); // reported to the user, without effect on the behaviour
         if host.state() != HostState::Waiting {
             image[frame].fill(0);
         }
@@ -74,12 +70,12 @@ impl Image {
         }
         let attempts = &mut image[attempts.start];
         *attempts = (*attempts).min(START_ATTEMPTS);
-        // Each damaged report reduces the number of awaited ones by one; larger numbers are equivalent.
+        // Each damaged report reduces the awaited ones by one; larger numbers are equivalent.
         let asked = &mut image[asked.start];
         *asked = (*asked).min(faults + 4);
     }
 
-    /// A 64-bit hash: in a million states two are equal with a probability of 1 in 37 million.
+    /// In a million states two are equal with a probability of 1 in 37 million.
     pub fn fingerprint(&self) -> u64 {
         let mut hasher = DefaultHasher::new();
         hasher.write(&self.0);

@@ -1,5 +1,5 @@
-//! Exhaustive search of the real [`depc::host::Host`] against the real [`depc::controller::Controller`]: breadth
-//! first over all states of both ends, line, panel and user that a bounded number of faults can reach.
+//! Searches the real [`depc::host::Host`] against the real [`depc::controller::Controller`], breadth first over all
+//! states of both ends, line, panel and user that a bounded number of faults can reach.
 //!
 //! ```text
 //!   user ── next point, restart, cancel ──► Host ── frame: as sent, lost, damaged, doubled, late ──► Controller ──► robot
@@ -7,13 +7,11 @@
 //!                                            └── answer: as sent, lost, damaged, doubled, late, DTR ─────┘
 //! ```
 //!
-//! In every state: no point is executed twice (without functions: the robot never moves backwards), none is skipped,
-//! one command is outstanding, and the host's state is true. From every state, without further faults, the next
-//! command is acknowledged or a stop is reported within a bound, for any action of the operator. With an operator who
-//! answers at once the next command is acknowledged.
-//!
-//! `DEPC_FAULTS=3` searches three faults instead of two, without Hold; `DEPC_ALL_BITS=1` damages every bit and every
-//! byte instead of one per part of a frame.
+//! In every state: no point is executed twice (without functions: the robot never moves backwards) or skipped, one
+//! command is outstanding, and the host's state is true. From every state, without further faults, the next command is
+//! acknowledged or a stop is reported within a bound, for any action of the operator; with an operator who answers at
+//! once it is acknowledged. `DEPC_FAULTS=3` searches three faults, without Hold; `DEPC_ALL_BITS=1` damages every bit
+//! and byte instead of one per part of a frame.
 
 #![expect(clippy::print_stdout, reason = "the figures of a search are printed")]
 
@@ -24,12 +22,11 @@ mod model;
 use explore::{Found, search};
 use model::{Carried, Event, KINDS, Kind, Panel, QUIET, Setting, Wrong};
 
-/// Ticks within which a stop is reported or the next command is acknowledged: a second of silence, and the ticks
-/// before it.
+/// Ticks to a report or an acknowledgement: a second of silence, and the ticks before it.
 const BOUND: u32 = RESTART + 11;
 const RESTART: u32 = depc::host::RESTART_TICKS as u32;
 
-/// A serial line does not duplicate frames. A line that does can deceive this protocol together with another fault.
+/// A serial line does not duplicate frames; one that does can deceive this protocol together with another fault.
 const fn is_doubling(kind: Kind) -> bool {
     matches!(kind, Kind::CommandDoubled | Kind::AnswerDoubled)
 }
@@ -50,8 +47,7 @@ fn is_sound(setting: &Setting) -> Found {
     found
 }
 
-/// The page states the exact size of the search: an image that merges different states makes the search smaller, and
-/// could hide an error.
+/// The page states the size of the search: a smaller one could hide an error by merging states.
 fn is_stated(found: &Found) {
     let size = format!("| {} | {} |", found.states, found.ticks);
     let page = include_str!("../../../../docs/evidence.md").replace(',', "");
@@ -65,7 +61,6 @@ fn one_fault_of_any_kind_deceives_neither_end_and_is_over_or_reported_in_time() 
     }
 }
 
-/// Two faults of any kind except a duplicated frame.
 fn several_faults(functions: bool) {
     let faults = number("DEPC_FAULTS").unwrap_or(2);
     let mut kinds = KINDS.to_vec();
@@ -87,14 +82,14 @@ fn two_faults_deceive_neither_end_of_a_line_of_functions() {
     several_faults(true);
 }
 
-/// The shortest path to an error under these faults, and the error.
+/// The shortest path to an error, and the error.
 fn shortest(functions: bool, kinds: [Kind; 2]) -> Option<(Vec<Event>, Wrong)> {
     search(&Setting { functions, faults: 2, kinds: kinds.to_vec(), all_bits: false }).wrong
 }
 
 const START: Event = Event { panel: Panel::Start, ..QUIET };
 
-/// An answer has no number: the host assigns the answer of one command to the next, which is lost.
+/// An answer has no number: the host assigns it to the next command, which is lost.
 #[test]
 fn duplicated_answer_hides_a_lost_command() {
     let twice = Event { answer: Carried::Doubled(1), ..QUIET };
@@ -104,18 +99,18 @@ fn duplicated_answer_hides_a_lost_command() {
     assert_eq!(found, Some((vec![START, twice, lost, QUIET], wrong)));
 }
 
-/// A command has no number either: the controller executes the copy if no other command arrives in between.
+/// A command has no number either: the copy is executed if no other command arrives in between.
 #[test]
 fn duplicated_command_is_executed_twice_if_its_answer_is_lost() {
     let twice = Event { command: Carried::Doubled(1), answer: Carried::Lost, ..QUIET };
     let wrong = "a point is executed twice";
     let found = shortest(true, [Kind::CommandDoubled, Kind::AnswerLost]);
     assert_eq!(found, Some((vec![START, twice, QUIET], wrong)));
-    // T3 Interface sends no functions. A repeated command to the present position does not move the robot.
+    // A repeated command to the present position does not move the robot.
     assert_eq!(shortest(false, [Kind::CommandDoubled, Kind::AnswerLost]), None);
 }
 
-/// Each pair of faults with a duplicated frame, once for positions and once for functions.
+/// For positions and for functions.
 #[test]
 fn a_doubled_frame_deceives_together_with_these_faults_only() {
     use Kind::*;

@@ -1,7 +1,6 @@
-//! The model around the two ends: a line in each direction, the user of the host, the panel, and the true state.
-//!
-//! The robot moves around a ring of four points, one count apart. A skipped or repeated point or a step back differs
-//! from the next point, and the search is finite.
+//! The model around the two ends: a line per direction, the host's user, the panel, and the true state. The robot
+//! moves around a ring of four points, one count apart, so a skipped or repeated point or a step back is visible, and
+//! the search is finite.
 
 use depc::{
     Limits, Plate,
@@ -13,18 +12,16 @@ use depc::{
 
 use crate::image::Image;
 
-/// Number of points of the ring.
-const RING: i16 = 4;
-/// The position of a point, except for its first word.
+const RING: i16 = 4; // points
+/// Except for the first word.
 const AT: Plate = Plate { words: [0, -6296, -635, -9000, 13495, 0] };
-/// Slightly more than a second, after which the host reports the link as failed. The real value only takes longer.
+/// Slightly more than a second; the real value only takes longer.
 const PATIENCE: u16 = RESTART_TICKS + 5;
-/// Delays of a late frame, ticks.
-const LATE: [u8; 3] = [1, 2, 3];
+const LATE: [u8; 3] = [1, 2, 3]; // of a late frame
 
 pub type Wrong = &'static str;
 
-/// Kinds of disturbances; each is one fault.
+/// Disturbances; each is one fault.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
     CommandLost,
@@ -35,10 +32,8 @@ pub enum Kind {
     AnswerDamaged,
     AnswerDoubled,
     AnswerLate,
-    /// The controller sees the host's DTR off for a tick.
-    CtsLow,
-    /// The host sees the controller's DTR off for a tick.
-    DtrLow,
+    CtsLow, // the host's DTR is off for a tick
+    DtrLow, // the controller's DTR is off for a tick
     Hold,
     Interrupt,
     Restart,
@@ -64,31 +59,24 @@ pub const KINDS: [Kind; 14] = [
 
 #[derive(Clone, Debug)]
 pub struct Setting {
-    /// True if commands contain a function.
     pub functions: bool,
-    /// Maximum number of faults in a run.
-    pub faults: u8,
+    pub faults: u8, // at most, per run
     pub kinds: Vec<Kind>,
-    /// True to damage every bit and byte of a frame, false for one per part.
-    pub all_bits: bool,
+    pub all_bits: bool, // each bit and byte of a frame is damaged, not one per part
 }
 
-/// Fate of a frame on the line.
+/// Of a frame on the line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Carried {
     AsSent,
     Lost,
-    /// This bit is inverted.
-    Flipped(u8),
-    /// This byte is lost.
-    Short(u8),
-    /// It arrives again this many ticks later.
-    Doubled(u8),
-    /// The frame and all frames after it arrive this many ticks later.
-    Late(u8),
+    Flipped(u8), // this bit is inverted
+    Short(u8),   // this byte is lost
+    Doubled(u8), // again, this many ticks later
+    Late(u8),    // with all frames after it, ticks
 }
 
-/// An action at the controller's panel before a tick.
+/// Before a tick.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Panel {
     Nothing,
@@ -100,11 +88,9 @@ pub enum Panel {
     Release,
 }
 
-/// The request of the user of the host in a tick.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Wanted {
-    /// The next point, as soon as the host can send it.
-    Next,
+    Next, // as soon as the host can send it
     Restart,
     Cancel,
 }
@@ -128,7 +114,7 @@ pub const QUIET: Event = Event {
     answer: Carried::AsSent,
 };
 
-/// One direction of the line: frames in order, each with its remaining ticks.
+/// Frames in order, each with its remaining ticks.
 #[derive(Clone, Debug, Default, PartialEq)]
 struct Line(Vec<(u8, Vec<u8>)>);
 
@@ -173,12 +159,10 @@ impl Line {
     }
 }
 
-/// The robot, at a point of the ring.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct OnRing {
     at: i16,
-    /// True if the robot's present point may be commanded again.
-    may_repeat: bool,
+    may_repeat: bool, // the present point may be commanded again
     wrong: Option<Wrong>,
 }
 
@@ -217,14 +201,12 @@ pub struct State {
     to_host: Line,
     dtr: bool,
     hold: bool,
-    /// True if a data command was sent, and is neither answered nor given up.
-    outstanding: bool,
-    /// Number of remaining faults.
-    faults: u8,
+    outstanding: bool, // a data command, neither answered nor given up
+    faults: u8,        // remaining
 }
 
 impl State {
-    /// The state before either end has power.
+    /// Before either end has power.
     pub fn first(setting: &Setting) -> Self {
         let mut host = Host::new(ANSWER_TICKS);
         host.set_patience(PATIENCE);
@@ -241,7 +223,7 @@ impl State {
         }
     }
 
-    /// The image of everything that affects later ticks.
+    /// Everything that affects later ticks.
     pub fn image(&self) -> Image {
         let mut image = Image::default();
         image.add_host(&self.host, self.faults);
@@ -253,7 +235,7 @@ impl State {
         image
     }
 
-    /// The host's half of a tick: the bytes that it sends, and whether a command was acknowledged.
+    /// Returns the sent bytes; true if a command was acknowledged.
     fn host_half(
         &mut self,
         (wanted, dtr_low): (Wanted, bool),
@@ -292,7 +274,7 @@ impl State {
         Ok((tx, event == HostEvent::Acknowledged))
     }
 
-    /// The controller's half of a tick. Returns the bytes that it sends.
+    /// Returns the sent bytes.
     fn controller_half(&mut self, cts_low: bool, panel: Panel) -> Result<LinkBytes, Wrong> {
         self.hold = match panel {
             Panel::Hold => true,
@@ -315,8 +297,8 @@ impl State {
         self.robot.wrong.map_or(Ok(out.tx), Err)
     }
 
-    /// Call `visit` for each possible next tick with its event, and the following state or an error. `good` means
-    /// that a command was acknowledged or that a stop is reported.
+    /// Calls `visit` for each possible tick with its event, and the next state or an error. `good`: a command was
+    /// acknowledged, or a stop is reported.
     pub fn each_next(
         &self,
         setting: &Setting,
@@ -362,7 +344,7 @@ impl State {
         Ok(())
     }
 
-    /// True if the controller has stopped and the host reports it.
+    /// The controller has stopped, and the host reports it.
     fn is_reported(&self) -> bool {
         let stopped = self.hold || self.controller.state() != ControllerState::Running;
         let host = &self.host;
@@ -370,7 +352,7 @@ impl State {
         stopped && (says || host.state() == HostState::Ended)
     }
 
-    /// The action of an operator who answers at once.
+    /// An operator who answers at once.
     pub fn help(&self) -> Panel {
         match self.controller.state() {
             _ if self.hold => Panel::Release,
@@ -426,7 +408,7 @@ fn carried(frame: &[u8], faults: u8, setting: &Setting, command: bool) -> Vec<Ca
         all.extend((0..8 * bytes).map(Carried::Flipped));
         all.extend((0..bytes).skip(1).map(Carried::Short));
     } else if damaged {
-        // The first byte, the last byte of a report's head, a word, the checksum.
+        // First byte, last byte of a report's head, a word, the checksum.
         all.extend([0, 16, 64, 120].map(Carried::Flipped));
         all.extend([0, 8, 15].map(Carried::Short));
     }

@@ -1,4 +1,4 @@
-//! Both ends of the link, the line between them, a robot that checks its moves, and the true state of every command.
+//! Both ends of the link, the line, a robot that checks its moves, and the true state of every command.
 
 #![allow(dead_code, unreachable_pub, reason = "each test uses a part of it")]
 
@@ -17,12 +17,11 @@ use geometry::{
 };
 use rcs_core::tick::Tick;
 
-/// Ticks after which the operator answers a warning or restarts the program.
-const OPERATOR_TICKS: u32 = 50;
-/// Ticks within which the host must report a stopped controller: the answer time, then a second of silence.
+const OPERATOR_TICKS: u32 = 50; // until the operator answers a warning or restarts
+/// To report a stopped controller: the answer time, then a second of silence.
 const REPORT_TICKS: u32 = 32;
 
-/// A robot that reaches every commanded position exactly, and checks every step.
+/// It reaches every position exactly, and checks every step.
 #[derive(Clone, PartialEq, Debug)]
 pub struct Watched {
     joints: Joints,
@@ -49,28 +48,26 @@ impl Robot for Watched {
     }
 }
 
-/// Counts of wrong conclusions. All except `started` are zero as long as the checksums detect every fault and no
-/// noise looks like a command or answer without a checksum.
+/// Counts of wrong conclusions: zero, except `started`, as long as checksums detect every fault and no noise looks
+/// like a frame without a checksum.
 #[derive(Clone, Copy, Default, Debug, PartialEq)]
 pub struct Truth {
     pub started: u64,
-    /// Accepted reports that were never true or are outdated.
-    pub false_reports: u64,
-    /// Commands that were executed, or refused with a warning, and that the host had not sent in this form.
+    pub false_reports: u64, // accepted, but never true or outdated
+    /// Executed or refused with a warning, but not sent in this form.
     pub false_commands: u64,
-    /// Acknowledgements accepted for a command that was neither executed nor refused with a warning.
+    /// Accepted for a command that was neither executed nor refused with a warning.
     pub false_acks: u64,
-    /// Delayed commands that were executed after the host had given them up and restarted.
+    /// Executed after the host had given them up and restarted.
     pub late_commands: u64,
-    /// Commands executed a second time, including their function.
-    pub repeated: u64,
+    pub repeated: u64, // with their function
     pub false_cancels: u64,
     pub velocity_warnings: u64,
     pub warnings: u64,
 }
 
 impl Truth {
-    /// Number of wrong conclusions caused by the line.
+    /// Caused by the line.
     pub fn deceptions(&self) -> u64 {
         self.false_reports
             + self.false_commands
@@ -93,33 +90,28 @@ impl Truth {
     }
 }
 
-/// A session: it uses the host like T3I, with a number in the function bytes of each command.
+/// Uses the host like T3I, with a number in the function bytes of each command.
 pub struct Session {
     pub host: Host,
     pub controller: Controller,
     pub robot: Watched,
     pub injector: Injector,
     pub truth: Truth,
-    /// Numbers of the commands that were executed as sent.
-    pub executed: Vec<u16>,
+    pub executed: Vec<u16>, // as sent
     pub tick: u64,
     to_host: LinkBytes,
     dtr: bool,
     position: Position,
     goal: Frame,
     numbers: Numbers,
-    /// Commands sent; number 1 is the first.
-    sent: Vec<Position>,
-    /// The last command on the line, and the bytes at the controller in the last tick and in this one.
+    sent: Vec<Position>, // number 1 is the first
+    /// The last command, and the bytes at the controller in the last tick and in this one.
     frame: LinkBytes,
     arrived: [LinkBytes; 2],
-    /// Position of the command that the controller executed in the last tick.
-    moving_to: Option<Plate>,
-    /// True if that command was not the last one sent.
-    late: bool,
-    /// Number of the command that was last refused with a warning.
-    refused: Option<u16>,
-    /// Ticks since the host last accepted bytes; on a slow line data of a stopped controller still arrive.
+    moving_to: Option<Plate>, // executed in the last tick
+    late: bool,               // it was not the last one sent
+    refused: Option<u16>,     // last refused with a warning
+    /// Ticks since the host last accepted bytes; data of a stopped controller may still arrive.
     silent: u32,
     stopped: u32,
     answers: u32,
@@ -165,12 +157,12 @@ impl Session {
         self.goal = Frame { position: home.position + shift, rotation: rotation_by(&turn) * home.rotation };
     }
 
-    /// True if the robot is at the goal, in words of the line.
+    /// In words of the line.
     pub fn at_goal(&self) -> bool {
         self.robot.at.same(&Plate::from_tool(&self.goal, &T3, &self.robot.at).unwrap())
     }
 
-    /// One tick of host, line and controller. Returns true if the host knows that the goal is reached.
+    /// Returns true if the host knows that the goal is reached.
     pub fn tick(&mut self) -> bool {
         let acknowledged = self.receive();
         let next = step(&self.position, &self.goal, &T3, &Limits::NBS).unwrap();
@@ -192,7 +184,7 @@ impl Session {
         reached
     }
 
-    /// The host's first half. Returns the number of an acknowledged command.
+    /// Returns the number of an acknowledged command.
     fn receive(&mut self) -> Option<u16> {
         self.silent += 1;
         match self.host.receive(&self.to_host, self.dtr) {
@@ -223,8 +215,7 @@ impl Session {
         }
         let (before, state) = (self.controller.warning(), self.controller.state());
         let warned = state == ControllerState::Warning;
-        // Every fourth warning gets a CANCEL.
-        let give_up = self.answers % 4 == 3;
+        let give_up = self.answers % 4 == 3; // every fourth warning gets a CANCEL
         let inputs = ControllerInputs {
             rx,
             cts,
@@ -267,7 +258,7 @@ impl Session {
         bytes.windows(usize::from(self.frame.length)).any(|bytes| bytes == self.frame.as_slice())
     }
 
-    /// Checks and counts the command whose function was executed in the last tick.
+    /// The command whose function was executed in the last tick.
     fn note_executed(&mut self, number: u16) {
         let sent = usize::from(number).checked_sub(1).and_then(|place| self.sent.get(place));
         if sent.map(|sent| sent.plate) != self.moving_to {
@@ -295,7 +286,7 @@ impl Session {
         );
     }
 
-    /// Run until the goal is reached and held, at most this many ticks; for a repaired line.
+    /// Until the goal is reached and held on a repaired line, at most `most` ticks.
     pub fn until_reached(&mut self, most: u32) {
         for _ in 0..most {
             if self.tick() && self.at_goal() && self.controller.state() == ControllerState::Running {
