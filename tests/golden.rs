@@ -146,18 +146,14 @@ impl Scenario {
         directory().join(&self.name).with_added_extension("txt")
     }
 
-    /// Run it and make the golden, without writing it.
-    ///
-    /// # Errors
-    /// [`Failed`], for example if the run does not end as expected.
+    /// Run it and make the golden, without writing it. Errors: [`Failed`], for example if the run does not end as
+    /// expected.
     pub fn make(&self) -> Result<Made, Failed> {
         self.made_of(&self.run()?)
     }
 
-    /// Run it and write its trace. Returns its end and the number of ticks.
-    ///
-    /// # Errors
-    /// [`Failed`]. An unexpected end is not an error: it is part of the trace.
+    /// Run it and write its trace. Returns its end and the number of ticks. Errors: [`Failed`]. An unexpected end is
+    /// not an error: it is part of the trace.
     pub fn trace(&self, directory: &Path) -> Result<(Ending, u64), Failed> {
         let run = self.run()?;
         let ticks = trace::write(&run.log()?, &run.ending, &trace::path(directory, &self.name))?;
@@ -165,10 +161,7 @@ impl Scenario {
     }
 
     /// Run it and compare the run with its trace in a directory. Without a difference and with `make`, also make the
-    /// golden.
-    ///
-    /// # Errors
-    /// [`Failed`]. A difference is part of the result, not an error.
+    /// golden. Errors: [`Failed`]. A difference is part of the result, not an error.
     pub fn against(
         &self,
         directory: &Path,
@@ -280,10 +273,7 @@ pub struct Made {
 }
 
 impl Made {
-    /// Write both files.
-    ///
-    /// # Errors
-    /// [`Failed::File`], [`Failed::Golden`].
+    /// Write both files. Errors: [`Failed::File`], [`Failed::Golden`].
     pub fn write(&self) -> Result<(), Failed> {
         let (golden, text) = &self.files;
         golden::write(&self.golden, golden)?;

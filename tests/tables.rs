@@ -158,10 +158,7 @@ fn only(steps: &[String]) -> Option<&String> {
     Some(step).filter(|step| *step != "any")
 }
 
-/// All files with an extension under a directory.
-///
-/// # Errors
-/// If a directory cannot be listed.
+/// All files with an extension under a directory. Fails if a directory cannot be listed.
 pub fn files(directory: &Path, extension: &str, found: &mut Vec<PathBuf>) -> io::Result<()> {
     for entry in fs::read_dir(directory)? {
         let path = entry?.path();

@@ -55,10 +55,8 @@ pub fn path(directory: &Path, scenario: &str) -> PathBuf {
     directory.join(scenario).with_added_extension(EXTENSION)
 }
 
-/// Write the trace of a log. Returns the number of ticks.
-///
-/// # Errors
-/// [`Failed`] if the log cannot be read or the trace cannot be written.
+/// Write the trace of a log. Returns the number of ticks. Errors: [`Failed`] if the log cannot be read or the trace
+/// cannot be written.
 pub fn write(log: &Log, ending: &Ending, path: &Path) -> Result<u64, Failed> {
     log.check_layout()?;
     let failed = |source| Failed::File { path: path.to_owned(), source };
@@ -84,10 +82,7 @@ pub fn write(log: &Log, ending: &Ending, path: &Path) -> Result<u64, Failed> {
     Ok(ticks)
 }
 
-/// Open a trace for reading.
-///
-/// # Errors
-/// If the file cannot be opened.
+/// Open a trace for reading. Fails if the file cannot be opened.
 pub fn open(path: &Path) -> io::Result<impl BufRead + use<>> {
     Ok(BufReader::with_capacity(1 << 20, Decoder::new(File::open(path)?)?))
 }
@@ -132,10 +127,7 @@ impl<W: Write> Tracer<W> {
         Self { out, headers, memory: Images::new(), devices: Images::new(), decided, ticks: 0 }
     }
 
-    /// Write the changes of a tick.
-    ///
-    /// # Errors
-    /// An error of the file.
+    /// Write the changes of a tick. Errors: an error of the file.
     pub fn tick(&mut self, tick: Tick, memory: &CommonMemory) -> io::Result<()> {
         let Self { out, .. } = self;
         let mut line = |path: &str, value: &str| writeln!(out, "{tick}\t{path}\t{}", plain(value));
@@ -158,10 +150,7 @@ impl<W: Write> Tracer<W> {
         Ok(())
     }
 
-    /// Write the end of the run. Returns the writer.
-    ///
-    /// # Errors
-    /// An error of the file.
+    /// Write the end of the run. Returns the writer. Errors: an error of the file.
     pub fn finish(mut self, ending: &Ending) -> io::Result<W> {
         let status = ending.status.map_or("a signal".to_owned(), |status| status.to_string());
         let last_line = without_rows(&ending.last_line);

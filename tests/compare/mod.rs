@@ -76,11 +76,8 @@ pub struct Comparison {
     used: BTreeSet<Rule>,
 }
 
-/// Compare the trace of an old version with that of a new one.
-///
-/// # Errors
-/// [`CompareError`] if one of them is not a complete trace, or two old fields become one. A difference is part of the
-/// result, not an error.
+/// Compare the trace of an old version with that of a new one. Errors: [`CompareError`] if one of them is not a
+/// complete trace, or two old fields become one. A difference is part of the result, not an error.
 pub fn compare(was: impl BufRead, is: impl BufRead, renames: &Renames) -> Result<Comparison, CompareError> {
     let (mut was, mut is) = (Lines::new("old", was)?, Lines::new("new", is)?);
     let mut comparer = Comparer::new(renames);

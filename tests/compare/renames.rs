@@ -60,10 +60,7 @@ pub(super) enum Rule {
 }
 
 impl Renames {
-    /// Read the text of a file.
-    ///
-    /// # Errors
-    /// [`CompareError::Toml`], [`CompareError::Stars`].
+    /// Read the text of a file. Errors: [`CompareError::Toml`], [`CompareError::Stars`].
     pub fn parse(text: &str) -> Result<Self, CompareError> {
         let renames: Self = toml::from_str(text)?;
         let paths = renames.renamed.iter().map(|rule| (&rule.old, &rule.new));

@@ -171,10 +171,7 @@ pub struct Switched {
 }
 
 impl Switched {
-    /// The files for changes with their numbers.
-    ///
-    /// # Errors
-    /// A file cannot be read, or does not have the expected form.
+    /// The files for changes with their numbers. Errors: a file cannot be read, or does not have the expected form.
     pub fn new(root: &Path, mutants: &BTreeMap<usize, &Mutant>) -> io::Result<Self> {
         let mut switched = Self::default();
         let mut files: BTreeMap<&Path, BTreeMap<usize, &Mutant>> = BTreeMap::new();

@@ -47,10 +47,7 @@ impl Program {
 }
 
 impl<'a> Test<'a> {
-    /// Run a test without a change; `reached` is a file of its own.
-    ///
-    /// # Errors
-    /// If it fails.
+    /// Run a test without a change; `reached` is a file of its own. Fails if it fails.
     pub fn measure(program: &'a Program, name: String, reached: &Path) -> io::Result<Self> {
         fs::write(reached, "")?;
         let mut test = Self { program, name, taken: Duration::ZERO, reaches: BTreeSet::new() };

@@ -113,7 +113,7 @@ mod tests {
         kinematics::{HOME_JOINTS, T3},
     };
 
-    /// HOME, moved by inches.
+    /// HOME, moved by `x` and `y` inches.
     fn at(x: f64, y: f64) -> Frame {
         let home = T3.forward(&HOME_JOINTS);
         Frame { position: home.position + Vector::new(x, y, 0.0), ..home }

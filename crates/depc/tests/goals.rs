@@ -12,7 +12,7 @@ use geometry::{
 };
 use proptest::prelude::*;
 
-/// Only the velocity limits can refuse a position.
+/// A robot for which only the velocity limits can refuse a position.
 struct Anywhere(Plate);
 
 impl Robot for Anywhere {

@@ -31,9 +31,7 @@ pub struct NamedFiles {
 }
 
 impl NamedFiles {
-    /// The file that `name` names: the file of that name in the data directory, else the file with that path.
-    ///
-    /// # Errors
+    /// The file that `name` names: the file of that name in the data directory, else the file with that path. Errors:
     /// [`UnknownFile`] if there is neither.
     pub fn find(&self, name: &Path, data: &Path) -> Result<PathBuf, UnknownFile> {
         let named = self.named(name, data);
@@ -42,10 +40,7 @@ impl NamedFiles {
         if is_path { Ok(name.to_owned()) } else { named }
     }
 
-    /// The file of a name in the data directory.
-    ///
-    /// # Errors
-    /// [`UnknownFile`] if there is none.
+    /// The file of a name in the data directory. Errors: [`UnknownFile`] if there is none.
     pub fn named(&self, name: &Path, data: &Path) -> Result<PathBuf, UnknownFile> {
         let named = data.join(self.directory).join(name).with_added_extension(self.extension);
         if files::is_file(&named) {

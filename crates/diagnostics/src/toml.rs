@@ -104,10 +104,7 @@ impl<'a> Document<'a> {
     }
 
     /// Read a structure from TOML, and check its values: `check` gets the structure and the entries that have
-    /// stand-ins, and adds what it finds to the problems.
-    ///
-    /// # Errors
-    /// All problems of the text.
+    /// stand-ins, and adds what it finds to the problems. Errors: all problems of the text.
     pub fn load<T: DeserializeOwned>(
         source: &Source,
         kind: FileKind,

@@ -1,7 +1,6 @@
-//! A host in 60 lines: moves the robot's tool once along a circle of 50 mm in its x-y plane, within 10 s.
-//!
-//! Run `cargo run --release -p egm --example circle -- 6510`, then start the robot. Begin with reduced speed and with
-//! room around the tool: see docs/egm.md.
+//! A host in 60 lines: moves the tool once along a circle of 50 mm in its x-y plane, within 10 s. Run `cargo run
+//! --release -p egm --example circle -- 6510`, then start the robot, with reduced speed and room around the tool: see
+//! docs/egm.md.
 
 #![expect(clippy::print_stdout, clippy::print_stderr, reason = "an example says what it does")]
 
@@ -14,12 +13,11 @@ use std::{
 
 use egm::{Host, Limits, LinkState, Pose, Twist, host::Settings, message::MOST_BYTES};
 
-/// Number of points of the circle, one every 40 ms.
-const POINTS: u32 = 250;
+const POINTS: u32 = 250; // one every 40 ms
 const RADIUS_MM: f64 = 50.0;
 const PERIOD: Duration = Duration::from_millis(40);
 
-/// A point of the circle that begins and ends at `start`; the motion is slow at both ends.
+/// Begins and ends at `start`, slowly.
 fn point(start: &Pose, number: u32) -> Pose {
     let part = f64::from(number.min(POINTS)) / f64::from(POINTS);
     let angle = TAU * part - (TAU * part).sin();
@@ -35,7 +33,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let clock = Instant::now();
     let mut host = Host::new(Settings::new(Limits::of_speed(100.0, 0.5)));
     let (mut datagram, mut buffer) = ([0; 2048], [0; MOST_BYTES]);
-    // Time and pose of the circle's start, and the number of points so far.
+    // Time and pose of the start, and the number of points so far.
     let mut path: Option<(Duration, Pose, u32)> = None;
     loop {
         let received = socket.recv_from(&mut datagram);

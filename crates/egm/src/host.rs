@@ -76,8 +76,7 @@ pub struct Sample {
     pub speed: Twist,
     /// True while a path is moving: the host accepts points.
     pub is_moving: bool,
-    /// Pose at which a path may begin or continue; `None` while the robot does not follow, is not at its target, or is
-    /// stopping.
+    /// Where a path may begin or continue; `None` if the robot does not follow, is not at its target, or is stopping.
     pub start: Option<Pose>,
     /// Utilization of the robot by the motion, percent; `None` if the robot does not send it.
     pub utilization: Option<f64>,
@@ -90,8 +89,7 @@ struct Sent {
     at: u64,
     pose: Pose,
     speed: Twist,
-    /// Distance of the robot from this target at the time of sending, mm and rad.
-    lag: (f64, f64),
+    lag: (f64, f64), // of the robot from this target when sent, mm and rad
 }
 
 fn seconds(nanoseconds: u64) -> f64 {
@@ -106,8 +104,7 @@ pub struct Host {
     path: Path,
     feedback: Pose,
     utilization: Option<f64>,
-    /// The last target, while the robot follows.
-    sent: Option<Sent>,
+    sent: Option<Sent>, // while the robot follows
     seqno: u32,
     counters: Counters,
 }
@@ -128,11 +125,8 @@ impl Host {
         }
     }
 
-    /// Handles a datagram that arrived at `now`, ns. The caller must send the returned answer, at the end of `buffer`,
-    /// to the sender at once. An old message gets no answer, because the robot reads one answer per cycle.
-    ///
-    /// # Errors
-    /// [`Error`] if the datagram is not a message of a robot; then only a counter changes.
+    /// Handles a datagram that arrived at `now`, ns. Send the answer, at the end of `buffer`, at once. An old message
+    /// gets none, because the robot reads one answer per cycle. After an error only a counter changes.
     pub fn receive<'a>(
         &mut self,
         now: u64,
@@ -151,7 +145,7 @@ impl Host {
         self.counters.received = self.counters.received.saturating_add(1);
         (self.feedback, self.utilization) = (feedback, message.utilization_rate);
         if self.session.state() != LinkState::Running || before != LinkState::Running {
-            // The target of a robot that does not follow, or just begins to, is its own position.
+            // The target of a robot that does not follow yet is its own position.
             self.rest_at_feedback();
         }
         let target = self.target(now);
@@ -176,10 +170,8 @@ impl Host {
         }
     }
 
-    /// Begins a path from rest at `from`, which must be the start pose of the last [`Sample`]; `at` is the time, ns.
-    ///
-    /// # Errors
-    /// [`Error::NotReady`] if a path cannot begin there now.
+    /// Begins a path from rest at `from`, the start pose of the last [`Sample`]; `at` in ns. Errors:
+    /// [`Error::NotReady`].
     pub fn begin(&mut self, at: u64, from: &Pose) -> Result<(), Error> {
         let start = self.start().ok_or(Error::NotReady)?;
         if !self.are_near(&start, from) {
@@ -191,10 +183,7 @@ impl Host {
         Ok(())
     }
 
-    /// Takes the next point of the path, which arrived at `at`, ns. A refused point ends the path.
-    ///
-    /// # Errors
-    /// [`Error`] if the point cannot be accepted.
+    /// Takes the next point, which arrived at `at`, ns. A refused point ends the path.
     pub fn push(&mut self, at: u64, point: &Pose) -> Result<(), Error> {
         let pushed = self.path.push(at, point, &self.settings.limits);
         match pushed {
@@ -216,8 +205,8 @@ impl Host {
         }
     }
 
-    /// Makes the position of the last message the target, at rest: the robot stops by its own means, and does not move
-    /// on to a target that it has not reached. The target jumps to the robot, never away from it.
+    /// Makes the robot's last position the target, at rest: the robot stops by its own means, and does not move on to
+    /// the old target.
     pub fn hold(&mut self) {
         if !matches!(self.path.motion(), Motion::Still(_)) {
             self.interrupt();
@@ -243,7 +232,7 @@ impl Host {
         }
     }
 
-    /// The target at `now`, ns, within the limits from the previous one.
+    /// At `now`, ns, within the limits from the previous target.
     fn target(&mut self, now: u64) -> Sent {
         let Some(sent) = self.sent else {
             let (pose, speed) = self.path.target(now);
@@ -271,9 +260,8 @@ impl Host {
         Sent { at, pose, speed, lag: pose.distance(&self.feedback) }
     }
 
-    /// Check after a gap: without messages a robot continues with its last speed reference. The distance of the next
-    /// target from the robot may be at most its earlier lag plus the distance that the limits allow in the longest
-    /// permitted gap.
+    /// After a gap: without messages a robot continues with its last speed reference. The next target may be at most
+    /// as far as its earlier lag, plus the distance that the limits allow in the longest permitted gap.
     fn has_kept_up(&self, sent: &Sent, target: &Pose) -> bool {
         let (way, turn) = target.distance(&self.feedback);
         let (Limits { speed, turn: rate, .. }, gap) = (self.settings.limits, seconds(self.settings.gap));
@@ -289,7 +277,7 @@ impl Host {
         self.counters.interrupted = self.counters.interrupted.saturating_add(1);
     }
 
-    /// Pose at which a path may begin or continue: its last point, or the resting target if the robot is there.
+    /// The path's last point, or the resting target if the robot is there.
     fn start(&self) -> Option<Pose> {
         match self.path.motion() {
             Motion::Moving => Some(self.path.last_point()),

@@ -2,8 +2,7 @@
 
 use crate::{Error, Pose, pose::norm};
 
-/// Relative tolerance of the limits, for rounding errors.
-const ROUNDING: f64 = 1e-6;
+const ROUNDING: f64 = 1e-6; // relative
 
 /// Limits of targets.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -23,10 +22,7 @@ impl Limits {
         Self { speed, turn, space: [[f64::NEG_INFINITY; 3], [f64::INFINITY; 3]] }
     }
 
-    /// Checks that the tool may move from `from` to `to` in the given time, seconds.
-    ///
-    /// # Errors
-    /// [`Error::TooFast`] or [`Error::Outside`].
+    /// Checks a motion that takes `seconds`. Errors: [`Error::TooFast`] or [`Error::Outside`].
     pub fn check(&self, from: &Pose, to: &Pose, seconds: f64) -> Result<(), Error> {
         let way = from.way_to(to);
         let (speed, turn) = (norm(&way.linear) / seconds, norm(&way.angular) / seconds);

@@ -1,8 +1,8 @@
 //! Computes the target at any time: points arrive once per period, and the robot requests targets every 4 ms.
 //!
-//! Targets are a function of *time*, not of the number of requests: a period of 40 ms has 9.92 cycles of the robot. A
-//! segment of the spline needs the newest point, so the target is one period behind a robot that reaches a point one
-//! period after its arrival, plus `slack`, by which points may be late.
+//! Targets are a function of *time*: a period of 40 ms has 9.92 cycles of the robot. A segment of the spline needs the
+//! newest point, so the target is one period later than for a robot that reaches a point one period after its arrival,
+//! plus `slack`, by which points may be late.
 //!
 //! ```text
 //!            begin                   no point in time, or stop
@@ -11,8 +11,8 @@
 //!     └───────────────────────────────────────────────────────────────┘ after `stop`
 //! ```
 //!
-//! If no point comes in time, the segment is finished; then the speed falls to zero along the tangent in a fixed time,
-//! with an acceleration that begins and ends at zero. A later motion begins at rest.
+//! If no point comes in time, the segment is finished; then the speed falls to zero along the tangent, with an
+//! acceleration that begins and ends at zero. A later motion begins at rest.
 
 use crate::{
     Error, Limits,
@@ -20,8 +20,7 @@ use crate::{
     spline,
 };
 
-/// Greatest number of points that wait for their segment.
-const MOST_WAITING: usize = 4;
+const MOST_WAITING: usize = 4; // until their segment
 
 /// Times of a path, ns.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -64,16 +63,11 @@ pub enum Motion {
 pub struct Path {
     times: Times,
     motion: Motion,
-    /// The four points of the segment, the newest last.
-    window: [Pose; 4],
-    /// Start of the segment, ns.
-    segment: u64,
-    /// Start of the path, ns.
-    begun: u64,
-    /// Number of points since the start.
-    count: u64,
-    /// Points of later segments; the first `waiting` are valid.
-    queue: [Pose; MOST_WAITING],
+    window: [Pose; 4],           // of the segment, newest last
+    segment: u64,                // start, ns
+    begun: u64,                  // start of the path, ns
+    count: u64,                  // points since the start
+    queue: [Pose; MOST_WAITING], // for later segments; `waiting` are valid
     waiting: usize,
 }
 
@@ -114,12 +108,8 @@ impl Path {
         *self = Self { motion: Motion::Moving, begun: at, segment, ..still };
     }
 
-    /// Takes the next point, which arrived at `at`, ns.
-    ///
-    /// # Errors
-    /// [`Error::NotReady`] if the path is not moving, or if the point arrived more than half a period before or after
-    /// its time; [`Error::Full`] if too many points wait; [`Error::TooFast`] or [`Error::Outside`] if the point exceeds
-    /// the limits.
+    /// Takes a point that arrived at `at`, ns. Errors: [`Error::NotReady`] if the path is not moving, or the point is
+    /// more than half a period early or late; [`Error::Full`]; [`Error::TooFast`] or [`Error::Outside`].
     pub fn push(&mut self, at: u64, point: &Pose, limits: &Limits) -> Result<(), Error> {
         if self.motion != Motion::Moving {
             return Err(Error::NotReady);
@@ -173,7 +163,7 @@ impl Path {
         true
     }
 
-    /// The speed falls as (1 - s)^2 (1 + 2 s), where `s` is the elapsed part of the stopping time.
+    /// The speed falls as (1 - s)^2 (1 + 2 s), with `s` from 0 to 1 in the stopping time.
     fn stopping(&mut self, from: &Pose, speed: &Twist, elapsed: u64) -> (Pose, Twist) {
         let stop = seconds(self.times.stop);
         let s = (seconds(elapsed) / stop).min(1.0);
@@ -199,7 +189,7 @@ mod tests {
         Pose { position: [x, 0.0, 0.0], ..Pose::IDENTITY }
     }
 
-    /// A path along x with the given number of points, 10 mm apart.
+    /// Along x, 10 mm apart.
     fn moving(points: u32) -> Path {
         let mut path = Path::new(Times::default(), at(0.0));
         path.begin(0, at(0.0));
@@ -214,7 +204,7 @@ mod tests {
     #[test]
     fn a_steady_path_lags_by_one_period_and_the_slack() {
         let mut path = moving(10);
-        // Point 10 arrived at 400 ms, for 440 ms, and lies at 100 mm. The target is there 50 ms later.
+        // Point 10 arrived at 400 ms, for 440 ms, at 100 mm. The target is there 50 ms later.
         let (pose, speed) = path.target(449 * MS);
         assert!((pose.position[0] - 90.0 + 0.25).abs() < 1e-9, "{pose:?}");
         assert!((speed.linear[0] - 250.0).abs() < 1e-9, "{speed:?}");

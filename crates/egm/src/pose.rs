@@ -7,8 +7,7 @@ pub type Vector = [f64; 3];
 /// A unit quaternion: w, x, y, z.
 pub type Quaternion = [f64; 4];
 
-/// Greatest deviation of the length of a quaternion from 1.
-const UNIT_TOLERANCE: f64 = 0.01;
+const UNIT_TOLERANCE: f64 = 0.01; // of the length
 
 /// Position and orientation of one frame in another.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -38,10 +37,8 @@ impl Pose {
     /// The identity: no displacement.
     pub const IDENTITY: Self = Self { position: [0.0; 3], orientation: [1.0, 0.0, 0.0, 0.0] };
 
-    /// A pose; normalizes the quaternion.
-    ///
-    /// # Errors
-    /// [`Error::NotAPose`] if a number is not finite, or if the quaternion's length differs from 1 by more than 0.01.
+    /// Normalizes the quaternion. Errors: [`Error::NotAPose`] if a number is not finite, or the length differs from 1
+    /// by more than 0.01.
     pub fn new(position: Vector, orientation: Quaternion) -> Result<Self, Error> {
         let length = libm::sqrt(orientation.iter().map(|v| v * v).sum());
         let unit = (length - 1.0).abs() <= UNIT_TOLERANCE;
@@ -158,7 +155,7 @@ pub fn rotation_vector(q: &Quaternion) -> Vector {
     let [w, x, y, z] = if q.first().is_some_and(|w| *w < 0.0) { q.map(|v| -v) } else { *q };
     let axis = [x, y, z];
     let sine = norm(&axis);
-    // For smaller angles the sine equals the angle in `f64`.
+    // The sine of a smaller angle equals the angle in `f64`.
     let factor = if sine > 1e-12 { 2.0 * libm::atan2(sine, w) / sine } else { 2.0 };
     scaled(&axis, factor)
 }
@@ -218,7 +215,7 @@ mod tests {
 
     #[test]
     fn euler_angles_turn_about_x_first() {
-        // The rotation by 90 degrees about x turns y to z, and the rotation about z does not change that.
+        // 90 degrees about x turns y to z; the rotation about z does not change that.
         let q = from_euler([90.0, 0.0, 90.0]);
         let y = rotate(&q, &[0.0, 1.0, 0.0]);
         assert!(norm(&subtract(&y, &[0.0, 0.0, 1.0])) < 1e-12, "{y:?}");

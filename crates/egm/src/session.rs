@@ -1,12 +1,10 @@
 //! The session: whether the robot is connected and follows, and which of its messages are new.
 //!
-//! EGM has no connections: the robot starts and stops sending, and lost messages are not detected. The state therefore
-//! follows from the received messages and their arrival times.
+//! EGM has no connections and does not detect lost messages: the state follows from messages and their times.
 
 use crate::message::{MciState, MotorState, RapidState, Robot};
 
-/// A sequence number that is smaller by at most this belongs to an old message; a still smaller one means that the
-/// robot has restarted its count.
+/// A number smaller by at most this is of an old message; a still smaller one means that the robot counts again.
 const WINDOW: u32 = 250;
 
 /// State of the link.
@@ -111,7 +109,7 @@ impl Session {
     }
 }
 
-/// Why a robot with these states does not follow; the most serious reason comes first.
+/// The most serious reason first.
 fn hindrance(message: &Robot) -> Option<Hindrance> {
     let (motors, mci, rapid) = (message.motor_state, message.mci_state, message.rapid_state);
     match (motors, mci, rapid) {

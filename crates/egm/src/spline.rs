@@ -1,13 +1,12 @@
 //! A uniform cubic B-spline of poses: four points, one per period, define the segment between the middle two.
 //!
-//! The spline is continuous to the second derivative and stays in the convex hull of its points. It does not pass
-//! through them, except where points repeat: after three equal points it rests exactly there. In the cumulative form
-//! each basis function weights the step from one point to the next, so that orientations can be treated like positions:
-//! each factor is a slerp by that part of the step.
+//! It is continuous to the second derivative, stays in the convex hull of its points, and rests exactly at three equal
+//! points; other points it passes nearby. In the cumulative form each basis function weights the step between two
+//! points, so orientations are treated like positions: each factor is a slerp by that part of the step.
 
 use crate::pose::{Pose, Twist, add, from_rotation_vector, product, rotate, scaled};
 
-/// The cumulative basis functions of the three steps at `u`, 0 to 1.
+/// At `u`, 0 to 1.
 fn basis(u: f64) -> [f64; 3] {
     let (square, cube) = (u * u, u * u * u);
     [
@@ -17,7 +16,7 @@ fn basis(u: f64) -> [f64; 3] {
     ]
 }
 
-/// The derivatives of the basis functions with respect to `u`.
+/// With respect to `u`.
 fn slope(u: f64) -> [f64; 3] {
     let square = u * u;
     [(1.0 - u) * (1.0 - u) / 2.0, (1.0 + 2.0 * u - 2.0 * square) / 2.0, square / 2.0]
@@ -72,7 +71,7 @@ mod tests {
             prop_assert!(way < 1e-9 && turn < 1e-9, "{way} mm, {turn} rad");
             let speed = left_speed.way(&right_speed);
             prop_assert!(speed < 1e-7, "{speed}");
-            // Accelerations on both sides of the knot, each from within its segment.
+            // On both sides of the knot, each from within its segment.
             let h = 1e-4;
             let change = |points: &[Pose; 4], from: f64, to: f64| {
                 let (a, b) = (evaluate(points, from, 0.04).1, evaluate(points, to, 0.04).1);

@@ -1,8 +1,7 @@
 //! The part of protocol-buffer encoding that `egm.proto` needs: a reader and a writer over byte slices.
 //!
-//! The writer works from the end of its buffer to the front. The encoding of a nested message begins with its length;
-//! when written backwards, the nested message is already there, so that its length is known. Each message therefore
-//! writes its fields in reverse order, and they end up in ascending order.
+//! The writer works backwards from the end of its buffer: a nested message is then written before its length, which
+//! precedes it. Each message writes its fields in reverse order.
 
 use crate::Error;
 
@@ -49,43 +48,28 @@ impl<'a> Field<'a> {
         Error::BadWireType { field: self.number, found }
     }
 
-    /// The value as a 64-bit integer.
-    ///
-    /// # Errors
-    /// [`Error::BadWireType`] for another wire type.
+    /// The value as a 64-bit integer. Errors: [`Error::BadWireType`] for another wire type.
     pub fn uint64(&self) -> Result<u64, Error> {
         if let Value::Varint(value) = self.value { Ok(value) } else { Err(self.wrong()) }
     }
 
-    /// The low 32 bits of an integer, as protocol buffers define it for `uint32` and enums.
-    ///
-    /// # Errors
-    /// [`Error::BadWireType`] for another wire type.
+    /// The low 32 bits, as for `uint32` and enums. Errors: [`Error::BadWireType`] for another wire type.
     pub fn uint32(&self) -> Result<u32, Error> {
         let [a, b, c, d, ..] = self.uint64()?.to_le_bytes();
         Ok(u32::from_le_bytes([a, b, c, d]))
     }
 
-    /// The value as a boolean.
-    ///
-    /// # Errors
-    /// [`Error::BadWireType`] for another wire type.
+    /// The value as a boolean. Errors: [`Error::BadWireType`] for another wire type.
     pub fn flag(&self) -> Result<bool, Error> {
         Ok(self.uint64()? != 0)
     }
 
-    /// The value as a double.
-    ///
-    /// # Errors
-    /// [`Error::BadWireType`] for another wire type.
+    /// The value as a double. Errors: [`Error::BadWireType`] for another wire type.
     pub fn double(&self) -> Result<f64, Error> {
         if let Value::Fixed64(bits) = self.value { Ok(f64::from_bits(bits)) } else { Err(self.wrong()) }
     }
 
-    /// The fields of the message in the value.
-    ///
-    /// # Errors
-    /// [`Error::BadWireType`] for another wire type.
+    /// The fields of the message in the value. Errors: [`Error::BadWireType`] for another wire type.
     pub fn message(&self) -> Result<Reader<'a>, Error> {
         if let Value::Bytes(bytes) = self.value { Ok(Reader::new(bytes)) } else { Err(self.wrong()) }
     }
@@ -110,10 +94,7 @@ impl<'a> Reader<'a> {
         self.rest.is_empty()
     }
 
-    /// Reads the next field; `None` at the end.
-    ///
-    /// # Errors
-    /// [`Error`] if the bytes are not a field.
+    /// Reads the next field; `None` at the end. Errors: [`Error`] if the bytes are not a field.
     pub fn next_field(&mut self) -> Result<Option<Field<'a>>, Error> {
         if self.is_at_end() {
             return Ok(None);
@@ -138,10 +119,7 @@ impl<'a> Reader<'a> {
         Ok(Some(Field { number, value }))
     }
 
-    /// Reads the next double of packed values; `None` at the end.
-    ///
-    /// # Errors
-    /// [`Error::Truncated`] if fewer than eight bytes are left.
+    /// Reads the next double of packed values; `None` at the end. Errors: [`Error::Truncated`].
     pub fn next_double(&mut self) -> Result<Option<f64>, Error> {
         if self.is_at_end() { Ok(None) } else { self.fixed64().map(|bits| Some(f64::from_bits(bits))) }
     }
@@ -184,8 +162,7 @@ impl<'a> Reader<'a> {
 #[derive(Debug)]
 pub struct Writer<'a> {
     buffer: &'a mut [u8],
-    /// Offset of the first written byte.
-    start: usize,
+    start: usize, // offset of the first written byte
 }
 
 impl<'a> Writer<'a> {
@@ -202,36 +179,24 @@ impl<'a> Writer<'a> {
         self.buffer.get(self.start..).unwrap_or_default()
     }
 
-    /// Writes an integer field.
-    ///
-    /// # Errors
-    /// [`Error::NoRoom`] if the buffer is too small.
+    /// Writes an integer field. Errors: [`Error::NoRoom`] if the buffer is too small.
     pub fn uint(&mut self, number: u32, value: u64) -> Result<(), Error> {
         self.varint(value)?;
         self.key(number, VARINT)
     }
 
-    /// Writes a boolean field.
-    ///
-    /// # Errors
-    /// [`Error::NoRoom`] if the buffer is too small.
+    /// Writes a boolean field. Errors: [`Error::NoRoom`] if the buffer is too small.
     pub fn flag(&mut self, number: u32, value: bool) -> Result<(), Error> {
         self.uint(number, u64::from(value))
     }
 
-    /// Writes a double field.
-    ///
-    /// # Errors
-    /// [`Error::NoRoom`] if the buffer is too small.
+    /// Writes a double field. Errors: [`Error::NoRoom`] if the buffer is too small.
     pub fn double(&mut self, number: u32, value: f64) -> Result<(), Error> {
         self.bytes(&value.to_le_bytes())?;
         self.key(number, FIXED64)
     }
 
-    /// Writes a message field; `fields` must write the fields of the message in reverse order.
-    ///
-    /// # Errors
-    /// [`Error::NoRoom`] if the buffer is too small.
+    /// Writes a message field; `fields` writes its fields in reverse order. Errors: [`Error::NoRoom`].
     pub fn message(
         &mut self,
         number: u32,

@@ -1,5 +1,4 @@
-//! For every sequence of events, each target is within the limits from the previous one, or it is the robot's own
-//! position.
+//! Each target is within the limits from the previous one, or it is the robot's own position.
 
 use egm::{
     Hindrance, Host, Limits, LinkState, Pose, Twist,
@@ -17,27 +16,22 @@ const CYCLE: u64 = 4_032_000;
 
 #[derive(Clone, Debug)]
 enum Event {
-    /// This number of cycles passes; `lost` is the percentage of lost messages.
+    /// `lost`: percentage of lost messages.
     Cycles {
         count: u16,
         lost: u8,
     },
-    /// Time passes without a message, ms.
-    Silence(u16),
-    /// The last message arrives again.
-    Double,
-    /// The robot is moved to another position.
-    Pushed([f64; 3]),
+    Silence(u16),     // ms without a message
+    Double,           // the last message again
+    Pushed([f64; 3]), // the robot is moved there
     States(u8),
-    /// A path begins at the sample's start pose, or at another pose.
+    /// At the sample's start pose, or at another.
     Begin {
         astray: bool,
     },
-    /// The next point, relative to the previous one, mm and rad.
-    Point([f64; 3], [f64; 3]),
+    Point([f64; 3], [f64; 3]), // relative to the previous one, mm and rad
     Stop,
-    /// Bytes that are not a message.
-    Garbage(Vec<u8>),
+    Garbage(Vec<u8>), // not a message
 }
 
 fn event() -> impl Strategy<Value = Event> {
@@ -56,14 +50,14 @@ fn event() -> impl Strategy<Value = Event> {
     ]
 }
 
-/// A host, and a robot that is exactly at the target of the previous message.
+/// The robot is exactly at the target of the previous message.
 struct Bench {
     host: Host,
     now: u64,
     seqno: u32,
     states: u8,
     at: Pose,
-    /// The last target: time of sending, pose, and distance of the robot from it, mm.
+    /// Time of sending, pose, and the robot's distance from it, mm.
     before: Option<(u64, Pose, f64)>,
     point: Pose,
     datagram: Vec<u8>,
@@ -171,7 +165,7 @@ impl Bench {
                 self.point = from;
             }
             Event::Point(way, turn) => {
-                // Points are one period apart, as in a control ladder.
+                // One period apart, as in a control ladder.
                 for _ in 0..10 {
                     self.now += 4 * MS;
                     self.message();
@@ -206,7 +200,7 @@ proptest! {
     }
 }
 
-/// Control: the property above would also hold for a host that never moves.
+/// The property above also holds for a host that never moves.
 #[test]
 fn a_robot_that_follows_is_moved() {
     let mut bench = Bench::new(1);

@@ -1,4 +1,4 @@
-//! Compares the codec with an independent one: the same schema, written again for `prost`.
+//! Compares the codec with `prost` for the same schema.
 
 use egm::{
     Error,
@@ -10,7 +10,6 @@ use egm::{
 use proptest::{collection::vec, option, prelude::*};
 use prost::Message;
 
-/// The part of `egm.proto` that the host needs.
 mod proto {
     use prost::Message;
 
@@ -171,7 +170,7 @@ mod proto {
     }
 }
 
-/// Converts this crate's messages to those of `prost`.
+/// Converts to messages of `prost`.
 mod same {
     use super::*;
 
@@ -343,8 +342,7 @@ proptest! {
         prop_assert_eq!(Sensor::decode(&oracle), Ok(answer));
     }
 
-    /// Bytes are flipped, cut and joined: `prost` accepts everything that this crate accepts, and decodes the same
-    /// values.
+    /// Bytes flipped, cut and joined: `prost` accepts what this crate accepts, with the same values.
     #[test]
     fn accepted_messages_decode_as_in_the_oracle(
         first in robot(),
@@ -394,7 +392,7 @@ proptest! {
     }
 }
 
-/// The bytes of a message, computed by hand.
+/// Computed by hand.
 #[test]
 fn a_target_is_these_bytes() {
     let pose = egm::Pose { position: [1.0, 2.0, -2.0], ..egm::Pose::IDENTITY };
@@ -416,7 +414,7 @@ fn a_target_is_these_bytes() {
 
 #[test]
 fn required_fields_are_required() {
-    // `prost` replaces missing numbers by zeros: a position without z would then be at z = 0.
+    // `prost` replaces missing numbers by zeros: a position without z would be at z = 0.
     for (bytes, field) in [
         (&[0x12, 0x04, 0x12, 0x02, 0x0A, 0x00][..], "pos.x, y, z"),
         (&[0x12, 0x04, 0x12, 0x02, 0x12, 0x00], "orient.u0 to u3"),

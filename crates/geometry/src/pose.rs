@@ -73,9 +73,7 @@ impl Pose {
         }
     }
 
-    /// Keeps the tool point; X from wrist to tool, Y perpendicular to X towards the finger point.
-    ///
-    /// # Errors
+    /// Keeps the tool point; X from wrist to tool, Y perpendicular to X towards the finger point. Errors:
     /// [`PoseError::NoDirection`] if the points do not span a frame.
     #[inline]
     pub fn to_frame(&self) -> Result<Frame, PoseError> {
@@ -84,10 +82,8 @@ impl Pose {
         Ok(Frame { position: tool, rotation })
     }
 
-    /// The angle of the two directions minus 90 degrees, radians.
-    ///
-    /// # Errors
-    /// [`PoseError::NoDirection`] if two of the points coincide.
+    /// The angle of the two directions minus 90 degrees, radians. Errors: [`PoseError::NoDirection`] if two of the
+    /// points coincide.
     #[inline]
     pub fn off_square(&self) -> Result<f64, PoseError> {
         let x = vector(self.tool) - vector(self.wrist);
@@ -113,10 +109,7 @@ impl WireFrame {
         }
     }
 
-    /// Tool point in inches, and rotation.
-    ///
-    /// # Errors
-    /// [`PoseError::NoDirection`] if the vectors do not span a frame.
+    /// Tool point in inches, and rotation. Errors: [`PoseError::NoDirection`] if the vectors do not span a frame.
     #[inline]
     pub fn to_frame(&self) -> Result<Frame, PoseError> {
         let rotation = rotation_from_x_y(&vector(self.wrist_to_tool), &vector(self.tool_to_finger))

@@ -1,7 +1,7 @@
 //! A client in 60 lines: reads holding registers, and writes some first if values are given.
 //!
-//! `cargo run --release -p modbus --example client -- 127.0.0.1:502 1 0 4` reads registers 0 to 3 of unit 1;
-//! `... 1 0 4 8 17 18` writes 17 and 18 to registers 8 and 9 in the same request.
+//! `cargo run --release -p modbus --example client -- 127.0.0.1:502 1 0 4` reads registers 0 to 3 of unit 1; `... 1 0
+//! 4 8 17 18` also writes 17 and 18 to registers 8 and 9.
 
 #![expect(clippy::print_stdout, reason = "an example says what it does")]
 
@@ -14,7 +14,6 @@ use std::{
 
 use modbus::{Client, MOST_FRAME_BYTES, Request, Words, mbap, request::Range};
 
-/// Sends a frame, and reads the next one from the stream.
 fn exchange(stream: &mut TcpStream, frame: &[u8], buffer: &mut [u8]) -> Result<usize, Box<dyn Error>> {
     stream.write_all(frame)?;
     let mut filled = 0;

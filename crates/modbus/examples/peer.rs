@@ -1,7 +1,6 @@
 //! Drives any server with random requests of all nine functions, and compares its answers with tables of its own.
-//!
-//! `cargo run --release -p modbus --example peer -- 127.0.0.1:1502 1 10000`: 10,000 requests to unit 1, whose coils and
-//! holding registers 0 to 63 it overwrites. A server whose inputs can differ is compared in the number of values only.
+//! `cargo run --release -p modbus --example peer -- 127.0.0.1:1502 1 10000`: 10,000 requests to unit 1, whose coils
+//! and holding registers 0 to 63 it overwrites. Inputs that can differ are compared in number only.
 
 #![expect(clippy::print_stdout, reason = "an example says what it does")]
 
@@ -14,12 +13,10 @@ use std::{
 
 use modbus::{Bits, Client, MOST_FRAME_BYTES, Request, Response, Words, mbap, request::Range};
 
-/// Number of coils and of holding registers.
-const SIZE: u16 = 64;
-/// The same, as the length of an array.
-const ENTRIES: usize = 64;
+const SIZE: u16 = 64; // coils and holding registers
+const ENTRIES: usize = 64; // as the length of an array
 
-/// A sequence of numbers that look random (xorshift).
+/// Numbers that look random (xorshift).
 struct Dice(u32);
 
 impl Dice {
@@ -58,7 +55,7 @@ impl Peer {
     }
 }
 
-/// Checks an answer; `expected` are the values that were written before.
+/// `expected`: written before.
 fn check(response: Response<'_>, expected: Option<Vec<u16>>, read: Range) -> Result<(), Box<dyn Error>> {
     let found: Vec<u16> = match response {
         Response::Bits(bits) => bits.iter().map(u16::from).collect(),

@@ -1,7 +1,5 @@
-//! A server in 40 lines: a device with 64 values in each table, for clients one after the other.
-//!
-//! `cargo run --release -p modbus --example server -- 127.0.0.1:1502`; then, for example,
-//! `mbpoll -m tcp -p 1502 -0 -r 0 -c 4 -1 127.0.0.1`.
+//! A device with 64 values in each table, for clients one after the other: `cargo run --release -p modbus --example
+//! server -- 127.0.0.1:1502`; then, for example, `mbpoll -m tcp -p 1502 -0 -r 0 -c 4 -1 127.0.0.1`.
 
 #![expect(clippy::print_stdout, reason = "an example says what it does")]
 
@@ -16,7 +14,6 @@ use modbus::{
     server::{self, Memory},
 };
 
-/// Answers the requests of a client until it disconnects.
 fn serve(stream: &mut TcpStream, memory: &mut Memory<'_>) -> Result<(), Box<dyn Error>> {
     let (mut received, mut filled) = ([0; MOST_FRAME_BYTES], 0);
     let mut answer = [0; MOST_FRAME_BYTES];

@@ -19,10 +19,8 @@ pub enum Response<'a> {
 }
 
 impl<'a> Response<'a> {
-    /// Reads the answer to `request` from the bytes after the header.
-    ///
-    /// # Errors
-    /// [`Error::Refused`] if the server refused the request; any other error if it is not an answer to this request.
+    /// Reads the answer from the bytes after the header. [`Error::Refused`] if the server refused; other errors: not
+    /// an answer.
     pub fn parse(request: &Request<'_>, body: &'a [u8]) -> Result<Self, Error> {
         let mut reader = Reader::new(body);
         let (expected, found) = (request.function(), reader.byte()?);
@@ -69,7 +67,7 @@ impl<'a> Response<'a> {
     }
 }
 
-/// The answer to a write request repeats its first two words (AP 6.5, 6.6, 6.11, 6.12).
+/// The first two words of a write request (AP 6.5, 6.6, 6.11, 6.12).
 fn echo<'a>(reader: &mut Reader<'_>, first: u16, second: u16) -> Result<Response<'a>, Error> {
     for expected in [first, second] {
         let found = reader.word()?;
@@ -100,21 +98,15 @@ impl Client {
         self.transaction
     }
 
-    /// Writes a request into `buffer`, with the next transaction identifier. Returns the length of the frame; a buffer
-    /// of [`MOST_FRAME_BYTES`](crate::MOST_FRAME_BYTES) is large enough for every request.
-    ///
-    /// # Errors
-    /// [`Error::BadQuantity`], [`Error::BadAddress`] or [`Error::NoRoom`].
+    /// Writes a request with the next transaction identifier; returns its length.
+    /// [`MOST_FRAME_BYTES`](crate::MOST_FRAME_BYTES) are enough for every request.
     pub fn request(&mut self, request: &Request<'_>, buffer: &mut [u8]) -> Result<usize, Error> {
         self.transaction = self.transaction.wrapping_add(1);
         self.header().emit(buffer, |data| request.emit(data))
     }
 
-    /// Reads the answer to the last request from `frame`, which is a whole frame.
-    ///
-    /// # Errors
-    /// [`Error::Refused`] if the server refused the request; any other error if the frame is not an answer to it, after
-    /// which the connection must be closed: see [`Error::ends_connection`].
+    /// Reads the answer from a whole frame. [`Error::Refused`] if the server refused; after other errors the
+    /// connection must be closed: see [`Error::ends_connection`].
     pub fn answer<'a>(&self, request: &Request<'_>, frame: &'a [u8]) -> Result<Response<'a>, Error> {
         let (header, body) = Header::split(frame)?;
         let expected = self.header();

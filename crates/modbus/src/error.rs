@@ -96,8 +96,8 @@ pub enum Error {
 }
 
 impl Error {
-    /// True if the connection must be closed: the position of the next frame in the stream is unknown, or an answer
-    /// does not belong to the request. False if the connection is in order, and only this request failed.
+    /// True: close the connection, because the next frame's position is unknown or an answer is not to the request.
+    /// False: only this request failed.
     #[must_use]
     pub const fn ends_connection(self) -> bool {
         match self {
@@ -118,8 +118,7 @@ impl Error {
         }
     }
 
-    /// The exception with which a server answers a request that has this error (AP 7: a wrong length is an illegal data
-    /// value, too).
+    /// A server's answer to a request with this error (AP 7: a wrong length is an illegal data value, too).
     #[must_use]
     pub const fn exception(self) -> Exception {
         match self {

@@ -21,8 +21,7 @@ pub const PROTOCOL: u16 = 0;
 pub const LEAST_LENGTH: u16 = 2;
 /// Greatest length in a header: unit and 253 bytes (AP 4.1).
 pub const MOST_LENGTH: u16 = 254;
-/// Number of bytes that the length does not count.
-const BEFORE_UNIT: usize = 6;
+const BEFORE_UNIT: usize = 6; // not counted by the length
 
 /// Header of a frame, without the length.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -34,10 +33,8 @@ pub struct Header {
 }
 
 impl Header {
-    /// Splits a frame into its header, and function with data.
-    ///
-    /// # Errors
-    /// [`Error::BadProtocol`], [`Error::BadLength`], and [`Error::BadSize`] if `frame` is not exactly one frame.
+    /// Header, and function with data. Errors: [`Error::BadProtocol`], [`Error::BadLength`], [`Error::BadSize`] if not
+    /// exactly one frame.
     pub fn split(frame: &[u8]) -> Result<(Self, &[u8]), Error> {
         let expected = needed(frame)?;
         if frame.len() != expected {
@@ -51,7 +48,7 @@ impl Header {
         Ok((Self { transaction, unit }, body))
     }
 
-    /// Writes a frame: the header, and what `body` writes. Returns the length of the frame.
+    /// The header, and what `body` writes. Returns the length of the frame.
     pub(crate) fn emit(
         self,
         buffer: &mut [u8],
@@ -72,12 +69,9 @@ impl Header {
     }
 }
 
-/// The number of bytes, from the beginning of `stream`, after which more is known: the end of the frame, or the end of
-/// its length as long as this is incomplete. A stream with at least this many bytes holds a complete frame.
-///
-/// # Errors
-/// [`Error::BadProtocol`] and [`Error::BadLength`] as soon as the bytes show it. Close the connection: the beginning of
-/// the next frame is unknown.
+/// The bytes of `stream` after which more is known: the end of the frame, or of its incomplete length. A stream with
+/// this many bytes holds a complete frame. After [`Error::BadProtocol`] or [`Error::BadLength`] close the connection:
+/// the next frame's beginning is unknown.
 pub fn needed(stream: &[u8]) -> Result<usize, Error> {
     let Some((head, _)) = stream.split_first_chunk::<BEFORE_UNIT>() else { return Ok(BEFORE_UNIT) };
     let [_, _, protocol @ .., high, low] = head;
@@ -91,12 +85,9 @@ pub fn needed(stream: &[u8]) -> Result<usize, Error> {
     Ok(BEFORE_UNIT.saturating_add(usize::from(length)))
 }
 
-/// The first complete frame in `stream`; `None` if it is incomplete.
-///
-/// # Errors
-/// As [`needed`].
+/// The first complete frame in `stream`; `None` if it is incomplete. Errors: as [`needed`].
 pub fn first_frame(stream: &[u8]) -> Result<Option<&[u8]>, Error> {
-    // Fewer bytes than the length needs cannot be a frame, since a frame is longer.
+    // Fewer bytes than the length needs cannot be a frame.
     needed(stream).map(|length| if length > BEFORE_UNIT { stream.get(..length) } else { None })
 }
 

@@ -60,8 +60,7 @@ impl Range {
         if !(1..=most).contains(&count) {
             return Err(Error::BadQuantity { most, found: usize::from(count) });
         }
-        // `count` is at least 1 here.
-        let last = first.checked_add(count.saturating_sub(1));
+        let last = first.checked_add(count.saturating_sub(1)); // `count` is at least 1 here
         last.map(|_| self).ok_or(Error::BadAddress { first, count })
     }
 
@@ -150,10 +149,7 @@ impl<'a> Request<'a> {
         )
     }
 
-    /// Reads a request from the bytes after the header.
-    ///
-    /// # Errors
-    /// [`Error`]; [`Error::exception`] is the server's answer to it.
+    /// Reads a request from the bytes after the header. [`Error::exception`] is the server's answer to an error.
     pub fn parse(body: &'a [u8]) -> Result<Self, Error> {
         let mut reader = Reader::new(body);
         let code = reader.byte()?;
@@ -200,7 +196,7 @@ impl<'a> Request<'a> {
         Ok(request)
     }
 
-    /// Writes the request: the bytes after the header.
+    /// The bytes after the header.
     pub(crate) fn emit(&self, data: &mut Writer<'_>) -> Result<(), Error> {
         self.check()?;
         data.byte(self.function())?;
@@ -249,17 +245,16 @@ impl<'a> Request<'a> {
     }
 }
 
-/// The word of a coil's state (AP 6.5).
 pub(crate) const fn coil(on: bool) -> u16 {
     if on { COIL_ON } else { COIL_OFF }
 }
 
-/// The range of bits that begin at `first`; a count that no range can have is refused by the check of the quantity.
+/// A count that no range can have is refused by the check of the quantity.
 pub(crate) fn bits_range(first: u16, bits: Bits<'_>) -> Range {
     Range { first, count: u16::try_from(bits.len()).unwrap_or(u16::MAX) }
 }
 
-/// The range of registers that begin at `first`, as [`bits_range`].
+/// As [`bits_range`].
 pub(crate) fn words_range(first: u16, words: Words<'_>) -> Range {
     Range { first, count: u16::try_from(words.len()).unwrap_or(u16::MAX) }
 }
@@ -273,7 +268,7 @@ fn put_range(data: &mut Writer<'_>, range: Range) -> Result<(), Error> {
     data.word(range.count)
 }
 
-/// A byte count that must be `expected`, and that number of bytes.
+/// A byte count that must be `expected`, and the bytes.
 pub(crate) fn counted<'a>(reader: &mut Reader<'a>, expected: usize) -> Result<&'a [u8], Error> {
     let found = reader.byte()?;
     if usize::from(found) != expected {
@@ -286,7 +281,7 @@ fn words<'a>(reader: &mut Reader<'a>, range: Range) -> Result<Words<'a>, Error> 
     counted(reader, usize::from(range.count).saturating_mul(2)).map(Words::in_frame)
 }
 
-/// Writes the byte count of `count` bits, and the bits; bits after the last one are 0 (AP 6.1).
+/// The byte count and the bits; bits after the last are 0 (AP 6.1).
 pub(crate) fn put_bits(
     data: &mut Writer<'_>,
     count: usize,
@@ -304,7 +299,6 @@ pub(crate) fn put_bits(
     Ok(())
 }
 
-/// Writes the byte count of `count` registers, and the registers.
 pub(crate) fn put_words(
     data: &mut Writer<'_>,
     count: usize,

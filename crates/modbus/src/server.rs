@@ -6,80 +6,55 @@ use crate::{
     request::{Range, bits_range, coil, function, put_bits, put_words, words_range},
 };
 
-/// The four tables of a device. A table that a device does not have keeps the default methods: its functions are
-/// refused as illegal. Writing methods write all values, or none.
+/// A missing table keeps the default methods: its functions are illegal. Writing methods write all values, or none.
 pub trait Tables {
-    /// Called with each request before it is carried out; an exception refuses it.
-    ///
-    /// # Errors
-    /// The exception of the answer.
+    /// Called before each request is carried out; an exception refuses it.
     fn admit(&mut self, unit: u8, request: &Request<'_>) -> Result<(), Exception> {
         let _ = (unit, request);
         Ok(())
     }
 
-    /// The coil at an address.
-    ///
-    /// # Errors
-    /// The exception of the answer: [`Exception::IllegalDataAddress`] if the device does not have the address.
+    /// The coil at an address. Errors: the exception of the answer, such as [`Exception::IllegalDataAddress`].
     fn coil(&mut self, address: u16) -> Result<bool, Exception> {
         let _ = address;
         Err(Exception::IllegalFunction)
     }
 
-    /// The discrete input at an address.
-    ///
-    /// # Errors
-    /// As [`Self::coil`].
+    /// The discrete input at an address. Errors: as [`Self::coil`].
     fn discrete_input(&mut self, address: u16) -> Result<bool, Exception> {
         let _ = address;
         Err(Exception::IllegalFunction)
     }
 
-    /// The holding register at an address.
-    ///
-    /// # Errors
-    /// As [`Self::coil`].
+    /// The holding register at an address. Errors: as [`Self::coil`].
     fn holding_register(&mut self, address: u16) -> Result<u16, Exception> {
         let _ = address;
         Err(Exception::IllegalFunction)
     }
 
-    /// The input register at an address.
-    ///
-    /// # Errors
-    /// As [`Self::coil`].
+    /// The input register at an address. Errors: as [`Self::coil`].
     fn input_register(&mut self, address: u16) -> Result<u16, Exception> {
         let _ = address;
         Err(Exception::IllegalFunction)
     }
 
-    /// Writes the coils from an address on.
-    ///
-    /// # Errors
-    /// As [`Self::coil`]; [`Exception::IllegalDataValue`] for values that the device does not accept.
+    /// Writes coils. Errors: as [`Self::coil`]; [`Exception::IllegalDataValue`] for values that the device does not
+    /// accept.
     fn write_coils(&mut self, first: u16, bits: Bits<'_>) -> Result<(), Exception> {
         let _ = (first, bits);
         Err(Exception::IllegalFunction)
     }
 
-    /// Writes the holding registers from an address on.
-    ///
-    /// # Errors
-    /// As [`Self::write_coils`].
+    /// Writes the holding registers from an address on. Errors: as [`Self::write_coils`].
     fn write_registers(&mut self, first: u16, words: Words<'_>) -> Result<(), Exception> {
         let _ = (first, words);
         Err(Exception::IllegalFunction)
     }
 }
 
-/// Carries out the request in `frame`, which is a whole frame, and writes the answer into `buffer`. Returns its length;
-/// a buffer of [`MOST_FRAME_BYTES`](crate::MOST_FRAME_BYTES) is large enough for every answer. A request with an error
-/// is answered with an exception.
-///
-/// # Errors
-/// [`Error::BadProtocol`], [`Error::BadLength`] and [`Error::BadSize`]: close the connection. [`Error::NoRoom`]: the
-/// request may have been carried out.
+/// Carries out the request in a whole frame, writes the answer or the exception into `buffer`, and returns its length;
+/// [`MOST_FRAME_BYTES`](crate::MOST_FRAME_BYTES) are enough. After [`Error::BadProtocol`], [`Error::BadLength`] and
+/// [`Error::BadSize`] close the connection. After [`Error::NoRoom`] the request may have been carried out.
 pub fn answer(frame: &[u8], tables: &mut impl Tables, buffer: &mut [u8]) -> Result<usize, Error> {
     let (header, body) = Header::split(frame)?;
     let carried_out = header.emit(buffer, |data| {
@@ -127,7 +102,7 @@ fn carry_out(request: &Request<'_>, tables: &mut impl Tables, data: &mut Writer<
             tables.write_registers(first, words).map_err(Error::Refused)?;
             echo(data, first, words_range(first, words).count)
         }
-        // AP 6.17: the write operation precedes the read operation.
+        // AP 6.17: the write operation comes first.
         Request::ReadWriteRegisters { read, first, words } => {
             tables.write_registers(first, words).map_err(Error::Refused)?;
             put_range_of_words(data, read, |address| tables.holding_register(address))
@@ -140,7 +115,7 @@ fn echo(data: &mut Writer<'_>, first: u16, second: u16) -> Result<(), Error> {
     data.word(second)
 }
 
-/// Writes the bits of a range, each from its table.
+/// Each bit from its table.
 fn put_range_of_bits(
     data: &mut Writer<'_>,
     read: Range,

@@ -21,7 +21,7 @@ impl<'a> Words<'a> {
         Self(Source::Memory(words))
     }
 
-    /// Registers in a frame; a last odd byte does not count.
+    /// A last odd byte is ignored.
     pub(crate) fn in_frame(bytes: &'a [u8]) -> Self {
         Self(Source::Frame(bytes.as_chunks().0))
     }
@@ -84,26 +84,19 @@ pub struct Bits<'a> {
     count: usize,
 }
 
-/// Number of bytes of `count` bits.
 pub(crate) const fn bytes_of_bits(count: usize) -> usize {
     count.div_ceil(8)
 }
 
 impl<'a> Bits<'a> {
-    /// The first `count` bits of `bytes`.
-    ///
-    /// # Errors
-    /// [`Error::BadSize`] if there are fewer bytes.
+    /// The first `count` bits of `bytes`. Errors: [`Error::BadSize`] if there are fewer bytes.
     pub fn new(bytes: &'a [u8], count: usize) -> Result<Self, Error> {
         let expected = bytes_of_bits(count);
         let found = bytes.len();
         bytes.get(..expected).map(|bytes| Self { bytes, count }).ok_or(Error::BadSize { expected, found })
     }
 
-    /// Packs bits into the beginning of `buffer`.
-    ///
-    /// # Errors
-    /// [`Error::NoRoom`] if `buffer` is too small.
+    /// Packs bits into the beginning of `buffer`. Errors: [`Error::NoRoom`] if `buffer` is too small.
     pub fn pack(bits: impl IntoIterator<Item = bool>, buffer: &'a mut [u8]) -> Result<Self, Error> {
         let mut count = 0_usize;
         for bit in bits {
@@ -142,7 +135,7 @@ impl<'a> Bits<'a> {
     }
 }
 
-/// Index of the byte and mask of the bit.
+/// Byte and mask.
 const fn place(index: usize) -> (usize, u8) {
     let mask = match index % 8 {
         0 => 0x01,

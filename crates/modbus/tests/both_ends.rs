@@ -9,7 +9,7 @@ use proptest::prelude::*;
 
 const SIZE: u16 = 2100;
 
-/// The four tables, each with [`SIZE`] values.
+/// Each table has [`SIZE`] values.
 #[derive(Clone, Debug, PartialEq)]
 struct Device {
     coils: Vec<bool>,
@@ -19,7 +19,7 @@ struct Device {
 }
 
 impl Device {
-    /// A device with values that differ from each other.
+    /// All values differ.
     fn new() -> Self {
         let words = |factor: u16| (0..SIZE).map(move |index| index.wrapping_mul(factor)).collect::<Vec<_>>();
         let bits = |factor| words(factor).into_iter().map(|word| word & 0x40 != 0).collect();
@@ -36,7 +36,6 @@ impl Device {
     }
 }
 
-/// A request with its own data.
 #[derive(Clone, Debug)]
 struct Owned {
     function: u8,
@@ -95,7 +94,7 @@ fn write<T: Copy>(table: &mut [T], first: u16, values: &[T]) -> Option<()> {
     table.get_mut(first..first + values.len()).map(|place| place.copy_from_slice(values))
 }
 
-/// What a request reads from a device: bits as words; `None` if the device lacks an address.
+/// Bits as words; `None` if the device lacks an address.
 fn expected(request: &Owned, device: &mut Device) -> Option<Vec<u16>> {
     let of_bits = |bits: Vec<bool>| bits.into_iter().map(u16::from).collect();
     match request.function {
@@ -169,7 +168,7 @@ fn one_of_each() -> Vec<Owned> {
     [1, 2, 3, 4, 5, 6, 15, 16, 23].map(one).to_vec()
 }
 
-/// The frames of a request and of its answer.
+/// Request and answer.
 fn frames(request: &Request<'_>, client: &mut Client) -> [Vec<u8>; 2] {
     let (mut asked, mut answered) = ([0; MOST_FRAME_BYTES], [0; MOST_FRAME_BYTES]);
     let length = client.request(request, &mut asked).unwrap();
@@ -200,7 +199,7 @@ fn shorter_and_longer_frames_are_refused() {
     }
 }
 
-/// The same with a header that agrees with the length: the body is too short or too long.
+/// The header agrees with the length, but the body is too short or too long.
 #[test]
 fn shorter_and_longer_bodies_are_refused() {
     for owned in one_of_each() {
@@ -227,7 +226,7 @@ fn shorter_and_longer_bodies_are_refused() {
     }
 }
 
-/// A single wrong byte in an answer changes values that were read, or the answer is refused.
+/// A wrong byte changes values that were read, or the answer is refused.
 #[test]
 fn every_corrupted_byte_is_refused_or_is_data() {
     let mut accepted = 0;

@@ -1,18 +1,18 @@
-//! The frames that the specification prints as examples, byte for byte, in both directions.
+//! The specification's examples, byte for byte, in both directions.
 
 use modbus::{
     Bits, Client, Error, Exception, Header, MOST_FRAME_BYTES, Request, Response, Tables, Words,
     request::Range, server,
 };
 
-/// A device with the values of the examples.
+/// With the values of the examples.
 #[derive(Default)]
 struct Device {
     coils: Vec<(u16, bool)>,
     registers: Vec<(u16, u16)>,
 }
 
-/// The bit with a number, counted from `first`, in the bytes of an example.
+/// The bits of an example are counted from `first`.
 fn bit(bytes: &[u8], first: u16, address: u16) -> Result<bool, Exception> {
     let index = address.checked_sub(first).ok_or(Exception::IllegalDataAddress)?;
     let byte = bytes.get(usize::from(index / 8)).ok_or(Exception::IllegalDataAddress)?;
@@ -53,13 +53,13 @@ impl Tables for Device {
     }
 }
 
-/// A frame with the header of the first request to unit 17.
+/// The header is that of the first request to unit 17.
 fn frame(body: &[u8]) -> Vec<u8> {
     let length = u8::try_from(body.len() + 1).unwrap();
     [&[0, 1, 0, 0, 0, length, 17], body].concat()
 }
 
-/// Checks an example: the client writes the request, the server reads it and answers, the client reads the answer.
+/// The client writes the request, the server reads it and answers, the client reads the answer.
 fn check(
     request: Request<'_>,
     asked: &[u8],
@@ -169,7 +169,7 @@ fn exception_has_the_bytes_of_7() {
     check(request, &[1, 4, 0xA1, 0, 1], &[0x81, 2], refused);
 }
 
-/// The body of the answer to the body of a request.
+/// From body to body.
 fn answer_of(body: &[u8]) -> Vec<u8> {
     let mut buffer = [0xA5; MOST_FRAME_BYTES];
     let length = server::answer(&frame(body), &mut Device::default(), &mut buffer).unwrap();
@@ -187,7 +187,7 @@ fn wrong_requests_are_answered_with_the_exception_of_the_specification() {
     assert_eq!(answer_of(&[3, 0xFF, 0xFF, 0, 2]), [0x83, 2]);
     assert_eq!(answer_of(&[3, 0, 0x6B, 0, 4]), [0x83, 2]);
     assert_eq!(answer_of(&[5, 0, 0xAC, 1, 0]), [0x85, 3]);
-    // Byte counts and lengths (AP 7: an implied length that is incorrect is an illegal data value).
+    // AP 7: an incorrect implied length is an illegal data value.
     assert_eq!(answer_of(&[3, 0, 0x6B, 0]), [0x83, 3]);
     assert_eq!(answer_of(&[3, 0, 0x6B, 0, 3, 0]), [0x83, 3]);
     assert_eq!(answer_of(&[16, 0, 1, 0, 2, 3, 0, 10, 1, 2]), [0x90, 3]);

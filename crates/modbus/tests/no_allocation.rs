@@ -1,4 +1,4 @@
-//! Checks with a counting allocator that neither end allocates.
+//! A counting allocator shows that neither end allocates.
 
 use modbus::{
     Client, MOST_FRAME_BYTES, Request, Words,

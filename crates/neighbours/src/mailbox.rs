@@ -143,10 +143,7 @@ impl Mailbox {
         *self = Self::initialized(self.place);
     }
 
-    /// A mailbox from its image.
-    ///
-    /// # Errors
-    /// [`MailboxError`] if the size or the length word is wrong.
+    /// A mailbox from its image. Errors: [`MailboxError`] if the size or the length word is wrong.
     pub fn from_image(place: Place, image: &[u8]) -> Result<Self, MailboxError> {
         if image.len() != place.size {
             return Err(MailboxError::Size { mailbox: place, found: image.len() });
@@ -162,9 +159,7 @@ impl Mailbox {
     }
 
     /// Copies head and data received from the network, without the unused rest. An error leaves the mailbox unchanged.
-    ///
-    /// # Errors
-    /// [`MailboxError::Length`] if the length word differs from the number of bytes, or exceeds the mailbox.
+    /// Errors: [`MailboxError::Length`] if the length word differs from the number of bytes, or exceeds the mailbox.
     pub fn receive(&mut self, used: &[u8]) -> Result<(), MailboxError> {
         let found = used.first_chunk().map_or(0, |word| u16::from_le_bytes(*word));
         let legal = (HEAD..=self.place.size).contains(&used.len()) && used.len() == usize::from(found);
@@ -184,10 +179,8 @@ impl Mailbox {
     }
 
     /// Writes data and increments the mailgram number, so that the network sends the mailbox (IX). After 65535 the
-    /// number is 1, because 0 is the value after initialization.
-    ///
-    /// # Errors
-    /// [`MailboxError::TooLong`]. The mailbox is then unchanged.
+    /// number is 1, because 0 is the value after initialization. Errors: [`MailboxError::TooLong`]. The mailbox is
+    /// then unchanged.
     pub fn write(&mut self, data: &[u8]) -> Result<(), MailboxError> {
         let room = self.place.size - HEAD;
         if data.len() > room {

@@ -11,10 +11,7 @@ use std::{
 const OPENER: &str = if cfg!(target_os = "macos") { "open" } else { "xdg-open" };
 
 /// Starts the browser with a file or an address, and does not wait for it. Other users can see the address in the list
-/// of processes, so it must not have a secret.
-///
-/// # Errors
-/// The error of the system if the program cannot be started.
+/// of processes, so it must not have a secret. Errors: the error of the system if the program cannot be started.
 pub fn open(what: &OsStr) -> io::Result<()> {
     let mut program = Command::new(OPENER);
     let program = program.arg(what).stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null());

@@ -67,19 +67,13 @@ pub fn shown(text: &str) -> Cow<'_, str> {
     }
 }
 
-/// Writes a text for a person to standard output. A reader that closes the pipe early, such as `head`, is no error, and
-/// neither is a terminal that has disappeared.
-///
-/// # Errors
-/// The error of the operating system, for example a full disk.
+/// Writes a text for a person to standard output. A reader that closes the pipe early, such as `head`, is no error,
+/// and neither is a terminal that has disappeared. Errors: the error of the operating system, for example a full disk.
 pub fn answer(text: &str) -> io::Result<()> {
     drawn(&shown(text))
 }
 
-/// Writes a report that was drawn for a terminal to standard output, as it is.
-///
-/// # Errors
-/// See [`answer`].
+/// Writes a report that was drawn for a terminal to standard output, as it is. Errors: see [`answer`].
 pub fn drawn(report: &str) -> io::Result<()> {
     let mut out = io::stdout().lock();
     let written = answered(out.write_all(report.as_bytes()).and_then(|()| out.flush()));
@@ -89,10 +83,8 @@ pub fn drawn(report: &str) -> io::Result<()> {
     written
 }
 
-/// Writes JSON to standard output. Its values do not change: a control character is written as an escape.
-///
-/// # Errors
-/// See [`answer`].
+/// Writes JSON to standard output. Its values do not change: a control character is written as an escape. Errors: see
+/// [`answer`].
 pub fn json(text: &str) -> io::Result<()> {
     drawn(&escaped_json(text))
 }

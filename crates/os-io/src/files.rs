@@ -18,9 +18,7 @@ use crate::carried;
 /// Greatest length of a text file, bytes: task data, jobs, cell descriptions and fault plans have some kilobytes.
 pub const TEXT: u64 = 16 << 20;
 
-/// Reads a regular file of at most `limit` bytes. Never blocks, for any kind of file.
-///
-/// # Errors
+/// Reads a regular file of at most `limit` bytes. Never blocks, for any kind of file. Errors:
 /// [`ErrorKind::InvalidInput`] with the kind found if `path` is no regular file, [`ErrorKind::FileTooLarge`] if the
 /// file is longer than `limit`, [`ErrorKind::OutOfMemory`] if memory is short; else the error of the operating system.
 pub fn read(path: &Path, limit: u64) -> io::Result<Vec<u8>> {
@@ -70,10 +68,8 @@ pub fn lies_in(path: &Path, directory: &Path) -> bool {
     real.is_ok_and(|(path, directory)| path.starts_with(directory))
 }
 
-/// Paths of the entries of a directory, sorted.
-///
-/// # Errors
-/// The error of the operating system; [`ErrorKind::NotFound`] if no such directory is built in.
+/// Paths of the entries of a directory, sorted. Errors: the error of the operating system; [`ErrorKind::NotFound`] if
+/// no such directory is built in.
 pub fn list(directory: &Path) -> io::Result<Vec<PathBuf>> {
     let mut paths = match carried::inside(directory) {
         Some(inside) => carried::list(inside),
@@ -86,11 +82,8 @@ pub fn list(directory: &Path) -> io::Result<Vec<PathBuf>> {
     Ok(paths)
 }
 
-/// Reads a regular file of at most [`TEXT`] bytes of UTF-8, with or without a byte order mark; lines end with LF, CR LF
-/// or CR.
-///
-/// # Errors
-/// As [`read`], and [`ErrorKind::InvalidData`] with the first line that is not UTF-8.
+/// Reads a regular file of at most [`TEXT`] bytes of UTF-8, with or without a byte order mark; lines end with LF, CR
+/// LF or CR. Errors: as [`read`], and [`ErrorKind::InvalidData`] with the first line that is not UTF-8.
 pub fn read_text(path: &Path) -> io::Result<String> {
     let text = String::from_utf8(read(path, TEXT)?).map_err(|error| {
         let good = error.as_bytes().get(..error.utf8_error().valid_up_to()).unwrap_or_default();
@@ -102,10 +95,7 @@ pub fn read_text(path: &Path) -> io::Result<String> {
     Ok(if text.contains('\n') { text.to_owned() } else { text.replace('\r', "\n") })
 }
 
-/// Opens a regular file for reading.
-///
-/// # Errors
-/// As [`read`].
+/// Opens a regular file for reading. Errors: as [`read`].
 pub fn open(path: &Path) -> io::Result<File> {
     // Opening some devices has side effects, so the kind is checked first, and again afterwards, because it can change.
     expect_regular(fs::metadata(path)?.file_type())?;
@@ -115,10 +105,7 @@ pub fn open(path: &Path) -> io::Result<File> {
     Ok(file)
 }
 
-/// Opens a regular file for writing and creates it if it does not exist. Does not truncate it.
-///
-/// # Errors
-/// As [`read`].
+/// Opens a regular file for writing and creates it if it does not exist. Does not truncate it. Errors: as [`read`].
 pub fn create(path: &Path) -> io::Result<File> {
     match fs::metadata(path) {
         Ok(found) => expect_regular(found.file_type())?,
@@ -133,10 +120,7 @@ pub fn create(path: &Path) -> io::Result<File> {
     Ok(file)
 }
 
-/// Returns an error for everything but a regular file.
-///
-/// # Errors
-/// [`ErrorKind::InvalidInput`] with the kind found.
+/// Returns an error for everything but a regular file. Errors: [`ErrorKind::InvalidInput`] with the kind found.
 pub fn expect_regular(kind: FileType) -> io::Result<()> {
     let found = match kind {
         kind if kind.is_file() => return Ok(()),

@@ -66,9 +66,7 @@ impl Format {
     }
 }
 
-/// Checks that the output of a command replaces no input and no file of another format. Nothing is written.
-///
-/// # Errors
+/// Checks that the output of a command replaces no input and no file of another format. Nothing is written. Errors:
 /// [`ErrorKind::InvalidInput`] if the path names one of the inputs (same device and inode, also by another path or a
 /// link), or anything but a regular file; [`ErrorKind::AlreadyExists`] if a file of another format is there.
 pub fn check_output<'a>(
@@ -120,10 +118,8 @@ fn keep_others(output: &Path, format: Format) -> io::Result<()> {
     Err(io::Error::new(ErrorKind::AlreadyExists, why))
 }
 
-/// Replaces a file by a text. Line endings and byte order mark stay as they are in the file; `text` has LF.
-///
-/// # Errors
-/// As [`replace`], and those of reading the present file.
+/// Replaces a file by a text. Line endings and byte order mark stay as they are in the file; `text` has LF. Errors: as
+/// [`replace`], and those of reading the present file.
 pub fn replace_text(path: &Path, text: &str) -> io::Result<()> {
     let before = match files::read(path, files::TEXT) {
         Err(error) if error.kind() == ErrorKind::NotFound => Vec::new(),
@@ -144,12 +140,10 @@ fn line_end(text: &[u8]) -> &'static str {
     }
 }
 
-/// Replaces a file, or creates it. Its old content is there until the new content is complete on the disk.
-///
-/// # Errors
+/// Replaces a file, or creates it. Its old content is there until the new content is complete on the disk. Errors:
 /// [`ErrorKind::InvalidInput`] if `path` names anything but a regular file, or a file that is built into the program;
-/// [`ErrorKind::PermissionDenied`] if the owner of the file cannot be kept; else the error of the operating system, for
-/// example a full disk. The old file is unchanged then.
+/// [`ErrorKind::PermissionDenied`] if the owner of the file cannot be kept; else the error of the operating system,
+/// for example a full disk. The old file is unchanged then.
 pub fn replace(path: &Path, bytes: &[u8]) -> io::Result<()> {
     if carried::inside(path).is_some() {
         let why = "the file is built into this program: write the built-in data to a directory first (`rcs-run init`)";

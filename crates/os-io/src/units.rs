@@ -43,11 +43,8 @@ impl Units {
         MILLIMETRES.store(self == Self::Millimetres, Ordering::Relaxed);
     }
 
-    /// A length that a person has typed, in inches: a number in these units, or one with its unit, such as `38.1mm`
-    /// or `1.5in`.
-    ///
-    /// # Errors
-    /// What was expected.
+    /// A length that a person has typed, in inches: a number in these units, or one with its unit, such as `38.1mm` or
+    /// `1.5in`. Errors: what was expected.
     pub fn length(self, text: &str) -> Result<f64, String> {
         let wrong = || {
             let [inches, millimetres] = Self::WORDS;

@@ -1,5 +1,4 @@
-//! Two processes and their buffers: a commander sends CLOSE-DOOR, and its subordinate decides by its table.
-//! `cargo run -p rcs-core --example close_door`.
+//! A commander sends CLOSE-DOOR, and its subordinate decides by a table: `cargo run -p rcs-core --example close_door`.
 
 #![expect(clippy::print_stdout, reason = "an example prints its results")]
 
@@ -11,7 +10,6 @@ use rcs_core::{
 };
 
 mod door {
-    //! The subordinate.
 
     use rcs_core::{
         Actions, Plain, Variables, decision_table,
@@ -84,19 +82,17 @@ mod door {
         pub report: Report,
     }
 
-    /// The state of the process.
     pub struct Process {
         receiver: Receiver,
         step: CloseDoorStep,
     }
 
     impl Process {
-        /// A process that has just started.
         pub fn new() -> Self {
             Self { receiver: Receiver::ZERO, step: CloseDoorStep::Start }
         }
 
-        /// One tick: read the command number, evaluate the table, write the outputs.
+        /// Reads the command number, consults the table, writes the outputs.
         pub fn step(&mut self, tick: Tick, number: u32, door: Door, outputs: &mut Outputs) -> Action {
             match self.receiver.observe(number) {
                 Arrival::New => self.step = CloseDoorStep::Start,
@@ -119,7 +115,7 @@ mod door {
 
 fn main() {
     let (mut commander, mut process) = (Commander::ZERO, door::Process::new());
-    // Buffers of the previous tick. Both processes read only these, so their order within a tick does not matter.
+    // Both processes read only the buffers of the previous tick, so their order does not matter.
     let (mut command, mut outputs) = (0, Outputs::ZERO);
     let mut closes_at = None;
     for tick in (1..=12).map(Tick) {

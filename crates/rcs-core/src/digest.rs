@@ -1,21 +1,16 @@
 //! The digest of a run: 64 bits over the byte images of all output buffers of all ticks in process order.
 //!
 //! Each step mixes eight bytes as a little-endian word: exclusive or, multiplication, and folding of the upper half
-//! into the lower. A step is a bijection of the hash, so no later step can hide a difference. The fold carries the
-//! upper bytes of a word into the lower ones, which a multiplication alone does not. The digest detects accidental
-//! differences; it does not protect against manipulation.
+//! into the lower, which a multiplication does not reach. A step is a bijection of the hash, so no later step can hide
+//! a difference. The digest detects accidental differences, not manipulation.
 //!
-//! Each image is hashed separately, with its words distributed over four lanes: a processor computes four independent
-//! multiplications in the time of one. Lanes and length form the hash of the image. The digest chains these hashes,
-//! so several processors can hash the images.
-//!
-//! It is independent of computing time and of the distribution of processes over boards: equal runs have equal
-//! digests on every machine.
+//! Each image is hashed separately, its words distributed over four lanes, whose multiplications a processor overlaps.
+//! The digest chains these hashes, so several processors can compute them. Equal runs have equal digests on every
+//! machine and with any distribution over boards.
 
 use crate::{Plain, plain::Writer};
 
-/// Parallel chains per image.
-const LANES: usize = 4;
+const LANES: usize = 4; // parallel chains per image
 
 /// A running hash.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -23,7 +18,7 @@ pub struct Digest(u64);
 
 impl Digest {
     const START: u64 = 0xCBF2_9CE4_8422_2325;
-    /// Odd and without a bit pattern: 2^64 divided by the golden ratio.
+    /// 2^64 divided by the golden ratio: odd, without a bit pattern.
     const FACTOR: u64 = 0x9E37_79B9_7F4A_7C15;
 
     /// The digest of an empty run.
@@ -79,7 +74,7 @@ pub fn hash(bytes: &[u8]) -> u64 {
     lanes.into_iter().fold(mix(Digest::START, length), mix)
 }
 
-/// One step: a bijection of both hash and word.
+/// A bijection of both hash and word.
 #[inline]
 const fn mix(hash: u64, word: u64) -> u64 {
     let product = (hash ^ word).wrapping_mul(Digest::FACTOR);

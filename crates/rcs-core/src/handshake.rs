@@ -1,8 +1,8 @@
 //! Command numbers and echoes between two processes (docs/design/handshake.md).
 //!
-//! A commander numbers its commands; a receiver echoes the number with the status of *that* command. Therefore a
-//! status is valid only if it answers the last command, and a repeated text is a new command only with a new number.
-//! A process restarted during a run neither executes an old command nor uses an old status.
+//! A receiver echoes the number of a command with *its* status. A status is valid only for the last command, and a
+//! repeated text is new only with a new number. A restarted process neither executes an old command nor uses an old
+//! status.
 //!
 //! | tick | commander                     | receiver                                  |
 //! |------|-------------------------------|-------------------------------------------|
@@ -15,8 +15,7 @@ use crate::{Plain, header::Header, tick::Tick};
 /// Ticks after which a command without an echo is treated as lost.
 pub const ECHO_LIMIT: u64 = 3;
 
-/// Distance of a starting commander's first number from the last number that it finds: more than the commands in
-/// transit, as the buffer of tick k+2 echoes a number written in tick k.
+/// First number of a starting commander minus the last one that it finds: more than the commands in transit.
 pub const FIRST_STEP: u32 = 4;
 
 /// The command number after `number`. Numbers wrap around and skip 0, which means none.
@@ -70,17 +69,17 @@ pub struct Commander {
 }
 
 impl Commander {
-    /// Call first in a tick. A commander that has sent no command adopts the echo of its subordinate. This is for
-    /// commanders of devices and of other systems.
+    /// Call first in a tick, for commanders of devices and of other systems: adopts the subordinate's echo before the
+    /// first command.
     pub fn start(&mut self, echo: u32) {
         if !self.started {
             self.number = echo;
         }
     }
 
-    /// Like [`Self::start`], for a commander of a process. Its output buffer survives a restart, and with it the
-    /// number `written` of a command that may not be echoed yet: the commander continues from that number. In the
-    /// first tick the echo may be stale.
+    /// Like [`Self::start`], for a commander of a process. Its output buffer survives a restart, with the number
+    /// `written` of a command that may not be echoed yet: numbers continue there. In the first tick the echo may be
+    /// stale.
     pub fn start_from(&mut self, tick: Tick, written: u32, echo: u32) {
         self.start(if written == 0 { echo } else { written });
         if !self.started {
@@ -225,7 +224,7 @@ mod tests {
         let mut commander = Commander::default();
         commander.start_from(Tick(10), 0, 41);
         let under_way = commander.send(Tick(10));
-        // Its state is lost while the echo is still the old one. Its output buffer remains.
+        // Its state is lost, its output buffer remains, and the echo is still the old one.
         let mut restarted = Commander::default();
         restarted.start_from(Tick(11), under_way, 41);
         assert_eq!(restarted.read(Tick(11), &header(10), 41, Lower::Done), Lower::Pending, "that is another");
@@ -244,7 +243,7 @@ mod tests {
         assert_eq!(commander.read(Tick(101), &header(100), 45, Lower::Executing), Lower::Executing);
     }
 
-    /// A command in the buffer: its number, and an identity that distinguishes it from all other commands.
+    /// An identity that distinguishes the command from all others, behind its number.
     #[derive(Clone, Copy, Debug, Default, PartialEq)]
     struct Content {
         number: u32,
@@ -252,18 +251,17 @@ mod tests {
     }
 
     proptest! {
-        /// With any restarts at any time, no command is executed twice, and a status is valid only for the last
-        /// command sent. Commands are identified by content, not by number.
+        /// With any restarts, no command (identified by content, not number) is executed twice, and each status is its
+        /// own.
         #[test]
         fn each_command_is_executed_at_most_once(events in prop::collection::vec(0_u8..12, 1..300)) {
             let mut commander = Commander::default();
             let mut receiver = Receiver::default();
-            // Tick-parity buffers: values of the previous tick, kept until overwritten. They survive a restart.
+            // Values of the previous tick, kept until overwritten, also over a restart.
             let (mut written, mut echo) = (Content::default(), (0_u32, Lower::Done));
-            // The command that the receiver executed or adopted last, to which its status belongs.
+            // Executed or adopted last: the status belongs to it.
             let mut current = Content::default();
             let mut executed = std::collections::HashSet::new();
-            // The status in the buffer and the command to which it belongs.
             let mut about = current;
             for (k, event) in events.into_iter().enumerate() {
                 let tick = Tick(k as u64 + 1);

@@ -51,8 +51,7 @@ pub struct Consulted {
 }
 
 impl Header {
-    /// Ticks between the last decision and the stamp; 0 if both are in the same tick. None without a decision, or if
-    /// another system omits the tick.
+    /// Ticks between the last decision and the stamp. None without a decision, or if another system omits the tick.
     #[must_use]
     pub fn age(&self) -> Option<u64> {
         self.basis.map(|basis| self.stamp.since(basis.tick))

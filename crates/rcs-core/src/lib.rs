@@ -1,7 +1,6 @@
 //! The framework of the RCS-II/T3 controller (NBSIR 88-3692).
 //!
-//! This crate does no I/O and is independent of robot and cell. It defines tick, name, record, handshake and decision
-//! table for all processes:
+//! This crate does no I/O and is independent of robot and cell. It has:
 //!
 //! * [`tick`], [`name`]: time and names;
 //! * [`plain`]: one definition of a record gives its structure, byte image and schema;

@@ -7,8 +7,7 @@ use crate::{
     plain::{DecodeError, Reader, Schema, Writer},
 };
 
-/// A name of at most `N` printable ASCII characters without blanks. It is zero-filled, so equal names have equal
-/// bytes.
+/// At most `N` printable ASCII characters without blanks, zero-filled, so that equal names have equal bytes.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[repr(transparent)]
 pub struct Name<const N: usize>([u8; N]);
@@ -59,10 +58,7 @@ impl<const N: usize> Name<N> {
     /// The empty name, a null field.
     pub const EMPTY: Self = Self([0; N]);
 
-    /// A name from text.
-    ///
-    /// # Errors
-    /// [`NameError`] if the text is longer than `N` or contains a blank or a character that is not printable ASCII.
+    /// A name from text. Errors: longer than `N`, or not printable ASCII without blanks.
     #[inline]
     pub const fn new(text: &str) -> Result<Self, NameError> {
         let from = text.as_bytes();
@@ -83,8 +79,8 @@ impl<const N: usize> Name<N> {
         Ok(Self(bytes))
     }
 
-    /// The first `N` characters of a text, as the manual does with a twelve-character command in a ten-character
-    /// field (SPECNOTES.md, contradiction 22). Characters that a name cannot have become `?`.
+    /// The first `N` characters, as in the manual (SPECNOTES.md, contradiction 22). Characters that a name cannot have
+    /// become `?`.
     #[must_use]
     #[inline]
     pub fn clipped(text: &str) -> Self {

@@ -299,19 +299,13 @@ impl<'a> Reader<'a> {
         Self { rest: bytes }
     }
 
-    /// The next `N` bytes.
-    ///
-    /// # Errors
-    /// [`DecodeError::TooShort`] if fewer remain.
+    /// The next `N` bytes. Errors: [`DecodeError::TooShort`] if fewer remain.
     #[inline]
     pub fn take<const N: usize>(&mut self) -> Result<[u8; N], DecodeError> {
         self.chunk().copied()
     }
 
-    /// The next `N` bytes in place.
-    ///
-    /// # Errors
-    /// [`DecodeError::TooShort`] if fewer remain.
+    /// The next `N` bytes in place. Errors: [`DecodeError::TooShort`] if fewer remain.
     #[inline]
     pub fn chunk<const N: usize>(&mut self) -> Result<&'a [u8; N], DecodeError> {
         let (here, rest) = self.rest.split_first_chunk::<N>().ok_or(DecodeError::TooShort)?;
@@ -319,10 +313,7 @@ impl<'a> Reader<'a> {
         Ok(here)
     }
 
-    /// Skip this many zeros.
-    ///
-    /// # Errors
-    /// [`DecodeError::BadFill`] if a byte is not zero, [`DecodeError::TooShort`] if fewer remain.
+    /// Skips zeros. Errors: [`DecodeError::BadFill`] if a byte is not zero, [`DecodeError::TooShort`] if fewer remain.
     #[inline]
     pub fn zeros(&mut self, count: usize) -> Result<(), DecodeError> {
         let (here, rest) = self.rest.split_at(count.min(self.rest.len()));
@@ -346,10 +337,7 @@ pub trait Plain: Copy + PartialEq {
     /// Append the image.
     fn encode(&self, w: &mut Writer<'_>);
 
-    /// Read it from a byte image.
-    ///
-    /// # Errors
-    /// [`DecodeError`] if the bytes are not the image of a valid value.
+    /// Read it from a byte image. Errors: [`DecodeError`] if the bytes are not the image of a valid value.
     fn decode(r: &mut Reader<'_>) -> Result<Self, DecodeError>;
 }
 
@@ -449,10 +437,7 @@ pub fn to_bytes<const N: usize, T: Plain>(record: &T) -> [u8; N] {
     bytes
 }
 
-/// A record from its byte image.
-///
-/// # Errors
-/// [`DecodeError`] if the bytes are not the image of a valid record.
+/// A record from its byte image. Errors: [`DecodeError`] if the bytes are not the image of a valid record.
 #[inline]
 pub fn from_bytes<T: Plain>(bytes: &[u8]) -> Result<T, DecodeError> {
     T::decode(&mut Reader::new(bytes))

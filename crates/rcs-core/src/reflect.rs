@@ -44,8 +44,7 @@ pub const NONE: &str = "none";
 /// A field without subfields: its position in the image and its schema.
 #[derive(Clone, Copy, Debug)]
 pub struct Leaf<'a> {
-    /// Names from the outermost record inwards: `prim.poses[2].pose.tool[0]`. An option adds no name, a union the
-    /// name of the variant.
+    /// Names from outside inwards: `prim.poses[2].pose.tool[0]`. A union adds the name of its variant, an option none.
     pub path: fmt::Arguments<'a>,
     /// First byte in the image.
     pub offset: usize,
@@ -60,10 +59,8 @@ pub struct Leaf<'a> {
 /// An option or union that encloses a value.
 #[derive(Clone, Copy, Debug)]
 pub struct Within<'a> {
-    /// Byte in the image: flag of the option, code of the variant.
-    at: usize,
-    /// Its value in images that contain the enclosed value.
-    code: u8,
+    at: usize, // flag of the option, code of the variant
+    code: u8,  // in images that contain the enclosed value
     outer: Option<&'a Self>,
 }
 
@@ -172,7 +169,7 @@ impl fmt::Display for Definition {
     }
 }
 
-/// The kind of a value as one word: `u16`, `option text 10`, the name of an enum.
+/// One word: `u16`, `option text 10`, the name of an enum.
 impl fmt::Display for Schema {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
@@ -200,8 +197,7 @@ impl Schema {
     pub fn is_leaf(&self) -> bool {
         match self {
             Self::Struct(_) => false,
-            // Bytes are shown as one word: a frame on the line, not 64 numbers.
-            Self::Array(of, _) => **of == Self::U8,
+            Self::Array(of, _) => **of == Self::U8, // one word: a frame on the line, not 64 numbers
             Self::Option(of) => of.is_leaf(),
             Self::Union(of) => {
                 of.variants.iter().filter_map(|variant| variant.payload.as_ref()).all(Self::is_leaf)

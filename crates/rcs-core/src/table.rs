@@ -1,13 +1,11 @@
-//! Decision tables (II.2.2.2): the step and the state variables select one row, and the row names one action and the
-//! next step.
+//! Decision tables (II.2.2.2): step and state variables select one row, which names one action and the next step.
 //!
-//! [`decision_table!`](crate::decision_table!) turns a table into one exhaustive `match`. The compiler proves that no
-//! case is missing and that no row is dead, and it underlines an error in the row itself. The same source gives the
-//! table as text for logs, `rcs-run tables` and the documentation.
+//! [`decision_table!`](crate::decision_table!) turns a table into one exhaustive `match`. The compiler reports missing
+//! cases and dead rows in the row itself. The same source gives the text for logs, `rcs-run tables` and documentation.
 //!
-//! The first matching row from the top decides. A row names only the variables that it tests, or `otherwise`, and the
-//! next step only where it changes. A group of rows belongs to one step, to several, or to `any`. A group with a doc
-//! comment declares its step; a command begins in the first declared step.
+//! The first matching row decides. A row names only the variables that it tests, or `otherwise`, and the next step
+//! only where it changes. A group of rows belongs to one step, to several, or to `any`. A group with a doc comment
+//! declares its step; the first declared one begins a command.
 //!
 //! ```
 //! # mod cell {
@@ -79,17 +77,16 @@
 //!
 //! # Tables above
 //!
-//! Several tables can share common rows in a table of their own, which is consulted first. Its head says
-//! `-> Action or Type`. A row with `consult(Value)` does not decide: it passes a value of that type to the next
-//! table. The type is narrower than the tested variable, so the next table needs no rows for cases that are already
-//! decided. `-> Action or ()` and `consult` pass no value.
+//! Common rows of several tables form a table that is consulted first. Its head says `-> Action or Type`. A row with
+//! `consult(Value)` passes a value of that type to the next table. The type is narrower than the tested variable, so
+//! the next table needs no rows for decided cases. `-> Action or ()` and `consult` pass no value.
 //!
 //! # State variables of a table
 //!
-//! A process with many state variables senses each of them with a method of one type, in an `impl` block with
-//! `#[state_variables]`. A table whose head says `struct of super::Senses` declares a struct with the variables that
-//! its rows name: GRASP-OBJ declares `GraspObjSituation`. `commands!` with `enum Situation of Senses` makes an enum
-//! with a variant per entry, and senses only the variables that the tables of the command test.
+//! A process senses its state variables with methods of one type, in an `impl` block with `#[state_variables]`. A
+//! table whose head says `struct of super::Senses` declares a struct with the variables that its rows name: GRASP-OBJ
+//! declares `GraspObjSituation`. `commands!` with `enum Situation of Senses` makes an enum with a variant per entry,
+//! and senses only what the tables of the command test.
 //!
 //! ```
 //! # mod cell {
@@ -158,19 +155,18 @@
 //!
 //! # Looking back
 //!
-//! A decision contains the [`Values`] with which the table was consulted. From them the table reports its variables
-//! and their values, and the row that each other value would have fired: [`Table::near_misses`].
+//! From the [`Values`] of a decision the table reports its variables, and the row that each other value would have
+//! fired: [`Table::near_misses`].
 //!
 //! # Commands
 //!
-//! [`commands!`](crate::commands!) lists the tables of a process once. It generates the enum of all steps, the list
-//! of all tables, the numbers of tables that no command selects, and the function that consults the table of a
-//! command. An entry is `Verb: GOAL => table;`: a command without a goal does not compile. `a then b::c` consults two
-//! tables in turn.
+//! [`commands!`](crate::commands!) lists the tables of a process. It generates the enum of all steps, the list of all
+//! tables, the numbers of tables that no command selects, and the function that consults the table of a command. An
+//! entry is `Verb: GOAL => table;`; the goal is required. `a then b::c` consults two tables in turn.
 //!
 //! `others` lists the tables that no command selects, in the order of their numbers. `before` and `after` give the
-//! order of consultation: before the table of the command, and about the row that fired. They generate the function
-//! `decide` and the order in its documentation.
+//! tables before that of the command, and those about the row that fired. They generate the function `decide` and its
+//! documentation.
 //!
 //! ```text
 //! others: EXECUTE, accept::ACCEPT, HALT, EFFECT, ordered::ORDERED, CONFIRM;
@@ -242,8 +238,7 @@ pub struct ActionText {
 
 /// The state variables of a table.
 pub trait Variables {
-    /// The values of all variables as one number with a digit per variable: equal numbers are equal situations. The
-    /// last variable is the lowest digit, and its base is the number of its values.
+    /// All values as digits of one number, the last variable lowest: equal numbers are equal situations.
     fn code(&self) -> u64;
 }
 
@@ -352,7 +347,6 @@ impl Row {
         })
     }
 
-    /// The action with its argument and the next step: `Close -> Closing`.
     fn effect(&self) -> impl fmt::Display {
         fmt::from_fn(move |f| match self.next {
             Some(next) => write!(f, "{} -> {next}", self.call()),
@@ -376,7 +370,6 @@ fn conditions(
     if is_first { f.write_str("otherwise") } else { Ok(()) }
 }
 
-/// Names separated by a word.
 fn join(f: &mut fmt::Formatter<'_>, names: &[&str], word: &str) -> fmt::Result {
     for (position, name) in names.iter().enumerate() {
         if position > 0 {
@@ -394,7 +387,7 @@ impl fmt::Display for Condition {
     }
 }
 
-/// The row as text: `Closing, door Stuck => Fail(DoorStuck)`.
+/// `Closing, door Stuck => Fail(DoorStuck)`.
 impl fmt::Display for Row {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{} => {}", self.conditions(), self.effect())

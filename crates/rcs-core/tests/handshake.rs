@@ -1,12 +1,10 @@
-//! Exhaustive search of the handshake: breadth first over all reachable states of commander and receiver.
+//! Exhaustive search of the handshake between [`Commander`] and [`Receiver`], breadth first. The model has two buffers
+//! with one writer each. In every tick the commander may restart and may send a command, up to five; the receiver may
+//! step, restart, be held or be silent, and may finish its command. Either may read values that are one or two ticks
+//! old. A restart loses the state of the process, but not its output buffer.
 //!
-//! The code under test is [`Commander`] and [`Receiver`] as the processes use them. The model around it consists of
-//! two buffers with one writer each. In every tick the commander may restart and may send a command, up to five. The
-//! receiver may step, restart, be held or be silent, and may finish its command. Either may read values that are one
-//! or two ticks old. A restart loses the state of the process and keeps its output buffer, as on the boards.
-//!
-//! The search distinguishes commands by their *content*, which the code does not see. Ages replace ticks, up to the
-//! largest age that the code distinguishes, so the search is finite.
+//! Commands are distinguished by *content*, which the code does not see. Ages replace ticks, up to the largest that
+//! the code distinguishes, so the search is finite.
 
 use std::collections::{HashMap, VecDeque};
 
@@ -17,20 +15,17 @@ use rcs_core::{
 };
 
 const COMMANDS: u8 = 5;
-/// All ages above the limit are equivalent.
-const OLD: u8 = 5;
+const OLD: u8 = 5; // larger ages are equivalent
 const NOW: Tick = Tick(1000);
 
-/// The number from which a starting commander continues.
+/// Where a starting commander continues.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Start {
-    /// Its own output buffer: commanders of processes.
-    Buffer,
-    /// The echo of its subordinate: commanders of devices and of other systems.
-    Echo,
+    Buffer, // its own output buffer: commanders of processes
+    Echo,   // the subordinate's echo: commanders of devices and other systems
 }
 
-/// The command buffer: number, and the content from 1, or 0 for none.
+/// Number, and content from 1, or 0 for none.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 struct Written {
     number: u32,
@@ -55,10 +50,10 @@ impl Report {
     }
 }
 
-/// The status buffer, with the content to which it belongs.
+/// The status, with the content to which it belongs.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 struct Answered {
-    /// Ticks since its stamp, without the one tick of every reading.
+    /// Ticks since its stamp, minus the one of every reading.
     age: u8,
     republished: bool,
     echo: u32,
@@ -68,17 +63,12 @@ struct Answered {
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 struct State {
-    /// State of the commander: number, ticks since it was sent, started.
-    commander: (u32, u8, bool),
-    /// State of the receiver: echo, started, adopted.
-    receiver: (u32, bool, bool),
-    /// Content to which the receiver's report belongs.
-    current: u8,
-    /// The buffers as written in the last tick and in the one before.
-    written: [Written; 2],
+    commander: (u32, u8, bool),  // number, ticks since it was sent, started
+    receiver: (u32, bool, bool), // echo, started, adopted
+    current: u8,                 // to which the receiver's report belongs
+    written: [Written; 2],       // in the last tick and the one before
     answered: [Answered; 2],
-    /// Number of commands sent, and a bit per executed command.
-    sent: u8,
+    sent: u8, // number, and a bit per executed command
     executed: u8,
 }
 
@@ -86,19 +76,13 @@ struct State {
 struct Commanding {
     restarts: bool,
     sends: bool,
-    /// It reads values that are one tick older.
-    late: bool,
+    late: bool, // values one tick older
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Receiving {
-    Steps {
-        restarts: bool,
-        late: bool,
-        finishes: bool,
-    },
-    /// Suspended by a switch: its last outputs are republished.
-    Held,
+    Steps { restarts: bool, late: bool, finishes: bool },
+    Held, // last outputs republished
     Silent,
 }
 
@@ -107,11 +91,10 @@ type Event = (Commanding, Receiving);
 const QUIET: Commanding = Commanding { restarts: false, sends: false, late: false };
 const STEP: Receiving = Receiving::Steps { restarts: false, late: false, finishes: false };
 
-/// An error that a tick has shown.
 type Wrong = &'static str;
 
 impl State {
-    /// Run a tick. Returns the state and the commander's reading.
+    /// Returns the state and the commander's reading.
     fn tick(&mut self, (commanding, receiving): Event, start: Start) -> Result<Lower, Wrong> {
         let before = *self;
         let reading = self.command(&before, commanding, start)?;
@@ -137,7 +120,7 @@ impl State {
         };
         let reading = commander.read(NOW, &header, status.echo, status.report.lower());
         let believed = matches!(reading, Lower::Done | Lower::Executing | Lower::Error);
-        // A commander that has not sent a command since its start acts on no status.
+        // A commander that has sent no command since its start uses no status.
         if believed && commander.started && status.about != before.written[0].content {
             return Err("a status of another command is accepted");
         }
@@ -192,7 +175,7 @@ impl State {
         Ok(())
     }
 
-    /// True if, without further faults, the last command is answered, or a vanished receiver is detected as lost.
+    /// Without further faults the last command is answered, or a vanished receiver is detected.
     fn is_answered(mut self, start: Start) -> Result<(), Wrong> {
         let mut gone = self;
         let (mut reading, mut lost) = (Lower::Pending, Lower::Pending);
@@ -223,17 +206,16 @@ fn events(state: &State) -> Vec<Event> {
     possible.flat_map(|commanding| receiving.iter().map(move |receiving| (commanding, *receiving))).collect()
 }
 
-/// The size of the search, or the shortest path to an error.
+/// The size, or the shortest path to an error.
 struct Found {
     states: usize,
     ticks: u64,
     wrong: Option<(Vec<Event>, Wrong)>,
 }
 
-/// The known states, each with its predecessor and the tick between them.
+/// With predecessor and the tick between.
 type Known = HashMap<State, Option<(State, Event)>>;
 
-/// The ticks that lead to a state.
 fn way(known: &Known, mut state: State, last: Option<Event>) -> Vec<Event> {
     let mut events = Vec::from_iter(last);
     while let Some(Some((before, event))) = known.get(&state) {
@@ -276,8 +258,7 @@ fn commands_between_processes_are_executed_once_with_their_own_status() {
 }
 
 /// A known limit: a commander that follows only the echo sends a number twice if it restarts before its first command
-/// is echoed. The receiver then ignores the second command, and the commander reads the status of the first. This is
-/// the shortest path.
+/// is echoed, and then reads the status of the first. This is the shortest path.
 #[test]
 fn commander_following_the_echo_repeats_a_number_after_an_early_restart() {
     let sends = Commanding { sends: true, ..QUIET };

@@ -6,7 +6,7 @@ use syn::{Data, DeriveInput, Error, Fields, Result};
 
 use crate::names;
 
-/// Describe the actions, and give the type of each argument under the name of its action, in a hidden module `__Name`.
+/// A hidden module `__Name` has the type of each argument under the name of its action.
 pub fn derive(input: &DeriveInput) -> Result<TokenStream> {
     let name = &input.ident;
     let Data::Enum(data) = &input.data else {

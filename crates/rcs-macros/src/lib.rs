@@ -7,8 +7,8 @@
 //! * [`decision_table!`]: a decision table as one exhaustive `match`;
 //! * [`commands!`]: the commands of a process and the tables that decide about them.
 //!
-//! They are procedural so that the compiler's lints reach the rows: it underlines a misspelt, missing or dead row,
-//! value or step in the table itself. With a `macro_rules!` macro of another crate the lint misses dead rows.
+//! They are procedural so that lints reach the rows: the compiler underlines a misspelt, missing or dead row, value or
+//! step in the table. It misses dead rows in a `macro_rules!` macro of another crate.
 
 mod actions;
 mod commands;
@@ -29,36 +29,30 @@ fn finish(result: syn::Result<proc_macro2::TokenStream>) -> TokenStream {
 ///
 /// Both get `Default`: all fields zero, or the first variant.
 ///
-/// An enum without data is one byte in the image, the position of its variant from 0. It also gets `ALL`, `text`,
-/// `code`, `from_code`, `from_text` and `Display`. The text of a variant is its name in lower case with hyphens, or
-/// the value of `#[text = "..."]`. On the enum, `#[text(upper)]` selects upper case, and `#[text(doc)]` the doc
-/// comment as part of a sentence.
-///
-/// An enum with data is a byte for the variant, then the bytes of its largest variant; smaller variants are filled
-/// with zeros. Each variant has at most one field.
+/// An enum without data is one byte, the position of its variant from 0. It also gets `ALL`, `text`, `code`,
+/// `from_code`, `from_text` and `Display`. The text of a variant is its name in lower case with hyphens, or the value
+/// of `#[text = "..."]`. On the enum, `#[text(upper)]` selects upper case, and `#[text(doc)]` the doc comment as part
+/// of a sentence. An enum with data is a byte for the variant, then at most one field, filled with zeros up to the
+/// largest variant.
 #[proc_macro_derive(Plain, attributes(text))]
 pub fn plain(input: TokenStream) -> TokenStream {
     finish(plain::derive(&parse_macro_input!(input as DeriveInput)))
 }
 
-/// Derive the description of state variables for a struct whose fields are all plain enums, so that
-/// [`decision_table!`] finds values by the name of a field.
+/// Describes a struct of plain enums as state variables: [`decision_table!`] finds their values by field names.
 #[proc_macro_derive(Variables)]
 pub fn variables(input: TokenStream) -> TokenStream {
     finish(variables::derive(&parse_macro_input!(input as DeriveInput)))
 }
 
-/// Describe the methods of an `impl` block as state variables, so that the head of a [`decision_table!`] can say
-/// `struct of super::Senses`. The struct of that table has the variables that its rows name.
-///
-/// `#[passed]` marks the variable whose value a table above passes on; its method returns the initial value.
+/// Describes methods as state variables: the struct of a [`decision_table!`] with `struct of super::Senses` has those
+/// that its rows name. `#[passed]` marks the one that a table above passes on; its method returns the initial value.
 #[proc_macro_attribute]
 pub fn state_variables(_: TokenStream, input: TokenStream) -> TokenStream {
     finish(senses::expand(parse_macro_input!(input as ItemImpl)))
 }
 
-/// Derive the description of actions for an enum whose variants are bare or carry one plain enum, so that
-/// [`decision_table!`] finds arguments by the name of an action.
+/// Describes an enum as actions, bare or with one plain enum, so that [`decision_table!`] finds their arguments.
 #[proc_macro_derive(Actions)]
 pub fn actions(input: TokenStream) -> TokenStream {
     finish(actions::derive(&parse_macro_input!(input as DeriveInput)))

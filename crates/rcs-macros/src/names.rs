@@ -4,7 +4,7 @@ use std::fmt::Display;
 
 use syn::{Attribute, Expr, ExprLit, Lit, Meta};
 
-/// The words of a name in upper camel case, in lower case with `separator` between them: `LettingGo` is `letting-go`.
+/// Upper camel case to lower case with `separator`: `LettingGo` is `letting-go`.
 pub fn words(name: &str, separator: char) -> String {
     let mut text = String::new();
     for letter in name.chars() {
@@ -16,7 +16,7 @@ pub fn words(name: &str, separator: char) -> String {
     text
 }
 
-/// A name in snake case as upper camel case: `get_object` is `GetObject`.
+/// Snake case to upper camel case: `get_object` is `GetObject`.
 pub fn camel(name: &str) -> String {
     let upper = |word: &str| {
         let mut letters = word.chars();
@@ -28,7 +28,7 @@ pub fn camel(name: &str) -> String {
     name.split('_').map(upper).collect()
 }
 
-/// A text as an identifier. The word `kind` gets the code as a suffix, because there is a field of this name.
+/// The word `kind` gets the code as a suffix, because there is a field of this name.
 pub fn identifier(text: &str, code: &impl Display) -> String {
     let name = text.replace(|letter: char| !letter.is_ascii_alphanumeric(), "_");
     match name.trim_matches('_') {
@@ -37,7 +37,7 @@ pub fn identifier(text: &str, code: &impl Display) -> String {
     }
 }
 
-/// The value of an attribute `#[name = "value"]`.
+/// `#[name = "value"]`.
 fn text_of(attribute: &Attribute, name: &str) -> Option<String> {
     let Meta::NameValue(pair) = &attribute.meta else { return None };
     let Expr::Lit(ExprLit { lit: Lit::Str(text), .. }) = &pair.value else { return None };
@@ -48,7 +48,7 @@ pub fn text(attributes: &[Attribute]) -> Option<String> {
     attributes.iter().find_map(|attribute| text_of(attribute, "text"))
 }
 
-/// The style of an enum's texts: the word in `#[text(doc)]` or `#[text(upper)]`; empty for none.
+/// The word in `#[text(doc)]` or `#[text(upper)]`; empty for none.
 pub fn text_style(attributes: &[Attribute]) -> String {
     let style = attributes.iter().find_map(|attribute| match &attribute.meta {
         Meta::List(list) if list.path.is_ident("text") => Some(list.tokens.to_string()),
@@ -57,7 +57,7 @@ pub fn text_style(attributes: &[Attribute]) -> String {
     style.unwrap_or_default()
 }
 
-/// A doc comment as part of a sentence: `The fingers are stuck.` is `the fingers are stuck`.
+/// As part of a sentence: `The fingers are stuck.` is `the fingers are stuck`.
 pub fn clause(doc: &str) -> String {
     let mut letters = doc.trim_end_matches('.').chars();
     letters.next().map(|first| first.to_lowercase().chain(letters).collect()).unwrap_or_default()

@@ -56,7 +56,7 @@ fn of_struct(name: &Ident, data: &DataStruct) -> Result<TokenStream> {
             const SCHEMA: ::rcs_core::plain::Schema = ::rcs_core::plain::Schema::Struct(Self::STRUCT);
             const ZERO: Self = Self { #( #names: <#types as ::rcs_core::Plain>::ZERO, )* };
 
-            // One check of the length for all fields: the compiler knows the place of each in the chunk.
+            // One check of the length for all fields: the compiler knows the place of each.
             fn encode(&self, w: &mut ::rcs_core::plain::Writer<'_>) {
                 let Some(chunk) = w.chunk::<{ <#name as ::rcs_core::Plain>::SIZE }>() else { return };
                 let w = &mut ::rcs_core::plain::Writer::new(chunk);
@@ -71,7 +71,6 @@ fn of_struct(name: &Ident, data: &DataStruct) -> Result<TokenStream> {
     })
 }
 
-/// The text of a variant: its attribute, or its name.
 fn text_of(variant: &Variant) -> String {
     names::text(&variant.attrs).unwrap_or_else(|| names::words(&variant.ident.to_string(), '-'))
 }
@@ -166,7 +165,6 @@ fn of_enum(input: &DeriveInput, data: &DataEnum) -> Result<TokenStream> {
     })
 }
 
-/// The field of a variant, if it has one.
 fn payload(variant: &Variant) -> Result<Option<&Field>> {
     match &variant.fields {
         Fields::Unit => Ok(None),

@@ -6,10 +6,8 @@ use syn::{Error, ImplItem, ImplItemFn, ItemImpl, Result, ReturnType, Type};
 
 use crate::names;
 
-/// The attribute of the variable that a table above passes on.
 const PASSED: &str = "passed";
 
-/// The enum that a method returns.
 fn value(method: &ImplItemFn) -> Result<&Type> {
     match &method.sig.output {
         ReturnType::Type(_, of) if matches!(**of, Type::Path(_)) => Ok(of),
@@ -17,7 +15,7 @@ fn value(method: &ImplItemFn) -> Result<&Type> {
     }
 }
 
-/// The unchanged methods, and type, text and setter of each variable in a hidden module `__Name`.
+/// Keeps the methods; a hidden module `__Name` has type, text and setter of each variable.
 pub fn expand(mut block: ItemImpl) -> Result<TokenStream> {
     let Type::Path(of) = &*block.self_ty else {
         return Err(Error::new_spanned(&block.self_ty, "state variables are methods of a struct"));

@@ -6,7 +6,7 @@ use syn::{Data, DeriveInput, Error, Fields, Ident, Result, spanned::Spanned as _
 
 use crate::names;
 
-/// The values of all variables of a struct as one number.
+/// All values as one number.
 pub fn code(name: &Ident, fields: &[&Ident], types: &[impl ToTokens]) -> TokenStream {
     quote! {
         const _: () = assert!(
@@ -25,7 +25,7 @@ pub fn code(name: &Ident, fields: &[&Ident], types: &[impl ToTokens]) -> TokenSt
     }
 }
 
-/// Describe the variables, and give the type of each under the name of its field, in a hidden module `__Name`.
+/// A hidden module `__Name` has the type of each variable under the name of its field.
 pub fn derive(input: &DeriveInput) -> Result<TokenStream> {
     let name = &input.ident;
     let Data::Struct(data) = &input.data else {

@@ -23,7 +23,7 @@ pub struct Found {
 struct Space {
     known: HashMap<u64, u32>,
     from: Vec<(u32, Event)>,
-    /// Without the operator, and with help.
+    /// The next state of each state: without the operator, and with help.
     onward: Vec<[Onward; 2]>,
     ticks: u64,
 }

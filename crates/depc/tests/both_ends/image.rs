@@ -12,7 +12,7 @@ use std::{
 #[derive(Default)]
 pub struct Image(Vec<u8>);
 
-/// Modified in the image.
+/// The modified fields of the host.
 const NAMES: [&str; 9] = [
     "counters",
     "lost_function",
@@ -75,7 +75,7 @@ impl Image {
         *asked = (*asked).min(faults + 4);
     }
 
-    /// In a million states two are equal with a probability of 1 in 37 million.
+    /// A hash: in a million states two are equal with a probability of 1 in 37 million.
     pub fn fingerprint(&self) -> u64 {
         let mut hasher = DefaultHasher::new();
         hasher.write(&self.0);

@@ -110,7 +110,7 @@ fn duplicated_command_is_executed_twice_if_its_answer_is_lost() {
     assert_eq!(shortest(false, [Kind::CommandDoubled, Kind::AnswerLost]), None);
 }
 
-/// For positions and for functions.
+/// Each pair of faults with a duplicated frame, for positions and for functions.
 #[test]
 fn a_doubled_frame_deceives_together_with_these_faults_only() {
     use Kind::*;

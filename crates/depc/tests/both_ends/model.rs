@@ -13,7 +13,7 @@ use depc::{
 use crate::image::Image;
 
 const RING: i16 = 4; // points
-/// Except for the first word.
+/// The position of a point, except for the first word.
 const AT: Plate = Plate { words: [0, -6296, -635, -9000, 13495, 0] };
 /// Slightly more than a second; the real value only takes longer.
 const PATIENCE: u16 = RESTART_TICKS + 5;
@@ -65,7 +65,7 @@ pub struct Setting {
     pub all_bits: bool, // each bit and byte of a frame is damaged, not one per part
 }
 
-/// Of a frame on the line.
+/// The fate of a frame on the line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Carried {
     AsSent,
@@ -76,7 +76,7 @@ pub enum Carried {
     Late(u8),    // with all frames after it, ticks
 }
 
-/// Before a tick.
+/// An action at the controller's panel before a tick.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Panel {
     Nothing,

@@ -18,7 +18,7 @@ use geometry::{
 use rcs_core::tick::Tick;
 
 const OPERATOR_TICKS: u32 = 50; // until the operator answers a warning or restarts
-/// To report a stopped controller: the answer time, then a second of silence.
+/// Ticks to report a stopped controller: the answer time, then a second of silence.
 const REPORT_TICKS: u32 = 32;
 
 /// It reaches every position exactly, and checks every step.
@@ -157,7 +157,7 @@ impl Session {
         self.goal = Frame { position: home.position + shift, rotation: rotation_by(&turn) * home.rotation };
     }
 
-    /// In words of the line.
+    /// True if the robot is at the goal, in words of the line.
     pub fn at_goal(&self) -> bool {
         self.robot.at.same(&Plate::from_tool(&self.goal, &T3, &self.robot.at).unwrap())
     }

@@ -79,10 +79,7 @@ impl WirePose {
         Self { pos: Some(pos), orient: Some(orient), euler: None }
     }
 
-    /// The pose, if position and orientation are present and finite.
-    ///
-    /// # Errors
-    /// [`Error::Missing`] or [`Error::NotAPose`].
+    /// The pose, if complete and finite. Errors: [`Error::Missing`] or [`Error::NotAPose`].
     pub fn pose(&self) -> Result<Pose, Error> {
         let position = self.pos.ok_or(Error::Missing { field: "cartesian.pos" })?.values();
         let orientation = match (self.euler, self.orient) {

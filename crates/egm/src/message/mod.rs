@@ -1,8 +1,8 @@
 //! The messages of `egm.proto` (package `abb.egm`, proto2), one per file.
 //!
-//! Each message has three functions. `merge` takes one field: as protocol buffers require, a message that occurs twice
-//! is merged, and the last value of a repeated scalar field is used. `check` finds missing fields at the end. `write`
-//! encodes the message. Unknown fields of a newer schema are skipped, and an unknown enum value is undefined.
+//! `merge` takes one field: a message that occurs twice is merged, and the last value of a repeated scalar field is
+//! used. `check` finds missing fields at the end. `write` encodes the message. Unknown fields are skipped, and an
+//! unknown enum value is undefined.
 
 mod geometry;
 mod header;

@@ -39,7 +39,7 @@ pub struct Timestamp {
     pub nsec: Option<u64>,
 }
 
-/// Merges the two integers of a time.
+/// The two integers of a time.
 fn merge_pair(
     first: &mut Option<u64>,
     second: &mut Option<u64>,

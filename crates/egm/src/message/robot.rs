@@ -35,7 +35,7 @@ pub struct Robot {
     pub move_index: Option<u32>,
 }
 
-/// An enum and the message that contains it as its one required field `state`.
+/// An enum, and the message that contains it as its one required field `state`.
 macro_rules! state {
     ($(#[$doc:meta])* $name:ident { $($(#[$variant_doc:meta])* $variant:ident = $code:literal,)* }) => {
         $(#[$doc])*
@@ -55,7 +55,7 @@ macro_rules! state {
                 }
             }
 
-            /// Merges the required field `state` into `value`, which is `None` until the field occurs.
+            /// `value` is `None` until the field occurs.
             fn merge(value: &mut Option<Self>, field: &Field<'_>, name: &'static str) -> Result<(), Error> {
                 let mut fields = field.message()?;
                 while let Some(field) = fields.next_field()? {
@@ -66,7 +66,7 @@ macro_rules! state {
                         });
                     }
                 }
-                // A later occurrence of the same field can supply what is missing here, because occurrences are merged.
+                // A later occurrence can supply the field, because occurrences are merged.
                 if value.is_some() { Ok(()) } else { Err(Error::Missing { field: name }) }
             }
 
@@ -110,11 +110,7 @@ state! {
 }
 
 impl Robot {
-    /// Decodes a datagram.
-    ///
-    /// # Errors
-    /// [`Error`] if the datagram is not a message, if a field required by the schema is missing, if the message is of
-    /// another type, or if it has no sequence number.
+    /// Decodes a datagram. Errors: a wrong type, or a missing required field or sequence number.
     pub fn decode(datagram: &[u8]) -> Result<Self, Error> {
         let mut message = Self::default();
         let mut fields = Reader::new(datagram);
@@ -165,10 +161,7 @@ impl Robot {
         Ok(())
     }
 
-    /// Encodes the message at the end of `buffer`.
-    ///
-    /// # Errors
-    /// [`Error::NoRoom`] if `buffer` is too small; [`super::MOST_BYTES`] are always enough.
+    /// Encodes the message at the end of `buffer`; [`super::MOST_BYTES`] are always enough. Errors: [`Error::NoRoom`].
     pub fn encode<'a>(&self, buffer: &'a mut [u8]) -> Result<&'a [u8], Error> {
         let mut writer = Writer::new(buffer);
         self.write(&mut writer)?;
@@ -199,11 +192,8 @@ impl Robot {
         self.header.as_ref().map_or(Ok(()), |header| writer.message(1, |writer| header.write(writer)))
     }
 
-    /// The fields that the host needs: sequence number, and pose of the tool in the work object.
-    ///
-    /// # Errors
-    /// [`Error::Missing`] if one is missing, [`Error::BadType`] if it is not a message of a robot, [`Error::NotAPose`]
-    /// if the pose is invalid.
+    /// Sequence number, and pose of the tool in the work object. Errors: [`Error::Missing`], [`Error::BadType`] (not
+    /// from a robot), [`Error::NotAPose`].
     pub fn essentials(&self) -> Result<(u32, Pose), Error> {
         let header = self.header.ok_or(Error::Missing { field: "header" })?;
         let seqno = header.seqno.ok_or(Error::Missing { field: "header.seqno" })?;

@@ -22,8 +22,7 @@ pub struct Sensor {
 pub struct SpeedRef {
     /// Joint speeds, degrees/s.
     pub joints: Option<Values>,
-    /// Tool speeds: mm/s along x, y, z, then degrees/s about x, y, z. The order is ASSUMED: `egm.proto` does not define
-    /// it.
+    /// mm/s along x, y, z, then degrees/s about x, y, z. The order is ASSUMED: `egm.proto` does not define it.
     pub cartesians: Option<Values>,
     /// Speeds of the external joints, degrees/s.
     pub external: Option<Values>,
@@ -79,10 +78,7 @@ impl Sensor {
         }
     }
 
-    /// Decodes a datagram.
-    ///
-    /// # Errors
-    /// [`Error`] if the datagram is not a message, or if a required field is missing.
+    /// Decodes a datagram. Errors: [`Error`] if the datagram is not a message, or if a required field is missing.
     pub fn decode(datagram: &[u8]) -> Result<Self, Error> {
         let mut message = Self::default();
         let mut fields = Reader::new(datagram);
@@ -98,10 +94,7 @@ impl Sensor {
         Ok(message)
     }
 
-    /// Encodes the message at the end of `buffer`.
-    ///
-    /// # Errors
-    /// [`Error::NoRoom`] if `buffer` is too small; [`super::MOST_BYTES`] are always enough.
+    /// Encodes the message at the end of `buffer`; [`super::MOST_BYTES`] are always enough. Errors: [`Error::NoRoom`].
     pub fn encode<'a>(&self, buffer: &'a mut [u8]) -> Result<&'a [u8], Error> {
         let mut writer = Writer::new(buffer);
         if let Some(speed) = &self.speed_ref {

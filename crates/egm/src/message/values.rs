@@ -38,7 +38,7 @@ impl Values {
         Ok(())
     }
 
-    /// Adds the values of a field, which is a single value or packed values.
+    /// A single value or packed values.
     pub(super) fn take(&mut self, field: &Field<'_>) -> Result<(), Error> {
         if let Value::Bytes(packed) = field.value {
             let mut packed = Reader::new(packed);
@@ -50,7 +50,7 @@ impl Values {
         self.push(field.double()?)
     }
 
-    /// Adds the values of a message that contains them in its field `number`.
+    /// A message that contains the values in its field `number`.
     pub(super) fn merge(&mut self, number: u32, mut fields: Reader<'_>) -> Result<(), Error> {
         while let Some(field) = fields.next_field()? {
             if field.number == number {
@@ -60,7 +60,7 @@ impl Values {
         Ok(())
     }
 
-    /// Writes the values as field `number`, each with its own key, because `egm.proto` is proto2 and not packed.
+    /// Each value with its own key: `egm.proto` is proto2 and not packed.
     pub(super) fn write(&self, number: u32, writer: &mut Writer<'_>) -> Result<(), Error> {
         self.as_slice().iter().rev().try_for_each(|value| writer.double(number, *value))
     }

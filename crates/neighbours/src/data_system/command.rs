@@ -160,10 +160,8 @@ pub enum EncodeError {
     Sector(i32),
 }
 
-/// Encode a command. Returns the bytes and their number, without allocation.
-///
-/// # Errors
-/// [`EncodeError`] if the fields of the buffer cannot hold it.
+/// Encode a command. Returns the bytes and their number, without allocation. Errors: [`EncodeError`] if the fields of
+/// the buffer cannot hold it.
 pub fn encode(command: &DataBaseCommand) -> Result<([u8; DML], usize), EncodeError> {
     let transaction = Transaction::of(command.command).ok_or(EncodeError::Nothing)?;
     let length = transaction.length();
@@ -285,10 +283,7 @@ pub enum DecodeError {
     Text(usize),
 }
 
-/// Decode the bytes of a command.
-///
-/// # Errors
-/// [`DecodeError`] with the place of the first wrong byte.
+/// Decode the bytes of a command. Errors: [`DecodeError`] with the place of the first wrong byte.
 pub fn decode(bytes: &[u8]) -> Result<Received<'_>, DecodeError> {
     let size = bytes.len();
     if size != RECONFIGURATION && size != DML {

@@ -29,10 +29,7 @@ pub trait Keeper {
     /// The reply to the last begun command, which has this number.
     fn reply(&mut self, id: u16) -> Reply;
 
-    /// The reported items, sorted by name and number.
-    ///
-    /// # Errors
-    /// The reason why they cannot be listed.
+    /// The reported items, sorted by name and number. Errors: the reason why they cannot be listed.
     fn items(&mut self) -> Result<Vec<Item>, String>;
 }
 
@@ -210,11 +207,8 @@ impl<K: Keeper> DataSystem<K> {
         self.refusals.push(why);
     }
 
-    /// The reported items, sorted by name and number. Empty if the server is in another process, which alone
-    /// can list them.
-    ///
-    /// # Errors
-    /// The reason why the database cannot list them.
+    /// The reported items, sorted by name and number. Empty if the server is in another process, which alone can list
+    /// them. Errors: the reason why the database cannot list them.
     pub fn items(&mut self) -> Result<Vec<Item>, String> {
         self.keeper.items()
     }

@@ -30,30 +30,18 @@ pub trait Records {
     /// Error of reading or writing the records.
     type Error: Display;
 
-    /// State of a client's connection; 0 for an unknown client.
-    ///
-    /// # Errors
-    /// If the records cannot be read.
+    /// State of a client's connection; 0 for an unknown client. Fails if the records cannot be read.
     fn session(&self, client: &str) -> Result<u8, Self::Error>;
 
-    /// Set the state of a client's connection.
-    ///
-    /// # Errors
-    /// If the records cannot be written.
+    /// Set the state of a client's connection. Fails if the records cannot be written.
     fn set_session(&mut self, client: &str, session: u8) -> Result<(), Self::Error>;
 
     /// Store the position of an item reported by a client. Returns true if the position is new.
     ///
-    /// A statement with a number other than 0 is executed once. Repeated with the same number it changes
-    /// nothing, even after reports of other clients.
-    ///
-    /// # Errors
-    /// If the records cannot be written; they are then unchanged.
+    /// A statement with a number other than 0 is executed once. Repeated with the same number it changes nothing, even
+    /// after reports of other clients. Fails if the records cannot be written; they are then unchanged.
     fn report(&mut self, client: &str, said: Said<'_>, item: &Item) -> Result<bool, Self::Error>;
 
-    /// All items, sorted by name and number.
-    ///
-    /// # Errors
-    /// If the records cannot be read.
+    /// All items, sorted by name and number. Fails if the records cannot be read.
     fn items(&self) -> Result<Vec<Item>, Self::Error>;
 }

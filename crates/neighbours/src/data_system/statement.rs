@@ -84,10 +84,7 @@ impl fmt::Display for Found {
     }
 }
 
-/// Parse a statement.
-///
-/// # Errors
-/// [`StatementError`] for the first error.
+/// Parse a statement. Errors: [`StatementError`] for the first error.
 pub fn parse(text: &str) -> Result<Update<'_>, StatementError> {
     let mut scanner = Scanner { text, at: 0 };
     for word in ["UPDATE", "EQUIP_ITEM_ACTION", "SET"] {

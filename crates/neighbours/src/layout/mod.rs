@@ -105,10 +105,7 @@ pub trait Codec<'a, T>: Width {
 
     fn put(value: &T, to: &mut [u8]);
 
-    /// Decodes a value.
-    ///
-    /// # Errors
-    /// [`FieldError`] if the bytes are not a valid value.
+    /// Decodes a value. Errors: [`FieldError`] if the bytes are not a valid value.
     fn take(at: At, from: &'a [u8]) -> Result<T, FieldError>;
 }
 
@@ -152,10 +149,8 @@ macro_rules! layout {
                 bytes
             }
 
-            /// Checks that every value fits its field.
-            ///
-            /// # Errors
-            /// [`RangeError`]($crate::fields::RangeError) for the first value that does not fit.
+            /// Checks that every value fits its field. Errors: [`RangeError`]($crate::fields::RangeError) for the
+            /// first value that does not fit.
             pub fn check(record: &$type) -> Result<(), $crate::fields::RangeError> {
                 $(
                     let value = &$crate::layout!(@get record, $type, $place);
@@ -166,10 +161,8 @@ macro_rules! layout {
                 Ok(())
             }
 
-            /// Decodes the data.
-            ///
-            /// # Errors
-            /// [`LayoutError`]($crate::layout::LayoutError) for a wrong size or the first invalid field.
+            /// Decodes the data. Errors: [`LayoutError`]($crate::layout::LayoutError) for a wrong size or the first
+            /// invalid field.
             pub fn decode(bytes: &[u8]) -> Result<$type, $crate::layout::LayoutError> {
                 let mut record = <$type>::default();
                 $crate::layout::sized($what, Self::BYTES, bytes)?;
@@ -200,10 +193,7 @@ macro_rules! layout {
     }};
 }
 
-/// Checks the size of the data.
-///
-/// # Errors
-/// [`LayoutError::Size`].
+/// Checks the size of the data. Errors: [`LayoutError::Size`].
 pub const fn sized(what: &'static str, expected: usize, bytes: &[u8]) -> Result<(), LayoutError> {
     if bytes.len() == expected {
         Ok(())

@@ -32,10 +32,8 @@ pub struct Frame<'a> {
 }
 
 impl<'a> Frame<'a> {
-    /// The first frame of `bytes`, once it is complete.
-    ///
-    /// # Errors
-    /// [`FrameError::Length`], after which no further frame can be found.
+    /// The first frame of `bytes`, once it is complete. Errors: [`FrameError::Length`], after which no further frame
+    /// can be found.
     pub fn first(bytes: &'a [u8]) -> Result<Option<Self>, FrameError> {
         let Some(&[a, b, c, d, low, high]) = bytes.first_chunk() else { return Ok(None) };
         let (address, found) = (u32::from_le_bytes([a, b, c, d]), u16::from_le_bytes([low, high]));
@@ -67,10 +65,8 @@ impl<'a> Frame<'a> {
         &self.bytes[ADDRESS + HEAD..]
     }
 
-    /// The tick of a pulse; `None` if the frame is not a pulse.
-    ///
-    /// # Errors
-    /// [`FrameError::Pulse`] if its data are not the number of a tick.
+    /// The tick of a pulse; `None` if the frame is not a pulse. Errors: [`FrameError::Pulse`] if its data are not the
+    /// number of a tick.
     pub fn as_pulse(&self) -> Result<Option<u64>, FrameError> {
         if self.address() != PULSE {
             return Ok(None);

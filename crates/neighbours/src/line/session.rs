@@ -188,11 +188,9 @@ impl Session {
         }
     }
 
-    /// The next event; `None` if more bytes are required.
-    ///
-    /// # Errors
-    /// [`SessionError`] once, if the other side has violated the protocol or closed the connection. The session
-    /// is then closed, and the controller's output has the reason.
+    /// The next event; `None` if more bytes are required. Errors: [`SessionError`] once, if the other side has
+    /// violated the protocol or closed the connection. The session is then closed, and the controller's output has the
+    /// reason.
     pub fn event(&mut self, now: Instant) -> Result<Option<Event<'_>>, SessionError> {
         let step = match self.step(now) {
             Ok(step) => step,
@@ -365,10 +363,8 @@ impl Session {
         }
     }
 
-    /// Close the session if the other side has been silent for too long.
-    ///
-    /// # Errors
-    /// [`SessionError::NoHello`] or [`SessionError::Silent`], once.
+    /// Close the session if the other side has been silent for too long. Errors: [`SessionError::NoHello`] or
+    /// [`SessionError::Silent`], once.
     pub fn check_time(&mut self, now: Instant) -> Result<(), SessionError> {
         match self.limit() {
             Some((since, limit, error)) if now.saturating_duration_since(since) >= limit => {

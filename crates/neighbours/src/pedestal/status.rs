@@ -88,10 +88,7 @@ impl<'a> Status<'a> {
         StatusLayout::encode(self)
     }
 
-    /// Decodes the data of the mailbox.
-    ///
-    /// # Errors
-    /// [`PedestalError`] for the first wrong field.
+    /// Decodes the data of the mailbox. Errors: [`PedestalError`] for the first wrong field.
     pub fn decode(data: &'a [u8]) -> Result<Self, PedestalError> {
         let read = StatusLayout::decode(data)?;
         let status = &read.status;

@@ -107,18 +107,12 @@ impl Areas {
         },
     };
 
-    /// Encode the areas.
-    ///
-    /// # Errors
-    /// [`RangeError`] if two bytes cannot hold a value.
+    /// Encode the areas. Errors: [`RangeError`] if two bytes cannot hold a value.
     pub fn encode(&self) -> Result<[u8; AreasLayout::BYTES], RangeError> {
         AreasLayout::check(self).map(|()| AreasLayout::encode(self))
     }
 
-    /// Decode the areas. E-move checks the values.
-    ///
-    /// # Errors
-    /// [`VisionError`] for the first field that cannot be read.
+    /// Decode the areas. E-move checks the values. Errors: [`VisionError`] for the first field that cannot be read.
     pub fn decode(bytes: &[u8]) -> Result<Self, VisionError> {
         Ok(AreasLayout::decode(bytes)?)
     }

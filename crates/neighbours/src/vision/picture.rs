@@ -164,10 +164,7 @@ impl Picture {
         bytes
     }
 
-    /// Decode a picture.
-    ///
-    /// # Errors
-    /// [`VisionError`] for the first wrong field.
+    /// Decode a picture. Errors: [`VisionError`] for the first wrong field.
     pub fn decode(bytes: &[u8]) -> Result<Self, VisionError> {
         let (head, rest) = bytes.split_at(bytes.len().min(HEAD));
         let Head { number, parts, seed, cell } = HeadLayout::decode(head)?;

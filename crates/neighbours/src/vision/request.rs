@@ -30,10 +30,7 @@ pub fn encode(request: &VisionRequest) -> [u8; RequestLayout::BYTES] {
     RequestLayout::encode(request)
 }
 
-/// Decode a request.
-///
-/// # Errors
-/// [`VisionError`] for the first wrong field.
+/// Decode a request. Errors: [`VisionError`] for the first wrong field.
 pub fn decode(bytes: &[u8]) -> Result<VisionRequest, VisionError> {
     let request = RequestLayout::decode(bytes)?;
     if request.picture == Picture::None {

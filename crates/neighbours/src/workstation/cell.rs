@@ -71,10 +71,7 @@ pub struct CellLine<'a> {
     pub text: Result<&'a str, LayoutError>,
 }
 
-/// Decodes a line.
-///
-/// # Errors
-/// [`FieldError`] if the number is missing.
+/// Decodes a line. Errors: [`FieldError`] if the number is missing.
 pub fn decode_line(bytes: &[u8]) -> Result<CellLine<'_>, FieldError> {
     let number = bytes.get(..U16::BYTES).ok_or(FieldError::End { field: "number" })?;
     let number = U16::take(At { field: "number", byte: 0 }, number)?;
@@ -87,10 +84,7 @@ impl<'a> CellStatus<'a> {
         CellStatusLayout::encode(self)
     }
 
-    /// Decodes the data of the mailbox.
-    ///
-    /// # Errors
-    /// [`LayoutError`] for the first wrong field.
+    /// Decodes the data of the mailbox. Errors: [`LayoutError`] for the first wrong field.
     pub fn decode(bytes: &'a [u8]) -> Result<Self, LayoutError> {
         CellStatusLayout::decode(bytes)
     }

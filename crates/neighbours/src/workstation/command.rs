@@ -62,18 +62,13 @@ pub enum CommandError {
     NoCommand,
 }
 
-/// Encodes a command as the data of its mailbox.
-///
-/// # Errors
-/// [`RangeError`] for a grip or a sector that two bytes cannot hold.
+/// Encodes a command as the data of its mailbox. Errors: [`RangeError`] for a grip or a sector that two bytes cannot
+/// hold.
 pub fn encode(command: &HwsCommand) -> Result<[u8; CommandLayout::BYTES], RangeError> {
     CommandLayout::check(command).map(|()| CommandLayout::encode(command))
 }
 
-/// Decodes the data of the mailbox. Task checks the words.
-///
-/// # Errors
-/// [`CommandError`] for the first wrong field.
+/// Decodes the data of the mailbox. Task checks the words. Errors: [`CommandError`] for the first wrong field.
 pub fn decode(bytes: &[u8]) -> Result<HwsCommand, CommandError> {
     let command = CommandLayout::decode(bytes)?;
     if command.number == 0 {

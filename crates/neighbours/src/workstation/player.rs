@@ -53,10 +53,8 @@ use super::status::{Status, TaskState};
 use crate::fields::command_number;
 
 pub trait Workstation {
-    /// Begin an action; `line` is its line in the job, without the asterisks.
-    ///
-    /// # Errors
-    /// A sentence with the reason, if the workstation cannot execute the action.
+    /// Begin an action; `line` is its line in the job, without the asterisks. Errors: a sentence with the reason, if
+    /// the workstation cannot execute the action.
     fn begin(&mut self, action: &Action, line: &str) -> Result<(), String>;
 
     /// True while an action is in progress.

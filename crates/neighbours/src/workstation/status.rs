@@ -132,10 +132,7 @@ pub fn encode(
     })
 }
 
-/// Decodes the data of the mailbox.
-///
-/// # Errors
-/// [`LayoutError`] for the first wrong field.
+/// Decodes the data of the mailbox. Errors: [`LayoutError`] for the first wrong field.
 pub fn decode(bytes: &[u8]) -> Result<Status<'_>, LayoutError> {
     StatusLayout::decode(bytes)
 }

@@ -1,8 +1,8 @@
 //! The values with which a table was consulted, for logs, screens and explanations.
 //!
-//! [`Variables::code`](super::Variables::code) packs the values of all state variables into one number, so a process
-//! can store them in its header. Here the number becomes names again, and the text form of the rows is evaluated a
-//! second time. Text and `match` have the same source; a test of the levels compares them.
+//! [`Variables::code`](super::Variables::code) packs the values into one number for the header. Here the number
+//! becomes names again, and the text of the rows is evaluated a second time; a test of the levels compares text and
+//! `match`.
 
 use core::{fmt, slice};
 
@@ -29,8 +29,7 @@ pub struct NearMiss {
     pub row: &'static Row,
 }
 
-/// A row that has fired. If it fires for several values of a variable, its text contains the actual one:
-/// `CLOSE-DOOR row 2: Start, door Stuck, lamp Dark => Close -> Closing`.
+/// A row that has fired, with actual values: `CLOSE-DOOR row 2: Start, door Stuck, lamp Dark => Close -> Closing`.
 #[derive(Clone, Copy, Debug)]
 pub struct Fired {
     /// Its table.
@@ -73,7 +72,7 @@ impl fmt::Display for Fired {
     }
 }
 
-/// The known name if it is among several; otherwise all of them.
+/// The known name if it is among several; otherwise all.
 fn narrowed(names: &'static [&'static str], known: Option<&str>) -> &'static [&'static str] {
     names.iter().find(|name| Some(**name) == known).map_or(names, slice::from_ref)
 }
@@ -93,7 +92,7 @@ impl Variable {
         Some(product)
     }
 
-    /// Number of its values, at most 256.
+    /// At most 256.
     #[expect(clippy::as_conversions, reason = "a constant function cannot convert otherwise")]
     const fn base(&self) -> u64 {
         self.values.variants.len() as u64
@@ -107,8 +106,7 @@ impl Table {
         self.steps?.variants.iter().find(|step| step.code == values.step)
     }
 
-    /// The state variables with their values, in the order of the table. Empty for numbers that are not values of
-    /// this table.
+    /// The variables with their values, in the order of the table; empty for numbers that this table does not have.
     pub fn values(
         &self,
         values: Values,
@@ -134,8 +132,7 @@ impl Table {
         self.rows.iter().find(fits)
     }
 
-    /// The rows that nearly fired: for each other value of each state variable, the row that it would have fired, if
-    /// different. The step is not varied, as it is the memory of the table.
+    /// For each other value of each variable, the row that it would have fired, if different. The step stays the same.
     pub fn near_misses(&self, values: Values) -> impl Iterator<Item = NearMiss> {
         let fired = self.consult(values);
         let others = self.values(values).enumerate().flat_map(move |(at, (variable, now))| {
@@ -148,25 +145,23 @@ impl Table {
         others.filter(move |miss| fired.is_some_and(|fired| fired.number != miss.row.number))
     }
 
-    /// True if the numbers are a step and values of this table.
     fn is_known(&self, values: Values) -> bool {
         let step = self.steps.is_none_or(|steps| steps.variants.iter().any(|step| step.code == values.step));
         step && Variable::combinations(self.variables).is_some_and(|all| values.variables < all)
     }
 
-    /// Weight of a variable's digit in the number: the number of combinations of the variables after it.
+    /// Combinations of the variables after it.
     fn weight(&self, at: usize) -> Option<u64> {
         Variable::combinations(self.variables.get(at.checked_add(1)?..)?)
     }
 
-    /// The value of the variable at a position.
     fn value(&self, at: usize, values: Values) -> Option<&'static VariantSchema> {
         let variable = self.variables.get(at)?;
         let digit = values.variables.checked_div(self.weight(at)?)?.checked_rem(variable.base())?;
         variable.values.variants.iter().find(|value| u64::from(value.code) == digit)
     }
 
-    /// The same values, with one variable changed.
+    /// With one variable changed.
     fn with(&self, at: usize, value: &VariantSchema, values: Values) -> Option<Values> {
         let weight = self.weight(at)?;
         let part = |value: &VariantSchema| u64::from(value.code).checked_mul(weight);
@@ -179,7 +174,6 @@ impl Table {
         value.is_some_and(|value| condition.values.contains(&value.name))
     }
 
-    /// The value of the variable of a name.
     fn value_of(&self, name: &str, values: Values) -> Option<&'static VariantSchema> {
         self.value(self.variables.iter().position(|variable| variable.name == name)?, values)
     }
@@ -298,7 +292,7 @@ mod tests {
             let misses = CLOSE_DOOR.near_misses(values);
             misses.map(|miss| (miss.variable.name, miss.value.name, miss.row.number)).collect::<Vec<_>>()
         };
-        // Stuck fires row 2 like Open: not a near miss.
+        // Stuck fires row 2 like Open.
         assert_eq!(
             misses(CloseDoorStep::Start, Door::Open, Lamp::Dark),
             [("door", "Shut", 3), ("lamp", "Lit", 1)]

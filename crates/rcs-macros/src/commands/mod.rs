@@ -20,22 +20,20 @@ pub struct Commands {
     attributes: Vec<Attribute>,
     vis: Visibility,
     decide: Ident,
-    /// True if the steps of all commands form a new enum with a variant per table.
+    /// The steps of all commands form a new enum with a variant per table.
     declared: bool,
     step: Ident,
     verb: Path,
     situation: Path,
-    /// The type that senses the variables, if the situation is a new enum with a variant per entry.
+    /// Given if the situation is a new enum with a variant per entry.
     senses: Option<Path>,
     action: Path,
-    /// Tables that no command selects, in the order of their numbers.
-    others: Vec<Path>,
-    /// Their order of consultation.
+    others: Vec<Path>, // selected by no command, in the order of their numbers
     order: Option<Order>,
     entries: Vec<Entry>,
 }
 
-/// Commands, their goal, and the tables to consult in turn until one decides.
+/// The tables are consulted in turn until one decides.
 struct Entry {
     verbs: Vec<Ident>,
     goal: Path,
@@ -125,18 +123,18 @@ impl Parse for Entry {
 }
 
 impl Entry {
-    /// The last table of the chain: its steps are those of the command.
+    /// The last table of the chain, whose steps are those of the command.
     fn last(&self) -> &Path {
         self.chain.last().unwrap_or_else(|| unreachable!("a chain is not empty"))
     }
 
-    /// Its variant of the enum of all situations: its last command.
+    /// Named after its last command.
     fn variant(&self) -> &Ident {
         self.verbs.last().unwrap_or_else(|| unreachable!("an entry has a command"))
     }
 }
 
-/// The path with another last name; a table MOVE is decided by `r#move`.
+/// The path with another last name; `r#move` decides for a table MOVE.
 fn beside(path: &Path, name: impl FnOnce(&str) -> String) -> Path {
     let mut path = path.clone();
     if let Some(last) = path.segments.last_mut() {
@@ -169,7 +167,7 @@ fn situation_of(table: &Path) -> Path {
     beside(table, |name| format!("{}Situation", names::camel(name)))
 }
 
-/// The paths without duplicates, in the order of their first occurrence.
+/// In the order of their first occurrence.
 fn once(paths: impl Iterator<Item = Path>) -> Vec<Path> {
     let mut all = Vec::new();
     for path in paths {
@@ -181,13 +179,12 @@ fn once(paths: impl Iterator<Item = Path>) -> Vec<Path> {
 }
 
 impl Commands {
-    /// All tables in the order of their numbers.
+    /// In the order of their numbers.
     fn tables(&self) -> Vec<Path> {
         let tables = self.entries.iter().flat_map(|entry| &entry.chain).map(static_of);
         once(self.others.iter().cloned().chain(tables))
     }
 
-    /// The path of a table that no command selects.
     fn other(&self, name: &Ident) -> Result<&Path> {
         let is_it = |path: &&Path| path.segments.last().is_some_and(|last| last.ident == *name);
         self.others
@@ -235,7 +232,7 @@ impl Commands {
         }
     }
 
-    /// The enum of the situations of all commands, with only the variables that the tables of each command test.
+    /// An enum with only the variables that the tables of each command test.
     fn situations(&self) -> TokenStream {
         let Some(senses) = &self.senses else { return TokenStream::new() };
         let (vis, name, verb) = (&self.vis, &self.situation, &self.verb);
@@ -310,7 +307,7 @@ impl Commands {
         }
     }
 
-    /// The match arm of a command: its tables in turn.
+    /// The tables of a command in turn.
     fn arm(&self, entry: &Entry, tables: &[Path]) -> TokenStream {
         let (verb, all) = (&self.verb, &self.step);
         let last = entry.last();
@@ -369,8 +366,8 @@ impl Commands {
     }
 }
 
-/// Generate the enum of all steps, the goals of the commands, the list of all tables, their numbers, the function
-/// that consults the table of a command, and the function that consults all tables in the declared order.
+/// Generates steps, goals, list and numbers of tables, and the functions that consult them for a command and in the
+/// declared order.
 pub fn expand(input: TokenStream) -> Result<TokenStream> {
     let commands: Commands = parse2(input)?;
     let Commands { vis, others, .. } = &commands;
@@ -409,7 +406,6 @@ mod tests {
     #[test]
     fn situation_of_a_command_has_the_variables_of_its_tables() {
         let list = "
-            /// Consult the tables of a command.
             fn of_command(Verb, enum Step, enum Situation of Senses) -> Action {
                 Pause: goals::REST => pause::pause;
                 Go: goals::PLACE => go::go then motion::motion;

@@ -1,5 +1,3 @@
-//! The declared order of the tables of a process, and the function that consults them.
-
 use proc_macro2::TokenStream;
 use quote::{quote, quote_spanned};
 use syn::{
@@ -18,10 +16,8 @@ mod word {
 
 /// `before: EXECUTE, HALT, ACCEPT(request), ORDERED(subordinates -> situation.work); after: EFFECT, CONFIRM;`
 pub struct Order {
-    /// Tables to consult before that of the command.
-    before: Vec<Before>,
-    /// Tables about the row that fired.
-    after: Vec<After>,
+    before: Vec<Before>, // before that of the command
+    after: Vec<After>,   // about the row that fired
 }
 
 struct Before {
@@ -29,31 +25,24 @@ struct Before {
     how: How,
 }
 
-/// A table about the row that fired: `CONFIRM`, `EFFECT`, or `EFFECT(advance)`.
+/// `CONFIRM`, `EFFECT`, or `EFFECT(advance)`: about the row that fired.
 struct After {
     table: Ident,
-    /// The field of `StateVariables` that is true if the command has advanced since its last order.
+    /// In `StateVariables`: true if the command has advanced since its last order.
     advance: Option<Ident>,
 }
 
-/// The way in which it is consulted.
 enum How {
-    /// A table of all processes, consulted by `Execution`.
-    Common,
-    /// `JOYSTICK by joystick`: consulted by this method of the process's state.
-    By(Ident),
-    /// `ORDERED(subordinates -> situation.work)`: a row decides with the variables of this field, or passes a value
-    /// on.
+    Common,    // in all processes, consulted by `Execution`
+    By(Ident), // `JOYSTICK by joystick`: a method of the state
+    /// `ORDERED(subordinates -> situation.work)`: a row decides with this field, or passes a value on.
     Row(Row),
 }
 
 struct Row {
-    /// The field of `StateVariables` with its variables.
-    variables: Ident,
-    /// `in link`: the field of the state with its step.
-    step: Option<Ident>,
-    /// The field of `StateVariables` that receives the passed value.
-    passes: Option<Passes>,
+    variables: Ident,       // in `StateVariables`
+    step: Option<Ident>,    // `in link`: the field of the state with its step
+    passes: Option<Passes>, // receives the passed value
 }
 
 /// `-> situation.work`, or `-> situation` if each table has its own struct.
@@ -101,7 +90,6 @@ impl Parse for After {
 }
 
 impl Order {
-    /// The order, if the list declares one.
     pub fn parse(input: ParseStream<'_>) -> Result<Option<Self>> {
         if input.parse::<Option<word::before>>()?.is_none() {
             return Ok(None);
@@ -123,7 +111,7 @@ impl Order {
         Ok(Some(order))
     }
 
-    /// EXECUTE must be first. Tables that can withhold the command precede the others.
+    /// EXECUTE is first; tables that can withhold the command precede the others.
     fn check(&self) -> Result<()> {
         let mut rows = false;
         for (position, Before { table, how }) in self.before.iter().enumerate() {
@@ -153,7 +141,7 @@ impl Order {
         }
     }
 
-    /// The lines of the documentation with the order of consultation.
+    /// The order of consultation in the documentation.
     fn documentation(&self, commands: &Commands) -> Result<Vec<String>> {
         let mut lines = vec![
             String::from("Consult the tables in the declared order until a row decides:"),
@@ -259,7 +247,7 @@ impl Order {
 }
 
 impl Row {
-    /// Return the decision of a row, or store the value that it passes on.
+    /// Returns the decision of a row, or stores the value that it passes on.
     fn consult(&self, table: &Ident, path: &Path) -> TokenStream {
         let (function, variables) = (beside(path, str::to_lowercase), &self.variables);
         let (step, decided) = match &self.step {
@@ -311,7 +299,6 @@ mod tests {
         expand(order).expect_err(order).to_string()
     }
 
-    /// Assert that the texts occur in the code in this order.
     fn assert_in_order(code: &str, texts: &[&str]) {
         let mut rest = code;
         for text in texts {

@@ -17,15 +17,15 @@ pub struct Table {
     pub decide: Ident,
     pub step: Option<Step>,
     pub situation: Path,
-    /// The type that senses the variables, if the table declares a struct of the variables that its rows name.
+    /// Given if the table declares a struct of the variables that its rows name.
     pub senses: Option<Path>,
     pub action: Path,
-    /// The value that a row passes on if it does not decide.
+    /// Passed on by a row that does not decide.
     pub passed: Option<Passed>,
     pub groups: Vec<StepGroup>,
 }
 
-/// The type of the steps: declared by the groups of the table, or named.
+/// Declared by the groups of the table, or named.
 pub enum Step {
     Declared(Ident),
     Named(Path),
@@ -36,7 +36,7 @@ pub enum Passed {
     Value(Path),
 }
 
-/// Rows for the named steps; for any step if none is named.
+/// For any step if none is named.
 pub struct StepGroup {
     pub attributes: Vec<Attribute>,
     pub steps: Vec<Ident>,
@@ -199,7 +199,7 @@ impl Parse for Row {
 }
 
 impl Row {
-    /// True if the row does not decide and the next table is consulted.
+    /// The row does not decide: the next table is consulted.
     pub fn is_passed(&self) -> bool {
         self.action == "consult"
     }
@@ -210,7 +210,7 @@ impl Table {
         self.groups.iter().flat_map(|group| group.rows.iter().map(move |row| (group, row)))
     }
 
-    /// Errors for which the compiler's message would be unclear.
+    /// Only errors for which the compiler's message would be unclear.
     fn check(&self) -> Result<()> {
         for ((_, row), expected) in self.rows().zip(1_u8..) {
             if row.number.base10_parse::<u8>()? != expected {

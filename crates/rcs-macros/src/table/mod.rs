@@ -10,7 +10,7 @@ use self::form::{Condition, Passed, Row, Step, StepGroup, Table};
 use crate::{names, variables};
 
 impl Table {
-    /// The type of the steps in a pattern or an expression, at `span`.
+    /// In a pattern or an expression, at `span`.
     fn step_type(&self, span: Span) -> TokenStream {
         match &self.step {
             Some(Step::Declared(name)) => respan(quote!(#name), span),
@@ -19,8 +19,7 @@ impl Table {
         }
     }
 
-    /// The pattern of a row. Its brackets have the span of the row's number, so the compiler underlines a dead row
-    /// there.
+    /// The brackets have the span of the row's number, where the compiler underlines a dead row.
     fn pattern(&self, group: &StepGroup, row: &Row) -> TokenStream {
         let span = row.number.span();
         let situation = respan_path(&self.situation, span);
@@ -72,7 +71,7 @@ impl Table {
         quote!(#pattern => (#number, #action::#name #argument, #next),)
     }
 
-    /// The enum of the steps, if the table declares it: a variant per step whose group has a doc comment.
+    /// A variant per step whose group has a doc comment.
     fn steps(&self) -> TokenStream {
         let Some(Step::Declared(name)) = &self.step else { return TokenStream::new() };
         let declared = self.groups.iter().filter(|group| !group.attributes.is_empty());
@@ -86,7 +85,7 @@ impl Table {
         }
     }
 
-    /// The variables that the rows name, without duplicates.
+    /// Without duplicates.
     fn asked(&self) -> Vec<&Ident> {
         let mut asked: Vec<&Ident> = Vec::new();
         for Condition { variable, .. } in self.rows().flat_map(|(_, row)| &row.conditions) {
@@ -97,7 +96,6 @@ impl Table {
         asked
     }
 
-    /// The struct of the state variables, if the table declares it.
     fn situation(&self) -> TokenStream {
         let (Some(senses), Some(name)) = (&self.senses, self.situation.get_ident()) else {
             return TokenStream::new();
@@ -140,7 +138,7 @@ impl Table {
         }
     }
 
-    /// The name in the manual's spelling: `GET_OBJECT` is `GET-OBJECT`.
+    /// In the manual's spelling: `GET_OBJECT` is `GET-OBJECT`.
     fn title(&self) -> String {
         self.name.to_string().replace('_', "-")
     }
@@ -172,7 +170,7 @@ impl Table {
         texts.collect()
     }
 
-    /// The rows as a table of the documentation.
+    /// A table of the documentation.
     fn documentation(&self) -> String {
         let names = |names: &[Ident]| names.iter().map(ToString::to_string).collect::<Vec<_>>().join(" or ");
         let mut text =
@@ -192,7 +190,7 @@ impl Table {
     }
 }
 
-/// The same tokens at another position of the source.
+/// The tokens at another position of the source.
 fn respan(tokens: TokenStream, span: Span) -> TokenStream {
     let moved = tokens.into_iter().map(|mut token| {
         token.set_span(span);
@@ -205,7 +203,7 @@ fn respan_path(path: &Path, span: Span) -> TokenStream {
     respan(quote!(#path), span)
 }
 
-/// The hidden module of a type, in which the name of a field or action denotes its type.
+/// A hidden module, in which the name of a field or action denotes its type.
 fn hidden(of: &Path, span: Span) -> TokenStream {
     let mut path = of.clone();
     if let Some(last) = path.segments.last_mut() {
@@ -214,7 +212,6 @@ fn hidden(of: &Path, span: Span) -> TokenStream {
     respan_path(&path, span)
 }
 
-/// Generate the table as text, the enum of its steps, and the function that decides.
 pub fn expand(input: TokenStream) -> Result<TokenStream> {
     let table: Table = parse2(input)?;
     let Table { attributes, vis, name, decide, situation, action, .. } = &table;
@@ -283,7 +280,7 @@ pub fn expand(input: TokenStream) -> Result<TokenStream> {
 mod tests {
     use super::*;
 
-    /// The code block of a page that begins with a text.
+    /// The code block of a page that begins with `begin`.
     fn block(page: &str, begin: &str) -> TokenStream {
         let mut blocks = page.split("```rust\n").skip(1).filter_map(|rest| rest.split_once("```"));
         let (code, _) = blocks.find(|(code, _)| code.starts_with(begin)).expect("the page has the block");

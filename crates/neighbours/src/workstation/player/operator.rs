@@ -129,10 +129,7 @@ impl Hwsc {
         self.intervention.news.take()
     }
 
-    /// Makes the job wait when the current line has ended, or before its first line.
-    ///
-    /// # Errors
-    /// [`OperatorError::Ended`].
+    /// Makes the job wait when the current line has ended, or before its first line. Errors: [`OperatorError::Ended`].
     pub fn wait_for_operator(&mut self) -> Result<(), OperatorError> {
         self.not_ended()?;
         if matches!(self.intervention.state, State::Plays) {
@@ -141,29 +138,20 @@ impl Hwsc {
         Ok(())
     }
 
-    /// Continues the job with the line that was interrupted or has failed, after a PAUSE as after every
-    /// interruption. An action of the workstation that is still in progress is not started again.
-    ///
-    /// # Errors
-    /// [`OperatorError`].
+    /// Continues the job with the line that was interrupted or has failed, after a PAUSE as after every interruption.
+    /// An action of the workstation that is still in progress is not started again. Errors: [`OperatorError`].
     pub fn go_on(&mut self, tick: Tick) -> Result<(), OperatorError> {
         self.resume(tick, false)
     }
 
-    /// Continues the job after the line that was interrupted or has failed. The caller must ensure that the
-    /// cell is in the state that the skipped line would have produced.
-    ///
-    /// # Errors
-    /// [`OperatorError`].
+    /// Continues the job after the line that was interrupted or has failed. The caller must ensure that the cell is in
+    /// the state that the skipped line would have produced. Errors: [`OperatorError`].
     pub fn skip(&mut self, tick: Tick) -> Result<(), OperatorError> {
         self.resume(tick, true)
     }
 
-    /// Replaces the rest of the waiting job by other lines: sends PAUSE, then the first of them. Discards the
-    /// job's delayed actions and recorded failures.
-    ///
-    /// # Errors
-    /// [`OperatorError`].
+    /// Replaces the rest of the waiting job by other lines: sends PAUSE, then the first of them. Discards the job's
+    /// delayed actions and recorded failures. Errors: [`OperatorError`].
     pub fn play(&mut self, tick: Tick, steps: Vec<JobLine>) -> Result<(), OperatorError> {
         self.not_ended()?;
         let State::Waits { failure, before_line, command } = &self.intervention.state else {
@@ -208,10 +196,7 @@ impl Hwsc {
         self.intervention.state = State::Waits { failure: None, before_line: true, command: None };
     }
 
-    /// Sends a command of the operator. The job waits from now on.
-    ///
-    /// # Errors
-    /// [`OperatorError::Ended`].
+    /// Sends a command of the operator. The job waits from now on. Errors: [`OperatorError::Ended`].
     pub fn command_by_operator(
         &mut self,
         tick: Tick,
