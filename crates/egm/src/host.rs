@@ -232,7 +232,7 @@ impl Host {
         }
     }
 
-    /// At `now`, ns, within the limits from the previous target.
+    /// The target at `now`, ns, within the limits from the previous one.
     fn target(&mut self, now: u64) -> Sent {
         let Some(sent) = self.sent else {
             let (pose, speed) = self.path.target(now);
@@ -260,7 +260,7 @@ impl Host {
         Sent { at, pose, speed, lag: pose.distance(&self.feedback) }
     }
 
-    /// After a gap: without messages a robot continues with its last speed reference. The next target may be at most
+    /// Checked after a gap, in which a robot continues with its last speed reference. The next target may be at most
     /// as far as its earlier lag, plus the distance that the limits allow in the longest permitted gap.
     fn has_kept_up(&self, sent: &Sent, target: &Pose) -> bool {
         let (way, turn) = target.distance(&self.feedback);

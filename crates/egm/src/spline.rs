@@ -6,7 +6,7 @@
 
 use crate::pose::{Pose, Twist, add, from_rotation_vector, product, rotate, scaled};
 
-/// At `u`, 0 to 1.
+/// The cumulative basis functions of the three steps at `u`, 0 to 1.
 fn basis(u: f64) -> [f64; 3] {
     let (square, cube) = (u * u, u * u * u);
     [
@@ -16,7 +16,7 @@ fn basis(u: f64) -> [f64; 3] {
     ]
 }
 
-/// With respect to `u`.
+/// The derivatives of the basis functions with respect to `u`.
 fn slope(u: f64) -> [f64; 3] {
     let square = u * u;
     [(1.0 - u) * (1.0 - u) / 2.0, (1.0 + 2.0 * u - 2.0 * square) / 2.0, square / 2.0]

@@ -25,7 +25,7 @@ enum Event {
     Double,           // the last message again
     Pushed([f64; 3]), // the robot is moved there
     States(u8),
-    /// At the sample's start pose, or at another.
+    /// A path begins at the sample's start pose, or at another.
     Begin {
         astray: bool,
     },

@@ -170,7 +170,7 @@ mod proto {
     }
 }
 
-/// Converts to messages of `prost`.
+/// Converts messages to those of `prost`.
 mod same {
     use super::*;
 
@@ -392,7 +392,7 @@ proptest! {
     }
 }
 
-/// Computed by hand.
+/// The bytes of a message, computed by hand.
 #[test]
 fn a_target_is_these_bytes() {
     let pose = egm::Pose { position: [1.0, 2.0, -2.0], ..egm::Pose::IDENTITY };

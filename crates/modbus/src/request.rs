@@ -196,7 +196,7 @@ impl<'a> Request<'a> {
         Ok(request)
     }
 
-    /// The bytes after the header.
+    /// Writes the bytes after the header.
     pub(crate) fn emit(&self, data: &mut Writer<'_>) -> Result<(), Error> {
         self.check()?;
         data.byte(self.function())?;
@@ -254,7 +254,7 @@ pub(crate) fn bits_range(first: u16, bits: Bits<'_>) -> Range {
     Range { first, count: u16::try_from(bits.len()).unwrap_or(u16::MAX) }
 }
 
-/// As [`bits_range`].
+/// The range of registers, as [`bits_range`].
 pub(crate) fn words_range(first: u16, words: Words<'_>) -> Range {
     Range { first, count: u16::try_from(words.len()).unwrap_or(u16::MAX) }
 }

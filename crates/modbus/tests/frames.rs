@@ -5,7 +5,7 @@ use modbus::{
     request::Range, server,
 };
 
-/// With the values of the examples.
+/// A device with the values of the examples.
 #[derive(Default)]
 struct Device {
     coils: Vec<(u16, bool)>,
@@ -169,7 +169,7 @@ fn exception_has_the_bytes_of_7() {
     check(request, &[1, 4, 0xA1, 0, 1], &[0x81, 2], refused);
 }
 
-/// From body to body.
+/// The body of the answer to the body of a request.
 fn answer_of(body: &[u8]) -> Vec<u8> {
     let mut buffer = [0xA5; MOST_FRAME_BYTES];
     let length = server::answer(&frame(body), &mut Device::default(), &mut buffer).unwrap();

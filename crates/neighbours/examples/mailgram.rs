@@ -23,7 +23,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         println!("{:>3}  {:<47}  {text}", 16 * line, hex.join(" "));
     }
     println!("{}", decode(&bytes)?);
-    // A damaged mailbox is refused with an error message.
+    // Refused with an error message.
     if let Err(error) = decode(&[0xff; 3]) {
         println!("3 bytes of 255: {error}");
     }

@@ -6,41 +6,34 @@ use rcs_core::name::Name16;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FieldError {
-    /// The data end before the end of the field.
+    /// The data end too early.
     End {
-        /// The field, in the manual's words.
-        field: &'static str,
+        field: &'static str, // in the manual's words
     },
-    /// A character that is not allowed in a name.
+    /// A character that a name cannot have.
     Character {
-        /// The field, in the manual's words.
-        field: &'static str,
-        /// Offset of the character in the data, bytes.
-        at: usize,
+        field: &'static str, // in the manual's words
+        at: usize,           // byte in the data
         found: u8,
     },
-    /// The word is not a value of the field.
+    /// Not a value of the field.
     Word {
-        /// The field, in the manual's words.
-        field: &'static str,
+        field: &'static str, // in the manual's words
         found: Name16,
     },
     /// The integer differs from the required one.
     Expected {
-        /// The field, in the manual's words.
-        field: &'static str,
+        field: &'static str, // in the manual's words
         expected: &'static str,
         found: u16,
     },
-    /// The floating-point number is infinite or NaN.
+    /// The number is infinite or NaN.
     Infinite {
-        /// The field, in the manual's words.
-        field: &'static str,
+        field: &'static str, // in the manual's words
     },
-    /// The code is not a value of the field.
+    /// Not a value of the field.
     Code {
-        /// The field, in the manual's words.
-        field: &'static str,
+        field: &'static str, // in the manual's words
         found: u16,
     },
 }
@@ -67,24 +60,21 @@ impl fmt::Display for FieldError {
 
 impl std::error::Error for FieldError {}
 
-/// The integer does not fit into two bytes.
+/// Two bytes cannot hold the integer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("an integer of two bytes was expected for {field}, found {found}")]
 pub struct RangeError {
-    /// The field, in the manual's words.
-    pub field: &'static str,
+    pub field: &'static str, // in the manual's words
     pub found: i32,
 }
 
-/// Converts the controller's four-byte command number to the manual's two bytes. 1 follows 65535, because 0
-/// means no command.
+/// Four bytes of the controller to the manual's two. 1 follows 65535, because 0 means no command.
 #[must_use]
 pub fn command_number(number: u32) -> u16 {
     let wrapped = number.checked_sub(1).map_or(0, |before| before % u32::from(u16::MAX) + 1);
     u16::try_from(wrapped).unwrap_or_default()
 }
 
-/// The command number after this one.
 #[must_use]
 pub fn successor(number: u16) -> u16 {
     number.checked_add(1).unwrap_or(1)

@@ -1,8 +1,8 @@
 //! Mailboxes of the factory network (IX, Table IX.1).
 //!
-//! A mailbox is an area of common memory of fixed size at a fixed address: its length, a mailgram number, a
-//! read and a write lock, and data. Figure IX.1, which gave order and sizes of the first four, is lost. CHOSEN
-//! here: four 16-bit words in the order of the text, low byte first as in the processors of the boards.
+//! A mailbox is an area of fixed size at a fixed address of common memory: length, mailgram number, read and write
+//! lock, data. Figure IX.1, with their order and sizes, is lost. CHOSEN: four 16-bit words in the order of the text,
+//! low byte first as in the processors of the boards.
 //!
 //! ```text
 //!   byte  0        2            4          6           8 ...
@@ -11,16 +11,13 @@
 
 use std::fmt;
 
-/// Bytes before the data (CHOSEN, see above).
-pub const HEAD: usize = 8;
+pub const HEAD: usize = 8; // bytes before the data (CHOSEN)
 
-/// A mailbox of Table IX.1.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Place {
     pub name: &'static str,
     pub address: u32,
-    /// Size including the head, bytes.
-    pub size: usize,
+    pub size: usize, // bytes, including the head
 }
 
 pub const HWSC_COMMAND: Place = Place { name: "HWSC to RCS Command", address: 0xF_6000, size: 256 };
@@ -36,27 +33,25 @@ pub const PEDESTAL_GRIPPER_STATUS: Place =
 pub const PEDESTAL_TABLE_STATUS: Place =
     Place { name: "Pedestal Table to RCS Status", address: 0xF_5900, size: 256 };
 
-/// Workstation to Cell Command: not in the table. Actions of the workstation itself (vise, trays, machine) for the
-/// simulated cell.
+/// Not in the table: actions of the workstation (vise, trays, machine) in the simulated cell.
 pub const CELL_COMMAND: Place = Place { name: "Workstation to Cell Command", address: 0xF_6400, size: 256 };
-/// Workstation from Cell Status: not in the table.
+/// Not in the table.
 pub const CELL_STATUS: Place = Place { name: "Workstation from Cell Status", address: 0xF_6600, size: 256 };
 
-/// Pedestal from Cell Sensors: not in the table. Sensor words of the pedestal's devices in the simulated cell.
+/// Not in the table: sensor words of the pedestal's devices in the simulated cell.
 pub const PEDESTAL_SENSORS: Place =
     Place { name: "Pedestal from Cell Sensors", address: 0xF_5C00, size: 256 };
-/// Pedestal to Cell Orders: not in the table.
+/// Not in the table.
 pub const PEDESTAL_ORDERS: Place = Place { name: "Pedestal to Cell Orders", address: 0xF_5E00, size: 256 };
-/// Vision from RCS Request: the request areas of the vision mailbox (IX.4). Figure IX.3 is lost; address and
-/// size are CHOSEN.
+/// The request areas of the vision mailbox (IX.4). Figure IX.3 is lost; address and size CHOSEN.
 pub const VISION_REQUEST: Place = Place { name: "Vision from RCS Request", address: 0xF_8000, size: 256 };
-/// Vision to RCS Response: the ready words and the response areas of the vision mailbox. Address and size CHOSEN.
+/// Ready words and response areas of the vision mailbox; address and size CHOSEN.
 pub const VISION_RESPONSE: Place = Place { name: "Vision to RCS Response", address: 0xF_8200, size: 256 };
-/// Vision from Cell Picture: not in the manual. The picture of the camera in the simulated cell.
+/// Not in the manual: the picture of the simulated camera.
 pub const VISION_PICTURE: Place =
     Place { name: "Vision from Cell Picture", address: 0xF_8400, size: MAX_SIZE };
 
-/// The mailboxes of Table IX.1, in its order.
+/// The mailboxes in the order of Table IX.1.
 pub const TABLE: [Place; 8] = [
     HWSC_COMMAND,
     HWSC_STATUS,
@@ -68,16 +63,15 @@ pub const TABLE: [Place; 8] = [
     PEDESTAL_TABLE_STATUS,
 ];
 
-/// Errors of mailbox images and data.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum MailboxError {
-    /// The data do not fit into the mailbox.
+    /// The data do not fit.
     #[error("{mailbox}: at most {room} bytes of data were expected, found {found}")]
     TooLong { mailbox: Place, room: usize, found: usize },
-    /// The image of the mailbox has the wrong size.
+    /// The image has the wrong size.
     #[error("{mailbox}: {} bytes were expected, found {found}", .mailbox.size)]
     Size { mailbox: Place, found: usize },
-    /// The length word is greater than the mailbox size or less than the head.
+    /// The length word exceeds the mailbox, or is less than the head.
     #[error("{mailbox}: a length of {HEAD} to {} was expected, found {found}", .mailbox.size)]
     Length { mailbox: Place, found: u16 },
 }
@@ -88,19 +82,16 @@ impl fmt::Display for Place {
     }
 }
 
-/// Size of the largest mailbox, bytes.
-pub const MAX_SIZE: usize = 4096;
+pub const MAX_SIZE: usize = 4096; // bytes
 
-/// A mailbox: the data that a process writes or has read. Writing and copying do not allocate.
+/// The data that a process writes or has read. Writing and copying do not allocate.
 #[derive(Debug)]
 pub struct Mailbox {
     place: Place,
-    /// The bytes after the size of the mailbox are zero.
-    bytes: [u8; MAX_SIZE],
+    bytes: [u8; MAX_SIZE], // zero after the size of the mailbox
 }
 
-/// `clone_from` copies only the bytes of this mailbox: most are far smaller than the largest, and are copied in
-/// every tick.
+/// Most mailboxes are small and copied in every tick: `clone_from` copies only the used bytes.
 impl Clone for Mailbox {
     fn clone(&self) -> Self {
         Self { place: self.place, bytes: self.bytes }
@@ -125,7 +116,7 @@ impl PartialEq for Mailbox {
 impl Eq for Mailbox {}
 
 impl Mailbox {
-    /// An initialized mailbox (IX): its length word, zeros, and no data.
+    /// IX: length word, zeros, no data.
     #[must_use]
     pub fn initialized(place: Place) -> Self {
         let mut mailbox = Self { place, bytes: [0; MAX_SIZE] };
@@ -138,12 +129,12 @@ impl Mailbox {
         self.place
     }
 
-    /// Initializes the mailbox again (IX): no data, mailgram number 0.
+    /// IX: no data, mailgram number 0.
     pub fn initialize(&mut self) {
         *self = Self::initialized(self.place);
     }
 
-    /// A mailbox from its image. Errors: [`MailboxError`] if the size or the length word is wrong.
+    /// Errors: the size or the length word is wrong.
     pub fn from_image(place: Place, image: &[u8]) -> Result<Self, MailboxError> {
         if image.len() != place.size {
             return Err(MailboxError::Size { mailbox: place, found: image.len() });
@@ -158,8 +149,7 @@ impl Mailbox {
         }
     }
 
-    /// Copies head and data received from the network, without the unused rest. An error leaves the mailbox unchanged.
-    /// Errors: [`MailboxError::Length`] if the length word differs from the number of bytes, or exceeds the mailbox.
+    /// Copies received head and data. An error leaves the mailbox unchanged: [`MailboxError::Length`].
     pub fn receive(&mut self, used: &[u8]) -> Result<(), MailboxError> {
         let found = used.first_chunk().map_or(0, |word| u16::from_le_bytes(*word));
         let legal = (HEAD..=self.place.size).contains(&used.len()) && used.len() == usize::from(found);
@@ -172,15 +162,14 @@ impl Mailbox {
         Ok(())
     }
 
-    /// Head and data, without the unused rest, as the network carries them.
+    /// Head and data, as the network carries them.
     #[must_use]
     pub fn used(&self) -> &[u8] {
         &self.bytes[..usize::from(self.word(0))]
     }
 
-    /// Writes data and increments the mailgram number, so that the network sends the mailbox (IX). After 65535 the
-    /// number is 1, because 0 is the value after initialization. Errors: [`MailboxError::TooLong`]. The mailbox is
-    /// then unchanged.
+    /// Increments the mailgram number, so that the network sends the mailbox (IX). 1 follows 65535, because 0 is the
+    /// value after initialization. After [`MailboxError::TooLong`] the mailbox is unchanged.
     pub fn write(&mut self, data: &[u8]) -> Result<(), MailboxError> {
         let room = self.place.size - HEAD;
         if data.len() > room {
@@ -200,13 +189,13 @@ impl Mailbox {
         &self.bytes[HEAD..usize::from(self.word(0))]
     }
 
-    /// Mailgram number: 0 after initialization, incremented by each write.
+    /// 0 after initialization, incremented by each write.
     #[must_use]
     pub fn mailgram(&self) -> u16 {
         self.word(2)
     }
 
-    /// All bytes, head included.
+    /// All bytes, with the head.
     #[must_use]
     pub fn image(&self) -> &[u8] {
         &self.bytes[..self.place.size]
@@ -216,7 +205,7 @@ impl Mailbox {
         u16::from_le_bytes([self.bytes[at], self.bytes[at + 1]])
     }
 
-    /// Sets the length word. `length` is at most the size of the mailbox, which fits into a word.
+    /// `length` is at most the size of the mailbox, which fits into a word.
     fn set_length(&mut self, length: usize) {
         let length = u16::try_from(length).unwrap_or(u16::MAX);
         self.bytes[..2].copy_from_slice(&length.to_le_bytes());

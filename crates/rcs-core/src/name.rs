@@ -7,7 +7,7 @@ use crate::{
     plain::{DecodeError, Reader, Schema, Writer},
 };
 
-/// At most `N` printable ASCII characters without blanks, zero-filled, so that equal names have equal bytes.
+/// A name: at most `N` printable ASCII characters, no blanks, zero-filled, so that equal names have equal bytes.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[repr(transparent)]
 pub struct Name<const N: usize>([u8; N]);

@@ -387,7 +387,7 @@ impl fmt::Display for Condition {
     }
 }
 
-/// `Closing, door Stuck => Fail(DoorStuck)`.
+/// The row as text: `Closing, door Stuck => Fail(DoorStuck)`.
 impl fmt::Display for Row {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{} => {}", self.conditions(), self.effect())

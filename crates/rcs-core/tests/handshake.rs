@@ -175,7 +175,7 @@ impl State {
         Ok(())
     }
 
-    /// Without further faults the last command is answered, or a vanished receiver is detected.
+    /// True if, without further faults, the last command is answered or a vanished receiver is detected.
     fn is_answered(mut self, start: Start) -> Result<(), Wrong> {
         let mut gone = self;
         let (mut reading, mut lost) = (Lower::Pending, Lower::Pending);
@@ -213,7 +213,7 @@ struct Found {
     wrong: Option<(Vec<Event>, Wrong)>,
 }
 
-/// With predecessor and the tick between.
+/// The known states, each with its predecessor and the tick between.
 type Known = HashMap<State, Option<(State, Event)>>;
 
 fn way(known: &Known, mut state: State, last: Option<Event>) -> Vec<Event> {

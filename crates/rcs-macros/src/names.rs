@@ -57,7 +57,7 @@ pub fn text_style(attributes: &[Attribute]) -> String {
     style.unwrap_or_default()
 }
 
-/// As part of a sentence: `The fingers are stuck.` is `the fingers are stuck`.
+/// A doc comment in a sentence: `The fingers are stuck.` is `the fingers are stuck`.
 pub fn clause(doc: &str) -> String {
     let mut letters = doc.trim_end_matches('.').chars();
     letters.next().map(|first| first.to_lowercase().chain(letters).collect()).unwrap_or_default()

@@ -1,4 +1,4 @@
-//! The items in memory: a value that can be cloned, with the same answers as the database in a file.
+//! The items in memory: a value that can be cloned, with the same answers as a database in a file.
 
 use std::{collections::BTreeMap, convert::Infallible};
 
@@ -10,7 +10,7 @@ struct Client {
     last: (u16, String),
 }
 
-/// The items and the clients' connections, without the history of the items.
+/// Items and connections, without the history of the items.
 #[derive(Clone, Debug, Default)]
 pub struct Books {
     clients: BTreeMap<String, Client>,

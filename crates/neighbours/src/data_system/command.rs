@@ -1,7 +1,6 @@
 //! The command buffer of Figure IX.2, byte by byte.
 //!
-//! There are two kinds: a reconfiguration command has 28 bytes, a DML command 240. The bytes are nested tagged
-//! fields; their lengths differ between the two kinds:
+//! A reconfiguration command has 28 bytes, a DML command 240. Tagged fields are nested; their lengths differ:
 //!
 //! ```text
 //!   at   bytes                variable                         28 bytes    240 bytes
@@ -17,31 +16,25 @@
 //!   32       106 + 102 bytes  the DML string, see STRING       -           yes
 //! ```
 //!
-//! The manual gives the values of the 28-byte command and says that DSClen, TRNSlen and TYPEindc are changed for a DML
-//! command. The lengths follow by counting. Of TYPEindc it gives only the initial value, 0x55; CHOSEN: 0x55 is the
-//! first command of a connection (ABORT), 0x56 INITIATE, 0x57 STARTUP, 0x58 DML. Also CHOSEN: trans-id# is the number
-//! of an update, which is executed once even if it is sent repeatedly; 0 means no number. Numbers are stored low byte
-//! first, lengths of the protocol high byte first, like the values in the figure.
+//! The manual gives the values of the 28-byte command, and says that DSClen, TRNSlen and TYPEindc change for a DML
+//! command. The lengths follow by counting. CHOSEN: TYPEindc 0x55 (its initial value) is ABORT, 0x56 INITIATE, 0x57
+//! STARTUP, 0x58 DML; trans-id# is the number of an update, which is executed once however often it is sent, and 0
+//! means no number. Numbers are low byte first, lengths of the protocol high byte first.
 
 use std::ops::Range;
 
 use interfaces::{DataBaseCommand, data_base::DataBaseVerb};
 use rcs_core::name::{Name10, Name16};
 
-/// Length of a reconfiguration command, bytes.
-pub const RECONFIGURATION: usize = 28;
-/// Length of a DML command, bytes.
-pub const DML: usize = 240;
+pub const RECONFIGURATION: usize = 28; // bytes
+pub const DML: usize = 240; // bytes
 pub const STRING_AT: usize = 32;
-/// `client` of this controller.
-pub const CLIENT: &[u8; 8] = b"H_ROBOT ";
-/// `STORAGE-POS` and `DEVICE` of an item that the robot holds.
-pub const IN_HAND: &str = "H_ROBOT";
-/// `DEVICE` of all places of the workstation except the robot's hand (CHOSEN: the manual names no devices).
+pub const CLIENT: &[u8; 8] = b"H_ROBOT "; // this controller
+pub const IN_HAND: &str = "H_ROBOT"; // `STORAGE-POS` and `DEVICE` of a held item
+/// `DEVICE` of all places except the robot's hand (CHOSEN: the manual names no devices).
 pub const WORKSTATION: &str = "HWS";
-/// `ITEM-TYPE` of all items (CHOSEN: Task does not know types).
-pub const ITEM_TYPE: &str = "PART";
-/// Greatest sector: `SECTOR#` is one character, 0 to 9 and then A to Z (CHOSEN beyond 9).
+pub const ITEM_TYPE: &str = "PART"; // of all items (CHOSEN: Task does not know types)
+/// One character: 0 to 9, then A to Z (CHOSEN beyond 9).
 pub const MAX_SECTOR: i32 = 35;
 
 /// Fixed fields of the protocol area: offset and bytes.
@@ -63,10 +56,8 @@ const TRANSACTION_ID: usize = 26;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Piece {
-    /// A constant text, padded with blanks to the width.
-    Fixed(&'static str, usize),
-    /// A value of the command, padded with blanks to the width.
-    Value(Value, usize),
+    Fixed(&'static str, usize), // padded with blanks to the width
+    Value(Value, usize),        // padded with blanks to the width
 }
 
 /// A value in the string of a command (REPORT-ITEM, IX.2).
@@ -75,13 +66,12 @@ enum Value {
     ItemType,
     ItemName,
     Device,
-    /// `STORAGE-POS`.
     StoragePosition,
     Sector,
     ItemNumber,
 }
 
-/// The string of blocks 183 (106 bytes) and 184 (102 bytes).
+/// Blocks 183 (106 bytes) and 184 (102 bytes).
 const STRING: [Piece; 29] = [
     Piece::Fixed("UPDATE", 7),
     Piece::Fixed("EQUIP_ITEM_ACTION", 18),
@@ -113,15 +103,13 @@ const STRING: [Piece; 29] = [
     Piece::Fixed("'", 1),
     Piece::Value(Value::ItemNumber, 16),
 ];
-/// Last byte of the string.
 const END: u8 = b'\'';
 
-/// The type of a command (TYPEindc).
+/// TYPEindc.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
 pub enum Transaction {
-    /// End the connection in any state.
-    Abort = 0x55,
+    Abort = 0x55, // in any state
     Initiate = 0x56,
     Startup = 0x57,
     Dml = 0x58,
@@ -147,21 +135,17 @@ impl Transaction {
     }
 }
 
-/// Why a command cannot be encoded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum EncodeError {
     #[error("no command")]
     Nothing,
-    /// A name with an apostrophe would end its field of the string.
     #[error("the name {0} has an apostrophe, which the DML string cannot hold")]
-    Apostrophe(Name16),
-    /// A sector that one character cannot express.
+    Apostrophe(Name16), // would end its field of the string
     #[error("a sector from 0 to {MAX_SECTOR} was expected, found {0}")]
-    Sector(i32),
+    Sector(i32), // more than one character
 }
 
-/// Encode a command. Returns the bytes and their number, without allocation. Errors: [`EncodeError`] if the fields of
-/// the buffer cannot hold it.
+/// Returns the bytes and their number, without allocation. Errors: a field cannot hold its value.
 pub fn encode(command: &DataBaseCommand) -> Result<([u8; DML], usize), EncodeError> {
     let transaction = Transaction::of(command.command).ok_or(EncodeError::Nothing)?;
     let length = transaction.length();
@@ -182,12 +166,12 @@ pub fn encode(command: &DataBaseCommand) -> Result<([u8; DML], usize), EncodeErr
     Ok((bytes, length))
 }
 
-/// Set the command-id# of a command of either length.
+/// Sets the command-id#, for either length.
 pub fn identify(bytes: &mut [u8], command_id: u16) {
     bytes[COMMAND_ID..COMMAND_ID + 2].copy_from_slice(&command_id.to_le_bytes());
 }
 
-/// Set the trans-id# of an update.
+/// Sets the trans-id# of an update.
 pub fn number(bytes: &mut [u8; DML], transaction: u16) {
     bytes[TRANSACTION_ID..TRANSACTION_ID + 2].copy_from_slice(&transaction.to_le_bytes());
 }
@@ -199,7 +183,7 @@ pub fn low_word(number: u32) -> u16 {
     u16::from_le_bytes([low, high])
 }
 
-/// Write a length field at `at`: the number of bytes after it in a command of `command` bytes.
+/// The field at `at` counts the bytes after it.
 fn put_length(bytes: &mut [u8; DML], at: usize, command: usize) {
     let follows = u16::try_from(command - at - 2).unwrap_or(u16::MAX);
     bytes[at..at + 2].copy_from_slice(&follows.to_be_bytes());
@@ -248,49 +232,42 @@ fn widened(name: &Name10) -> Name16 {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Received<'a> {
     pub command_id: u16,
-    /// client, without trailing blanks.
-    pub client: &'a str,
+    pub client: &'a str, // without trailing blanks
     pub transaction: Transaction,
     pub transaction_id: u16,
-    /// The DML string, empty for a reconfiguration command.
-    pub statement: &'a str,
+    pub statement: &'a str, // DML; empty for a reconfiguration
 }
 
 /// Why bytes are not a command.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum DecodeError {
-    /// The size is neither of the two lengths.
     #[error("a command of {RECONFIGURATION} or {DML} bytes was expected, found {0}")]
-    Size(usize),
-    /// A fixed field or a length has unexpected bytes.
+    Size(usize), // neither of the two lengths
+    /// A fixed field or a length.
     #[error("bytes {expected:02X?} were expected at {at}, found {found:02X?}")]
     Protocol {
-        /// Offset, from 0.
-        at: usize,
-        /// Bytes of the protocol at this offset.
-        expected: Vec<u8>,
+        at: usize,         // offset, from 0
+        expected: Vec<u8>, // bytes of the protocol
         found: Vec<u8>,
     },
-    /// A type that does not exist, or that belongs to the other length.
+    /// An unknown type, or one of the other length.
     #[error("a transaction type that goes with {size} bytes was expected, found {found:02X}")]
     Transaction {
-        /// Size of the command, bytes.
-        size: usize,
+        size: usize, // of the command, bytes
         found: u8,
     },
-    /// A text that is not printable ASCII.
     #[error("printable characters were expected from byte {0} on")]
-    Text(usize),
+    Text(usize), // not printable ASCII
 }
 
-/// Decode the bytes of a command. Errors: [`DecodeError`] with the place of the first wrong byte.
+/// Errors: the place of the first wrong byte.
 pub fn decode(bytes: &[u8]) -> Result<Received<'_>, DecodeError> {
     let size = bytes.len();
     if size != RECONFIGURATION && size != DML {
         return Err(DecodeError::Size(size));
     }
     for (at, expected) in FIXED {
-        // The client can be any printable text, and only a DML command has the last field.
+        // Any printable text can be the client, and only a DML command has the last field.
         if at != 8 && at < size {
             expect(bytes, at, expected)?;
         }

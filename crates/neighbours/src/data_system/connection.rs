@@ -1,5 +1,4 @@
-//! The controller's end of the Data System: mailboxes, the handshake with Task, and the [`Keeper`] that
-//! executes commands.
+//! The controller's end of the Data System: mailboxes, the handshake with Task, and a [`Keeper`] for the commands.
 
 use std::fmt::Debug;
 
@@ -18,31 +17,27 @@ use super::{
 };
 use crate::mailbox::{DATA_SYSTEM_COMMAND, DATA_SYSTEM_STATUS, Mailbox, MailboxError};
 
-/// Default number of ticks for an answer: 1 s.
-pub const ANSWER_TICKS: u64 = 25;
+pub const ANSWER_TICKS: u64 = 25; // 1 s
 
-/// Executes the commands of a Data System.
 pub trait Keeper {
-    /// Begin the command of this number. Returns false if the keeper cannot execute it.
+    /// False if the keeper cannot execute the command.
     fn execute(&mut self, id: u16, bytes: &[u8]) -> bool;
 
-    /// The reply to the last begun command, which has this number.
+    /// The reply to the last begun command.
     fn reply(&mut self, id: u16) -> Reply;
 
-    /// The reported items, sorted by name and number. Errors: the reason why they cannot be listed.
+    /// Sorted by name and number. Errors: the reason.
     fn items(&mut self) -> Result<Vec<Item>, String>;
 }
 
 #[derive(Clone, Debug)]
 pub enum Reply {
     Answer(Answer),
-    /// The command has no answer: Task counts the ticks and repeats the command.
-    Silent,
+    Silent, // no answer: Task repeats the command after a time
     Pending,
     Dead,
 }
 
-/// A keeper in memory, which executes a command at once.
 #[derive(Clone, Debug, Default)]
 pub struct InMemory {
     server: Server<Books>,
@@ -64,12 +59,12 @@ impl Keeper for InMemory {
     }
 }
 
-/// The Data System's mailboxes and keeper. With [`InMemory`] it is a value: a copy continues from the same state.
+/// The mailboxes and the keeper. With [`InMemory`] a copy continues from the same state.
 #[derive(Clone, Debug)]
 pub struct DataSystem<K = InMemory> {
     answer_ticks: u64,
     receiver: handshake::Receiver,
-    /// First tick in which the answer to the command in progress may take effect; `None` without a command in progress.
+    /// First tick in which the answer may take effect; `None` without a command in progress.
     due: Option<Tick>,
     status: DataBaseStatus,
     command_box: Mailbox,
@@ -79,21 +74,20 @@ pub struct DataSystem<K = InMemory> {
 }
 
 impl DataSystem {
-    /// A Data System that keeps its items in memory and answers a command after `answer_ticks` ticks.
+    /// A Data System in memory; each answer takes `answer_ticks` ticks.
     #[must_use]
     pub fn in_memory(answer_ticks: u64) -> Self {
         Self::new(InMemory::default(), answer_ticks)
     }
 
-    /// All data on which the answers after `tick` depend, for comparison: items, clients, the command in
-    /// progress and the ticks until its answer.
+    /// Everything that later answers depend on: items, clients, the command in progress, ticks until its answer.
     pub fn state(&self, tick: Tick) -> impl Debug {
         (&self.keeper, self.status.report, self.due.map(|due| due.since(tick)))
     }
 }
 
 impl<K: Keeper> DataSystem<K> {
-    /// A Data System that answers a command after at least `answer_ticks` ticks.
+    /// Each answer takes at least `answer_ticks` ticks.
     #[must_use]
     pub fn new(keeper: K, answer_ticks: u64) -> Self {
         Self {
@@ -129,12 +123,11 @@ impl<K: Keeper> DataSystem<K> {
         &self.status_box
     }
 
-    /// The reasons of refused commands since the last call.
     pub fn refusals(&mut self) -> Vec<String> {
         std::mem::take(&mut self.refusals)
     }
 
-    /// Call once per tick, after the controller. Reads the command that Task wrote in `tick`.
+    /// Call once per tick, after the controller. Reads the command of `tick`.
     pub fn step(&mut self, tick: Tick, command: &DataBaseCommand) {
         if self.receiver.observe(command.number) == Arrival::New {
             self.send(tick, command);
@@ -144,7 +137,7 @@ impl<K: Keeper> DataSystem<K> {
         }
     }
 
-    /// UPDATE-MAILGRAM->DAS-?: write the mailbox, which the network then sends.
+    /// UPDATE-MAILGRAM->DAS-?: the network sends the mailbox.
     fn send(&mut self, tick: Tick, command: &DataBaseCommand) {
         self.due = None;
         self.status = DataBaseStatus { echo: self.receiver.echo, report: DataBaseReport::Executing };
@@ -163,7 +156,6 @@ impl<K: Keeper> DataSystem<K> {
         }
     }
 
-    /// Process the answer to the command in progress, if it has arrived.
     fn receive(&mut self) {
         match self.keeper.reply(self.asked()) {
             Reply::Pending => return,
@@ -174,12 +166,12 @@ impl<K: Keeper> DataSystem<K> {
         self.due = None;
     }
 
-    /// command-id# of the command in progress.
+    /// The command-id# in progress.
     fn asked(&self) -> u16 {
         command::low_word(self.receiver.echo)
     }
 
-    /// Process an answer: write its status to the mailbox, and read it (Parse-das-status).
+    /// Parse-das-status.
     fn take(&mut self, answer: &Answer) {
         let bytes: [u8; STATUS] = answer.status.encode();
         let status = self
@@ -207,8 +199,7 @@ impl<K: Keeper> DataSystem<K> {
         self.refusals.push(why);
     }
 
-    /// The reported items, sorted by name and number. Empty if the server is in another process, which alone can list
-    /// them. Errors: the reason why the database cannot list them.
+    /// Sorted by name and number. Empty if the server is in another process, which alone can list them.
     pub fn items(&mut self) -> Result<Vec<Item>, String> {
         self.keeper.items()
     }

@@ -1,16 +1,15 @@
 //! The AMRF Data System (IV.4.2, IX.2), which stores the position of each item.
 //!
-//! Task writes a command record and reads a status record. Two mailboxes connect them with the records of items:
+//! Task writes a command record and reads a status record:
 //!
 //! ```text
 //!   DataBaseCommand --command::encode--> 28 or 240 bytes --Server--> command::decode, statement::parse --> Records
 //!   DataBaseStatus  <--status::decode--     14 bytes     <--Server--  result
 //! ```
 //!
-//! [`DataSystem`] is the controller's end, with a [`Keeper`] that executes the commands. The server receives
-//! the bytes of a command and returns those of a status. It accepts only valid bytes, a valid statement, and
-//! the steps of a connection in their order. It keeps the items in memory ([`Books`]), or in the database of
-//! the crate `sessions`, which also has keepers on a thread and in another process.
+//! [`DataSystem`] is the controller's end, with a [`Keeper`] that executes commands. The server accepts only valid
+//! bytes, a valid statement, and the steps of a connection in order. Items are kept in memory ([`Books`]), or in the
+//! database of the crate `sessions`, which also has keepers on a thread and in another process.
 
 mod books;
 pub mod command;

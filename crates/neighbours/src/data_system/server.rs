@@ -1,8 +1,6 @@
-//! The server: it converts the bytes of a command to the bytes of a status.
-//!
-//! It enforces the order of a connection: it accepts an item only from a client that has connected by the steps
-//! of IV.4.2 (Abort, Initiate, Startup). A repeated step, whose answer was lost, succeeds again. The state of a
-//! client is in the database, so that a restarted server continues.
+//! The server: from the bytes of a command to those of a status. It accepts an item only from a client that has
+//! connected by the steps of IV.4.2 (Abort, Initiate, Startup). A repeated step, whose answer was lost, succeeds. The
+//! database stores the state of a client, so that a restarted server continues.
 //!
 //! ```text
 //!            INITIATE              STARTUP
@@ -22,8 +20,7 @@ use super::{
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
 enum Session {
-    /// The client is unknown.
-    Closed = 0,
+    Closed = 0, // the client is unknown
     Initiated = 1,
     Started = 2,
 }
@@ -42,18 +39,15 @@ impl Session {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Answer {
     pub status: Status,
-    /// The reason why the command was refused, for the log; empty if it was executed.
-    pub why: String,
+    pub why: String, // for the log, if refused; else empty
 }
 
-/// The Data System's end of the mailboxes.
 #[derive(Clone, Debug, Default)]
 pub struct Server<R = Books> {
     records: R,
 }
 
 impl<R: Records> Server<R> {
-    /// A server with the clients in `records`.
     #[must_use]
     pub const fn new(records: R) -> Self {
         Self { records }
@@ -64,7 +58,7 @@ impl<R: Records> Server<R> {
         &self.records
     }
 
-    /// Execute a command: `bytes` is the data of its mailbox.
+    /// `bytes` is the data of the mailbox.
     pub fn execute(&mut self, bytes: &[u8]) -> Answer {
         let (command_id, outcome) = match command::decode(bytes) {
             Ok(received) => (received.command_id, self.carry_out(&received)),
@@ -105,7 +99,7 @@ impl<R: Records> Server<R> {
     }
 }
 
-/// The item of an update. The error names the empty or wrong value.
+/// The error names the empty or wrong value.
 fn item(update: &Update<'_>) -> Result<Item, String> {
     let value = |column: Column| {
         let value = update.value(column).unwrap_or_default();

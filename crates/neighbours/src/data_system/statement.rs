@@ -4,8 +4,7 @@
 //! UPDATE EQUIP_ITEM_ACTION SET ( column, ... ) = ( 'value', ... ) WHERE ITEM_NBR = 'value'
 //! ```
 //!
-//! The parser ignores blanks between words, accepts the columns in any order, and reports the place of an
-//! error. It removes trailing blanks from values.
+//! Blanks between words and trailing blanks of values are ignored; columns may be in any order.
 
 use std::fmt;
 
@@ -17,7 +16,6 @@ pub enum Column {
     ItemType,
     ItemName,
     Device,
-    /// `STORAGE_POS`.
     StoragePosition,
     Sector,
 }
@@ -26,7 +24,6 @@ impl Column {
     const ALL: [Self; 5] =
         [Self::ItemType, Self::ItemName, Self::Device, Self::StoragePosition, Self::Sector];
 
-    /// The name of the column in a statement.
     #[must_use]
     pub const fn text(self) -> &'static str {
         match self {
@@ -39,11 +36,9 @@ impl Column {
     }
 }
 
-/// An UPDATE of EQUIP_ITEM_ACTION.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Update<'a> {
-    /// `ITEM_NBR` of the item; empty for an item without a number.
-    pub number: &'a str,
+    pub number: &'a str, // `ITEM_NBR`, or empty
     values: [Option<&'a str>; 5],
 }
 
@@ -59,18 +54,16 @@ impl<'a> Update<'a> {
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{expected} expected at character {}, found {found}", .at + 1)]
 pub struct StatementError {
-    /// Place of the error in the text, bytes from 0.
-    pub at: usize,
+    pub at: usize, // byte from 0
     pub expected: String,
     pub found: Found,
 }
 
-/// The text, or the number of values, found instead of the expected one.
+/// A text, or the number of values.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Found {
     End,
-    /// A word or a punctuation mark.
-    Word(String),
+    Word(String), // or a punctuation mark
     Count(usize),
 }
 
@@ -84,7 +77,7 @@ impl fmt::Display for Found {
     }
 }
 
-/// Parse a statement. Errors: [`StatementError`] for the first error.
+/// Errors: the first.
 pub fn parse(text: &str) -> Result<Update<'_>, StatementError> {
     let mut scanner = Scanner { text, at: 0 };
     for word in ["UPDATE", "EQUIP_ITEM_ACTION", "SET"] {
@@ -121,7 +114,7 @@ struct Scanner<'a> {
 }
 
 impl<'a> Scanner<'a> {
-    /// Skip blanks, and return the rest of the text.
+    /// Skips blanks, and returns the rest of the text.
     fn rest(&mut self) -> &'a str {
         let rest = self.text[self.at..].trim_start_matches(' ');
         self.at = self.text.len() - rest.len();
@@ -183,7 +176,7 @@ impl<'a> Scanner<'a> {
         Ok(rest[..end].trim_end_matches(' '))
     }
 
-    /// Parse a list in parentheses, separated by commas.
+    /// A list in parentheses, separated by commas.
     fn list<T>(
         &mut self,
         mut thing: impl FnMut(&mut Self) -> Result<T, StatementError>,

@@ -34,12 +34,9 @@ pub enum Refusal {
     Protocol = 0x80,
     /// The command is not allowed in this state of the connection.
     Sequence = 0x81,
-    /// The string is not a statement that this server supports.
-    Statement = 0x82,
-    /// The statement lacks an item or a place.
-    Value = 0x83,
-    /// The database could not store the item.
-    Store = 0x84,
+    Statement = 0x82, // not a supported statement
+    Value = 0x83,     // no item or place
+    Store = 0x84,     // the database could not store the item
 }
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -52,8 +49,7 @@ pub enum Summary {
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Status {
-    /// command-id# of the answered command.
-    pub command_id: u16,
+    pub command_id: u16, // of the answered command
     pub server: ServerStatus,
     pub summary: Summary,
 }
@@ -61,22 +57,17 @@ pub struct Status {
 /// Why bytes are not a status.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum StatusError {
-    /// Wrong number of bytes.
     #[error("a status of {STATUS} bytes was expected, found {0}")]
-    Size(usize),
-    /// A fixed byte has another value.
+    Size(usize), // bytes
+    /// A fixed byte.
     #[error("byte {expected:02X} was expected at {at}, found {found:02X}")]
     Protocol {
-        /// Offset, from 0.
-        at: usize,
-        /// Byte of the protocol at this offset.
-        expected: u8,
+        at: usize,    // offset, from 0
+        expected: u8, // in the protocol
         found: u8,
     },
-    /// A server status that does not exist.
     #[error("a server status from 00 to 02 was expected at {SERVER}, found {0:02X}")]
     Server(u8),
-    /// A summary status that does not exist.
     #[error("a summary status 00, 01 or 80 to 84 was expected at {SUMMARY}, found {0:02X}")]
     Summary(u8),
 }
@@ -109,7 +100,7 @@ impl Status {
         [0xA1, 0x82, 0, 0x0A, 0xB0, 2, low, high, 0x51, 1, self.server as u8, 0x52, 1, summary]
     }
 
-    /// Decode a status (Parse-das-status). Errors: [`StatusError`] with the first wrong byte.
+    /// Parse-das-status. Errors: the first wrong byte.
     pub fn decode(bytes: &[u8]) -> Result<Self, StatusError> {
         let bytes: &[u8; STATUS] = bytes.try_into().map_err(|_| StatusError::Size(bytes.len()))?;
         let blank = Self::default().encode();

@@ -54,7 +54,7 @@ codes! {
     Coded<W> = W;
 }
 
-/// An optional value in the code `C`: blank or 0 means `None`.
+/// Blank or 0 means `None`.
 #[derive(Clone, Copy, Debug)]
 pub struct Given<C>(std::marker::PhantomData<C>);
 
@@ -86,7 +86,6 @@ impl<const W: usize> Codec<'_, ()> for Unused<W> {
     }
 }
 
-/// The bytes of an integer field as an array.
 fn chunk<const N: usize>(at: At, from: &[u8]) -> Result<[u8; N], FieldError> {
     from.try_into().map_err(|_| FieldError::End { field: at.field })
 }
@@ -176,7 +175,7 @@ impl Codec<'_, u32> for Number {
     }
 }
 
-/// The characters before the padding of blanks and zeros, if all are `legal`.
+/// The characters without padding of blanks and zeros, if all are `legal`.
 fn characters(at: At, from: &[u8], legal: impl Fn(u8) -> bool) -> Result<&str, FieldError> {
     let length = from.iter().rposition(|&byte| byte != BLANK && byte != 0).map_or(0, |last| last + 1);
     match from[..length].iter().position(|&byte| !legal(byte)) {
@@ -211,7 +210,7 @@ impl<'a, const W: usize> Codec<'a, &'a str> for Text<W> {
     }
 }
 
-/// Writes as much text as fits into the rest.
+/// Writes as much text as fits.
 struct Clipped<'a> {
     rest: &'a mut [u8],
 }
@@ -267,7 +266,7 @@ impl<const W: usize, T: Plain> Codec<'_, T> for Coded<W> {
     }
 }
 
-/// A reason or another sentence, truncated to the length of a field. Formatting does not allocate.
+/// Truncated to the length of a field. Formatting does not allocate.
 #[derive(Clone, Copy, Debug)]
 pub struct Sentence<const W: usize>([u8; W]);
 

@@ -1,9 +1,7 @@
 //! Layouts of mailbox data (V.4.2, VI.7.2, IX.4): one definition for encoding, decoding and the table in
-//! docs/neighbours.md.
-//!
-//! [`layout!`](crate::layout!) lists the fields in their order: the manual's variable, the place of its value
-//! in a Rust record, its code, and its meaning. Offsets follow from the sizes. Integers are low byte first;
-//! texts are padded with blanks. Only [`Table::markdown`] allocates.
+//! docs/neighbours.md. [`layout!`](crate::layout!) lists the fields in order: the manual's variable, the place of its
+//! value in a Rust record, its code, and its meaning. Integers are low byte first; texts are padded with blanks. Only
+//! [`Table::markdown`] allocates.
 //!
 //! ```
 //! use neighbours::layout::{Chars, I16, Unused};
@@ -39,7 +37,6 @@ pub use codes::{
 
 use crate::fields::FieldError;
 
-/// Errors of decoding the data of a mailbox.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum LayoutError {
     /// The data have the wrong size.
@@ -50,13 +47,11 @@ pub enum LayoutError {
     Field(#[from] FieldError),
 }
 
-/// A row of the documentation: one field.
+/// One field.
 #[derive(Clone, Copy, Debug)]
 pub struct Row {
-    /// The manual's name of the field.
-    pub variable: &'static str,
-    /// Size of the field, bytes.
-    pub bytes: usize,
+    pub variable: &'static str, // the manual's name
+    pub bytes: usize,           // bytes of the field
     pub text: &'static str,
 }
 
@@ -67,7 +62,7 @@ pub struct Table {
 }
 
 impl Table {
-    /// The table as Markdown: offset, size, variable and meaning of each field.
+    /// A Markdown table: offset, size, variable and meaning of each field.
     #[must_use]
     pub fn markdown(&self) -> String {
         let mut page = "| at | bytes | variable | |\n|---|---|---|---|\n".to_owned();
@@ -81,23 +76,20 @@ impl Table {
     }
 }
 
-/// Position of a field, for errors.
+/// The position of a field, for errors.
 #[derive(Clone, Copy, Debug)]
 pub struct At {
-    /// The manual's name of the field.
-    pub field: &'static str,
-    /// Offset of the field in the data, bytes.
-    pub byte: usize,
+    pub field: &'static str, // the manual's name
+    pub byte: usize,         // byte in the data
 }
 
 pub trait Width {
-    /// Size, bytes.
     const BYTES: usize;
 }
 
-/// Code of a value in [`Width::BYTES`] bytes.
+/// The code of a value in [`Width::BYTES`] bytes.
 pub trait Codec<'a, T>: Width {
-    /// The value, if it is out of range; [`Codec::put`] then writes the nearest value in range.
+    /// A value out of range; [`Codec::put`] then writes the nearest one in range.
     #[must_use]
     fn misfit(_value: &T) -> Option<i32> {
         None
@@ -105,14 +97,12 @@ pub trait Codec<'a, T>: Width {
 
     fn put(value: &T, to: &mut [u8]);
 
-    /// Decodes a value. Errors: [`FieldError`] if the bytes are not a valid value.
+    /// Errors: the bytes are not a valid value.
     fn take(at: At, from: &'a [u8]) -> Result<T, FieldError>;
 }
 
-/// Defines a layout: a type with `BYTES`, `TABLE`, `encode`, `decode` and `check`. See the [module](mod@crate::layout).
-///
-/// The place of a value is a path in parentheses; `()` for a field without a value; or `[get, set]`, two functions of
-/// the record.
+/// Defines a type with `BYTES`, `TABLE`, `encode`, `decode` and `check`; see the [module](mod@crate::layout). The
+/// place of a value is a path in parentheses, `()` for none, or `[get, set]`, two functions of the record.
 #[macro_export]
 macro_rules! layout {
     (
@@ -125,8 +115,7 @@ macro_rules! layout {
         pub struct $name;
 
         impl $name {
-            /// Size of the data, bytes.
-            pub const BYTES: usize = 0 $( + <$codec as $crate::layout::Width>::BYTES )+;
+            pub const BYTES: usize = 0 $( + <$codec as $crate::layout::Width>::BYTES )+; // of the data
             pub const TABLE: $crate::layout::Table = $crate::layout::Table {
                 what: $what,
                 rows: &[ $( $crate::layout::Row {
@@ -136,7 +125,7 @@ macro_rules! layout {
                 } ),+ ],
             };
 
-            /// Encodes a record. A value that does not fit its field becomes the nearest value that fits.
+            /// A value that does not fit becomes the nearest value that fits.
             #[must_use]
             pub fn encode(record: &$type) -> [u8; Self::BYTES] {
                 let mut bytes = [0; Self::BYTES];
@@ -149,8 +138,7 @@ macro_rules! layout {
                 bytes
             }
 
-            /// Checks that every value fits its field. Errors: [`RangeError`]($crate::fields::RangeError) for the
-            /// first value that does not fit.
+            /// Errors: the first value that does not fit its field.
             pub fn check(record: &$type) -> Result<(), $crate::fields::RangeError> {
                 $(
                     let value = &$crate::layout!(@get record, $type, $place);
@@ -161,8 +149,7 @@ macro_rules! layout {
                 Ok(())
             }
 
-            /// Decodes the data. Errors: [`LayoutError`]($crate::layout::LayoutError) for a wrong size or the first
-            /// invalid field.
+            /// Errors: a wrong size, or the first invalid field.
             pub fn decode(bytes: &[u8]) -> Result<$type, $crate::layout::LayoutError> {
                 let mut record = <$type>::default();
                 $crate::layout::sized($what, Self::BYTES, bytes)?;
@@ -193,7 +180,7 @@ macro_rules! layout {
     }};
 }
 
-/// Checks the size of the data. Errors: [`LayoutError::Size`].
+/// Checks the size. Errors: [`LayoutError::Size`].
 pub const fn sized(what: &'static str, expected: usize, bytes: &[u8]) -> Result<(), LayoutError> {
     if bytes.len() == expected {
         Ok(())

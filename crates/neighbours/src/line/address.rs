@@ -1,28 +1,24 @@
-//! Addresses of controllers.
-
 use std::{
     fmt,
     path::{Path, PathBuf},
     str::FromStr,
 };
 
-/// The address of a socket in the file system, `unix:PATH`, for processes of the same user on this machine.
+/// `unix:PATH`, for processes of the same user on this machine.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Address(PathBuf);
 
-/// A text that is not an address.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("unix:PATH was expected, found {found}{}", if *.is_remote { TO_OTHER_MACHINES } else { "" })]
 pub struct AddressError {
     found: String,
-    /// True for an address on a network, as in earlier versions.
+    /// An address on a network, as in earlier versions.
     is_remote: bool,
 }
 
 const TO_OTHER_MACHINES: &str =
     "; to other machines rcs-gateway carries the connection, with TLS (docs/several-machines.md)";
-/// Schemes of addresses on a network.
-const REMOTE: [&str; 4] = ["tcp", "tls", "zenoh", "quic"];
+const REMOTE: [&str; 4] = ["tcp", "tls", "zenoh", "quic"]; // on a network
 
 impl Address {
     #[must_use]

@@ -5,14 +5,12 @@ use std::time::Duration;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u16)]
 pub enum ClockKind {
-    /// A tick every 40 ms, which does not wait for neighbours.
-    Real = 0,
-    /// Ticks as fast as possible; each waits for all connected neighbours.
-    Fast = 1,
+    Real = 0, // every 40 ms, without waiting for neighbours
+    Fast = 1, // as fast as possible; each tick waits for all neighbours
 }
 
-/// Time limit of the controller for the answer to a pulse: 10 s on the 40 ms grid, where the robot meanwhile
-/// continues; 60 s in fast clock, because the computer may be busy.
+/// Time limit of the answer to a pulse: 10 s on the 40 ms grid, where the robot continues; 60 s in fast clock, as the
+/// computer may be busy.
 #[must_use]
 pub const fn answer_limit(clock: ClockKind) -> Duration {
     match clock {

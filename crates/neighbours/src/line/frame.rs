@@ -6,24 +6,20 @@
 //!         32 bits     `----------- the mailbox, head and data ----------------'
 //! ```
 //!
-//! All numbers are low byte first. The address is that of Table IX.1; `length` counts the bytes from its own
-//! first byte to the last of the data. Three addresses do not belong to mailboxes:
+//! Numbers are low byte first. The address is that of Table IX.1; `length` counts from its own first byte to the last
+//! of the data. Three addresses do not belong to mailboxes:
 //!
-//! * 0, the **pulse**: its data are the number of a tick, 64 bits. The controller sends it after the
-//!   mailgrams of every tick, and the neighbour sends it back after its own;
-//! * 1, the **disconnect reason**: its data are a text. The controller closes the connection after it;
+//! * 0, the **pulse**: a tick, 64 bits, after the controller's mailgrams. The neighbour sends it back after its own;
+//! * 1, the **disconnect reason**: a text, after which the controller closes the connection;
 //! * 2, the **welcome**, without data: the neighbour is admitted.
 
 use crate::mailbox::{HEAD, MAX_SIZE, Mailbox, Place};
 
-/// Number of bytes before the mailbox in a frame.
-pub const ADDRESS: usize = 4;
+pub const ADDRESS: usize = 4; // bytes before the mailbox
 pub const PULSE: u32 = 0;
-/// The address of a disconnect reason.
-pub const DISCONNECT: u32 = 1;
+pub const DISCONNECT: u32 = 1; // a disconnect reason
 pub const WELCOME: u32 = 2;
-/// Greatest length of a frame, bytes.
-pub const MAX_FRAME: usize = ADDRESS + MAX_SIZE;
+pub const MAX_FRAME: usize = ADDRESS + MAX_SIZE; // bytes
 
 /// A frame in received bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -32,8 +28,7 @@ pub struct Frame<'a> {
 }
 
 impl<'a> Frame<'a> {
-    /// The first frame of `bytes`, once it is complete. Errors: [`FrameError::Length`], after which no further frame
-    /// can be found.
+    /// `None` while incomplete. After [`FrameError::Length`] no further frame can be found.
     pub fn first(bytes: &'a [u8]) -> Result<Option<Self>, FrameError> {
         let Some(&[a, b, c, d, low, high]) = bytes.first_chunk() else { return Ok(None) };
         let (address, found) = (u32::from_le_bytes([a, b, c, d]), u16::from_le_bytes([low, high]));
@@ -49,7 +44,7 @@ impl<'a> Frame<'a> {
         self.bytes
     }
 
-    /// Address of the mailbox, or number of another kind of frame.
+    /// The address of the mailbox, or the kind of frame.
     #[must_use]
     pub fn address(&self) -> u32 {
         u32::from_le_bytes([self.bytes[0], self.bytes[1], self.bytes[2], self.bytes[3]])
@@ -65,8 +60,7 @@ impl<'a> Frame<'a> {
         &self.bytes[ADDRESS + HEAD..]
     }
 
-    /// The tick of a pulse; `None` if the frame is not a pulse. Errors: [`FrameError::Pulse`] if its data are not the
-    /// number of a tick.
+    /// `None` if the frame is not a pulse. Errors: [`FrameError::Pulse`].
     pub fn as_pulse(&self) -> Result<Option<u64>, FrameError> {
         if self.address() != PULSE {
             return Ok(None);
@@ -76,13 +70,12 @@ impl<'a> Frame<'a> {
     }
 }
 
-/// Append the frame of a mailbox.
 pub fn put_mailbox(out: &mut Vec<u8>, mailbox: &Mailbox) {
     out.extend_from_slice(&mailbox.place().address.to_le_bytes());
     out.extend_from_slice(mailbox.used());
 }
 
-/// Append a frame that is not a mailbox. Data beyond the size of a frame are truncated.
+/// Appends a frame that is not a mailbox. Data beyond the size of a frame are truncated.
 pub fn put(out: &mut Vec<u8>, address: u32, data: &[u8]) {
     let data = &data[..data.len().min(MAX_SIZE - HEAD)];
     let length = u16::try_from(HEAD + data.len()).unwrap_or(u16::MAX);
@@ -92,7 +85,6 @@ pub fn put(out: &mut Vec<u8>, address: u32, data: &[u8]) {
     out.extend_from_slice(data);
 }
 
-/// Append the pulse of a tick.
 pub fn put_pulse(out: &mut Vec<u8>, tick: u64) {
     put(out, PULSE, &tick.to_le_bytes());
 }
@@ -100,13 +92,13 @@ pub fn put_pulse(out: &mut Vec<u8>, tick: u64) {
 /// Why bytes are not a frame of the sender.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum FrameError {
-    /// A length that a mailbox cannot have.
+    /// A mailbox cannot have this length.
     #[error("a length of {HEAD} to {MAX_SIZE} was expected behind the address {address:05X}, found {found}")]
     Length { address: u32, found: u16 },
     /// A pulse without the number of a tick.
     #[error("the number of a tick was expected in a pulse, 8 bytes, found {0}")]
     Pulse(usize),
-    /// An address that does not belong to the sender's mailboxes.
+    /// An address that does not belong to the sender.
     #[error("the address of {} was expected, found {found:05X}", names(.expected))]
     Address { expected: &'static [Place], found: u32 },
 }

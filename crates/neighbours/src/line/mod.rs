@@ -5,8 +5,7 @@
 //! * [`frame`]: a mailgram on the line, and the pulse for each tick;
 //! * [`session`]: the protocol of both sides, without sockets and clocks.
 //!
-//! The crate `sessions` moves these bytes through sockets for the controller and its neighbours, and
-//! `rcs-gateway` between machines.
+//! The crate `sessions` moves these bytes through sockets, and `rcs-gateway` between machines.
 
 pub mod address;
 pub mod clock;

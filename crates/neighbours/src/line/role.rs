@@ -1,5 +1,3 @@
-//! The roles of connecting clients, and the mailboxes of each.
-
 use std::{fmt, str::FromStr};
 
 use crate::mailbox::{
@@ -8,7 +6,7 @@ use crate::mailbox::{
     PEDESTAL_TABLE_STATUS, Place, VISION_PICTURE, VISION_REQUEST, VISION_RESPONSE,
 };
 
-/// Role of a client: a neighbour of the controller, or an operator. The hello contains the number.
+/// A neighbour or an operator, by its number in the hello.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[repr(u16)]
 pub enum Role {
@@ -16,8 +14,7 @@ pub enum Role {
     DataSystem = 2,
     Pedestal = 3,
     Vision = 4,
-    /// An operator, which is not a neighbour and has no mailboxes. Its connection carries the lines of a session (crate
-    /// `operator`).
+    /// An operator has no mailboxes: its connection carries the lines of a session (crate `operator`).
     Operator = 5,
 }
 
@@ -25,7 +22,7 @@ impl Role {
     pub const ALL: [Self; 5] =
         [Self::Workstation, Self::DataSystem, Self::Pedestal, Self::Vision, Self::Operator];
 
-    /// The word for the role on the command line.
+    /// The word on the command line.
     #[must_use]
     pub const fn text(self) -> &'static str {
         match self {
@@ -56,7 +53,7 @@ impl Role {
             Self::Workstation => &[HWSC_STATUS, CELL_STATUS],
             Self::DataSystem => &[DATA_SYSTEM_COMMAND],
             Self::Pedestal => &[PEDESTAL_COMMAND, PEDESTAL_SENSORS],
-            // The picture first, so that a neighbour that reads the request has the picture.
+            // The picture first: a neighbour that reads the request already has it.
             Self::Vision => &[VISION_PICTURE, VISION_REQUEST],
             Self::Operator => &[],
         }
@@ -74,7 +71,6 @@ impl fmt::Display for Role {
     }
 }
 
-/// A word that does not name a role.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{} was expected, found {found}", Role::ALL.map(Role::text).join(" or "))]
 pub struct UnknownRole {

@@ -1,5 +1,4 @@
-//! The protocol of a connection between controller and neighbour, without I/O: its inputs are bytes and time, its
-//! outputs bytes and events.
+//! The protocol between controller and neighbour, without I/O: bytes and time in, bytes and events out.
 //!
 //! ```text
 //!   controller                                          neighbour
@@ -17,9 +16,9 @@
 //!                                             close
 //! ```
 //!
-//! The caller moves bytes: it passes received bytes to [`Session::receive`], then calls [`Session::event`]
-//! until it returns `None`, then sends [`Session::output`]. [`Session::deadline`] is the time of the next
-//! [`Session::check_time`]. The socket (user) or TLS (certificate) below the session authenticates the peer.
+//! The caller passes received bytes to [`Session::receive`], calls [`Session::event`] until it returns `None`, then
+//! sends [`Session::output`]. [`Session::deadline`] is the time of the next [`Session::check_time`]. Socket (user) or
+//! TLS (certificate) authenticate the peer.
 
 use std::{
     fmt,
@@ -34,71 +33,59 @@ use super::{
 };
 use crate::mailbox::{Mailbox, Place};
 
-/// Length of a hello, bytes.
-pub const HELLO: usize = 8;
-/// First bytes of both hellos.
-const MARK: [u8; 4] = *b"RCS2";
+pub const HELLO: usize = 8; // bytes
+const MARK: [u8; 4] = *b"RCS2"; // begins both hellos
 pub const VERSION: u16 = 3;
 
-/// Time limit of a neighbour for hello and welcome; on the 40 ms grid also for the next byte.
+/// A neighbour's time limit for hello and welcome; on the 40 ms grid also for the next byte.
 pub const NEIGHBOUR_LIMIT: Duration = Duration::from_secs(10);
 
 #[derive(Debug, PartialEq, Eq)]
 pub enum Event<'a> {
-    /// At the controller: a neighbour asks for admission.
-    Hello(Role),
-    /// At the neighbour: admission.
-    Welcome(ClockKind),
-    /// A mailbox has been received: its head and data.
-    Mailgram(Place, &'a [u8]),
-    /// The pulse of a tick, or the answer to it.
-    Pulse(u64),
+    Hello(Role),               // to the controller: a neighbour asks for admission
+    Welcome(ClockKind),        // to the neighbour: admission
+    Mailgram(Place, &'a [u8]), // head and data of a mailbox
+    Pulse(u64),                // of a tick, or the answer to it
 }
 
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum SessionError {
-    /// The other side does not speak this protocol.
     #[error("a hello was expected, found {0:02X?}")]
-    Mark([u8; 4]),
-    /// The other side has another version of the protocol.
+    Mark([u8; 4]), // another protocol
     #[error("version {VERSION} of the protocol was expected, found {0}")]
-    Version(u16),
+    Version(u16), // another version of the protocol
     #[error("the number of a neighbour was expected, found {0}")]
     Role(u16),
     #[error("0 (real) or 1 (fast) was expected for the clock, found {0}")]
     Clock(u16),
-    /// The controller has sent another frame before the welcome.
     #[error("a welcome was expected, found a frame with the address {0:05X}")]
-    Welcome(u32),
+    Welcome(u32), // another frame before the welcome
     /// Not a frame, or not one that the sender may send.
     #[error(transparent)]
     Frame(#[from] FrameError),
-    /// The neighbour has answered a pulse that was never sent.
+    /// The neighbour has answered a pulse that was not sent.
     #[error("an answer to a pulse up to {sent} was expected, found one to {found}")]
     Early {
-        /// Number of the last sent pulse.
-        sent: u64,
+        sent: u64, // the last pulse
         found: u64,
     },
-    /// No hello or welcome was received in time.
     #[error("no hello within {} s", .0.as_secs())]
-    NoHello(Duration),
-    /// No data were received for this time.
+    NoHello(Duration), // neither hello nor welcome in time
     #[error("no answer for {} s", .0.as_secs())]
-    Silent(Duration),
-    /// The controller has closed the connection, with this reason.
+    Silent(Duration), // no data for this time
+    /// The controller's reason for closing the connection.
     #[error("{0}")]
     Reason(String),
 }
 
-/// Side of the connection on which the session is.
+/// The side of the connection.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Side {
     Controller { clock: ClockKind, role: Option<Role> },
     Neighbour { role: Role, clock: ClockKind },
 }
 
-/// State of a session; see the diagram of the module.
+/// See the diagram of the module.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum State {
     Hello,
@@ -111,27 +98,25 @@ enum State {
 struct Pulses {
     sent: u64,
     answered: u64,
-    /// Time since which an answer is due.
-    due: Instant,
+    due: Instant, // since which an answer is due
 }
 
 pub struct Session {
     side: Side,
     state: State,
-    /// Received bytes; those before `read` have been processed.
-    input: Vec<u8>,
+    input: Vec<u8>, // processed up to `read`
     read: usize,
     output: Vec<u8>,
     pulses: Pulses,
-    /// Begin of the session, and time of the last received bytes.
+    /// Start of the session, and time of the last received bytes.
     began: Instant,
     heard: Instant,
 }
 
-/// Start of the silence, its time limit, and the error after it.
+/// Start, time limit, and the error after it.
 type Limit = (Instant, Duration, fn(Duration) -> SessionError);
 
-/// An event, with positions in the input instead of bytes.
+/// An event with positions in the input instead of bytes.
 enum Step {
     Hello(Role),
     Welcome(ClockKind),
@@ -162,7 +147,7 @@ impl Session {
         }
     }
 
-    /// The controller's side, with its hello in the output.
+    /// Its hello is in the output.
     #[must_use]
     pub fn controller(clock: ClockKind, now: Instant) -> Self {
         let mut session = Self::new(Side::Controller { clock, role: None }, now);
@@ -175,7 +160,7 @@ impl Session {
         Self::new(Side::Neighbour { role, clock: ClockKind::Real }, now)
     }
 
-    /// Add received bytes. The caller must process all events before it adds more.
+    /// Process all events before adding more bytes.
     pub fn receive(&mut self, bytes: &[u8], now: Instant) {
         if self.state == State::Closed {
             return;
@@ -188,9 +173,8 @@ impl Session {
         }
     }
 
-    /// The next event; `None` if more bytes are required. Errors: [`SessionError`] once, if the other side has
-    /// violated the protocol or closed the connection. The session is then closed, and the controller's output has the
-    /// reason.
+    /// `None` if more bytes are required. Fails once if the other side has violated the protocol or closed the
+    /// connection. Then the session is closed, with the reason in the controller's output.
     pub fn event(&mut self, now: Instant) -> Result<Option<Event<'_>>, SessionError> {
         let step = match self.step(now) {
             Ok(step) => step,
@@ -214,7 +198,6 @@ impl Session {
         }
     }
 
-    /// The hello of the other side.
     fn hello(&mut self) -> Result<Option<Step>, SessionError> {
         let unread = &self.input[self.read..];
         let prefix = unread.len().min(MARK.len());
@@ -249,7 +232,7 @@ impl Session {
         }
     }
 
-    /// Admission by the controller, or its refusal.
+    /// Admission or refusal by the controller.
     fn welcome(&mut self, clock: ClockKind) -> Result<Option<Step>, SessionError> {
         let Some(frame) = Frame::first(&self.input[self.read..])? else { return Ok(None) };
         let (address, length) = (frame.address(), frame.bytes().len());
@@ -264,7 +247,7 @@ impl Session {
         }
     }
 
-    /// The next frame of the other side, which writes the `expected` mailboxes.
+    /// The other side writes the `expected` mailboxes.
     fn frame(&mut self, expected: &'static [Place], now: Instant) -> Result<Option<Step>, SessionError> {
         let Some(frame) = Frame::first(&self.input[self.read..])? else { return Ok(None) };
         let (start, end) = (self.read + frame::ADDRESS, self.read + frame.bytes().len());
@@ -282,7 +265,7 @@ impl Session {
         Ok(Some(Step::Mailgram(*place, start..end)))
     }
 
-    /// A neighbour has answered a pulse; repeated answers have no effect.
+    /// Repeated answers have no effect.
     fn pulse_came(&mut self, found: u64, now: Instant) -> Result<(), SessionError> {
         let Side::Controller { .. } = self.side else { return Ok(()) };
         let sent = self.pulses.sent;
@@ -295,7 +278,7 @@ impl Session {
         Ok(())
     }
 
-    /// At the controller: the neighbour is admitted.
+    /// Admits the neighbour, at the controller.
     pub fn admit(&mut self) {
         if self.state == State::Admission {
             frame::put(&mut self.output, WELCOME, &[]);
@@ -303,15 +286,14 @@ impl Session {
         }
     }
 
-    /// Send the contents of a mailbox.
     pub fn send(&mut self, mailbox: &Mailbox) {
         if self.state == State::Open {
             frame::put_mailbox(&mut self.output, mailbox);
         }
     }
 
-    /// Send the pulse of a tick: at the controller, after the mailgrams of the tick; at the neighbour, as the answer to
-    /// all pulses up to this one. A neighbour that has answered the last pulse has the full time limit for this one.
+    /// The controller sends a pulse after the mailgrams of a tick; the neighbour answers all pulses up to this one. A
+    /// neighbour that has answered the last pulse has the full time limit.
     pub fn pulse(&mut self, tick: u64, now: Instant) {
         if self.state != State::Open {
             return;
@@ -323,7 +305,7 @@ impl Session {
         self.pulses.sent = tick;
     }
 
-    /// Close the session; the controller sends the reason to the neighbour.
+    /// The controller sends the reason.
     pub fn close(&mut self, reason: &dyn fmt::Display) {
         if self.state != State::Closed && matches!(self.side, Side::Controller { .. }) {
             frame::put(&mut self.output, DISCONNECT, reason.to_string().as_bytes());
@@ -338,7 +320,7 @@ impl Session {
         error
     }
 
-    /// Time of the next check of the time limits, if any.
+    /// The next check of the time limits.
     #[must_use]
     pub fn deadline(&self) -> Option<Instant> {
         self.limit().and_then(|(since, limit, _)| since.checked_add(limit))
@@ -363,8 +345,7 @@ impl Session {
         }
     }
 
-    /// Close the session if the other side has been silent for too long. Errors: [`SessionError::NoHello`] or
-    /// [`SessionError::Silent`], once.
+    /// Closes the session after a silence. Errors: [`SessionError::NoHello`] or [`SessionError::Silent`], once.
     pub fn check_time(&mut self, now: Instant) -> Result<(), SessionError> {
         match self.limit() {
             Some((since, limit, error)) if now.saturating_duration_since(since) >= limit => {
@@ -374,7 +355,7 @@ impl Session {
         }
     }
 
-    /// Returns the received bytes after the admission, which are not part of this protocol.
+    /// Bytes after the admission, which are not part of this protocol.
     pub fn take_unread(&mut self) -> Vec<u8> {
         let unread = self.input.split_off(self.read);
         self.input.clear();
@@ -394,7 +375,7 @@ impl Session {
     }
 }
 
-/// A received text without control characters, which a terminal would execute.
+/// A text without control characters, which a terminal would execute.
 fn plain(bytes: &[u8]) -> String {
     String::from_utf8_lossy(bytes).replace(char::is_control, "?")
 }

@@ -1,5 +1,4 @@
-//! The devices of the pedestal in the simulated cell (CHOSEN: a real pedestal has its own devices, and does not
-//! use these mailboxes).
+//! The pedestal's devices in the simulated cell (CHOSEN: a real pedestal has its own, without these mailboxes).
 
 use interfaces::device::{GripValves, MotorCommand, PedestalSensors};
 

@@ -1,6 +1,5 @@
-//! The status of the pedestal's gripper for Diagnostics (IX.3). CHOSEN: the manual gives no layout. The gripper
-//! is nearly identical to the parts gripper (III.9.2), so the variables are those of Grip (VI.3.2): first the
-//! status, then its command.
+//! The status of the gripper for Diagnostics (IX.3). CHOSEN: it is nearly identical to the parts gripper (III.9.2), so
+//! the variables are those of Grip (VI.3.2), status before command.
 
 use interfaces::{
     GripOutputs,
@@ -60,7 +59,7 @@ fn scales(sent: &HandAndCommand) -> Calibration {
     sent.0.calibration.unwrap_or_default()
 }
 
-/// Sets a scale if the calibration is known; otherwise ignores it.
+/// Ignores an unknown calibration.
 fn set(read: &mut HandAndCommand, set: impl FnOnce(&mut Calibration)) {
     if let Some(calibration) = &mut read.0.calibration {
         set(calibration);

@@ -7,15 +7,13 @@
 //!                   <--TableLayout---- Pedestal Table to RCS Status      <-- the rotary table, for Diagnostics
 //! ```
 //!
-//! The crate `sessions` has the controller's end (`pedestal::Agent`). [`System`] is the pedestal's end: the same three
-//! processes that the controller steps itself if the pedestal is in its process. The agent's data are an input of the
-//! next tick ([`interfaces::OutsidePedestal`]), so that boards, logs and replays do not depend on the network.
+//! [`System`] is the pedestal's end: the same three processes that the controller steps itself if the pedestal is in
+//! its process. The crate `sessions` has the controller's end (`pedestal::Agent`), whose data are an input of the next
+//! tick ([`interfaces::OutsidePedestal`]): boards, logs and replays do not depend on the network.
 //!
-//! In the simulated cell the pedestal's devices are part of the cell. Two more mailboxes carry their words
-//! ([`cell`]). A real pedestal has its own devices.
-//!
-//! All integers have four bytes, `cycle-cnt` eight, as in the controller (CHOSEN: the manual gives no widths). The
-//! mailboxes can therefore hold every command, and a run is bit-identical in whichever process its pedestal runs.
+//! Two more mailboxes carry the words of the pedestal's devices in the simulated cell ([`cell`]). All integers have
+//! four bytes, `cycle-cnt` eight, as in the controller (CHOSEN): a run is the same in whichever process its pedestal
+//! runs.
 
 pub mod cell;
 pub mod command;
@@ -32,20 +30,19 @@ use interfaces::{Decided, Header};
 
 use crate::layout::LayoutError;
 
-/// Characters of a command or a status.
-const WORD: usize = 10;
+const WORD: usize = 10; // characters of a command or status
 const STEP: usize = 16;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum PedestalError {
-    /// Number and status contradict each other: exactly one of them means "no command".
+    /// Exactly one of number and status means "no command".
     #[error("executing, done, can't-do or error was expected for the command {0}, found idle")]
     Idle(u32),
     #[error(transparent)]
     Layout(#[from] LayoutError),
 }
 
-/// Number of the decision table of a process; 0 for none.
+/// 0 means none.
 fn table(header: &Header) -> u8 {
     header.decided.map_or(0, |decided| decided.table)
 }
@@ -54,7 +51,7 @@ fn set_table(header: &mut Header, table: u8) {
     header.decided = (table != 0).then_some(Decided { table, row: 0 });
 }
 
-/// Number of the row that fired; 0 for none.
+/// 0 means none.
 fn row(header: &Header) -> u8 {
     header.decided.map_or(0, |decided| decided.row)
 }

@@ -1,5 +1,4 @@
-//! The status of the pedestal (VI.7.2). Fields that are not in the manual are CHOSEN; the manual calls `status-code`
-//! "not currently used".
+//! The status of the pedestal (VI.7.2). Additional fields are CHOSEN; `status-code` is "not currently used".
 
 use interfaces::{
     Header,
@@ -10,8 +9,7 @@ use rcs_core::Plain;
 use super::{PedestalError, STEP, WORD, row, set_row, set_table, table};
 use crate::layout::{Chars, Coded, Flag, Given, I32, Spelled, Text, U16, U32, U64};
 
-/// Bytes of `reason`.
-pub const REASON: usize = 160;
+pub const REASON: usize = 160; // bytes
 
 /// The field `verdict`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
@@ -28,10 +26,8 @@ pub enum Verdict {
 
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Status<'a> {
-    /// The variables of VI.7.2.
-    pub status: PedestalStatus,
-    /// `table#`, `row#` and `step`; no stamp.
-    pub header: Header,
+    pub status: PedestalStatus, // VI.7.2
+    pub header: Header,         // `table#`, `row#` and `step`; no stamp
     pub mailgram_echo: u16,
     pub verdict: Verdict,
     pub reason: &'a str,
@@ -82,13 +78,13 @@ fn set_known(read: &mut Status<'_>, known: bool) {
 }
 
 impl<'a> Status<'a> {
-    /// Encodes the status. A reason longer than [`REASON`] is truncated.
+    /// Encodes the status. A reason beyond [`REASON`] is truncated.
     #[must_use]
     pub fn encode(&self) -> [u8; StatusLayout::BYTES] {
         StatusLayout::encode(self)
     }
 
-    /// Decodes the data of the mailbox. Errors: [`PedestalError`] for the first wrong field.
+    /// Errors: the first wrong field.
     pub fn decode(data: &'a [u8]) -> Result<Self, PedestalError> {
         let read = StatusLayout::decode(data)?;
         let status = &read.status;

@@ -6,11 +6,9 @@
 //!                             | hand table
 //! ```
 //!
-//! A step is a tick of the controller: the pedestal runs once per received pulse, with its own cycle count.
-//!
-//! When it connects to a controller, it adopts the number of the command in the mailbox without executing it
-//! (IX.1: numbers are synchronized): it reports *restarted* for this number, and executes the next command.
-//! This prevents the execution of a command that was abandoned while the connection was down. A newly started
+//! A step is a tick of the controller: the pedestal runs once per received pulse, with its own cycle count. When it
+//! connects, it adopts the number of the command in the mailbox without executing it (IX.1: numbers are synchronized),
+//! and reports *restarted* for it: the command may have been abandoned while the connection was down. A newly started
 //! pedestal distinguishes two cases by the number:
 //!
 //! | command number | meaning                                   | hand and table                                            |
@@ -40,7 +38,7 @@ use crate::{
     mailbox::{Mailbox, PEDESTAL_GRIPPER_STATUS, PEDESTAL_ORDERS, PEDESTAL_STATUS, PEDESTAL_TABLE_STATUS},
 };
 
-/// Command number that hand and table receive in a replacement pedestal. They have not executed that command.
+/// The number for hand and table of a replacement pedestal, which have not executed that command.
 const OF_THE_LAST_ONE: u32 = 1;
 
 pub struct System {
@@ -50,11 +48,9 @@ pub struct System {
     memory: Box<CommonMemory>,
     external: Box<ExternalInputs>,
     tick: Tick,
-    /// Last read mailgram number of the command mailbox.
-    read: u16,
+    read: u16, // of the command mailbox, read last
     refused: Option<(Verdict, LayoutError)>,
-    /// True until the number in the command mailbox is adopted.
-    joining: bool,
+    joining: bool, // until the number in the command mailbox is adopted
     outgoing: [Mailbox; 4],
 }
 
@@ -77,13 +73,13 @@ impl Default for System {
 }
 
 impl System {
-    /// Called at the start of a connection to a controller. The command in its mailbox must not be executed.
+    /// Call at a new connection: the command in the mailbox must not be executed.
     pub const fn join(&mut self) {
         (self.read, self.joining) = (0, true);
     }
 
-    /// Runs one tick on the mailboxes. If the command mailbox or the sensor words cannot be decoded, no process
-    /// is stepped, and the status has the reason.
+    /// One tick. If command mailbox or sensor words cannot be decoded, no process is stepped, and the status has the
+    /// reason.
     pub fn step(&mut self, command_box: &Mailbox, sensors_box: &Mailbox) {
         if command_box.mailgram() == 0 || sensors_box.mailgram() == 0 {
             return;
@@ -95,7 +91,7 @@ impl System {
         self.write();
     }
 
-    /// The mailboxes that the pedestal writes: its statuses and the orders to its devices.
+    /// The mailboxes with statuses, and with orders to the devices.
     #[must_use]
     pub const fn outgoing(&self) -> &[Mailbox; 4] {
         &self.outgoing
@@ -106,13 +102,12 @@ impl System {
         &self.memory
     }
 
-    /// The command of the pedestal process.
     #[must_use]
     pub const fn command(&self) -> &PedestalCommand {
         &self.memory.subtask.pedestal
     }
 
-    /// The reason why the last mailgram was refused, if it was.
+    /// The reason why the last mailgram was refused.
     #[must_use]
     pub fn refusal(&self) -> Option<&LayoutError> {
         self.refused.as_ref().map(|(_, why)| why)
@@ -153,7 +148,7 @@ impl System {
         }
     }
 
-    /// Decodes the sensor words. Returns false if they are invalid.
+    /// False if the words are invalid.
     fn read_sensors(&mut self, mailbox: &Mailbox) -> bool {
         let sensors = SensorsLayout::decode(mailbox.data());
         if matches!(self.refused, Some((Verdict::NoSensors, _))) {
@@ -166,7 +161,7 @@ impl System {
         sensors.is_ok()
     }
 
-    /// Runs a tick of the three processes. Each reads the buffers of the previous tick.
+    /// Each process reads the buffers of the previous tick.
     fn run(&mut self) {
         self.tick = self.tick.next();
         let before = *self.memory;
@@ -195,7 +190,7 @@ impl System {
     }
 }
 
-/// Writes the data into the mailbox if they have changed.
+/// Writes the data if they have changed.
 fn put(mailbox: &mut Mailbox, data: &[u8]) {
     if mailbox.data() != data {
         // The layouts are shorter than the mailboxes; a test checks this.

@@ -1,5 +1,4 @@
-//! The status of the pedestal's rotary table for Diagnostics (IX.3). CHOSEN: the manual only mentions the table
-//! process, and gives no layout.
+//! The status of the rotary table for Diagnostics (IX.3). CHOSEN: the manual only mentions the table process.
 
 use interfaces::{TableOutputs, pedestal::TableCommand};
 
@@ -40,7 +39,7 @@ fn set_angle_known(read: &mut TableAndCommand, known: bool) {
     }
 }
 
-/// Sets the reading at the limit if it is known; otherwise ignores it.
+/// Ignores an unknown reading.
 fn set_at_limit(read: &mut TableAndCommand, counts: u16) {
     if let Some(at_limit) = &mut read.0.at_limit {
         *at_limit = counts;

@@ -1,4 +1,4 @@
-//! Tests of the layouts, byte by byte, and of the pedestal's system.
+//! Layouts byte by byte, and the pedestal's system.
 
 use interfaces::{
     Decided, GripOutputs, Header, Reason, TableOutputs,
@@ -241,8 +241,7 @@ proptest! {
         }
     }
 
-    /// With arbitrary mailbox data and processes that join at any time, the pedestal continues and its output
-    /// can be decoded.
+    /// With arbitrary data and processes that join at any time, the pedestal continues and its output can be decoded.
     #[test]
     fn arbitrary_mailgrams_do_not_stop_the_pedestal(
         events in prop::collection::vec((0_u8..6, prop::collection::vec(any::<u8>(), 0..40)), 1..60),
@@ -268,7 +267,7 @@ proptest! {
     }
 }
 
-/// A pedestal and the controller's side of its mailboxes.
+/// A pedestal with the controller's side of its mailboxes.
 struct Bench {
     system: System,
     command_box: Mailbox,
@@ -286,7 +285,7 @@ impl Default for Bench {
 }
 
 impl Bench {
-    /// A pedestal that finds a command and sensor words when it joins.
+    /// It finds a command and sensor words when it joins.
     fn joining(number: u32) -> Self {
         let mut bench = Self::default();
         bench.command(&PedestalCommand { number, ..flip(number) });

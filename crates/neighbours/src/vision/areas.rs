@@ -1,4 +1,4 @@
-//! The areas that vision writes (IX.4): the two ready words and the response. CHOSEN, since Figure IX.3 is lost.
+//! The areas that vision writes (IX.4): ready words and response. CHOSEN: Figure IX.3 is lost.
 
 use interfaces::device::{VisionResponse, VisionStatus};
 
@@ -11,10 +11,8 @@ use crate::{
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u16)]
 pub enum Ready {
-    /// The area must not be used (CHOSEN: the manual gives no number).
-    NotReady = 1,
-    /// The area may be read or written (IX.4).
-    Ready = 2,
+    NotReady = 1, // must not be used (CHOSEN: no number in the manual)
+    Ready = 2,    // may be read or written (IX.4)
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -37,7 +35,7 @@ impl Codec<'_, Ready> for ReadyWord {
     }
 }
 
-/// Codec of the byte-count of a request or response area: always 12, the number of bytes after it.
+/// Always 12, the number of bytes after it.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct ByteCount;
 
@@ -60,10 +58,8 @@ impl Codec<'_, ()> for ByteCount {
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Areas {
-    /// `vision-ready-input`.
-    pub input: Ready,
-    /// `vision-ready-output`.
-    pub output: Ready,
+    pub input: Ready,  // `vision-ready-input`
+    pub output: Ready, // `vision-ready-output`
     pub response: VisionResponse,
 }
 
@@ -107,12 +103,12 @@ impl Areas {
         },
     };
 
-    /// Encode the areas. Errors: [`RangeError`] if two bytes cannot hold a value.
+    /// Errors: two bytes cannot hold a value.
     pub fn encode(&self) -> Result<[u8; AreasLayout::BYTES], RangeError> {
         AreasLayout::check(self).map(|()| AreasLayout::encode(self))
     }
 
-    /// Decode the areas. E-move checks the values. Errors: [`VisionError`] for the first field that cannot be read.
+    /// Errors: the first unreadable field. E-move checks the values.
     pub fn decode(bytes: &[u8]) -> Result<Self, VisionError> {
         Ok(AreasLayout::decode(bytes)?)
     }

@@ -1,8 +1,8 @@
 //! The NBS vision system and E-move (IX.4, V.2.1 LOCATE-OBJ).
 //!
-//! Vision has its own parallel interface, which the software uses like a slightly modified mailbox: a request area and
-//! a response area, the byte-count of each, and two words that permit their use. Figure IX.3, with addresses and sizes,
-//! is lost. CHOSEN: two mailboxes, one per direction, so that each has one writer; their data are the areas.
+//! Vision has a parallel interface, used like a slightly modified mailbox: request and response area, their
+//! byte-counts, and two words that permit their use. Figure IX.3, with addresses and sizes, is lost. CHOSEN: two
+//! mailboxes, one per direction, so that each has one writer.
 //!
 //! ```text
 //!   E-move --VisionRequest--> Port --request---> F8000 --> vision
@@ -10,14 +10,12 @@
 //!                             Port --picture---> F8400 --> vision, for the simulated cell only
 //! ```
 //!
-//! Vision writes both ready words: `vision-ready-input` is 2 while the response area is stable and may be read,
-//! `vision-ready-output` is 2 while a request may be written. The controller sets them only by initialization
-//! (blocks 984-986): input "ready", because the response area is empty, and output "not ready", because no
-//! vision system is connected. Vision establishes communications when it writes its mailbox for the first time.
-//!
-//! The crate `sessions` has the controller's end: its `vision::Port` implements E-move's READ-VISION-DATA and
-//! WRITE-VISION-REQUEST (IV.4.4). E-move is independent of it: it reads the response as part of its device
-//! inputs, which are logged.
+//! Vision writes both ready words: `vision-ready-input` is 2 while the response area may be read,
+//! `vision-ready-output` while a request may be written. The controller only initializes them (blocks 984-986): input
+//! "ready", because the response is empty, output "not ready", because no vision system is connected. Vision
+//! establishes communications when it first writes its mailbox. The crate `sessions` has the controller's end,
+//! E-move's READ-VISION-DATA and WRITE-VISION-REQUEST (IV.4.4): `vision::Port`. E-move reads the response as a logged
+//! device input.
 
 pub mod areas;
 pub mod picture;
@@ -31,25 +29,20 @@ use crate::{fields::FieldError, layout::LayoutError};
 /// Why bytes are not a request, areas or a picture.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum VisionError {
-    /// Wrong size or field of a fixed layout.
     #[error(transparent)]
-    Layout(#[from] LayoutError),
-    /// More parts than the mailbox holds.
+    Layout(#[from] LayoutError), // size or field
+    /// More parts than fit.
     #[error("at most {most} parts were expected in a picture, found {found}")]
     Parts {
-        /// Number of parts that the mailbox holds.
-        most: usize,
-        /// Number of parts in the picture.
-        found: usize,
+        most: usize,  // in the mailbox
+        found: usize, // in the picture
     },
     /// Wrong size or field of a part.
     #[error("part {part}: {source}")]
     Part {
-        /// Number of the part, from 1.
-        part: usize,
+        part: usize, // from 1
         source: LayoutError,
     },
-    /// A field that cannot be read.
     #[error(transparent)]
     Field(#[from] FieldError),
 }

@@ -1,6 +1,5 @@
-//! The picture of the camera in the simulated cell: an extension for a vision system without a camera. A real
-//! vision system does not read it. All numbers equal those of the cell exactly, so that every process computes
-//! the same answer.
+//! The picture of the simulated camera, for a vision system without a camera: an extension. Numbers equal those of the
+//! cell exactly, so that every process computes the same answer.
 
 use super::VisionError;
 use crate::{
@@ -33,8 +32,7 @@ crate::layout! {
          those along the second edge first";
 }
 
-/// Bytes before the parts.
-pub const HEAD: usize = HeadLayout::BYTES;
+pub const HEAD: usize = HeadLayout::BYTES; // bytes before the parts
 pub const PART: usize = PartLayout::BYTES;
 pub const MAX_PARTS: usize = (VISION_PICTURE.size - MAILBOX_HEAD - HEAD) / PART;
 const POINTS: u32 = 81;
@@ -48,17 +46,14 @@ pub struct Head {
     cell: u64,
 }
 
-/// A finite 64-bit floating-point number.
 #[derive(Clone, Copy, Debug)]
-struct Number;
+struct Number; // finite, 64 bits
 
-/// Three finite 64-bit floating-point numbers.
 #[derive(Clone, Copy, Debug)]
-struct Vector;
+struct Vector; // finite, 64 bits each
 
-/// A bit for each point of a face.
 #[derive(Clone, Copy, Debug)]
-struct Points;
+struct Points; // a bit for each point of a face
 
 impl Width for Number {
     const BYTES: usize = 8;
@@ -117,28 +112,24 @@ impl Codec<'_, u128> for Points {
 
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Picture {
-    /// Number of the request for which it was taken.
-    pub number: u16,
+    pub number: u16, // of the request
     pub seed: u64,
     /// Fingerprint of the entries of the cell description on which the answer depends.
     pub cell: u64,
     pub parts: Vec<Part>,
 }
 
-/// A part in a picture: its face towards the camera, in camera axes, in.
+/// The face towards the camera, in camera axes, in.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Part {
     pub centre: [f64; 3],
-    /// Directions and lengths of its edges.
-    pub edges: [([f64; 3], f64); 2],
-    /// Reflected share of the light.
-    pub reflectance: f64,
-    /// The visible points: bit n for the nth.
-    pub seen: u128,
+    pub edges: [([f64; 3], f64); 2], // directions and lengths
+    pub reflectance: f64,            // share of the light
+    pub seen: u128,                  // bit n: the nth point is visible
 }
 
 impl Picture {
-    /// Leave out the parts farthest from the optical axis, if the mailbox cannot hold all. Returns their number.
+    /// Leaves out the parts farthest from the optical axis if they do not fit. Returns their number.
     pub fn crop(&mut self) -> usize {
         let Some(excess) = self.parts.len().checked_sub(MAX_PARTS).filter(|excess| *excess > 0) else {
             return 0;
@@ -152,7 +143,7 @@ impl Picture {
         excess
     }
 
-    /// Encode the picture, with at most [`MAX_PARTS`] parts: call [`Picture::crop`] first.
+    /// Encodes at most [`MAX_PARTS`] parts: call [`Picture::crop`] first.
     #[must_use]
     pub fn encode(&self) -> Vec<u8> {
         let parts = &self.parts[..self.parts.len().min(MAX_PARTS)];
@@ -164,7 +155,7 @@ impl Picture {
         bytes
     }
 
-    /// Decode a picture. Errors: [`VisionError`] for the first wrong field.
+    /// Errors: the first wrong field.
     pub fn decode(bytes: &[u8]) -> Result<Self, VisionError> {
         let (head, rest) = bytes.split_at(bytes.len().min(HEAD));
         let Head { number, parts, seed, cell } = HeadLayout::decode(head)?;

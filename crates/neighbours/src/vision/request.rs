@@ -24,13 +24,13 @@ crate::layout! {
         "of the system's parameters: 0 first, another value for each repeated picture";
 }
 
-/// Encode a request. Its number is reduced to the range of the mailbox, 1 to 65535.
+/// The number is reduced to the range of the mailbox, 1 to 65535.
 #[must_use]
 pub fn encode(request: &VisionRequest) -> [u8; RequestLayout::BYTES] {
     RequestLayout::encode(request)
 }
 
-/// Decode a request. Errors: [`VisionError`] for the first wrong field.
+/// Errors: the first wrong field.
 pub fn decode(bytes: &[u8]) -> Result<VisionRequest, VisionError> {
     let request = RequestLayout::decode(bytes)?;
     if request.picture == Picture::None {

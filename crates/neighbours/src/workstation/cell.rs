@@ -1,5 +1,5 @@
-//! Actions of the workstation itself in a simulated cell: an extension. The manual's workstation has its own
-//! connections to vise, trays and machine.
+//! Actions of the workstation in a simulated cell: an extension. The manual's workstation has its own connections to
+//! vise, trays and machine.
 
 use rcs_core::Plain;
 
@@ -8,8 +8,7 @@ use crate::{
     layout::{At, Codec as _, Coded, Flag, LayoutError, Text, U16, Width as _},
 };
 
-/// Bytes of the text of a line or a status.
-pub const TEXT: usize = 240;
+pub const TEXT: usize = 240; // bytes of a line or status
 
 /// Kind of trouble in the cell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
@@ -27,14 +26,12 @@ pub enum Trouble {
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct CellStatus<'a> {
-    /// Number of the last line that was begun or refused.
-    pub echo: u16,
+    pub echo: u16, // last line begun or refused
     pub busy: bool,
     pub trouble: Trouble,
     pub text: &'a str,
 }
 
-/// A line for the cell, with its number.
 pub type NumberedLine<'a> = (u16, &'a str);
 
 crate::layout! {
@@ -57,21 +54,20 @@ crate::layout! {
     "text"     (text)     Text<TEXT>,  "the trouble, as a sentence";
 }
 
-/// Encodes a line. A text longer than [`TEXT`] is truncated.
+/// Encodes a line. A text beyond [`TEXT`] is truncated.
 #[must_use]
 pub fn encode_line(number: u16, line: &str) -> [u8; LineLayout::BYTES] {
     LineLayout::encode(&(number, line))
 }
 
-/// A received line. Its number is known even if the rest cannot be decoded.
+/// The number is known even if the rest cannot be decoded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct CellLine<'a> {
     pub number: u16,
-    /// The line, or the error of decoding it.
     pub text: Result<&'a str, LayoutError>,
 }
 
-/// Decodes a line. Errors: [`FieldError`] if the number is missing.
+/// Errors: the number is missing.
 pub fn decode_line(bytes: &[u8]) -> Result<CellLine<'_>, FieldError> {
     let number = bytes.get(..U16::BYTES).ok_or(FieldError::End { field: "number" })?;
     let number = U16::take(At { field: "number", byte: 0 }, number)?;
@@ -84,7 +80,7 @@ impl<'a> CellStatus<'a> {
         CellStatusLayout::encode(self)
     }
 
-    /// Decodes the data of the mailbox. Errors: [`LayoutError`] for the first wrong field.
+    /// Errors: the first wrong field.
     pub fn decode(bytes: &'a [u8]) -> Result<Self, LayoutError> {
         CellStatusLayout::decode(bytes)
     }

@@ -1,5 +1,4 @@
-//! The command of the workstation controller (V.4.2). Texts are padded with blanks; zeros are also accepted as
-//! padding (CHOSEN).
+//! The command of the workstation controller (V.4.2). Padding: blanks, or also zeros when read (CHOSEN).
 
 use interfaces::HwsCommand;
 
@@ -29,9 +28,8 @@ crate::layout! {
     "endatsector#"       (end_at_sector)  Given<I16>,        "";
 }
 
-/// `cmd-length<w`.
 #[derive(Clone, Copy, Debug)]
-struct Length;
+struct Length; // `cmd-length<w`
 
 impl Width for Length {
     const BYTES: usize = 2;
@@ -55,20 +53,18 @@ impl Codec<'_, ()> for Length {
 pub enum CommandError {
     #[error(transparent)]
     Layout(#[from] LayoutError),
-    /// The command number is 0, which means no command.
     #[error("a number from 1 on was expected for command-#-in, found 0")]
-    NoNumber,
+    NoNumber, // 0 means no command
     #[error("the name of a command was expected for command-16, found blanks")]
     NoCommand,
 }
 
-/// Encodes a command as the data of its mailbox. Errors: [`RangeError`] for a grip or a sector that two bytes cannot
-/// hold.
+/// Errors: two bytes cannot hold a grip or a sector.
 pub fn encode(command: &HwsCommand) -> Result<[u8; CommandLayout::BYTES], RangeError> {
     CommandLayout::check(command).map(|()| CommandLayout::encode(command))
 }
 
-/// Decodes the data of the mailbox. Task checks the words. Errors: [`CommandError`] for the first wrong field.
+/// Errors: the first wrong field. Task checks the words.
 pub fn decode(bytes: &[u8]) -> Result<HwsCommand, CommandError> {
     let command = CommandLayout::decode(bytes)?;
     if command.number == 0 {

@@ -10,10 +10,9 @@
 //! | the one after the last                    | accepted                                                             |
 //! | any other                                 | refused; accepted as the first since the mailboxes were initialized  |
 //!
-//! An accepted command is first checked against the task data ([`Judge`]). One that fails is passed to Task with that
-//! verdict, and Task refuses it: the status echoes its number with `error` and the error in the command.
-//!
-//! A workstation controller that (re)connects reads `command-#-echo` in the status and continues after it (IX.1).
+//! An accepted command is checked against the task data ([`Judge`]). One that fails goes to Task with that verdict,
+//! and Task refuses it: the status echoes its number with `error` and the reason. A workstation controller that
+//! (re)connects reads `command-#-echo` and continues after it (IX.1).
 
 use std::fmt;
 
@@ -38,12 +37,12 @@ pub enum Refusal {
     Garbled(CommandError),
     /// The number belongs to another command.
     Changed { number: u16 },
-    /// The number is out of order.
+    /// The number is not the next one.
     OutOfOrder { expected: u16, found: u16 },
 }
 
 impl Refusal {
-    /// `verdict` in the status.
+    /// The `verdict` in the status.
     #[must_use]
     pub const fn code(&self) -> u16 {
         match self {
@@ -72,13 +71,12 @@ impl fmt::Display for Refusal {
     }
 }
 
-/// Checks commands against the task data before Task reads them.
+/// Before Task reads a command.
 pub trait Judge {
-    /// The error in a command, as a sentence; `None` if it passes.
-    fn verdict(&self, command: &HwsCommand) -> Option<String>;
+    fn verdict(&self, command: &HwsCommand) -> Option<String>; // `None`: the command passes
 }
 
-/// Passes every command, so that Task alone decides.
+/// Task alone decides.
 #[derive(Clone, Copy, Debug)]
 pub struct Unchecked;
 
@@ -88,19 +86,15 @@ impl Judge for Unchecked {
     }
 }
 
-/// Task's end of the two mailboxes. It allocates only for a command that fails its check.
+/// It allocates only for a command that fails its check.
 #[derive(Clone, Debug)]
 pub struct Gate {
-    /// Last read mailgram number.
-    read: u16,
+    read: u16, // last mailgram number
     refused: Option<Refusal>,
     command: HwsCommand,
-    /// The error in the command, if it fails its check.
-    wrong: Option<String>,
-    /// True if no command was accepted since the mailboxes were initialized.
-    fresh: bool,
-    /// Task's last status, with the details of its reason at the tick of its arrival.
-    told: (HwsStatus, Detail),
+    wrong: Option<String>,     // if the command fails its check
+    fresh: bool,               // no command accepted since the initialization
+    told: (HwsStatus, Detail), // with the details of its reason on arrival
     status_box: Mailbox,
 }
 
@@ -124,43 +118,41 @@ impl Gate {
         &self.command
     }
 
-    /// The reason why the last mailgram was refused, if it was.
+    /// Why the last mailgram was refused.
     #[must_use]
     pub const fn refused(&self) -> Option<&Refusal> {
         self.refused.as_ref()
     }
 
-    /// The error in Task's command, if it failed its check.
+    /// The error in Task's command.
     #[must_use]
     pub fn wrong(&self) -> Option<&str> {
         self.wrong.as_deref()
     }
 
-    /// The unread data of the mailbox, if any.
+    /// Data of the mailbox that were not read.
     #[must_use]
     pub fn unread<'b>(&self, command_box: &'b Mailbox) -> Option<&'b [u8]> {
         (command_box.mailgram() != self.read).then(|| command_box.data())
     }
 
-    /// The mailbox to the workstation controller.
     #[must_use]
     pub const fn status_box(&self) -> &Mailbox {
         &self.status_box
     }
 
-    /// Initializes the mailboxes (block 641, IX.1). The next command may have any number except the last. Task
-    /// keeps its command.
+    /// Block 641, IX.1: the next command may have any number except the last. Task keeps its command.
     pub fn initialize(&mut self) {
         (self.read, self.refused, self.fresh) = (0, None, true);
         self.status_box.initialize();
     }
 
-    /// Skips the command in the mailbox. It was sent while the mailbox was not read, and must not be executed.
+    /// The command was sent while the mailbox was not read, and must not be executed.
     pub fn pass_over(&mut self, command_box: &Mailbox) {
         self.read = command_box.mailgram();
     }
 
-    /// READ-HWS-COMMAND, called once per tick. Reads the mailbox. Returns `Some` if a mailgram is refused.
+    /// READ-HWS-COMMAND, once per tick. Returns `Some` if a mailgram is refused.
     pub fn read(&mut self, command_box: &Mailbox, judge: &impl Judge) -> Option<Refusal> {
         debug_assert_eq!(command_box.place(), HWSC_COMMAND);
         let mailgram = command_box.mailgram();
@@ -191,8 +183,8 @@ impl Gate {
         Ok(())
     }
 
-    /// WRITE-HWS-STATUS and UPDATE-MAILGRAM?, called once per tick. Writes Task's status to the mailbox if it has
-    /// changed, and then returns true. Names and distances of a reason are those of the tick of its arrival.
+    /// WRITE-HWS-STATUS and UPDATE-MAILGRAM?, once per tick. True if Task's status has changed. Names and distances of
+    /// a reason are those of the tick of its arrival.
     pub fn write(&mut self, memory: &CommonMemory, state: TaskState) -> bool {
         let task = memory.task.status;
         if task != self.told.0 {
@@ -212,7 +204,7 @@ impl Gate {
     }
 }
 
-/// Converts a number from a mailbox, which has two bytes.
+/// Converts a number from two bytes.
 fn word(number: u32) -> u16 {
     u16::try_from(number).unwrap_or(u16::MAX)
 }
@@ -224,8 +216,7 @@ mod tests {
 
     use super::{super::command::tests::transfer, *};
 
-    /// Rejects commands to VISE.
-    struct Vise;
+    struct Vise; // rejects commands to VISE
 
     impl Judge for Vise {
         fn verdict(&self, command: &HwsCommand) -> Option<String> {
@@ -234,7 +225,6 @@ mod tests {
         }
     }
 
-    /// A workstation controller that writes what the test specifies.
     struct Bench {
         gate: Gate,
         command_box: Mailbox,

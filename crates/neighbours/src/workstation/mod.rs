@@ -1,16 +1,15 @@
 //! The workstation controller (HWSC) and Task (V.4.2, IX.1).
 //!
-//! The manual names the fields of the two interfaces, their widths and their order. The mailboxes contain them in that
-//! order, without gaps. Values that the manual does not give are marked CHOSEN in [`command`] and [`status`].
+//! The mailboxes contain the fields of the manual in their order, without gaps. Values that it does not give are
+//! CHOSEN in [`command`] and [`status`].
 //!
 //! ```text
 //!   HWSC --command::encode--> F6000 --Gate--> HwsCommand --> Task
 //!   HWSC <--status::decode--- F6200 <-------- HwsStatus  <-- Task
 //! ```
 //!
-//! [`Gate`] implements Task's READ-HWS-COMMAND and WRITE-HWS-STATUS (Figure IV.1). A refused mailgram never reaches
-//! Task, which continues the command in progress. [`player`] is an emulator of the workstation controller that plays
-//! jobs.
+//! [`Gate`] is Task's READ-HWS-COMMAND and WRITE-HWS-STATUS (Figure IV.1). A refused mailgram never reaches Task,
+//! which continues. [`player`] emulates a workstation controller that plays jobs.
 
 pub mod cell;
 pub mod command;

@@ -1,12 +1,11 @@
 //! Emulator of the workstation controller (HWSC) that plays a job.
 //!
-//! A job is a list of steps: commands for Task, and actions of the workstation itself (vise, machining) between
-//! them. The emulator first sends PAUSE, like the startup sequence (V.4.1), and then one step after the other:
-//! a command ends when Task answers its number with `finished`, an action when the workstation is no longer
-//! busy. An unanswered command is sent once more, unchanged. An error, a lost Task, a fault of the workstation
-//! or a step beyond its time limit end the job with a [`JobFailure`]. With [`Hwsc::with_retries`] the emulator
-//! acts like an operator after an error: it sends PAUSE and the same command again. During an action of the
-//! workstation the operator may move the robot; the joystick box ends only a command.
+//! A job is a list of commands for Task, and actions of the workstation (vise, machining) between them. The emulator
+//! first sends PAUSE, like the startup sequence (V.4.1). A command ends when Task answers its number with `finished`,
+//! an action when the workstation is not busy. An unanswered command is sent once more. An error, a lost Task, a fault
+//! of the workstation or a time limit end the job with a [`JobFailure`]. With [`Hwsc::with_retries`] the emulator acts
+//! like an operator after an error: PAUSE and the same command again. During an action of the workstation the operator
+//! may move the robot; the joystick box ends only a command.
 //!
 //! ```text
 //!           PAUSE           command finished, or workstation idle
@@ -17,20 +16,16 @@
 //!                     +---- error, a retry is left ----> PAUSE ----> Sent
 //! ```
 //!
-//! An emergency ([`Workstation::emergency`]) ends the job at once, unless the current or a later line of the
-//! job resets it with `** panel fault-reset`. A command that fails meanwhile is then recorded as failed, and
-//! the job continues. The job fails if no later repetition of that command has finished.
+//! An emergency ([`Workstation::emergency`]) ends the job at once, unless the current or a later line resets it with
+//! `** panel fault-reset`. A command that fails meanwhile is recorded, and the job fails if no later repetition of it
+//! has finished. A command whose line ends with `expect error` must fail.
 //!
-//! A command whose line ends with `expect error` must fail: the job continues after the failure, and fails if the
-//! command finishes.
+//! An action during a command precedes it in the job. It starts its number of ticks after the command is sent,
+//! whichever step is then current. The job ends after all these actions. An operator can stop the job, command the
+//! robot meanwhile, and continue the job ([`operator`]).
 //!
-//! An action during a command precedes that command in the job. It starts its number of ticks after the command
-//! is sent, whichever step is then current. The job ends only after all these actions have ended.
-//!
-//! An operator can stop the job, command the robot meanwhile, and continue the job ([`operator`]).
-//!
-//! The emulator uses only Task's mailboxes: it reads a [`Status`], and writes a command ([`Hwsc::mailgram`]). It can
-//! therefore run in the controller's process or in another one, and a real workstation controller can replace it.
+//! The emulator uses only Task's mailboxes: it reads a [`Status`] and writes a command ([`Hwsc::mailgram`]). It can
+//! run in another process, and a real workstation controller can replace it.
 
 mod operator;
 mod outcome;
@@ -53,12 +48,10 @@ use super::status::{Status, TaskState};
 use crate::fields::command_number;
 
 pub trait Workstation {
-    /// Begin an action; `line` is its line in the job, without the asterisks. Errors: a sentence with the reason, if
-    /// the workstation cannot execute the action.
+    /// `line` is its line in the job, without the asterisks. Errors: why the workstation cannot execute it.
     fn begin(&mut self, action: &Action, line: &str) -> Result<(), String>;
 
-    /// True while an action is in progress.
-    fn busy(&self) -> bool;
+    fn busy(&self) -> bool; // while an action is in progress
 
     /// True while an action has a time limit of its own, which replaces that of the job.
     fn has_own_time_limit(&self) -> bool {
@@ -68,63 +61,52 @@ pub trait Workstation {
     /// The fault of the workstation as a sentence, if any.
     fn fault(&self) -> Option<String>;
 
-    /// The emergency that has stopped the robot, as a sentence, if any.
+    /// It has stopped the robot. As a sentence.
     fn emergency(&self) -> Option<String> {
         None
     }
 }
 
-/// Time limit of a step, ticks: five minutes, three times the longest step of the linkbar job.
+/// Per step, ticks: five minutes, three times the longest step of the linkbar job.
 pub const TIME_LIMIT: u64 = 5 * 60 * 1000 / TICK_MS;
 
-/// Ticks from the PAUSE after an error to the repeated command, in which the cause of the error may end. An
-/// operator would not be faster. CHOSEN: 1 s.
+/// Ticks from the PAUSE after an error to the repeated command: the cause may end meanwhile. CHOSEN: 1 s.
 pub const RETRY_TICKS: u64 = 1000 / TICK_MS;
 
-/// The emulator of the workstation controller.
 #[derive(Clone, Debug)]
 pub struct Hwsc {
     steps: Vec<JobLine>,
-    /// The present step: 0 is the first PAUSE, `n` is `steps[n - 1]`.
-    current: usize,
+    current: usize, // 0: the first PAUSE; `n`: `steps[n - 1]`
     began: Option<Tick>,
     commander: Commander,
     command: HwsCommand,
-    /// Time limit for the echo of a command, ticks.
-    answer_ticks: u64,
-    /// True if the command has been sent a second time.
-    repeated: bool,
-    /// True until the command is written to the mailbox.
-    to_send: bool,
+    answer_ticks: u64, // time limit of an echo
+    repeated: bool,    // the command has been sent twice
+    to_send: bool,     // the command is not yet in the mailbox
     begun_steps: Vec<BegunStep>,
-    /// Index of the current step in `begun_steps`.
-    entry: usize,
-    /// Commands that failed while the job continued.
-    failed: Vec<FailedCommand>,
+    entry: usize,               // current step in `begun_steps`
+    failed: Vec<FailedCommand>, // while the job continued
     progress: Progress,
     time_limit: u64,
     later: Vec<Later>,
-    /// Greatest number of retries per line.
-    retries: u32,
-    /// Retries of the current line so far.
-    tried: u32,
-    /// True while the PAUSE before the current step, or before its retry, is in progress.
+    retries: u32, // per line, at most
+    tried: u32,   // of the current line so far
+    /// Before the current step, or before its retry.
     pausing: bool,
     retried: Vec<Retry>,
     intervention: Intervention,
 }
 
-/// A command that failed while the job continued.
+/// The job continued after it.
 #[derive(Clone, Debug)]
 struct FailedCommand {
-    /// Index in `begun_steps`.
-    step: usize,
+    step: usize, // in `begun_steps`
     tick: Tick,
     reason: Reason,
 }
 
 impl Hwsc {
-    /// An emulator that plays `steps`, each within `time_limit` ticks.
+    /// Each step takes at most `time_limit` ticks.
     #[must_use]
     pub fn new(steps: Vec<JobLine>, time_limit: u64) -> Self {
         let begun_steps = Vec::with_capacity(steps.len() + 1);
@@ -151,8 +133,8 @@ impl Hwsc {
         }
     }
 
-    /// After a failed command, sends PAUSE and the same command again, up to this number of times per line. A
-    /// failure that requires an operator's action first is not retried ([`Reason::remedy`]).
+    /// Repeats a failed command after a PAUSE, at most `retries` times per line. A failure that requires an
+    /// operator's action first is not retried ([`Reason::remedy`]).
     #[must_use]
     pub const fn with_retries(mut self, retries: u32) -> Self {
         self.retries = retries;
@@ -165,8 +147,8 @@ impl Hwsc {
         &self.retried
     }
 
-    /// Sets the time limit for the echo of a command, ticks, after which the command is repeated. The default
-    /// is the three ticks of a neighbour in the same process; a network is slower.
+    /// Time limit of an echo, ticks, after which a command is repeated. The default, three, is for the same process; a
+    /// network is slower.
     #[must_use]
     pub const fn with_answer_ticks(mut self, ticks: u64) -> Self {
         self.answer_ticks = ticks;
@@ -178,7 +160,7 @@ impl Hwsc {
         self.steps.insert(self.current.min(self.steps.len()), line);
     }
 
-    /// Replaces the next command of the job by a line. Returns false, without a change, if no command is left.
+    /// False, without a change, if no command is left.
     #[must_use]
     pub fn replace_command(&mut self, line: JobLine) -> bool {
         let coming = self.steps.iter_mut().skip(self.current);
@@ -186,19 +168,18 @@ impl Hwsc {
         command.map(|command| *command = line).is_some()
     }
 
-    /// The last command sent.
     #[must_use]
     pub const fn command(&self) -> &HwsCommand {
         &self.command
     }
 
-    /// The command to write to the mailbox now, if any. Each command is returned once.
+    /// Returns each command to write once.
     pub fn mailgram(&mut self) -> Option<&HwsCommand> {
         std::mem::take(&mut self.to_send).then_some(&self.command)
     }
 
-    /// Number of the job's last begun line, 0 before the first, and the number of its lines. Commands of an
-    /// operator, PAUSE before a line, and repetitions are not counted.
+    /// The last begun line, 0 before the first, and the number of lines; without operators' commands, PAUSE and
+    /// repetitions.
     #[must_use]
     pub fn place(&self) -> (usize, usize) {
         let lines = self.steps.len();
@@ -206,7 +187,7 @@ impl Hwsc {
         (begun.min(lines), lines)
     }
 
-    /// All begun steps, including the first PAUSE.
+    /// The steps include the first PAUSE.
     #[must_use]
     pub fn begun_steps(&self) -> &[BegunStep] {
         &self.begun_steps
@@ -222,20 +203,19 @@ impl Hwsc {
         &self.progress
     }
 
-    /// Number of steps, including the first PAUSE.
+    /// The steps include the first PAUSE.
     #[must_use]
     pub fn len(&self) -> usize {
         self.steps.len() + 1
     }
 
-    /// Always false: a job has at least one step, the first PAUSE.
+    /// A job has at least one step, the first PAUSE.
     #[must_use]
     pub const fn is_empty(&self) -> bool {
         false
     }
 
-    /// Called once per tick, after the controller. Reads Task's status of `tick` and prepares the command for
-    /// the next tick.
+    /// Once per tick, after the controller: reads Task's status of `tick`, and prepares the command for the next.
     pub fn step(&mut self, tick: Tick, task: &Status<'_>, workstation: &mut impl Workstation) -> &Progress {
         if self.progress != Progress::Running {
             return &self.progress;
@@ -292,14 +272,14 @@ impl Hwsc {
         &self.progress
     }
 
-    /// True if the current step or a later one resets a fault of the robot controller.
+    /// The current step or a later one resets a fault of the robot controller.
     #[must_use]
     pub fn resets_emergency(&self) -> bool {
         let reset = Step::Workstation(Action::Panel(Key::FaultReset));
         self.steps.iter().skip(self.current.saturating_sub(1)).any(|line| line.step == reset)
     }
 
-    /// Handles a failure of the current step or of the PAUSE before it: retries, or fails the job.
+    /// Handles a failure of the current step or the PAUSE before it: retries, or fails the job.
     fn failed(&mut self, tick: Tick, failure: JobFailure, workstation: &mut impl Workstation) {
         let JobFailure::Command(reason) = failure else { return self.fail(failure) };
         if self.pausing && self.tried > 0 {
@@ -333,7 +313,7 @@ impl Hwsc {
                 .is_some_and(|line| line.expects_error && matches!(line.step, Step::Command(_)))
     }
 
-    /// Outcome of the current step; `None` while it is in progress.
+    /// `None` while in progress.
     fn end_of_step(
         &mut self,
         tick: Tick,
@@ -379,10 +359,9 @@ impl Hwsc {
         }
     }
 
-    /// Evaluates Task's status for the last command.
+    /// Task's answer to the last command.
     fn read(&self, tick: Tick, task: &Status<'_>) -> Lower {
-        // The number has two bytes in the mailbox.
-        let last = self.commander.number;
+        let last = self.commander.number; // two bytes in the mailbox
         let echo = if command_number(last) == task.echo { last } else { u32::from(task.echo) };
         let lost = task.task == TaskState::Lost;
         let header = Header {
@@ -398,7 +377,7 @@ impl Hwsc {
         }
     }
 
-    /// Starts the delayed actions that are due.
+    /// Those that are due.
     fn begin_later(&mut self, tick: Tick, workstation: &mut impl Workstation) -> Result<(), String> {
         for later in self.later.extract_if(.., |later| later.is_due(tick)) {
             workstation.begin(&later.action, &later.line)?;
@@ -406,14 +385,14 @@ impl Hwsc {
         Ok(())
     }
 
-    /// Called after the last step: delayed actions may still be waiting.
+    /// Called after the last step; delayed actions may still be waiting.
     fn end(&mut self, workstation: &impl Workstation) {
         if self.later.is_empty() && !workstation.busy() {
             self.progress = self.unfinished().map_or(Progress::Over, Progress::Failed);
         }
     }
 
-    /// The first command that failed and was not repeated successfully.
+    /// The first failed command without a successful repetition.
     fn unfinished(&self) -> Option<JobFailure> {
         self.failed.iter().find_map(|FailedCommand { step, tick, reason }| {
             let (failed, later) = self.begun_steps.get(*step..)?.split_first()?;
@@ -428,8 +407,7 @@ impl Hwsc {
         self.steps.get(position.checked_sub(1)?)
     }
 
-    /// Transfers the command to the workstation controller, whose line `** workstation` has begun. Do not call
-    /// [`Self::step`] until [`Self::take_back`] or [`Self::refuse`].
+    /// The line `** workstation` has begun. Do not call [`Self::step`] until [`Self::take_back`] or [`Self::refuse`].
     #[must_use]
     pub fn is_handed_over(&self) -> bool {
         let hands_over = |line: &JobLine| line.step == Step::Workstation(Action::HandOver);
@@ -437,8 +415,8 @@ impl Hwsc {
         is_begun && self.step_at(self.current).is_some_and(hands_over)
     }
 
-    /// Resumes the command after the workstation controller has disconnected: sends PAUSE, and continues with the next
-    /// line of the job. `commands` are the intermediate commands, `last` is the number of the last one.
+    /// Resumes when the workstation controller disconnects: PAUSE, then the next line. `last` is the number of the last
+    /// of its `commands`.
     pub fn take_back(&mut self, tick: Tick, last: u32, commands: Vec<BegunStep>) {
         self.took(tick);
         self.finish(Outcome::Finished);
@@ -448,17 +426,16 @@ impl Hwsc {
         self.pause(tick);
     }
 
-    /// Ends the job because the workstation controller cannot take over.
+    /// The workstation controller cannot take over.
     pub fn refuse(&mut self, tick: Tick, why: String) {
         self.took(tick);
         self.fail(JobFailure::Workstation(why));
     }
 }
 
-/// Text of the command that is sent first, and before every retry.
-const PAUSE: &str = "PAUSE";
+const PAUSE: &str = "PAUSE"; // first, and before every retry
 
-/// The PAUSE command (V.4.1).
+/// The command PAUSE (V.4.1).
 #[must_use]
 pub fn pause() -> HwsCommand {
     HwsCommand { command: Name16::clipped(PAUSE), ..HwsCommand::default() }

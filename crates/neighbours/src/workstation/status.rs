@@ -1,6 +1,5 @@
-//! The status to the workstation controller (V.4.2). Fields that are not in the manual are CHOSEN: the manual's
-//! status has neither an echo of the command number nor a word for failure. A refused mailgram does not change
-//! the fields before `verdict`: they still describe Task's command.
+//! The status to the workstation controller (V.4.2). Additional fields are CHOSEN, such as the echo of the number and
+//! a word for failure. A refused mailgram changes no field before `verdict`: they describe Task's command.
 
 use interfaces::{
     Detail, Reason, Unconfirmed,
@@ -14,8 +13,7 @@ use crate::{
     layout::{At, Chars, Codec, Coded, LayoutError, Sentence, Spelled, Text, U16, Unused, Width},
 };
 
-/// Bytes of `reason`.
-pub const REASON: usize = 160;
+pub const REASON: usize = 160; // bytes
 
 /// The field `task-state`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
@@ -30,17 +28,12 @@ pub enum TaskState {
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Status<'a> {
-    /// `"command-echo"`.
-    pub command: Name16,
-    /// `"status"`.
-    pub report: HwsReport,
-    /// `command-#-echo`.
-    pub echo: u16,
+    pub command: Name16,   // `"command-echo"`
+    pub report: HwsReport, // `"status"`
+    pub echo: u16,         // `command-#-echo`
     pub mailgram_echo: u16,
-    /// `verdict`: 0 if the mailgram was accepted.
-    pub verdict: u16,
-    /// `status-code`.
-    pub code: Reason,
+    pub verdict: u16, // 0: the mailgram was accepted
+    pub code: Reason, // `status-code`
     pub task: TaskState,
     pub unconfirmed: Unconfirmed,
     pub reason: &'a str,
@@ -96,13 +89,10 @@ impl Codec<'_, ()> for Length {
 #[derive(Clone, Copy, Debug)]
 pub enum Why<'a> {
     Mailgram(&'a Refusal),
-    /// The command fails its check, for this reason.
-    Command(&'a str),
-    /// The reason of Task's status, with names and distances.
-    Reason(Detail),
+    Command(&'a str), // it fails its check
+    Reason(Detail),   // with names and distances
 }
 
-/// Encodes a status as the data of its mailbox.
 #[must_use]
 pub fn encode(
     status: &HwsStatus,
@@ -132,7 +122,7 @@ pub fn encode(
     })
 }
 
-/// Decodes the data of the mailbox. Errors: [`LayoutError`] for the first wrong field.
+/// Errors: the first wrong field.
 pub fn decode(bytes: &[u8]) -> Result<Status<'_>, LayoutError> {
     StatusLayout::decode(bytes)
 }

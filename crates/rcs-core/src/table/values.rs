@@ -92,7 +92,7 @@ impl Variable {
         Some(product)
     }
 
-    /// At most 256.
+    /// Number of values, at most 256.
     #[expect(clippy::as_conversions, reason = "a constant function cannot convert otherwise")]
     const fn base(&self) -> u64 {
         self.values.variants.len() as u64
@@ -132,7 +132,7 @@ impl Table {
         self.rows.iter().find(fits)
     }
 
-    /// For each other value of each variable, the row that it would have fired, if different. The step stays the same.
+    /// The row that each other value of a variable would have fired, if different. The step stays the same.
     pub fn near_misses(&self, values: Values) -> impl Iterator<Item = NearMiss> {
         let fired = self.consult(values);
         let others = self.values(values).enumerate().flat_map(move |(at, (variable, now))| {
@@ -161,7 +161,7 @@ impl Table {
         variable.values.variants.iter().find(|value| u64::from(value.code) == digit)
     }
 
-    /// With one variable changed.
+    /// The values with one variable changed.
     fn with(&self, at: usize, value: &VariantSchema, values: Values) -> Option<Values> {
         let weight = self.weight(at)?;
         let part = |value: &VariantSchema| u64::from(value.code).checked_mul(weight);

@@ -167,7 +167,7 @@ fn situation_of(table: &Path) -> Path {
     beside(table, |name| format!("{}Situation", names::camel(name)))
 }
 
-/// In the order of their first occurrence.
+/// The paths without duplicates, in the order of their first occurrence.
 fn once(paths: impl Iterator<Item = Path>) -> Vec<Path> {
     let mut all = Vec::new();
     for path in paths {
@@ -179,7 +179,7 @@ fn once(paths: impl Iterator<Item = Path>) -> Vec<Path> {
 }
 
 impl Commands {
-    /// In the order of their numbers.
+    /// All tables in the order of their numbers.
     fn tables(&self) -> Vec<Path> {
         let tables = self.entries.iter().flat_map(|entry| &entry.chain).map(static_of);
         once(self.others.iter().cloned().chain(tables))

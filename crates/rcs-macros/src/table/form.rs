@@ -36,7 +36,7 @@ pub enum Passed {
     Value(Path),
 }
 
-/// For any step if none is named.
+/// Rows for the named steps; for any step if none is named.
 pub struct StepGroup {
     pub attributes: Vec<Attribute>,
     pub steps: Vec<Ident>,
@@ -210,7 +210,7 @@ impl Table {
         self.groups.iter().flat_map(|group| group.rows.iter().map(move |row| (group, row)))
     }
 
-    /// Only errors for which the compiler's message would be unclear.
+    /// Reports errors for which the compiler's message would be unclear.
     fn check(&self) -> Result<()> {
         for ((_, row), expected) in self.rows().zip(1_u8..) {
             if row.number.base10_parse::<u8>()? != expected {

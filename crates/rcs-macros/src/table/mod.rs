@@ -10,7 +10,7 @@ use self::form::{Condition, Passed, Row, Step, StepGroup, Table};
 use crate::{names, variables};
 
 impl Table {
-    /// In a pattern or an expression, at `span`.
+    /// The type of the steps in a pattern or an expression, at `span`.
     fn step_type(&self, span: Span) -> TokenStream {
         match &self.step {
             Some(Step::Declared(name)) => respan(quote!(#name), span),
@@ -85,7 +85,7 @@ impl Table {
         }
     }
 
-    /// Without duplicates.
+    /// The variables that the rows name, without duplicates.
     fn asked(&self) -> Vec<&Ident> {
         let mut asked: Vec<&Ident> = Vec::new();
         for Condition { variable, .. } in self.rows().flat_map(|(_, row)| &row.conditions) {
@@ -138,7 +138,7 @@ impl Table {
         }
     }
 
-    /// In the manual's spelling: `GET_OBJECT` is `GET-OBJECT`.
+    /// The name in the manual's spelling: `GET_OBJECT` is `GET-OBJECT`.
     fn title(&self) -> String {
         self.name.to_string().replace('_', "-")
     }
@@ -170,7 +170,7 @@ impl Table {
         texts.collect()
     }
 
-    /// A table of the documentation.
+    /// The rows as a table of the documentation.
     fn documentation(&self) -> String {
         let names = |names: &[Ident]| names.iter().map(ToString::to_string).collect::<Vec<_>>().join(" or ");
         let mut text =

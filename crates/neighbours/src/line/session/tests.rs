@@ -1,4 +1,4 @@
-//! Two sessions without a line between them: the test carries the bytes.
+//! Two sessions; the test carries the bytes.
 
 use proptest::prelude::*;
 
@@ -17,7 +17,6 @@ enum Seen {
     Error(SessionError),
 }
 
-/// All present events.
 fn events(session: &mut Session, now: Instant) -> Vec<Seen> {
     let mut seen = Vec::new();
     loop {
@@ -32,7 +31,7 @@ fn events(session: &mut Session, now: Instant) -> Vec<Seen> {
     }
 }
 
-/// Passes the output of one side to the other in pieces of `pieces` bytes. Returns the events of the other side.
+/// Passes bytes to the other side in pieces. Returns its events.
 fn carry(from: &mut Session, to: &mut Session, pieces: usize, now: Instant) -> Vec<Seen> {
     let bytes = std::mem::take(from.output());
     let seen = bytes.chunks(pieces).flat_map(|piece| {
@@ -42,7 +41,7 @@ fn carry(from: &mut Session, to: &mut Session, pieces: usize, now: Instant) -> V
     seen.collect()
 }
 
-/// Both sides, and the time at which they are open.
+/// Both sides, and the time.
 fn open(role: Role, clock: ClockKind) -> (Session, Session, Instant) {
     let now = Instant::now();
     let (mut controller, mut neighbour) = (Session::controller(clock, now), Session::neighbour(role, now));
@@ -175,14 +174,12 @@ fn only_an_unanswered_pulse_makes_a_neighbour_silent() {
         controller.receive(&bytes, now);
         assert_eq!(events(controller, now), [Seen::Pulse(tick)]);
     };
-    // The neighbour is late by one tick.
-    answer(&mut controller, 7, now + limit - TICK);
+    answer(&mut controller, 7, now + limit - TICK); // late by one tick
     assert_eq!(controller.deadline(), Some(now + limit * 2 - TICK));
     answer(&mut controller, 8, now + limit);
     assert_eq!(controller.deadline(), None);
     controller.pulse(9, now + limit * 5);
-    // A repeated answer has no effect.
-    answer(&mut controller, 8, now + limit * 5 + TICK);
+    answer(&mut controller, 8, now + limit * 5 + TICK); // repeated
     assert_eq!(controller.check_time(now + limit * 6 - TICK), Ok(()));
     assert_eq!(controller.check_time(now + limit * 6), Err(SessionError::Silent(limit)));
     assert_eq!((controller.check_time(now + limit * 7), controller.deadline()), (Ok(()), None));
@@ -275,7 +272,7 @@ proptest! {
         prop_assert!(errors == 0 || errors == 1 && is_last, "{:?}", seen);
     }
 
-    /// The same at a neighbour, because another program may listen instead of the controller.
+    /// Another program may listen instead of the controller.
     #[test]
     fn arbitrary_bytes_do_not_panic_at_a_neighbour(
         bytes in prop::collection::vec(any::<u8>(), 0..300),

@@ -9,7 +9,7 @@
 //!     └──── skip: PAUSE, then the line after it ◄────────────────┘
 //! ```
 //!
-//! Commands of the operator and of the job share one sequence of command numbers, that of the
+//! The operator's commands and those of the job share the numbers of the
 //! [`Commander`](rcs_core::handshake::Commander). While an operator is connected, the job waits instead of ending if a
 //! command fails, the joystick box is on, an emergency occurs, or the workstation refuses an action.
 
@@ -26,16 +26,13 @@ use crate::workstation::status::Status;
 pub(super) struct Intervention {
     attended: bool,
     state: State,
-    /// The reason why the job waits, until it is reported.
-    news: Option<WaitReason>,
+    news: Option<WaitReason>, // until it is reported
 }
 
-/// Why a job waits for an operator.
 #[derive(Clone, Debug, PartialEq)]
 pub enum WaitReason {
     Commanded,
-    /// The operator has requested the wait.
-    Asked,
+    Asked, // by the operator
     Failed(JobFailure),
 }
 
@@ -52,58 +49,48 @@ impl fmt::Display for WaitReason {
     }
 }
 
-/// Whether the job runs or waits for the operator.
 #[derive(Clone, Debug, Default)]
 enum State {
     #[default]
     Plays,
-    /// The job runs, and will wait at the end of the current line.
-    Asked,
+    Asked, // will wait at the end of the current line
     Waits {
-        /// Failure of the line, if any.
-        failure: Option<JobFailure>,
-        /// True if the job waits before a new line.
-        before_line: bool,
-        /// Index of the operator's command in progress, among the begun steps.
-        command: Option<usize>,
+        failure: Option<JobFailure>, // of the line
+        before_line: bool,           // waits before a new line
+        command: Option<usize>,      // the operator's, in progress, among the begun steps
     },
 }
 
-/// Why an operator's request is refused.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum OperatorError {
     #[error(
         "the job plays already; `job wait` stops it at the end of its line, any command stops it at once"
     )]
     Plays,
-    /// A command of the operator is in progress.
     #[error("{0} is still executed: wait for its end, or send PAUSE")]
-    Executes(String),
-    /// The job has no line left to skip.
+    Executes(String), // a command in progress
     #[error("the job has no line left to skip; `job go` ends it")]
-    NoLine,
+    NoLine, // none left to skip
     #[error("the job has ended")]
     Ended,
 }
 
 impl Hwsc {
-    /// Makes the job wait for an operator before its first line.
+    /// Makes the job wait before its first line.
     #[must_use]
     pub fn on_stand_by(mut self) -> Self {
         self.intervention.state = State::Asked;
         self
     }
 
-    /// Sets whether an operator is connected. When the operator disconnects, a job that waits because of a
-    /// failed line ends with that failure.
+    /// When the operator disconnects, a job that waits because of a failed line ends with that failure.
     pub fn attend(&mut self, is_there: bool) {
         self.intervention.attended = is_there;
         if let (false, State::Waits { failure, .. }) = (is_there, &mut self.intervention.state)
             && let Some(failure) = failure.take()
         {
             self.progress = Progress::Failed(failure);
-            // A job that has ended does not wait.
-            self.intervention.state = State::Plays;
+            self.intervention.state = State::Plays; // a job that has ended does not wait
         }
     }
 
@@ -113,23 +100,23 @@ impl Hwsc {
         matches!(self.intervention.state, State::Waits { .. })
     }
 
-    /// True if the job waits for an operator whose last command has ended.
+    /// The operator's last command has ended.
     #[must_use]
     pub const fn waits_idle(&self) -> bool {
         matches!(self.intervention.state, State::Waits { command: None, .. })
     }
 
-    /// True if the job waits for an operator before a new line.
+    /// True if the job waits for an operator.
     pub(super) const fn waits_before_line(&self) -> bool {
         matches!(self.intervention.state, State::Waits { before_line: true, .. })
     }
 
-    /// The reason why the job has begun to wait; each reason is returned once.
+    /// Returns each reason once.
     pub fn operator_news(&mut self) -> Option<WaitReason> {
         self.intervention.news.take()
     }
 
-    /// Makes the job wait when the current line has ended, or before its first line. Errors: [`OperatorError::Ended`].
+    /// Waits when the current line has ended, or before the first. Errors: [`OperatorError::Ended`].
     pub fn wait_for_operator(&mut self) -> Result<(), OperatorError> {
         self.not_ended()?;
         if matches!(self.intervention.state, State::Plays) {
@@ -138,20 +125,18 @@ impl Hwsc {
         Ok(())
     }
 
-    /// Continues the job with the line that was interrupted or has failed, after a PAUSE as after every interruption.
-    /// An action of the workstation that is still in progress is not started again. Errors: [`OperatorError`].
+    /// Repeats the interrupted or failed line, after a PAUSE. An action of the workstation in progress is not started
+    /// again.
     pub fn go_on(&mut self, tick: Tick) -> Result<(), OperatorError> {
         self.resume(tick, false)
     }
 
-    /// Continues the job after the line that was interrupted or has failed. The caller must ensure that the cell is in
-    /// the state that the skipped line would have produced. Errors: [`OperatorError`].
+    /// Continues after the interrupted or failed line. The caller must bring the cell into the state after it.
     pub fn skip(&mut self, tick: Tick) -> Result<(), OperatorError> {
         self.resume(tick, true)
     }
 
-    /// Replaces the rest of the waiting job by other lines: sends PAUSE, then the first of them. Discards the job's
-    /// delayed actions and recorded failures. Errors: [`OperatorError`].
+    /// Replaces the rest of a waiting job: PAUSE, then the new lines. Discards delayed actions and recorded failures.
     pub fn play(&mut self, tick: Tick, steps: Vec<JobLine>) -> Result<(), OperatorError> {
         self.not_ended()?;
         let State::Waits { failure, before_line, command } = &self.intervention.state else {
@@ -174,19 +159,18 @@ impl Hwsc {
         Ok(())
     }
 
-    /// An emulator without a job, for an operator's commands instead of those of a workstation controller.
-    /// `last` is the number of that controller's last command.
+    /// An emulator for an operator's commands, without a job. `last` is the workstation controller's last number.
     #[must_use]
     pub fn stand_alone(last: u32, time_limit: u64) -> Self {
         let mut hwsc = Self::new(Vec::new(), time_limit);
-        // Task may not yet have echoed the last command. The next command has the number after it.
+        // Task may not yet have echoed the last command; the next has the number after it.
         (hwsc.commander.number, hwsc.commander.started) = (last, true);
         hwsc.attend(true);
         hwsc.wait_without_job();
         hwsc
     }
 
-    /// Makes the emulator wait for an operator after the job is over or has failed.
+    /// Waits for an operator after the job is over or has failed.
     pub fn wait_without_job(&mut self) {
         self.steps.clear();
         self.later.clear();
@@ -196,7 +180,7 @@ impl Hwsc {
         self.intervention.state = State::Waits { failure: None, before_line: true, command: None };
     }
 
-    /// Sends a command of the operator. The job waits from now on. Errors: [`OperatorError::Ended`].
+    /// The job waits from now on. Errors: [`OperatorError::Ended`].
     pub fn command_by_operator(
         &mut self,
         tick: Tick,
@@ -242,13 +226,13 @@ impl Hwsc {
         }
     }
 
-    /// True if a command of the job, or the PAUSE before its line, is in progress.
+    /// A command of the job, or the PAUSE before its line.
     fn is_commanding(&self) -> bool {
         let line = self.step_at(self.current).map(|line| line.step);
         self.pausing || self.current == 0 || matches!(line, Some(Step::Command(_)))
     }
 
-    /// Called at the end of a line. Makes the job wait on the operator's request, and then returns true.
+    /// Called at the end of a line: true if the operator has requested a wait.
     pub(super) fn waits_here(&mut self) -> bool {
         if !matches!(self.intervention.state, State::Asked) {
             return false;
@@ -258,7 +242,7 @@ impl Hwsc {
         true
     }
 
-    /// Called when the current line has failed. Returns true if the job waits for an operator instead of ending.
+    /// Called after a failed line: true if the job waits instead of ending.
     pub(super) fn waits_for_operator(&mut self, failure: &JobFailure) -> bool {
         let can_be_mended = match failure {
             JobFailure::Command(_)
@@ -282,7 +266,7 @@ impl Hwsc {
         waits
     }
 
-    /// Called once per tick while the job waits: checks the operator's command.
+    /// Called once per tick while the job waits.
     pub(super) fn follow_operator(&mut self, tick: Tick, task: &Status<'_>) {
         let State::Waits { command: Some(entry), .. } = self.intervention.state else { return };
         let outcome = match self.read(tick, task) {
@@ -302,7 +286,6 @@ impl Hwsc {
         self.end_operators(tick, Some(entry), outcome);
     }
 
-    /// Records the outcome of the operator's command.
     fn end_operators(&mut self, tick: Tick, entry: Option<usize>, outcome: Outcome) {
         if let Some(step) = entry.and_then(|entry| self.begun_steps.get_mut(entry)) {
             step.ticks = tick.since(step.began);
@@ -310,13 +293,13 @@ impl Hwsc {
         }
     }
 
-    /// Refuse while a command of the operator is executed.
+    /// Refuses while a command of the operator is executed.
     fn not_executed(&self, command: Option<usize>) -> Result<(), OperatorError> {
         let executes = command.and_then(|entry| self.begun_steps.get(entry));
         executes.map_or(Ok(()), |step| Err(OperatorError::Executes(step.text.clone())))
     }
 
-    /// Before the job sends PAUSE, which may replace only a PAUSE of the operator in progress.
+    /// The job's PAUSE may replace only a PAUSE of the operator.
     fn replace_pause(&mut self, tick: Tick, command: Option<usize>) -> Result<(), OperatorError> {
         if command.is_some() && self.command.command == super::pause().command {
             self.end_operators(tick, command, Outcome::Interrupted);

@@ -1,5 +1,3 @@
-//! Outcome of a job: its steps, its retries, and the reason of its failure.
-
 use std::fmt;
 
 use interfaces::{Reason, Unconfirmed, hws::HwsReport};
@@ -10,10 +8,8 @@ pub enum Outcome {
     Executing,
     Finished,
     Failed,
-    /// The command failed, as its line expects.
-    FailedAsExpected,
-    /// A command of the operator has replaced the step.
-    Interrupted,
+    FailedAsExpected, // as its line expects
+    Interrupted,      // replaced by a command of the operator
 }
 
 impl Outcome {
@@ -31,59 +27,46 @@ impl Outcome {
 
 #[derive(Clone, Debug, PartialEq)]
 pub struct BegunStep {
-    /// The line as written in the job; `PAUSE` for the first step.
-    pub text: String,
-    /// True for a command for Task, false for an action of the workstation.
-    pub is_command: bool,
-    /// The tick after which the step was begun.
-    pub began: Tick,
+    pub text: String,     // as in the job; `PAUSE` for the first step
+    pub is_command: bool, // for Task, not an action of the workstation
+    pub began: Tick,      // the tick after which the step was begun
     pub outcome: Outcome,
-    /// Part of the command's goal that no sensor confirms, if it has finished.
+    /// The part of the goal of a finished command that no sensor confirms.
     pub unconfirmed: Unconfirmed,
-    /// Ticks from the start of the step to the detection of its end.
-    pub ticks: u64,
+    pub ticks: u64, // until the end was detected
 }
 
 impl BegunStep {
-    /// The ending of the step: the word of its outcome, and its unconfirmed goals.
+    /// The word of the outcome, and unconfirmed goals.
     #[must_use]
     pub fn ending(&self) -> String {
         format!("{}{}", self.outcome.text(), self.unconfirmed.suffix())
     }
 }
 
-/// The reason why a job ended before its last step.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum JobFailure {
     #[error("{}", .0.text())]
     Command(Reason),
-    /// Task does not answer.
     #[error("Task does not answer")]
-    Lost,
-    /// The controller refuses the mailbox of the command.
+    Lost, // Task does not answer
     #[error("the controller refuses the command: {0}")]
-    Refused(String),
-    /// The joystick box is on: the operator moves the robot.
+    Refused(String), // by the controller
     #[error("the joystick box is on")]
-    Joystick,
-    /// A command has finished although its line expects an error.
+    Joystick, // the operator moves the robot
     #[error("finished, but its line expects an error")]
-    Unexpected,
-    /// A command has failed, and none of its repetitions has finished.
+    Unexpected, // finished despite `expect error`
+    /// No repetition of the command has finished.
     #[error("{why}; the command has not finished since (`expect error` marks a line that has to fail)")]
     Unfinished { line: String, tick: Tick, why: &'static str },
-    /// A step has exceeded its time limit, ticks.
     #[error("not finished within {} s", .0 * TICK_MS / 1000)]
-    TimeLimit(u64),
-    /// The workstation cannot do an action, or has a fault.
+    TimeLimit(u64), // ticks
     #[error("{0}")]
-    Workstation(String),
-    /// An emergency has stopped the robot.
+    Workstation(String), // impossible action, or a fault
     #[error("{0}")]
-    Emergency(String),
-    /// The connection to the workstation controller is lost.
+    Emergency(String), // the robot is stopped
     #[error("{0}")]
-    Commander(String),
+    Commander(String), // the workstation controller is disconnected
 }
 
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -93,17 +76,14 @@ pub enum Progress {
     Failed(JobFailure),
 }
 
-/// A failed command that was repeated after a PAUSE.
+/// A failed command, repeated after a PAUSE.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Retry {
-    /// The tick in which the failure was detected.
-    pub tick: Tick,
+    pub tick: Tick, // when the failure was detected
     pub line: String,
     pub reason: Reason,
-    /// Number of this retry of the line, from 1.
-    pub number: u32,
-    /// Greatest number of retries per line.
-    pub of: u32,
+    pub number: u32, // from 1, per line
+    pub of: u32,     // at most, per line
 }
 
 impl fmt::Display for Retry {
@@ -118,8 +98,8 @@ impl fmt::Display for Retry {
 }
 
 impl JobFailure {
-    /// The operator's action before the job can continue, if known. `None` if PAUSE and the same command may be
-    /// enough, or if the text of the failure already contains it.
+    /// The operator's action before the job can continue. `None` if PAUSE and the same command may be enough, or the
+    /// text of the failure contains it.
     #[must_use]
     pub const fn remedy(&self) -> Option<&'static str> {
         match self {

@@ -1,4 +1,4 @@
-//! Start and end of the steps of a job, and delayed actions.
+//! Start and end of steps, and delayed actions.
 
 use interfaces::{HwsCommand, Unconfirmed};
 use rcs_core::tick::Tick;
@@ -8,13 +8,10 @@ use super::{BegunStep, Hwsc, JobFailure, Outcome, PAUSE, Progress, Workstation, 
 
 #[derive(Clone, Debug)]
 pub struct Later {
-    /// Delay from the command to the action, ticks.
-    pub ticks: u64,
+    pub ticks: u64, // from the command to the action
     pub action: Action,
-    /// The line without `after` and the number of ticks.
-    pub line: String,
-    /// Tick in which the command was sent; `None` before.
-    pub since: Option<Tick>,
+    pub line: String,        // without `after` and the ticks
+    pub since: Option<Tick>, // when the command was sent
 }
 
 impl Later {
@@ -24,20 +21,19 @@ impl Later {
 }
 
 impl Hwsc {
-    /// Record the duration of the present step.
     pub(super) fn took(&mut self, tick: Tick) {
         if let (Some(step), Some(began)) = (self.begun_steps.get_mut(self.entry), self.began) {
             step.ticks = tick.since(began);
         }
     }
 
-    /// Send a PAUSE before the current step.
+    /// Sends PAUSE before the current step.
     pub(super) fn pause(&mut self, tick: Tick) {
         self.pausing = true;
         self.send(tick, PAUSE.to_owned(), pause());
     }
 
-    /// Begin the current step; after the last one the job is over.
+    /// Begins the current step; after the last one the job is over.
     pub(super) fn begin(&mut self, tick: Tick, workstation: &mut impl Workstation) {
         self.began = Some(tick);
         self.pausing = false;
@@ -92,7 +88,7 @@ impl Hwsc {
         }
     }
 
-    /// Records the unconfirmed goals of the current step, if it is a finished command.
+    /// Records the unconfirmed goals of a finished command.
     pub(super) fn confirm(&mut self, unconfirmed: Unconfirmed) {
         if let Some(step) = self.begun_steps.get_mut(self.entry).filter(|step| step.is_command) {
             step.unconfirmed = unconfirmed;

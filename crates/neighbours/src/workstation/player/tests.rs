@@ -1,4 +1,4 @@
-//! Tests of the emulator against a Task with scripted answers.
+//! The emulator against a Task with scripted answers.
 
 use super::*;
 use geometry::frame::Frame;
@@ -12,17 +12,15 @@ use taskdata::{
     load::verdict::TASK_COMMANDS,
 };
 
-/// A Task that executes each command for some ticks.
+/// It executes each command for some ticks.
 #[derive(Default)]
 struct Task {
     receiver: Receiver,
     left: u64,
     received: Vec<String>,
     fails_at: Option<usize>,
-    /// Number of failing commands, from `fails_at` on; 0 means one.
-    failing: usize,
-    /// Reason of the failures; `GraspMissed` if `None`.
-    reason: Option<Reason>,
+    failing: usize,         // commands from `fails_at` on; 0 means one
+    reason: Option<Reason>, // `None`: `GraspMissed`
     silent: bool,
     joystick: bool,
     losing: u32,
@@ -36,7 +34,7 @@ impl Task {
         self.fails_at.is_some_and(|from| (from..last(from)).contains(&self.received.len()))
     }
 
-    /// Delivers the emulator's command to Task in the next tick, unless it is lost.
+    /// Task gets the command in the next tick, unless it is lost.
     fn step(&mut self, hwsc: &mut Hwsc) -> Status<'static> {
         let mut status = HwsStatus::default();
         if let Some(command) = hwsc.mailgram() {
@@ -73,7 +71,7 @@ impl Task {
     }
 }
 
-/// Task's status as the emulator reads it while Task runs and has refused no mailgram.
+/// While Task runs and has refused no mailgram.
 fn answer(status: &HwsStatus) -> Status<'static> {
     Status {
         command: status.command,
@@ -88,7 +86,7 @@ fn answer(status: &HwsStatus) -> Status<'static> {
     }
 }
 
-/// A vise whose action takes six calls of `busy`, and the lines it received.
+/// Each action takes six calls of `busy`. Records the received lines.
 #[derive(Default)]
 struct Vise {
     busy: std::cell::Cell<u32>,
@@ -128,8 +126,7 @@ impl Workstation for Vise {
     }
 }
 
-/// The action that ends the emergency of a [`Vise`].
-const RESET: Action = Action::Panel(Key::FaultReset);
+const RESET: Action = Action::Panel(Key::FaultReset); // ends the emergency of a [`Vise`]
 
 fn command(verb: &str) -> JobLine {
     let command = HwsCommand { command: Name16::clipped(verb), ..HwsCommand::default() };
@@ -157,7 +154,7 @@ fn vise(opening: ViseOpening) -> JobLine {
     action(opening, "PFIXTURE")
 }
 
-/// Plays a job for at most 200 ticks; returns the last tick.
+/// Plays a job for at most 200 ticks; returns the last.
 fn play(hwsc: &mut Hwsc, task: &mut Task, vise: &mut Vise) -> u64 {
     play_on(hwsc, task, vise, 1)
 }
@@ -194,8 +191,7 @@ fn job_is_played_in_order_after_a_pause() {
             ("== MOVE", true, finished)
         ]
     );
-    // A command is written in one tick, read in the next, executed for four, and its end is detected in the
-    // tick that writes it.
+    // Written in one tick, read in the next, executed for four; the end is detected in the tick that writes it.
     assert!(
         hwsc.begun_steps().iter().filter(|r| r.is_command).all(|r| r.ticks == 5),
         "{:?}",

@@ -1,10 +1,10 @@
-//! Jobs in which an operator intervenes.
+//! An operator intervenes.
 
 use super::*;
 
 const MOVE_AND_ACQUIRE: [&str; 2] = ["MOVE", "ACQUIRE"];
 
-/// A job that the test plays tick by tick.
+/// Played tick by tick.
 struct Stage {
     hwsc: Hwsc,
     task: Task,
@@ -155,7 +155,7 @@ fn failure_ends_the_job_only_without_an_operator() {
     stage.until(|stage| stage.hwsc.is_waiting());
     stage.hwsc.attend(false);
     assert_eq!(*stage.hwsc.progress(), Progress::Failed(JobFailure::Command(Reason::GraspMissed)));
-    // Every answer gives the same reason to another operator who connects.
+    // Every answer gives the same reason to another operator.
     stage.hwsc.attend(true);
     assert!(!stage.hwsc.is_waiting());
     assert_eq!(stage.hwsc.go_on(Tick(stage.tick)), Err(OperatorError::Ended));
