@@ -1,8 +1,6 @@
-//! No allocation after the start, in any number of ticks: whole shifts with different seeds, failing jobs, a faulty
-//! line.
-//!
-//! `RCS_TICKS` sets the number of ticks (default 30,000; the promised figure is 1,000,000), `RCS_BOARDS` the
-//! distribution of the processes (default `one`).
+//! No allocation after the start: whole shifts with different seeds, failing jobs, a faulty line. `RCS_TICKS` sets the
+//! number of ticks (default 30,000; the promised figure is 1,000,000), `RCS_BOARDS` the distribution of the processes
+//! (default `one`).
 
 use std::{fs, process::Command};
 
@@ -11,7 +9,7 @@ use whole_system_tests::{Scratch, rcs_run, root};
 
 const TICKS: u64 = 30_000;
 
-/// A run: job, expected exit status, and whether the line has faults.
+/// Job, expected exit status, and whether the line has faults.
 struct Kind {
     job: &'static str,
     status: i32,
@@ -22,7 +20,7 @@ const fn kind(job: &'static str, status: i32, faults: bool) -> Kind {
     Kind { job, status, faults }
 }
 
-/// Repeated in turn until the number of ticks is reached.
+/// Repeated until the number of ticks is reached.
 const KINDS: [Kind; 4] = [
     kind("no-part.job", 1, false),
     kind("linkbar", 0, true),
@@ -36,7 +34,7 @@ fn no_heap_is_allocated_after_the_start() {
         std::env::var("RCS_TICKS").map_or(TICKS, |text| text.parse().expect("RCS_TICKS is a number"));
     let boards = std::env::var("RCS_BOARDS").unwrap_or_else(|_| "one".to_owned());
     let scratch = Scratch::new("allocation");
-    // Two failures: the object is not there, and the workstation does not know a place.
+    // A missing object, and an unknown place.
     scratch.job_with("clevis.job", "** tray UNIT_1 3 LCLEVIS_BH", "%");
     fs::rename(scratch.file("clevis.job"), scratch.file("no-part.job")).expect("a job");
     scratch.job_with("tool-change.job", "** drum release", "%");

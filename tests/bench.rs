@@ -1,4 +1,4 @@
-//! Runs of the survival tests and the robustness campaign, observed from outside, and their remains.
+//! Runs of the survival tests and the robustness campaign, observed from outside.
 
 use std::{
     os::unix::process::ExitStatusExt as _,
@@ -14,8 +14,7 @@ use serde_json::Value;
 
 use crate::{rcs_run, root};
 
-/// Time limit for actions that take milliseconds.
-const PATIENCE: Duration = Duration::from_secs(120);
+const PATIENCE: Duration = Duration::from_secs(120); // for actions that take milliseconds
 
 #[must_use]
 pub fn rcs(directory: &Path, arguments: &[&str]) -> Command {
@@ -31,16 +30,12 @@ pub fn job(name: &str) -> Vec<String> {
 }
 
 pub struct Running {
-    /// The controller, or board 0.
-    pub child: Child,
+    pub child: Child, // or board 0
     pub name: RunName,
 }
 
 impl Running {
-    /// Start a run with further arguments.
-    ///
-    /// # Panics
-    /// If the program cannot be started.
+    /// Starts a run with further arguments.
     #[must_use]
     pub fn start(directory: &Path, name: &str, more: &[&str]) -> Self {
         let arguments = job(name);
@@ -54,10 +49,7 @@ impl Running {
         Self { child, name }
     }
 
-    /// Attach a reader as soon as there are buffers to read.
-    ///
-    /// # Panics
-    /// If the run ends before.
+    /// Attaches as soon as there are buffers to read.
     pub fn attach(&mut self) -> Attached {
         let mut reader = None;
         wait_for("the run shows its buffers", || {
@@ -68,10 +60,7 @@ impl Running {
         reader.expect("it was there")
     }
 
-    /// Wait until a tick has been run. Returns the last tick.
-    ///
-    /// # Panics
-    /// If the run ends before.
+    /// Waits until a tick has been run. Returns the last tick.
     pub fn reach(&mut self, reader: &Attached, tick: u64) -> u64 {
         let mut reached = 0;
         wait_for("the run gets on", || {
@@ -84,28 +73,16 @@ impl Running {
         reached
     }
 
-    /// Send a signal to its process.
-    ///
-    /// # Panics
-    /// If the process has ended.
     pub fn signal(&self, signal: Signal) {
         let pid = Pid::from_child(&self.child);
         kill_process(pid, signal).expect("the run can be sent a signal");
     }
 
-    /// End it by SIGKILL.
-    ///
-    /// # Panics
-    /// If the signal cannot be sent.
     pub fn kill(&mut self) {
         self.child.kill().expect("it can be killed");
         self.child.wait().expect("it is dead");
     }
 
-    /// Wait for its end.
-    ///
-    /// # Panics
-    /// If that is impossible.
     #[must_use]
     pub fn end(self) -> Ended {
         Ended::of(&self.child.wait_with_output().expect("it ends"))
@@ -113,8 +90,7 @@ impl Running {
 }
 
 pub struct Ended {
-    /// `None` if a signal ended it.
-    pub status: Option<i32>,
+    pub status: Option<i32>, // `None` after a signal
     pub signal: Option<i32>,
     pub result: Value,
     pub said: String,
@@ -128,37 +104,25 @@ impl Ended {
         Self { status: output.status.code(), signal: output.status.signal(), result, said }
     }
 
-    /// Run to the end with further arguments.
-    ///
-    /// # Panics
-    /// If the program cannot be started.
+    /// Runs to the end, with further arguments.
     #[must_use]
     pub fn run(directory: &Path, name: &str, more: &[&str]) -> Self {
         Running::start(directory, name, more).end()
     }
 
-    /// The digest of all output buffers of all ticks.
-    ///
-    /// # Panics
-    /// If there is none.
+    /// The digest of all outputs in all ticks.
     #[must_use]
     pub fn digest(&self) -> &str {
         self.result["digest"].as_str().unwrap_or_else(|| panic!("no digest: {}", self.said))
     }
 
     /// A number of the result.
-    ///
-    /// # Panics
-    /// If there is none of this name.
     #[must_use]
     pub fn number(&self, field: &str) -> u64 {
         self.result[field].as_u64().unwrap_or_else(|| panic!("no {field} in {}", self.result))
     }
 
-    /// Assert that it finished and that its buffers were in shared memory.
-    ///
-    /// # Panics
-    /// Otherwise.
+    /// It has finished, and its buffers were in shared memory.
     pub fn assert_shared(&self) {
         assert_eq!(self.status, Some(0), "{}", self.said);
         for complaint in ["shared memory is not available", "not mirrored"] {
@@ -172,7 +136,7 @@ impl Ended {
     }
 }
 
-/// Run the linkbar in its own mount namespace, after some shell commands. `None` if this user cannot make namespaces.
+/// In its own mount namespace, after shell commands. `None` if this user cannot make namespaces.
 #[must_use]
 pub fn apart(directory: &Path, shell: &str, more: &[&str]) -> Option<Ended> {
     let arguments = job("linkbar");
@@ -187,16 +151,12 @@ pub fn apart(directory: &Path, shell: &str, more: &[&str]) -> Option<Ended> {
     (!refused).then_some(ended)
 }
 
-/// Files and objects in shared memory of a run.
 #[must_use]
 pub fn traces(run: &RunName) -> Vec<PathBuf> {
     memory::traces(run)
 }
 
 /// Assert that `rcs-run clean` leaves nothing of the run.
-///
-/// # Panics
-/// Otherwise.
 pub fn assert_cleaned(directory: &Path, run: &RunName) {
     let cleaned = rcs(directory, &["clean"]).output().expect("rcs-run can be started");
     assert_eq!(cleaned.status.code(), Some(0), "{}", String::from_utf8_lossy(&cleaned.stderr));
@@ -204,9 +164,6 @@ pub fn assert_cleaned(directory: &Path, run: &RunName) {
 }
 
 /// Wait for a condition that will soon hold.
-///
-/// # Panics
-/// If it does not hold in time.
 pub fn wait_for(what: &str, mut condition: impl FnMut() -> bool) {
     let started = Instant::now();
     while !condition() {

@@ -1,8 +1,6 @@
 //! `--boards split`: equal bits for any distribution of the processes, and the end of a run whose boards are killed,
-//! stopped, started manually or do not match.
-//!
-//! Two variables extend this to a campaign: `RCS_KILLS` is the number of boards killed in a row (default 8);
-//! `RCS_ALL_JOBS` compares every job of the data directory with one board (default: the three shortest).
+//! stopped, started manually or do not match. `RCS_KILLS` is the number of boards killed in a row (default 8);
+//! `RCS_ALL_JOBS` compares every job with one board (default: the three shortest).
 
 use std::{
     collections::BTreeMap,
@@ -29,10 +27,8 @@ use rustix::process::{Pid, Signal, kill_process};
 use serde_json::Value;
 use whole_system_tests::{Scratch, command, rcs_run, root};
 
-/// Time limit of each action.
-const PATIENCE: Duration = Duration::from_secs(120);
-/// Attempts to observe a moment of a run. On a busy machine the moment may pass; the run then ends and is started
-/// again.
+const PATIENCE: Duration = Duration::from_secs(120); // of each action
+/// On a busy machine a run may end before it is observed, and is started again.
 const ATTEMPTS: u32 = 20;
 
 struct Ended {
@@ -58,10 +54,8 @@ impl Ended {
     }
 }
 
-/// The output of a run, in its directory.
-const SAID: &str = "said.txt";
+const SAID: &str = "said.txt"; // in the directory of the run
 
-/// A run with its own name.
 struct Bench {
     scratch: Scratch,
     name: RunName,
@@ -88,7 +82,7 @@ impl Bench {
         Running { bench: self, child: child.expect("rcs-run can be started") }
     }
 
-    /// Assert that nothing of the run is left, and that the next one of the same name works at once.
+    /// Nothing of the run is left, and the next one of the same name works at once.
     fn assert_clean(&self) {
         assert_eq!(memory::traces(&self.name), Vec::<PathBuf>::new());
         let next = self.run("linkbar", "split", &["--ticks", "20"]);
@@ -96,7 +90,7 @@ impl Bench {
         assert_eq!(memory::traces(&self.name), Vec::<PathBuf>::new());
     }
 
-    /// Common memory after the last tick of the log.
+    /// After the last tick of the log.
     fn last_memory(&self) -> CommonMemory {
         let log = Log::open(&self.scratch.file("run.mcap")).expect("the log can be read");
         let last = log.ticks().last().expect("there are ticks").expect("they can be read");
@@ -118,7 +112,7 @@ struct Running<'a> {
 }
 
 impl Running<'_> {
-    /// Attach to the run; its boards are present once it can be read.
+    /// The boards are present once the run can be read.
     fn attach(&mut self) -> Attached {
         wait_for("the run can be read", || {
             assert_eq!(self.child.try_wait().expect("it is a child"), None, "it ended at once");
@@ -126,7 +120,7 @@ impl Running<'_> {
         })
     }
 
-    /// Wait for a moment. False if the run ended before.
+    /// False if the run ended before.
     fn wait_until(&mut self, what: &str, moment: impl Fn(&Attached) -> bool) -> bool {
         let reader = self.attach();
         wait_for(what, || {
@@ -154,7 +148,6 @@ impl Running<'_> {
         fs::read_to_string(self.bench.scratch.file(SAID)).expect("it says something")
     }
 
-    /// Wait until its output contains a text.
     fn hear(&self, what: &str) {
         wait_for(what, || self.said().contains(what).then_some(()));
     }
@@ -177,7 +170,7 @@ fn wait_for<T>(what: &str, mut found: impl FnMut() -> Option<T>) -> T {
     }
 }
 
-/// True if common memory can be read and meets a condition.
+/// Common memory can be read and meets a condition.
 fn shows(wanted: impl Fn(&CommonMemory) -> bool) -> impl Fn(&Attached) -> bool {
     move |reader| reader.memory().is_ok_and(|memory| wanted(&memory))
 }
@@ -186,7 +179,7 @@ fn reached(tick: u64) -> impl Fn(&Attached) -> bool {
     move |reader| reader.pulse().is_ok_and(|pulse| pulse.tick.0 >= tick)
 }
 
-/// Start a job, send a board a signal at a moment, and return how the run ended, which must meet a condition.
+/// Sends a board a signal at a moment. The end of the run must meet a condition.
 fn strike(
     bench: &Bench,
     (board, signal): (u8, Signal),
@@ -223,7 +216,7 @@ fn strike(
     panic!("never caught in {ATTEMPTS} attempts; the last one said: {said}");
 }
 
-/// True if the process runs. A zombie has ended: a first process that does not reap leaves some.
+/// A zombie has ended: a first process that does not reap leaves some.
 fn is_alive(pid: Pid) -> bool {
     let stat = fs::read_to_string(format!("/proc/{}/stat", pid.as_raw_nonzero())).unwrap_or_default();
     stat.rsplit_once(") ").is_some_and(|(_, state)| !state.starts_with(['Z', 'X']))
@@ -278,8 +271,7 @@ struct Kill {
     board: u8,
     phase: &'static str,
     moment: fn(&CommonMemory) -> bool,
-    /// Required output.
-    said: &'static str,
+    said: &'static str, // required output
     held: bool,
 }
 
@@ -347,7 +339,7 @@ fn boards_are_killed_many_times_in_a_row() {
 fn paused_board_is_awaited() {
     const TICKS: &[&str] = &["--ticks", "100"];
     let bench = Bench::new("pauses");
-    // In fast clock the run ends after the last tick; in real time the robot ramps down after it.
+    // In real time the robot ramps down after the last tick.
     let one = bench.run("linkbar", "one", TICKS);
     for _ in 0..ATTEMPTS {
         let mut running = bench.start("linkbar", "split", &[&["--clock", "real"], TICKS].concat());
@@ -407,7 +399,7 @@ fn board(bench: &Bench, number: &str, data: &Path) -> Child {
     command.stderr(Stdio::piped()).spawn().expect("rcs-run can be started")
 }
 
-/// Start a board manually, again and again until it has a place in the run.
+/// Starts a board until it has a place in the run.
 fn seated(bench: &Bench, number: &str, data: &Path) -> Child {
     wait_for("a board finds its place free", || {
         let mut child = board(bench, number, data);
@@ -488,7 +480,7 @@ fn manually_started_board_is_replaced_manually() {
     lost.wait().expect("it can be waited for");
     let successor = seated(&bench, "2", &data);
     let ended = running.finish();
-    // Its processes do not know the progress of their commands and report it, and the job ends in order.
+    // Its processes do not know the progress of their commands, and report it; the job ends in order.
     assert_eq!(ended.status, Some(1), "{}", ended.said);
     assert!(ended.last_words().contains(Reason::Restarted.text()), "{}", ended.said);
     for child in boards.into_values().chain([successor]) {

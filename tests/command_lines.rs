@@ -9,7 +9,6 @@ use std::{
 use serde_json::Value;
 use whole_system_tests::{Scratch, rcs_cell, rcs_console, rcs_log, rcs_neighbour, rcs_run, root};
 
-/// The head of the page.
 const TOP: &str = "# Command lines\n\n\
     This page is made from the definitions of the programs. Each program prints its own part with `--help`;\n\
     `PROGRAM --generate DIR` writes manual pages and shell completions ([install](install.md)).\n\n";
@@ -117,7 +116,7 @@ fn completions_know_jobs_faults_robots_and_interruptions() {
         let completions =
             fs::read_to_string(scratch.file("pages/completions").join(shell)).expect("the file is made");
         for name in ["turned-part", "lock-ring-stuck", "irb6700", "answer-late", "fault:lock-ring-stuck"] {
-            // Special characters of the shell are escaped.
+            // Shells need escapes.
             assert!(completions.replace('\\', "").contains(name), "{name} in {shell}");
         }
     }

@@ -1,4 +1,4 @@
-//! Collisions of the robot: a job with a collision fails, and reports objects, depth, place and command.
+//! A job with a collision fails, and reports objects, depth, place and command.
 
 use std::fs;
 
@@ -6,11 +6,9 @@ use record::Log;
 use serde_json::Value;
 use whole_system_tests::{Outcome, Scratch, root, run, run_with};
 
-/// Errors in the data do not prevent a run.
-const UNCHECKED: &[&str] = &["--unchecked"];
+const UNCHECKED: &[&str] = &["--unchecked"]; // the run starts despite errors in the data
 
-/// Run a job in which `prepare` has put an obstacle into the robot's path, or the robot into an obstacle's. The check
-/// of the data would find most of them before the run.
+/// With an obstacle in the robot's path, or the robot in an obstacle's. The check would find most of them.
 fn run_into(job: &str, name: &str, prepare: impl FnOnce(&Scratch)) -> Outcome {
     let outcome = run_with(job, 1, name, UNCHECKED, prepare);
     assert_eq!(outcome.status, Some(1), "{}", outcome.last_words);
@@ -74,7 +72,7 @@ fn a_vise_taught_a_fifth_of_an_inch_off_is_a_collision() {
     );
     let marks = marks(&outcome);
     let red = marks.iter().find(|(_, text)| text.contains("LINKBAR1_BH in fixed_jaw"));
-    // The next tick shows events in the cell.
+    // Events in the cell appear in the next tick.
     let begun = contact["tick"].as_u64().map(|tick| tick + 1);
     assert_eq!(red.map(|(tick, _)| *tick), begun, "the collision is marked when it begins");
     let last = marks.last().map(|(_, text)| text.as_str());
@@ -84,20 +82,20 @@ fn a_vise_taught_a_fifth_of_an_inch_off_is_a_collision() {
     );
 }
 
-/// The contact events in the log: tick and text.
+/// Contact events in the log: tick and text.
 fn marks(outcome: &Outcome) -> Vec<(u64, String)> {
     let log = Log::open(&outcome.log).expect("a run has a log");
     let text = |data: Vec<u8>| String::from_utf8_lossy(&data).into_owned();
     log.messages("/contacts").map(|(tick, data)| (tick.0, text(data))).collect()
 }
 
-/// An entry `[[contact]]` by its reason, a job that needs it, and the change of the cell.
+/// The reason of a `[[contact]]`, a job that needs it, and the change of the cell.
 type Need = (&'static str, &'static str, Option<[&'static str; 2]>);
 
-/// Distance of touching objects, in: without its entry, such a contact is the nearest miss of the run.
+/// in: without its entry, such a contact is the nearest miss of the run.
 const NO_MISS: f64 = 0.005;
 
-/// The end mill is brought to the drum, which contains the drill. The guarded insertion fails.
+/// The end mill goes to the drum with the drill. The guarded insertion fails.
 const DRUM_OCCUPIED: &str = "\
 ** drum tool DRILL-2
 ** tray UNIT_2 1 ENDMILL-1 0 0 0
@@ -166,8 +164,7 @@ fn the_nearest_miss_of_a_good_run_is_reported() {
     assert!(nearest["mover"].is_string() && nearest["command"]["emove"].is_string(), "{nearest}");
 }
 
-/// A sensor of the holster does not respond. The guarded move then ends where the gripper rests on the holster or in
-/// its seat, without pressing.
+/// The guarded move ends where the gripper rests on the holster or in its seat, without pressing.
 #[test]
 fn gripper_is_not_pressed_into_a_holster_with_a_dead_sensor() {
     for sensor in ["large-1", "small-2"] {

@@ -1,12 +1,11 @@
-//! Tool commands at an occupied or empty drum: the failure is true, nothing is damaged, and the printed remedy leads
-//! to a finished job.
+//! Tool commands at an occupied or empty drum: the failure is true, nothing is damaged, the remedy works.
 
 use std::fs;
 
 use serde_json::Value;
 use whole_system_tests::{Outcome, Scratch, run_with};
 
-/// Commands that bring the end mill to the occupied drum.
+/// The end mill goes to the occupied drum.
 const OCCUPIED: &str = "\
 ** drum tool DRILL-2
 ** tray UNIT_2 1 ENDMILL-1 0 0 0
@@ -15,10 +14,10 @@ const OCCUPIED: &str = "\
 const INSERT: &str = "== INSERT-TOOL ENDMILL-1 +1 -- 0 +1 TOOL-SAFE 0 -- 0";
 const ACQUIRE: &str = "== ACQUIRE-TOOL DRILL-2 +1 -- 0 +1 TOOL-SAFE 0 -- 0";
 const NOT_FREE: &str = "the tool meets something in front of the drum";
-/// Suffix of a finished INSERT-TOOL or RELEASE-TOOL.
+/// After INSERT-TOOL or RELEASE-TOOL.
 const UNCONFIRMED: &str = "the tool in the drum (the drum has no sensor)";
 
-/// Run a job without the check of its paths, which would find the tool in the drum before the run.
+/// Without the check of paths, which would find the tool in the drum.
 fn job(name: &str, text: &str) -> Outcome {
     let file = format!("{name}.job");
     run_with(&file, 1, name, &["--unchecked"], |scratch: &Scratch| {
@@ -26,7 +25,7 @@ fn job(name: &str, text: &str) -> Outcome {
     })
 }
 
-/// The part of a name at the end, in the cell.
+/// At the end.
 fn part<'a>(outcome: &'a Outcome, name: &str) -> &'a Value {
     let parts = outcome.result["parts"].as_array().expect("a result has parts");
     parts.iter().find(|part| part["name"] == name).expect("the part is in the cell")
@@ -37,7 +36,7 @@ fn statuses(outcome: &Outcome) -> Vec<&str> {
     commands.iter().filter_map(|command| command["status"].as_str()).collect()
 }
 
-/// Assert that there was no forbidden contact and that the tool in the drum is at its place.
+/// No forbidden contact, and the tool in the drum is in place.
 fn assert_undamaged(outcome: &Outcome) {
     assert_eq!(outcome.result["contacts"], Value::Array(Vec::new()), "{}", outcome.last_words);
     let events = outcome.result["events"]["first"].as_array().expect("a result has events");
@@ -104,7 +103,7 @@ fn acquire_tool_from_an_empty_drum_fails_with_a_working_remedy() {
     assert_eq!(part(&outcome, "DRILL-2")["held"], true);
 }
 
-/// INSERT-TOOL that the joystick box interrupts after some ticks, and PAUSE.
+/// The joystick box interrupts INSERT-TOOL.
 fn interrupted(ticks: u32) -> String {
     format!(
         "** after {ticks} joystick frame WORLD\n\
@@ -118,7 +117,7 @@ fn interrupted(ticks: u32) -> String {
 
 #[test]
 fn an_interrupted_insertion_into_an_occupied_drum_never_finishes() {
-    // During the calibration of the sensor, on the way to the drum, before the contact, in contact.
+    // During the calibration of the sensor, on the way, before the contact, in contact.
     for ticks in [3, 12, 60, 130, 190, 214] {
         let text = format!("{OCCUPIED}{}{INSERT}\n", interrupted(ticks));
         let outcome = job(&format!("drum-interrupted-{ticks}"), &text);

@@ -1,11 +1,11 @@
-//! Jobs with a robot on EGM: emulated in simulated time, and a small Python robot over UDP.
+//! Jobs with a robot on EGM: emulated, and a small Python robot over UDP.
 
 use std::{net::UdpSocket, process::Command};
 
 use serde_json::Value;
 use whole_system_tests::{rcs_log, rcs_run, root};
 
-/// Seconds after the start of the linkbar at which the robot is at rest with the part found, and at which it moves.
+/// Seconds after the start of the linkbar: at rest with the part found, and in motion.
 const STANDS: &str = "50";
 const MOVES: &str = "70";
 
@@ -57,8 +57,7 @@ fn bad_network_reduces_accuracy_and_fails_no_job() {
     }
 }
 
-/// A silence below 3 ticks has no effect. After a longer one a robot that was at rest is at its commanded position:
-/// the link restarts by itself.
+/// After 3 ticks and more, a robot at rest is at its commanded position: the link restarts by itself.
 #[test]
 fn silence_is_tolerated_below_three_ticks_and_at_rest() {
     for (at, silence, interrupted) in [(MOVES, "0.1", 0), (STANDS, "0.5", 1), (STANDS, "5", 1)] {
@@ -68,7 +67,7 @@ fn silence_is_tolerated_below_three_ticks_and_at_rest() {
     }
 }
 
-/// In a motion the robot continues at its last speed and stops elsewhere: the operator decides.
+/// In a motion the robot stops elsewhere: the operator decides.
 #[test]
 fn a_silence_ends_the_motion_and_the_repeated_command_continues_it() {
     let line = "== MOVE LINKBAR1_BH +2 UNIT_1 4 +2 PFIXTURE 0 -- 0";
@@ -88,8 +87,7 @@ fn a_silence_ends_the_motion_and_the_repeated_command_continues_it() {
     assert!(most < 1.0, "the robot never was farther from its target than {most} mm");
 }
 
-/// Far behind its target in a motion, the robot is stopped while that is harmless: after 4 s of the job, not at its
-/// end.
+/// After 4 s of the job, while that is harmless.
 #[test]
 fn robot_falling_behind_is_stopped_at_a_small_distance() {
     for (job, deviation) in [("turned-part", "6"), ("linkbar", "2"), ("tool-change", "9")] {
@@ -107,7 +105,7 @@ fn robot_falling_behind_is_stopped_at_a_small_distance() {
     }
 }
 
-/// PAUSE adopts the robot's position, and the command continues: this robot falls behind only at full speed.
+/// This robot falls behind only at full speed.
 #[test]
 fn pause_adopts_the_position_of_a_robot_that_fell_behind() {
     let line = "== MOVE LINKBAR1_BH +2 UNIT_1 4 +2 PFIXTURE 0 -- 0";
@@ -124,7 +122,6 @@ fn pause_adopts_the_position_of_a_robot_that_fell_behind() {
     assert_eq!(result["egm"]["interrupted"], 1);
 }
 
-/// Sends datagrams to a run that waits for a robot; terminal and result show the effect.
 #[test]
 fn refused_datagrams_are_counted_and_shown_before_the_first_message() {
     for (option, datagram, counter, reason) in [
@@ -168,7 +165,6 @@ fn refused_datagrams_are_counted_and_shown_before_the_first_message() {
     }
 }
 
-/// A robot whose program has ended is lost, with its reason.
 #[test]
 fn robot_with_ended_egm_program_is_lost() {
     let robot = "egm:sim,silent-at=70,silent-for=2,timeout=1";
@@ -190,15 +186,13 @@ fn equal_seeds_give_equal_runs_and_the_log_replays() {
     assert!(replay.status.success(), "{}", String::from_utf8_lossy(&replay.stdout));
 }
 
-/// Starts of a run in real time if the link fails: a busy machine may delay the peer for longer than the link
-/// tolerates.
+/// A busy machine may delay the peer for longer than the link tolerates.
 const ATTEMPTS: u32 = 3;
 
-/// The first seconds of the linkbar with a peer that shares no code with the project: exit status and result of the
-/// run, and the peer's output.
+/// The linkbar with a peer that shares no code with the project: exit status, result, and the peer's output.
 fn drive_peer() -> (i32, Value, Value) {
     let port = UdpSocket::bind("127.0.0.1:0").and_then(|socket| socket.local_addr()).expect("a port").port();
-    // The T3's end plate at HOME, mm, and its orientation.
+    // The T3's end plate at HOME: mm, and orientation.
     let home = ["0", "-1598.4", "-161.6", "0.653281", "0.270598", "0.270598", "-0.653281"];
     let peer = Command::new("python3")
         .arg(root().join("tests/egm/peer.py"))

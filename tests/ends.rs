@@ -1,4 +1,4 @@
-//! Ends of a run by its user: signals, a lost terminal, the background of a shell.
+//! Ends by the user: signals, a lost terminal, the background of a shell.
 
 use std::{
     fs::File,
@@ -20,10 +20,8 @@ use rustix::{
 use tempfile::tempdir;
 use whole_system_tests::{rcs_console, rcs_run, root};
 
-/// Time limit of each action.
-const PATIENCE: Duration = Duration::from_secs(60);
-/// Exit status of a run that its user has stopped.
-const STOPPED: Option<i32> = Some(3);
+const PATIENCE: Duration = Duration::from_secs(60); // of each action
+const STOPPED: Option<i32> = Some(3); // stopped by the user
 
 fn wait_for(mut condition: impl FnMut() -> bool) {
     let started = Instant::now();
@@ -33,7 +31,7 @@ fn wait_for(mut condition: impl FnMut() -> bool) {
     }
 }
 
-/// A run of the linkbar in real time, with its first ticks in the log.
+/// In real time, with its first ticks in the log.
 fn moving(log: &Path) -> Child {
     let child = Command::new(rcs_run())
         .args(["linkbar", "--clock", "real", "--json", "--log"])
@@ -52,7 +50,7 @@ fn said(output: &Output) -> String {
     String::from_utf8_lossy(&output.stderr).into_owned()
 }
 
-/// `timeout 5 rcs-run --clock real` sends the signal to its child and to its process group.
+/// `timeout 5 rcs-run --clock real` signals its child and its process group.
 #[test]
 fn two_signals_at_once_stop_a_run_in_order() {
     let place = tempdir().unwrap();
@@ -77,7 +75,7 @@ fn two_signals_at_once_stop_a_run_in_order() {
     assert!(log.complete && log.end.is_some(), "the log has no end");
 }
 
-/// Both ends of a terminal, without inheritance by child processes.
+/// Both ends, which child processes do not inherit.
 fn terminal() -> (File, OwnedFd) {
     let flags = pty::OpenptFlags::RDWR | pty::OpenptFlags::NOCTTY | pty::OpenptFlags::CLOEXEC;
     let master = pty::openpt(flags).unwrap();
@@ -89,7 +87,7 @@ fn terminal() -> (File, OwnedFd) {
     (File::from(master), slave)
 }
 
-/// `tmux kill-session` with `rcs-run --console` in it. The run waits for its console, so both have ended.
+/// `tmux kill-session` with `rcs-run --console`. The run waits for its console, so both have ended.
 #[test]
 fn lost_terminal_ends_console_and_run() {
     assert!(rcs_console().is_file());
@@ -118,13 +116,12 @@ fn lost_terminal_ends_console_and_run() {
     while child.try_wait().unwrap().is_none() && begun.elapsed() < PATIENCE {
         thread::sleep(Duration::from_millis(20));
     }
-    // A failed test leaves no program running.
-    let _ = child.kill();
+    let _ = child.kill(); // a failed test leaves no program running
     assert_eq!(child.wait().unwrap().code(), STOPPED, "after {:?}", begun.elapsed());
     assert!(Log::open(&log).unwrap().complete);
 }
 
-/// The output of a command line in a shell with job control, on its own terminal.
+/// With job control, on its own terminal.
 fn in_a_shell(line: &str) -> String {
     let command = format!("bash -c 'set -m; {line}'");
     let output = Command::new("script")
@@ -139,8 +136,7 @@ fn in_a_shell(line: &str) -> String {
 #[test]
 fn a_run_in_the_background_draws_no_progress() {
     let run = format!("{} --ticks 50 --clock real --log none --shared-memory off", rcs_run().display());
-    // Text of the progress line only; the summary has other words.
-    let progress = "Task: PAUSE";
+    let progress = "Task: PAUSE"; // only in the progress line
     let foreground = in_a_shell(&run);
     assert!(foreground.contains(progress), "{foreground}");
     let background = in_a_shell(&format!("{run} & wait"));

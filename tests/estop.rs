@@ -1,5 +1,5 @@
-//! Emergency stops in the middle of a job: the arm sags, the run reports its collisions and ends with exit status 3.
-//! A job that restarts the robot continues.
+//! Emergency stops in a job: the arm sags, collisions are reported, exit status 3. A job that restarts the robot
+//! continues.
 
 use std::fs;
 
@@ -7,10 +7,9 @@ use record::replay;
 use serde_json::Value;
 use whole_system_tests::{Outcome, Scratch, run};
 
-/// Exit status of a run that an emergency stop has ended.
-const STOPPED: Option<i32> = Some(3);
+const STOPPED: Option<i32> = Some(3); // ended by an emergency stop
 
-/// The first lines of the linkbar: the blank moves from the tray to the vise.
+/// The first lines of the linkbar.
 const BLANK_TO_VISE: &str = "** tray UNIT_1 4 LINKBAR1_BH\n\
      ** vise partial PFIXTURE\n\
      {stop}\
@@ -23,7 +22,7 @@ fn job(name: &str, text: &str) -> Outcome {
     })
 }
 
-/// The obstacles that the sagging arm has touched.
+/// By the sagging arm.
 fn touched(outcome: &Outcome) -> Vec<&str> {
     let touched = outcome.result["emergency_stop"]["touched"].as_array().expect("an emergency has a list");
     touched.iter().map(|contact| contact["obstacle"].as_str().expect("an obstacle has a name")).collect()
@@ -37,7 +36,7 @@ fn assert_replays(outcome: &Outcome) {
     assert!(report.is_same() && report.complete);
 }
 
-/// Assert that the emergency ended the run, that the arm has come to rest, and that the log is complete.
+/// The arm has come to rest, and the log is complete.
 fn assert_stopped(outcome: &Outcome, who: &str) {
     assert_eq!(outcome.status, STOPPED, "{}", outcome.last_words);
     let stop = &outcome.result["emergency_stop"];
@@ -55,7 +54,7 @@ fn assert_stopped(outcome: &Outcome, who: &str) {
     assert_replays(outcome);
 }
 
-/// The tick some ticks before the end of the move into the vise.
+/// Ticks before the end of the move into the vise.
 fn before_the_end_of_the_move(ticks: u64) -> u64 {
     let whole = job("whole", &BLANK_TO_VISE.replace("{stop}", ""));
     assert_eq!(whole.status, Some(0), "{}", whole.last_words);
@@ -76,7 +75,7 @@ fn over_the_vise_the_arm_runs_into_it() {
 
 #[test]
 fn in_front_of_the_vise_the_arm_sinks_and_keeps_the_part() {
-    // Four seconds before, only the fingers hold the blank. Later the jaws catch it as well, and pull it out.
+    // Only the fingers hold the blank. Later the jaws catch it as well, and pull it out.
     let stop = format!("** after {} estop joystick-box\n", before_the_end_of_the_move(100));
     let outcome = job("kept", &BLANK_TO_VISE.replace("{stop}", &stop));
     assert_stopped(&outcome, "the E-stop on the joystick box was pressed");
@@ -97,7 +96,7 @@ fn a_sagging_arm_at_home_and_safe_hits_no_body() {
     }
 }
 
-/// A stop in the middle of a move, followed by the start-up of IV.3.3.
+/// A stop in a move, and the start-up of IV.3.3.
 const RESTART: &str = "** after 60 estop terminals\n\
      == MOVE -- +0 -- 0 +0 SAFE 0 -- 0\n\
      ** wait 100\n\
@@ -110,7 +109,7 @@ const RESTART: &str = "** after 60 estop terminals\n\
      ** panel cycle-start\n\
      ** wait 25\n";
 
-/// Restart the link, and find the robot's place.
+/// Restarts the link, and finds the robot's place.
 const PAUSE: &str = "== PAUSE -- +0 -- 0 +0 -- 0 -- 0\n";
 
 #[test]

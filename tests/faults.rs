@@ -1,7 +1,5 @@
-//! Faults in the cell and the ends of their runs. A run may finish, or fail with an understandable reason. It must
-//! not crash, hang, or falsely report that it has finished.
-//!
-//! `RCS_FAULT_RUNS` is the number of random schedules (default: a few), `RCS_FAULT_SEED` the first of their seeds.
+//! A run with faults may finish, or fail with an understandable reason. It must not crash, hang, or falsely report
+//! that it has finished. `RCS_FAULT_RUNS` is the number of random schedules, `RCS_FAULT_SEED` the first seed.
 
 use std::{env, fmt::Write as _, fs, process::Command};
 
@@ -13,19 +11,18 @@ use serde_json::{Value, json};
 use whole_system_tests::{Outcome, Scratch, rcs_console, rcs_log, run, run_with};
 
 enum Ends {
-    /// The job finishes with its part in place.
-    Well,
+    Well, // finished, part in place
     /// Exit status, and kind, process and words of the first failure.
     Failing(i32, &'static str, &'static str, &'static str),
 }
 use Ends::{Failing, Well};
 
-/// Run a job with a fault file of the data directory.
+/// A fault file of the data directory.
 fn with(job: &str, faults: &str) -> Outcome {
     run(job, 1, &format!("{job}-{faults}"), |scratch| scratch.faults_of(faults))
 }
 
-/// True if all parts of a finished job are at their places.
+/// All parts of a finished job are in place.
 fn in_place(job: &str, result: &Value) -> bool {
     let expected: &[(&str, &str, u64, f64)] = match job {
         "linkbar" => &[("LINKBAR1", "UNIT_1", 1, 0.25)],
@@ -46,7 +43,7 @@ fn in_place(job: &str, result: &Value) -> bool {
     })
 }
 
-/// Properties of every run, with any faults.
+/// With any faults.
 fn assert_sound(what: &str, outcome: &Outcome) {
     let said = &outcome.last_words;
     assert!(matches!(outcome.status, Some(0 | 1 | 3)), "{what}: {:?} {said}", outcome.status);
@@ -88,7 +85,7 @@ fn assert_ends(job: &str, faults: &str, ends: &Ends) {
     assert_same_account(&what, &outcome);
 }
 
-/// Answer of `rcs-log` about the log of a run.
+/// An answer of `rcs-log`.
 fn ask(outcome: &Outcome, arguments: &[&str]) -> String {
     let output = Command::new(rcs_log()).args(arguments).arg(&outcome.log).output();
     String::from_utf8_lossy(&output.expect("rcs-log can be started").stdout).into_owned()
@@ -215,7 +212,7 @@ fn lagging_egm_robot_is_off_its_path_on_every_surface() {
     assert_same_account("a lagging EGM robot", &outcome);
 }
 
-/// IV.3.3 step 11: with the robot at HOME, the reset of the joint corrects its reading, and the job continues.
+/// IV.3.3 step 11: the reset of the joint at HOME corrects its reading.
 #[test]
 fn a_reset_at_home_repairs_an_offset_resolver() {
     const RESET: &str = "** resolvers manual\n** resolvers joint 2\n** resolvers auto\n";
@@ -238,7 +235,7 @@ fn a_reset_at_home_repairs_an_offset_resolver() {
     assert!(not.last_words.contains("the robot is at no known location"), "{}", not.last_words);
 }
 
-/// A linkbar on a line with a fault at each of these ticks.
+/// A fault on the line at each of these ticks.
 fn linkbar_with(fault: &str, ticks: [u32; 4]) -> Outcome {
     let name = fault.split('"').nth(1).unwrap_or("fault");
     run("linkbar", 1, &format!("line-{name}"), |scratch| {
@@ -303,7 +300,7 @@ fn failed_command_is_repeated_on_request() {
     }
 }
 
-/// The sensor of a holster fails permanently. The run names the operator's action and does not retry.
+/// The sensor of a holster fails. The run names the operator's action.
 #[test]
 fn failures_for_a_person_are_reported_and_not_retried() {
     let faults = |scratch: &Scratch| scratch.faults_of("holster-eye-off");
@@ -318,7 +315,7 @@ fn failures_for_a_person_are_reported_and_not_retried() {
     assert_eq!(outcome.result["retries"].as_array().map(Vec::len), Some(0), "{}", outcome.result["retries"]);
 }
 
-/// A linkbar job with a blank of this reflectance.
+/// The reflectance is that of the blank.
 fn with_reflectance(reflectance: f64) -> Outcome {
     run("linkbar", 1, &format!("reflectance-{reflectance}"), |scratch| {
         scratch.data_with(
@@ -345,8 +342,7 @@ struct Numbers(u64);
 
 impl Numbers {
     fn below(&mut self, end: u64) -> u64 {
-        // splitmix64
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
+        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15); // splitmix64
         let mut z = self.0;
         z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
         z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);

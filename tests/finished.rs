@@ -1,5 +1,4 @@
-//! `finished` means done: a run with misplaced parts, or with a command without effect, has failed, independent of
-//! its statuses.
+//! `finished` means done: misplaced parts, or a command without effect, fail a run whatever its statuses.
 
 use std::fs;
 
@@ -8,7 +7,7 @@ use whole_system_tests::{Outcome, Scratch, run};
 /// The last command of the linkbar.
 const PUT_BACK: &str = "== TRANSFER LINKBAR1 +2 PFIXTURE 0 +2 UNIT_1 1 SAFE 0";
 
-/// Assert that the run has failed with a last line that contains all of `said`.
+/// The last line contains all of `said`.
 fn assert_fails(outcome: &Outcome, said: &[&str]) {
     assert_eq!(outcome.status, Some(1), "{}", outcome.last_words);
     for words in said {
@@ -25,7 +24,7 @@ fn job(name: &str, text: &str) -> Outcome {
 
 #[test]
 fn part_in_another_sector_has_not_arrived() {
-    // During the run the sectors of the tray are taught again, 5.2 in off their places.
+    // The sectors of the tray are taught again during the run, 5.2 in off.
     let taught = fs::read_to_string(whole_system_tests::root().join("data/movetables.blk"))
         .expect("the movetables can be read");
     let block =
@@ -50,7 +49,7 @@ fn part_in_another_sector_has_not_arrived() {
 
 #[test]
 fn part_that_slipped_in_the_fingers_is_off_its_place() {
-    // A grip force of two pounds yields when the part rubs.
+    // Two pounds of grip force yield when the part rubs.
     let outcome = run("linkbar", 1, "finished-force", |scratch| {
         let weak = "-obj-  LINKBAR1         2     0300   0060   2 ";
         scratch.data_with("objects/linkbar.blk", "-obj-  LINKBAR1         2     0300   0060   30", weak);
@@ -69,7 +68,7 @@ fn tolerances_are_in_the_cell_description() {
 
 #[test]
 fn part_pushed_out_of_the_fingers_is_named_with_its_place() {
-    // The jaws push it out of fingers that close with little force. Its final place depends on the seed.
+    // The jaws push it out of weak fingers. Its final place depends on the seed.
     let job = "** tray UNIT_1 4 LINKBAR1_BH\n\
                ** vise partial PFIXTURE\n\
                == MOVE LINKBAR1_BH +2 UNIT_1 4 +2 PFIXTURE 0 -- 0\n\

@@ -1,4 +1,4 @@
-//! Other programs find live runs from start to end, also outside a service or a container.
+//! Other programs find live runs, also outside a service or a container.
 
 use std::{
     path::Path,
@@ -11,10 +11,9 @@ use rustix::process::{Pid, Signal, geteuid, kill_process};
 use tempfile::{TempDir, tempdir};
 use whole_system_tests::{rcs_run, root};
 
-/// Time limit of each action.
-const PATIENCE: Duration = Duration::from_secs(60);
+const PATIENCE: Duration = Duration::from_secs(60); // of each action
 
-/// A directory of runs for one test, outside the directories for temporary files.
+/// For one test, outside the directories for temporary files.
 struct Runs(TempDir);
 
 impl Runs {
@@ -22,7 +21,6 @@ impl Runs {
         Self(TempDir::new_in("/dev/shm").unwrap())
     }
 
-    /// A program with this directory of runs.
     fn program(&self, program: &Path, arguments: &[&str]) -> Command {
         let mut command = Command::new(program);
         command.args(arguments).env("RCS_RUNS", self.0.path()).current_dir(root()).stdin(Stdio::null());
@@ -37,7 +35,6 @@ impl Runs {
         self.rcs(&[&["status"], arguments].concat()).output().unwrap()
     }
 
-    /// Wait until the status of a run contains a text.
     fn wait_for(&self, arguments: &[&str], text: &str) {
         let started = Instant::now();
         loop {
@@ -56,7 +53,7 @@ fn text_of(bytes: &[u8]) -> String {
     String::from_utf8_lossy(bytes).into_owned()
 }
 
-/// A run that is stopped at the end of the test.
+/// It is stopped at the end of the test.
 struct Running(Child);
 
 impl Running {
@@ -67,13 +64,12 @@ impl Running {
 
 impl Drop for Running {
     fn drop(&mut self) {
-        // An ended run needs no signal.
-        let _ = kill_process(Pid::from_child(&self.0), Signal::TERM);
+        let _ = kill_process(Pid::from_child(&self.0), Signal::TERM); // an ended run needs no signal
         let _ = self.0.wait();
     }
 }
 
-/// True if this user may make namespaces.
+/// This user may make namespaces.
 #[expect(clippy::print_stderr, reason = "a test that is left out says so")]
 fn may_unshare(what: &[&str]) -> bool {
     let may = geteuid().is_root()
@@ -84,7 +80,7 @@ fn may_unshare(what: &[&str]) -> bool {
     may
 }
 
-/// The shipped unit has `PrivateTmp=yes`; a cleaner of temporary directories empties `/tmp` in the same way.
+/// As with `PrivateTmp=yes` of the shipped unit, or a cleaner of temporary directories.
 #[test]
 fn a_run_with_a_private_and_emptied_tmp_is_found() {
     if !may_unshare(&["--mount"]) {
@@ -94,8 +90,7 @@ fn a_run_with_a_private_and_emptied_tmp_is_found() {
     let script = "mount -t tmpfs tmpfs /tmp && mount -t tmpfs tmpfs /var/tmp && exec \"$@\"";
     let mut command = runs.program(Path::new("unshare"), &["--mount", "sh", "-c", script, "sh"]);
     command.arg(rcs_run()).args(["linkbar", "--clock", "real", "--log", "none", "--run", "service"]);
-    // This test is about the usual directory of runs.
-    command.env_remove("RCS_RUNS");
+    command.env_remove("RCS_RUNS"); // the usual directory
     let running = Running::begin(command);
     let usual = |arguments: &[&str]| {
         Command::new(rcs_run()).args(arguments).current_dir(root()).env_remove("RCS_RUNS").output().unwrap()

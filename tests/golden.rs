@@ -1,12 +1,9 @@
 //! Golden runs: recorded behaviour of the controller in small files, so that a change shows all its effects.
 //!
-//! `goldens/scenarios.toml` lists the runs: a job, a seed, its faults, and the expected end. The program `goldens`
-//! makes the runs and writes two files each: `NAME.golden` with the inputs and the digests of the outputs, and
-//! `NAME.txt` for readers, with commands, durations, warnings, errors, and the rows that fired. The test `goldens`
-//! replays the inputs through the present controller within moments and compares both.
-//!
-//! A golden cannot be replayed with other records. Before it is made again, [`crate::trace`] and [`crate::compare`]
-//! show that the new version behaves like the old one.
+//! `goldens/scenarios.toml` lists the runs: job, seed, faults, expected end. The program `goldens` makes them and
+//! writes `NAME.golden` with the inputs and the digests of the outputs, and `NAME.txt` for readers. The test `goldens`
+//! replays the inputs and compares both. Other records need new goldens; before, [`crate::trace`] and
+//! [`crate::compare`] show that the new version behaves like the old one.
 
 use std::{
     fs, io,
@@ -27,31 +24,25 @@ use crate::{
     rcs_run, root, trace,
 };
 
-/// The command that makes all goldens again.
-pub const COMMAND: &str = "cargo run --release -p whole-system-tests --bin goldens";
+pub const COMMAND: &str = "cargo run --release -p whole-system-tests --bin goldens"; // makes all goldens again
 
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Scenario {
     pub name: String,
-    /// Purpose, in one sentence.
-    pub about: String,
+    pub about: String, // purpose, in one sentence
     pub job: String,
     #[serde(default = "one")]
     pub seed: u64,
-    /// A fault plan of the data's directory `faults`.
-    pub faults: Option<String>,
+    pub faults: Option<String>, // a plan of the data's directory `faults`
     #[serde(default)]
     pub status: i32,
-    /// Required text of the last words; empty for a job that finishes.
     #[serde(default)]
-    pub says: String,
-    /// Changes of files of the data directory, in order.
+    pub says: String, // text of the last words; empty if the job finishes
     #[serde(default)]
-    pub change: Vec<Change>,
-    /// Files added to the data directory.
+    pub change: Vec<Change>, // in order
     #[serde(default)]
-    pub file: Vec<NewFile>,
+    pub file: Vec<NewFile>, // added to the data directory
 }
 
 const fn one() -> u64 {
@@ -70,8 +61,7 @@ pub struct Change {
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct NewFile {
-    /// Its path from the data directory.
-    pub name: String,
+    pub name: String, // from the data directory
     pub text: String,
 }
 
@@ -120,9 +110,6 @@ pub fn directory() -> PathBuf {
 }
 
 /// All scenarios.
-///
-/// # Panics
-/// If the list cannot be read, or names a golden twice.
 #[must_use]
 pub fn scenarios() -> Vec<Scenario> {
     let path = directory().join("scenarios.toml");
@@ -146,22 +133,20 @@ impl Scenario {
         directory().join(&self.name).with_added_extension("txt")
     }
 
-    /// Run it and make the golden, without writing it. Errors: [`Failed`], for example if the run does not end as
-    /// expected.
+    /// Runs, without writing the golden. Errors: [`Failed`], for example if the run does not end as expected.
     pub fn make(&self) -> Result<Made, Failed> {
         self.made_of(&self.run()?)
     }
 
-    /// Run it and write its trace. Returns its end and the number of ticks. Errors: [`Failed`]. An unexpected end is
-    /// not an error: it is part of the trace.
+    /// Runs and writes the trace. An unexpected end is part of the trace, not an error.
     pub fn trace(&self, directory: &Path) -> Result<(Ending, u64), Failed> {
         let run = self.run()?;
         let ticks = trace::write(&run.log()?, &run.ending, &trace::path(directory, &self.name))?;
         Ok((run.ending, ticks))
     }
 
-    /// Run it and compare the run with its trace in a directory. Without a difference and with `make`, also make the
-    /// golden. Errors: [`Failed`]. A difference is part of the result, not an error.
+    /// Compares a run with its trace, and makes the golden with `make` if nothing differs. A difference is part of the
+    /// result.
     pub fn against(
         &self,
         directory: &Path,
@@ -258,8 +243,7 @@ impl Run {
 
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Ending {
-    /// `None` after a signal.
-    pub status: Option<i32>,
+    pub status: Option<i32>, // `None` after a signal
     pub last_line: String,
 }
 
@@ -267,13 +251,11 @@ pub struct Made {
     files: (PathBuf, PathBuf),
     golden: Golden,
     text: String,
-    /// The last line of the run on standard error.
-    pub last_line: String,
+    pub last_line: String, // of the run on standard error
     pub played: Played,
 }
 
 impl Made {
-    /// Write both files. Errors: [`Failed::File`], [`Failed::Golden`].
     pub fn write(&self) -> Result<(), Failed> {
         let (golden, text) = &self.files;
         golden::write(&self.golden, golden)?;

@@ -1,5 +1,4 @@
-//! The jobs of the data directory: each ends with every part at its place. Failures in the middle of a job are
-//! reported.
+//! The shipped jobs: each ends with every part in place, and failures are reported.
 
 use std::fs;
 
@@ -8,7 +7,7 @@ use rcs_core::plain::from_bytes;
 use record::{Log, replay};
 use whole_system_tests::{Outcome, Scratch, run};
 
-/// A part at the end of a job: name, location, sector, and greatest distance from its place, inches.
+/// Name, location, sector, and greatest distance from the place, inches.
 type Placed = (&'static str, &'static str, u32, f64);
 
 const LINKBAR: &[Placed] = &[("LINKBAR1", "UNIT_1", 1, 0.2)];
@@ -79,7 +78,7 @@ fn shift_finishes_all_jobs_in_a_row() {
     assert_ends_well("shift", 1, &[LINKBAR, CLEVIS, TURNED_PART, TOOL_CHANGE]);
 }
 
-/// Assert that a job that `prepare` has disturbed fails with this reason, and that its log replays.
+/// A job disturbed by `prepare` fails with this reason, and its log replays.
 fn assert_fails_for(job: &str, name: &str, reason: Reason, prepare: impl FnOnce(&Scratch)) {
     let outcome = run(job, 1, name, prepare);
     let said = &outcome.last_words;
@@ -112,7 +111,7 @@ fn another_part_is_not_recognised() {
 #[test]
 fn part_slipping_out_of_the_fingers_is_lost() {
     assert_fails_for("clevis", "slips", Reason::ObjectLost, |scratch| {
-        // Enough for its weight, which `check` requires, and not for the motion.
+        // Enough for its weight, which `check` requires, but not for the motion.
         scratch.data_with(
             "cell.toml",
             "friction = 0.30                  # pads on steel",
@@ -149,7 +148,7 @@ fn a_tool_is_not_forced_into_the_drum() {
     });
 }
 
-/// A location above HOME and its trajectories, taught while the robot runs.
+/// A location above HOME with trajectories, taught during the run.
 const HIGH: &str = "BLOCK# 990 OFFSET 21000
    0 -5022 1136    0 -7145 -983
    3000 -7145 -983  -pose- ... HIGH-POS
@@ -175,7 +174,7 @@ fn loaded_blocks_take_effect_with_the_next_command() {
     assert_eq!(outcome.status, Some(0), "{}", outcome.last_words);
     assert_replays(&outcome);
 
-    // The generation changes once, and not while Task executes the command during which the blocks were loaded.
+    // Once, and not while Task executes the command during which the blocks were loaded.
     let log = Log::open(&outcome.log).expect("the log can be read");
     let ticks = log.ticks().map(|tick| tick.expect("a sound tick"));
     let generations: Vec<(u32, CommonMemory)> = ticks

@@ -1,4 +1,4 @@
-//! The first command after a motion by the joystick box: it ends at its goal, or is refused with the distance
+//! The first command after a motion by hand: it ends at its goal, or is refused with the distance
 //! (docs/design/recovery.md "Return").
 
 use std::fs;
@@ -13,7 +13,7 @@ use whole_system_tests::{Outcome, Scratch, run};
 const HOME: Pose = Pose { wrist: [0, -5022, 636], tool: [0, -7145, -1483], finger: [3000, -7145, -1483] };
 const TO_HOME: &str = "== MOVE -- +0 -- 0 +0 HOME 0 -- 0\n";
 
-/// Lines that move the robot with the joystick box.
+/// Moves the robot with the joystick box.
 fn jog(moves: &[&str]) -> String {
     let mut lines = "** joystick velocity 500\n".to_owned();
     for line in moves {
@@ -29,7 +29,7 @@ fn job(name: &str, text: &str) -> Outcome {
     })
 }
 
-/// Pose of the hand at the end of a run, by the resolvers.
+/// At the end of a run, by the resolvers.
 fn hand(outcome: &Outcome) -> Frame {
     let log = Log::open(&outcome.log).expect("the log can be read");
     let last = log.ticks().last().expect("a run has ticks").expect("a sound tick");
@@ -107,7 +107,7 @@ fn unrecorded_jog_ends_straight_at_a_resting_place() {
     );
 }
 
-/// A linkbar in the fingers above its new sector of the tray, after a jog upwards.
+/// After a jog upwards.
 #[test]
 fn a_part_moved_off_its_sector_is_released_in_it() {
     for moves in [&["frame WORLD", "up 12"][..], &["frame WORLD", "up 80"]] {
@@ -130,7 +130,7 @@ fn a_part_in_the_vise_is_released_only_at_its_destination() {
     let begin = "** tray UNIT_1 4 LINKBAR1_BH\n** vise partial PFIXTURE\n\
                  == MOVE LINKBAR1_BH +2 UNIT_1 4 +2 PFIXTURE 0 -- 0\n** vise close PFIXTURE\n";
     let away = jog(&["frame WORLD", "stick 0 100 40"]);
-    // The box took the robot over in the first five ticks of this motion.
+    // The box took over in the first five ticks of this motion.
     let back = jog(&["frame WORLD", "stick 0 -100 35"]);
     let position = "== POSITION H-LINKBAR1_BH +1 PFIXTURE 0 +0 -- 0 -- 0\n";
     let again = position.replace('\n', " expect error\n");

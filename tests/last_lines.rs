@@ -1,5 +1,4 @@
-//! The last lines of a run on a terminal: first the places of the parts, then commands that can be pasted into a
-//! shell.
+//! The last lines of a run: places of the parts, then commands that can be pasted into a shell.
 
 use std::{
     io::Read as _,
@@ -12,7 +11,7 @@ use std::{
 use rustix::process::{Pid, Signal, kill_process};
 use whole_system_tests::{Scratch, rcs_console, rcs_log, rcs_run};
 
-/// A command with both outputs in one stream, as on a terminal, started by its path and not by cargo.
+/// Both outputs in one stream, started by its path and not by cargo.
 fn on_terminal(scratch: &Scratch, line: &str) -> Command {
     let mut shell = Command::new("sh");
     shell.args(["-c", &format!("exec {line} 2>&1")]).current_dir(scratch.file("."));
@@ -20,7 +19,7 @@ fn on_terminal(scratch: &Scratch, line: &str) -> Command {
     shell
 }
 
-/// The output of a command, and its success.
+/// With its success.
 fn shown(scratch: &Scratch, line: &str) -> (String, bool) {
     let output = on_terminal(scratch, line).output().expect("a shell can be started");
     (String::from_utf8_lossy(&output.stdout).into_owned(), output.status.success())
@@ -30,13 +29,13 @@ fn run(scratch: &Scratch, arguments: &str) -> String {
     shown(scratch, &format!("{} {arguments}", rcs_run().display())).0
 }
 
-/// The command after a label.
+/// After a label.
 fn command<'o>(output: &'o str, label: &str) -> &'o str {
     let line = output.lines().find_map(|line| line.strip_prefix(label));
     line.unwrap_or_else(|| panic!("no line {label:?} in\n{output}")).trim()
 }
 
-/// The number of the only line that starts with a text.
+/// The only line that starts with a text.
 fn line_of(output: &str, start: &str) -> usize {
     let found: Vec<_> =
         output.lines().enumerate().filter(|(_, line)| line.starts_with(start)).map(|(at, _)| at).collect();
@@ -71,7 +70,7 @@ fn finished_run_ends_with_the_place_of_the_part_and_the_next_commands() {
     assert!(is_answered && !why.is_empty(), "{why}");
 }
 
-/// The command that opens a log in Rerun, and the layout for Foxglove, in the line of a run.
+/// Rerun opens a log; the layout is Foxglove's.
 fn opened(line: &str) -> (&str, &str) {
     let (command, hint) = line.strip_prefix("open ").and_then(|line| line.split_once('#')).expect(line);
     let (_, layout) = hint.rsplit_once(' ').expect(line);
@@ -83,8 +82,8 @@ fn succeeds(program: &str, arguments: &[&str]) -> bool {
     status.is_ok_and(|status| status.success())
 }
 
-/// Opens the printed commands in a window without a screen: Rerun, and Lichtblick if `RCS_LICHTBLICK` is the
-/// directory of a web build. `viewers/check.py` finds the robot in the picture.
+/// Rerun in a window without a screen, and Lichtblick if `RCS_LICHTBLICK` is a web build. `viewers/check.py` finds the
+/// robot in the picture.
 #[test]
 fn printed_commands_show_the_robot_in_the_viewers() {
     let packages = "import rerun, mcap, mcap_protobuf, PIL, websockets";
@@ -144,7 +143,7 @@ fn interrupted_run_in_real_time_has_its_times_and_the_last_lines() {
     let line = format!("{} --clock 20x", rcs_run().display());
     let mut run =
         on_terminal(&scratch, &line).stdout(Stdio::piped()).spawn().expect("a shell can be started");
-    // The blank has been delivered by then; the robot may already hold it.
+    // The blank has been delivered; the robot may already hold it.
     thread::sleep(Duration::from_millis(3700));
     kill_process(Pid::from_child(&run), Signal::INT).expect("the run has not ended");
     let mut output = String::new();

@@ -1,8 +1,5 @@
-//! Runs the programs like their users, and reads their outputs: exit status, JSON, the last line on standard error,
-//! the log.
-//!
-//! The tests of this package check the whole system: controller, link, cell, executive and log, as built for a
-//! release.
+//! Runs the released programs like their users, and reads exit status, JSON, last line on standard error, and log. The
+//! tests of this package check the whole system.
 
 pub mod bench;
 pub mod compare;
@@ -27,50 +24,35 @@ pub fn root() -> &'static Path {
     tests.parent().unwrap_or(tests)
 }
 
-/// The program `rcs-run`, rebuilt first: a test of this package must never test an older one.
-///
-/// # Panics
-/// If it does not build.
+/// The program `rcs-run`, rebuilt first, so that a test never tests an older one.
 #[must_use]
 pub fn rcs_run() -> &'static Path {
     static PROGRAM: OnceLock<PathBuf> = OnceLock::new();
     program("rcs-run", &PROGRAM)
 }
 
-/// The program `rcs-log`, rebuilt first.
-///
-/// # Panics
-/// If it does not build.
+/// Rebuilt first.
 #[must_use]
 pub fn rcs_log() -> &'static Path {
     static PROGRAM: OnceLock<PathBuf> = OnceLock::new();
     program("rcs-log", &PROGRAM)
 }
 
-/// The program `rcs-neighbour`, rebuilt first.
-///
-/// # Panics
-/// If it does not build.
+/// Rebuilt first.
 #[must_use]
 pub fn rcs_neighbour() -> &'static Path {
     static PROGRAM: OnceLock<PathBuf> = OnceLock::new();
     program("rcs-neighbour", &PROGRAM)
 }
 
-/// The program `rcs-console`, rebuilt first.
-///
-/// # Panics
-/// If it does not build.
+/// Rebuilt first.
 #[must_use]
 pub fn rcs_console() -> &'static Path {
     static PROGRAM: OnceLock<PathBuf> = OnceLock::new();
     program("rcs-console", &PROGRAM)
 }
 
-/// The program `rcs-cell`, rebuilt first.
-///
-/// # Panics
-/// If it does not build.
+/// Rebuilt first.
 #[must_use]
 pub fn rcs_cell() -> &'static Path {
     static PROGRAM: OnceLock<PathBuf> = OnceLock::new();
@@ -87,12 +69,11 @@ fn program(name: &str, built: &'static OnceLock<PathBuf>) -> &'static Path {
         let target = profile.parent().expect("a profile lies in the target directory");
         let cargo = env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
         let mut build = Command::new(cargo);
-        // As part of the workspace a program has the features of the tests, and most of it is already built.
+        // In the workspace a program has the features of the tests, and most of it is already built.
         build
             .args(["build", "--quiet", "--release", "--workspace", "--bin", name, "--target-dir"])
             .arg(target);
-        // Cargo's variables about the package of a test would rebuild the crates that read them, and all their
-        // dependents.
+        // Cargo's variables about the package of a test would rebuild crates that read them, and all their dependents.
         let told = env::vars_os().map(|(variable, _)| variable).filter(|variable| {
             let variable = variable.to_string_lossy();
             ["CARGO_PKG_", "CARGO_MANIFEST_", "CARGO_CRATE_"].iter().any(|front| variable.starts_with(front))
@@ -106,14 +87,11 @@ fn program(name: &str, built: &'static OnceLock<PathBuf>) -> &'static Path {
     })
 }
 
-/// A directory for the files of one run, removed with it. The name need not be unique: tests run in parallel.
+/// Removed with the run. The name need not be unique: tests run in parallel.
 pub struct Scratch(TempDir);
 
 impl Scratch {
     /// A new, empty directory.
-    ///
-    /// # Panics
-    /// If it cannot be created.
     #[must_use]
     pub fn new(name: &str) -> Self {
         let directory = tempfile::Builder::new().prefix(&format!("rcs-{name}-")).tempdir();
@@ -127,38 +105,26 @@ impl Scratch {
 }
 
 impl Scratch {
-    /// Write a job of the data directory with `from` in it replaced by `to`.
-    ///
-    /// # Panics
-    /// If the job does not contain `from`: the test would then be void.
+    /// Replaces `from` by `to` in a copy of a shipped job.
     pub fn job_with(&self, job: &str, from: &str, to: &str) {
         let text = fs::read_to_string(root().join("data/jobs").join(job)).expect("the job is there");
         assert!(text.contains(from), "{job} has no {from:?}");
         fs::write(self.file(job), text.replacen(from, to, 1)).expect("the job can be written");
     }
 
-    /// Set the faults of the run.
-    ///
-    /// # Panics
-    /// If they cannot be written.
+    /// Sets the faults of the run.
     pub fn faults(&self, text: &str) {
         fs::write(self.file(FAULTS), text).expect("the faults can be written");
     }
 
-    /// Set the faults of the run from a file of the data directory.
-    ///
-    /// # Panics
-    /// If there is no such file.
+    /// Sets the faults from a file of the data directory.
     pub fn faults_of(&self, name: &str) {
         let path = root().join("data/faults").join(name).with_extension("toml");
         let text = fs::read_to_string(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
         self.faults(&text);
     }
 
-    /// Copy the task data, and replace `from` by `to` in one of their files.
-    ///
-    /// # Panics
-    /// If the file does not contain `from`.
+    /// Copies the task data, and replaces `from` by `to` in a file.
     pub fn data_with(&self, file: &str, from: &str, to: &str) {
         self.copy_data();
         let path = self.file("data").join(file);
@@ -167,10 +133,7 @@ impl Scratch {
         fs::write(path, text.replacen(from, to, 1)).expect("the file can be written");
     }
 
-    /// Copy the task data and lower the via point over UNIT_1 so that the arm meets the pot of the tray.
-    ///
-    /// # Panics
-    /// If the data contain another via point.
+    /// Lowers the via point over UNIT_1 so that the arm meets the pot of the tray.
     pub fn with_a_low_via_point(&self) {
         self.data_with(
             "poses.blk",
@@ -183,19 +146,15 @@ impl Scratch {
         );
     }
 
-    /// Copy the task data.
-    ///
-    /// # Panics
-    /// If they cannot be copied.
+    /// Copies the task data.
     pub fn copy_data(&self) {
         copy(&root().join("data"), &self.file("data"));
     }
 }
 
-/// A user without files, on every system.
-pub const NOBODY: u32 = 65_534;
+pub const NOBODY: u32 = 65_534; // a user without files, on every system
 
-/// True if this user may start programs as [`NOBODY`] in a directory.
+/// This user may start programs as [`NOBODY`] in a directory.
 #[must_use]
 pub fn may_become_nobody(directory: &Path) -> bool {
     let mut command = Command::new("true");
@@ -203,10 +162,7 @@ pub fn may_become_nobody(directory: &Path) -> bool {
     command.status().is_ok_and(|status| status.success())
 }
 
-/// Copy a directory recursively.
-///
-/// # Panics
-/// If it cannot be read or written.
+/// Copies recursively.
 pub fn copy(from: &Path, to: &Path) {
     fs::create_dir_all(to).expect("a directory can be made");
     for entry in fs::read_dir(from).expect("a directory can be read") {
@@ -223,26 +179,19 @@ pub fn copy(from: &Path, to: &Path) {
 pub struct Outcome {
     pub status: Option<i32>,
     pub result: Value,
-    /// The last line on standard error; empty without one.
-    pub last_words: String,
+    pub last_words: String, // on standard error; may be empty
     pub log: PathBuf,
     _scratch: Scratch,
 }
 
 impl Outcome {
-    /// The digest of all output buffers of all ticks.
-    ///
-    /// # Panics
-    /// If there is none.
+    /// The digest of all outputs in all ticks.
     #[must_use]
     pub fn digest(&self) -> &str {
         self.result["digest"].as_str().expect("a result has a digest")
     }
 
     /// The part of a name.
-    ///
-    /// # Panics
-    /// If there is none.
     #[must_use]
     pub fn part(&self, name: &str) -> &Value {
         let parts = self.result["parts"].as_array().expect("a result has parts");
@@ -250,11 +199,9 @@ impl Outcome {
     }
 }
 
-/// The fault file in the directory of a run.
-const FAULTS: &str = "faults.toml";
+const FAULTS: &str = "faults.toml"; // in the directory of a run
 
-/// The command that runs a job in a directory. Its arguments are constant, so that equal runs write equal logs. Task
-/// data in the directory take precedence over those of the repository.
+/// The arguments are constant, so equal runs write equal logs. Task data in the directory take precedence.
 #[must_use]
 pub fn command(directory: &Scratch, job: &str, seed: u64) -> Command {
     let own = directory.file("data");
@@ -272,26 +219,20 @@ pub fn command(directory: &Scratch, job: &str, seed: u64) -> Command {
     command
 }
 
-/// The same with a log and without readers.
+/// With a log, without readers.
 fn logged(directory: &Scratch, job: &str, seed: u64) -> Command {
     let mut command = command(directory, job, seed);
     command.args(["--log", "run.mcap", "--shared-memory", "off"]);
     command
 }
 
-/// Run a job of the data directory, or one that `prepare` writes into the directory of the run.
-///
-/// # Panics
-/// If the program cannot be started or prints no JSON.
+/// Runs a shipped job, or one that `prepare` writes.
 #[must_use]
 pub fn run(job: &str, seed: u64, name: &str, prepare: impl FnOnce(&Scratch)) -> Outcome {
     run_with(job, seed, name, &[], prepare)
 }
 
 /// As [`run`], with further arguments.
-///
-/// # Panics
-/// As [`run`].
 #[must_use]
 pub fn run_with(
     job: &str,
@@ -315,10 +256,7 @@ pub fn run_with(
     }
 }
 
-/// Start a job without waiting for its end.
-///
-/// # Panics
-/// If the program cannot be started.
+/// Starts a job without waiting for its end.
 #[must_use]
 pub fn start(scratch: &Scratch, job: &str, seed: u64) -> Child {
     logged(scratch, job, seed)

@@ -1,4 +1,4 @@
-//! The linkbar of chapter VIII, from the workstation's first command to the finished bar in its tray.
+//! The linkbar of chapter VIII, from the first command to the finished bar in its tray.
 
 use std::{fs, sync::OnceLock, thread, time::Duration};
 
@@ -17,11 +17,11 @@ use record::{
 use whole_system_tests::{Outcome, Scratch, root, run, start};
 
 const SEED: u64 = 1;
-/// Greatest distance of the finished bar from the centre of its sector, inches. The figures of chapter VIII give
-/// 0.15: the blank drops onto the ledge of the vise and is gripped there.
+/// inches from the centre of the sector. The figures of chapter VIII give 0.15: the blank drops onto the ledge of the
+/// vise.
 const PLACED: f64 = 0.2;
 
-/// The run of most tests.
+/// Of most tests.
 fn linkbar() -> &'static Outcome {
     static RUN: OnceLock<Outcome> = OnceLock::new();
     RUN.get_or_init(|| run("linkbar", SEED, "linkbar", |_| {}))
@@ -96,7 +96,7 @@ fn a_killed_run_leaves_a_log_that_replays() {
     let scratch = Scratch::new("killed");
     let mut program = start(&scratch, "linkbar", SEED);
     let log = scratch.file("run.mcap");
-    // The file contains some seconds of the run, which has not ended.
+    // Some seconds of the run, which has not ended.
     while fs::metadata(&log).map_or(0, |file| file.len()) < 1_000_000 {
         assert!(program.try_wait().unwrap().is_none(), "the run ended before it was killed");
         thread::sleep(Duration::from_millis(5));
@@ -127,7 +127,7 @@ fn a_missing_blank_is_named_with_process_table_and_row() {
     assert_same(&replay(&outcome.log).unwrap());
 }
 
-/// The inputs of a run, and the image of common memory after each of its ticks.
+/// Inputs of a run, and the image of common memory after each tick.
 struct Recorded {
     log: Log,
     ticks: Vec<(ExternalInputs, Vec<u8>)>,

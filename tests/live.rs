@@ -1,4 +1,4 @@
-//! The live view of a run: viewers receive the contents of the log, and change nothing.
+//! The live view: viewers receive the contents of the log, and change nothing.
 
 use std::{
     collections::BTreeMap,
@@ -24,10 +24,8 @@ use tungstenite::{
 };
 use whole_system_tests::rcs_run;
 
-/// Time limit of each action.
-const PATIENCE: Duration = Duration::from_secs(60);
-/// Topics that are sent once, at the start.
-const ONCE: [&str; 4] = ["/robot_description", "/tf_static", "/meshes", "/names"];
+const PATIENCE: Duration = Duration::from_secs(60); // of each action
+const ONCE: [&str; 4] = ["/robot_description", "/tf_static", "/meshes", "/names"]; // at the start
 
 #[derive(Clone, Default)]
 struct Said(Arc<Mutex<Vec<String>>>);
@@ -60,14 +58,14 @@ fn config(directory: &TempDir, ticks: u64) -> RunConfig {
     }
 }
 
-/// A viewer, with the topics of its advertised channels.
+/// Topics by advertised channel.
 struct Viewer {
     socket: WebSocket<TcpStream>,
     info: Value,
     topics: BTreeMap<u64, String>,
 }
 
-/// Messages to a viewer: with topic and time, or only the time.
+/// With topic and time, or only the time.
 enum Got {
     Message(String, u64, Vec<u8>),
     Time(u64),
@@ -101,7 +99,7 @@ impl Viewer {
         }
     }
 
-    /// The next text in reply to a request. The operators' channel starts with the first one.
+    /// The operators' channel starts with the first reply.
     fn answer(&mut self) -> Value {
         std::iter::repeat_with(|| self.text()).find(|text| text["op"] != "advertise").unwrap()
     }
@@ -114,7 +112,7 @@ impl Viewer {
         self.socket.send(Message::text(text)).unwrap();
     }
 
-    /// All messages up to the end of the run.
+    /// Up to the end of the run.
     fn rest(&mut self) -> impl Iterator<Item = Got> {
         std::iter::from_fn(|| {
             loop {
@@ -246,7 +244,7 @@ impl Said {
     }
 }
 
-/// Call a service. Returns the answer, or the reason of its refusal.
+/// The answer, or the reason of a refusal.
 fn call(viewer: &mut Viewer, service: u32, payload: &Value) -> Result<Value, String> {
     let mut bytes = vec![2];
     [service, 77, 4].iter().for_each(|number| bytes.extend(number.to_le_bytes()));
@@ -272,7 +270,7 @@ fn call(viewer: &mut Viewer, service: u32, payload: &Value) -> Result<Value, Str
     }
 }
 
-/// Request all services, with and without the token.
+/// With and without the token.
 fn operate(mut viewer: Viewer, token: &str) {
     let services = viewer.answer();
     assert_eq!(services["op"], "advertiseServices");
@@ -290,7 +288,7 @@ fn operate(mut viewer: Viewer, token: &str) {
     let set = |name: &str, value: Value| json!({ "op": "setParameters", "parameters": [{ "name": name, "value": value }], "id": "set" });
     say(&mut viewer, set("/operator/velocity", json!(400)));
     assert_eq!(viewer.answer()["op"], "status", "without the token the knob stays");
-    // From here on with the token.
+    // With the token.
     let answer = call(&mut viewer, pause, &json!({ "token": token })).unwrap();
     assert!(answer["answer"].as_str().unwrap().contains("command"), "{answer}");
     say(&mut viewer, set("/operator/token", json!(token)));
@@ -347,7 +345,7 @@ fn a_viewer_with_the_token_operates_the_run() {
     assert_eq!(said, expected);
 }
 
-/// A run that a viewer operates, with its name and token.
+/// Operated by a viewer.
 struct Operated {
     viewer: Viewer,
     token: String,
@@ -359,12 +357,11 @@ impl Operated {
         call(&mut self.viewer, self.request, &json!({ "token": self.token, "line": line }))
     }
 
-    /// Read messages for a time, which also answers pings.
+    /// Also answers pings.
     fn read_for(&mut self, time: Duration) {
         let end = Instant::now() + time;
         while Instant::now() < end {
-            // Pings arrive all the time.
-            self.viewer.socket.read().unwrap();
+            self.viewer.socket.read().unwrap(); // pings arrive all the time
         }
     }
 }
@@ -408,8 +405,7 @@ fn a_viewer_holds_a_stick_while_it_answers_and_a_delayed_request_is_refused() {
             }
             assert!(begun.elapsed() < PATIENCE, "a viewer that answers keeps the stick");
         }
-        // The viewer hangs.
-        let hangs = Instant::now();
+        let hangs = Instant::now(); // the viewer hangs
         while stick() != (0, 0) {
             assert!(begun.elapsed() < PATIENCE, "a viewer that does not answer releases the stick");
             thread::sleep(Duration::from_millis(10));
@@ -469,7 +465,7 @@ fn a_view_needs_a_log_and_a_port() {
     assert!(!directory.path().join("log.mcap").exists(), "a run that cannot begin leaves no log");
 }
 
-/// Ctrl-Z, a debugger or a full disk: the run is stopped for longer than a viewer may be silent.
+/// Ctrl-Z, a debugger or a full disk stops the run for longer than a viewer may be silent.
 #[test]
 fn frozen_run_keeps_its_viewers() {
     let arguments =
@@ -492,7 +488,7 @@ fn frozen_run_keeps_its_viewers() {
     kill_process(pid, Signal::STOP).unwrap();
     thread::sleep(Duration::from_secs(7));
     kill_process(pid, Signal::CONT).unwrap();
-    // 100 ticks after the gap of four seconds: the viewer is served in each of them.
+    // The viewer is served in each of 100 ticks after the gap of four seconds.
     let got = viewer.rest().filter(|got| matches!(got, Got::Time(_))).take(100).count();
     kill_process(pid, Signal::TERM).unwrap();
     assert_eq!(got, 100);

@@ -1,11 +1,8 @@
-//! Makes the golden runs again: all of `tests/goldens/scenarios.toml`, or the named ones.
-//!
-//! `cargo run --release -p whole-system-tests --bin goldens [NAME...]`
-//!
-//! A run that does not end as its scenario says is reported, its files remain, and the exit status is 1.
+//! Makes the golden runs again, all or the named ones: `cargo run --release -p whole-system-tests --bin goldens
+//! [NAME...]`. A run that does not end as its scenario says is reported, its files remain, and the exit status is 1.
 //!
 //! New layouts of records, or new numbers of tables and rows, change the digests of all goldens. Traces show that the
-//! controller nevertheless behaves the same:
+//! controller behaves the same:
 //!
 //! ```text
 //! goldens --trace DIR                              in the old version: write DIR/NAME.trace
@@ -13,8 +10,8 @@
 //! goldens --against DIR --renames FILE             the same, and make the goldens again if nothing differs
 //! ```
 //!
-//! Both comparisons print, as Markdown, the row of the new version that fired in place of each row of the old
-//! version. FILE lists the intended changes, see [`Renames`]:
+//! Both comparisons print, as Markdown, the new row that fired in place of each old row. FILE lists the intended
+//! changes, see [`Renames`]:
 //!
 //! ```toml
 //! renamed = [{ old = "emove.status.at", new = "emove.status.location" }, { old = "grip.*", new = "jaw.*" }]
@@ -95,7 +92,7 @@ fn read(renames: Option<&Path>) -> Result<Renames, String> {
     Renames::parse(&text).map_err(|error| at(&error))
 }
 
-/// Process all scenarios on all processors. Returns the results in their order, and prints errors.
+/// On all processors. Returns the results in order, and prints errors.
 fn each<T: Send>(
     wanted: &[&Scenario],
     work: impl Fn(&Scenario) -> Result<T, Failed> + Sync,
@@ -197,7 +194,7 @@ fn against(
     ExitCode::from(u8::from(failed > 0))
 }
 
-/// A trace without a scenario, which would not be compared.
+/// A trace without a scenario is not compared.
 fn stray_trace(directory: &Path, all: &[Scenario]) -> Option<PathBuf> {
     let known: Vec<PathBuf> = all.iter().map(|scenario| trace::path(directory, &scenario.name)).collect();
     let entries = fs::read_dir(directory).into_iter().flatten().flatten().map(|entry| entry.path());
@@ -205,7 +202,7 @@ fn stray_trace(directory: &Path, all: &[Scenario]) -> Option<PathBuf> {
     entries.filter(|path| is_trace(path)).find(|path| !known.contains(path))
 }
 
-/// Print the points to review, also without a difference: rows, and entries of the renames.
+/// Rows, and entries of the renames, also without a difference.
 fn print_rows(found: &[(&String, &Comparison)], renames: &Renames, all: bool) {
     let mut rows = RowMap::default();
     found.iter().for_each(|(name, found)| rows.add(name, found));
@@ -234,7 +231,7 @@ fn verdict(found: &Comparison) -> String {
     }
 }
 
-/// Remove the files of deleted scenarios.
+/// Of deleted scenarios.
 fn remove_strays(all: &[Scenario]) {
     for path in strays(all) {
         match fs::remove_file(&path) {
@@ -244,7 +241,7 @@ fn remove_strays(all: &[Scenario]) {
     }
 }
 
-/// Files of deleted scenarios.
+/// Of deleted scenarios.
 fn strays(all: &[Scenario]) -> Vec<PathBuf> {
     let known: Vec<PathBuf> = all.iter().flat_map(|s| [s.golden(), s.text()]).collect();
     let entries = fs::read_dir(directory()).into_iter().flatten().flatten().map(|entry| entry.path());

@@ -1,8 +1,6 @@
-//! Compares the traces of two versions, tick by tick and field by field.
-//!
-//! A file of [`Renames`] lists intended changes: other paths, other texts of values, fields of only one version. All
-//! other deviations are differences. The rows of decision tables are not compared: for review, a [`RowMap`] shows
-//! which row of the new version fired in place of a row of the old version.
+//! Compares the traces of two versions by tick and field. A file of [`Renames`] lists intended changes: other paths,
+//! other texts of values, fields of only one version. Other deviations are differences. Rows of decision tables are
+//! not compared: for review, a [`RowMap`] shows which row fired instead of an old one.
 
 mod read;
 mod renames;
@@ -22,10 +20,9 @@ pub use self::{
 };
 use crate::trace::{FIRED, TICKS};
 
-/// Differences of a scenario to print; others are counted.
-const WRITTEN: usize = 12;
+const WRITTEN: usize = 12; // printed per scenario; others are counted
 
-/// Reason why two traces cannot be compared.
+/// Why two traces cannot be compared.
 #[derive(Debug, thiserror::Error)]
 pub enum CompareError {
     #[error(transparent)]
@@ -35,49 +32,38 @@ pub enum CompareError {
     Stars { old: String, new: String },
     #[error("the {0} trace: {1}")]
     Unreadable(&'static str, io::Error),
-    /// The line is not part of a trace, or belongs to an earlier tick than the previous line.
+    /// Not a line of a trace, or of an earlier tick than the line before.
     #[error("the {which} trace, line {line}: tick, path and value in order were expected, found {found:?}")]
     Line {
-        /// The old or the new one.
-        which: &'static str,
-        /// Number of the line, from 1.
-        line: usize,
+        which: &'static str, // old or new
+        line: usize,         // from 1
         found: String,
     },
     #[error("the {0} trace ends without saying how the run ended: make it again")]
     NoEnd(&'static str),
-    /// Two fields of the old version would become one of the new version.
+    /// Two old fields would become one new field.
     #[error("{first} and {second} of the old version both become {new}")]
     Twice { first: String, second: String, new: String },
 }
 
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Difference {
-    /// First moment of the difference.
-    pub first: Moment,
-    /// Path of the field in the new version.
-    pub path: String,
-    /// Value in the old version at that moment; none without such a field.
-    pub was: Option<String>,
-    /// Value in the new version.
-    pub is: Option<String>,
-    /// Number of ticks in which it differs.
-    pub ticks: u64,
+    pub first: Moment,       // first
+    pub path: String,        // in the new version
+    pub was: Option<String>, // in the old version; `None` without such a field
+    pub is: Option<String>,  // in the new version
+    pub ticks: u64,          // in which it differs
 }
 
 #[derive(Clone, Debug, Default)]
 pub struct Comparison {
-    /// Differing fields, by their first difference.
-    pub differences: Vec<Difference>,
-    /// Rows of the new version for those of the old one, up to the first difference.
-    pub rows: Pairs,
-    /// Ticks of the old and the new run.
-    pub ticks: (u64, u64),
+    pub differences: Vec<Difference>, // by their first difference
+    pub rows: Pairs,                  // for the old ones, up to the first difference
+    pub ticks: (u64, u64),            // of the old and the new run
     used: BTreeSet<Rule>,
 }
 
-/// Compare the trace of an old version with that of a new one. Errors: [`CompareError`] if one of them is not a
-/// complete trace, or two old fields become one. A difference is part of the result, not an error.
+/// Errors: [`CompareError`] if one of them is not a complete trace, or two old fields become one.
 pub fn compare(was: impl BufRead, is: impl BufRead, renames: &Renames) -> Result<Comparison, CompareError> {
     let (mut was, mut is) = (Lines::new("old", was)?, Lines::new("new", is)?);
     let mut comparer = Comparer::new(renames);
@@ -101,7 +87,7 @@ pub fn compare(was: impl BufRead, is: impl BufRead, renames: &Renames) -> Result
     Ok(comparer.finish())
 }
 
-/// A field of both versions, by its path in the new one.
+/// A field of both versions, by its new path.
 struct Slot {
     path: String,
     old_path: Option<String>,
@@ -109,20 +95,17 @@ struct Slot {
     is: Option<String>,
     values: Vec<usize>,
     kind: Kind,
-    /// It got a value in this tick.
-    touched: bool,
+    touched: bool, // it got a value in this tick
 }
 
 enum Kind {
     Compared {
-        /// Position among the differences, and the first tick of the present difference.
+        /// Position among the differences, and first tick of the present one.
         difference: Option<usize>,
         since: Option<u64>,
     },
-    /// A row that fired: the present pair and its first tick.
-    Row(Option<(Pair, u64)>),
-    /// A field of the new version only.
-    Added,
+    Row(Option<(Pair, u64)>), // the present pair and its first tick
+    Added,                    // in the new version only
 }
 
 impl Kind {
@@ -132,13 +115,11 @@ impl Kind {
 struct Comparer<'a> {
     renames: &'a Renames,
     slots: Vec<Slot>,
-    /// Slots by path in the old version; none for dropped fields.
-    old: HashMap<String, Option<usize>>,
-    /// Slots by path in the new version.
-    new: HashMap<String, usize>,
+    old: HashMap<String, Option<usize>>, // by old path; `None`: dropped
+    new: HashMap<String, usize>,         // by new path
     touched: Vec<usize>,
     tick: u64,
-    /// First tick with a difference: pairs of rows are collected up to it.
+    /// First tick with a difference: rows are collected up to it.
     diverged: Option<u64>,
     found: Comparison,
 }
@@ -163,7 +144,7 @@ impl<'a> Comparer<'a> {
         }
     }
 
-    /// Set the value of a field of the old version.
+    /// Of the old version.
     fn was(&mut self, path: &str, value: String) -> Result<(), CompareError> {
         let slot = match self.old.get(path) {
             Some(slot) => *slot,
@@ -175,7 +156,7 @@ impl<'a> Comparer<'a> {
         Ok(())
     }
 
-    /// Set the value of a field of the new version.
+    /// Of the new version.
     fn is(&mut self, path: &str, value: String) {
         let slot = self.new_slot(path);
         self.touch(slot).is = Some(value);
@@ -220,7 +201,7 @@ impl<'a> Comparer<'a> {
         self.slots.len() - 1
     }
 
-    /// Compare the fields that got a value at this moment.
+    /// Compares the fields with a value at this moment.
     fn settle(&mut self, moment: Moment) {
         let mut touched = std::mem::take(&mut self.touched);
         // Differences first: they end the collection of rows.
@@ -274,7 +255,7 @@ impl<'a> Comparer<'a> {
         }
     }
 
-    /// If another pair of rows fires, count the previous pair.
+    /// Counts the previous pair if another one fires.
     fn change_row(&mut self, at: usize) {
         let slot = &mut self.slots[at];
         let (Kind::Row(firing), Some(was), Some(is)) = (&mut slot.kind, &slot.was, &slot.is) else { return };
@@ -288,7 +269,7 @@ impl<'a> Comparer<'a> {
         }
     }
 
-    /// Count the differences and pairs that lasted to the end.
+    /// Counts differences and pairs that lasted to the end.
     fn finish(mut self) -> Comparison {
         let ticks = self.new.get(TICKS).and_then(|at| self.slots.get(*at));
         let number = |text: Option<&String>| text.and_then(|text| text.parse().ok()).unwrap_or(self.tick);
@@ -315,7 +296,7 @@ impl fmt::Display for Comparison {
         let text = |value: &Option<String>| {
             value.as_ref().map_or("no such field".to_owned(), |value| format!("{value:?}"))
         };
-        // The end of the run is always printed: it is the last entry.
+        // The last entry, the end of the run, is always printed.
         let (ends, ticks): (Vec<_>, Vec<_>) = self.differences.iter().partition(|d| d.first == Moment::End);
         let (written, more) = ticks.split_at(WRITTEN.min(ticks.len()));
         for Difference { first, path, was, is, ticks } in written.iter().chain(&ends) {

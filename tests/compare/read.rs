@@ -1,5 +1,3 @@
-//! Reads a trace line by line.
-
 use std::{
     fmt,
     io::{self, BufRead},
@@ -8,7 +6,7 @@ use std::{
 use super::CompareError;
 use crate::trace::{END, TICKS};
 
-/// Moment of a value: a tick, or the end, which is after all ticks.
+/// A tick, or the end, which is after all ticks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Moment {
     Tick(u64),
@@ -24,7 +22,7 @@ impl fmt::Display for Moment {
     }
 }
 
-/// The lines of a trace, with one line of look-ahead.
+/// One line of look-ahead.
 pub(super) struct Lines<R> {
     which: &'static str,
     lines: io::Lines<R>,
@@ -33,19 +31,18 @@ pub(super) struct Lines<R> {
 }
 
 impl<R: BufRead> Lines<R> {
-    /// The lines of the trace; messages name it `which`.
     pub(super) fn new(which: &'static str, input: R) -> Result<Self, CompareError> {
         let mut lines = Self { which, lines: input.lines(), number: 0, next: None };
         lines.advance()?;
         lines.next.is_some().then_some(lines).ok_or(CompareError::NoEnd(which))
     }
 
-    /// The moment of the next line; none after the last one.
+    /// `None` after the last line.
     pub(super) fn moment(&self) -> Option<Moment> {
         self.next.as_ref().map(|(moment, ..)| *moment)
     }
 
-    /// The last tick of the run, if the next line is the first of the end.
+    /// If the next line is the first of the end.
     pub(super) fn last_tick(&self) -> Option<u64> {
         match &self.next {
             Some((Moment::End, path, value)) if path == TICKS => value.parse().ok(),
@@ -53,18 +50,18 @@ impl<R: BufRead> Lines<R> {
         }
     }
 
-    /// Path and value of the next line, if it belongs to this moment.
+    /// If the next line belongs to this moment.
     pub(super) fn take(&mut self, moment: Moment) -> Result<Option<(String, String)>, CompareError> {
         let Some((_, path, value)) = self.next.as_mut().filter(|(next, ..)| *next == moment) else {
             return Ok(None);
         };
-        // The moment is kept for `advance`, which checks the order of the lines.
+        // `advance` needs the moment to check the order of the lines.
         let taken = (std::mem::take(path), std::mem::take(value));
         self.advance()?;
         Ok(Some(taken))
     }
 
-    /// Continue with the first line of the end.
+    /// To the first line of the end.
     pub(super) fn skip_to_end(&mut self) -> Result<(), CompareError> {
         while self.moment().is_some_and(|moment| moment < Moment::End) {
             self.advance()?;

@@ -1,4 +1,4 @@
-//! Intended changes of a restructuring: paths, and texts of values.
+//! Intended changes: paths, and texts of values.
 
 use std::collections::BTreeSet;
 
@@ -7,19 +7,15 @@ use serde::Deserialize;
 use super::CompareError;
 use crate::trace::ABSENT;
 
-/// A TOML file with the intended changes.
-///
-/// In a path `*` matches any part of one segment, and at the end of the path all that follows:
+/// The intended changes as TOML. In a path `*` matches any part of one segment, and at the end all that follows:
 /// `emove.poses[*].pose.*`. In a value it matches any text. The first `*` of `new` is replaced by the match of the
 /// first `*` of `old`, and so on.
 #[derive(Clone, Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Renames {
-    /// Fields with another path; the first matching entry applies.
-    pub renamed: Vec<Renamed>,
-    /// Fields of the old version only.
-    pub dropped: Vec<Only>,
-    /// Fields of the new version only. A field of both versions is compared nevertheless.
+    pub renamed: Vec<Renamed>, // the first match applies
+    pub dropped: Vec<Only>,    // in the old version
+    /// In the new version. A field of both versions is still compared.
     pub added: Vec<Only>,
     pub value: Vec<NewText>,
 }
@@ -31,24 +27,21 @@ pub struct Renamed {
     pub new: String,
 }
 
-/// A field that one version does not have.
+/// In one version only.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Only {
-    /// Its path in the version that has it.
-    pub path: String,
-    /// Reason why its values need not be compared.
-    pub reason: String,
+    pub path: String,   // in the version that has it
+    pub reason: String, // for not comparing it
 }
 
-/// A value with another text: for `old` in the old version, the new one may have `new`.
+/// Another text of a value: `old` may have become `new`.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct NewText {
     pub path: String,
     pub old: String,
-    /// The text in the new version; [`ABSENT`] if the field does not exist in that tick.
-    pub new: String,
+    pub new: String, // or [`ABSENT`] if the field does not exist
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -60,7 +53,6 @@ pub(super) enum Rule {
 }
 
 impl Renames {
-    /// Read the text of a file. Errors: [`CompareError::Toml`], [`CompareError::Stars`].
     pub fn parse(text: &str) -> Result<Self, CompareError> {
         let renames: Self = toml::from_str(text)?;
         let paths = renames.renamed.iter().map(|rule| (&rule.old, &rule.new));
@@ -73,7 +65,7 @@ impl Renames {
         Ok(renames)
     }
 
-    /// The new path of a field of the old version; none if the field is dropped.
+    /// `None`: the field is dropped.
     pub(super) fn new_path(&self, old: &str, used: &mut BTreeSet<Rule>) -> Option<String> {
         if let Some(at) = self.dropped.iter().position(|rule| path_matches(&rule.path, old)) {
             used.insert(Rule::Dropped(at));
@@ -87,20 +79,20 @@ impl Renames {
         Some(new)
     }
 
-    /// True if only the new version has the field.
+    /// Only the new version has the field.
     pub(super) fn is_added(&self, path: &str, used: &mut BTreeSet<Rule>) -> bool {
         let rule = self.added.iter().position(|rule| path_matches(&rule.path, path));
         used.extend(rule.map(Rule::Added));
         rule.is_some()
     }
 
-    /// Positions of the entries for the values of a field.
+    /// The entries for the values of a field.
     pub(super) fn values_of(&self, path: &str) -> Vec<usize> {
         let rules = self.value.iter().enumerate();
         rules.filter(|(_, rule)| path_matches(&rule.path, path)).map(|(at, _)| at).collect()
     }
 
-    /// True if the values are equal, or one of `rules` maps the old one to the new one.
+    /// Equal, or mapped by one of `rules`.
     pub(super) fn agree(
         &self,
         was: Option<&str>,
@@ -111,7 +103,7 @@ impl Renames {
         if was == is {
             return true;
         }
-        // An unwritten field belongs to a variant that was not used yet: see `trace::changes`.
+        // An unwritten field belongs to an unused variant: see `trace::changes`.
         let (was, is) = (was.unwrap_or(ABSENT), is.unwrap_or(ABSENT));
         let fits = |at: &usize| {
             self.value.get(*at).is_some_and(|NewText { old, new, .. }| {
@@ -123,7 +115,7 @@ impl Renames {
         rule.is_some()
     }
 
-    /// The entries that are not in `used`, as text.
+    /// The other entries as text.
     pub(super) fn unused(&self, used: &BTreeSet<Rule>) -> Vec<String> {
         let renamed = self.renamed.iter().map(|r| format!("renamed {} to {}", r.old, r.new));
         let dropped = self.dropped.iter().map(|r| format!("dropped {}: {}", r.path, r.reason));
@@ -142,7 +134,7 @@ fn path_matches(pattern: &str, path: &str) -> bool {
     captures(pattern, path, '.').is_some()
 }
 
-/// `text` translated by a rule from `old` to `new`; none if it does not match `old`.
+/// `None` if `text` does not match `old`.
 fn translate(old: &str, new: &str, text: &str, border: char) -> Option<String> {
     let stars = captures(old, text, border)?;
     let mut pieces = new.split('*');
@@ -154,8 +146,7 @@ fn translate(old: &str, new: &str, text: &str, border: char) -> Option<String> {
     Some(result)
 }
 
-/// The matches of a pattern's stars; none if `text` does not match. A star stops at `border`, unless it ends the
-/// pattern.
+/// The matches of the stars; `None` if `text` does not match. Only a last star passes `border`.
 fn captures<'a>(pattern: &str, text: &'a str, border: char) -> Option<Vec<&'a str>> {
     let Some((front, rest)) = pattern.split_once('*') else {
         return (pattern == text).then(Vec::new);

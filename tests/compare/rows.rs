@@ -1,4 +1,4 @@
-//! The rows of the new version that fire in place of those of the old one.
+//! New rows that fire in place of old ones.
 
 use std::{
     collections::{BTreeMap, BTreeSet},
@@ -12,11 +12,10 @@ use super::{
     renames::{Renames, Rule},
 };
 
-/// A row of the old and one of the new version that fired in the same tick.
+/// Both rows fired in the same tick.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Pair {
-    /// The process's field of common memory in the new version.
-    pub process: String,
+    pub process: String, // in common memory of the new version
     pub old: Row,
     pub new: Row,
 }
@@ -28,7 +27,6 @@ pub struct Row {
 }
 
 impl Row {
-    /// Parse the text of a trace.
     pub(super) fn new(text: &str) -> Self {
         let split = text.rsplit_once(' ').and_then(|(table, row)| Some((table, row.parse().ok()?)));
         let (table, number) = split.map_or((text, None), |(table, row)| (table, Some(row)));
@@ -43,7 +41,7 @@ impl fmt::Display for Row {
     }
 }
 
-/// Statistics of a pair.
+/// Of a pair.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Seen {
     pub ticks: u64,
@@ -52,23 +50,21 @@ pub struct Seen {
 
 pub type Pairs = BTreeMap<Pair, Seen>;
 
-/// Add a pair that fired in the ticks from `since` to `until` - 1.
+/// A pair that fired in the ticks from `since` to `until` - 1.
 pub(super) fn learn(pairs: &mut Pairs, pair: Pair, since: u64, until: u64) {
     if since < until {
         pairs.entry(pair).or_insert(Seen { ticks: 0, first: since }).ticks += until - since;
     }
 }
 
-/// The rows of the new version that fire in place of those of the old one, in all scenarios.
+/// New rows for old ones, in all scenarios.
 #[derive(Clone, Debug, Default)]
 pub struct RowMap {
-    /// With the scenario of the first tick.
-    pairs: BTreeMap<Pair, (Seen, String)>,
+    pairs: BTreeMap<Pair, (Seen, String)>, // scenario of the first tick
     used: BTreeSet<Rule>,
 }
 
 impl RowMap {
-    /// Add the comparison of a scenario.
     pub fn add(&mut self, scenario: &str, found: &Comparison) {
         for (pair, seen) in &found.rows {
             let new = || (Seen { ticks: 0, ..seen.clone() }, scenario.to_owned());
@@ -83,7 +79,7 @@ impl RowMap {
         renames.unused(&self.used)
     }
 
-    /// Pairs whose old row became more than one new row.
+    /// Pairs whose old row became several new rows.
     #[must_use]
     pub fn split(&self) -> Vec<&Pair> {
         let mut new_rows: BTreeMap<(&str, &Row), usize> = BTreeMap::new();
@@ -94,7 +90,7 @@ impl RowMap {
         self.pairs.keys().filter(is_split).collect()
     }
 
-    /// Rows of this version that never fired, by process and table.
+    /// Rows that never fired, by process and table.
     #[must_use]
     pub fn not_named(&self) -> Vec<(&'static str, &'static str, Vec<u8>)> {
         let fired: BTreeSet<(&str, String)> =

@@ -1,4 +1,4 @@
-//! A controller with external neighbours, and a workstation controller that the tests control.
+//! A controller with external neighbours, and a workstation controller under control of the test.
 
 use std::{
     io::{BufRead as _, BufReader, Read as _},
@@ -23,10 +23,8 @@ use serde_json::Value;
 use sessions::network::{Address, Peer, PeerError, Received, Role};
 use whole_system_tests::{Scratch, rcs_run, root};
 
-/// Time limit for actions that take milliseconds.
-pub const PATIENCE: Duration = Duration::from_secs(120);
+pub const PATIENCE: Duration = Duration::from_secs(120); // for actions that take milliseconds
 
-/// A controller with neighbours in other processes.
 pub struct Controller {
     pub child: Child,
     pub address: Address,
@@ -42,12 +40,12 @@ pub struct Ended {
 }
 
 impl Controller {
-    /// A controller with a socket in its own directory.
+    /// The socket is in its own directory.
     pub fn start(name: &str, outside: &str, more: &[&str]) -> Self {
         Self::start_at(Scratch::new(name), None, outside, more)
     }
 
-    /// A controller at an address; without a role all neighbours are its own.
+    /// Without a role all neighbours are its own.
     pub fn start_at(scratch: Scratch, address: Option<&str>, outside: &str, more: &[&str]) -> Self {
         let socket = format!("unix:{}", scratch.file("rcs.sock").display());
         let mut child = Command::new(rcs_run())
@@ -84,7 +82,7 @@ impl Controller {
         self.scratch.as_ref().expect("it has one").file(name)
     }
 
-    /// Connect to it, if necessary once it has noticed the departure of a predecessor.
+    /// Waits until a predecessor has left.
     pub fn connect(&self, role: Role) -> Peer {
         let started = Instant::now();
         loop {
@@ -98,12 +96,12 @@ impl Controller {
         }
     }
 
-    /// Try to connect. Returns the reason of a refusal.
+    /// Returns the reason of a refusal.
     pub fn try_connect(&self, role: Role) -> Result<Peer, PeerError> {
         Peer::connect_within(PATIENCE, &self.address, role)
     }
 
-    /// Kill it. Returns its files.
+    /// Returns its files.
     pub fn kill(mut self) -> Scratch {
         self.child.kill().expect("it runs");
         self.child.wait().expect("a child");
@@ -114,7 +112,7 @@ impl Controller {
         self.end_with(|| {})
     }
 
-    /// Wait for its end, and examine its files.
+    /// `look` examines its files.
     pub fn end_with(mut self, look: impl FnOnce()) -> Ended {
         let mut page = String::new();
         self.child.stdout.take().expect("it is piped").read_to_string(&mut page).expect("text");
@@ -136,7 +134,7 @@ impl Drop for Controller {
 pub struct Workstation {
     pub peer: Peer,
     pub tick: u64,
-    /// True if the pulse still needs an answer; messages before that belong to its tick.
+    /// Messages before the answer belong to the tick of the pulse.
     unanswered: bool,
     command_box: Mailbox,
     cell_box: Mailbox,
@@ -149,14 +147,14 @@ impl Workstation {
         let command_box = Mailbox::initialized(HWSC_COMMAND);
         let cell_box = Mailbox::initialized(CELL_COMMAND);
         let mut workstation = Self { peer, tick: 0, unanswered: false, command_box, cell_box, line: 0 };
-        // The state of the controller is unknown before its first status.
+        // The controller's state is unknown before its first status.
         while workstation.peer.mailbox(HWSC_STATUS).mailgram() == 0 {
             workstation.tick();
         }
         workstation
     }
 
-    /// Let the next tick begin, and read to its end.
+    /// The next tick, to its end.
     pub fn tick(&mut self) {
         self.read_tick().expect("the controller continues");
     }
@@ -173,14 +171,13 @@ impl Workstation {
         }
     }
 
-    /// Let the controller run to a tick.
     pub fn run_to(&mut self, tick: u64) {
         while self.tick < tick {
             self.tick();
         }
     }
 
-    /// Write any bytes into the mailbox of commands.
+    /// Any bytes, into the mailbox of commands.
     pub fn write(&mut self, data: &[u8]) {
         self.command_box.write(data).expect("it fits");
         self.peer.send(&self.command_box).expect("the controller reads");
@@ -190,7 +187,7 @@ impl Workstation {
         self.write(&command::encode(command).expect("it fits"));
     }
 
-    /// Send a job line to the cell, and wait until it has been executed.
+    /// Waits until the line has been executed.
     pub fn in_cell(&mut self, line: &str) {
         self.begin_in_cell(line);
         loop {
@@ -202,18 +199,17 @@ impl Workstation {
         }
     }
 
-    /// Send a job line to the cell.
     pub fn begin_in_cell(&mut self, line: &str) {
         self.line += 1;
         self.write_cell(&cell::encode_line(self.line, line));
     }
 
-    /// True if the last line has been read and executed.
+    /// The last line has been read and executed.
     pub fn cell_is_idle(&self) -> bool {
         self.cell().echo == self.line && !self.cell().busy
     }
 
-    /// Write any bytes into the mailbox of lines for the cell.
+    /// Any bytes, into the mailbox of lines for the cell.
     pub fn write_cell(&mut self, data: &[u8]) {
         self.cell_box.write(data).expect("it fits");
         self.peer.send(&self.cell_box).expect("the controller reads");
@@ -227,7 +223,7 @@ impl Workstation {
         status::decode(self.peer.mailbox(HWSC_STATUS).data()).expect("a status")
     }
 
-    /// Send a command and wait for its end. Returns the last status.
+    /// Waits for the end of a command. Returns the last status.
     pub fn carry_out(&mut self, command: &HwsCommand) -> (String, String) {
         self.send(command);
         loop {
@@ -242,7 +238,7 @@ impl Workstation {
     }
 }
 
-/// Answer every pulse until the connection ends.
+/// Answers every pulse until the connection ends.
 pub fn attend(mut peer: Peer) {
     while let Ok(received) = peer.receive() {
         if let Received::Pulse(tick) = received
@@ -253,7 +249,7 @@ pub fn attend(mut peer: Peer) {
     }
 }
 
-/// A command without fields.
+/// Without fields.
 pub fn bare(number: u32, verb: &str) -> HwsCommand {
     HwsCommand { number, command: Name16::clipped(verb), ..HwsCommand::default() }
 }
@@ -262,8 +258,7 @@ pub fn example(name: &str) -> PathBuf {
     root().join("examples").join(name)
 }
 
-/// Digest of all buffers of a logged run in all ticks, without the table values of the pedestal: its mailboxes
-/// contain the rows that fired, and no values.
+/// Digest of all buffers in all ticks, without the table values of the pedestal, which its mailboxes omit.
 pub fn computed(log: &Path) -> u64 {
     let log = Log::open(log).expect("a log");
     let (mut digest, mut scratch) = (Digest::new(), vec![0; CommonMemory::SIZE]);
@@ -279,7 +274,7 @@ pub fn computed(log: &Path) -> u64 {
     digest.value()
 }
 
-/// [`computed`] of a shipped job with options of the run, and with all neighbours in the controller's process.
+/// [`computed`] of a shipped job, with all neighbours in the controller's process.
 pub fn computed_alone(job: &str, options: &[&str]) -> u64 {
     let scratch = Scratch::new(&format!("alone-{job}"));
     let log = scratch.file("alone.mcap");
@@ -294,7 +289,7 @@ pub fn computed_alone(job: &str, options: &[&str]) -> u64 {
     computed(&log)
 }
 
-/// The result of a run with all neighbours in the controller's process.
+/// With all neighbours in the controller's process.
 pub fn run_alone(arguments: &[&str]) -> Value {
     let output = Command::new(rcs_run())
         .args(arguments)

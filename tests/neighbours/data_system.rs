@@ -1,6 +1,5 @@
-//! The Data System in another process (IV.4.2, IX.2): every update is stored once, whichever process is killed.
-//!
-//! The tests command the robot themselves in fast clock, so the controller's time stops while they check.
+//! The Data System in another process (IV.4.2, IX.2): every update is stored once, whichever process is killed. In
+//! fast clock the controller's time stops while the tests check.
 
 use std::{
     path::{Path, PathBuf},
@@ -26,20 +25,17 @@ use whole_system_tests::{Scratch, rcs_neighbour, rcs_run, root};
 
 use super::bench::{Controller, Ended, Workstation, bare};
 
-/// Reaction of a Data System to the first update.
+/// At the first update.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Fate {
     Answers,
-    /// It is killed before it has received the update.
-    DiesBefore,
-    /// It is killed after it has stored the update, and before its answer.
-    DiesAfter,
-    /// Its disk is full at that moment.
-    Refuses,
+    DiesBefore, // before it has received the update
+    DiesAfter,  // after storing the update, before its answer
+    Refuses,    // its disk is full
     Dawdles,
 }
 
-/// A Data System on a thread, which ends with the connection.
+/// On a thread, which ends with the connection.
 fn serve(mut peer: Peer, file: PathBuf, fate: Fate) -> JoinHandle<()> {
     thread::spawn(move || {
         let mut server = Server::new(Store::open(&file).expect("a database"));
@@ -67,8 +63,7 @@ fn serve(mut peer: Peer, file: PathBuf, fate: Fate) -> JoinHandle<()> {
                 match (update, fate) {
                     (true, Fate::DiesAfter) => return,
                     (true, Fate::Dawdles) => {
-                        // First the action, then its result.
-                        status.server = ServerStatus::Busy;
+                        status.server = ServerStatus::Busy; // first the action, then its result
                         let busy = Status { summary: Summary::None, ..status };
                         status_box.write(&busy.encode()).expect("it fits");
                         peer.send(&status_box).expect("the controller reads");
@@ -89,7 +84,7 @@ fn serve(mut peer: Peer, file: PathBuf, fate: Fate) -> JoinHandle<()> {
     })
 }
 
-/// A cell with blank 17 in its tray, and a robot with a connection to the Data System.
+/// Blank 17 is in its tray.
 struct Shop {
     controller: Controller,
     workstation: Workstation,
@@ -107,7 +102,7 @@ impl Shop {
         Self { controller, workstation, data_system }
     }
 
-    /// Open the connection by command 2, with a blank to fetch.
+    /// Command 2 opens the connection.
     fn with_blank(scratch: Scratch, file: &Path, fate: Fate) -> Self {
         let mut shop = Self::open(scratch, file, fate);
         assert_eq!(shop.connect(2).0, "finished");
@@ -123,13 +118,12 @@ impl Shop {
     fn end(self) -> Ended {
         drop(self.workstation);
         let ended = self.controller.end();
-        // Its connection has ended with the run.
-        self.data_system.join().expect("it has not panicked");
+        self.data_system.join().expect("it has not panicked"); // its connection has ended with the run
         ended
     }
 }
 
-/// Blank 17 is fetched from its tray, so that the robot holds it.
+/// From its tray.
 fn fetch(number: u32) -> HwsCommand {
     let name = |text| Name16::new(text).expect("a name");
     HwsCommand {

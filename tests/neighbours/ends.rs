@@ -1,4 +1,4 @@
-//! The end of a run that another process commands, and its exit status.
+//! The end of a run that another process commands.
 
 use std::{
     thread,
@@ -17,7 +17,7 @@ use sessions::network::{Received, Role};
 
 use super::bench::{Controller, Ended, PATIENCE, Workstation, attend, bare};
 
-/// A limit for runs that continue without their workstation controller by mistake.
+/// For runs that continue by mistake.
 const TOO_LONG: [&str; 3] = ["--json", "--ticks", "20000"];
 
 const FAILED: Option<i32> = Some(1);
@@ -33,7 +33,7 @@ fn to_safe(number: u32) -> HwsCommand {
     HwsCommand { destination: Some(Name16::clipped("SAFE")), ..bare(number, "MOVE") }
 }
 
-/// The robot moves, by command 2.
+/// By command 2.
 fn start_moving(name: &str) -> (Controller, Workstation) {
     let (controller, mut workstation) = start(name);
     assert_eq!(workstation.carry_out(&bare(1, "PAUSE")).0, "finished");
@@ -47,7 +47,7 @@ fn last_words(ended: &Ended) -> &str {
     ended.said.lines().last().unwrap_or_default()
 }
 
-/// Assert that it failed with this message, on standard error and in the result.
+/// On standard error and in the result.
 fn assert_ended(ended: &Ended, status: Option<i32>, why: &str) {
     assert_eq!(ended.status, status, "{}", ended.said);
     assert!(last_words(ended).contains(why), "{why}: {}", ended.said);
@@ -162,7 +162,7 @@ fn robot_without_power_is_a_lost_link() {
     assert_ended(&controller.end(), STOPPED, "the controller has no power");
 }
 
-/// Lines that bring the robot to HOME from any place (IV.3.3).
+/// To HOME from any place (IV.3.3).
 const BY_HAND: [&str; 6] = [
     "panel hydraulics disable",
     "panel hydraulics enable",
@@ -172,8 +172,8 @@ const BY_HAND: [&str; 6] = [
     "panel cycle-start",
 ];
 
-/// A command replaces the one in progress: the robot stops and continues from there. The operator may bring it to
-/// HOME instead.
+/// A command replaces the one in progress: the robot stops and continues from there, or the operator brings it to
+/// HOME.
 #[test]
 fn a_robot_stopped_on_its_way_continues_or_is_moved_back_by_hand() {
     let (controller, mut workstation) = start_moving("by-hand");
@@ -190,7 +190,7 @@ fn a_robot_stopped_on_its_way_continues_or_is_moved_back_by_hand() {
     assert_eq!(ended.status, Some(0), "{}", ended.said);
 }
 
-/// A workstation controller operates the joystick box by lines for the cell.
+/// By lines for the cell.
 #[test]
 fn motion_by_hand_ends_with_the_workstation_controller_that_commands_it() {
     let name = format!("by-hand-{}", std::process::id());

@@ -1,5 +1,4 @@
-//! Hung neighbours: connected, but without an answer to any pulse. On the 40 ms grid the robot continues without
-//! them.
+//! Neighbours that answer no pulse: on the 40 ms grid the robot continues without them.
 
 use std::thread;
 
@@ -9,10 +8,9 @@ use whole_system_tests::Scratch;
 
 use super::bench::{Controller, Workstation, bare};
 
-/// The last message to a hung neighbour.
-const TOLD: &str = "the controller says: no answer for 10 s";
+const TOLD: &str = "the controller says: no answer for 10 s"; // the last message to a hung neighbour
 
-/// Read like the system on behalf of a stopped program, without an answer. Returns the last message.
+/// Reads like the system for a stopped program. Returns the last message.
 fn hang(mut peer: Peer) -> String {
     loop {
         if let Err(error) = peer.receive() {
@@ -42,7 +40,7 @@ fn hung_neighbour_is_disconnected_without_stopping_the_robot() {
     for (role, told) in HUNG.into_iter().zip(hung) {
         assert_eq!(told.join().expect("it has not panicked"), TOLD, "{role}");
     }
-    // The page shows only the first events: all three must be noted before another one replaces them.
+    // The page shows only the first events: all three must be noted first.
     (0..5).for_each(|_| workstation.tick());
     for role in HUNG {
         drop(controller.connect(role));

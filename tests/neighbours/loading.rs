@@ -1,4 +1,4 @@
-//! LOAD by the workstation controller (IV.2.4): a block of the run's own data directory takes effect with the next
+//! LOAD by the workstation controller (IV.2.4): a block of the run's data directory takes effect with the next
 //! command.
 
 use std::{fs, os::unix::fs::symlink, path::PathBuf};
@@ -15,7 +15,7 @@ use super::bench::{Controller, Workstation, bare};
 const SAFE: &str = "   -3362    -3734      638\n   -4781    -5310    -1483\n   -2552    -7317    -1483";
 const HIGHER: &str = "   -3362    -3734      688\n   -4781    -5310    -1433\n   -2552    -7317    -1433";
 
-/// A run with its own data directory.
+/// With its own data directory.
 struct Cell {
     scratch: Scratch,
 }
@@ -43,12 +43,12 @@ impl Cell {
         fs::write(self.poses(), text.replace(from, to)).expect("it can be written");
     }
 
-    /// Run under the commands of `play`; it must finish.
+    /// The run must finish.
     fn play(self, more: &[&str], play: impl FnOnce(&Self, &mut Workstation)) -> Left {
         let text = |name: &str| self.scratch.file(name).display().to_string();
         let (data, log, socket) = (text("data"), text("run.mcap"), format!("unix:{}", text("rcs.sock")));
         let arguments = [&["--json", "--data", &data, "--log", &log][..], more].concat();
-        // The controller's scratch directory is not that of the data, which are read during the run.
+        // The data are read during the run, so they need another directory.
         let controller =
             Controller::start_at(Scratch::new("loading"), Some(&socket), "workstation", &arguments);
         let mut workstation = Workstation::connect(&controller);
@@ -62,7 +62,7 @@ impl Cell {
     }
 }
 
-/// Send a line for the cell. Returns its number and result once the cell is idle.
+/// Number and result, once the cell is idle.
 fn line(workstation: &mut Workstation, line: &str) -> (Trouble, String) {
     workstation.begin_in_cell(line);
     loop {
@@ -94,8 +94,7 @@ fn load_and_move(cell: &Cell, workstation: &mut Workstation) {
 fn block_loaded_by_the_workstation_takes_effect_with_the_next_command() {
     let without = Cell::new("without").play(&[], |_, workstation| {
         finishes(workstation, &bare(1, "PAUSE"));
-        // As many ticks as the load takes.
-        assert_eq!(line(workstation, "load 21000 999").0, Trouble::Refused);
+        assert_eq!(line(workstation, "load 21000 999").0, Trouble::Refused); // as many ticks as the load takes
         finishes(workstation, &to_safe(2));
     });
     let loaded = Cell::new("loaded").play(&[], load_and_move);
@@ -104,10 +103,10 @@ fn block_loaded_by_the_workstation_takes_effect_with_the_next_command() {
     let said = (line.source.as_str(), line.line.as_str(), line.refused.as_deref());
     assert_eq!(said, ("workstation controller", "load 21000 610", None));
     assert_eq!(line.answer, "block 610 (offset 21000) of poses.blk is loaded; the data have generation 1");
-    // Several boards check the block before it takes effect; the run in fast clock waits for them.
+    // Several boards check the block; the run in fast clock waits for them.
     let split = Cell::new("split").play(&["--boards", "split"], load_and_move);
     assert_eq!((split.digest, split.lines), (loaded.digest.clone(), loaded.lines.clone()));
-    // With the inputs of a log the text comes from the log: the file here does not contain it.
+    // The text comes from the log: the file here does not contain it.
     let log = loaded.scratch.file("run.mcap").display().to_string();
     let again = Cell::new("again").play(&["--inputs", &log], |_, workstation| {
         finishes(workstation, &bare(1, "PAUSE"));
@@ -176,7 +175,7 @@ fn no_block_is_loaded_during_a_command() {
     });
 }
 
-/// On the 40 ms grid the block is checked in parallel with the ticks, and the cell is busy meanwhile.
+/// The block is checked in parallel with the ticks; the cell is busy meanwhile.
 #[test]
 fn on_the_grid_a_load_is_answered_later() {
     for boards in ["one", "split"] {

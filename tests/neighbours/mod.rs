@@ -1,6 +1,5 @@
-//! Neighbours in other processes: the commanding process can be replaced, and no other process commands the robot.
-//!
-//! Nearly all tests run in fast clock, where the tick waits for its neighbours: the machine's speed has no effect.
+//! Neighbours in other processes: the commanding one can be replaced, and no other commands the robot. Nearly all
+//! tests run in fast clock, where the tick waits, so that the machine's speed has no effect.
 
 mod bench;
 mod data_system;

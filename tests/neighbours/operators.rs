@@ -1,4 +1,4 @@
-//! An operator is a network role like others, if the run admits operators there.
+//! An operator connects over the network, if the run admits operators there.
 
 use std::{
     fs,
@@ -25,7 +25,7 @@ use super::bench::{Controller, PATIENCE};
 
 const JOB: &str = "== MOVE -- 0 -- 0 0 SAFE 0 -- 0\n";
 
-/// A run with its log, on stand-by if an operator may connect.
+/// On stand-by if an operator may connect.
 struct Cell {
     controller: Controller,
     log: PathBuf,
@@ -50,12 +50,12 @@ impl Cell {
         Self { controller, log, name }
     }
 
-    /// Request admission as soon as the run admits operators.
+    /// As soon as the run admits operators.
     fn admission(&self) -> Result<UnixStream, PeerError> {
         admission(&self.controller.address)
     }
 
-    /// `rcs-run send` over the network. Returns its success and output.
+    /// Success and output of `rcs-run send`.
     fn send(&self, line: &str) -> (bool, String) {
         let address = self.controller.address.to_string();
         let output = Command::new(rcs_run())
@@ -68,7 +68,7 @@ impl Cell {
     }
 }
 
-/// Request admission at an address as soon as the run admits operators.
+/// As soon as the run admits operators.
 fn admission(address: &Address) -> Result<UnixStream, PeerError> {
     let begun = Instant::now();
     loop {
@@ -114,7 +114,7 @@ fn operator_of_the_network_commands_and_another_name_does_not_hide_it() {
     assert_eq!(said("net2.anna", "joystick velocity 700"), Some(true));
 }
 
-/// A connection to a run that can stall: bytes to the run then wait, as on a lossy network.
+/// A connection that can stall, as on a lossy network.
 struct Line {
     address: Address,
     stalls: Arc<AtomicBool>,

@@ -1,8 +1,6 @@
-//! The Active Pedestal in another process (VI.7, IX.3): it changes no bit of a run. After any failure of it, robot
-//! and hand keep their parts, and the command ends with a message that names the pedestal.
-//!
-//! All tests run in fast clock: the controller's time stops while its workstation controller, which is the test, does
-//! not answer.
+//! The Active Pedestal in another process (VI.7, IX.3) changes no bit of a run. After any failure of it, robot and
+//! hand keep their parts, and the command ends with a message that names it. In fast clock the controller's time stops
+//! while the test, its workstation controller, does not answer.
 
 use std::{
     io::{BufRead as _, BufReader},
@@ -31,7 +29,7 @@ use super::bench::{Controller, Ended, Workstation, bare, computed, computed_alon
 
 const SILENT: &str = "the Active Pedestal does not answer";
 
-/// The first fixturing of the clevis: the robot then holds it, to be turned on the pedestal.
+/// The robot holds the clevis, to be turned on the pedestal.
 const UNTIL_IT_IS_HELD: [&str; 10] = [
     "== PAUSE -- +0 -- 0 +0 -- 0 -- 0",
     "** tray UNIT_1 3 LCLEVIS_BH",
@@ -46,7 +44,7 @@ const UNTIL_IT_IS_HELD: [&str; 10] = [
 ];
 const REFIXTURE: &str = "== REFIXTURE LCLEVIS_IH +1 PFIXTURE 0 -1 PFIXTURE 0 -- 0";
 
-/// A command in the form of a job line.
+/// From a job line.
 fn command(number: u32, line: &str) -> HwsCommand {
     let words: Vec<&str> = line.split_whitespace().collect();
     let [_, verb, object, source_grip, source, source_sector, grip, destination, sector, end_at, end_sector] =
@@ -71,7 +69,7 @@ fn command(number: u32, line: &str) -> HwsCommand {
     }
 }
 
-/// A controller, a workstation controller, and the number of its last command.
+/// With the number of the last command.
 struct Shop {
     controller: Controller,
     workstation: Workstation,
@@ -96,7 +94,7 @@ impl Shop {
         self.workstation.carry_out(&command(self.number, line))
     }
 
-    /// The regrip fails. Returns its reason.
+    /// Returns the reason of the failed regrip.
     fn fails(&mut self) -> String {
         let (status, reason) = self.carry_out(REFIXTURE);
         assert_eq!(status, "error");
@@ -112,7 +110,7 @@ impl Shop {
         guest
     }
 
-    /// Wait for the end of a pedestal. Returns its last state.
+    /// Waits for the end. Returns the last state.
     fn see_off(&mut self, guest: Guest) -> Remains {
         while !guest.serving.is_finished() {
             self.workstation.tick();
@@ -126,23 +124,21 @@ impl Shop {
     }
 }
 
-/// Behaviour of a pedestal.
+/// Of a pedestal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Fate {
-    /// It executes commands until some ticks after the first FLIP.
-    DiesTurning(u32),
-    /// It answers for another command, and leaves some ticks after the second one.
+    DiesTurning(u32), // some ticks after the first FLIP
+    /// Answers for another command, and leaves some ticks after the second one.
     AnswersForAnother,
-    /// Its status is invalid from the first command; it leaves some ticks after the second one.
+    /// Its status is invalid; it leaves some ticks after the second command.
     Babbles,
-    /// It executes commands for some ticks.
-    Serves(u32),
+    Serves(u32), // for some ticks
 }
 
 /// An ended pedestal, and the counts of its finger potentiometer.
 type Remains = (System, u16);
 
-/// A pedestal on a thread, which ends with its script or the connection.
+/// On a thread, which ends with its script or the connection.
 struct Guest {
     serving: JoinHandle<Remains>,
     is_there: Arc<AtomicBool>,
@@ -215,7 +211,7 @@ fn serve(mut peer: Peer, fate: Fate, is_there: &AtomicBool) -> Remains {
     (system, opening)
 }
 
-/// A pedestal in another process, and whether it has reported a pulse.
+/// In another process; the flag is set at the first pulse.
 fn start_pedestal(program: &Path, controller: &Controller) -> (Child, Arc<AtomicBool>) {
     let mut child = Command::new(program)
         .args(["pedestal", "--wait", "1", "--network", &controller.address.to_string()])
@@ -258,15 +254,13 @@ fn external_pedestal_changes_no_bit() {
 fn every_failure_of_the_pedestal_ends_the_command_without_a_drop() {
     let controller = Controller::start("fates", "workstation,pedestal", &["--json", "--wait", "5"]);
     let mut shop = Shop::with_clevis(controller);
-    // It was never connected.
-    assert_eq!(shop.fails(), SILENT);
+    assert_eq!(shop.fails(), SILENT); // it was never connected
     for fate in [Fate::AnswersForAnother, Fate::Babbles] {
         let guest = shop.admit(fate);
         assert_eq!(shop.fails(), SILENT, "{fate:?}");
         shop.see_off(guest);
     }
-    // The part is in its hand when it is killed.
-    let guest = shop.admit(Fate::DiesTurning(25));
+    let guest = shop.admit(Fate::DiesTurning(25)); // killed with the part in its hand
     assert_eq!(shop.fails(), SILENT);
     let (dead, held) = shop.see_off(guest);
     assert!(dead.memory().hand.status.position > 240, "it held the clevis");
@@ -283,7 +277,7 @@ fn every_failure_of_the_pedestal_ends_the_command_without_a_drop() {
     assert_eq!(part["location"], "PEDESTAL", "{part}");
 }
 
-/// A pedestal is killed with SIGKILL, and another one replaces it.
+/// Killed with SIGKILL, and replaced.
 #[test]
 fn restarted_pedestal_turns_the_next_part() {
     let program = rcs_neighbour();

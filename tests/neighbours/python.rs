@@ -1,4 +1,4 @@
-//! The Python package and its examples, against a run and against a controller that sends wrong bytes.
+//! The Python package and its examples, against a run and against wrong bytes.
 
 use std::{
     io::{Read as _, Write as _},
@@ -15,17 +15,16 @@ use super::bench::{Controller, example};
 const EXAMPLES: [&str; 2] = ["hwsc.py", "vision.py"];
 /// Magic number, version 3, and the clock, which the examples do not read.
 const HELLO: &[u8] = b"RCS2\x03\x00\x01\x00";
-/// Address and length of a frame without data.
-const WELCOME: &[u8] = &[2, 0, 0, 0, 8, 0, 0, 0, 0, 0, 0, 0];
+const WELCOME: &[u8] = &[2, 0, 0, 0, 8, 0, 0, 0, 0, 0, 0, 0]; // address and length
 
-/// Python with the package of this checkout.
+/// With the package of this checkout.
 fn python() -> Command {
     let mut command = Command::new("python3");
     command.arg("-B").env("PYTHONPATH", root().join("python/src")).current_dir(root());
     command
 }
 
-/// True if python3 can be started; otherwise the tests report that they check nothing.
+/// Without python3 the tests report that they check nothing.
 #[expect(clippy::print_stderr, reason = "a test that checks nothing must say so")]
 fn has_python() -> bool {
     let version =
@@ -37,7 +36,7 @@ fn has_python() -> bool {
     found
 }
 
-/// Messages and exit status of an example if the controller sends these bytes and closes the connection.
+/// Messages and exit status of an example, if the controller sends these bytes and closes the connection.
 fn against(name: &str, example_name: &str, sent: &[u8]) -> (String, Option<i32>) {
     let scratch = Scratch::new(name);
     let socket = scratch.file("rcs.sock");
@@ -47,7 +46,7 @@ fn against(name: &str, example_name: &str, sent: &[u8]) -> (String, Option<i32>)
         let (mut line, _) = listener.accept().expect("the example connects");
         line.write_all(&sent).expect("the example reads");
         line.shutdown(Shutdown::Write).expect("the example is there");
-        // The example's bytes are read, so that the end of the connection is not a reset.
+        // Read, so that the end of the connection is not a reset.
         let _ = line.read_to_end(&mut Vec::new());
     });
     let output = python()
@@ -59,13 +58,11 @@ fn against(name: &str, example_name: &str, sent: &[u8]) -> (String, Option<i32>)
     (String::from_utf8_lossy(&output.stderr).into_owned(), output.status.code())
 }
 
-/// A disconnect frame with a reason.
 fn disconnect(reason: &[u8]) -> Vec<u8> {
     let length = u16::try_from(8 + reason.len()).expect("a short reason");
     [&1_u32.to_le_bytes()[..], &length.to_le_bytes(), &[0; 6], reason].concat()
 }
 
-/// The documented client in another language.
 #[test]
 fn hwsc_py_transfers_a_part() {
     if !has_python() {
@@ -84,7 +81,7 @@ fn hwsc_py_transfers_a_part() {
     assert_eq!(ended.result["parts"][0]["location"], "PFIXTURE", "{}", ended.said);
 }
 
-/// The documented vision system in another language; it shares only the byte format with the other one.
+/// It shares only the byte format with the other vision system.
 #[test]
 fn vision_py_locates_a_part() {
     if !has_python() {
@@ -113,7 +110,7 @@ fn the_python_package_passes_its_own_tests() {
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
 }
 
-/// A session of the package with a run: an answer, a refusal, and the end of the run.
+/// An answer, a refusal, and the end of the run.
 #[test]
 fn an_operator_in_python_commands_a_run() {
     const SESSION: &str = "

@@ -1,5 +1,5 @@
-//! Neighbours that do not answer. A run in fast clock waits for them until its own end. A Data System that answers
-//! every pulse but not its requests is asked again.
+//! Neighbours that do not answer: a run in fast clock waits until its own end. A Data System that answers pulses, but
+//! not its requests, is asked again.
 
 use std::{
     sync::mpsc::{Receiver, Sender, channel},
@@ -20,10 +20,9 @@ use whole_system_tests::Scratch;
 
 use super::bench::{Controller, Ended, PATIENCE, Workstation, attend, bare};
 
-/// Exchanges that are more than enough.
-const LONG: usize = 50;
+const LONG: usize = 50; // more than enough
 
-/// Start a controller under external command, and a Data System with a given behaviour.
+/// With a given behaviour of the Data System.
 fn start(
     clock: &str,
     serve: impl FnOnce(Peer) + Send + 'static,
@@ -38,7 +37,6 @@ fn start(
     (controller, workstation, data_system)
 }
 
-/// Request its end, and assert it.
 fn terminate(mut controller: Controller) -> Ended {
     kill_process(Pid::from_child(&controller.child), Signal::TERM).expect("it runs");
     let asked = Instant::now();
@@ -49,14 +47,14 @@ fn terminate(mut controller: Controller) -> Ended {
     controller.end()
 }
 
-/// Answer pulses like a workstation controller without further commands.
+/// Answers pulses without further commands.
 fn follow(mut workstation: Workstation) {
-    // After the end of the run, reading returns an error too.
+    // After the end of the run, reading fails, too.
     let _ = workstation.peer.pulse(workstation.tick);
     attend(workstation.peer);
 }
 
-/// Answer some pulses, then only read.
+/// Answers some pulses, then only reads.
 fn fall_silent(mut peer: Peer, answers: usize, tell: &Sender<()>) {
     let mut pulses = 0;
     while let Ok(received) = peer.receive() {
@@ -121,8 +119,7 @@ fn waiting_run_ends_on_request() {
     }
 }
 
-/// A Data System that gives its first command this answer, or none, and answers all others correctly. Returns its
-/// received commands.
+/// Gives its first command this answer, or none, and all others correct ones. Returns its received commands.
 fn connect_after(first: Option<&'static [u8]>) -> (Ended, Receiver<Vec<u8>>) {
     let (tell, heard) = channel();
     let (controller, mut workstation, data_system) = start("real", move |mut peer| {

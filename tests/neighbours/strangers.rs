@@ -1,4 +1,4 @@
-//! A client without permission does not command the robot: another user at a socket, a second claimant of a role.
+//! A client without permission: another user at a socket, a second claimant of a role.
 
 use std::{
     fs,
@@ -11,7 +11,7 @@ use whole_system_tests::{NOBODY, Scratch, may_become_nobody, rcs_neighbour, rcs_
 
 use super::bench::{Controller, PATIENCE};
 
-/// Address forms of earlier versions are refused with a sentence that names the gateway.
+/// Forms of earlier versions.
 #[test]
 fn addresses_and_keys_of_other_machines_are_refused_with_a_pointer_to_the_gateway() {
     let socket = format!("unix:{}", Scratch::new("removed").file("rcs.sock").display());
@@ -46,7 +46,7 @@ fn second_workstation_controller_is_refused() {
     assert_eq!(told, "the controller says: workstation is connected already");
 }
 
-/// Needs the right to become another user; otherwise it is skipped.
+/// Skipped without the right to become another user.
 #[test]
 fn at_a_socket_only_the_same_user_is_admitted() {
     let scratch = Scratch::new("socket");
@@ -58,7 +58,7 @@ fn at_a_socket_only_the_same_user_is_admitted() {
     let more = ["--clock", "real", "--ticks", "100"];
     let controller = Controller::start_at(scratch, None, "workstation", &more);
     let socket = controller.address.path();
-    // The program at a place where any user can start it, and data that any user can read.
+    // Any user can start the program and read the data.
     let program = controller.file("rcs-neighbour");
     fs::copy(built, &program).expect("the program can be copied");
     controller.scratch.as_ref().expect("it has one").copy_data();
@@ -74,7 +74,7 @@ fn at_a_socket_only_the_same_user_is_admitted() {
     };
     let told = as_nobody();
     assert!(told.contains("Permission denied"), "{told}");
-    // Independent of the mode of the socket, both sides check the user at the other end.
+    // Both sides check the user at the other end, whatever the socket's mode.
     fs::set_permissions(socket, fs::Permissions::from_mode(0o666)).expect("its mode can be set");
     let told = as_nobody();
     assert!(told.contains("user 65534 was expected, found user 0"), "{told}");

@@ -8,10 +8,9 @@ use whole_system_tests::Scratch;
 
 use super::bench::{Controller, Ended, Workstation, bare};
 
-/// The fields of a command without object.
-const NOTHING: &str = "-- +0 -- 0 +0";
+const NOTHING: &str = "-- +0 -- 0 +0"; // a command without object
 
-/// A controller under stand-alone command with a job of these lines.
+/// Under stand-alone command, with these lines.
 fn start(name: &str, lines: &[String], outside: &str, more: &[&str]) -> Controller {
     let scratch = Scratch::new(name);
     let (job, outbox) = (scratch.file("own.job"), scratch.file("outbox"));
@@ -33,7 +32,7 @@ fn hand_over() -> String {
     "** workstation".to_owned()
 }
 
-/// Send a command with the number after the echo, and wait for its end.
+/// With the number after the echo. Waits for the end.
 fn next(workstation: &mut Workstation, verb: &str, destination: &str) -> String {
     let number = u32::from(workstation.status().echo) + 1;
     let command = HwsCommand { destination: Some(Name16::clipped(destination)), ..bare(number, verb) };

@@ -1,4 +1,4 @@
-//! An operator takes command from a workstation controller that commands from the start, and returns it (IV.4.1).
+//! An operator takes command from a workstation controller, and returns it (IV.4.1).
 
 use std::time::Instant;
 
@@ -10,8 +10,7 @@ use sessions::operator::Client;
 
 use super::bench::{Controller, PATIENCE, Workstation, bare};
 
-/// Repeat a request until it is accepted, while the workstation controller reads on. Only these refusals are
-/// expected.
+/// Until it is accepted, while the workstation controller reads on. Only these refusals are expected.
 fn ask_until(client: &mut Client, workstation: &mut Workstation, request: &str, meanwhile: &[&str]) {
     let begun = Instant::now();
     while let Err(why) = client.ask(request).expect("the run answers") {
@@ -39,8 +38,7 @@ fn commands_during_an_operator_session_are_not_executed_later() {
     assert!(refused(&mut client, "stand-alone").contains("number 2, is executed"));
     client.ask("stand-alone now").expect("an answer").expect("it is taken");
     assert!(refused(&mut client, "stand-alone").contains("stand-alone already"));
-    // Its present command is ignored.
-    workstation.send(&bare(3, "PAUSE"));
+    workstation.send(&bare(3, "PAUSE")); // ignored
     ask_until(&mut client, &mut workstation, "PAUSE", &[]);
     assert!(refused(&mut client, "workstation").contains("the robot at HOME"));
     let home = "MOVE -- 0 -- 0 0 HOME 0 -- 0";

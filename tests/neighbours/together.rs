@@ -1,5 +1,4 @@
-//! Every neighbour in its own process for a whole shift: no bit of the run changes, and the Data System knows the
-//! place of every item.
+//! Every neighbour in its own process for a whole shift: the same bits, and the Data System has all items.
 
 use std::{
     path::Path,
@@ -16,7 +15,7 @@ fn items(file: &Path) -> Vec<Item> {
     Store::open(file).expect("a database").items().expect("items")
 }
 
-/// [`computed`] of a shift with all neighbours in the controller's process, and the items of its Data System.
+/// [`computed`] of a shift with all neighbours in the controller's process, and its items.
 fn shift_alone() -> (u64, Vec<Item>) {
     let scratch = Scratch::new("inside");
     let file = scratch.file("items.db");

@@ -1,4 +1,4 @@
-//! Vision in another process (IX.4, V.2.1): the same bits as in the cell. With any of its answers the arm makes only
+//! Vision in another process (IX.4, V.2.1): the same bits as in the cell. For any of its answers the arm makes only
 //! motions that E-move has checked.
 
 use std::{
@@ -22,8 +22,7 @@ use whole_system_tests::{Scratch, golden, rcs_log, rcs_neighbour, root};
 
 use super::bench::{Controller, Ended, Workstation, bare};
 
-/// `rcs-neighbour vision`, which ends with the test.
-struct Vision(Child);
+struct Vision(Child); // ends with the test
 
 impl Vision {
     /// Rebuilt before a controller waits for it.
@@ -42,13 +41,12 @@ impl Vision {
 
 impl Drop for Vision {
     fn drop(&mut self) {
-        // It waits for another run.
-        let _ = self.0.kill();
+        let _ = self.0.kill(); // it waits for another run
         let _ = self.0.wait();
     }
 }
 
-/// The linkbar with a vision system that has faults.
+/// With faults of the vision system.
 fn linkbar(name: &str, faults: &str) -> Ended {
     let program = rcs_neighbour();
     let controller = Controller::start(name, "vision", &["linkbar"]);
@@ -56,14 +54,14 @@ fn linkbar(name: &str, faults: &str) -> Ended {
     controller.end()
 }
 
-/// The text after a word at the beginning of a line.
+/// At the beginning of a line.
 fn after<'t>(text: &'t str, word: &str) -> &'t str {
     let mut lines = text.lines().filter_map(|line| line.trim_start().strip_prefix(word));
     lines.next().unwrap_or_else(|| panic!("no {word} in {text}")).trim()
 }
 
-/// Jobs with LOCATE-OBJ, another seed, and the faults of the camera: each equals its golden. One process analyses the
-/// pictures of all runs, one after the other. (The shift with all neighbours is in `together`.)
+/// Jobs with LOCATE-OBJ, another seed, faults of the camera: each equals its golden. One process analyses all
+/// pictures.
 #[test]
 fn jobs_have_the_same_bits_with_vision_in_another_process() {
     let program = rcs_neighbour();
@@ -94,7 +92,7 @@ fn jobs_have_the_same_bits_with_vision_in_another_process() {
     }
 }
 
-/// All answers of E-move's table (V.2.1 LOCATE-OBJ). Picture 1 is the fast flood, 2 the precise one.
+/// V.2.1 LOCATE-OBJ. Picture 1 is the fast flood, 2 the precise one.
 #[test]
 fn failed_pictures_are_repeated_and_given_up() {
     for (faults, reason) in [
@@ -120,8 +118,7 @@ fn failed_pictures_are_repeated_and_given_up() {
     }
 }
 
-/// An answer that does not belong to the present request has no effect: no bit of the controller differs, and it
-/// reports the reason.
+/// An answer to another request has no effect, and is reported.
 #[test]
 fn invalid_answers_are_reported_and_cause_no_motion() {
     let silent = linkbar("silent", "1:off");
@@ -165,7 +162,7 @@ fn a_run_without_its_vision_warns_and_starts() {
     );
 }
 
-/// A vision system for other parts than the cell's would recognise none of them.
+/// It would recognise none of the cell's parts.
 #[test]
 fn vision_with_another_cell_description_ends_with_the_reason() {
     let scratch = Scratch::new("another-cell");
@@ -184,7 +181,6 @@ fn vision_with_another_cell_description_ends_with_the_reason() {
     assert!(ended.said.contains("vision does not answer"), "{}", ended.said);
 }
 
-/// The log of a run that failed due to vision contains the reason, and replays.
 #[test]
 fn the_log_has_the_reason_and_replays_without_vision() {
     let program = rcs_neighbour();
@@ -209,17 +205,15 @@ fn the_log_has_the_reason_and_replays_without_vision() {
     assert_eq!(status, Some(0), "{replayed}");
 }
 
-/// Reaction of a scripted vision system to the first request.
+/// At the first request.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Fate {
     Answers,
-    /// It is killed before it has read the request.
-    DiesAtOnce,
-    /// It is killed after it has reported that it is busy.
-    DiesInTheMiddle,
+    DiesAtOnce,      // before it has read the request
+    DiesInTheMiddle, // after it has reported that it is busy
 }
 
-/// A vision system on a thread, which ends with the connection. The picture is its only knowledge of the cell.
+/// On a thread, which ends with the connection. It knows the cell only from the picture.
 fn serve(mut peer: Peer, fate: Fate) -> JoinHandle<()> {
     thread::spawn(move || {
         let mut response_box = Mailbox::initialized(VISION_RESPONSE);
@@ -276,7 +270,7 @@ fn answer(request: &VisionRequest, picture: &Picture) -> VisionResponse {
     }
 }
 
-/// A blank is fetched from its tray.
+/// From its tray.
 fn fetch(number: u32) -> HwsCommand {
     let name = |text| Name16::new(text).expect("a name");
     HwsCommand {
@@ -290,8 +284,7 @@ fn fetch(number: u32) -> HwsCommand {
     }
 }
 
-/// In fast clock with an idle workstation controller, time stops until the next vision system connects: it finds the
-/// unanswered request.
+/// Time stops until the next vision system connects and finds the unanswered request.
 #[test]
 fn restarted_vision_answers_the_pending_request() {
     for fate in [Fate::Answers, Fate::DiesAtOnce, Fate::DiesInTheMiddle] {

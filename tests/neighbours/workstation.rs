@@ -16,7 +16,6 @@ use whole_system_tests::{rcs_neighbour, root};
 
 use super::bench::{Controller, Workstation, bare, run_alone};
 
-/// The controller's own emulator and one in another process execute a job bit for bit alike.
 #[test]
 fn a_job_from_another_process_has_the_same_bits() {
     let own = run_alone(&["linkbar"]);
@@ -43,7 +42,6 @@ fn a_job_from_another_process_has_the_same_bits() {
     assert_eq!(texts(&ended.result), texts(&own));
 }
 
-/// The control processes and their commander run in separate processes.
 #[test]
 fn boards_are_commanded_from_another_process() {
     let controller = Controller::start("boards", "workstation", &["--json", "--boards", "split"]);
@@ -54,7 +52,7 @@ fn boards_are_commanded_from_another_process() {
     assert_eq!(ended.status, Some(0), "{}", ended.said);
 }
 
-/// A controller that receives `what` after a PAUSE, until tick 200. Returns its digest.
+/// `what` follows a PAUSE. Returns the digest of 200 ticks.
 fn digest_with(name: &str, what: impl FnOnce(&mut Workstation)) -> String {
     let controller = Controller::start(name, "workstation", &["--json"]);
     let mut workstation = Workstation::connect(&controller);
@@ -68,7 +66,7 @@ fn digest_with(name: &str, what: impl FnOnce(&mut Workstation)) -> String {
     ended.result["digest"].as_str().expect("a digest").to_owned()
 }
 
-/// Refused commands give a reason, and no buffer of the controller differs from a run without them.
+/// No buffer differs from a run without the refused commands.
 #[test]
 fn refused_commands_report_the_reason_and_cause_no_motion() {
     let quiet = digest_with("quiet", |_| {});
@@ -96,8 +94,7 @@ fn refused_commands_report_the_reason_and_cause_no_motion() {
             assert!(status.verdict != 0 && status.reason.ends_with(why), "{why}: {status:?}");
             assert_eq!((status.echo, status.report.text()), (1, "finished"));
         }
-        // The repeated command is not new.
-        workstation.send(&bare(1, "PAUSE"));
+        workstation.send(&bare(1, "PAUSE")); // not new
         workstation.tick();
         workstation.tick();
         assert_eq!((workstation.status().verdict, workstation.status().report.text()), (0, "finished"));
@@ -105,7 +102,7 @@ fn refused_commands_report_the_reason_and_cause_no_motion() {
     assert_eq!(disturbed, quiet);
 }
 
-/// A command that a job could not contain ends as a refused command, with the reason that the job would give.
+/// A job could not contain such a command.
 #[test]
 fn command_that_fails_its_check_is_refused_with_the_reason_of_a_job_line() {
     let controller = Controller::start("verdict", "workstation", &["--json"]);
@@ -136,8 +133,7 @@ fn command_that_fails_its_check_is_refused_with_the_reason_of_a_job_line() {
     assert_eq!(ended.status, Some(0), "{}", ended.said);
 }
 
-/// Every mailgram with a line for the cell is answered with its number, and with a sentence if refused. Refused lines
-/// open no file.
+/// Refused lines open no file.
 #[test]
 fn refusals_of_cell_lines_name_number_and_reason() {
     const LOAD: &str = "load OFFSET BLOCK was expected, such as load 21000 610; load FILE is for the controller's \
@@ -208,8 +204,7 @@ fn unknown_command_fails_and_the_next_one_is_executed() {
     assert_eq!(statuses, ["error", "error", "finished"]);
 }
 
-/// On the 40 ms grid the controller continues alone, and numbers are synchronized when a workstation controller
-/// connects (IX.1).
+/// On the 40 ms grid the controller continues alone; numbers are synchronized on connection (IX.1).
 #[test]
 fn a_reconnected_workstation_controller_continues_from_the_echo() {
     let controller = Controller::start("again", "workstation", &["--json", "--clock", "real"]);
@@ -220,7 +215,7 @@ fn a_reconnected_workstation_controller_continues_from_the_echo() {
     let mut second = Workstation::connect(&controller);
     assert!(second.tick > last, "the ticks continued");
     assert_eq!((second.status().echo, second.status().verdict), (1, 0));
-    // One that has lost its state and starts with number 1 again.
+    // One that has lost its state starts with number 1 again.
     second.send(&HwsCommand { source_sector: Some(1), ..bare(1, "PAUSE") });
     while second.status().verdict == 0 {
         second.tick();
@@ -238,7 +233,6 @@ fn a_reconnected_workstation_controller_continues_from_the_echo() {
     assert_eq!(ended.result["allocations_after_start"], 0);
 }
 
-/// An invalid frame of a neighbour ends the connection with a reason.
 #[test]
 fn connection_with_invalid_frames_is_closed() {
     let controller = Controller::start("nonsense", "workstation", &["--clock", "real"]);

@@ -29,8 +29,7 @@ pub struct Diagnostic {
     position: Option<Position>,
     text: String,
     line_text: String,
-    /// The rest of the last underlined line.
-    rest: String,
+    rest: String, // after the underlined piece
     source: Option<NamedSource<Arc<str>>>,
 }
 
@@ -145,7 +144,7 @@ impl Diagnostic {
         &self.text
     }
 
-    /// The text from the underlined piece to the end of its line.
+    /// To the end of the line.
     pub(super) const fn rest(&self) -> &str {
         self.rest.as_str()
     }
@@ -162,8 +161,7 @@ impl Diagnostic {
         }
     }
 
-    /// The finding as a person reads it: the source without control characters, the messages also in the units of the
-    /// person. Byte positions remain.
+    /// As a person reads it: without control characters, and in the person's units. Byte positions remain.
     pub(super) fn shown(&self) -> Self {
         let mut finding = self.clone();
         finding.problem.message = shown(&self.problem.message).into_owned();
@@ -182,7 +180,7 @@ impl Diagnostic {
         format!("{place}{colon}{}{help}", self.problem.message)
     }
 
-    /// Plain text: place and message in the first line, then the line with the text underlined, then help.
+    /// Place and message in the first line, then the line with the text underlined, then help.
     pub(super) fn plain(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let place = self.place();
         let colon = if place.is_empty() { "" } else { ": " };
@@ -244,7 +242,7 @@ fn range(at: At) -> Range<usize> {
     start..start.saturating_add(usize::try_from(at.length).unwrap_or(0))
 }
 
-/// The line that begins at a byte; that of a listing begins after its number.
+/// The line of a listing begins after its number.
 fn line_from(text: &str, start: u32) -> &str {
     let start = usize::try_from(start).unwrap_or(usize::MAX);
     text.get(start..).and_then(|rest| rest.lines().next()).unwrap_or_default()

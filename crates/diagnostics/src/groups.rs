@@ -30,7 +30,7 @@ pub fn grouped(blames: &[Blame]) -> Vec<Group> {
     let mut left: Vec<usize> = (0..blames.len()).collect();
     let mut groups = Vec::new();
     while !left.is_empty() {
-        // Errors and findings of each datum, and its first appearance, which decides between equals.
+        // The first appearance decides between equals.
         let mut counts: BTreeMap<&str, (usize, usize, usize)> = BTreeMap::new();
         let mut order = 0;
         for blame in left.iter().filter_map(|&at| blames.get(at)) {
@@ -61,7 +61,7 @@ impl Diagnostic {
         Blame { data, error: self.severity() == Severity::Error }
     }
 
-    /// The entry of a TOML file, the name in the underlined text or after it in its line, or else the place.
+    /// The entry of a TOML file, the name in the underlined text or after it, or else the place.
     fn named(&self) -> String {
         if let Some(entry) = self.entry() {
             return entry.to_owned();

@@ -31,11 +31,10 @@ pub struct NamedFiles {
 }
 
 impl NamedFiles {
-    /// The file that `name` names: the file of that name in the data directory, else the file with that path. Errors:
-    /// [`UnknownFile`] if there is neither.
+    /// The file of that name in the data directory, else the file with that path. Errors: [`UnknownFile`].
     pub fn find(&self, name: &Path, data: &Path) -> Result<PathBuf, UnknownFile> {
         let named = self.named(name, data);
-        // Also what is no regular file: the reader's message states what was found.
+        // Also a file that is not regular: the reader's message says what was found.
         let is_path = named.is_err() && (files::is_file(name) || fs::symlink_metadata(name).is_ok());
         if is_path { Ok(name.to_owned()) } else { named }
     }
@@ -95,7 +94,6 @@ impl Error for UnknownFile {}
 mod tests {
     use super::*;
 
-    /// The data directory of the repository.
     fn data() -> PathBuf {
         Path::new(env!("CARGO_MANIFEST_DIR")).join("../../data")
     }

@@ -1,8 +1,6 @@
 //! The nearest known name, for messages about an unknown name.
 
-/// The candidate with the least edit distance from `wanted`, if the difference can be a typing error.
-///
-/// Of several candidates with the same distance the first is returned.
+/// The candidate with the least edit distance, the first of equals, if the difference can be a typing error.
 #[must_use]
 pub fn nearest<'a>(wanted: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     let limit = (wanted.len() / 3).max(1);
@@ -20,8 +18,7 @@ pub fn nearest<'a>(wanted: &str, candidates: impl IntoIterator<Item = &'a str>) 
     best.map(|(_, name)| name)
 }
 
-/// The help in a message about an unknown name: `the nearest is NAME` if the difference can be a typing error, else all
-/// known names after `listing`, such as `there are`.
+/// Help for an unknown name: `the nearest is NAME`, or all known names after `listing`, such as `there are`.
 #[must_use]
 pub fn alternatives<'a>(wanted: &str, known: impl IntoIterator<Item = &'a str>, listing: &str) -> String {
     let known: Vec<_> = known.into_iter().collect();

@@ -20,19 +20,17 @@ pub struct Position {
 struct Lines<'s> {
     text: &'s str,
     blocks: Vec<BlockLines>,
-    /// First byte of each line of the file.
-    starts: Vec<u32>,
+    starts: Vec<u32>, // of the lines of the file
 }
 
 /// The places of pieces of some sources. Each source is scanned once, when its first piece is needed.
 pub struct Places<'s> {
     sources: &'s [Source],
-    /// Finds the blocks of a source; `None` if lines are counted in the file.
-    blocks: Option<fn(&Source) -> Vec<BlockLines>>,
+    blocks: Option<fn(&Source) -> Vec<BlockLines>>, // `None`: lines are counted in the file
     known: HashMap<u32, Lines<'s>>,
 }
 
-/// Index of the last of the ascending items that begins at or before `byte`.
+/// The last of the ascending items that begins at or before `byte`.
 fn last_begun<T>(items: &[T], start: impl Fn(&T) -> u32, byte: u32) -> Option<usize> {
     items.partition_point(|item| start(item) <= byte).checked_sub(1)
 }
@@ -83,7 +81,7 @@ impl<'s> Places<'s> {
         let Some((at, source)) = at.and_then(|at| Some((at, self.source(at)?))) else { return false };
         let before = usize::try_from(at.start).ok().and_then(|start| source.text.get(..start));
         let mut above = before.unwrap_or_default().lines().rev();
-        // The beginning of the line itself, unless the piece is at its beginning.
+        // The beginning of the line, unless the piece is at its beginning.
         if before.is_some_and(|before| !before.ends_with('\n')) {
             above.next();
         }
@@ -108,7 +106,7 @@ impl<'s> Places<'s> {
 }
 
 impl Lines<'_> {
-    /// The place in the lines of a block; `None` for headers and for text between lines.
+    /// `None` for headers and for text between lines.
     fn in_block(&self, byte: u32) -> Option<Position> {
         let block = self.blocks.get(last_begun(&self.blocks, |block| block.start, byte)?)?;
         let number = last_begun(&block.lines, |line| line.start, byte)?;

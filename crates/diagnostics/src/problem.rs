@@ -129,7 +129,7 @@ impl Problems {
         self.list.iter_mut()
     }
 
-    /// Sets the place of the problems of entries that have no place yet.
+    /// Only of entries without a place.
     pub(crate) fn place_entries(&mut self, place: impl Fn(&str) -> At) {
         for problem in self.list.iter_mut().filter(|problem| problem.at.is_none()) {
             problem.at = problem.entry.as_deref().map(&place);

@@ -26,14 +26,12 @@ pub struct Diagnostics {
     pub blocks: usize,
     /// Number of records in each file; empty if there were errors.
     pub loaded: Vec<Loaded>,
-    /// Number of findings left out because an earlier report has them.
-    pub(crate) told: usize,
+    pub(crate) told: usize, // an earlier report has them
 }
 
 impl Diagnostic {
-    /// The finding as text: with source frame and colour if `graphical`, else in plain text. The graphical form is made
-    /// for the terminal of a person, as [`os_io::console::shown`] makes it, and is written with
-    /// [`os_io::console::drawn`].
+    /// With source frame and colour if `graphical`, for [`os_io::console::drawn`], else in plain text. The graphical
+    /// form is already made for a terminal, as by [`os_io::console::shown`].
     #[must_use]
     pub fn render(&self, graphical: bool) -> String {
         if !graphical {
@@ -44,7 +42,7 @@ impl Diagnostic {
         let theme = if colourless { GraphicalTheme::unicode_nocolor() } else { GraphicalTheme::unicode() };
         let handler = GraphicalReportHandler::new_themed(theme);
         let mut out = String::new();
-        // Writing to a String cannot fail; a finding that cannot be drawn is given as plain text.
+        // A finding that cannot be drawn is given as plain text.
         if handler.render_report(&mut out, &shown).is_err() {
             out.push_str(shown.message());
         }

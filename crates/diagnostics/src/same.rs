@@ -4,17 +4,15 @@ use std::collections::HashMap;
 
 use crate::{Diagnostic, Diagnostics, Severity};
 
-/// Greatest number of other lines that a help text names.
-const NAMED: usize = 3;
+const NAMED: usize = 3; // other lines in a help text
 
 impl Diagnostic {
-    /// The key that equal findings have in common.
     fn key(&self) -> (bool, &'static str, String) {
         let same = self.problem.same.as_ref().unwrap_or(&self.problem.message);
         (self.problem.severity == Severity::Error, self.problem.code, same.clone())
     }
 
-    /// Name of the file, without directories, and number of the line, as text for messages.
+    /// Without directories.
     fn line_in_words(&self) -> Option<String> {
         let name = self.file().rsplit('/').next()?;
         self.line().map(|line| format!("{name} line {line}"))

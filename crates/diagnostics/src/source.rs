@@ -11,8 +11,7 @@ pub struct Source {
     pub text: Arc<str>,
 }
 
-/// A piece of a source, which a diagnostic underlines. Every word that is loaded has one, so it is small;
-/// [`crate::Places`] finds its block, line and column.
+/// A piece of a source, to underline. Every loaded word has one, so it is small; [`crate::Places`] finds its line.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct At {
     /// Position of the source in the list of sources.

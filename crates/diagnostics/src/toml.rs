@@ -1,10 +1,9 @@
 //! Reads TOML into structures, such as a cell description, and reports all its errors at once.
 //!
-//! The structures derive serde's `Deserialize`, which stops at the first error. This deserializer continues: it reports
-//! a value of another type with its place and replaces it by one of the right type, a *stand-in*; it reports an unknown
-//! key and leaves it out. Only the structure knows whether it needs a missing key, because the key may have a default;
-//! if it does, reading starts again with a stand-in for that key. Values read with stand-ins are never used; they only
-//! allow the numbers of all other entries to be checked in the same pass.
+//! The structures derive serde's `Deserialize`, which stops at the first error. This deserializer reports a wrong
+//! value with its place, replaces it by one of the right type, a *stand-in*, and continues; it reports and omits an
+//! unknown key. Only the structure knows whether it needs a missing key; then reading starts again with a stand-in for
+//! it. Values read with stand-ins are never used; they allow all other entries to be checked in the same pass.
 
 mod reader;
 
@@ -63,8 +62,7 @@ pub struct Document<'a> {
 pub struct StandIns(BTreeSet<Path>);
 
 impl StandIns {
-    /// True if the value at a path comes from the text: neither it, nor a part of it, nor an entry that contains it has
-    /// a stand-in.
+    /// True if neither the value at a path, nor a part of it, nor an entry around it has a stand-in.
     #[must_use]
     pub fn trusts(&self, path: &str) -> bool {
         let holds = |whole: &str, part: &str| {
@@ -103,8 +101,7 @@ impl<'a> Document<'a> {
         (Self { source, root, kind }, problems)
     }
 
-    /// Read a structure from TOML, and check its values: `check` gets the structure and the entries that have
-    /// stand-ins, and adds what it finds to the problems. Errors: all problems of the text.
+    /// Reads a structure. `check` gets it with the stand-ins, and adds problems. Errors: all problems of the text.
     pub fn load<T: DeserializeOwned>(
         source: &Source,
         kind: FileKind,
@@ -126,8 +123,8 @@ impl<'a> Document<'a> {
         }
     }
 
-    /// The place of an entry: of its value, or of its key if the value is spread over several tables; if the entry does
-    /// not exist, the place of the nearest table that contains it.
+    /// The place of a value; of the key if it is spread over several tables; of the nearest table if there is no
+    /// entry.
     #[must_use]
     pub fn place(&self, path: &str) -> At {
         at(&self.source.text, self.bytes(path))
@@ -194,8 +191,7 @@ impl<'a> Document<'a> {
     }
 }
 
-/// The key of a table with which a path begins, and its value. A key in quotes can contain dots, so the longest one
-/// that fits is meant.
+/// The first key of a path, with its value. A key in quotes can contain dots: the longest one that fits is meant.
 fn first_key<'t, 'a>(
     table: &'t DeTable<'a>,
     path: &str,
@@ -207,7 +203,7 @@ fn first_key<'t, 'a>(
     fitting.max_by_key(|(key, _)| key.get_ref().len())
 }
 
-/// True if a value is not a table or an array of tables, which can be spread over the text.
+/// Tables and arrays of tables can be spread over the text.
 fn is_in_one_place(value: &DeValue<'_>) -> bool {
     match value {
         DeValue::Table(_) => false,
@@ -217,7 +213,6 @@ fn is_in_one_place(value: &DeValue<'_>) -> bool {
 }
 
 impl FileKind {
-    /// The expected range of a number of either sign, as text for messages.
     fn any_number(&self) -> String {
         let [smallest, largest] = self.magnitudes;
         if smallest == 0.0 {
@@ -239,7 +234,7 @@ impl FileKind {
     }
 }
 
-/// The place of a range of bytes in a text. A range of several lines is cut at the end of its first line.
+/// A range of several lines ends at the end of its first line.
 fn at(text: &str, bytes: Range<usize>) -> At {
     let small = |number: usize| u32::try_from(number).unwrap_or(u32::MAX);
     let start = (0..=bytes.start.min(text.len())).rev().find(|at| text.is_char_boundary(*at)).unwrap_or(0);

@@ -1,8 +1,8 @@
-//! A report that is drawn with colours has no control character of the file in it.
+//! A report with colours has no control character of the file in it.
 
 use diagnostics::{At, Diagnostics, Problems, Source};
 
-/// The text without the sequences that set a colour or an emphasis.
+/// Removes sequences for colour and emphasis.
 fn without_colours(text: &str) -> String {
     let mut parts = text.split("\u{1b}[");
     let first = parts.next().unwrap_or_default().to_owned();

@@ -1,5 +1,5 @@
-//! Counts the lines of a file. A directory, a device or text that is not UTF-8 is an error; a closed output pipe is
-//! not: `cargo run --release -p os-io --example count -- FILE | head -0`.
+//! Counts the lines of a file; a closed output pipe is not an error: `cargo run --release -p os-io --example count --
+//! FILE | head -0`.
 
 use std::{env, io, path::Path};
 

@@ -1,5 +1,5 @@
-//! Two loops of a tick: one keeps its buffer, the other makes a new one each time, and is found out.
-//! `cargo run --release -p os-io --example section`.
+//! One loop of a tick keeps its buffer, the other allocates and is detected: `cargo run --release -p os-io --example
+//! section`.
 
 #![expect(clippy::print_stdout, reason = "an example prints what it does")]
 
@@ -8,7 +8,7 @@ use os_io::alloc::{Counting, Section, allocations};
 #[global_allocator]
 static ALLOCATOR: Counting = Counting;
 
-/// Allocations of 100 calls.
+/// Of 100 calls.
 fn count(mut tick: impl FnMut()) -> u64 {
     let before = allocations();
     let section = Section::enter();

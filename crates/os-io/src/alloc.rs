@@ -1,12 +1,7 @@
-//! An allocator that counts what is allocated in some sections of a program.
-//!
-//! A program that may not allocate after its start installs [`Counting`] as its allocator, and runs what must not
-//! allocate inside a [`Section`]. What is allocated there is counted: over the whole run, in production as in tests.
-//! Other threads, and what the same thread does between sections, are not counted. A control process of RCS-II/T3 cannot
-//! allocate, since it is built without `alloc`; what stands around it in a tick could
-//! (docs/design/tick.md "No allocation").
-//!
-//! It does nothing but count and hand over to the system's allocator.
+//! An allocator that counts allocations in some sections of a program. A program that may not allocate after its start
+//! installs [`Counting`] as its allocator, and runs each tick inside a [`Section`]. Allocations of other threads, or
+//! between sections, are not counted. Control processes of RCS-II/T3 are built without `alloc`; the code around them
+//! could allocate (docs/design/tick.md "No allocation").
 
 #![allow(unsafe_code, reason = "GlobalAlloc is an unsafe trait; every call is passed on unchanged")]
 
@@ -20,12 +15,11 @@ use std::{
 static IN_SECTIONS: AtomicU64 = AtomicU64::new(0);
 
 thread_local! {
-    // Constant initialisation and no destructor: an access never allocates and works at any time of a
-    // thread's life.
+    // Constant initialisation and no destructor: an access never allocates, at any time of a thread's life.
     static DEPTH: Cell<u32> = const { Cell::new(0) };
 }
 
-/// The system's allocator, with a count of the allocations that are made inside a [`Section`].
+/// The system's allocator, which counts the allocations inside a [`Section`].
 ///
 /// ```
 /// #[global_allocator]
@@ -38,8 +32,7 @@ pub struct Counting;
 
 /// While it lives, allocations of this thread are counted.
 pub struct Section {
-    // A section belongs to the thread that entered it.
-    not_send: PhantomData<*const ()>,
+    not_send: PhantomData<*const ()>, // it belongs to the thread that entered it
 }
 
 impl Section {
@@ -57,15 +50,13 @@ impl Drop for Section {
     }
 }
 
-/// Allocations that were made inside sections, by all threads, since the program started. Without
-/// [`Counting`] as the program's allocator it stays 0: ask [`is_installed`] first.
+/// Allocations inside sections, of all threads. Without [`Counting`] it stays 0: check [`is_installed`] first.
 #[must_use]
 pub fn allocations() -> u64 {
     IN_SECTIONS.load(Ordering::Relaxed)
 }
 
-/// True if the program runs on [`Counting`]. Makes one allocation to find out, and takes it off the count
-/// again.
+/// True if the program runs on [`Counting`], as an uncounted allocation shows.
 #[must_use]
 pub fn is_installed() -> bool {
     let before = allocations();
@@ -87,8 +78,8 @@ fn count() {
     }
 }
 
-// SAFETY: every method passes its arguments unchanged to `System`, which upholds the contract of
-// `GlobalAlloc`; `count` neither allocates nor unwinds.
+// SAFETY: every method passes its arguments unchanged to `System`, which upholds the contract; `count` neither
+// allocates nor unwinds.
 unsafe impl GlobalAlloc for Counting {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
         count();
@@ -104,8 +95,7 @@ unsafe impl GlobalAlloc for Counting {
 
     unsafe fn realloc(&self, block: *mut u8, layout: Layout, new_size: usize) -> *mut u8 {
         count();
-        // SAFETY: `block` came from this allocator, hence from `System`, with `layout`; the caller vouches
-        // for the rest.
+        // SAFETY: `block` came from `System`, with `layout`; the caller vouches for the rest.
         unsafe { System.realloc(block, layout, new_size) }
     }
 

@@ -7,18 +7,17 @@ use std::{
     thread,
 };
 
-/// The program that opens a file or an address as the desktop is set up.
+/// Opens a file or an address as the desktop is set up.
 const OPENER: &str = if cfg!(target_os = "macos") { "open" } else { "xdg-open" };
 
-/// Starts the browser with a file or an address, and does not wait for it. Other users can see the address in the list
-/// of processes, so it must not have a secret. Errors: the error of the system if the program cannot be started.
+/// Starts the browser and does not wait for it. Other users can see the address in the list of processes: no secrets.
 pub fn open(what: &OsStr) -> io::Result<()> {
     let mut program = Command::new(OPENER);
     let program = program.arg(what).stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null());
     let mut child = program
         .spawn()
         .map_err(|error| io::Error::new(error.kind(), format!("{OPENER} cannot be started: {error}")))?;
-    // Without a thread that waits for it, an ended child stays in the list of processes.
+    // Without a waiting thread, an ended child stays in the list of processes.
     thread::spawn(move || child.wait());
     Ok(())
 }

@@ -1,7 +1,5 @@
-//! Files that are built into a program.
-//!
-//! An installed program runs in any directory, so the files that it needs are built into it. A path that begins with
-//! [`PREFIX`] names such a file, for example `shipped:data/cell.toml`; [`files`](crate::files) reads it like any other.
+//! Files that are built into a program, so that it runs in any directory. A path that begins with [`PREFIX`] names
+//! such a file, for example `shipped:data/cell.toml`; [`files`](crate::files) reads it like any other.
 
 use std::{
     collections::BTreeSet,
@@ -35,12 +33,11 @@ pub fn is_carried(path: &Path) -> bool {
     inside(path).is_some()
 }
 
-/// Removes the prefix from the path of a built-in file or directory; `None` for a path of the file system.
+/// `None` for a path of the file system.
 pub(crate) fn inside(path: &Path) -> Option<&str> {
     path.to_str()?.strip_prefix(PREFIX)
 }
 
-/// The bytes of a built-in file.
 pub(crate) fn read(path: &str) -> io::Result<&'static [u8]> {
     let found = all().iter().find(|file| file.path == path).map(|file| file.bytes);
     found.ok_or_else(|| {
@@ -49,7 +46,7 @@ pub(crate) fn read(path: &str) -> io::Result<&'static [u8]> {
     })
 }
 
-/// Paths, with the prefix, of the entries of a built-in directory; empty if there are none.
+/// With the prefix; empty if there are none.
 pub(crate) fn list(directory: &str) -> Vec<PathBuf> {
     let below = |file: &Carried| Path::new(file.path).strip_prefix(directory).ok();
     let first = |rest: &'static Path| rest.components().next();

@@ -7,9 +7,9 @@
 //! | the answer of a tool, the result of a run | [`answer`] | no error: the reader has read enough | an error |
 //! | an answer for programs | [`json`] | likewise | an error |
 //!
-//! Text for a person passes [`shown`]: control characters are replaced ([`crate::text`]), and quantities are in the
-//! unit that the person has chosen ([`crate::units`]). A report that was drawn with colours has passed it before:
-//! [`drawn`] and [`stderr_drawn`] write it as it is.
+//! [`shown`] replaces control characters ([`crate::text`]) and converts quantities to the person's units
+//! ([`crate::units`]). A report drawn with colours has passed it before: [`drawn`] and [`stderr_drawn`] write it as it
+//! is.
 
 use std::{
     borrow::Cow,
@@ -24,8 +24,7 @@ use crate::{
     units,
 };
 
-/// Error number of Linux for a terminal without the other end.
-const EIO: i32 = 5;
+const EIO: i32 = 5; // Linux: the terminal has no other end
 
 /// Writes a formatted line to standard error. If the write fails, the line is lost.
 #[macro_export]
@@ -47,14 +46,13 @@ pub fn stderr_line(message: Arguments<'_>) {
 
 /// Writes a report that was drawn for a terminal to standard error, as a line. If the write fails, it is lost.
 pub fn stderr_drawn(report: &str) {
-    // Nowhere is left to report the error to.
-    let _ = line(&mut io::stderr().lock(), report);
+    let _ = line(&mut io::stderr().lock(), report); // nowhere is left to report the error to
 }
 
 /// Function behind [`stdout_line!`](crate::stdout_line).
 pub fn stdout_line(message: Arguments<'_>) {
     let mut out = io::stdout().lock();
-    // An error loses the line, as the documentation of the macro says.
+    // An error loses the line, as documented at the macro.
     let _ = line(&mut out, &shown(&message.to_string())).and_then(|()| out.flush());
 }
 
@@ -67,8 +65,8 @@ pub fn shown(text: &str) -> Cow<'_, str> {
     }
 }
 
-/// Writes a text for a person to standard output. A reader that closes the pipe early, such as `head`, is no error,
-/// and neither is a terminal that has disappeared. Errors: the error of the operating system, for example a full disk.
+/// Writes a text for a person to standard output. A closed pipe, as by `head`, or terminal is not an error; a full
+/// disk is.
 pub fn answer(text: &str) -> io::Result<()> {
     drawn(&shown(text))
 }
@@ -83,19 +81,19 @@ pub fn drawn(report: &str) -> io::Result<()> {
     written
 }
 
-/// Writes JSON to standard output. Its values do not change: a control character is written as an escape. Errors: see
+/// Writes JSON to standard output. Control characters become escapes, so its values do not change. Errors: see
 /// [`answer`].
 pub fn json(text: &str) -> io::Result<()> {
     drawn(&escaped_json(text))
 }
 
-/// True if standard output is a device, such as a terminal, and no file.
+/// Such as a terminal, but no file.
 fn is_device() -> bool {
     let file = io::stdout().as_fd().try_clone_to_owned().map(File::from);
     file.and_then(|file| file.metadata()).is_ok_and(|found| found.file_type().is_char_device())
 }
 
-/// Writes a line with one call of `write`, so that lines of several processes on one terminal do not mix.
+/// With one call of `write`, so that lines of several processes on one terminal do not mix.
 fn line(out: &mut impl Write, message: &str) -> io::Result<()> {
     out.write_all(format!("{message}\n").as_bytes())
 }
@@ -111,8 +109,7 @@ fn answered(written: io::Result<()>) -> io::Result<()> {
 mod tests {
     use super::*;
 
-    /// Records each call of `write`.
-    struct Calls(Vec<Vec<u8>>);
+    struct Calls(Vec<Vec<u8>>); // each call of `write`
 
     impl Write for Calls {
         fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {

@@ -1,8 +1,6 @@
-//! Reads files that a person or another program names.
-//!
-//! A FIFO blocks its reader until another program writes to it, a terminal blocks until a key is pressed, and
-//! `/dev/zero` never ends. Therefore only regular files are read, up to a limit of size. Files that are built into the
-//! program ([`carried`]) are read in the same way.
+//! Reads files that a person or another program names. A FIFO blocks until another program writes to it, a terminal
+//! until a key is pressed, and `/dev/zero` never ends. Therefore only regular files are read, up to a limit of size,
+//! and files that are built into the program ([`carried`]).
 
 use std::{
     fs::{self, File, FileType, OpenOptions},
@@ -18,9 +16,8 @@ use crate::carried;
 /// Greatest length of a text file, bytes: task data, jobs, cell descriptions and fault plans have some kilobytes.
 pub const TEXT: u64 = 16 << 20;
 
-/// Reads a regular file of at most `limit` bytes. Never blocks, for any kind of file. Errors:
-/// [`ErrorKind::InvalidInput`] with the kind found if `path` is no regular file, [`ErrorKind::FileTooLarge`] if the
-/// file is longer than `limit`, [`ErrorKind::OutOfMemory`] if memory is short; else the error of the operating system.
+/// Reads a regular file of at most `limit` bytes, without blocking. Errors of its own: [`ErrorKind::InvalidInput`] for
+/// other files, [`ErrorKind::FileTooLarge`], [`ErrorKind::OutOfMemory`].
 pub fn read(path: &Path, limit: u64) -> io::Result<Vec<u8>> {
     if let Some(inside) = carried::inside(path) {
         let bytes = carried::read(inside)?;
@@ -31,7 +28,7 @@ pub fn read(path: &Path, limit: u64) -> io::Result<Vec<u8>> {
     let length = file.metadata()?.len();
     let mut bytes = Vec::new();
     if length <= limit {
-        // One byte more than the limit: the file can grow during the read.
+        // One more than the limit: the file can grow during the read.
         file.take(limit.saturating_add(1)).read_to_end(&mut bytes)?;
     }
     within(bytes.len().max(usize::try_from(length).unwrap_or(usize::MAX)), limit)?;
@@ -68,8 +65,7 @@ pub fn lies_in(path: &Path, directory: &Path) -> bool {
     real.is_ok_and(|(path, directory)| path.starts_with(directory))
 }
 
-/// Paths of the entries of a directory, sorted. Errors: the error of the operating system; [`ErrorKind::NotFound`] if
-/// no such directory is built in.
+/// Paths of the entries of a directory, sorted. Errors: [`ErrorKind::NotFound`] also if it is not built in.
 pub fn list(directory: &Path) -> io::Result<Vec<PathBuf>> {
     let mut paths = match carried::inside(directory) {
         Some(inside) => carried::list(inside),
@@ -82,8 +78,8 @@ pub fn list(directory: &Path) -> io::Result<Vec<PathBuf>> {
     Ok(paths)
 }
 
-/// Reads a regular file of at most [`TEXT`] bytes of UTF-8, with or without a byte order mark; lines end with LF, CR
-/// LF or CR. Errors: as [`read`], and [`ErrorKind::InvalidData`] with the first line that is not UTF-8.
+/// Reads at most [`TEXT`] bytes of UTF-8; the byte order mark is optional, lines end with LF, CR LF or CR. Errors: as
+/// [`read`], and [`ErrorKind::InvalidData`] with the first line that is not UTF-8.
 pub fn read_text(path: &Path) -> io::Result<String> {
     let text = String::from_utf8(read(path, TEXT)?).map_err(|error| {
         let good = error.as_bytes().get(..error.utf8_error().valid_up_to()).unwrap_or_default();
@@ -97,7 +93,8 @@ pub fn read_text(path: &Path) -> io::Result<String> {
 
 /// Opens a regular file for reading. Errors: as [`read`].
 pub fn open(path: &Path) -> io::Result<File> {
-    // Opening some devices has side effects, so the kind is checked first, and again afterwards, because it can change.
+    // Opening some devices has side effects, so the kind is checked first, and again afterwards, because it can
+    // change.
     expect_regular(fs::metadata(path)?.file_type())?;
     let flags = OFlags::NONBLOCK | OFlags::NOCTTY;
     let file = OpenOptions::new().read(true).custom_flags(flags.bits().cast_signed()).open(path)?;

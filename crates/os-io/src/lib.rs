@@ -1,9 +1,8 @@
 //! Standard output, standard error, files and the allocator for the programs of this project.
 //!
-//! A terminal can be closed, a pipe can lose its reader, a disk can be full. In these cases `println!` and `eprintln!`
-//! panic, and a panic would end a run in the middle of a motion. All programs write through [`console`], which does not
-//! panic; clippy denies the macros of the standard library elsewhere. Everything that reads a file named by a person
-//! uses [`files`]. [`alloc`] counts what is allocated in sections of a program.
+//! A terminal can be closed, a pipe can lose its reader, a disk can be full: `println!` then panics, and would end a
+//! run in the middle of a motion. Programs write through [`console`], which does not panic, and read files with
+//! [`files`]. [`alloc`] counts allocations in sections of a program.
 
 #![warn(missing_docs)]
 #![deny(unsafe_code)]

@@ -1,4 +1,4 @@
-//! Replaces files, so that neither a full disk nor a crash leaves half a file, and no input is lost.
+//! Replaces files so that neither a full disk nor a crash leaves half a file, and no input is lost.
 //!
 //! | for | call |
 //! |---|---|
@@ -6,9 +6,8 @@
 //! | a text that a person edits | [`replace_text`] |
 //! | any other file | [`replace`] |
 //!
-//! The last two write a temporary file in the same directory, with the mode and the owner of the file that it
-//! replaces, synchronise it with the disk, and rename it. A symbolic link is followed: the file that it names is
-//! replaced, and the link stays.
+//! The last two write a temporary file in the same directory, with mode and owner of the old file, synchronise it with
+//! the disk, and rename it. Of a symbolic link the target is replaced.
 
 use std::{
     fs::{self, File, Metadata, OpenOptions},
@@ -23,8 +22,7 @@ use crate::{
     files::{self, expect_regular},
 };
 
-/// Symbolic links that are followed from a path, as in Linux.
-const MAX_LINKS: usize = 40;
+const MAX_LINKS: usize = 40; // as in Linux
 /// Byte order mark of UTF-8.
 const MARK: &str = "\u{feff}";
 
@@ -42,7 +40,6 @@ pub enum Format {
 }
 
 impl Format {
-    /// The name of the format in a message.
     const fn name(self) -> &'static str {
         match self {
             Self::Mcap => "an MCAP log",
@@ -52,7 +49,7 @@ impl Format {
         }
     }
 
-    /// Returns true if `start`, the first bytes of a file, can belong to this format.
+    /// `start` has the first bytes of a file.
     fn begins(self, start: &[u8]) -> bool {
         let text = start.strip_prefix(MARK.as_bytes()).unwrap_or(start).trim_ascii_start();
         let tag =
@@ -66,9 +63,9 @@ impl Format {
     }
 }
 
-/// Checks that the output of a command replaces no input and no file of another format. Nothing is written. Errors:
-/// [`ErrorKind::InvalidInput`] if the path names one of the inputs (same device and inode, also by another path or a
-/// link), or anything but a regular file; [`ErrorKind::AlreadyExists`] if a file of another format is there.
+/// Checks that the output of a command replaces no input and no file of another format. Errors:
+/// [`ErrorKind::InvalidInput`] for an input (same device and inode) or a file that is not regular;
+/// [`ErrorKind::AlreadyExists`] for another format.
 pub fn check_output<'a>(
     path: &Path,
     format: Format,
@@ -78,7 +75,7 @@ pub fn check_output<'a>(
     keep_others(path, format)
 }
 
-/// Checks that an output is none of the inputs, by device and inode; of files that do not exist, by their places.
+/// By device and inode; by place if a file does not exist.
 fn keep_inputs<'a>(output: &Path, inputs: impl IntoIterator<Item = &'a Path>) -> io::Result<()> {
     let identity = |path: &Path| fs::metadata(path).ok().map(|found| (found.dev(), found.ino()));
     let is_output = |input: &&Path| match (identity(output), identity(input)) {
@@ -94,13 +91,13 @@ fn keep_inputs<'a>(output: &Path, inputs: impl IntoIterator<Item = &'a Path>) ->
     }
 }
 
-/// The place of a file that does not exist: its directory without links, and its name. `None` without the directory.
+/// Its directory without links, and its name. `None` without the directory.
 fn place_of(path: &Path) -> Option<PathBuf> {
     let directory = path.parent().filter(|directory| !directory.as_os_str().is_empty());
     Some(fs::canonicalize(directory.unwrap_or(Path::new("."))).ok()?.join(path.file_name()?))
 }
 
-/// Checks that an output does not replace a file of another format. An empty file is of every format.
+/// An empty file is of every format.
 fn keep_others(output: &Path, format: Format) -> io::Result<()> {
     let file = match files::open(output) {
         Err(error) if error.kind() == ErrorKind::NotFound => return Ok(()),
@@ -118,8 +115,8 @@ fn keep_others(output: &Path, format: Format) -> io::Result<()> {
     Err(io::Error::new(ErrorKind::AlreadyExists, why))
 }
 
-/// Replaces a file by a text. Line endings and byte order mark stay as they are in the file; `text` has LF. Errors: as
-/// [`replace`], and those of reading the present file.
+/// Replaces a file by a text with LF, and keeps its line ends and byte order mark. Errors: as [`replace`] and of
+/// reading it.
 pub fn replace_text(path: &Path, text: &str) -> io::Result<()> {
     let before = match files::read(path, files::TEXT) {
         Err(error) if error.kind() == ErrorKind::NotFound => Vec::new(),
@@ -130,7 +127,7 @@ pub fn replace_text(path: &Path, text: &str) -> io::Result<()> {
     replace(path, format!("{mark}{}", text.replace('\n', line_end(&before))).as_bytes())
 }
 
-/// The end of the first line of a text: LF, CR LF or CR.
+/// LF, CR LF or CR, of the first line.
 fn line_end(text: &[u8]) -> &'static str {
     let mut bytes = text.iter();
     match bytes.find(|byte| matches!(byte, b'\n' | b'\r')) {
@@ -140,10 +137,9 @@ fn line_end(text: &[u8]) -> &'static str {
     }
 }
 
-/// Replaces a file, or creates it. Its old content is there until the new content is complete on the disk. Errors:
-/// [`ErrorKind::InvalidInput`] if `path` names anything but a regular file, or a file that is built into the program;
-/// [`ErrorKind::PermissionDenied`] if the owner of the file cannot be kept; else the error of the operating system,
-/// for example a full disk. The old file is unchanged then.
+/// Replaces or creates a file. The old content stays until the new one is complete on the disk, and after an error.
+/// Errors: [`ErrorKind::InvalidInput`] for a file that is not regular or is built in; [`ErrorKind::PermissionDenied`]
+/// if the owner cannot be kept.
 pub fn replace(path: &Path, bytes: &[u8]) -> io::Result<()> {
     if carried::inside(path).is_some() {
         let why = "the file is built into this program: write the built-in data to a directory first (`rcs-run init`)";
@@ -169,9 +165,9 @@ pub fn replace(path: &Path, bytes: &[u8]) -> io::Result<()> {
     File::open(directory)?.sync_all()
 }
 
-/// Writes a new file with the mode and the owner of an old one, and synchronises it with the disk.
+/// With mode and owner of the old file, and synchronised with the disk.
 fn write_new(path: &Path, bytes: &[u8], old: Option<&Metadata>) -> io::Result<()> {
-    // A file of that name is left of a process with the same number that was killed.
+    // A killed process with the same number may have left it.
     match fs::remove_file(path) {
         Err(error) if error.kind() != ErrorKind::NotFound => return Err(error),
         _ => {}
@@ -192,7 +188,7 @@ fn write_new(path: &Path, bytes: &[u8], old: Option<&Metadata>) -> io::Result<()
     file.sync_all()
 }
 
-/// The file that a path names after all symbolic links, which need not exist.
+/// After all symbolic links; it need not exist.
 fn target(path: &Path) -> io::Result<PathBuf> {
     let mut path = path.to_owned();
     for _ in 0..MAX_LINKS {

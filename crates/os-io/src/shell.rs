@@ -4,8 +4,8 @@ use std::{ffi::OsStr, os::unix::ffi::OsStrExt as _};
 
 use crate::text::is_control_or_mark;
 
-/// An argument as one word of a shell, in quotation marks if it needs them. Control characters, marks that reverse
-/// text, and bytes that are no text are written as numbers in `$'...'`, so that a terminal shows the word as it is.
+/// An argument as one word of a shell. Control characters, marks that reverse text, and bytes that are not text become
+/// numbers in `$'...'`, so that a terminal shows the word as it is.
 #[must_use]
 pub fn word(argument: impl AsRef<OsStr>) -> String {
     let bytes = argument.as_ref().as_bytes();
@@ -30,7 +30,7 @@ pub fn path(path: impl AsRef<OsStr>) -> String {
     word(path)
 }
 
-/// True if a character means nothing to a shell.
+/// It has no meaning to a shell.
 fn is_plain(character: char) -> bool {
     character.is_alphanumeric() || "/._-+=:,@%".contains(character)
 }

@@ -1,5 +1,4 @@
-//! Text from files, sockets and logs without control characters. An escape sequence in a log or a job file could
-//! otherwise command the terminal of the person who reads a message.
+//! Text without control characters: an escape sequence in a log or job could command the reader's terminal.
 
 use std::{borrow::Cow, fmt::Display};
 
@@ -9,19 +8,17 @@ const INVISIBLE: [char; 15] = [
     '\u{202d}', '\u{202e}', '\u{2066}', '\u{2067}', '\u{2068}', '\u{2069}', '\u{feff}',
 ];
 
-/// True if a terminal must not receive the character: a control character other than tab and newline, or a mark that
-/// changes the direction of text.
+/// A control character other than tab and newline, or a mark that changes the direction of text.
 fn is_unsafe(character: char) -> bool {
     is_control_or_mark(character) && !matches!(character, '\n' | '\t')
 }
 
-/// True for a control character and for a mark that changes the direction of text.
+/// A control character, or a mark that changes the direction of text.
 pub(crate) fn is_control_or_mark(character: char) -> bool {
     character.is_control() || INVISIBLE.contains(&character)
 }
 
-/// The text with `?` or another visible character for each control character. Tabs and newlines remain. Byte positions
-/// do not change, so that a place in the text remains the same place.
+/// Replaces control characters by `?` or another visible one, except tab and newline. Byte positions do not change.
 #[must_use]
 pub fn plain(text: &str) -> Cow<'_, str> {
     if !text.contains(is_unsafe) {
@@ -36,8 +33,7 @@ pub fn plain(text: &str) -> Cow<'_, str> {
     Cow::Owned(text.chars().map(visible).collect())
 }
 
-/// JSON with an escape for each control character that JSON permits in strings, such as `\u009b`. The value does not
-/// change.
+/// Escapes the control characters that JSON permits in strings, such as `\u009b`. The value does not change.
 #[must_use]
 pub fn escaped_json(json: &str) -> Cow<'_, str> {
     if !json.contains(is_unsafe) {

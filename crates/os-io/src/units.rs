@@ -1,8 +1,7 @@
 //! The units in which a person reads and types lengths, speeds and forces.
 //!
-//! Data files, logs, sockets and JSON have the manual's units (docs/design/units.md). Texts are made in these units,
-//! too, also those that a log or a run in another process contains: `geometry::units::Length` writes lengths. [`shown`] converts
-//! quantities when a text is printed, so that the reader chooses the units, and no file depends on the choice.
+//! Data files, logs, sockets, JSON and texts have the manual's units (docs/design/units.md). [`shown`] converts
+//! quantities when a text is printed: the reader chooses the units, and no file depends on the choice.
 
 use std::{
     borrow::Cow,
@@ -11,12 +10,10 @@ use std::{
     sync::atomic::{AtomicBool, Ordering},
 };
 
-/// Millimetres of an inch.
-const MM: f64 = 25.4;
+const MM: f64 = 25.4; // per inch
 const NEWTON: f64 = 4.448_221_615_260_5;
 
-/// The units of this process: true for millimetres.
-static MILLIMETRES: AtomicBool = AtomicBool::new(false);
+static MILLIMETRES: AtomicBool = AtomicBool::new(false); // true for millimetres
 
 /// The units in which a person reads and types quantities.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -43,8 +40,8 @@ impl Units {
         MILLIMETRES.store(self == Self::Millimetres, Ordering::Relaxed);
     }
 
-    /// A length that a person has typed, in inches: a number in these units, or one with its unit, such as `38.1mm` or
-    /// `1.5in`. Errors: what was expected.
+    /// A typed length, in inches: a number in these units, or with its own, `38.1mm` or `1.5in`. Errors: what was
+    /// expected.
     pub fn length(self, text: &str) -> Result<f64, String> {
         let wrong = || {
             let [inches, millimetres] = Self::WORDS;
@@ -100,14 +97,13 @@ pub fn shown(text: &str) -> Cow<'_, str> {
     Units::of_process().convert(text)
 }
 
-/// A unit of the manual that texts contain after a number and a space, with the unit that millimetres show.
+/// After a number and a space in a text, with the unit shown for millimetres.
 struct Unit {
     text: &'static str,
     other: &'static str,
     factor: f64,
-    /// Digits after the point in addition to those of the number in the manual's unit.
-    digits: isize,
-    /// A number without a decimal point is a quantity, too. `in` is also a preposition: "2 in the log" is none.
+    digits: isize, // in addition to those of the number in the manual's unit
+    /// A number without a point is a quantity, too. `in` is also a preposition: "2 in the log" is none.
     whole: bool,
 }
 
@@ -119,18 +115,16 @@ const UNITS: [Unit; 4] = [
     Unit { text: "lb", other: "N", factor: NEWTON, digits: -1, whole: true },
 ];
 
-/// What may be between two numbers that share the unit of the last one, in addition to blanks: `(1.00, 2.00, 3.00 in)`,
-/// `3.0 x 1.5 in`.
+/// Between two numbers that share the last one's unit: `(1.00, 2.00, 3.00 in)`, `3.0 x 1.5 in`.
 const BETWEEN: [&str; 8] = ["", ",", "x", "to", "and", "or", "Y", "Z"];
 
 struct Number {
     start: usize,
     end: usize,
-    /// Digits after the decimal point; `None` without a point.
-    digits: Option<usize>,
+    digits: Option<usize>, // after the point; `None` without one
 }
 
-/// The numbers of a text that are words of their own.
+/// Only those that are words of their own.
 fn numbers(text: &str) -> Vec<Number> {
     let (bytes, mut found, mut at) = (text.as_bytes(), Vec::new(), 0);
     let digit = |at: usize| bytes.get(at).is_some_and(u8::is_ascii_digit);
@@ -170,7 +164,7 @@ fn numbers(text: &str) -> Vec<Number> {
     found
 }
 
-/// The unit that begins at a place of a text, after a space.
+/// After a space.
 fn unit_at(text: &str, at: usize) -> Option<&'static Unit> {
     let rest = text.get(at..)?.strip_prefix(' ')?;
     let is_end = |rest: &str| {

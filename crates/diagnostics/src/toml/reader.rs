@@ -1,4 +1,4 @@
-//! The deserializer that continues after an error: it records a wrong value and returns a stand-in of the right type.
+//! The deserializer that continues after an error: it records a wrong value and returns a stand-in.
 
 use std::{
     cell::RefCell,
@@ -18,15 +18,11 @@ use toml::{
 use super::{FileKind, Path, at, element, join};
 use crate::{Problem, Problems, nearest};
 
-/// Why a structure could not be built.
 #[derive(Debug)]
 pub(super) enum Stop {
-    /// A key is missing; the caller adds the path of its table.
-    Field(&'static str),
-    /// A key is missing: its whole path.
-    Missing(Path),
-    /// Another error, as text.
-    Other(String),
+    Field(&'static str), // missing; the caller adds the path of its table
+    Missing(Path),       // missing: the whole path
+    Other(String),       // as text
 }
 
 impl Display for Stop {
@@ -51,7 +47,6 @@ impl de::Error for Stop {
     }
 }
 
-/// Results of one pass through the text.
 pub(super) struct Notes<'n> {
     pub(super) text: &'n str,
     pub(super) kind: FileKind,
@@ -61,7 +56,7 @@ pub(super) struct Notes<'n> {
 }
 
 impl Notes<'_> {
-    /// Record an entry that has an error and is not used.
+    /// The entry has an error and is not used.
     fn unusable(&self, path: &str, problem: Problem) {
         self.stand_ins.borrow_mut().insert(path.to_owned());
         self.problems.borrow_mut().add(problem);
@@ -70,12 +65,9 @@ impl Notes<'_> {
 
 #[derive(Clone, Copy)]
 pub(super) enum Node<'a> {
-    /// The whole text.
     Table(&'a DeTable<'a>),
-    /// A value.
     Value(&'a DeValue<'a>),
-    /// There is no entry: a value of the right type is used.
-    StandIn,
+    StandIn, // no entry: any value of the right type
 }
 
 pub(super) struct Reader<'n, 'a> {
@@ -104,7 +96,7 @@ impl<'n, 'a> Reader<'n, 'a> {
         self.value()?.as_array().map(|array| &array[..])
     }
 
-    /// Record that something else was expected, unless the entry is a stand-in.
+    /// Unless the entry is a stand-in.
     fn unfit(&self, expected: impl Display, known: &[&str]) {
         let found = match self.node {
             Node::Value(value) => said(value),
@@ -116,12 +108,12 @@ impl<'n, 'a> Reader<'n, 'a> {
         self.notes.unusable(&self.path, problem.near(wanted, known));
     }
 
-    /// Name of the table in messages.
+    /// The name of the table in messages.
     fn whose(&self) -> &str {
         if self.path.is_empty() { self.notes.kind.whole } else { &self.path }
     }
 
-    /// The entry as a whole number of type `T`; 1 if it is not one.
+    /// 1 if the entry is not such a number.
     fn whole<T: TryFrom<i64> + Default>(&self, low: impl Display, high: impl Display) -> T {
         let number = match self.value() {
             Some(DeValue::Integer(number)) => i64::from_str_radix(number.as_str(), number.radix()).ok(),
@@ -167,7 +159,7 @@ impl<'n, 'a> Reader<'n, 'a> {
         Elements { reader: self, array, next: 0, length }
     }
 
-    /// Record the keys of a table that its structure does not have.
+    /// Keys that the structure does not have.
     fn unknown(&self, table: &DeTable<'_>, fields: &[&str]) {
         for (key, _) in table.iter().filter(|(key, _)| !fields.contains(&key.get_ref().as_ref())) {
             let name = key.get_ref();
@@ -184,7 +176,7 @@ impl<'n, 'a> Reader<'n, 'a> {
         }
     }
 
-    /// The entries of a structure: its existing keys, and stand-ins for missing keys that it needs.
+    /// The existing keys, and stand-ins for missing keys that the structure needs.
     fn entries(&self, fields: &'static [&'static str]) -> Vec<(&'a str, Node<'a>)> {
         let Some(table) = self.table() else {
             self.unfit("a table", &[]);
@@ -200,7 +192,7 @@ impl<'n, 'a> Reader<'n, 'a> {
                 continue;
             }
             entries.push((field, Node::StandIn));
-            // A key that is misspelt is not reported as missing as well.
+            // A misspelt key is not also reported as missing.
             let misspelt = table.keys().any(|key| {
                 let name = key.get_ref();
                 !fields.contains(&name.as_ref()) && nearest(name, fields.iter().copied()) == Some(*field)
@@ -216,10 +208,9 @@ impl<'n, 'a> Reader<'n, 'a> {
     }
 }
 
-/// The text of a stand-in.
 const STAND_IN: &str = "?";
 
-/// A value as text for messages.
+/// For messages.
 fn said(value: &DeValue<'_>) -> String {
     match value {
         DeValue::String(text) => format!("{text:?}"),
@@ -319,7 +310,7 @@ impl<'de> de::Deserializer<'de> for Reader<'_, 'de> {
         })
     }
 
-    /// A table whose keys are names: every key is an entry.
+    /// Keys are names: every key is an entry.
     fn deserialize_map<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Stop> {
         let entries: Vec<_> = match self.table() {
             Some(table) => {
@@ -347,7 +338,7 @@ impl<'de> de::Deserializer<'de> for Reader<'_, 'de> {
         visitor.visit_enum(StrDeserializer::new(word.copied().unwrap_or(STAND_IN)))
     }
 
-    /// Read an entry that is a whole number or a text.
+    /// A whole number or a text.
     fn deserialize_any<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Stop> {
         match self.value() {
             Some(DeValue::String(text)) => visitor.visit_str(text),
@@ -385,7 +376,7 @@ impl<'a> MapAccess<'a> for Entries<'_, 'a> {
     }
 }
 
-/// The elements of an array, extended with stand-ins to a length.
+/// With stand-ins up to a length.
 struct Elements<'n, 'a> {
     reader: Reader<'n, 'a>,
     array: &'a [Spanned<DeValue<'a>>],
