@@ -1,5 +1,5 @@
-//! An operator works on a live run: stops it, commands it, presses an emergency stop, restarts it, and lets the job
-//! continue. The same inputs from the log give the same bits.
+//! An operator stops a live run, commands it, restarts it after an emergency stop, and lets the job continue. The same
+//! inputs from the log give the same bits.
 
 use std::{
     ffi::OsStr,
@@ -21,10 +21,8 @@ use sessions::operator::{Client, ClientError};
 use tempfile::TempDir;
 use whole_system_tests::{copy, rcs_run, root};
 
-/// Twenty times real time: a tick takes 2 ms.
-const SPEED: u8 = 20;
-/// Time limit of each action.
-const PATIENCE: Duration = Duration::from_secs(60);
+const SPEED: u8 = 20; // times real time: 2 ms per tick
+const PATIENCE: Duration = Duration::from_secs(60); // of each action
 
 fn unused_name() -> RunName {
     static COUNT: AtomicU64 = AtomicU64::new(0);
@@ -32,7 +30,7 @@ fn unused_name() -> RunName {
     format!("operated-{}-{count}", std::process::id()).parse().unwrap()
 }
 
-/// A run in a thread, and its directory.
+/// In a thread.
 struct Cell {
     directory: TempDir,
     name: RunName,
@@ -75,7 +73,7 @@ impl Cell {
     }
 }
 
-/// Send each line; all must be accepted.
+/// All lines must be accepted.
 fn ask(client: &mut Client, lines: &[&str]) {
     for line in lines {
         let answer = client.ask(line).unwrap();
@@ -83,7 +81,7 @@ fn ask(client: &mut Client, lines: &[&str]) {
     }
 }
 
-/// Wait until the status contains a text. Returns the last status.
+/// Returns the last status.
 fn wait_for(client: &mut Client, text: &str) -> String {
     let begun = Instant::now();
     loop {
@@ -108,7 +106,7 @@ fn wait_ticks(client: &mut Client, ticks: u64) {
     }
 }
 
-/// Request the continuation of the job until the present command has ended.
+/// Until the present command has ended.
 fn go_on(client: &mut Client) {
     let begun = Instant::now();
     while let Err(why) = client.ask("job go").unwrap() {
@@ -127,7 +125,7 @@ fn outcomes(outcome: &RunOutcome) -> Vec<(&str, &'static str)> {
     outcome.steps.iter().map(|step| (bare(&step.text), step.outcome.text())).collect()
 }
 
-/// Assert that the inputs of the log, replayed in fast clock, lead to the same bits.
+/// The inputs of the log, replayed in fast clock, lead to the same bits.
 fn assert_repeats(outcome: &RunOutcome, log: &PathBuf, directory: &TempDir) {
     assert_repeats_with(|config| config, outcome, log, directory);
 }
@@ -201,7 +199,7 @@ fn operator_restarts_the_robot_after_an_emergency_stop_and_the_job_continues() {
     ask(&mut client, &["release pedestal"]);
     for key in ["fault-reset", "hydraulics enable", "manual on", "align", "auto", "cycle-start"] {
         let begun = Instant::now();
-        // The controller accepts a key after the effect of the previous one is complete.
+        // A key is accepted after the effect of the previous one is complete.
         while let Err(why) = client.ask(&format!("panel {key}")).unwrap() {
             assert!(begun.elapsed() < PATIENCE, "{key}: {why}");
             thread::sleep(Duration::from_millis(20));
@@ -217,7 +215,7 @@ fn operator_restarts_the_robot_after_an_emergency_stop_and_the_job_continues() {
     assert_repeats(&outcome, &log, &directory);
 }
 
-/// Repeat a request until it is accepted.
+/// Repeats a request until it is accepted.
 fn ask_until(client: &mut Client, line: &str, meanwhile: &str) {
     let begun = Instant::now();
     while let Err(why) = client.ask(line).unwrap() {
@@ -226,7 +224,7 @@ fn ask_until(client: &mut Client, line: &str, meanwhile: &str) {
     }
 }
 
-/// `^C`, `GO`, `.R`, PRIM-LEVEL and LINE-LOAD (IV.2.6, IV.3): the log gives the same run, on one board and on five.
+/// IV.2.6, IV.3, on one board and on five.
 #[test]
 fn boards_are_stopped_executed_and_started_again() {
     let cell = Cell::start(TO_SAFE_AND_HOME, |config| config);
@@ -251,14 +249,12 @@ fn boards_are_stopped_executed_and_started_again() {
     let (outcome, log, directory) = cell.end();
     assert!(outcome.is_finished(), "{:?}\n{:?}", outcome.result.failure, outcomes(&outcome));
     assert_repeats(&outcome, &log, &directory);
-    // Each board is a process.
-    let program = rcs_run().to_path_buf();
+    let program = rcs_run().to_path_buf(); // each board is a process
     let split = |config| RunConfig { boards: Boards::Split, program, ..config };
     assert_repeats_with(split, &outcome, &log, &directory);
 }
 
-/// `<=` and DB-DONE (IV.2.6, IV.3.2): values are written into suspended processes. The log contains the old and the
-/// new value, and gives the same run on one board and on five.
+/// `<=` and DB-DONE (IV.2.6, IV.3.2), on one board and on five. The log contains the old and the new value.
 #[test]
 fn values_are_written_into_suspended_processes() {
     let cell = Cell::start(TO_SAFE_AND_HOME, |config| config);
@@ -302,13 +298,12 @@ fn values_are_written_into_suspended_processes() {
     assert_repeats_with(split, &outcome, &log, &directory);
 }
 
-/// LOAD (IV.2.4): a block takes effect with the next command, and the log contains its text.
+/// LOAD (IV.2.4): the log contains the text.
 #[test]
 fn a_block_is_loaded_during_a_run() {
     load_during_a_run(Boards::One);
 }
 
-/// The block reaches every board before the generation takes effect.
 #[test]
 fn a_block_is_loaded_by_boards_of_other_processes() {
     load_during_a_run(Boards::Split);
@@ -331,8 +326,7 @@ fn load_during_a_run(boards: Boards) {
     ask(&mut client, &["PAUSE"]);
     let refused = client.ask("load 21000 999").unwrap().unwrap_err();
     assert!(refused.contains("a command is executed") || refused.contains("no block 999"), "{refused}");
-    // Line 5 is new: PAUSE.
-    let text = std::fs::read_to_string(data.join("commands.blk")).unwrap();
+    let text = std::fs::read_to_string(data.join("commands.blk")).unwrap(); // line 5 is new: PAUSE
     let safe = "== MOVE -- +0 -- 0 +0 SAFE 0 -- 0\n";
     let longer = format!("{safe}== PAUSE -- +0 -- 0 +0 -- 0 -- 0");
     std::fs::write(data.join("commands.blk"), text.replace(safe, &longer)).unwrap();
@@ -354,7 +348,7 @@ fn load_during_a_run(boards: Boards) {
     }
 }
 
-/// `run JOB`: a job of the data directory replaces the rest of the waiting one; the log contains its text.
+/// `run JOB`: the log contains the text of the job.
 #[test]
 fn another_job_replaces_the_rest_of_the_waiting_one() {
     let place = tempfile::tempdir().unwrap();
@@ -395,7 +389,7 @@ fn another_job_replaces_the_rest_of_the_waiting_one() {
     assert_repeats_with(|config| RunConfig { stand_by: true, ..config }, &outcome, &log, &directory);
 }
 
-/// Repeat a request until it is refused for this reason.
+/// Repeats a request until it is refused for this reason.
 fn ask_until_refused(client: &mut Client, line: &str, why: &str) {
     let begun = Instant::now();
     loop {
@@ -422,7 +416,7 @@ fn stand_by_job_starts_when_permitted_and_ends_with_its_failure_if_unattended() 
     assert_repeats_with(|config| RunConfig { stand_by: true, ..config }, &outcome, &log, &directory);
 }
 
-/// A command that a job could not contain is refused with the text that the job would give.
+/// The request could not be in a job.
 #[test]
 fn request_gets_the_verdict_of_a_job_line() {
     let cell = Cell::start(TO_SAFE_AND_HOME, |config| RunConfig { stand_by: true, ..config });
@@ -436,7 +430,6 @@ fn request_gets_the_verdict_of_a_job_line() {
     assert!(cell.end().0.result.failure.is_none());
 }
 
-/// Data with an error do not prevent the start of a run on stand-by, nor commands that do not use them.
 #[test]
 fn stand_by_starts_with_wrong_data_and_refuses_only_their_commands() {
     let data = tempfile::tempdir().unwrap();
@@ -456,7 +449,7 @@ fn stand_by_starts_with_wrong_data_and_refuses_only_their_commands() {
     assert!(cell.end().0.result.failure.is_none());
 }
 
-/// IV.1 step 3, at the panel of the rotary table's controller; the table has calibrated itself before.
+/// IV.1 step 3; the table has calibrated itself before.
 #[test]
 fn the_rotary_table_is_started_up_at_its_panel() {
     let stand_by = |config| RunConfig { stand_by: true, ..config };
@@ -490,13 +483,12 @@ fn the_rotary_table_is_started_up_at_its_panel() {
     assert_repeats_with(stand_by, &outcome, &log, &directory);
 }
 
-/// The joystick box as the controller reads it: frame, stick, knob.
+/// As the controller reads it: frame, stick, knob.
 fn joystick(run: &Attached) -> (u8, (i16, i16), u16) {
     let shown = run.external().unwrap().devices.joystick;
     (shown.frame, (shown.x, shown.y), shown.velocity)
 }
 
-/// Wait for a state of the box. Returns it.
 fn wait_for_box(run: &Attached, wanted: impl Fn((u8, (i16, i16), u16)) -> bool) {
     let begun = Instant::now();
     while !wanted(joystick(run)) {
@@ -507,7 +499,6 @@ fn wait_for_box(run: &Attached, wanted: impl Fn((u8, (i16, i16), u16)) -> bool) 
 
 const HELD: [&str; 3] = ["joystick velocity 0", "joystick frame WORLD", "joystick stick 0 300 36000"];
 
-/// A motion by hand ends with its session, however that ends; the log gives the same run.
 #[test]
 fn motion_by_hand_ends_with_its_session() {
     let stand_by = |config| RunConfig { stand_by: true, ..config };
@@ -516,7 +507,7 @@ fn motion_by_hand_ends_with_its_session() {
     wait_for(&mut watcher, "the job waits");
     let run = Attached::open(&cell.name).unwrap();
     let is_free = |shown| shown == (0, (0, 0), 0);
-    // `leave`, while the session remains. On a busy machine the session may be silent for too long before.
+    // The session remains. On a busy machine it may be silent for too long before.
     let mut anna = cell.client("anna");
     let begun = Instant::now();
     loop {
@@ -533,14 +524,12 @@ fn motion_by_hand_ends_with_its_session() {
     wait_for_box(&run, is_free);
     let status = wait_for(&mut watcher, "anna commands");
     assert!(status.contains("connected 2: watcher, anna"), "{status}");
-    // The end of the connection.
-    ask(&mut anna, &HELD);
+    ask(&mut anna, &HELD); // the end of the connection
     drop(anna);
     wait_for(&mut watcher, "nobody commands");
     wait_for_box(&run, is_free);
     ask(&mut watcher, &["joystick velocity 1000"]);
-    // Until all processes have read that the box is off.
-    wait_ticks(&mut watcher, 50);
+    wait_ticks(&mut watcher, 50); // all processes have read that the box is off
     go_on(&mut watcher);
     drop(watcher);
     let (outcome, log, directory) = cell.end();
@@ -591,7 +580,7 @@ fn sessions_with_equal_names_do_not_command_at_the_same_time() {
     assert_repeats(&outcome, &log, &directory);
 }
 
-/// A request without a limit, or after its limit, is executed only if it is a stop.
+/// Without a limit, or after its limit.
 #[test]
 fn expired_request_is_executed_only_if_it_stops() {
     let cell = Cell::start(TO_SAFE_AND_HOME, |config| config);
@@ -621,7 +610,7 @@ fn expired_request_is_executed_only_if_it_stops() {
     assert_repeats(&outcome, &log, &directory);
 }
 
-/// `rcs-run send` times out while a signal has stopped the run; the run continues and discards the command.
+/// `rcs-run send` times out while a signal has stopped the run.
 #[test]
 fn a_command_to_a_stopped_run_is_discarded_on_resume() {
     let directory = tempfile::tempdir().unwrap();
@@ -745,7 +734,6 @@ fn run_can_exclude_operators() {
     }
 }
 
-/// A run in the fast clock with a log and the inputs of another one.
 fn repeated(
     directory: &TempDir,
     change: impl FnOnce(RunConfig) -> RunConfig,

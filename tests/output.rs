@@ -1,5 +1,4 @@
-//! Output of the programs: JSON has each key once, text of files contains no terminal commands, and display units
-//! change only texts.
+//! JSON has each key once, text of files contains no terminal commands, and display units change only texts.
 
 use std::{
     collections::BTreeSet,
@@ -11,8 +10,7 @@ use std::{
 use serde::de::{Deserialize, Deserializer, MapAccess, SeqAccess, Visitor};
 use whole_system_tests::{Scratch, rcs_console, rcs_log, rcs_run, root};
 
-/// A JSON value in which no object has a key twice.
-struct Strict;
+struct Strict; // no object has a key twice
 
 impl<'de> Deserialize<'de> for Strict {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
@@ -80,14 +78,14 @@ fn text(bytes: &[u8]) -> String {
     String::from_utf8_lossy(bytes).into_owned()
 }
 
-/// Standard output of a program, for any exit status.
+/// For any exit status.
 fn stdout(scratch: &Scratch, program: &Path, arguments: &[&str], units: &str) -> String {
     let output = run_in(scratch, program, arguments, units);
     assert!(!output.stdout.is_empty(), "{arguments:?}: {}", text(&output.stderr));
     text(&output.stdout)
 }
 
-/// A directory with the logs `a.mcap` of a failing run and `b.mcap` of a short one.
+/// The logs `a.mcap` of a failing run and `b.mcap` of a short one.
 fn with_logs(name: &str) -> Scratch {
     let scratch = Scratch::new(name);
     let missing = root().join("data/faults/blank-missing.toml");
@@ -142,7 +140,7 @@ fn every_json_output_has_each_key_once() {
     }
 }
 
-/// The subcommands whose JSON the test above reads. Others need a robot at a port or a run.
+/// Other subcommands need a robot at a port or a run.
 #[test]
 fn the_list_of_json_outputs_is_complete() {
     let page = fs::read_to_string(root().join("docs/cli.md")).expect("the page is there");
@@ -176,8 +174,7 @@ fn the_list_of_json_outputs_is_complete() {
     assert_eq!(with_json.into_iter().collect::<Vec<_>>(), known);
 }
 
-/// A terminal sequence that sets the window title, one that clears the screen in one byte of ISO 6429, and a mark
-/// that reverses the following text.
+/// Sets the window title, clears the screen in one byte of ISO 6429, and reverses the following text.
 const COMMANDS: &str = "\u{1b}]0;title\u{7}\u{9b}2J\u{202e}";
 
 fn assert_plain(arguments: &[&str], output: &Output) {
@@ -226,7 +223,7 @@ fn text_of_files_reaches_a_terminal_without_control_characters() {
     }
 }
 
-/// The quantities of a text with a unit, in order: lengths with a decimal point.
+/// In order; lengths have a decimal point.
 fn quantities(text: &str, unit: &str) -> Vec<f64> {
     let words: Vec<&str> = text.split_whitespace().collect();
     let is_unit = |word: &str| word.trim_end_matches([',', ';', ')', '.', ':']) == unit;
@@ -295,8 +292,7 @@ fn lengths_are_typed_in_the_units_of_the_person() {
         assert_eq!(output.status.code(), Some(2), "{}", text(&output.stdout));
         text(&output.stderr)
     };
-    // The part is too wide: 4.00 in.
-    let (inches, millimetres) = (new("in", "3x4x1"), new("mm", "76.2x101.6x25.4"));
+    let (inches, millimetres) = (new("in", "3x4x1"), new("mm", "76.2x101.6x25.4")); // too wide: 4.00 in
     assert!(inches.contains("this one is 4.00 in wide"), "{inches}");
     assert!(millimetres.contains("this one is 101.6 mm wide"), "{millimetres}");
     assert_eq!(new("mm", "3inx4inx1in"), millimetres);

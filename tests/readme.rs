@@ -1,14 +1,11 @@
-//! The samples of README and tutorials match the programs: each `console` block is run as written, one after the
-//! other in one directory.
-//!
-//! `...` matches any lines, and at the end of a line its rest. Numbers that depend on the machine are treated as
-//! equal.
+//! The `console` blocks of README and tutorials are run as written, one after the other. `...` matches any lines, and
+//! at the end of a line its rest. Numbers that depend on the machine are equal.
 
 use std::{fs, os::unix::fs::symlink, process::Command as Process};
 
 use whole_system_tests::{Scratch, rcs_log, rcs_run, root};
 
-/// A line on any machine: times of the controller and of the wall clock are removed.
+/// Without times of the controller and of the wall clock.
 fn comparable(line: &str) -> String {
     let depends = match line.split_once(';') {
         Some((times, _)) if line.starts_with("controller ") => times.len(),
@@ -23,7 +20,7 @@ fn comparable(line: &str) -> String {
         .collect()
 }
 
-/// Assert that these lines are in the output, in order, and adjacent except at `...`.
+/// In order, and adjacent except at `...`.
 fn assert_shown(command: &str, expected: &[&str], output: &str) {
     let mut lines = output.lines().map(comparable);
     let mut gap = false;
@@ -42,7 +39,7 @@ fn assert_shown(command: &str, expected: &[&str], output: &str) {
     assert!(gap || lines.next().is_none(), "`{command}` prints more than the sample:\n{output}");
 }
 
-/// The words of a command; a text between apostrophes is one word.
+/// A text between apostrophes is one word.
 fn words(command: &str) -> Vec<String> {
     let mut words = vec![String::new()];
     let mut quoted = false;
@@ -57,7 +54,7 @@ fn words(command: &str) -> Vec<String> {
     words
 }
 
-/// The process of a command: a program of this workspace, or one of the shell's.
+/// A program of this workspace, or one of the shell's.
 fn process(command: &str) -> Process {
     let Some(rest) = command.strip_prefix("cargo run --release") else {
         let mut shell = Process::new("sh");
@@ -69,13 +66,13 @@ fn process(command: &str) -> Process {
         Some(("", arguments)) => (rcs_run(), arguments),
         _ => (rcs_run(), rest),
     };
-    // Both outputs in one stream, in the order of a terminal.
+    // Both outputs in one stream, as on a terminal.
     let mut process = Process::new("sh");
     process.args(["-c", r#"exec "$0" "$@" 2>&1"#]).arg(program).args(words(arguments));
     process
 }
 
-/// Run the samples of a page in a directory with the shipped data and viewers. Returns their number.
+/// With the shipped data and viewers. Returns the number of samples.
 fn run_samples(page: &str) -> usize {
     let text = fs::read_to_string(root().join(page)).expect("the page is there");
     let scratch = Scratch::new("samples");

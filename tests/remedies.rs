@@ -1,8 +1,6 @@
-//! Every remedy works (docs/reasons.md): each scenario produces a failure in the simulated cell, follows the remedy
-//! of its reason with the means of an operator, and the job finishes.
-//!
-//! The scenarios run in the fast clock: a request is executed after a tick and visible in the next one, as in a
-//! session.
+//! Every remedy of docs/reasons.md works: a scenario produces the failure in the simulated cell, follows the remedy
+//! with the means of an operator, and the job finishes. In the fast clock a request is executed after a tick and
+//! visible in the next one, as in a session.
 
 use std::fs;
 
@@ -19,13 +17,11 @@ use sessions::operator::Event;
 use tempfile::TempDir;
 use whole_system_tests::root;
 
-/// Time limit of each action, ticks: 16 minutes of the robot's time.
-const LIMIT: u32 = 24_000;
+const LIMIT: u32 = 24_000; // per action: 16 minutes of the robot's time
 const WHO: &str = "anna";
 
 struct Operated {
-    /// `None` after its end.
-    run: Option<Run>,
+    run: Option<Run>, // `None` after its end
     _directory: TempDir,
 }
 
@@ -79,7 +75,7 @@ impl Operated {
         answer
     }
 
-    /// Run one tick that must not end the run.
+    /// The tick must not end the run.
     fn step(&mut self, what: &str) {
         if !self.run.as_mut().unwrap().step() {
             self.panic_at_the_end(what);
@@ -91,7 +87,7 @@ impl Operated {
         panic!("{what}: the run has ended at tick {}: {}", outcome.result.ticks, story(&outcome));
     }
 
-    /// Send each line; all must be accepted.
+    /// All lines must be accepted.
     fn please(&mut self, lines: &[&str]) -> &mut Self {
         for line in lines {
             if let Err(why) = self.ask(line) {
@@ -108,7 +104,6 @@ impl Operated {
         self
     }
 
-    /// Run ticks until a condition holds.
     fn until(&mut self, what: &str, holds: impl Fn(&CommonMemory) -> bool) -> &mut Self {
         for _ in 0..LIMIT {
             if holds(self.memory()) {
@@ -119,7 +114,7 @@ impl Operated {
         panic!("{what}: not by tick {}", self.tick());
     }
 
-    /// Wait until the job waits; a sent command has then ended.
+    /// A sent command has then ended.
     fn until_it_waits(&mut self) -> &mut Self {
         for _ in 0..LIMIT {
             let status = self.ask("status").unwrap();
@@ -131,7 +126,7 @@ impl Operated {
         panic!("the job continues at tick {}", self.tick());
     }
 
-    /// Wait until the command fails for a reason.
+    /// Waits until the command fails for a reason.
     fn fails(&mut self, reason: Reason) -> &mut Self {
         self.until_it_waits();
         let status = self.memory().task.status;
@@ -141,14 +136,14 @@ impl Operated {
         self
     }
 
-    /// Send a command and wait for its end.
+    /// Waits for the end of the command.
     fn send(&mut self, command: &str) -> (HwsReport, Reason) {
         self.please(&[command]).wait(4).until_it_waits();
         let status = self.memory().task.status;
         (status.report, status.reason)
     }
 
-    /// Send commands, each of which must finish.
+    /// Each command must finish.
     fn does(&mut self, commands: &[&str]) -> &mut Self {
         for command in commands {
             assert_eq!(self.send(command), (HwsReport::Finished, Reason::None), "{command}");
@@ -156,7 +151,7 @@ impl Operated {
         self
     }
 
-    /// Let the job continue, once the present command has ended.
+    /// After the present command.
     fn go(&mut self) -> &mut Self {
         for _ in 0..LIMIT {
             match self.ask("job go") {
@@ -167,15 +162,14 @@ impl Operated {
         panic!("job go is refused");
     }
 
-    /// Assert that the job finishes with every part where its last command should have left it.
+    /// Every part is where its last command should have left it.
     fn finishes(self) -> RunOutcome {
         let outcome = self.ends();
         assert!(outcome.is_finished(), "{}", story(&outcome));
         outcome
     }
 
-    /// Assert that all lines of the job finish. A part that the operator took from the gripper falls in the simulated
-    /// cell, so the check of the parts reports it.
+    /// All lines finish. A part that the operator took from the gripper falls, which the check of the parts reports.
     fn finishes_without_the_part(self) {
         let outcome = self.ends();
         let last = outcome.steps.last().map(|step| step.outcome.text());
@@ -198,22 +192,21 @@ impl Operated {
     }
 }
 
-/// The failure of a run, and its lines.
 fn story(outcome: &RunOutcome) -> String {
     let steps: Vec<_> = outcome.steps.iter().map(|step| (&step.text, step.outcome)).collect();
     format!("{:?}\n{steps:#?}", outcome.result.failure)
 }
 
-/// The blank is brought to the vise and stays in the hand.
+/// And stays in the hand.
 const TO_VISE: &str = "** tray UNIT_1 4 LINKBAR1_BH 0 0 0
 ** vise partial PFIXTURE
 == MOVE LINKBAR1_BH +2 UNIT_1 4 +2 PFIXTURE 0 -- 0
 ";
-/// A shaft is brought from the tray to the turning machine, with the v-gripper.
+/// From the tray to the turning machine, with the v-gripper.
 const SHAFT: &str = "** tray UNIT_2 7 SHAFT_BH
 == TRANSFER SHAFT_BH +1 UNIT_2 7 +1 V-VFIXTURE 0 HOME 0
 ";
-/// The robot rests at HOME for 4 s, then moves to SAFE.
+/// After 4 s at HOME.
 const TO_SAFE: &str = "** wait 100\n== MOVE -- 0 -- 0 0 SAFE 0 -- 0\n";
 const TO_HOME: &str = "** tray UNIT_1 4 LINKBAR1_BH 0 0 0
 == MOVE LINKBAR1_BH +2 UNIT_1 4 +2 PFIXTURE 0 -- 0
@@ -222,13 +215,11 @@ const TO_HOME: &str = "** tray UNIT_1 4 LINKBAR1_BH 0 0 0
 const HOME: &str = "MOVE -- +0 -- 0 +0 HOME 0 -- 0";
 const LEAVE: &str = "== POSITION -- +0 -- 0 +0 HOME 0 -- 0\n";
 
-/// True while E-move executes a command.
 fn executes(memory: &CommonMemory, verb: EmoveVerb) -> bool {
     let (order, status) = (&memory.subtask.emove, &memory.emove.status);
     order.command == verb && status.echo == order.number && status.report == StatusReport::Executing
 }
 
-/// True while the pedestal executes a command.
 fn turns(memory: &CommonMemory) -> bool {
     let (order, status) = (&memory.subtask.pedestal, &memory.pedestal.status);
     order.command == PedestalVerb::Flip
@@ -236,7 +227,6 @@ fn turns(memory: &CommonMemory) -> bool {
         && status.report == PedestalReport::Executing
 }
 
-/// The remedy "switch the frame at the joystick box off".
 #[test]
 fn active_joystick_is_switched_off() {
     let mut it = Operated::start(TO_SAFE);
@@ -246,7 +236,6 @@ fn active_joystick_is_switched_off() {
     it.finishes();
 }
 
-/// The remedy "press Hold again ... at the robot controller's panel".
 #[test]
 fn a_disabled_link_restarts_with_hold() {
     let mut it = Operated::start(TO_SAFE);
@@ -255,20 +244,18 @@ fn a_disabled_link_restarts_with_hold() {
     it.finishes();
 }
 
-/// The remedy "send the command that places the held object".
 #[test]
 fn gripper_that_holds_another_object_places_it_first() {
     let job = format!(
         "** tray UNIT_1 3 LCLEVIS_BH 0 0 0\n{TO_VISE}== ACQUIRE LCLEVIS_BH +2 UNIT_1 3 +0 -- 0 -- 0\n"
     );
-    // The check of the paths would find before the run that the held object meets the other one.
+    // The check of the paths would find that the held object meets the other one.
     let mut it = Operated::with(&job, "", |config| RunConfig { unchecked: true, ..config });
     it.fails(Reason::AlreadyHolding);
     it.does(&["TRANSFER LINKBAR1_BH +2 UNIT_1 4 +2 UNIT_1 4 -- 0"]).go();
     it.finishes();
 }
 
-/// First half of the remedy of an object held without support.
 #[test]
 fn object_held_in_mid_air_is_placed_with_transfer() {
     let mut it = Operated::start(&format!("{TO_HOME}{LEAVE}"));
@@ -277,7 +264,6 @@ fn object_held_in_mid_air_is_placed_with_transfer() {
     it.finishes();
 }
 
-/// Second half: the operator takes it.
 #[test]
 fn object_held_in_mid_air_is_released_by_hand() {
     let mut it = Operated::start(&format!("{TO_HOME}{LEAVE}"));
@@ -306,7 +292,7 @@ fn object_in_an_open_vise_is_released_after_the_vise_is_closed() {
     assert_eq!(outcome.result.parts[0].location, "PFIXTURE");
 }
 
-/// The same remedy if the operator looks at the vise: the log contains the confirmation.
+/// The operator looks at the vise: the log contains the confirmation.
 #[test]
 fn object_in_a_vise_is_released_after_a_confirmation() {
     let mut it = Operated::start(&format!("{TO_VISE}{LEAVE}"));
@@ -323,14 +309,13 @@ fn is_held_at_home(memory: &CommonMemory) -> bool {
         && status.at.is_some_and(|at| at.site.location.as_str() == "HOME")
 }
 
-/// Delete the name of the held object.
+/// Of the held object.
 fn without_name(it: &mut Operated) {
     it.please(&["board 2 stop"]).wait(4).please(&["write emove.estimates.held NONE"]).wait(4);
     it.please(&["board 2 go"]).wait(8);
     assert_eq!(it.memory().emove.status.held, Holding::Something);
 }
 
-/// The remedy "hold the object, send `confirm by hand`, then POSITION ...".
 #[test]
 fn unknown_object_is_taken_out_by_hand_and_put_back() {
     let mut it = Operated::start(&format!(
@@ -345,7 +330,6 @@ fn unknown_object_is_taken_out_by_hand_and_put_back() {
     it.finishes_without_the_part();
 }
 
-/// The remedy "hold what the gripper may hold, send `confirm by hand`, then POSITION ...".
 #[test]
 fn gripper_without_calibration_is_opened_by_hand() {
     let mut it = Operated::start(&format!(
@@ -360,7 +344,6 @@ fn gripper_without_calibration_is_opened_by_hand() {
     it.finishes_without_the_part();
 }
 
-/// The remedy "send the commands that must precede it, or correct the job".
 #[test]
 fn tool_command_waits_for_the_command_before_it() {
     let mut it = Operated::start(
@@ -403,14 +386,13 @@ fn clevis() -> String {
     fs::read_to_string(root().join("data/jobs/clevis.job")).unwrap()
 }
 
-/// The clevis with its part in the pedestal's hand alone, while the table turns; the command is interrupted.
+/// Its part is in the pedestal's hand alone, while the table turns; the command is interrupted.
 fn flipping() -> Operated {
     let mut it = Operated::start(&clevis());
     it.until("the table turns", turns).wait(10).please(&["PAUSE"]).until_it_waits();
     it
 }
 
-/// The remedy "send the command that regrips the part again; ...".
 #[test]
 fn part_in_the_pedestal_is_regripped_by_the_command_sent_again() {
     let mut it = Operated::start(&clevis());
@@ -423,7 +405,7 @@ fn part_in_the_pedestal_is_regripped_by_the_command_sent_again() {
     it.finishes();
 }
 
-/// The other half: the robot is clear and empty, so it leaves; an operator takes the part out of the hand.
+/// The robot is clear and empty, so it leaves.
 #[test]
 fn part_in_the_pedestal_is_released_by_hand() {
     let mut it = flipping();
@@ -453,7 +435,7 @@ fn robot_clear_of_the_pedestal_leaves_and_the_regrip_continues() {
     it.finishes();
 }
 
-/// The remedy "look at the part in the pedestal's hand: name it with `write subtask.regrip`, ...".
+/// By `write subtask.regrip`.
 #[test]
 fn part_in_the_pedestal_is_named_by_the_person() {
     let mut it = flipping();
@@ -464,7 +446,7 @@ fn part_in_the_pedestal_is_named_by_the_person() {
     it.finishes();
 }
 
-/// An operator turns the table back and forth; the regrip continues from the angle.
+/// The regrip continues from the angle.
 #[test]
 fn regrip_continues_after_a_person_turned_the_table() {
     let mut it = flipping();
@@ -477,7 +459,7 @@ fn regrip_continues_after_a_person_turned_the_table() {
     it.finishes();
 }
 
-/// The remedy "hold the part, send `pedestal release by hand`, ...; the next PRE-GRIP calibrates the table".
+/// By `pedestal release by hand`; the next PRE-GRIP calibrates the table.
 #[test]
 fn table_without_a_known_angle_is_calibrated_after_the_part_is_taken_out() {
     let mut it = flipping();
@@ -493,7 +475,7 @@ fn table_without_a_known_angle_is_calibrated_after_the_part_is_taken_out() {
     it.finishes_without_the_part();
 }
 
-/// The remedies of a robot in the drum: repeat the command, and RELEASE-TOOL without a tool.
+/// RELEASE-TOOL without a tool.
 #[test]
 fn release_tool_moves_the_robot_out_of_an_empty_drum() {
     let mut it = Operated::start(
@@ -521,7 +503,6 @@ fn robot_in_the_drum_continues_with_the_tool_command() {
     it.finishes();
 }
 
-/// The remedy "send the command that changes the gripper again".
 #[test]
 fn gripper_change_continues_with_the_same_command() {
     let mut it =
@@ -535,7 +516,6 @@ fn gripper_change_continues_with_the_same_command() {
     it.finishes();
 }
 
-/// The remedy "send the interrupted command again".
 #[test]
 fn seat_motion_continues_with_the_same_command() {
     let job = fs::read_to_string(root().join("data/jobs/linkbar.job")).unwrap();
@@ -552,7 +532,6 @@ fn seat_motion_continues_with_the_same_command() {
     it.finishes();
 }
 
-/// The remedy "correct what the sensor meets, or the sensor itself".
 #[test]
 fn gripper_change_continues_after_the_eye_of_the_holster_is_repaired() {
     let job = "** drum tool DRILL-2\n== ACQUIRE-TOOL DRILL-2 +1 -- 0 +1 TOOL-SAFE 0 -- 0\n";
@@ -566,7 +545,6 @@ kind = \"off\"\nsensor = \"holster.right.large-2\"\nfrom = 0\nuntil = 4000\n";
     it.finishes();
 }
 
-/// The remedy "send the right command, then `job skip`; correct the job".
 #[test]
 fn wrong_command_is_replaced_by_the_right_one() {
     let mut it = Operated::start(
@@ -584,7 +562,6 @@ fn wrong_command_is_replaced_by_the_right_one() {
     it.finishes();
 }
 
-/// The remedy "send the command that releases the object again": the air fails during the opening.
 #[test]
 fn release_without_air_is_completed_by_the_command_sent_again() {
     let job = fs::read_to_string(root().join("data/jobs/linkbar.job")).unwrap();
@@ -598,7 +575,6 @@ fn release_without_air_is_completed_by_the_command_sent_again() {
     it.finishes();
 }
 
-/// The remedy "check where the robot is and what holds it, then send PAUSE, which adopts its position".
 #[test]
 fn robot_off_its_path_continues_after_a_pause_that_adopts_its_position() {
     let faults = "[[fault]]\nkind = \"stuck\"\nsensor = \"resolver.elbow\"\nfrom = 200\nuntil = 400\n";
@@ -609,7 +585,7 @@ fn robot_off_its_path_continues_after_a_pause_that_adopts_its_position() {
     it.finishes();
 }
 
-/// A fault plan with valves that are stuck open.
+/// The valves are stuck open.
 fn stuck_open(valves: &[&str], from: u64, until: u64) -> String {
     let fault = |valve: &&str| {
         format!(
@@ -619,8 +595,7 @@ fn stuck_open(valves: &[&str], from: u64, until: u64) -> String {
     valves.iter().map(fault).collect()
 }
 
-/// The remedy "take the object away, and put it back at the command's source location": the gripper opens during the
-/// motion, and the blank falls to the floor.
+/// The gripper opens during the motion, and the blank falls to the floor.
 #[test]
 fn lost_object_is_fetched_again_from_its_source() {
     let faults = stuck_open(&["grip.open-coarse", "grip.supply"], 1700, 1760);
@@ -630,7 +605,6 @@ fn lost_object_is_fetched_again_from_its_source() {
     it.finishes_without_the_part();
 }
 
-/// The remedy "put the object farther from the edge of its tray".
 #[test]
 fn object_at_the_edge_of_its_tray_is_moved_to_the_middle() {
     let mut it = Operated::start(&TO_VISE.replace("0 0 0", "0 400 0"));
@@ -641,8 +615,7 @@ fn object_at_the_edge_of_its_tray_is_moved_to_the_middle() {
     it.finishes();
 }
 
-/// The remedy "take the object out of the pedestal, and put it back at its place": the hand opens while the table
-/// turns. The first place of the part is the tray, from which the whole job starts again.
+/// The hand opens while the table turns. The whole job starts again from the tray.
 #[test]
 fn object_lost_by_the_pedestal_is_delivered_again() {
     let faults = stuck_open(&["pedestal.open-coarse", "pedestal.supply"], 5700, 5760);
@@ -652,7 +625,6 @@ fn object_lost_by_the_pedestal_is_delivered_again() {
     it.finishes_without_the_part();
 }
 
-/// The remedy "check the sensors and the air of the pedestal's hand".
 #[test]
 fn hand_of_the_pedestal_calibrates_after_its_potentiometer_is_repaired() {
     let faults =
@@ -664,7 +636,7 @@ fn hand_of_the_pedestal_calibrates_after_its_potentiometer_is_repaired() {
     it.finishes();
 }
 
-/// The remedy "put the gripper into its holster": the v-gripper is missing when the shaft is fetched.
+/// The v-gripper is missing when the shaft is fetched.
 #[test]
 fn missing_gripper_is_fetched_after_its_return_to_the_holster() {
     let mut it = Operated::start(SHAFT);
@@ -675,7 +647,7 @@ fn missing_gripper_is_fetched_after_its_return_to_the_holster() {
     it.finishes();
 }
 
-/// The remedy "empty the holster": the tool gripper hangs in the holster of the parts gripper.
+/// The tool gripper hangs in the holster of the parts gripper.
 #[test]
 fn gripper_is_put_away_after_its_holster_was_emptied() {
     let mut it = Operated::start(SHAFT);
@@ -686,7 +658,7 @@ fn gripper_is_put_away_after_its_holster_was_emptied() {
     it.finishes();
 }
 
-/// Reasons with the scenario of their remedy; other reasons share the text.
+/// Other reasons share the text.
 const SCENARIOS: &[(Reason, &str)] = &[
     (Reason::JoystickOn, "active_joystick_is_switched_off"),
     (Reason::LinkOff, "a_disabled_link_restarts_with_hold"),
@@ -716,7 +688,7 @@ const SCENARIOS: &[(Reason, &str)] = &[
     (Reason::HandNotCalibrated, "hand_of_the_pedestal_calibrates_after_its_potentiometer_is_repaired"),
 ];
 
-/// Remedies without a scenario here, and the reason.
+/// With the reason for no scenario here.
 const ELSEWHERE: &[(Reason, &str)] = &[
     (Reason::UnknownObject, "a block is corrected and loaded in tests/operator.rs"),
     (Reason::UnknownStart, "tests/jobs.rs and tests/operator.rs move the robot with the joystick box"),

@@ -1,7 +1,5 @@
-//! The log of any run replays: jobs with random seeds and random faults on the line, cut off after random ticks.
-//!
-//! An ordinary test run tries a few; `RCS_REPLAYS=30` tries as many, as in `.ci/run`, and `RCS_REPLAYS_FROM=N` starts
-//! with seed N. A failure names its seed for repetition.
+//! The log of any run replays: jobs with random seeds and faults on the line, cut off after random ticks.
+//! `RCS_REPLAYS=30` sets the number, `RCS_REPLAYS_FROM=N` the first seed. A failure names its seed.
 
 use std::{
     env,
@@ -15,9 +13,8 @@ use record::{Log, golden, replay};
 use whole_system_tests::{Outcome, run_with};
 
 const FEW: u64 = 4;
-/// Jobs, used in turn.
-const JOBS: [&str; 4] = ["linkbar", "clevis", "turned-part", "tool-change"];
-/// Kinds of faults with a rate at which the run continues for a while.
+const JOBS: [&str; 4] = ["linkbar", "clevis", "turned-part", "tool-change"]; // in turn
+/// The run continues for a while at these rates.
 const FAULTS: [(&str, f64); 7] = [
     ("flip", 2e-4),
     ("drop", 1e-4),
@@ -43,7 +40,7 @@ fn number(name: &str) -> Option<u64> {
         .map(|text| text.parse().unwrap_or_else(|_| panic!("{name} is a number, found {text:?}")))
 }
 
-/// A fault plan of up to three faults; none in a third of the cases.
+/// Up to three faults; none in a third of the cases.
 fn plan(numbers: &mut Numbers, seed: u64) -> Option<String> {
     let count = numbers.below(3) + numbers.below(2);
     let mut text = format!("seed = {seed}\n");
@@ -71,7 +68,7 @@ fn outcome_of(seed: u64) -> Outcome {
     })
 }
 
-/// Run, replay, compare; and the same with a golden of the log.
+/// Replays the log and a golden of it, and compares.
 fn check(seed: u64) {
     let outcome = outcome_of(seed);
     let report = replay(&outcome.log).unwrap_or_else(|error| panic!("seed {seed}: {error}"));

@@ -1,5 +1,4 @@
-//! Runs of the whole system in one program. Each program takes a while to link, and programs run one after the other.
-//! Only tests of the same program use all processors while one of them waits.
+//! Runs of the whole system in one program: only its tests use all processors while one of them waits.
 
 mod boards;
 mod command_lines;

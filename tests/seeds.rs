@@ -1,12 +1,12 @@
-//! The shipped jobs finish for any sensor noise and any places of random parts. Linkbar and clevis also finish from
-//! every sector that data/README.md declares suitable for random parts.
+//! The shipped jobs finish for any sensor noise and places of random parts; linkbar and clevis from every suitable
+//! sector of data/README.md.
 //!
 //! ```text
 //! RCS_SEEDS=20 cargo test --release -p whole-system-tests --test runs seeds -- --nocapture
 //! ```
 //!
-//! runs each with the seeds 1 to 20 and prints a table (docs/evidence.md); without the variable, three are run with
-//! seed 1.
+//! runs each with the seeds 1 to 20 and prints a table (docs/evidence.md); without the variable, three run with seed
+//! 1.
 
 use std::{
     env, fs, iter,
@@ -18,13 +18,13 @@ use whole_system_tests::{Scratch, root, run};
 
 const JOBS: [&str; 7] =
     ["linkbar", "clevis", "turned-part", "tool-change", "shift", "vise-and-back", "brush"];
-/// Jobs with a randomly placed part, its sector, and the other suitable sectors (data/README.md).
+/// Job, its sector, and the other suitable sectors (data/README.md).
 const RANDOM: [(&str, &str, &[&str]); 2] = [
     ("linkbar", "UNIT_1 4", &["UNIT_1 1", "UNIT_1 2", "UNIT_1 3", "UNIT_2 1", "UNIT_2 2"]),
     ("clevis", "UNIT_1 3", &["UNIT_1 1", "UNIT_1 2", "UNIT_1 4"]),
 ];
 
-/// A job and the sector of its random part: the shipped one, or another.
+/// A job, and the sector of its random part.
 #[derive(Clone, Copy)]
 struct Kind {
     job: &'static str,
@@ -36,7 +36,7 @@ impl Kind {
         self.sector.map_or_else(|| self.job.to_owned(), |[_, to]| format!("{} from {to}", self.job))
     }
 
-    /// The reason why a run with a seed has not finished, if any.
+    /// Why a run with a seed has not finished.
     fn fails(&self, seed: u64) -> Option<String> {
         let outcome = match self.sector {
             None => run(self.job, seed, "seeds", |_| {}),
@@ -62,7 +62,7 @@ fn kinds() -> Vec<Kind> {
     shipped.into_iter().chain(sectors).collect()
 }
 
-/// Run seeds of each kind on two threads. Returns the kinds that have not finished, with the reason.
+/// On two threads. Returns the kinds that have not finished, with the reason.
 fn failed(kinds: &[Kind], seeds: usize) -> Vec<(usize, String)> {
     let next = AtomicUsize::new(0);
     let work = || {

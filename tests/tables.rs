@@ -1,10 +1,7 @@
-//! Decision tables in the sources: their rows and columns.
-//!
-//! [`aligned`] arranges the rows of all tables of a file in columns: the number, the conditions, `=>` with the
-//! action, `->` with the next step. In adjacent rows with the same variables, the variables are in columns too. A
-//! line has at most [`WIDEST`] columns. If the alignment makes a row wider, the variables are not aligned. If that is
-//! not enough, the rows with the longest conditions leave the columns. A row that is still wider has its action in a
-//! second line.
+//! Rows and columns of decision tables in the sources. [`aligned`] arranges the number, the conditions, `=>` with the
+//! action, and `->` with the next step in columns, and the variables of adjacent rows with the same ones. A line has
+//! at most [`WIDEST`] columns. If a row becomes wider, variables are not aligned; then the rows with the longest
+//! conditions leave the columns; a still wider row has its action in a second line.
 
 use std::{
     fs, io,
@@ -13,30 +10,22 @@ use std::{
 };
 
 pub const WIDEST: usize = 110;
-/// The word of a row without conditions.
-pub const OTHERWISE: &str = "otherwise";
-/// The first line of a table.
+pub const OTHERWISE: &str = "otherwise"; // a row without conditions
+/// First line of a table.
 const BEGIN: &str = "decision_table! {";
 
-/// A row: `4: held: Right | Wrong, work: Over => Release -> Releasing;`.
+/// `4: held: Right | Wrong, work: Over => Release -> Releasing;`
 #[derive(Clone, Debug)]
 pub struct Row {
-    /// Its lines in the file, from 0.
-    pub lines: Range<usize>,
-    /// Its text in one line.
-    pub text: String,
+    pub lines: Range<usize>, // in the file, from 0
+    pub text: String,        // in one line
     pub indent: String,
-    /// Number of its group; the rows between two braces form one.
-    pub group: usize,
-    /// The only step of the group, if there is exactly one.
-    pub only_step: Option<String>,
+    pub group: usize,              // the rows between two braces
+    pub only_step: Option<String>, // of the group, if there is one
     pub number: String,
-    /// The alternatives of each state variable.
-    pub conditions: Vec<(String, Vec<String>)>,
-    /// The action with its argument.
-    pub action: String,
-    /// The next step, if it changes.
-    pub next: Option<String>,
+    pub conditions: Vec<(String, Vec<String>)>, // alternatives of each state variable
+    pub action: String,                         // with its argument
+    pub next: Option<String>,                   // if it changes
 }
 
 impl Row {
@@ -72,7 +61,7 @@ impl Row {
         })
     }
 
-    /// The row in one line, without columns.
+    /// Without columns.
     #[must_use]
     pub fn write(&self) -> String {
         let next = self.next.as_ref().map_or_else(String::new, |next| format!(" -> {next}"));
@@ -87,18 +76,15 @@ fn condition((name, values): &(String, Vec<String>)) -> String {
 #[derive(Debug)]
 pub struct Table {
     pub file: PathBuf,
-    /// Its name, `MOV_TO_LOC`.
-    pub name: String,
-    /// Its lines, from 0, from `decision_table! {` to the closing brace.
-    pub lines: Range<usize>,
+    pub name: String,        // `MOV_TO_LOC`
+    pub lines: Range<usize>, // from `decision_table! {` to the closing brace, from 0
     pub head: usize,
     pub rows: Vec<Row>,
-    /// Its steps, by their names in the groups of rows.
-    pub steps: Vec<String>,
+    pub steps: Vec<String>, // as named by the groups of rows
 }
 
 impl Table {
-    /// All tables of a file, including those in comments and in code blocks of a page.
+    /// Also those in comments and in code blocks of a page.
     #[must_use]
     pub fn read(file: &Path, text: &str) -> Vec<Self> {
         let mut tables = Vec::<Self>::new();
@@ -152,13 +138,13 @@ impl Table {
     }
 }
 
-/// The step of a group of rows with exactly one.
+/// The step of a group with exactly one.
 fn only(steps: &[String]) -> Option<&String> {
     let [step] = steps else { return None };
     Some(step).filter(|step| *step != "any")
 }
 
-/// All files with an extension under a directory. Fails if a directory cannot be listed.
+/// Under a directory. Fails if a directory cannot be listed.
 pub fn files(directory: &Path, extension: &str, found: &mut Vec<PathBuf>) -> io::Result<()> {
     for entry in fs::read_dir(directory)? {
         let path = entry?.path();
@@ -171,7 +157,7 @@ pub fn files(directory: &Path, extension: &str, found: &mut Vec<PathBuf>) -> io:
     Ok(())
 }
 
-/// The text of a file with the rows of all its tables in columns.
+/// With the rows of all its tables in columns.
 #[must_use]
 pub fn aligned(text: &str) -> String {
     let tables = Table::read(Path::new(""), text);
@@ -187,7 +173,7 @@ pub fn aligned(text: &str) -> String {
     lines.join("\n") + "\n"
 }
 
-/// The lines of the rows of a table in columns.
+/// The lines of a table's rows.
 fn in_columns(rows: &[Row]) -> Vec<Vec<String>> {
     let in_one_line: Vec<String> = rows.iter().map(conditions).collect();
     let mut in_variables = vec![String::new(); rows.len()];
@@ -219,8 +205,7 @@ fn conditions(row: &Row) -> String {
     row.conditions.iter().map(condition).collect::<Vec<_>>().join(", ")
 }
 
-/// Append the conditions of rows from condition `at` on. Adjacent rows with equal variables so far have the next
-/// variable in one column.
+/// Appends the conditions from `at` on. Adjacent rows with equal variables so far have the next one in a column.
 fn align_variables(rows: &[Row], at: usize, texts: &mut [String]) {
     let name = |row: &Row| row.conditions.get(at).map(|(name, _)| name.clone());
     let mut first = 0;
@@ -248,8 +233,8 @@ fn align_variables(rows: &[Row], at: usize, texts: &mut [String]) {
     }
 }
 
-/// Rows with their actions in a column after `column` characters of conditions. Longer conditions leave the columns;
-/// an action that does not fit after them has its own line.
+/// Actions begin after `column` characters. Longer conditions leave the columns; an action that does not fit has its
+/// own line.
 fn written(rows: &[Row], conditions: &[String], column: usize) -> Vec<Vec<String>> {
     let number = rows.iter().map(|row| row.number.len() + 1).max().unwrap_or_default();
     let continued = rows.iter().filter(|row| row.next.is_some());

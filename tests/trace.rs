@@ -1,9 +1,6 @@
-//! Traces: the behaviour of a run as text, independent of the layout of records and of the numbers of tables and
-//! rows.
-//!
-//! A golden contains digests of byte images: a new layout of a record, or a new number of a row, changes all of them,
-//! although the controller behaves the same. A trace names each field by its path and writes each value as text.
-//! [`crate::compare`] compares the traces of two versions.
+//! The behaviour of a run as text, independent of the layout of records and of the numbers of tables and rows. A
+//! golden has digests of byte images, which such a change alters. A trace names each field by its path and writes each
+//! value as text; [`crate::compare`] compares the traces of two versions.
 //!
 //! ```text
 //! 1       emove.status.report      idle              tick, path, value; in the first tick all fields,
@@ -12,7 +9,7 @@
 //! end     status                   0                 how the run ended
 //! ```
 //!
-//! The columns are separated by tabs; the file is compressed with zstd (`zstd -dc < NAME.trace`).
+//! The columns are separated by tabs; the file is compressed (`zstd -dc < NAME.trace`).
 
 use std::{
     fs::File,
@@ -36,27 +33,23 @@ use zstd::stream::{read::Decoder, write::Encoder};
 use crate::golden::{Ending, Failed};
 
 pub const EXTENSION: &str = "trace";
-/// Replaces the tick in the lines about the end of the run.
-pub const END: &str = "end";
-/// The number of ticks, a fact of the end.
-pub const TICKS: &str = "ticks";
-/// Last name of the path with the row that fired.
-pub const FIRED: &str = ".fired";
-/// Value of a field that does not exist in this tick, as it belongs to another variant of an enum with data.
+pub const END: &str = "end"; // for a tick, in the lines about the end
+pub const TICKS: &str = "ticks"; // number of ticks, a fact of the end
+pub const FIRED: &str = ".fired"; // ends the path with the row that fired
+/// The field belongs to another variant of an enum with data.
 pub const ABSENT: &str = "-";
 const DEVICE: &str = "device";
-/// Fields of a header that are not written. The stamp is new in every tick, and `age` gives the age of the outputs.
-/// The deciding row is named by numbers, and `fired` names it. The step belongs to the row.
+/// Not written: the stamp is new in every tick (`age` is written), `fired` names the deciding row, and the step
+/// belongs to the row.
 const NOT_WRITTEN: [&str; 3] = ["stamp", "decided", "step"];
 
-/// The path of a scenario's trace in a directory.
+/// Of a scenario.
 #[must_use]
 pub fn path(directory: &Path, scenario: &str) -> PathBuf {
     directory.join(scenario).with_added_extension(EXTENSION)
 }
 
-/// Write the trace of a log. Returns the number of ticks. Errors: [`Failed`] if the log cannot be read or the trace
-/// cannot be written.
+/// Returns the number of ticks. Errors: [`Failed`].
 pub fn write(log: &Log, ending: &Ending, path: &Path) -> Result<u64, Failed> {
     log.check_layout()?;
     let failed = |source| Failed::File { path: path.to_owned(), source };
@@ -82,7 +75,6 @@ pub fn write(log: &Log, ending: &Ending, path: &Path) -> Result<u64, Failed> {
     Ok(ticks)
 }
 
-/// Open a trace for reading. Fails if the file cannot be opened.
 pub fn open(path: &Path) -> io::Result<impl BufRead + use<>> {
     Ok(BufReader::with_capacity(1 << 20, Decoder::new(File::open(path)?)?))
 }
@@ -97,7 +89,7 @@ pub struct Tracer<W> {
     ticks: u64,
 }
 
-/// The byte images of a record in this tick and in the previous one.
+/// In this tick and in the previous one.
 struct Images {
     was: Option<Vec<u8>>,
     is: Vec<u8>,
@@ -108,7 +100,7 @@ impl Images {
         Self { was: None, is: Vec::new() }
     }
 
-    /// Store the record of this tick, and write its changes.
+    /// Stores a record, and writes its changes.
     fn change<T: Plain>(&mut self, record: &T, prefix: &str, visit: &mut Visit<'_>) -> io::Result<()> {
         self.is.resize(T::SIZE, 0);
         record.encode(&mut Writer::new(&mut self.is));
@@ -127,13 +119,13 @@ impl<W: Write> Tracer<W> {
         Self { out, headers, memory: Images::new(), devices: Images::new(), decided, ticks: 0 }
     }
 
-    /// Write the changes of a tick. Errors: an error of the file.
+    /// Writes the changes of a tick.
     pub fn tick(&mut self, tick: Tick, memory: &CommonMemory) -> io::Result<()> {
         let Self { out, .. } = self;
         let mut line = |path: &str, value: &str| writeln!(out, "{tick}\t{path}\t{}", plain(value));
         self.memory.change(memory, "", &mut line)?;
         self.devices.change::<DeviceOutputs>(&memory.device_outputs(), DEVICE, &mut line)?;
-        // `change` has moved the image of this tick to the place of the previous one.
+        // `change` has moved the image of this tick to the previous one.
         let image = self.memory.was.as_deref().unwrap_or_default();
         for (place, decided) in self.headers.iter().zip(&mut self.decided) {
             let header = place.read(image);
@@ -150,7 +142,7 @@ impl<W: Write> Tracer<W> {
         Ok(())
     }
 
-    /// Write the end of the run. Returns the writer. Errors: an error of the file.
+    /// Writes the end. Returns the writer.
     pub fn finish(mut self, ending: &Ending) -> io::Result<W> {
         let status = ending.status.map_or("a signal".to_owned(), |status| status.to_string());
         let last_line = without_rows(&ending.last_line);
@@ -162,16 +154,13 @@ impl<W: Write> Tracer<W> {
     }
 }
 
-/// Receives the path and the value of a field.
-type Visit<'a> = dyn FnMut(&str, &str) -> io::Result<()> + 'a;
+type Visit<'a> = dyn FnMut(&str, &str) -> io::Result<()> + 'a; // path and value of a field
 
-/// Visits the fields whose bytes differ between `was` and `is`, or all fields of `is` without `was`.
-///
-/// This `match` is the only place in traces for a new kind of [`Schema`]:
-/// * An option: `none`, or the value. An option of a record is an enum with data, `none` or `some`.
-/// * An enum with data: the text of the variant as the value of `path`, its fields below `path`. When the
-///   variant changes, each field that only the variant before had gets the value [`ABSENT`], and the fields
-///   of the new variant are visited with `was` as none. The comparison takes a field that was never written
+/// Visits the fields that differ between `was` and `is`, or all of `is` without `was`. This `match` is the only place
+/// in traces for a new kind of [`Schema`]:
+/// * An option: `none`, or the value; of a record, an enum with data, `none` or `some`.
+/// * An enum with data: the text of the variant at `path`, its fields below. A field that only the previous variant
+///   had gets [`ABSENT`], as does a field that was never written; those of the new variant are visited without `was`.
 ///   for [`ABSENT`] too.
 fn changes(
     schema: &Schema,
@@ -185,7 +174,7 @@ fn changes(
     }
     match schema {
         Schema::Struct(record) => record_changes(record, path, was, is, visit),
-        // Bytes are one word: a frame on the line, not 64 numbers.
+        // One word: a frame on the line, not 64 numbers.
         Schema::Array(of, _) if **of == Schema::U8 => visit(path, &hex(is)),
         Schema::Array(of, _) => {
             let size = of.size();
@@ -233,7 +222,7 @@ fn changes(
     }
 }
 
-/// An option or an enum with data: `text` at `path` for a new variant, then its data.
+/// `text` at `path` for a new variant, then its data.
 fn carried_changes(
     text: &str,
     carried: impl Fn(u8) -> Option<Schema>,
@@ -299,7 +288,7 @@ fn hex(bytes: &[u8]) -> String {
     bytes.iter().map(|byte| format!("{byte:02X}")).collect()
 }
 
-/// The row that a header names, by the name of its table. The only place that knows how a header names a row.
+/// The only place that knows how a header names a row.
 fn fired(place: &HeaderPlace, header: &Header) -> String {
     let Some(Decided { table, row }) = header.decided else { return "none".into() };
     match place.process.table(table) {
@@ -308,8 +297,7 @@ fn fired(place: &HeaderPlace, header: &Header) -> String {
     }
 }
 
-/// A sentence without its rows: `the gripper is stuck (table position, row 2: clock Expired => Fail(Stuck))`
-/// becomes `the gripper is stuck`.
+/// `the gripper is stuck (table position, row 2: clock Expired => Fail(Stuck))` becomes `the gripper is stuck`.
 fn without_rows(sentence: &str) -> String {
     let mut rest = sentence;
     let mut text = String::new();
@@ -329,7 +317,7 @@ fn without_rows(sentence: &str) -> String {
     text + rest
 }
 
-/// A value without tabs and ends of lines, which separate values.
+/// Tabs and ends of lines separate values.
 fn plain(value: &str) -> String {
     let escape = |letter: char| match letter.is_control() {
         true => letter.escape_default().to_string(),

@@ -1,4 +1,4 @@
-//! Traces and their comparison: a trace contains every change, and the comparison finds every difference.
+//! A trace contains every change, and the comparison finds every difference.
 
 use interfaces::{CommonMemory, Decided, Reason, emove::Holding};
 use rcs_core::{name::Name16, tick::Tick};
@@ -10,7 +10,7 @@ use whole_system_tests::{
 
 const END: &str = "end\tticks\t9\nend\tstatus\t0\n";
 
-/// A trace of lines with blanks instead of tabs, and its end.
+/// Lines have blanks instead of tabs.
 fn trace(lines: &[&str]) -> String {
     let tabs = |line: &&str| line.replacen(' ', "\t", 2) + "\n";
     lines.iter().map(tabs).collect::<String>() + END
@@ -232,7 +232,7 @@ fn unused_entries_are_named() {
     assert_eq!(rows.unused(&renames), ["renamed x to y", "value of b: \"1\" to \"one\""]);
 }
 
-/// The lines of a trace of two ticks.
+/// Of two ticks.
 fn traced(change: impl FnOnce(&mut CommonMemory)) -> (Vec<String>, Vec<String>) {
     let mut tracer = Tracer::new(Vec::new());
     let mut memory = CommonMemory::default();

@@ -1,5 +1,5 @@
-//! `rcs-log why` on provoked failures: it must find the first cause, and report the commands before it with their
-//! rows, the sensed values, and the path of the failure up the ladder.
+//! `rcs-log why` finds the first cause, and reports the commands before it with rows and sensed values, and the path
+//! of the failure up the ladder.
 
 #![expect(clippy::print_stdout, reason = "its output is for readers")]
 
@@ -8,7 +8,7 @@ use std::process::Command;
 use serde_json::Value;
 use whole_system_tests::{Outcome, Scratch, rcs_log, rcs_run, root, run, run_with};
 
-/// The report of `why` about a log, for programs and for readers.
+/// For programs, and for readers.
 fn why(outcome: &Outcome) -> (Value, String) {
     let ask = |arguments: &[&str]| {
         let output = Command::new(rcs_log())
@@ -25,13 +25,12 @@ fn why(outcome: &Outcome) -> (Value, String) {
     (serde_json::from_str(&ask(&["--json"])).expect("one JSON object"), text)
 }
 
-/// Names of the processes in a list of links, in order.
+/// The processes in a list of links, in order.
 fn processes(links: &Value) -> Vec<&str> {
     links.as_array().into_iter().flatten().filter_map(|link| link["process"].as_str()).collect()
 }
 
-/// Assert a failure whose text contains all of `said`, whose first cause begins with the process, and whose commands
-/// lead there.
+/// The text contains all of `said`, the first cause begins with the process, and the commands lead there.
 fn assert_explained(outcome: &Outcome, first: &str, commanders: &[&str], said: &[&str]) {
     let (answer, text) = why(outcome);
     let failure = &answer["failure"];
@@ -181,7 +180,7 @@ fn a_resting_process_fires_no_row() {
     assert_eq!(at(ended - 100), (None, None, None), "the robot moves");
 }
 
-/// A pose before all others, which changes the numbers of all others.
+/// It is before all others, and changes their numbers.
 const ADDED_POSE: &str = "       0    -5022      736
        0    -7145    -1383
     3000    -7145    -1383   -pose-   ...         NEW-POS
@@ -226,7 +225,7 @@ fn missed_grasp_names_the_forms_of_its_object() {
         new.args(["new", "part", "HINGE", "--size", "3x1.5x1", "--like", "LCLEVIS", "--write", "--data"]);
         let output = new.arg(&data).output().expect("rcs-run can be started");
         assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-        // The grip of the half-finished part is off the part, so that the fingers close on nothing.
+        // The grip is off the half-finished part, so that the fingers close on nothing.
         let path = data.join("objects/hinge.blk");
         let text = std::fs::read_to_string(&path).expect("the forms are written");
         let missed = text.replacen("1 t 67 49 140 -mtb- HINGE-3", "1 t 67 400 140 -mtb- HINGE-3", 1);

@@ -1,5 +1,5 @@
-//! The list of table chains in docs/design/tables.md matches the sources.
-//! `RCS_PAGES=write cargo test --release --workspace --test pages chains` writes it.
+//! docs/design/tables.md lists the chains of the sources. `RCS_PAGES=write cargo test --release --workspace --test
+//! pages chains` writes it.
 
 use std::{collections::BTreeMap, env, fs, path::PathBuf};
 
@@ -8,7 +8,7 @@ use whole_system_tests::{root, tables::files};
 const PAGE: &str = "docs/design/tables.md";
 const HEAD: &str = "| process | commands | tables in their order |\n|---|---|---|\n";
 
-/// The names of tables by function, for [`chains`]: `e_pause` of `e_pause` is `E-PAUSE`.
+/// By function: `e_pause` of `e_pause` is `E-PAUSE`.
 fn names(sources: &[(PathBuf, String)]) -> BTreeMap<(PathBuf, String), String> {
     let mut names = BTreeMap::new();
     for (path, text) in sources {
@@ -21,7 +21,7 @@ fn names(sources: &[(PathBuf, String)]) -> BTreeMap<(PathBuf, String), String> {
     names
 }
 
-/// The entries with `then` of all `commands!`, as rows of the list.
+/// Entries with `then` of all `commands!`, as rows.
 fn chains(sources: &[(PathBuf, String)]) -> Vec<String> {
     let names = names(sources);
     let mut rows = Vec::new();

@@ -1,5 +1,5 @@
-//! The rows of all decision tables are in columns.
-//! `RCS_TABLES=write cargo test --release -p whole-system-tests --test pages columns` aligns them.
+//! Rows of decision tables are in columns: `RCS_TABLES=write cargo test --release -p whole-system-tests --test pages
+//! columns`.
 
 use std::{env, fs, path::PathBuf};
 
@@ -43,7 +43,7 @@ fn rows_of_tables_are_in_columns() {
     );
 }
 
-/// The rows of a table with steps, in columns.
+/// The rows of a table with steps.
 fn columns(rows: &str) -> Vec<String> {
     let text =
         format!("decision_table! {{\n    pub TURN: fn turn(Situation) -> Action {{\n{rows}\n    }}\n}}\n");

@@ -1,4 +1,4 @@
-//! The pages: no link is broken, and every page is in the table of contents. No source is too long.
+//! No link is broken, every page is in the table of contents, and no source is too long.
 
 use std::{
     collections::BTreeSet,
@@ -16,7 +16,7 @@ mod words;
 
 const PLACES: [&str; 9] = [".", "docs", "docs/design", "data", "crates", "bins", "benches", "fuzz", "tests"];
 
-/// Every page of the repository: those in [`PLACES`] and in their direct subdirectories.
+/// Those in [`PLACES`] and in their direct subdirectories.
 fn pages() -> BTreeSet<PathBuf> {
     let entries = |directory: &Path| {
         let entries = fs::read_dir(directory).expect("the directory is there");
@@ -31,7 +31,6 @@ fn pages() -> BTreeSet<PathBuf> {
     pages
 }
 
-/// The text outside of code blocks.
 fn prose(text: &str) -> String {
     let mut inside = false;
     let outside = |line: &&str| {
@@ -42,12 +41,12 @@ fn prose(text: &str) -> String {
     text.lines().filter(outside).collect::<Vec<_>>().join("\n")
 }
 
-/// The targets of links `[text](target)`.
+/// The targets of `[text](target)`.
 fn links(text: &str) -> Vec<&str> {
     text.split("](").skip(1).filter_map(|rest| rest.split_once(')')).map(|(target, _)| target).collect()
 }
 
-/// The anchors of a page's headings, as the web page of a repository generates them.
+/// As the web page of a repository makes them.
 fn anchors(text: &str) -> BTreeSet<String> {
     let headings = text.lines().filter(|line| line.starts_with('#'));
     let anchor = |heading: &str| {
@@ -95,10 +94,9 @@ fn every_page_is_in_the_contents_once() {
 }
 
 const WIDEST: usize = 110;
-/// Generated pages.
 const WRITTEN: [&str; 2] = ["traceability.md", "cli.md"];
 
-/// True if a line may be wider: a table, an indented block, a link, a picture, the name of a test.
+/// A table, an indented block, a link, a picture, the name of a test.
 fn may_be_wide(line: &str) -> bool {
     line.starts_with(['|', '#'])
         || line.starts_with("    ")
@@ -118,10 +116,9 @@ fn prose_is_within_110_columns() {
     assert!(wide.is_empty(), "lines of more than {WIDEST} columns:\n{}", wide.join("\n"));
 }
 
-/// Maximum number of lines of a source, without comments, blank lines and tests.
-const LONGEST: usize = 400;
+const LONGEST: usize = 400; // lines, without comments, blank lines and tests
 
-/// Every source of crates and programs, without tests and benchmarks.
+/// Crates and programs, without tests and benchmarks.
 fn sources() -> Vec<PathBuf> {
     let (mut open, mut sources) = (vec![root().join("crates"), root().join("bins")], Vec::new());
     while let Some(directory) = open.pop() {
@@ -138,7 +135,7 @@ fn sources() -> Vec<PathBuf> {
     sources
 }
 
-/// Lines of code of a source. An item under `#[cfg(test)]` ends with a `;` or a brace at its own indentation.
+/// An item under `#[cfg(test)]` ends with a `;` or a brace at its own indentation.
 fn lines_of_code(text: &str) -> usize {
     let mut lines = text.lines();
     let mut count = 0;

@@ -1,18 +1,16 @@
-//! Paths of the repository in the text of pages exist.
-
 use std::fs;
 
 use whole_system_tests::root;
 
 use super::{pages, prose};
 
-/// Directories of the repository. Runs and builds make others.
+/// Runs and builds make other directories.
 const TRACKED: [&str; 12] = [
     "benches", "bins", "crates", "data", "docs", "examples", "fuzz", "gateway", "python", "tests", "tools",
     "viewers",
 ];
 
-/// True if a text in back quotes names a file or directory of the repository. A part in capitals is a placeholder.
+/// A file or directory of the repository, in back quotes. A part in capitals is a placeholder.
 fn is_path(text: &str) -> bool {
     let is_of_path = |c: char| c.is_ascii_alphanumeric() || matches!(c, '/' | '.' | '-' | '_');
     let mut parts = text.split('/');

@@ -1,5 +1,5 @@
-//! No type of a control process shares its name with a type of another one, so a name in a compiler message, an
-//! import or a search identifies the process.
+//! Types of different control processes have different names, so that a name in a message or search identifies the
+//! process.
 
 use std::{
     collections::{BTreeMap, BTreeSet},
@@ -9,11 +9,11 @@ use std::{
 
 use whole_system_tests::{root, tables::files};
 
-/// Each process has these, and `commands!` and `Process` need these names. The module identifies the process.
+/// `commands!` and `Process` need these names; the module identifies the process.
 const IN_EACH_PROCESS: [&str; 7] =
     ["Action", "Request", "Situation", "State", "StateVariables", "Step", "Subordinates"];
 
-/// The public types that a source defines outside of its tests.
+/// Outside of the tests.
 fn types(text: &str) -> impl Iterator<Item = &str> {
     let (text, _) = text.split_once("#[cfg(test)]\nmod tests {").unwrap_or((text, ""));
     text.lines().filter_map(|line| {

@@ -1,4 +1,4 @@
-//! The project's word list: no page and no comment uses a phrase of docs/words.toml.
+//! No page and no comment uses a phrase of docs/words.toml.
 
 use std::{fs, path::Path};
 
@@ -16,15 +16,14 @@ struct Words {
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Word {
-    /// Phrases of whole words in lower case.
-    avoid: Vec<String>,
+    avoid: Vec<String>, // whole words in lower case
     better: String,
     why: String,
     #[serde(default)]
     pages_only: bool,
 }
 
-/// Words in lower case, separated and enclosed by single spaces. A `-` belongs to a word.
+/// In lower case, separated and enclosed by single spaces. A `-` belongs to a word.
 fn normalized(text: &str) -> String {
     let is_of_word = |c: char| c.is_alphanumeric() || matches!(c, '\'' | '-' | '_');
     let words = text.split(|c| !is_of_word(c)).filter(|word| !word.is_empty()).map(str::to_lowercase);
@@ -35,14 +34,13 @@ fn without_code(text: &str) -> String {
     text.split('`').step_by(2).collect::<Vec<_>>().join("CODE")
 }
 
-/// The comments of a source, including the text after `//` in a string literal.
+/// Includes the text after `//` in a string literal.
 fn comments(source: &str) -> String {
     let texts = source.lines().filter_map(|line| line.split_once("//").map(|(_, comment)| comment));
     texts.collect::<Vec<_>>().join("\n")
 }
 
 impl Word {
-    /// Each avoided phrase in a normalized text, as a message.
     fn in_text<'a>(&'a self, path: &'a Path, text: &'a str) -> impl Iterator<Item = String> + 'a {
         let found = self.avoid.iter().filter(move |phrase| text.contains(&format!(" {phrase} ")));
         found.map(move |phrase| {

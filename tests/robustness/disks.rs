@@ -9,16 +9,14 @@ use crate::{
 
 const TICKS: u64 = 400;
 
-/// A limit: its name, the shell's commands that set it before the run with `SIZE` kilobytes, and the largest size to
-/// try.
+/// Name, shell commands with `SIZE` kilobytes before the run, and largest size to try.
 const LIMITS: [(&str, &str, u64); 3] = [
-    // The shell uses blocks of 512 bytes.
-    ("a limit of N KB on files", "ulimit -f $((2 * SIZE))", 2_000),
+    ("a limit of N KB on files", "ulimit -f $((2 * SIZE))", 2_000), // the shell uses blocks of 512 bytes
     ("a disk of N KB for the log", "mkdir disk && mount -t tmpfs -o size=SIZEk tmpfs disk", 600),
     ("N KB of shared memory", "mkdir disk && mount -t tmpfs -o size=SIZEk tmpfs /dev/shm", 3_000),
 ];
 
-/// Run under a limit; the run must finish or report the reason.
+/// The run must finish or report the reason.
 fn attempt(commands: &str, size: u64, boards: &str) -> Outcome {
     let scratch = Scratch::new("disks");
     let ticks = TICKS.to_string();

@@ -1,7 +1,5 @@
-//! Damaged logs: for any bytes of a file, `rcs-log` answers or gives a reason, within a gigabyte of memory.
-//!
-//! In half of the logs bytes change. In the others messages change in chunks with correct checksums, as only an
-//! intruder would write.
+//! Damaged logs: `rcs-log` answers or gives a reason, within a gigabyte of memory. In half of the logs bytes change;
+//! in the others messages change in chunks with correct checksums, as only an intruder would write.
 
 use std::{
     collections::BTreeMap,
@@ -20,10 +18,9 @@ use whole_system_tests::{Scratch, bench::Ended, rcs_log};
 
 use crate::table::{Chance, Extent, Outcome, Row};
 
-/// Address space of the program, kilobytes.
-const LIMIT: &str = "1048576";
+const LIMIT: &str = "1048576"; // address space, kilobytes
 
-/// Queries of a damaged log: a name, and the arguments before the file.
+/// A name, and the arguments before the file.
 const QUESTIONS: [(&str, &[&str]); 6] = [
     ("info", &["info"]),
     ("replay", &["replay"]),
@@ -54,7 +51,7 @@ fn damage(chance: &mut Chance, bytes: &mut Vec<u8>) {
     }
 }
 
-/// A copy of the log with some damaged messages, in chunks with correct checksums.
+/// Some damaged messages, in chunks with correct checksums.
 fn forged(log: &[u8], whole: &Log, chance: &mut Chance) -> Vec<u8> {
     let mut writer = WriteOptions::new().create(Cursor::new(Vec::new())).expect("a log begins");
     let run = Metadata { name: "rcs-run".into(), metadata: whole.run.clone() };
@@ -81,7 +78,7 @@ fn forged(log: &[u8], whole: &Log, chance: &mut Chance) -> Vec<u8> {
     writer.into_inner().into_inner()
 }
 
-/// `rcs-log` with little memory.
+/// With little memory.
 fn limited(directory: &Path, arguments: &[&str], files: &[&Path]) -> Output {
     let mut command = Command::new("sh");
     command.args(["-c", "ulimit -v \"$0\" && exec \"$@\"", LIMIT]).arg(rcs_log());

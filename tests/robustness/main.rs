@@ -1,4 +1,4 @@
-//! The robustness campaign: it attacks logs, shared memory, readers, signals and disks, and judges each case.
+//! Attacks logs, shared memory, readers, signals and disks, and judges each case.
 //!
 //! ```text
 //! cargo run --release -p whole-system-tests --bin robustness -- --help
@@ -6,8 +6,8 @@
 //! ```
 //!
 //! It prints the number of cases by outcome, and each finding on standard error; with a finding the exit status is 1.
-//! The tests `survival::campaign` run a sample. docs/evidence.md has the sums of all cases. All attacks take place in
-//! a separate `/dev/shm` and `RCS_RUNS`.
+//! The tests `survival::campaign` run a sample; docs/evidence.md has the sums. All attacks take place in a separate
+//! `/dev/shm` and `RCS_RUNS`.
 
 #![expect(clippy::print_stdout, clippy::print_stderr, reason = "a program of the developers, at a terminal")]
 
@@ -88,18 +88,17 @@ impl Part {
         }
     }
 
-    /// Other runs of this user would be harmed by it, or the machine.
+    /// Other runs of this user, or the machine, would be harmed.
     const fn needs_private_memory(self) -> bool {
         matches!(self, Self::Memory | Self::Readers | Self::Disks)
     }
 }
 
-/// Set in a process that has a `/dev/shm` of its own.
-const PRIVATE: &str = "RCS_PRIVATE_MEMORY";
-/// The shell's commands that put a `/dev/shm` of its own before a program.
+const PRIVATE: &str = "RCS_PRIVATE_MEMORY"; // set in a process with its own `/dev/shm`
+/// Shell commands before a program.
 const MOUNT: &str = "mount -t tmpfs -o size=512m,mode=1777 tmpfs /dev/shm && exec \"$@\"";
 
-/// Start a program with a `/dev/shm` of its own; `None` if this user can have none.
+/// `None` if this user can have no `/dev/shm` of its own.
 fn private_memory(scratch: &Scratch) -> Option<Command> {
     let command = |flags: &[&str], program: &Path| {
         let mut command = Command::new("unshare");
@@ -118,8 +117,8 @@ fn private_memory(scratch: &Scratch) -> Option<Command> {
     Some(command)
 }
 
-/// A program started in the background or under `nohup` inherits ignored signals, and so would its children. A signal
-/// with a handler has its default in a new program; these handlers act like the default.
+/// Children would inherit ignored signals, as under `nohup`. A new program has the default of a signal with a handler;
+/// these handlers act like the default.
 fn hear_signals() {
     for signal in [SIGHUP, SIGINT, SIGQUIT] {
         let always = Arc::new(AtomicBool::new(true));

@@ -19,19 +19,17 @@ use crate::{
     table::{Chance, Extent, Outcome, Row},
 };
 
-/// Duration of an attacked run, ticks.
-const TICKS: &str = "100";
-/// Time after which a run has begun.
-const STARTS: Duration = Duration::from_secs(2);
+const TICKS: &str = "100"; // of an attacked run
+const STARTS: Duration = Duration::from_secs(2); // a run has begun
 
-/// Objects with the values of a run, and those that iceoryx2 needs to find them. Its lists of nodes and ports are
-/// excluded: garbage there ends a program, as a signal does.
+/// With those that iceoryx2 needs to find them, but without its lists of nodes and ports: garbage there ends a
+/// program, as a signal does.
 fn values(run: &RunName) -> Vec<PathBuf> {
     let is_value = |path: &PathBuf| path.to_string_lossy().contains("blackboard_");
     traces(run).into_iter().filter(|path| path.is_file() && is_value(path)).collect()
 }
 
-/// All files of a run, including those in its directory.
+/// Includes those in its directory.
 fn files(path: PathBuf) -> Vec<PathBuf> {
     match fs::read_dir(&path) {
         Ok(entries) => entries.flatten().flat_map(|entry| files(entry.path())).collect(),
@@ -44,7 +42,7 @@ fn scribble(file: &mut File, at: u64, bytes: u64, chance: &mut Chance) {
     file.seek(SeekFrom::Start(at)).and_then(|_| file.write_all(&garbage)).expect("it can be written");
 }
 
-/// Fill a file with garbage, truncate it, or leave it.
+/// Fills a file with garbage, truncates it, or leaves it.
 fn damage(path: &Path, chance: &mut Chance) {
     let kind = chance.below(5);
     let Ok(mut file) = File::options().write(true).open(path) else { return };
@@ -61,13 +59,12 @@ fn damage(path: &Path, chance: &mut Chance) {
     }
 }
 
-/// The digest of a run without readers, in fast clock, where the robot does not ramp down after the last tick.
+/// Without readers, in fast clock, where the robot does not ramp down after the last tick.
 fn undisturbed(directory: &Path) -> String {
     let fast = ["--ticks", TICKS, "--log", "none", "--shared-memory", "off"];
     Ended::run(directory, "linkbar", &fast).digest().to_owned()
 }
 
-/// Put garbage into the values of a run until it ends.
 fn garbage_in_values(directory: &Path, boards: &str, expected: &str, chance: &mut Chance) -> Outcome {
     let mut run = start(directory, boards, TICKS, "none");
     drop(run.attach());
@@ -91,7 +88,7 @@ fn garbage_in_values(directory: &Path, boards: &str, expected: &str, chance: &mu
     judge_damaged(&ended)
 }
 
-/// Damage all objects and files of a run, during it or after it was killed.
+/// During the run, or after it was killed.
 fn damage_anywhere(directory: &Path, boards: &str, chance: &mut Chance) -> Outcome {
     let mut run = start(directory, boards, TICKS, "none");
     drop(run.attach());
@@ -105,7 +102,7 @@ fn damage_anywhere(directory: &Path, boards: &str, chance: &mut Chance) -> Outco
     judge_damaged(&ended)
 }
 
-/// Remove the page under the next tick's buffers: the run ends and reports the reason.
+/// Removes the page under the next tick's buffers: the run ends and reports the reason.
 fn cut_short(directory: &Path, boards: &str) -> Outcome {
     let mut run = start(directory, boards, TICKS, "none");
     drop(run.attach());
@@ -122,7 +119,7 @@ fn cut_short(directory: &Path, boards: &str) -> Outcome {
     judge_damaged(&ended)
 }
 
-/// Some runs are killed at once, and their remains are damaged.
+/// Runs are killed at once, and their remains are damaged.
 fn stale(directory: &Path, boards: &str, chance: &mut Chance) -> Outcome {
     let mut runs: Vec<Running> = (0..3).map(|_| start(directory, boards, TICKS, "none")).collect();
     runs.iter_mut().for_each(|run| drop(run.attach()));
@@ -137,8 +134,8 @@ fn stale(directory: &Path, boards: &str, chance: &mut Chance) -> Outcome {
     Outcome::BySignal
 }
 
-/// Damage each new file of a starting run, until its first tick or its end. The run does not wait as long as iceoryx2
-/// may wait.
+/// Each new file of a starting run, until its first tick or its end. The run does not wait as long as iceoryx2 may
+/// wait.
 fn damage_while_it_starts(directory: &Path, boards: &str, chance: &mut Chance) -> Outcome {
     let mut run = start(directory, boards, "30", "none");
     let name = run.name.clone();

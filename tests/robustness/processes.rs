@@ -11,8 +11,7 @@ use std::{
 use clap::ValueEnum;
 use executive::memory::{Attached, RunName};
 
-/// Lifetime of a process that its parent cannot end.
-const LIFE: Duration = Duration::from_secs(120);
+const LIFE: Duration = Duration::from_secs(120); // if its parent cannot end it
 
 /// The attack.
 #[derive(Clone, Copy, Debug, ValueEnum)]
@@ -24,7 +23,7 @@ pub enum Process {
 }
 
 impl Process {
-    /// Start it for a run, and wait until it is active.
+    /// Waits until it is active.
     pub fn start(self, run: &RunName) -> Child {
         let name = self.to_possible_value().expect("no process is skipped");
         let mut child = Command::new(env::current_exe().expect("a program has a path"))

@@ -11,17 +11,15 @@ use crate::{
     table::{Chance, Extent, Outcome, Row},
 };
 
-/// Duration of the run, ticks.
-const TICKS: &str = "100";
-/// Readers that are killed per run.
-const READERS: u64 = 6;
+const TICKS: &str = "100"; // per run
+const READERS: u64 = 6; // killed per run
 
 fn kill(mut reader: Child) {
     reader.kill().expect("it can be killed");
     reader.wait().expect("it is dead");
 }
 
-/// Kill the readers of one run one after the other, and stop one until its end.
+/// One reader after the other is killed; one is stopped until the end.
 fn die_and_hang(directory: &Path, boards: &str, expected: &str, chance: &mut Chance) -> Outcome {
     let mut run = start(directory, boards, TICKS, "none");
     drop(run.attach());

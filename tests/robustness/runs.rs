@@ -7,10 +7,10 @@ use whole_system_tests::bench::{Ended, Running, assert_cleaned, traces, wait_for
 
 use crate::table::Outcome;
 
-/// The ways to run the control processes: the argument, and its name in the table.
+/// The argument, and its name in the table.
 pub const BOARDS: [(&str, &str); 2] = [("one", "one process"), ("split", "five boards")];
 
-/// A run in real time that ends by itself after some ticks.
+/// In real time; it ends by itself.
 pub fn start(directory: &Path, boards: &str, ticks: &str, log: &str) -> Running {
     Running::start(
         directory,
@@ -19,14 +19,14 @@ pub fn start(directory: &Path, boards: &str, ticks: &str, log: &str) -> Running 
     )
 }
 
-/// Wait for the end of a run and of its boards.
+/// With its boards.
 pub fn end(mut run: Running) -> Ended {
     wait_for("the run ends", || run.child.try_wait().expect("a child").is_some());
     wait_for("the boards end", || !lives(&run.name));
     run.end()
 }
 
-/// True if a board of the run is alive: `rcs-run board N --run NAME`.
+/// `rcs-run board N --run NAME`.
 fn lives(run: &RunName) -> bool {
     let is_board = |line: Vec<u8>| {
         let words: Vec<&[u8]> = line.split(|byte| *byte == 0).collect();
@@ -47,8 +47,8 @@ pub fn judge(ended: &Ended) -> Outcome {
     }
 }
 
-/// The outcome of a run with garbage in its iceoryx2 objects, over which the library may panic. During the set-up the
-/// run ends with a message, later by the panic. Destructors meet the same garbage and may panic again.
+/// iceoryx2 may panic over garbage in its objects. During the set-up the run ends with a message, later by the panic.
+/// Destructors may panic again.
 pub fn judge_damaged(ended: &Ended) -> Outcome {
     let mut panics = ended.said.lines().filter(|line| line.contains("panicked at"));
     let Some(first) = panics.next() else { return judge(ended) };
@@ -59,8 +59,7 @@ pub fn judge_damaged(ended: &Ended) -> Outcome {
     }
 }
 
-/// Assert that the next run starts and is visible to readers. By then the remains of the attacked run are gone, and
-/// `clean` finds nothing.
+/// The next run starts and is visible; the remains of the attacked one are gone, and `clean` finds nothing.
 pub fn assert_no_harm(directory: &Path, run: &RunName) {
     let next = Ended::run(directory, "linkbar", &["--ticks", "30", "--log", "none"]);
     assert_eq!((next.status, next.number("ticks")), (Some(0), 30), "the next run: {}", next.said);

@@ -1,5 +1,3 @@
-//! Signals in all phases of a run.
-
 use std::{fs, path::Path, thread, time::Duration};
 
 use record::Log;
@@ -14,7 +12,6 @@ use crate::{
     table::{Chance, Extent, Outcome, Row},
 };
 
-/// Signals, and the outcome of a running run.
 const SIGNALS: [(&str, Signal, Outcome); 7] = [
     ("SIGTERM", Signal::TERM, Outcome::InOrder),
     ("SIGINT", Signal::INT, Outcome::InOrder),
@@ -27,22 +24,16 @@ const SIGNALS: [(&str, Signal, Outcome); 7] = [
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Phase {
-    /// In the first 30 ms of the program, before or after the installation of its handlers.
-    Start,
-    /// As soon as there are buffers to read.
-    WarmUp,
-    /// During the PAUSE at the start of the job.
-    AtRest,
-    /// During the first motion.
-    InMotion,
-    /// After the last tick, while the robot ramps down and the log ends.
-    End,
+    Start,    // in the first 30 ms, before or after the handlers
+    WarmUp,   // once there are buffers to read
+    AtRest,   // in the PAUSE at the start of the job
+    InMotion, // in the first motion
+    End,      // after the last tick: ramp, and end of the log
 }
 
 const PHASES: [Phase; 5] = [Phase::Start, Phase::WarmUp, Phase::AtRest, Phase::InMotion, Phase::End];
 
 impl Phase {
-    /// Duration of the run, ticks.
     const fn ticks(self) -> &'static str {
         match self {
             Self::Start => "30",
@@ -79,7 +70,7 @@ impl Phase {
     }
 }
 
-/// Permit a core file; false if the system forbids it or writes it elsewhere.
+/// False if the system forbids a core file or writes it elsewhere.
 fn allow_core(run: &Running) -> bool {
     let pattern = fs::read_to_string("/proc/sys/kernel/core_pattern").unwrap_or_default();
     let most = getrlimit(Resource::Core).maximum;
@@ -88,7 +79,7 @@ fn allow_core(run: &Running) -> bool {
     pattern.starts_with("core") && most != Some(0) && allowed
 }
 
-/// True if a core file is in the directory of the run.
+/// In the directory of the run.
 fn core(directory: &Path) -> bool {
     let entries = fs::read_dir(directory).expect("a directory").flatten();
     entries.filter(|entry| entry.file_name().to_string_lossy().starts_with("core")).count() > 0
@@ -107,10 +98,9 @@ fn attempt(signal: (Signal, Outcome), phase: Phase, boards: &str, chance: &mut C
     let outcome = judge(&ended);
     let said = format!("{phase:?}: {outcome:?} {:?}: {}", ended.signal, ended.said);
     let allowed = match phase {
-        // Before the installation of handlers the system's default applies.
+        // The system's default, before the installation of handlers.
         Phase::Start => outcome == expected || outcome == Outcome::BySignal,
-        // The run may have ended before.
-        Phase::End => outcome == expected || outcome == Outcome::WentOn,
+        Phase::End => outcome == expected || outcome == Outcome::WentOn, // it may have ended before
         _ => outcome == expected,
     };
     assert!(allowed, "{said}");
@@ -119,7 +109,7 @@ fn attempt(signal: (Signal, Outcome), phase: Phase, boards: &str, chance: &mut C
         assert!(signal != Signal::QUIT || phase == Phase::Start || !dumps || core(&place), "no core file");
     }
     let file = scratch.file("run.mcap");
-    // A run that was interrupted before its first tick leaves no log.
+    // A run interrupted before its first tick leaves no log.
     let begun = phase != Phase::Start || outcome == Outcome::WentOn || file.exists();
     if begun && (phase != Phase::Start || outcome != Outcome::BySignal) {
         let log = Log::open(&file).expect("the log can be read");

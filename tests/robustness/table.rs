@@ -1,31 +1,28 @@
-//! The table of the campaign: one row per attack, one column per outcome.
+//! One row per attack, one column per outcome.
 
 use std::{
     fmt::Write as _,
     panic::{self, AssertUnwindSafe},
 };
 
-/// The outcome of an attack. Any other one is a panic of the judge, and a finding.
+/// Any other outcome is a panic of the judge, and a finding.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Outcome {
-    /// It continued to its normal end; a tool printed its answer.
-    WentOn,
-    /// The robot came to rest, the log is complete, and the exit status is 3; a tool found a difference.
+    WentOn, // normal end; a tool printed its answer
+    /// At rest, log complete, exit status 3; or a tool found a difference.
     InOrder,
-    /// It ended, or refused to start, with the reason in its last line.
-    InWords,
-    /// It was ended by the sent signal, by one of the system's, or by iceoryx2 due to garbage in memory.
+    InWords, // the reason is in the last line
+    /// By the sent signal, by one of the system's, or by iceoryx2 over garbage.
     BySignal,
 }
 
-/// The columns, in the order of [`Outcome`].
+/// In the order of [`Outcome`].
 const COLUMNS: [&str; 4] = ["continued", "ended in order", "ended with a message", "ended by force"];
 
-/// Random numbers, determined by a seed.
-pub struct Chance(u64);
+pub struct Chance(u64); // determined by a seed
 
 impl Chance {
-    /// A separate stream for each case of each row.
+    /// A separate stream per case and row.
     fn new(seed: u64, row: &str, case: u64) -> Self {
         let mixed = row.bytes().fold(seed ^ 0xCBF2_9CE4_8422_2325, |hash, byte| {
             (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01B3)
@@ -33,16 +30,16 @@ impl Chance {
         Self((mixed ^ case.wrapping_mul(0x9E37_79B9_7F4A_7C15)) | 1)
     }
 
-    /// A number from 0 to `limit` - 1; 0 if `limit` is 0.
+    /// From 0 to `limit` - 1; 0 if `limit` is 0.
     pub fn below(&mut self, limit: u64) -> u64 {
-        // Xorshift: George Marsaglia, Xorshift RNGs, Journal of Statistical Software 8 (2003).
+        // George Marsaglia, Xorshift RNGs, Journal of Statistical Software 8 (2003).
         self.0 ^= self.0 << 13;
         self.0 ^= self.0 >> 7;
         self.0 ^= self.0 << 17;
         (self.0 >> 11) % limit.max(1)
     }
 
-    /// The same for positions in memory.
+    /// In memory.
     pub fn place(&mut self, limit: usize) -> usize {
         usize::try_from(self.below(u64::try_from(limit).expect("64 bits"))).expect("it is below a usize")
     }
@@ -54,29 +51,25 @@ impl Chance {
 
 #[derive(Clone, Copy)]
 pub struct Extent {
-    /// True for a few cases per row.
-    pub sample: bool,
+    pub sample: bool, // a few cases per row
     pub seed: u64,
 }
 
 impl Extent {
-    /// The number of cases in a full campaign, or in a sample of it.
+    /// Of a full campaign, or a sample.
     pub fn of(self, full: u64, sample: u64) -> u64 {
         if self.sample { sample } else { full }
     }
 }
 
-/// An attack and its outcomes.
 pub struct Row {
     attack: String,
     on: &'static str,
     counts: [u64; 4],
-    /// Violations: the case, and the judge's message.
-    pub findings: Vec<String>,
+    pub findings: Vec<String>, // the case, and the judge's message
 }
 
 impl Row {
-    /// Try an attack in some cases.
     pub fn of(
         extent: Extent,
         attack: &str,

@@ -1,5 +1,5 @@
-//! Changes rows of the decision tables of `crates/levels`, one at a time, and counts the changes that the tests of
-//! that crate detect. `cargo-mutants` ignores `decision_table!`.
+//! Changes rows of the decision tables of `crates/levels`, and counts the changes that its tests detect.
+//! `cargo-mutants` ignores `decision_table!`.
 //!
 //! ```text
 //! cargo run --release -p whole-system-tests --bin row-mutants -- --help
@@ -7,14 +7,11 @@
 //! cargo run --release -p whole-system-tests --bin row-mutants -- --own --only levels/src/grip
 //! ```
 //!
-//! The changes of [`mutate`] are drawn in an order determined by the seed. A change that does not compile is counted
-//! but does not represent a row: the table is no longer total, has a dead row, or the names do not match. One that
-//! compiles is *killed* if a test fails or does not end, and has *survived* otherwise. Each is printed as a line, a
-//! survivor as a difference.
-//!
-//! The repository is copied to `target/row-mutants/source`, where all changes are compiled at once ([`switch`]). Each
-//! test is run once without a change, which shows the changes that it can detect. Then these tests are run with each
-//! change, the quickest first, until one fails. Tests draw fewer random cases.
+//! The order of the changes of [`mutate`] depends on the seed. One that does not compile is counted apart: the table
+//! is not total, has a dead row, or names do not match. One that compiles is *killed* if a test fails or does not end,
+//! else it has *survived*, and is printed as a difference. All changes are compiled at once ([`switch`]) in a copy,
+//! `target/row-mutants/source`. Each test is run once to find the changes that it can detect. Then these tests are run
+//! with each change, the quickest first, with fewer random cases, until one fails.
 
 #![expect(clippy::print_stdout, clippy::print_stderr, reason = "a program of the developers, at a terminal")]
 
@@ -62,7 +59,7 @@ struct Arguments {
     own: bool,
 }
 
-/// A copy of the repository, and its build directory.
+/// With its build directory.
 struct Copied {
     root: PathBuf,
     source: PathBuf,
@@ -75,8 +72,8 @@ impl Copied {
         Self { root: root.to_owned(), source: scratch.join("source"), target: scratch.join("target") }
     }
 
-    /// Copy all files tracked by git that differ, with those of `switched` replaced, so that existing builds remain
-    /// valid. Sources of an earlier copy that no longer exist are removed.
+    /// Copies the tracked files that differ, so that builds remain valid, with those of `switched` replaced. Removes
+    /// old sources.
     fn write(&self, switched: &Switched) -> io::Result<()> {
         let mut earlier = Vec::new();
         if self.source.is_dir() {
@@ -108,7 +105,7 @@ impl Copied {
         Ok(())
     }
 
-    /// Run cargo for `levels`. Returns its messages, and the remaining output if it fails.
+    /// For `levels`. Returns the messages, and the other output if it fails.
     fn cargo(&self, arguments: &[&str]) -> io::Result<(Vec<Value>, Option<String>)> {
         let mut command = Command::new("cargo");
         command.args(arguments).args(["--quiet", "--package", "levels", "--message-format=json"]);
@@ -133,8 +130,7 @@ impl Copied {
         let mut refused = BTreeSet::new();
         let mut drawn = 0;
         loop {
-            // About two thirds of the drawn changes compile.
-            drawn = (drawn + 2 * number).min(mutants.len());
+            drawn = (drawn + 2 * number).min(mutants.len()); // about two thirds compile
             loop {
                 let tried = mutants.iter().zip(1..).take(drawn).map(|(mutant, number)| (number, mutant));
                 let tried: BTreeMap<_, _> = tried.filter(|(number, _)| !refused.contains(number)).collect();
@@ -163,7 +159,7 @@ impl Copied {
         Ok((compiled, refused.range(..last).count()))
     }
 
-    /// Build the tests: those of the library alone, or all.
+    /// Those of the library alone, or all.
     fn tests(&self, own: bool) -> Result<Vec<Program>, String> {
         let arguments: &[&str] = if own { &["--lib"] } else { &["--lib", "--tests"] };
         let (messages, failed) =
@@ -193,7 +189,7 @@ fn place(error: &Value, switched: &Switched) -> Option<usize> {
     changes.next()
 }
 
-/// Process all items on all cores. Returns the results in the order of the items.
+/// Returns the results in the order of the items.
 fn on_all_cores<T: Sync, R: Send>(
     items: &[T],
     work: impl Fn(&T) -> io::Result<R> + Sync,
@@ -220,7 +216,7 @@ fn on_all_cores<T: Sync, R: Send>(
     results.into_iter().map(|(_, result)| result).collect()
 }
 
-/// The tests that `own` selects, run without a change: the quickest first.
+/// Without a change: the quickest first.
 fn measured<'a>(
     programs: &'a [Program],
     scratch: &Path,
@@ -243,8 +239,7 @@ fn measured<'a>(
 
 enum Fate {
     Killed,
-    /// With the number of tests that reach it.
-    Survived(usize),
+    Survived(usize), // tests that reach it
 }
 
 fn judge(tests: &[Test<'_>], (number, mutant): &(usize, Mutant), own: bool) -> io::Result<Fate> {

@@ -1,5 +1,3 @@
-//! The possible changes of a row of a decision table.
-
 use std::{
     fmt, fs, io,
     ops::Range,
@@ -10,20 +8,18 @@ use whole_system_tests::tables::{Row, Table, files};
 
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Mutant {
-    /// From the root of the repository.
-    pub file: PathBuf,
+    pub file: PathBuf, // from the root of the repository
     table: String,
     pub row: String,
     what: What,
-    /// Lines of the file, from 0, and the text of the row before and after.
+    /// From 0; with the text of the row before and after.
     pub lines: Range<usize>,
     pub before: String,
     pub after: String,
-    /// A second changed row: an alternative moves from one row to another.
+    /// An alternative moves from one row to another.
     pub other: Option<(Range<usize>, String)>,
 }
 
-/// The changed part of a row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum What {
     Action,
@@ -43,7 +39,7 @@ impl fmt::Display for Mutant {
 }
 
 impl Mutant {
-    /// The module of the table's process, as in the names of tests; empty for a table that all processes consult.
+    /// As in the names of tests; empty for a table of all processes.
     pub fn process(&self) -> String {
         let mut parts = self.file.components().skip(3).map(|part| part.as_os_str().to_string_lossy());
         match (parts.next(), parts.next()) {
@@ -52,13 +48,13 @@ impl Mutant {
         }
     }
 
-    /// True for a change of this row, given as `"QC-LOCK 3"`.
+    /// `row` as `"QC-LOCK 3"`.
     pub fn is_of(&self, row: &str) -> bool {
         row.rsplit_once(' ')
             .is_some_and(|(table, number)| table.replace('-', "_") == self.table && number == self.row)
     }
 
-    /// True if the table passes on instead of deciding, by a row that is changed or with the change.
+    /// The table passes on by a row that is changed, or with the change.
     pub fn passes(&self) -> bool {
         let other = self.other.as_ref().map(|(_, after)| after);
         [&self.before, &self.after].into_iter().chain(other).any(|row| row.contains("=> consult"))
@@ -69,8 +65,7 @@ impl Mutant {
         let mut lines: Vec<&str> = text.lines().collect();
         let other = self.other.iter().map(|(lines, after)| (lines, after));
         for (of_row, after) in [(&self.lines, &self.after)].into_iter().chain(other) {
-            // The number of lines remains.
-            lines[of_row.clone()].fill("");
+            lines[of_row.clone()].fill(""); // the number of lines remains
             lines[of_row.start] = after;
         }
         lines.join("\n") + "\n"
@@ -90,8 +85,8 @@ fn mutant(table: &Table, row: &Row, what: What, changed: &Row, other: Option<&Ro
     }
 }
 
-/// Every change of one row. Its action becomes another one of the table, its next step another one or none, or an
-/// alternative of a condition moves to another row of the same group or is exchanged with one of it.
+/// Another action, another next step or none, or an alternative that moves to another row of the group or is
+/// exchanged.
 pub fn mutants(table: &Table) -> Vec<Mutant> {
     let mut mutants = Vec::new();
     for row in &table.rows {
@@ -119,7 +114,7 @@ pub fn mutants(table: &Table) -> Vec<Mutant> {
     mutants
 }
 
-/// The possible exchanges between the conditions of two rows.
+/// Exchanges between the conditions of two rows.
 fn exchange(table: &Table, row: &Row, other: &Row, mutants: &mut Vec<Mutant>) {
     for (at, (name, values)) in row.conditions.iter().enumerate() {
         let Some(there) = other.conditions.iter().position(|(known, _)| known == name) else { continue };
@@ -139,7 +134,7 @@ fn exchange(table: &Table, row: &Row, other: &Row, mutants: &mut Vec<Mutant>) {
     }
 }
 
-/// SplitMix64: a random number, and the next state.
+/// SplitMix64.
 fn random(state: &mut u64) -> u64 {
     *state = state.wrapping_add(0x9E37_79B9_7F4A_7C15);
     let mut mixed = *state;
@@ -148,8 +143,8 @@ fn random(state: &mut u64) -> u64 {
     mixed ^ (mixed >> 31)
 }
 
-/// All changes of rows of the tables of `levels`, in an order determined by the seed: first the row, with equal
-/// probability, then its part, then the change. A row is repeated only after all others.
+/// In an order determined by the seed: first the row, with equal probability, then its part, then the change. A row is
+/// repeated only after all others.
 pub fn drawn(root: &Path, seed: u64, only: &str) -> io::Result<Vec<Mutant>> {
     let mut paths = Vec::new();
     files(&root.join("crates/levels/src"), "rs", &mut paths)?;

@@ -1,10 +1,7 @@
-//! Files with many changed tables, of which one is selected when a test program starts: all changes are compiled
-//! together.
-//!
-//! Next to `pub TURN: fn turn(..)` each change adds a whole table, `TURN_CHANGED_17`, and `turn` becomes a function
-//! that consults the table whose number is in [`CHANGED`]. If [`REACHED`] names a file instead, no change is
-//! selected, and the numbers of those that would have decided otherwise are written to it. A test that reaches no
-//! altered decision cannot detect the change.
+//! All changes are compiled together; a test program selects one when it starts. Next to `pub TURN: fn turn(..)` each
+//! change adds a table, `TURN_CHANGED_17`, and `turn` consults the table whose number is in [`CHANGED`]. If
+//! [`REACHED`] names a file, no change is selected, and the numbers of those that would have decided otherwise are
+//! written to it: a test that reaches none cannot detect the change.
 
 use std::{
     collections::{BTreeMap, HashMap},
@@ -18,13 +15,10 @@ use whole_system_tests::tables::Table;
 
 use crate::mutate::Mutant;
 
-/// The environment variable with the number of the selected change.
-pub const CHANGED: &str = "RCS_CHANGED_ROW";
-/// The environment variable with the file for the numbers of the reached changes.
-pub const REACHED: &str = "RCS_REACHED_ROWS";
+pub const CHANGED: &str = "RCS_CHANGED_ROW"; // number of the selected change
+pub const REACHED: &str = "RCS_REACHED_ROWS"; // file for the numbers of the reached changes
 
-/// The addition to `lib.rs` of the copy.
-const SELECTION: &str = r#"
+const SELECTION: &str = r#" // added to `lib.rs` of the copy
 extern crate std;
 
 /// Number of the change that is switched on: 0 for none, `usize::MAX` to write which ones are reached.
@@ -46,14 +40,14 @@ pub(crate) fn reached_row(number: usize) {
 }
 "#;
 
-/// A check of the tests against the unchanged text of the table: every changed condition would fail it.
+/// A test against the unchanged text of the table, which every changed condition would fail.
 const CHECK: (&str, &str) = (
     "assert_eq!(read, Some(row), \"{} with {values:?}\", table.name);",
     "let (_, _, _) = (read, row, table.name);",
 );
 
-/// The head of a table, `pub TURN: fn turn(enum TurnStep, super::Situation) -> super::Action or () {`. With
-/// `struct of super::Senses` the table declares the struct `TurnSituation`.
+/// `pub TURN: fn turn(enum TurnStep, super::Situation) -> super::Action or () {`. With `struct of super::Senses` the
+/// table declares the struct `TurnSituation`.
 struct Head<'a> {
     name: &'a str,
     decide: &'a str,
@@ -86,12 +80,12 @@ impl<'a> Head<'a> {
         words.collect::<String>() + "Situation"
     }
 
-    /// The name of the function that consults one of the tables.
+    /// The function that consults one of the tables.
     fn function(&self, which: &str) -> String {
         format!("{}_{which}", self.decide.trim_start_matches("r#"))
     }
 
-    /// The original table under another name of its function.
+    /// The original table under another name.
     fn unchanged(&self) -> String {
         let step = match (self.step, self.declares) {
             (Some(step), true) => format!("enum {step}, "),
@@ -102,7 +96,7 @@ impl<'a> Head<'a> {
         format!("    pub {name}: fn {function}({step}{}) -> {} {{", self.situation, self.result)
     }
 
-    /// The table with change `number`; its steps are those of the first one.
+    /// Its steps are those of the first table.
     fn changed(&self, number: usize) -> String {
         let step = self.step.map_or_else(String::new, |step| format!("{step}, "));
         let (name, function) = (self.name, self.function(&format!("changed_{number}")));
@@ -113,7 +107,7 @@ impl<'a> Head<'a> {
         )
     }
 
-    /// The function that consults the selected table.
+    /// Consults the selected table.
     fn selection(&self, mutants: &[(usize, &Mutant)]) -> String {
         let (generic, step) = self.step.map_or(("<Step: Copy>", "Step"), |step| ("", step));
         let (result, row) = match self.result.split_once(" or ") {
@@ -162,16 +156,15 @@ pub fn {}{generic}(step: {step}, situation: &{}) -> ::rcs_core::table::{result} 
 /// Lines of each change of a file, from 1, and its number.
 type Places = Vec<(Range<usize>, usize)>;
 
-/// Changed files of the copy, and the positions of the changes.
+/// With the positions of the changes.
 #[derive(Default)]
 pub struct Switched {
-    /// Text by path from the root of the repository.
-    pub texts: HashMap<PathBuf, String>,
+    pub texts: HashMap<PathBuf, String>, // by path from the root of the repository
     places: HashMap<PathBuf, Places>,
 }
 
 impl Switched {
-    /// The files for changes with their numbers. Errors: a file cannot be read, or does not have the expected form.
+    /// The files with all changes. Errors: a file cannot be read, or does not have the expected form.
     pub fn new(root: &Path, mutants: &BTreeMap<usize, &Mutant>) -> io::Result<Self> {
         let mut switched = Self::default();
         let mut files: BTreeMap<&Path, BTreeMap<usize, &Mutant>> = BTreeMap::new();
@@ -198,14 +191,14 @@ impl Switched {
         Ok(switched)
     }
 
-    /// The number of the change at a line, from 1.
+    /// From 1.
     pub fn change_at(&self, file: &Path, line: usize) -> Option<usize> {
         let places = self.places.get(file)?;
         places.iter().find(|(lines, _)| lines.contains(&line)).map(|(_, number)| *number)
     }
 }
 
-/// The text of a file with all changes, and the lines of each.
+/// With all changes, and the lines of each.
 fn switch(file: &Path, text: &str, mutants: &BTreeMap<usize, &Mutant>) -> Option<(String, Places)> {
     let mut lines: Vec<String> = Vec::new();
     let mut places = Places::new();

@@ -1,4 +1,4 @@
-//! Tests of programs, each run separately, with a selected change or to find the changes that it reaches.
+//! Tests run separately, with a selected change, or to find the changes that they reach.
 
 use std::{
     collections::BTreeSet,
@@ -14,17 +14,16 @@ use crate::switch::{CHANGED, REACHED};
 #[derive(Clone, Debug)]
 pub struct Program {
     pub path: PathBuf,
-    /// The directory of its package, in which it is run.
-    pub directory: PathBuf,
+    pub directory: PathBuf, // of the package, in which it is run
 }
 
-/// A test and its measurements without a change.
+/// With measurements without a change.
 #[derive(Debug)]
 pub struct Test<'a> {
     program: &'a Program,
     pub name: String,
     pub taken: Duration,
-    /// Numbers of the changes that would have decided otherwise in it.
+    /// Changes that would have decided otherwise.
     pub reaches: BTreeSet<usize>,
 }
 
@@ -47,7 +46,7 @@ impl Program {
 }
 
 impl<'a> Test<'a> {
-    /// Run a test without a change; `reached` is a file of its own. Fails if it fails.
+    /// `reached` is a file of its own.
     pub fn measure(program: &'a Program, name: String, reached: &Path) -> io::Result<Self> {
         fs::write(reached, "")?;
         let mut test = Self { program, name, taken: Duration::ZERO, reaches: BTreeSet::new() };
@@ -60,7 +59,7 @@ impl<'a> Test<'a> {
         Ok(test)
     }
 
-    /// True if it passes with a change, within three times its duration without one and some seconds.
+    /// Within three times its duration without the change, and some seconds.
     pub fn passes(&self, change: usize) -> io::Result<bool> {
         let patience = self.taken * 3 + Duration::from_secs(20);
         let mut command = self.program.command();
@@ -86,7 +85,7 @@ mod tests {
 
     use super::*;
 
-    /// A mock program with two tests, of which change 3 breaks one.
+    /// Two tests, of which change 3 breaks one.
     const SCRIPT: &str = r#"#!/bin/sh
 case "$*" in
     --list*) echo 'opens: test'; echo 'closes: test' ;;

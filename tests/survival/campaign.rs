@@ -1,9 +1,8 @@
-//! A sample of the robustness campaign, with the same program.
+//! A sample of the robustness campaign.
 
 use std::process::{Child, Command, Stdio};
 
-/// The parts of the campaign: damaged logs, garbage in shared memory, readers that die or hang, signals, and a full
-/// disk or memory.
+/// Garbage, dead readers, signals, full disk or memory.
 const PARTS: [&str; 5] = ["logs", "memory", "readers", "signals", "disks"];
 
 fn start(part: &str) -> Child {
@@ -15,8 +14,7 @@ fn start(part: &str) -> Child {
         .expect("the campaign can be started")
 }
 
-/// All parts in parallel, as nearly all of their time is that of runs in real time. Each prints its table and its
-/// skipped cases.
+/// In parallel, as nearly all of their time is that of runs in real time. Each prints its table and its skipped cases.
 #[test]
 fn a_sample_of_each_part_has_no_finding() {
     let started = PARTS.map(|part| (part, start(part)));

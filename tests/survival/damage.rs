@@ -56,7 +56,7 @@ fn clean_leaves_a_run_of_the_same_name_under_another_directory_alone() {
     Ended::of(&first.wait_with_output().expect("it ends")).assert_shared();
 }
 
-/// In a separate `/dev/shm` another user opens and empties every accessible object, while runs start and end.
+/// In a separate `/dev/shm`, another user empties every accessible object while runs start and end.
 #[test]
 fn another_user_cannot_open_or_block_a_run() {
     if !geteuid().is_root() {
@@ -64,7 +64,7 @@ fn another_user_cannot_open_or_block_a_run() {
         return;
     }
     let scratch = Scratch::new("stranger");
-    // The directory of this program may be inaccessible to another user.
+    // This program's directory may be inaccessible to another user.
     fs::copy(env!("CARGO_BIN_EXE_robustness"), scratch.file("attacker")).expect("it can be copied");
     let place = scratch.file("");
     fs::set_permissions(&place, fs::Permissions::from_mode(0o755)).expect("it is ours");

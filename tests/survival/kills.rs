@@ -1,4 +1,4 @@
-//! Killed runs: the log can be read and replayed to the last second, the next run works at once, and no files remain.
+//! Killed runs: the log replays to the last second, the next run works at once, and no files remain.
 
 use executive::memory::ReadError;
 use record::replay;
@@ -7,19 +7,18 @@ use whole_system_tests::{
     bench::{Ended, Running, assert_cleaned, traces},
 };
 
-/// Jobs whose runs are killed, with their lengths in ticks.
-const JOBS: [(&str, u64); 4] =
+const JOBS: [(&str, u64); 4] = // lengths in ticks
     [("linkbar", 5_900), ("clevis", 11_000), ("turned-part", 6_000), ("tool-change", 7_000)];
-/// In fast clock the log may lack the contents of its ring (1,024 ticks) and one write (25).
+/// In fast clock the log may lack its ring (1,024 ticks) and one write (25).
 const BEHIND_FAST: u64 = 1024 + 25 + 25;
-/// In real clock it writes once per second; one more for a log thread that is delayed by a busy machine.
+/// In real clock it writes once per second; one more for a delayed log thread.
 const BEHIND_REAL: u64 = 2 * 25;
 
 fn kills() -> u64 {
     std::env::var("RCS_KILLS").map_or(4, |text| text.parse().expect("RCS_KILLS is a number"))
 }
 
-/// Replay a log, and assert that it reaches `tick` within `behind` ticks.
+/// The replay reaches `tick` within `behind` ticks.
 fn assert_log_reaches(log: &std::path::Path, tick: u64, behind: u64) {
     let report = replay(log).expect("the log of a killed run can be read");
     if let Some(difference) = &report.first_difference {
@@ -46,7 +45,7 @@ fn a_run_may_be_killed_in_any_phase_of_a_job() {
         run.kill();
         assert_log_reaches(&log, tick, BEHIND_FAST);
         if let Some(reader) = reader {
-            // A writer killed at work leaves half a tick, which readers detect.
+            // A killed writer leaves half a tick, which readers detect.
             match reader.memory() {
                 Ok(memory) => assert!(memory.task.header.stamp.0 >= tick),
                 Err(error) => assert_eq!(error, ReadError::Busy),

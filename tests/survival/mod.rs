@@ -1,7 +1,5 @@
-//! Survival of runs, logs, readers and machines under attack.
-//!
-//! `RCS_KILLS` sets the number of killed runs (default 4). Tests that need more than an ordinary user's rights say
-//! so, and skip the corresponding part without them.
+//! Survival under attack. `RCS_KILLS` sets the number of killed runs (default 4). Tests that need more than an
+//! ordinary user's rights say so, and skip that part without them.
 
 mod campaign;
 mod damage;

@@ -1,5 +1,3 @@
-//! Parallel runs of the same user and of another.
-
 use std::{fs, os::unix::process::CommandExt, process::Stdio};
 
 use executive::memory::{layout, prefix};
@@ -26,7 +24,7 @@ fn parallel_runs_do_not_interfere() {
     names.iter().for_each(|name| assert!(traces(name).is_empty(), "an orderly end leaves nothing"));
 }
 
-/// Needs the right to become another user; otherwise it is skipped.
+/// Skipped without the right to become another user.
 #[test]
 fn another_user_runs_in_parallel_and_after_the_first() {
     let scratch = Scratch::new("users");
@@ -36,7 +34,7 @@ fn another_user_runs_in_parallel_and_after_the_first() {
     }
     let mut first = Running::start(&scratch.file(""), "linkbar", &["--clock", "real", "--log", "none"]);
     drop(first.attach());
-    // The program at a place where every user can start it: the target directory may be private.
+    // The target directory may be private.
     let program = scratch.file("rcs-run");
     fs::copy(rcs_run(), &program).expect("the program can be copied");
     let data = scratch.file("data");
@@ -58,8 +56,7 @@ fn another_user_runs_in_parallel_and_after_the_first() {
     assert_eq!(refused.status, Some(2));
     assert!(refused.last_words().contains("there is no run named"), "{}", refused.said);
     first.kill();
-    // Also after a killed run.
-    as_nobody(&run).assert_shared();
+    as_nobody(&run).assert_shared(); // also after a killed run
     assert_cleaned(&scratch.file(""), &first.name);
 }
 

@@ -1,5 +1,4 @@
-//! A run in real time is stopped for half a second and more: skipped slots are counted, attributed and handled by the
-//! selected policy. SIGSTOP stops it, so the tests are deterministic.
+//! SIGSTOP stops a run in real time: skipped slots are counted, attributed, and handled by the selected policy.
 
 use std::{path::Path, thread, time::Duration};
 
@@ -10,13 +9,13 @@ use whole_system_tests::{
     bench::{Ended, Running},
 };
 
-/// Duration of a stopped run, ticks: long enough for a second of punctual ticks, also in parallel with other runs.
+/// Long enough for a second of punctual ticks, also in parallel with other runs.
 const TICKS: &str = "300";
 const STOPPED: Duration = Duration::from_millis(1_000);
-/// Minimum number of skipped slots: the awaited one may still be in time.
+/// The awaited slot may still be in time.
 const SKIPPED: u64 = 24;
 
-/// Start a run in real time, stop it for a second in tick 40, and let it continue to its end.
+/// It is stopped for a second in tick 40, and then continues.
 fn stopped_for_a_second(directory: &Path, more: &[&str]) -> Ended {
     let all = [&["--clock", "real", "--ticks", TICKS][..], more].concat();
     let mut run = Running::start(directory, "linkbar", &all);
@@ -25,8 +24,7 @@ fn stopped_for_a_second(directory: &Path, more: &[&str]) -> Ended {
     drop(reader);
     run.signal(Signal::STOP);
     let pid = rustix::process::Pid::from_child(&run.child);
-    // From here on it is stopped.
-    waitpid(Some(pid), WaitOptions::UNTRACED).expect("it is stopped");
+    waitpid(Some(pid), WaitOptions::UNTRACED).expect("it is stopped"); // stopped from here on
     thread::sleep(STOPPED);
     run.signal(Signal::CONT);
     run.end()
@@ -39,7 +37,7 @@ fn skipped_slots_are_counted_and_have_no_other_effect() {
     assert_eq!(ended.status, Some(0), "{}", ended.said);
     let (ticks, skipped) = (ended.number("ticks"), ended.number("overruns"));
     assert!(skipped >= SKIPPED, "{skipped} slots skipped in a second");
-    // The grid is unchanged as far as visible from outside: the result's time is slightly longer.
+    // The grid is unchanged; the result's time is slightly longer.
     let elapsed = ended.result["wall_s"].as_f64().expect("a time");
     assert!((ticks + skipped) as f64 * 0.040 <= elapsed + 0.040, "{}", ended.result);
     let blamed = ended.result["overruns_by"].as_object().expect("a part is to blame");

@@ -12,7 +12,7 @@ use whole_system_tests::{
     bench::{Ended, Running, apart, job, rcs},
 };
 
-/// Assert that a run of 500 ticks finished and printed a sentence.
+/// A run of 500 ticks finished and printed a sentence.
 fn assert_goes_on(ended: &Ended, sentence: &str) {
     assert_eq!(ended.status, Some(0), "{}", ended.said);
     assert_eq!(ended.number("ticks"), 500);
@@ -31,7 +31,7 @@ fn without_shared_memory_the_run_continues_unobserved() {
         &ended,
         "other programs cannot watch the run, shared memory is not available: /dev/shm has ",
     );
-    // Enough for the start, and then taken by another process during the run.
+    // Enough for the start, then taken by another process.
     let fills = "mount -t tmpfs -o size=8m tmpfs /dev/shm && \
                  { (until ls /dev/shm/rcs-*data; do sleep 0.1; done; sleep 2; \
                     head -c 16M /dev/zero > /dev/shm/filler) > /dev/null 2>&1 & }";
@@ -44,7 +44,7 @@ fn without_shared_memory_the_run_continues_unobserved() {
 #[test]
 fn memory_lost_during_the_start_is_reported() {
     let scratch = Scratch::new("race");
-    // Enough for the start, and taken by another process once the first object exists.
+    // Enough for the start, then taken once the first object exists.
     let fills = "mount -t tmpfs -o size=2200k tmpfs /dev/shm && \
                  { (i=0; until ls /dev/shm/rcs-*_* || [ $((i += 1)) -gt 3000 ]; do :; done; \
                     head -c 4M /dev/zero > /dev/shm/filler) > /dev/null 2>&1 & }";
@@ -53,7 +53,7 @@ fn memory_lost_during_the_start_is_reported() {
             eprintln!("no right to mount: a full /dev/shm cannot be tried");
             return;
         };
-        // The first one is random, but every end has a message.
+        // Random, but every end has a message.
         match ended.status {
             Some(0) => assert_eq!(ended.number("ticks"), 50),
             Some(3) => assert!(ended.last_words().contains("/dev/shm is full"), "{}", ended.said),
@@ -89,8 +89,7 @@ fn stale_and_strange_files_do_not_disturb_and_are_removed() {
     objects
         .iter()
         .for_each(|object| fs::set_permissions(object, Permissions::from_mode(0o600)).expect("it is ours"));
-    // A file that looks like a run, and one that does not.
-    fs::write(root.join("file-1@00c0ffee"), "a file").expect("a file");
+    fs::write(root.join("file-1@00c0ffee"), "a file").expect("a file"); // looks like a run; the next does not
     std::os::unix::fs::symlink("/nowhere", root.join("link-1@00c0ffee")).expect("a link");
     fs::create_dir_all(root.join("no run at all")).expect("a directory");
     let run = |arguments: &[&str]| {

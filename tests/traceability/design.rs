@@ -1,7 +1,5 @@
-//! All files and tests in the rules of docs/design, and in the promises of other pages, exist.
-//!
-//! The text of a rule is followed by `- code:` and `- test:`, which may continue over indented lines. A text in
-//! backquotes is a reference; the words between are for readers.
+//! Files and tests in the rules of docs/design, and in the promises of other pages, exist. A rule is followed by `-
+//! code:` and `- test:`, also over indented lines. A text in backquotes is a reference:
 //!
 //! | under   | reference                  | must be there                                                   |
 //! |---------|----------------------------|-----------------------------------------------------------------|
@@ -17,18 +15,17 @@ use whole_system_tests::root;
 
 use super::sources::{Sources, has_item, has_test};
 
-/// The kind of a line under a rule.
+/// Under a rule.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Kind {
     Code,
     Test,
 }
 
-/// A line under a rule, with its continuation lines.
+/// With its continuation lines.
 #[derive(Debug, PartialEq, Eq)]
 struct Item {
-    /// Number of its first line.
-    line: usize,
+    line: usize, // first line
     kind: Kind,
     text: String,
 }
@@ -56,7 +53,7 @@ fn items(page: &str) -> Vec<Item> {
     items
 }
 
-/// The texts in backquotes, and whether a bracket is open before each.
+/// In backquotes; true if a bracket is open before.
 fn references(text: &str) -> Vec<(&str, bool)> {
     let parts = text.split('`').collect::<Vec<_>>();
     let words = parts.iter().step_by(2);
@@ -67,7 +64,7 @@ fn references(text: &str) -> Vec<(&str, bool)> {
     parts.iter().skip(1).step_by(2).copied().zip(open).collect()
 }
 
-/// The references of a line that do not exist.
+/// References that do not exist.
 fn missing(item: &Item, sources: &Sources) -> Vec<String> {
     match item.kind {
         Kind::Code => missing_code(&item.text),

@@ -1,8 +1,6 @@
-//! Compares pages of docs with the code: docs/traceability.md, docs/reasons.md, the design pages ([`design`]), and
-//! the table of packages ([`packages`]).
-//!
-//! Every command, variable and status value of chapters V and VI in docs/traceability.md exists and has a test. Every
-//! name of the interfaces is on the page.
+//! Compares docs/traceability.md, docs/reasons.md, the design pages ([`design`]), and the table of packages
+//! ([`packages`]) with the code. Every command, variable and status value of chapters V and VI exists and has a test;
+//! every name of the interfaces is on the page.
 
 mod design;
 mod packages;
@@ -26,30 +24,30 @@ use whole_system_tests::root;
 
 use self::sources::Sources;
 
-/// A line of one of the three tables: name, owner, section, code, test.
+/// Name, owner, section, code, test.
 struct Line {
     kind: &'static str,
     name: String,
     of: String,
     section: String,
-    /// `Type::Variant` or `Record.field`; none for an omitted name, with the reason in place of the test.
+    /// `Type::Variant` or `Record.field`; `None` for an omitted name, with the reason in place of the test.
     code: Option<String>,
     test: String,
 }
 
 struct Page {
     lines: Vec<Line>,
-    /// Names of the interfaces that are not in the manual: code and reason. A star includes all of a type.
+    /// Not in the manual: code and reason. A star includes all of a type.
     beyond: Vec<(String, String)>,
-    /// Names whose meaning differs from the manual's: name, owner, the manual, here.
+    /// Another meaning than the manual's: name, owner, the manual, here.
     differences: Vec<[String; 4]>,
-    /// The mailboxes of chapter IX: description, address, bytes, section, test.
+    /// Chapter IX: description, address, bytes, section, test.
     mailboxes: Vec<[String; 5]>,
-    /// The figures at the top: kind, total, in the code, tested.
+    /// At the top: kind, total, in the code, tested.
     figures: Vec<(String, [usize; 3])>,
 }
 
-/// The cells of a row of a Markdown table, without the marks of code.
+/// Of a row, without the marks of code.
 fn cells(line: &str) -> Option<Vec<String>> {
     let row = line.strip_prefix("| ")?.strip_suffix(" |")?;
     Some(row.split(" | ").map(|cell| cell.trim().trim_matches('`').to_owned()).collect())
@@ -138,13 +136,13 @@ impl Interfaces {
         }
     }
 
-    /// The variant of an enum, from `Type::Variant`.
+    /// From `Type::Variant`.
     fn variant(&self, code: &str) -> &'static VariantSchema {
         let (name, variant) = code.split_once("::").expect("a variant");
         self.enums[name].named(variant).expect("it is in the code")
     }
 
-    /// `Type::Variant` and `Record.field` of all names in the interfaces. A variant with data is named by its text.
+    /// `Type::Variant` and `Record.field` of the interfaces. A variant with data is named by its text.
     fn everything(&self) -> BTreeSet<String> {
         let mut all = BTreeSet::new();
         for (name, of) in &self.enums {
@@ -205,7 +203,7 @@ fn every_listed_difference_names_an_entry_of_the_page() {
     }
 }
 
-/// A code without its last word: `Type::` or `Record.`.
+/// Without the last word: `Type::` or `Record.`.
 fn start_of(code: &str) -> &str {
     let end = code.rfind([':', '.']).map_or(0, |at| at + 1);
     &code[..end]
@@ -236,7 +234,6 @@ fn commands_and_statuses_have_the_names_of_the_code() {
     }
 }
 
-/// The page lists exactly the mailboxes of all neighbours, with address and size.
 #[test]
 fn the_mailboxes_are_those_of_the_neighbours() {
     let of = |role: &Role| role.to_controller().iter().chain(role.from_controller());
@@ -292,7 +289,7 @@ fn figures_and_sections_match_the_interfaces() {
     }
 }
 
-/// docs/reasons.md gives the meaning of a code in a mailbox.
+/// The page gives the meaning of a code in a mailbox.
 #[test]
 fn every_reason_is_on_its_page() {
     let mut rows = String::new();

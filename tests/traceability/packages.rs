@@ -1,5 +1,4 @@
-//! Compares the table of packages in ARCHITECTURE.md with the workspace: every package has a row and uses only the
-//! packages that its row permits.
+//! Every package has a row in ARCHITECTURE.md and uses only the packages that the row permits.
 
 use std::{
     collections::{BTreeMap, BTreeSet},
@@ -9,7 +8,7 @@ use std::{
 use toml::Table;
 use whole_system_tests::root;
 
-/// The packages of the rows, with the packages that each may use.
+/// Those that each package may use.
 fn rows() -> BTreeMap<String, BTreeSet<String>> {
     let page = fs::read_to_string(root().join("ARCHITECTURE.md")).expect("the page is there");
     let lines = page.lines().skip_while(|line| !line.starts_with("| package |"));
@@ -23,7 +22,7 @@ fn rows() -> BTreeMap<String, BTreeSet<String>> {
     .collect()
 }
 
-/// A package and its permitted direct and indirect dependencies.
+/// Direct and indirect dependencies.
 fn permitted(rows: &BTreeMap<String, BTreeSet<String>>, package: &str) -> BTreeSet<String> {
     let mut found = BTreeSet::new();
     let mut open = vec![package.to_owned()];
@@ -40,7 +39,7 @@ fn manifest(directory: &str) -> Table {
     text.parse().unwrap_or_else(|error| panic!("{}: {error}", path.display()))
 }
 
-/// The packages of the workspace with their dependencies, without those of tests.
+/// Without the dependencies of tests.
 fn used() -> BTreeMap<String, BTreeSet<String>> {
     let workspace = manifest(".");
     let members = workspace["workspace"]["members"].as_array().expect("a list of members");

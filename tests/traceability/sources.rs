@@ -1,4 +1,4 @@
-//! The sources of the workspace, and the tests in them.
+//! Sources and their tests.
 
 use std::{
     collections::BTreeMap,
@@ -8,10 +8,10 @@ use std::{
 
 use whole_system_tests::root;
 
-/// Directories of crates and programs: their names with `_` are those of `cargo test`.
+/// Their names with `_` are those of `cargo test`.
 const CRATES: [&str; 2] = ["crates", "bins"];
 
-/// Every Rust file of the workspace, by its path from the root of the repository.
+/// Every Rust file, by its path from the root of the repository.
 pub struct Sources(BTreeMap<PathBuf, String>);
 
 impl Sources {
@@ -31,7 +31,7 @@ impl Sources {
         self.0.get(Path::new(path)).map(String::as_str)
     }
 
-    /// True if a test of this name exists, as `cargo test` prints it after its crate: `levels::task::tests::name`.
+    /// The name is as `cargo test` prints it after its crate: `levels::task::tests::name`.
     pub fn has_unit_test(&self, name: &str) -> bool {
         let Some((modules, test)) = name.rsplit_once("::") else { return false };
         self.module(modules).is_some_and(|(text, inline)| {
@@ -39,7 +39,7 @@ impl Sources {
         })
     }
 
-    /// The file of a module, such as `levels::task::tests`, and the modules that must be inside the file.
+    /// The file of a module, and the modules that must be inside the file.
     fn module<'a>(&self, name: &'a str) -> Option<(&str, Vec<&'a str>)> {
         let parts: Vec<&str> = name.split("::").collect();
         let (first, modules) = parts.split_first()?;
