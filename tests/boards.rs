@@ -28,8 +28,7 @@ use serde_json::Value;
 use whole_system_tests::{Scratch, command, rcs_run, root};
 
 const PATIENCE: Duration = Duration::from_secs(120); // of each action
-/// On a busy machine a run may end before it is observed, and is started again.
-const ATTEMPTS: u32 = 20;
+const ATTEMPTS: u32 = 20; // on a busy machine a run may end before it is observed, and is started again
 
 struct Ended {
     status: Option<i32>,
@@ -189,8 +188,7 @@ fn strike(
     let mut said = String::new();
     for _ in 0..ATTEMPTS {
         let mut running = bench.start("linkbar", "split", &[]);
-        // Searched before, as the moment is short.
-        drop(running.attach());
+        drop(running.attach()); // searched before, as the moment is short
         let boards = running.boards();
         assert_eq!(boards.len(), 4, "{boards:?}");
         let struck =
@@ -327,8 +325,7 @@ fn boards_are_killed_many_times_in_a_row() {
     let kills = env::var("RCS_KILLS").map_or(8, |text| text.parse().expect("RCS_KILLS is a number"));
     let bench = Bench::new("row");
     for kill in 0..kills {
-        // Moments spread over the first 40 s of the cell's time.
-        let at = 1 + kill * 617 % 1000;
+        let at = 1 + kill * 617 % 1000; // moments spread over the first 40 s of the cell's time
         let board = [2, 4, 6, 8][usize::try_from(kill).unwrap() % 4];
         strike(&bench, (board, Signal::KILL), reached(at), |_| true);
         assert_eq!(memory::traces(&bench.name), Vec::<PathBuf>::new(), "kill {kill}");
@@ -339,8 +336,7 @@ fn boards_are_killed_many_times_in_a_row() {
 fn paused_board_is_awaited() {
     const TICKS: &[&str] = &["--ticks", "100"];
     let bench = Bench::new("pauses");
-    // In real time the robot ramps down after the last tick.
-    let one = bench.run("linkbar", "one", TICKS);
+    let one = bench.run("linkbar", "one", TICKS); // in real time the robot ramps down after the last tick
     for _ in 0..ATTEMPTS {
         let mut running = bench.start("linkbar", "split", &[&["--clock", "real"], TICKS].concat());
         let board = {

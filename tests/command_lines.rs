@@ -88,12 +88,10 @@ fn built_in_data_are_used_if_named_or_if_there_is_no_directory() {
         serde_json::from_slice::<Value>(&output.stdout).expect("a result")["data"].take()
     };
     assert_eq!(short(&[])["directory"], Value::Null);
-    // A directory given as an option must exist, also the default one.
-    let refused = run(&["--data", "data"]);
+    let refused = run(&["--data", "data"]); // a directory given as an option must exist, also the default one
     assert_eq!(refused.status.code(), Some(2));
     assert!(text(&refused.stderr).contains("no task data directory data; built-in names"));
-    // A robot at a port is in its own cell.
-    let at_port = ["--robot", "serial:/dev/null", "--clock", "real"];
+    let at_port = ["--robot", "serial:/dev/null", "--clock", "real"]; // a robot at a port is in its own cell
     let refused = run(&at_port);
     assert_eq!(refused.status.code(), Some(2));
     assert!(text(&refused.stderr).contains("with --data built-in"), "{}", text(&refused.stderr));

@@ -72,8 +72,7 @@ fn a_vise_taught_a_fifth_of_an_inch_off_is_a_collision() {
     );
     let marks = marks(&outcome);
     let red = marks.iter().find(|(_, text)| text.contains("LINKBAR1_BH in fixed_jaw"));
-    // Events in the cell appear in the next tick.
-    let begun = contact["tick"].as_u64().map(|tick| tick + 1);
+    let begun = contact["tick"].as_u64().map(|tick| tick + 1); // events in the cell appear in the next tick
     assert_eq!(red.map(|(tick, _)| *tick), begun, "the collision is marked when it begins");
     let last = marks.last().map(|(_, text)| text.as_str());
     assert!(
@@ -92,8 +91,7 @@ fn marks(outcome: &Outcome) -> Vec<(u64, String)> {
 /// The reason of a `[[contact]]`, a job that needs it, and the change of the cell.
 type Need = (&'static str, &'static str, Option<[&'static str; 2]>);
 
-/// in: without its entry, such a contact is the nearest miss of the run.
-const NO_MISS: f64 = 0.005;
+const NO_MISS: f64 = 0.005; // in: without its entry, such a contact is the nearest miss of the run
 
 /// The end mill goes to the drum with the drill. The guarded insertion fails.
 const DRUM_OCCUPIED: &str = "\

@@ -14,8 +14,7 @@ const OCCUPIED: &str = "\
 const INSERT: &str = "== INSERT-TOOL ENDMILL-1 +1 -- 0 +1 TOOL-SAFE 0 -- 0";
 const ACQUIRE: &str = "== ACQUIRE-TOOL DRILL-2 +1 -- 0 +1 TOOL-SAFE 0 -- 0";
 const NOT_FREE: &str = "the tool meets something in front of the drum";
-/// After INSERT-TOOL or RELEASE-TOOL.
-const UNCONFIRMED: &str = "the tool in the drum (the drum has no sensor)";
+const UNCONFIRMED: &str = "the tool in the drum (the drum has no sensor)"; // after INSERT-TOOL or RELEASE-TOOL
 
 /// Without the check of paths, which would find the tool in the drum.
 fn job(name: &str, text: &str) -> Outcome {

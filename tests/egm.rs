@@ -5,8 +5,7 @@ use std::{net::UdpSocket, process::Command};
 use serde_json::Value;
 use whole_system_tests::{rcs_log, rcs_run, root};
 
-/// Seconds after the start of the linkbar: at rest with the part found, and in motion.
-const STANDS: &str = "50";
+const STANDS: &str = "50"; // seconds after the start of the linkbar: at rest with the part found, and in motion
 const MOVES: &str = "70";
 
 fn run(arguments: &[&str]) -> (i32, Value) {
@@ -146,8 +145,7 @@ fn refused_datagrams_are_counted_and_shown_before_the_first_message() {
             .spawn()
             .expect("rcs-run can be started");
         for _ in 0..600 {
-            // Before the run listens, datagrams are lost.
-            let _ = socket.send_to(datagram, ("127.0.0.1", port));
+            let _ = socket.send_to(datagram, ("127.0.0.1", port)); // before the run listens, datagrams are lost
             std::thread::sleep(std::time::Duration::from_millis(10));
         }
         let output = run.wait_with_output().expect("it ends");
@@ -186,8 +184,7 @@ fn equal_seeds_give_equal_runs_and_the_log_replays() {
     assert!(replay.status.success(), "{}", String::from_utf8_lossy(&replay.stdout));
 }
 
-/// A busy machine may delay the peer for longer than the link tolerates.
-const ATTEMPTS: u32 = 3;
+const ATTEMPTS: u32 = 3; // a busy machine may delay the peer for longer than the link tolerates
 
 /// The linkbar with a peer that shares no code with the project: exit status, result, and the peer's output.
 fn drive_peer() -> (i32, Value, Value) {
@@ -217,8 +214,7 @@ fn robot_written_from_the_schema_alone_executes_a_job() {
         eprintln!("left out: python3 is not there");
         return;
     }
-    // Build before the peer begins to send.
-    let _ = rcs_run();
+    let _ = rcs_run(); // build before the peer begins to send
     let driven =
         (1..ATTEMPTS).map(|_| drive_peer()).find(|(_, result, _)| result["failure"]["table"] != "LINK");
     let (status, result, peer) = driven.unwrap_or_else(drive_peer);

@@ -109,8 +109,7 @@ const RESTART: &str = "** after 60 estop terminals\n\
      ** panel cycle-start\n\
      ** wait 25\n";
 
-/// Restarts the link, and finds the robot's place.
-const PAUSE: &str = "== PAUSE -- +0 -- 0 +0 -- 0 -- 0\n";
+const PAUSE: &str = "== PAUSE -- +0 -- 0 +0 -- 0 -- 0\n"; // restarts the link, and finds the robot's place
 
 #[test]
 fn a_job_that_restarts_the_robot_continues() {

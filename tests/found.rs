@@ -13,8 +13,7 @@ use whole_system_tests::{rcs_run, root};
 
 const PATIENCE: Duration = Duration::from_secs(60); // of each action
 
-/// For one test, outside the directories for temporary files.
-struct Runs(TempDir);
+struct Runs(TempDir); // for one test, outside the directories for temporary files
 
 impl Runs {
     fn new() -> Self {
@@ -53,8 +52,7 @@ fn text_of(bytes: &[u8]) -> String {
     String::from_utf8_lossy(bytes).into_owned()
 }
 
-/// It is stopped at the end of the test.
-struct Running(Child);
+struct Running(Child); // it is stopped at the end of the test
 
 impl Running {
     fn begin(mut command: Command) -> Self {

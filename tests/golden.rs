@@ -197,8 +197,7 @@ impl Scenario {
         for new in &self.file {
             write(&scratch.file("data").join(&new.name), &new.text)?;
         }
-        // The directory has no effect: equal runs make equal goldens.
-        let mut command = Command::new(rcs_run());
+        let mut command = Command::new(rcs_run()); // the directory has no effect: equal runs make equal goldens
         command.args([
             "run",
             self.job.as_str(),

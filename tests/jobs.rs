@@ -28,8 +28,7 @@ fn assert_ends_well(job: &str, seed: u64, placed: &[&[Placed]]) {
     }
     assert_eq!(outcome.result["contacts"], serde_json::json!([]), "{job}, seed {seed}");
     let truth = &outcome.result["truth"];
-    // `brush` has two commands.
-    let least = if job == "brush" { 40 } else { 50 };
+    let least = if job == "brush" { 40 } else { 50 }; // `brush` has two commands
     assert!(truth["judged"].as_u64().is_some_and(|judged| judged > least), "{truth}");
     assert_eq!((&truth["false"], &truth["not_sensed"]), (&serde_json::json!([]), &serde_json::json!([])));
     assert_eq!(outcome.result["allocations_after_start"], 0);

@@ -62,8 +62,7 @@ fn a_long_jog_is_undone_by_the_move_to_the_same_place() {
     let second =
         jog(&["frame TOOL-ORIGIN", "stick 500 0 20", "frame OFF", "frame WRIST-ORIGIN", "stick 0 600 20"]);
     assert_at_home(&job("jogs", &(TO_HOME.to_owned() + &first + &second + TO_HOME)));
-    // Away and back by hand.
-    let back = jog(&["frame WORLD", "stick 1000 0 50", "stick -1000 0 47"]);
+    let back = jog(&["frame WORLD", "stick 1000 0 50", "stick -1000 0 47"]); // away and back by hand
     assert_at_home(&job("back", &(TO_HOME.to_owned() + &back + TO_HOME)));
 }
 

@@ -45,8 +45,7 @@ fn line_of(output: &str, start: &str) -> usize {
 
 #[test]
 fn finished_run_ends_with_the_place_of_the_part_and_the_next_commands() {
-    // The commands need the other programs next to rcs-run.
-    let (_, _) = (rcs_log(), rcs_console());
+    let (_, _) = (rcs_log(), rcs_console()); // the commands need the other programs next to rcs-run
     let scratch = Scratch::new("last-finished");
     let output = run(&scratch, "linkbar");
     let lines: Vec<_> = output.lines().collect();
@@ -143,8 +142,7 @@ fn interrupted_run_in_real_time_has_its_times_and_the_last_lines() {
     let line = format!("{} --clock 20x", rcs_run().display());
     let mut run =
         on_terminal(&scratch, &line).stdout(Stdio::piped()).spawn().expect("a shell can be started");
-    // The blank has been delivered; the robot may already hold it.
-    thread::sleep(Duration::from_millis(3700));
+    thread::sleep(Duration::from_millis(3700)); // the blank has been delivered; the robot may already hold it
     kill_process(Pid::from_child(&run), Signal::INT).expect("the run has not ended");
     let mut output = String::new();
     run.stdout.take().expect("it is piped").read_to_string(&mut output).expect("text");

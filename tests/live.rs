@@ -164,8 +164,7 @@ fn viewers_of_both_subprotocols_get_the_messages_of_the_log() {
         viewer.subscribe(|_| true);
         thread::spawn(move || (viewer.rest().collect::<Vec<_>>(), viewer.topics))
     });
-    // They are subscribed before the first tick.
-    thread::sleep(Duration::from_millis(300));
+    thread::sleep(Duration::from_millis(300)); // they are subscribed before the first tick
     let late = thread::spawn(move || {
         thread::sleep(Duration::from_millis(300));
         let mut viewer = Viewer::connect(&address, "foxglove.sdk.v1");

@@ -339,8 +339,7 @@ fn load_during_a_run(boards: Boards) {
     drop(client);
     let (outcome, log, directory) = cell.end();
     assert!(outcome.is_finished(), "{:?}\n{:?}", outcome.result.failure, outcomes(&outcome));
-    // The data of the repetition have no line 5.
-    assert_repeats(&outcome, &log, &directory);
+    assert_repeats(&outcome, &log, &directory); // the data of the repetition have no line 5
     if boards == Boards::Split {
         let program = rcs_run().to_path_buf();
         let split = |config| RunConfig { boards, program, ..config };
@@ -519,8 +518,7 @@ fn motion_by_hand_ends_with_its_session() {
         assert!(begun.elapsed() < PATIENCE, "{answer}");
     }
     wait_for_box(&run, is_free);
-    // Silence: the session and its command remain.
-    ask(&mut anna, &HELD);
+    ask(&mut anna, &HELD); // silence: the session and its command remain
     wait_for_box(&run, is_free);
     let status = wait_for(&mut watcher, "anna commands");
     assert!(status.contains("connected 2: watcher, anna"), "{status}");
@@ -667,8 +665,7 @@ fn emergency_stop_is_in_the_status_and_blocks_the_job() {
     assert!(status.contains(emergency), "{status}");
     let refused = client.ask("job go").unwrap().unwrap_err();
     assert!(refused.contains(&format!("nothing moves: EMERGENCY: {emergency}")), "{refused}");
-    // The job keeps waiting without a connection, and the next session gets the same answer.
-    drop(client);
+    drop(client); // the job keeps waiting without a connection, and the next session gets the same answer
     let mut client = cell.client("bert");
     wait_for(&mut client, emergency);
     let refused = client.ask("job skip").unwrap().unwrap_err();

@@ -66,8 +66,7 @@ fn process(command: &str) -> Process {
         Some(("", arguments)) => (rcs_run(), arguments),
         _ => (rcs_run(), rest),
     };
-    // Both outputs in one stream, as on a terminal.
-    let mut process = Process::new("sh");
+    let mut process = Process::new("sh"); // both outputs in one stream, as on a terminal
     process.args(["-c", r#"exec "$0" "$@" 2>&1"#]).arg(program).args(words(arguments));
     process
 }

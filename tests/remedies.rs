@@ -206,8 +206,7 @@ const TO_VISE: &str = "** tray UNIT_1 4 LINKBAR1_BH 0 0 0
 const SHAFT: &str = "** tray UNIT_2 7 SHAFT_BH
 == TRANSFER SHAFT_BH +1 UNIT_2 7 +1 V-VFIXTURE 0 HOME 0
 ";
-/// After 4 s at HOME.
-const TO_SAFE: &str = "** wait 100\n== MOVE -- 0 -- 0 0 SAFE 0 -- 0\n";
+const TO_SAFE: &str = "** wait 100\n== MOVE -- 0 -- 0 0 SAFE 0 -- 0\n"; // after 4 s at HOME
 const TO_HOME: &str = "** tray UNIT_1 4 LINKBAR1_BH 0 0 0
 == MOVE LINKBAR1_BH +2 UNIT_1 4 +2 PFIXTURE 0 -- 0
 == MOVE -- +0 -- 0 +0 HOME 0 -- 0

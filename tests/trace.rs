@@ -36,8 +36,7 @@ pub const EXTENSION: &str = "trace";
 pub const END: &str = "end"; // for a tick, in the lines about the end
 pub const TICKS: &str = "ticks"; // number of ticks, a fact of the end
 pub const FIRED: &str = ".fired"; // ends the path with the row that fired
-/// The field belongs to another variant of an enum with data.
-pub const ABSENT: &str = "-";
+pub const ABSENT: &str = "-"; // the field belongs to another variant of an enum with data
 const DEVICE: &str = "device";
 /// Not written: the stamp is new in every tick (`age` is written), `fired` names the deciding row, and the step
 /// belongs to the row.
@@ -53,8 +52,7 @@ pub fn path(directory: &Path, scenario: &str) -> PathBuf {
 pub fn write(log: &Log, ending: &Ending, path: &Path) -> Result<u64, Failed> {
     log.check_layout()?;
     let failed = |source| Failed::File { path: path.to_owned(), source };
-    // An interrupted trace never gets its final name.
-    let unfinished = path.with_added_extension("unfinished");
+    let unfinished = path.with_added_extension("unfinished"); // an interrupted trace never gets its final name
     let file = File::create(&unfinished).map_err(failed)?;
     let encoder = Encoder::new(file, zstd::DEFAULT_COMPRESSION_LEVEL).map_err(failed)?;
     let mut tracer = Tracer::new(BufWriter::new(encoder));
@@ -84,8 +82,7 @@ pub struct Tracer<W> {
     headers: Vec<HeaderPlace>,
     memory: Images,
     devices: Images,
-    /// Per process: age of the outputs, and the row that fired.
-    decided: Vec<Option<(u64, String)>>,
+    decided: Vec<Option<(u64, String)>>, // per process: age of the outputs, and the row that fired
     ticks: u64,
 }
 

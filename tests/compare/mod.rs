@@ -119,8 +119,7 @@ struct Comparer<'a> {
     new: HashMap<String, usize>,         // by new path
     touched: Vec<usize>,
     tick: u64,
-    /// First tick with a difference: rows are collected up to it.
-    diverged: Option<u64>,
+    diverged: Option<u64>, // first tick with a difference: rows are collected up to it
     found: Comparison,
 }
 

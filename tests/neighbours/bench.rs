@@ -125,8 +125,7 @@ impl Controller {
 
 impl Drop for Controller {
     fn drop(&mut self) {
-        // It has already ended if the test succeeded.
-        let _ = self.child.kill();
+        let _ = self.child.kill(); // it has already ended if the test succeeded
         let _ = self.child.wait();
     }
 }
@@ -134,8 +133,7 @@ impl Drop for Controller {
 pub struct Workstation {
     pub peer: Peer,
     pub tick: u64,
-    /// Messages before the answer belong to the tick of the pulse.
-    unanswered: bool,
+    unanswered: bool, // messages before the answer belong to the tick of the pulse
     command_box: Mailbox,
     cell_box: Mailbox,
     line: u16,

@@ -171,8 +171,7 @@ fn external_data_system_stores_the_items_without_changing_the_run() {
         .stdout(std::process::Stdio::null())
         .spawn()
         .expect("rcs-neighbour can be started");
-    // The controller's directory is removed with it.
-    let digest = own["digest"].clone();
+    let digest = own["digest"].clone(); // the controller's directory is removed with it
     let ended = controller.end_with(|| assert_eq!(books(&file), ("17 at H_ROBOT".to_owned(), 1)));
     assert_eq!(ended.status, Some(0), "{}", ended.said);
     assert_eq!(ended.result["digest"], digest);

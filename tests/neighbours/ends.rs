@@ -17,8 +17,7 @@ use sessions::network::{Received, Role};
 
 use super::bench::{Controller, Ended, PATIENCE, Workstation, attend, bare};
 
-/// For runs that continue by mistake.
-const TOO_LONG: [&str; 3] = ["--json", "--ticks", "20000"];
+const TOO_LONG: [&str; 3] = ["--json", "--ticks", "20000"]; // for runs that continue by mistake
 
 const FAILED: Option<i32> = Some(1);
 const STOPPED: Option<i32> = Some(3);

@@ -32,8 +32,7 @@ fn hung_neighbour_is_disconnected_without_stopping_the_robot() {
         let peer = controller.connect(role);
         thread::spawn(move || hang(peer))
     });
-    // It waits for the Data System, which gets no request before.
-    workstation.send(&bare(1, "STARTUP"));
+    workstation.send(&bare(1, "STARTUP")); // it waits for the Data System, which gets no request before
     while !hung.iter().all(thread::JoinHandle::is_finished) {
         workstation.tick();
     }

@@ -130,8 +130,7 @@ fn a_refused_load_keeps_the_old_data() {
     };
     let quiet = Cell::new("quiet").play(&[], |cell, workstation| play(cell, workstation, HIGHER, &[]));
     let cell = Cell::new("refused");
-    // A block outside, and a link to it in the data directory.
-    let outside = cell.scratch.file("outside.blk");
+    let outside = cell.scratch.file("outside.blk"); // a block outside, and a link to it in the data directory
     fs::write(&outside, "BLOCK# 777 OFFSET 21000\n( nothing )\n").expect("it can be written");
     symlink(&outside, cell.scratch.file("data").join("inside.blk")).expect("it can be made");
     let outside = format!("load {}", outside.display());

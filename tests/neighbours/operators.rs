@@ -151,8 +151,7 @@ fn carry(mut from: UnixStream, mut to: UnixStream, stalls: &AtomicBool) {
             break;
         }
     }
-    // The other end may have closed already.
-    let _ = to.shutdown(Shutdown::Both);
+    let _ = to.shutdown(Shutdown::Both); // the other end may have closed already
 }
 
 /// The run cannot measure the delay of a request with its own clock; the request's limit serves for that.

@@ -127,16 +127,13 @@ impl Shop {
 /// Of a pedestal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Fate {
-    DiesTurning(u32), // some ticks after the first FLIP
-    /// Answers for another command, and leaves some ticks after the second one.
-    AnswersForAnother,
-    /// Its status is invalid; it leaves some ticks after the second command.
-    Babbles,
-    Serves(u32), // for some ticks
+    DiesTurning(u32),  // some ticks after the first FLIP
+    AnswersForAnother, // answers for another command, and leaves some ticks after the second one
+    Babbles,           // its status is invalid; it leaves some ticks after the second command
+    Serves(u32),       // for some ticks
 }
 
-/// An ended pedestal, and the counts of its finger potentiometer.
-type Remains = (System, u16);
+type Remains = (System, u16); // an ended pedestal, and the counts of its finger potentiometer
 
 /// On a thread, which ends with its script or the connection.
 struct Guest {
@@ -165,8 +162,7 @@ fn serve(mut peer: Peer, fate: Fate, is_there: &AtomicBool) -> Remains {
             (numbers, ticks) = ([numbers, vec![number]].concat(), 0);
         }
         ticks += 1;
-        // The first command was already there when the pedestal connected.
-        let commanded = numbers.len() > 1;
+        let commanded = numbers.len() > 1; // the first command was already there when the pedestal connected
         let sensors_box = peer.mailbox(PEDESTAL_SENSORS);
         opening = SensorsLayout::decode(sensors_box.data()).expect("its devices are there").potentiometer;
         system.step(command_box, sensors_box);
@@ -264,8 +260,7 @@ fn every_failure_of_the_pedestal_ends_the_command_without_a_drop() {
     assert_eq!(shop.fails(), SILENT);
     let (dead, held) = shop.see_off(guest);
     assert!(dead.memory().hand.status.position > 240, "it held the clevis");
-    // Its successor does not move the hand without a new command.
-    let guest = shop.admit(Fate::Serves(300));
+    let guest = shop.admit(Fate::Serves(300)); // its successor does not move the hand without a new command
     let (successor, opening) = shop.see_off(guest);
     let status = successor.memory().pedestal.status;
     assert_eq!((status.report, status.reason), (PedestalReport::Error, Reason::Restarted));

@@ -46,8 +46,7 @@ fn against(name: &str, example_name: &str, sent: &[u8]) -> (String, Option<i32>)
         let (mut line, _) = listener.accept().expect("the example connects");
         line.write_all(&sent).expect("the example reads");
         line.shutdown(Shutdown::Write).expect("the example is there");
-        // Read, so that the end of the connection is not a reset.
-        let _ = line.read_to_end(&mut Vec::new());
+        let _ = line.read_to_end(&mut Vec::new()); // read, so that the end of the connection is not a reset
     });
     let output = python()
         .arg(example(example_name))

@@ -49,8 +49,7 @@ fn terminate(mut controller: Controller) -> Ended {
 
 /// Answers pulses without further commands.
 fn follow(mut workstation: Workstation) {
-    // After the end of the run, reading fails, too.
-    let _ = workstation.peer.pulse(workstation.tick);
+    let _ = workstation.peer.pulse(workstation.tick); // after the end of the run, reading fails, too
     attend(workstation.peer);
 }
 

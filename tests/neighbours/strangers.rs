@@ -58,8 +58,7 @@ fn at_a_socket_only_the_same_user_is_admitted() {
     let more = ["--clock", "real", "--ticks", "100"];
     let controller = Controller::start_at(scratch, None, "workstation", &more);
     let socket = controller.address.path();
-    // Any user can start the program and read the data.
-    let program = controller.file("rcs-neighbour");
+    let program = controller.file("rcs-neighbour"); // any user can start the program and read the data
     fs::copy(built, &program).expect("the program can be copied");
     controller.scratch.as_ref().expect("it has one").copy_data();
     let as_nobody = || {

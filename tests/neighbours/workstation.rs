@@ -19,8 +19,7 @@ use super::bench::{Controller, Workstation, bare, run_alone};
 #[test]
 fn a_job_from_another_process_has_the_same_bits() {
     let own = run_alone(&["linkbar"]);
-    // Rebuilt before the controller waits for it.
-    let program = rcs_neighbour();
+    let program = rcs_neighbour(); // rebuilt before the controller waits for it
     let controller = Controller::start("bits", "workstation", &["--json"]);
     let played = Command::new(program)
         .args(["workstation", "--network", &controller.address.to_string(), "linkbar"])

@@ -123,8 +123,7 @@ pub fn rows(extent: Extent) -> Vec<Row> {
     let mut rows = Vec::new();
     for (number, (name, signal, expected)) in SIGNALS.into_iter().enumerate() {
         for (shift, (boards, on)) in BOARDS.into_iter().enumerate() {
-            // A sample uses another phase in each row.
-            let phases = PHASES.into_iter().enumerate();
+            let phases = PHASES.into_iter().enumerate(); // a sample uses another phase in each row
             let of_sample = (2 * number + shift) % PHASES.len();
             for (_, phase) in phases.filter(|(index, _)| !extent.sample || *index == of_sample) {
                 let attack = format!("{name}, {}", phase.words());

@@ -8,12 +8,10 @@ use std::{
 /// Any other outcome is a panic of the judge, and a finding.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Outcome {
-    WentOn, // normal end; a tool printed its answer
-    /// At rest, log complete, exit status 3; or a tool found a difference.
-    InOrder,
-    InWords, // the reason is in the last line
-    /// By the sent signal, by one of the system's, or by iceoryx2 over garbage.
-    BySignal,
+    WentOn,   // normal end; a tool printed its answer
+    InOrder,  // at rest, log complete, exit status 3; or a tool found a difference
+    InWords,  // the reason is in the last line
+    BySignal, // by the sent signal, by one of the system's, or by iceoryx2 over garbage
 }
 
 /// In the order of [`Outcome`].
@@ -32,8 +30,7 @@ impl Chance {
 
     /// From 0 to `limit` - 1; 0 if `limit` is 0.
     pub fn below(&mut self, limit: u64) -> u64 {
-        // George Marsaglia, Xorshift RNGs, Journal of Statistical Software 8 (2003).
-        self.0 ^= self.0 << 13;
+        self.0 ^= self.0 << 13; // george Marsaglia, Xorshift RNGs, Journal of Statistical Software 8 (2003)
         self.0 ^= self.0 >> 7;
         self.0 ^= self.0 << 17;
         (self.0 >> 11) % limit.max(1)

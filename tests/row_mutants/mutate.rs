@@ -12,12 +12,10 @@ pub struct Mutant {
     table: String,
     pub row: String,
     what: What,
-    /// From 0; with the text of the row before and after.
-    pub lines: Range<usize>,
+    pub lines: Range<usize>, // from 0; with the text of the row before and after
     pub before: String,
     pub after: String,
-    /// An alternative moves from one row to another.
-    pub other: Option<(Range<usize>, String)>,
+    pub other: Option<(Range<usize>, String)>, // an alternative moves from one row to another
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -153,8 +153,7 @@ pub fn {}{generic}(step: {step}, situation: &{}) -> ::rcs_core::table::{result} 
     }
 }
 
-/// Lines of each change of a file, from 1, and its number.
-type Places = Vec<(Range<usize>, usize)>;
+type Places = Vec<(Range<usize>, usize)>; // lines of each change of a file, from 1, and its number
 
 /// With the positions of the changes.
 #[derive(Default)]

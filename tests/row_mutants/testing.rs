@@ -23,8 +23,7 @@ pub struct Test<'a> {
     program: &'a Program,
     pub name: String,
     pub taken: Duration,
-    /// Changes that would have decided otherwise.
-    pub reaches: BTreeSet<usize>,
+    pub reaches: BTreeSet<usize>, // changes that would have decided otherwise
 }
 
 impl Program {

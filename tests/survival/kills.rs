@@ -11,8 +11,7 @@ const JOBS: [(&str, u64); 4] = // lengths in ticks
     [("linkbar", 5_900), ("clevis", 11_000), ("turned-part", 6_000), ("tool-change", 7_000)];
 /// In fast clock the log may lack its ring (1,024 ticks) and one write (25).
 const BEHIND_FAST: u64 = 1024 + 25 + 25;
-/// In real clock it writes once per second; one more for a delayed log thread.
-const BEHIND_REAL: u64 = 2 * 25;
+const BEHIND_REAL: u64 = 2 * 25; // in real clock it writes once per second; one more for a delayed log thread
 
 fn kills() -> u64 {
     std::env::var("RCS_KILLS").map_or(4, |text| text.parse().expect("RCS_KILLS is a number"))

@@ -34,8 +34,7 @@ fn another_user_runs_in_parallel_and_after_the_first() {
     }
     let mut first = Running::start(&scratch.file(""), "linkbar", &["--clock", "real", "--log", "none"]);
     drop(first.attach());
-    // The target directory may be private.
-    let program = scratch.file("rcs-run");
+    let program = scratch.file("rcs-run"); // the target directory may be private
     fs::copy(rcs_run(), &program).expect("the program can be copied");
     let data = scratch.file("data");
     whole_system_tests::copy(&whole_system_tests::root().join("data"), &data);

@@ -9,11 +9,9 @@ use whole_system_tests::{
     bench::{Ended, Running},
 };
 
-/// Long enough for a second of punctual ticks, also in parallel with other runs.
-const TICKS: &str = "300";
+const TICKS: &str = "300"; // long enough for a second of punctual ticks, also in parallel with other runs
 const STOPPED: Duration = Duration::from_millis(1_000);
-/// The awaited slot may still be in time.
-const SKIPPED: u64 = 24;
+const SKIPPED: u64 = 24; // the awaited slot may still be in time
 
 /// It is stopped for a second in tick 40, and then continues.
 fn stopped_for_a_second(directory: &Path, more: &[&str]) -> Ended {

@@ -39,12 +39,9 @@ struct Page {
     lines: Vec<Line>,
     /// Not in the manual: code and reason. A star includes all of a type.
     beyond: Vec<(String, String)>,
-    /// Another meaning than the manual's: name, owner, the manual, here.
-    differences: Vec<[String; 4]>,
-    /// Chapter IX: description, address, bytes, section, test.
-    mailboxes: Vec<[String; 5]>,
-    /// At the top: kind, total, in the code, tested.
-    figures: Vec<(String, [usize; 3])>,
+    differences: Vec<[String; 4]>, // another meaning than the manual's: name, owner, the manual, here
+    mailboxes: Vec<[String; 5]>,   // chapter IX: description, address, bytes, section, test
+    figures: Vec<(String, [usize; 3])>, // at the top: kind, total, in the code, tested
 }
 
 /// Of a row, without the marks of code.

@@ -8,11 +8,9 @@ use std::{
 
 use whole_system_tests::root;
 
-/// Their names with `_` are those of `cargo test`.
-const CRATES: [&str; 2] = ["crates", "bins"];
+const CRATES: [&str; 2] = ["crates", "bins"]; // their names with `_` are those of `cargo test`
 
-/// Every Rust file, by its path from the root of the repository.
-pub struct Sources(BTreeMap<PathBuf, String>);
+pub struct Sources(BTreeMap<PathBuf, String>); // every Rust file, by its path from the root of the repository
 
 impl Sources {
     pub fn read() -> Self {
@@ -73,8 +71,7 @@ fn gather(directory: &Path, all: &mut BTreeMap<PathBuf, String>) {
 
 pub fn has_test(source: &str, name: &str) -> bool {
     source.match_indices(&format!("fn {name}(")).any(|(at, _)| {
-        // The attribute, or the macro of a property test, is shortly before it.
-        let before = &source[..at];
+        let before = &source[..at]; // the attribute, or the macro of a property test, is shortly before it
         before.lines().rev().take(6).any(|line| matches!(line.trim(), "#[test]" | "proptest! {"))
             || before.rfind("proptest! {") > before.rfind("\n}\n")
     })

@@ -246,8 +246,7 @@ impl Host {
         if self.state == HostState::Down {
             self.begin_start();
             self.waited = 0;
-            // The controller sends an unrequested report when its function starts.
-            self.asked = 1;
+            self.asked = 1; // the controller sends an unrequested report when its function starts
         }
         let bytes = rx.as_slice();
         if bytes.is_empty() {

@@ -248,8 +248,7 @@ mod tests {
     fn at_the_pole_d_stays_and_the_roll_follows() {
         let down = plate([100, 200, 300, 4000, 18_000, 1000]);
         assert_eq!(Plate::from_frame(&down.to_frame(), &down), Ok(down));
-        // Straight down only R - D matters, straight up only R + D.
-        let near = plate([0, 0, 0, 5000, 0, 0]);
+        let near = plate([0, 0, 0, 5000, 0, 0]); // straight down only R - D matters, straight up only R + D
         assert_eq!(
             Plate::from_frame(&down.to_frame(), &near).unwrap().words,
             [100, 200, 300, 5000, 18_000, 2000]

@@ -14,8 +14,7 @@ use crate::{
 /// Bytes of the controller's receiver board (ASSUMED; the appendix expects one command in it).
 pub const BOARD_BYTES: usize = 64;
 const GARBLED_TICKS: u8 = 3; // until garbage gets a NAK on a line that is not quiet
-/// Later bytes may be another command in place of a lost byte.
-const FRAME_TICKS: u8 = 2;
+const FRAME_TICKS: u8 = 2; // later bytes may be another command in place of a lost byte
 
 /// A command received by the controller.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -278,8 +277,7 @@ mod tests {
 
     #[test]
     fn frame_over_three_ticks_is_discarded() {
-        // It has lost a byte, and the host's restart happens to be that byte.
-        let mut frame = [0; 16];
+        let mut frame = [0; 16]; // it has lost a byte, and the host's restart happens to be that byte
         DataCommand { function: NO_FUNCTION, plate: Plate { words: [1, 2, 3, 4, 9000, 0x055F] } }
             .emit(&mut frame);
         let mut receiver = CommandReceiver::default();
@@ -308,8 +306,7 @@ mod tests {
 
     #[test]
     fn a_frame_without_its_first_byte_is_not_read_as_commands() {
-        // Its function bytes are a cancel and a restart.
-        let mut frame = [0; 16];
+        let mut frame = [0; 16]; // its function bytes are a cancel and a restart
         DataCommand { function: [0x18, 0x05], plate: Plate { words: [0x1805; 6] } }.emit(&mut frame);
         let mut receiver = CommandReceiver::default();
         receiver.accept(&bytes(&frame[2..]));

@@ -12,8 +12,7 @@ use geometry::{
 };
 use proptest::prelude::*;
 
-/// A robot for which only the velocity limits can refuse a position.
-struct Anywhere(Plate);
+struct Anywhere(Plate); // a robot for which only the velocity limits can refuse a position
 
 impl Robot for Anywhere {
     fn present(&mut self) -> Plate {

@@ -19,8 +19,7 @@ use session::{Session, Truth};
 
 const SCHEDULES: u64 = 10_000; // in an ordinary run
 const FAULTY_TICKS: u64 = 120; // with faults
-/// Two answers of the operator, a stalled line, and the motion to the goal.
-const MENDED_TICKS: u32 = 300;
+const MENDED_TICKS: u32 = 300; // two answers of the operator, a stalled line, and the motion to the goal
 
 /// Possibly an invalid one.
 fn rule(numbers: &mut Numbers) -> Rule {

@@ -145,15 +145,13 @@ impl Host {
         self.counters.received = self.counters.received.saturating_add(1);
         (self.feedback, self.utilization) = (feedback, message.utilization_rate);
         if self.session.state() != LinkState::Running || before != LinkState::Running {
-            // The target of a robot that does not follow yet is its own position.
-            self.rest_at_feedback();
+            self.rest_at_feedback(); // the target of a robot that does not follow yet is its own position
         }
         let target = self.target(now);
         if self.session.state() == LinkState::Running {
             self.sent = Some(target);
         }
-        // Sequence numbers and times of messages wrap around.
-        self.seqno = self.seqno.wrapping_add(1);
+        self.seqno = self.seqno.wrapping_add(1); // sequence numbers and times of messages wrap around
         let tm = u32::try_from((now / 1_000_000) & u64::from(u32::MAX)).unwrap_or_default();
         let speed = Some(&target.speed).filter(|_| self.settings.speed_ref);
         let answer = Sensor::target(self.seqno, tm, &target.pose, speed).encode(buffer)?;

@@ -71,8 +71,7 @@ mod tests {
             prop_assert!(way < 1e-9 && turn < 1e-9, "{way} mm, {turn} rad");
             let speed = left_speed.way(&right_speed);
             prop_assert!(speed < 1e-7, "{speed}");
-            // On both sides of the knot, each from within its segment.
-            let h = 1e-4;
+            let h = 1e-4; // on both sides of the knot, each from within its segment
             let change = |points: &[Pose; 4], from: f64, to: f64| {
                 let (a, b) = (evaluate(points, from, 0.04).1, evaluate(points, to, 0.04).1);
                 scaled(&crate::pose::subtract(&b.linear, &a.linear), 1.0 / (0.04 * h))

@@ -57,8 +57,7 @@ struct Bench {
     seqno: u32,
     states: u8,
     at: Pose,
-    /// Time of sending, pose, and the robot's distance from it, mm.
-    before: Option<(u64, Pose, f64)>,
+    before: Option<(u64, Pose, f64)>, // time of sending, pose, and the robot's distance from it, mm
     point: Pose,
     datagram: Vec<u8>,
     dice: u64,

@@ -172,8 +172,7 @@ impl<'a> Request<'a> {
             }
             function::WRITE_COILS => {
                 let written = range(&mut reader)?;
-                // The quantity limits the byte count: check it first.
-                written.check(MOST_WRITTEN_BITS)?;
+                written.check(MOST_WRITTEN_BITS)?; // the quantity limits the byte count: check it first
                 let count = usize::from(written.count);
                 let bits = Bits::new(counted(&mut reader, bytes_of_bits(count))?, count)?;
                 Self::WriteCoils { first: written.first, bits }

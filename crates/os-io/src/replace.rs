@@ -158,8 +158,7 @@ pub fn replace(path: &Path, bytes: &[u8]) -> io::Result<()> {
     let temporary = directory.join(format!(".{name}.{}.new", process::id()));
     let written = write_new(&temporary, bytes, old.as_ref()).and_then(|()| fs::rename(&temporary, &target));
     if written.is_err() {
-        // The error of the write is the one to report.
-        let _ = fs::remove_file(&temporary);
+        let _ = fs::remove_file(&temporary); // the error of the write is the one to report
     }
     written?;
     File::open(directory)?.sync_all()

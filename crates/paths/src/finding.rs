@@ -9,8 +9,7 @@ use crate::{
 
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Finding {
-    /// `path.joint`, `.contact`, `.link`, `.grip`, `.place`, `.gripper` or `.margin`.
-    pub code: &'static str,
+    pub code: &'static str, // `path.joint`, `.contact`, `.link`, `.grip`, `.place`, `.gripper` or `.margin`
     /// True: the motion fails or collides. False: it comes close to that.
     pub error: bool,
     pub line: u32, // from 1
@@ -18,12 +17,10 @@ pub struct Finding {
     pub help: Option<String>,
     /// The records of the two ends: one is probably wrong. Empty if the order of the lines is wrong.
     pub data: Vec<Datum>,
-    /// Identifies the same finding in other walks.
     #[serde(skip)]
-    pub key: String,
-    /// Severity: the greater of two findings with one key is kept.
+    pub key: String, // identifies the same finding in other walks
     #[serde(skip)]
-    pub depth: f64,
+    pub depth: f64, // severity: the greater of two findings with one key is kept
 }
 
 #[derive(Clone, Debug, Serialize)]
@@ -33,8 +30,7 @@ pub struct Segment {
     pub part: &'static str, // depart, trajectory, approach or goal
     pub joint: &'static str,
     pub margin_deg: f64,
-    /// `None`: no obstacle within the reported distance.
-    pub nearest: Option<Passing>,
+    pub nearest: Option<Passing>, // `None`: no obstacle within the reported distance
 }
 
 impl Segment {

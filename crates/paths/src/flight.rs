@@ -38,9 +38,8 @@ pub enum Trouble {
 
 #[derive(Clone, Debug)]
 pub struct Flown {
-    pub ticks: u32, // since the previous point
-    /// Ticks in which the limits of the link slowed the robot.
-    pub held_back: u32,
+    pub ticks: u32,     // since the previous point
+    pub held_back: u32, // ticks in which the limits of the link slowed the robot
     pub margin: Margin, // of the joint nearest to a limit
 }
 

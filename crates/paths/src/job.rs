@@ -200,8 +200,7 @@ fn command_line(
                 "with the part {:.2}, {:.2} in from the middle of its sector, turned by {angle:.1} degrees: ",
                 placement[0], placement[1]
             );
-            // A failure only in the outer corners is improbable: a warning.
-            let often = x == 0.0 && y == 0.0;
+            let often = x == 0.0 && y == 0.0; // a failure only in the outer corners is improbable: a warning
             all.extend(more.into_iter().map(|one| {
                 let (message, error) = (lies.clone() + &one.message, one.error && often);
                 (number, Finding { message, error, ..one })

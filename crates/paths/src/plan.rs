@@ -63,9 +63,8 @@ pub struct Phase {
     pub start: String,
     #[serde(skip)]
     pub from: Frame, // tool frame, inches, world
-    /// A sensor ends the motion, at an unknown position.
     #[serde(skip)]
-    pub guarded: bool,
+    pub guarded: bool, // a sensor ends the motion, at an unknown position
 }
 
 impl Phase {

@@ -10,8 +10,7 @@ use plant::{
 
 use crate::{finding::Finding, state::State, steps::Step};
 
-/// Greatest fall of a released part, in (ASSUMED; shipped data: at most 0.15).
-const DROP: f64 = 0.5;
+const DROP: f64 = 0.5; // greatest fall of a released part, in (ASSUMED; shipped data: at most 0.15)
 
 impl State<'_> {
     /// The problem that prevents a step with a free path.

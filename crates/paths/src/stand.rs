@@ -26,12 +26,10 @@ pub struct Standing {
     pub points: [[i32; 3]; 3],    // wrist, tool and finger point, 0.01 in
     pub joints: Option<[f64; 6]>, // `None`: out of reach
     pub unreachable: Option<String>,
-    /// Joint nearest to a limit; negative beyond it.
-    pub margin: Option<(&'static str, f64)>,
+    pub margin: Option<(&'static str, f64)>, // joint nearest to a limit; negative beyond it
     /// Part of the robot, nearest obstacle and their distance; negative if they touch.
     pub clearance: Option<(String, String, f64)>,
-    /// The nearest poses, with the distances of their tool points.
-    pub named: Vec<(String, f64)>,
+    pub named: Vec<(String, f64)>, // the nearest poses, with the distances of their tool points
 }
 
 impl Standing {
@@ -133,8 +131,7 @@ pub fn movetable_between(from: &Frame, to: &Frame) -> Vec<MovetableLine> {
     let back = from.rotation.inverse();
     let shift = back * (to.position - from.position);
     let turn = back * to.rotation;
-    // Pitch about Y, yaw about the new Z, roll about the new X.
-    let along = turn * x_axis();
+    let along = turn * x_axis(); // pitch about Y, yaw about the new Z, roll about the new X
     let (pitch, yaw) = ((-along.z).atan2(along.x), along.y.clamp(-1.0, 1.0).asin());
     let line = |system, values| MovetableLine { system, values };
     let tilted = line(System::ToolOrigin, [hundredths(pitch.to_degrees()), hundredths(yaw.to_degrees()), 0]);

@@ -27,22 +27,18 @@ const THERE: f64 = 8.0; // in: farther from its expected position a part is miss
 pub struct State<'a> {
     pub room: &'a Room,
     pub known: &'a Known,
-    /// The robot's position in the task data, and its paths.
-    pub walk: Walk<'a>,
+    pub walk: Walk<'a>, // the robot's position in the task data, and its paths
     pub robot: Robot,
     pub layout: Layout,
-    pub held: Option<(Name16, i32)>, // with its grip
-    pub random: Vec<Random>,         // parts at random in their sectors
-    /// A failed flight is repeated with more via points.
-    pub advises: bool,
-    /// The robot's controller has stopped.
-    pub stranded: bool,
+    pub held: Option<(Name16, i32)>,    // with its grip
+    pub random: Vec<Random>,            // parts at random in their sectors
+    pub advises: bool,                  // a failed flight is repeated with more via points
+    pub stranded: bool,                 // the robot's controller has stopped
     pub before: Vec<[&'static str; 2]>, // the commands that brought the robot here
     regrip: Option<Name16>,             // at the pedestal, or about to arrive
     last: Option<(Name16, Location)>,   // of the last motion
     pub(crate) drum_grips: bool,
-    /// Missing parts, each reported once, and parts machined from them.
-    pub(crate) lacking: Vec<Name16>,
+    pub(crate) lacking: Vec<Name16>, // missing parts, each reported once, and parts machined from them
 }
 
 impl<'a> State<'a> {
@@ -242,8 +238,7 @@ impl<'a> State<'a> {
         };
         let part = self.layout.parts.remove(index);
         let mut frame = tool.inverse().compose(&part.frame);
-        // The fingers centre the part between them.
-        frame.position.y = 0.0;
+        frame.position.y = 0.0; // the fingers centre the part between them
         let groove = self.room.worn(&self.layout).and_then(|gripper| gripper.groove);
         if groove.is_none() {
             self.layout.opening = sizes_along(&frame, &part.kind).y;

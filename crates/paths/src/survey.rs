@@ -17,8 +17,7 @@ pub(crate) const SIGHT: f64 = 4.0;
 const FREE: f64 = 0.05; // in: ends a permitted contact
 /// More depth for a part in nest or vise, in (ASSUMED): its place in the fingers depends on vision.
 pub const FIT: f64 = 0.02;
-/// More depth for a pushed part, in (ASSUMED): it lies as it fell.
-const PUSH_FIT: f64 = 0.05;
+const PUSH_FIT: f64 = 0.05; // more depth for a pushed part, in (ASSUMED): it lies as it fell
 /// Greatest displacement of any point of the robot, in per radian of each joint, base to roll.
 const LEVERS: Joints = [105.0, 105.0, 65.0, 30.0, 27.0, 12.0];
 
@@ -67,9 +66,8 @@ pub struct Survey<'a> {
     layout: Layout,
     devices: &'a [Body],
     swept: Swept,
-    commands: [&'static str; 2], // of E-move and Subtask
-    /// Greatest depth of each permitted contact, by pair of bodies.
-    allowed: BTreeMap<(String, String), f64>,
+    commands: [&'static str; 2],              // of E-move and Subtask
+    allowed: BTreeMap<(String, String), f64>, // greatest depth of each permitted contact, by pair of bodies
     at: Joints,
     free: f64, // in: displacement without a further check
     leg: Option<usize>,

@@ -40,8 +40,7 @@ use crate::{
 
 /// Text of LOCATE-OBJ if the position of the object is unknown.
 const LOCATE: &str = "LOCATE-OBJ: taken to be found in the middle of its place";
-/// Numbers of E-move's variable records in a route: start and goal.
-const DEPARTURE: u32 = u32::MAX - 1;
+const DEPARTURE: u32 = u32::MAX - 1; // numbers of E-move's variable records in a route: start and goal
 const GOAL: u32 = u32::MAX;
 
 #[derive(Clone, Debug)]

@@ -14,8 +14,7 @@ use taskdata::load::{
     job::{Offset, Workstation},
 };
 
-/// Inches and radians: the accuracy of vision.
-const SAME: (f64, f64) = (0.02, 0.002);
+const SAME: (f64, f64) = (0.02, 0.002); // inches and radians: the accuracy of vision
 
 fn data() -> &'static Path {
     Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../data"))

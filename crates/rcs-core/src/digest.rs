@@ -18,8 +18,7 @@ pub struct Digest(u64);
 
 impl Digest {
     const START: u64 = 0xCBF2_9CE4_8422_2325;
-    /// 2^64 divided by the golden ratio: odd, without a bit pattern.
-    const FACTOR: u64 = 0x9E37_79B9_7F4A_7C15;
+    const FACTOR: u64 = 0x9E37_79B9_7F4A_7C15; // 2^64 divided by the golden ratio: odd, without a bit pattern
 
     /// The digest of an empty run.
     #[must_use]

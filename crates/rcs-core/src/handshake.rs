@@ -259,8 +259,7 @@ mod tests {
             let mut receiver = Receiver::default();
             // Values of the previous tick, kept until overwritten, also over a restart.
             let (mut written, mut echo) = (Content::default(), (0_u32, Lower::Done));
-            // Executed or adopted last: the status belongs to it.
-            let mut current = Content::default();
+            let mut current = Content::default(); // executed or adopted last: the status belongs to it
             let mut executed = std::collections::HashSet::new();
             let mut about = current;
             for (k, event) in events.into_iter().enumerate() {

@@ -53,8 +53,7 @@ impl Report {
 /// The status, with the content to which it belongs.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 struct Answered {
-    /// Ticks since its stamp, minus the one of every reading.
-    age: u8,
+    age: u8, // ticks since its stamp, minus the one of every reading
     republished: bool,
     echo: u32,
     report: Report,

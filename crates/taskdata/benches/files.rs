@@ -146,8 +146,7 @@ fn processor_time() -> Duration {
 
 /// Times a look-up; `find` returns a number from the record found.
 fn look_up(c: &mut Criterion, what: &str, names: &[Name16], find: impl Fn(&Name16) -> u32) {
-    // Each look-up depends on the previous one, or the processor would overlap them.
-    let nothing = black_box(0);
+    let nothing = black_box(0); // each look-up depends on the previous one, or the processor would overlap them
     let chain = |names: &[Name16], times: u64| {
         let mut position = 0;
         for _ in 0..times {

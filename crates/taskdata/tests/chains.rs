@@ -81,8 +81,7 @@ fn lying(floor: &Frame, height: f64) -> Frame {
     floor.shifted(Vector::new(-height / 2.0, 0.0, 0.0))
 }
 
-/// Heights of the lying clevis, in: blank, half finished, finished.
-const CLEVIS: [f64; 3] = [1.73, 1.68, 1.63];
+const CLEVIS: [f64; 3] = [1.73, 1.68, 1.63]; // heights of the lying clevis, in: blank, half finished, finished
 const CLEVIS_WIDTH: f64 = 2.56;
 const CLEVIS_LENGTH: f64 = 4.00;
 

@@ -103,8 +103,7 @@ fn blank_is_picked_tilted_and_is_upright_in_the_vise() {
     // X -0.275 .. 0.350: the tray floor, where the part frame is, becomes the rear face.
     assert!((in_vise.position.x - 0.35).abs() < 1e-9, "{in_vise:?}");
     assert!((in_vise.position.y - 0.19).abs() < 1e-9);
-    // Z -3.10 .. 0.90: the centroid is 2.00 from each end.
-    assert!((in_vise.position.z - -1.10).abs() < 1e-9);
+    assert!((in_vise.position.z - -1.10).abs() < 1e-9); // z -3.10 .. 0.90: the centroid is 2.00 from each end
 }
 
 #[test]
@@ -132,8 +131,7 @@ fn hold_and_seat_differ_as_documented() {
     assert_near(&seen_from(&vise.frame, &hold), [-0.35, 0.05, -0.90], 1e-9);
     let between = seen_from(&hold, &seat);
     assert_near(&between, [0.15, 0.0, 0.0], 1e-9);
-    // Rolled by 90 degrees: the fingers open along world Z.
-    assert!((hold.y().z - 1.0).abs() < 1e-9);
+    assert!((hold.y().z - 1.0).abs() < 1e-9); // rolled by 90 degrees: the fingers open along world Z
 }
 
 #[test]

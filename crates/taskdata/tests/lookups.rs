@@ -153,8 +153,7 @@ proptest! {
         let found = data.grip_movetable(&name("BAR"), 2, &place(&data, "A", 1, "BAR"));
         let expected = present.trailing_zeros();
         prop_assert_eq!(found, data.movetable_named(&name(&format!("G{expected}"))));
-        // Only the wild card applies; another grip has no entry.
-        let fixture = place(&data, "F", 0, "BAR");
+        let fixture = place(&data, "F", 0, "BAR"); // only the wild card applies; another grip has no entry
         let wild = if present & 8 != 0 { data.movetable_named(&name("G3")) } else { None };
         prop_assert_eq!(data.grip_movetable(&name("BAR"), 2, &fixture), wild);
         prop_assert_eq!(data.grip_movetable(&name("BAR"), 1, &fixture), None);

@@ -43,8 +43,7 @@ mod tests {
 
     #[test]
     fn the_numbers_are_those_of_the_published_generator() {
-        // `pcg32-demo` of the author's library: seed 42, stream 54.
-        let mut numbers = Numbers::new(42, 54);
+        let mut numbers = Numbers::new(42, 54); // `pcg32-demo` of the author's library: seed 42, stream 54
         let drawn: Vec<u32> = (0..6).map(|_| numbers.draw()).collect();
         assert_eq!(drawn, [0xA15C_02B7, 0x7B47_F409, 0xBA1D_3330, 0x83D2_F293, 0xBFA4_784B, 0xCBED_606E]);
     }

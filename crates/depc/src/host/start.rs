@@ -68,8 +68,7 @@ impl Host {
 
     pub(super) fn without_dtr(&mut self) -> HostEvent {
         if matches!(self.state, HostState::Cancelling | HostState::Ended) {
-            // Do not wait for the ACK that accompanies the loss of DTR.
-            self.receiver.clear();
+            self.receiver.clear(); // do not wait for the ACK that accompanies the loss of DTR
             self.state = HostState::Ended;
             (self.resend_due, self.waited) = (false, 0);
             return HostEvent::None;

@@ -124,8 +124,7 @@ fn unanswered_start_is_repeated_once_per_second_until_the_time_limit() {
     host.forgive();
     assert_eq!(tick(&mut host, &[], &Intent::Restart).1, []);
     assert_eq!((host.fault(), host.is_silent()), (LinkFault::None, true));
-    // As after the end of Hold: one report for all restarts.
-    tick(&mut host, &report(), &Intent::Idle);
+    tick(&mut host, &report(), &Intent::Idle); // as after the end of Hold: one report for all restarts
     for _ in 0..ANSWER_TICKS {
         tick(&mut host, &[], &Intent::Idle);
     }
@@ -379,8 +378,7 @@ fn a_late_nak_repeats_a_position_but_no_function() {
         assert_eq!(tick(&mut host, &[0x15], &Intent::Idle), (event, sent.to_vec()));
         assert_eq!(host.lost_function(), function);
     }
-    // In the next tick it can only be the answer to the command.
-    let mut host = running();
+    let mut host = running(); // in the next tick it can only be the answer to the command
     let frame = tick(&mut host, &[], &position([1, 2])).1;
     assert_eq!(tick(&mut host, &[0x15], &Intent::Idle), (HostEvent::None, frame));
 }

@@ -6,8 +6,7 @@ use crate::model::{Event, Panel, QUIET, Setting, State, Wrong};
 
 const NONE: u32 = u32::MAX;
 
-/// The next state without further faults; true for a good tick.
-type Onward = (u32, bool);
+type Onward = (u32, bool); // the next state without further faults; true for a good tick
 
 #[derive(Debug)]
 pub struct Found {
@@ -23,8 +22,7 @@ pub struct Found {
 struct Space {
     known: HashMap<u64, u32>,
     from: Vec<(u32, Event)>,
-    /// The next state of each state: without the operator, and with help.
-    onward: Vec<[Onward; 2]>,
+    onward: Vec<[Onward; 2]>, // the next state of each state: without the operator, and with help
     ticks: u64,
 }
 

@@ -15,8 +15,7 @@ use crate::image::Image;
 const RING: i16 = 4; // points
 /// The position of a point, except for the first word.
 const AT: Plate = Plate { words: [0, -6296, -635, -9000, 13495, 0] };
-/// Slightly more than a second; the real value only takes longer.
-const PATIENCE: u16 = RESTART_TICKS + 5;
+const PATIENCE: u16 = RESTART_TICKS + 5; // slightly more than a second; the real value only takes longer
 const LATE: [u8; 3] = [1, 2, 3]; // of a late frame
 
 pub type Wrong = &'static str;
@@ -114,9 +113,8 @@ pub const QUIET: Event = Event {
     answer: Carried::AsSent,
 };
 
-/// Frames in order, each with its remaining ticks.
 #[derive(Clone, Debug, Default, PartialEq)]
-struct Line(Vec<(u8, Vec<u8>)>);
+struct Line(Vec<(u8, Vec<u8>)>); // frames in order, each with its remaining ticks
 
 impl Line {
     fn send(&mut self, frame: &[u8], carried: Carried) {

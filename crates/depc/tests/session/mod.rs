@@ -18,8 +18,7 @@ use geometry::{
 use rcs_core::tick::Tick;
 
 const OPERATOR_TICKS: u32 = 50; // until the operator answers a warning or restarts
-/// Ticks to report a stopped controller: the answer time, then a second of silence.
-const REPORT_TICKS: u32 = 32;
+const REPORT_TICKS: u32 = 32; // ticks to report a stopped controller: the answer time, then a second of silence
 
 /// It reaches every position exactly, and checks every step.
 #[derive(Clone, PartialEq, Debug)]
@@ -53,14 +52,11 @@ impl Robot for Watched {
 #[derive(Clone, Copy, Default, Debug, PartialEq)]
 pub struct Truth {
     pub started: u64,
-    pub false_reports: u64, // accepted, but never true or outdated
-    /// Executed or refused with a warning, but not sent in this form.
-    pub false_commands: u64,
-    /// Accepted for a command that was neither executed nor refused with a warning.
-    pub false_acks: u64,
-    /// Executed after the host had given them up and restarted.
-    pub late_commands: u64,
-    pub repeated: u64, // with their function
+    pub false_reports: u64,  // accepted, but never true or outdated
+    pub false_commands: u64, // executed or refused with a warning, but not sent in this form
+    pub false_acks: u64,     // accepted for a command that was neither executed nor refused with a warning
+    pub late_commands: u64,  // executed after the host had given them up and restarted
+    pub repeated: u64,       // with their function
     pub false_cancels: u64,
     pub velocity_warnings: u64,
     pub warnings: u64,
@@ -105,14 +101,12 @@ pub struct Session {
     goal: Frame,
     numbers: Numbers,
     sent: Vec<Position>, // number 1 is the first
-    /// The last command, and the bytes at the controller in the last tick and in this one.
-    frame: LinkBytes,
+    frame: LinkBytes,    // the last command, and the bytes at the controller in the last tick and in this one
     arrived: [LinkBytes; 2],
     moving_to: Option<Plate>, // executed in the last tick
     late: bool,               // it was not the last one sent
     refused: Option<u16>,     // last refused with a warning
-    /// Ticks since the host last accepted bytes; data of a stopped controller may still arrive.
-    silent: u32,
+    silent: u32, // ticks since the host last accepted bytes; data of a stopped controller may still arrive
     stopped: u32,
     answers: u32,
 }

@@ -34,8 +34,7 @@ pub const IN_HAND: &str = "H_ROBOT"; // `STORAGE-POS` and `DEVICE` of a held ite
 /// `DEVICE` of all places except the robot's hand (CHOSEN: the manual names no devices).
 pub const WORKSTATION: &str = "HWS";
 pub const ITEM_TYPE: &str = "PART"; // of all items (CHOSEN: Task does not know types)
-/// One character: 0 to 9, then A to Z (CHOSEN beyond 9).
-pub const MAX_SECTOR: i32 = 35;
+pub const MAX_SECTOR: i32 = 35; // one character: 0 to 9, then A to Z (CHOSEN beyond 9)
 
 /// Fixed fields of the protocol area: offset and bytes.
 const FIXED: [(usize, &[u8]); 8] = [

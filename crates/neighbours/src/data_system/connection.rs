@@ -64,8 +64,7 @@ impl Keeper for InMemory {
 pub struct DataSystem<K = InMemory> {
     answer_ticks: u64,
     receiver: handshake::Receiver,
-    /// First tick in which the answer may take effect; `None` without a command in progress.
-    due: Option<Tick>,
+    due: Option<Tick>, // first tick in which the answer may take effect; `None` without a command in progress
     status: DataBaseStatus,
     command_box: Mailbox,
     status_box: Mailbox,

@@ -12,8 +12,7 @@
 
 use std::fmt;
 
-/// Length of a status, bytes.
-pub const STATUS: usize = 14;
+pub const STATUS: usize = 14; // length of a status, bytes
 const SERVER: usize = 10;
 const SUMMARY: usize = 13;
 
@@ -23,17 +22,14 @@ pub enum ServerStatus {
     #[default]
     Idle = 0,
     Busy = 1,
-    /// It has answered the last command.
-    Ready = 2,
+    Ready = 2, // it has answered the last command
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
 pub enum Refusal {
-    /// The bytes are not a command.
-    Protocol = 0x80,
-    /// The command is not allowed in this state of the connection.
-    Sequence = 0x81,
+    Protocol = 0x80,  // the bytes are not a command
+    Sequence = 0x81,  // the command is not allowed in this state of the connection
     Statement = 0x82, // not a supported statement
     Value = 0x83,     // no item or place
     Store = 0x84,     // the database could not store the item

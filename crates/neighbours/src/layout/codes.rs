@@ -54,9 +54,8 @@ codes! {
     Coded<W> = W;
 }
 
-/// Blank or 0 means `None`.
 #[derive(Clone, Copy, Debug)]
-pub struct Given<C>(std::marker::PhantomData<C>);
+pub struct Given<C>(std::marker::PhantomData<C>); // Blank or 0 means `None`
 
 impl<C: Width> Width for Given<C> {
     const BYTES: usize = C::BYTES;

@@ -4,16 +4,14 @@ use std::{
     str::FromStr,
 };
 
-/// `unix:PATH`, for processes of the same user on this machine.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Address(PathBuf);
+pub struct Address(PathBuf); // `unix:PATH`, for processes of the same user on this machine
 
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("unix:PATH was expected, found {found}{}", if *.is_remote { TO_OTHER_MACHINES } else { "" })]
 pub struct AddressError {
     found: String,
-    /// An address on a network, as in earlier versions.
-    is_remote: bool,
+    is_remote: bool, // an address on a network, as in earlier versions
 }
 
 const TO_OTHER_MACHINES: &str =

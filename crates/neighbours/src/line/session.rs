@@ -108,8 +108,7 @@ pub struct Session {
     read: usize,
     output: Vec<u8>,
     pulses: Pulses,
-    /// Start of the session, and time of the last received bytes.
-    began: Instant,
+    began: Instant, // start of the session, and time of the last received bytes
     heard: Instant,
 }
 

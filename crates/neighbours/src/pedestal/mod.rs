@@ -35,9 +35,8 @@ const STEP: usize = 16;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum PedestalError {
-    /// Exactly one of number and status means "no command".
     #[error("executing, done, can't-do or error was expected for the command {0}, found idle")]
-    Idle(u32),
+    Idle(u32), // exactly one of number and status means "no command"
     #[error(transparent)]
     Layout(#[from] LayoutError),
 }

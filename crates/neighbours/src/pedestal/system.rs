@@ -193,7 +193,6 @@ impl System {
 /// Writes the data if they have changed.
 fn put(mailbox: &mut Mailbox, data: &[u8]) {
     if mailbox.data() != data {
-        // The layouts are shorter than the mailboxes; a test checks this.
-        let _ = mailbox.write(data);
+        let _ = mailbox.write(data); // the layouts are shorter than the mailboxes; a test checks this
     }
 }

@@ -35,9 +35,8 @@ impl Codec<'_, Ready> for ReadyWord {
     }
 }
 
-/// Always 12, the number of bytes after it.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct ByteCount;
+pub(super) struct ByteCount; // always 12, the number of bytes after it
 
 impl Width for ByteCount {
     const BYTES: usize = 2;

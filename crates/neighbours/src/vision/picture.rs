@@ -114,8 +114,7 @@ impl Codec<'_, u128> for Points {
 pub struct Picture {
     pub number: u16, // of the request
     pub seed: u64,
-    /// Fingerprint of the entries of the cell description on which the answer depends.
-    pub cell: u64,
+    pub cell: u64, // fingerprint of the entries of the cell description on which the answer depends
     pub parts: Vec<Part>,
 }
 

@@ -89,10 +89,9 @@ pub struct Hwsc {
     progress: Progress,
     time_limit: u64,
     later: Vec<Later>,
-    retries: u32, // per line, at most
-    tried: u32,   // of the current line so far
-    /// Before the current step, or before its retry.
-    pausing: bool,
+    retries: u32,  // per line, at most
+    tried: u32,    // of the current line so far
+    pausing: bool, // before the current step, or before its retry
     retried: Vec<Retry>,
     intervention: Intervention,
 }
@@ -283,8 +282,7 @@ impl Hwsc {
     fn failed(&mut self, tick: Tick, failure: JobFailure, workstation: &mut impl Workstation) {
         let JobFailure::Command(reason) = failure else { return self.fail(failure) };
         if self.pausing && self.tried > 0 {
-            // The repeated command shows whether the failed PAUSE matters.
-            self.finish(Outcome::Failed);
+            self.finish(Outcome::Failed); // the repeated command shows whether the failed PAUSE matters
             return self.begin(tick, workstation);
         }
         if self.tried >= self.retries || reason.remedy().is_some() {

@@ -67,9 +67,8 @@ crate::layout! {
          names and distances, or the unconfirmed condition";
 }
 
-/// `status-length>w`; decoding ignores it.
 #[derive(Clone, Copy, Debug)]
-struct Length;
+struct Length; // `status-length>w`; decoding ignores it
 
 impl Width for Length {
     const BYTES: usize = 2;

@@ -25,8 +25,7 @@ pub struct TaskData<'a> {
     pub locpts: &'a [Locpt],
     pub arrays: &'a [Array],
     pub owners: &'a [Owner],
-    /// The members, grouped by owner, in the order of the forms.
-    pub members: &'a [Member],
+    pub members: &'a [Member], // the members, grouped by owner, in the order of the forms
     pub trajectories: &'a [Traj],
     pub traj_paras: &'a [TrajPara],
     pub paths: &'a [Path],
@@ -201,8 +200,7 @@ impl<'a> TaskData<'a> {
     }
 }
 
-/// The null movetable, or no pose in an array location form (VII.2, VII.4).
-pub const NULL_NAME: &str = "...";
+pub const NULL_NAME: &str = "..."; // the null movetable, or no pose in an array location form (VII.2, VII.4)
 
 /// `count` items from position `first`, from 0.
 fn run<T>(file: &[T], first: u32, count: u32) -> Option<&[T]> {

@@ -172,8 +172,7 @@ pub struct PlaceIndex<'a> {
     pub(crate) pilots: &'a [u8],
     pub(crate) groups: &'a [Group], // some of them empty
     pub(crate) seed: u64,
-    /// Entries that do not fit into a group, by key and location.
-    pub(crate) crowded: Index<'a>,
+    pub(crate) crowded: Index<'a>, // entries that do not fit into a group, by key and location
 }
 
 impl<'a> PlaceIndex<'a> {

@@ -301,7 +301,6 @@ pub struct RelativeMove {
     pub sensor: Name10,
 }
 
-/// A record with its number.
-pub type Numbered<'a, Id, T> = Option<(Id, &'a T)>;
+pub type Numbered<'a, Id, T> = Option<(Id, &'a T)>; // a record with its number
 pub type FoundEndEff<'a> = Numbered<'a, EndEffId, EndEffPara>;
 pub type FoundPedPara<'a> = Numbered<'a, PedParaId, PedPara>;

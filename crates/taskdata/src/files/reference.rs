@@ -47,8 +47,7 @@ pub struct Reference {
 
 impl Reference {
     pub const NONE: Self = Self { kind: RefType::None, number: 0 };
-    /// The wild card `$$$`.
-    pub const ANY: Self = Self { kind: RefType::Any, number: 0 };
+    pub const ANY: Self = Self { kind: RefType::Any, number: 0 }; // the wild card `$$$`
 
     #[must_use]
     pub const fn location_point(id: LocptId) -> Self {

@@ -21,8 +21,7 @@ const fn bits(reference: Reference) -> (u8, u32) {
 /// Pairs: the object after the earlier one that it equals.
 #[must_use]
 pub fn alike(data: &TaskData<'_>) -> Vec<[ObjectId; 2]> {
-    // Only objects with views have vision ids.
-    let mut ids: HashMap<ObjectId, Vec<i32>> = HashMap::new();
+    let mut ids: HashMap<ObjectId, Vec<i32>> = HashMap::new(); // only objects with views have vision ids
     for view in data.visions {
         ids.entry(view.object).or_default().push(view.id);
     }

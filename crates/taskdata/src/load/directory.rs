@@ -30,11 +30,9 @@ const BLOCKS_AT_A_TIME: usize = 256; // read by one processor at a time
 #[derive(Debug, Default)]
 pub(super) struct Read {
     pub(super) entries: Collected, // in the order of the load
-    /// Names in entries that could not be read.
-    pub broken: HashSet<String>,
+    pub broken: HashSet<String>,   // names in entries that could not be read
     pub blocks: BTreeSet<BlockNumber>,
-    /// Blocks that were not loaded, and numbers without a block.
-    pub orphans: Orphans,
+    pub orphans: Orphans,   // blocks that were not loaded, and numbers without a block
     pub commands: Commands, // need no directory
 }
 

@@ -175,11 +175,10 @@ pub enum Entry {
     Object(ObjectEntry),       // VII.7.1
     ObjGrips(ShowEntry<2>),    // VII.7.2: `endeff-id#`, `tray-grip#`
     ObjLoc(ObjLocEntry),       // VII.7.3
-    /// VII.7.4: appr, grasp size, force, release size, table position, flip angle.
-    PedPara(ShowEntry<6>),
-    Grip(GripEntry),         // VII.7.5
-    View(ViewEntry),         // VII.7.6
-    ApprDept(ApprDeptEntry), // VII.7.7
+    PedPara(ShowEntry<6>),     // VII.7.4: appr, grasp size, force, release size, table position, flip angle
+    Grip(GripEntry),           // VII.7.5
+    View(ViewEntry),           // VII.7.6
+    ApprDept(ApprDeptEntry),   // VII.7.7
     Sensor(SensorEntry),
     Relative(RelativeEntry),
 }

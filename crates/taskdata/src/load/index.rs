@@ -63,8 +63,7 @@ impl<C: Cells> Table<C> {
         for &bucket in &fullest_first(&begins) {
             let range = begins.get(long(bucket)..)?;
             let keys = spread.get_mut(long(*range.first()?)..long(*range.get(1)?))?;
-            // Equal keys become neighbours, in the order of their records.
-            keys.sort_by_key(|key| key.hash);
+            keys.sort_by_key(|key| key.hash); // equal keys become neighbours, in the order of their records
             *table.pilots.get_mut(long(bucket))? = table.place(pairs, keys, &mut taken)?;
         }
         Some(table)
@@ -149,8 +148,7 @@ impl OwnedIndex {
 #[derive(Clone, Debug, Default)]
 struct Grouped {
     groups: Vec<Group>,
-    /// Keys with too many locations for a group.
-    crowded: Vec<Pair>,
+    crowded: Vec<Pair>, // keys with too many locations for a group
 }
 
 impl Cells for Grouped {
@@ -166,8 +164,7 @@ impl Cells for Grouped {
         let (Some(first), Some(group)) = (pairs.clone().next(), self.groups.get_mut(slot)) else { return };
         let mut entries = [EntryAt::default(); ENTRIES];
         let mut free = entries.iter_mut();
-        // The index of `crowded` keys finds two records for one location.
-        let mut known = [0; ENTRIES];
+        let mut known = [0; ENTRIES]; // the index of `crowded` keys finds two records for one location
         let fits = pairs.clone().zip(0..).all(|(pair, i)| {
             let at = pair.key.place().filter(|at| !known.contains(at));
             let (Some(at), Some(entry), Some(known)) = (at, free.next(), known.get_mut(i)) else {

@@ -172,8 +172,7 @@ impl Linked {
 #[derive(Clone, Debug)]
 pub struct Part {
     store: Store,
-    /// Words of entries that are unreadable or not loaded, and unknown names.
-    unread: HashSet<String>,
+    unread: HashSet<String>, // words of entries that are unreadable or not loaded, and unknown names
 }
 
 impl Part {

@@ -17,18 +17,16 @@ struct Orphan {
     header: At,
     first: Option<At>, // header of the loaded block with this number
     loads: Vec<LoadLine>,
-    /// Names used elsewhere and defined in it, or in a block that only it loads.
-    needed: Vec<String>,
-    told: bool, // reported with another problem
+    needed: Vec<String>, // names used elsewhere and defined in it, or in a block that only it loads
+    told: bool,          // reported with another problem
 }
 
 #[derive(Debug, Default)]
 pub(super) struct Orphans {
     list: Vec<Orphan>,
-    /// Words of the orphans' entries, with the first orphan's position in `list`.
-    words: HashMap<String, usize>,
+    words: HashMap<String, usize>, // words of the orphans' entries, with the first orphan's position in `list`
     pub(super) missing: Vec<LoadLine>, // name a missing block
-    pub(super) again: Vec<LoadLine>,   // name an already loaded block
+    pub(super) again: Vec<LoadLine>, // name an already loaded block
     pub(super) directories: BTreeMap<BlockNumber, Vec<BlockNumber>>, // with the blocks that they name
     /// An unreadable file may contain any name and block: an unknown name is reported only if it is probably misspelt.
     pub(super) incomplete: bool,

@@ -65,9 +65,8 @@ pub const BEGINNINGS: &[&str] = &[
     "==",
 ];
 
-/// The rest of the entry is unreadable; the error is already reported.
 #[derive(Clone, Copy, Debug)]
-pub struct Skip;
+pub struct Skip; // the rest of the entry is unreadable; the error is already reported
 
 pub struct Parser<'a, 'p> {
     pub(super) words: &'p [Word<'a>],

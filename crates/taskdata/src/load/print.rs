@@ -14,8 +14,7 @@ use super::{
 use crate::files::{RefType, TrajPara};
 use geometry::movetable::{MovetableLine, System};
 
-/// Without this indent a form could be read as a listing with line numbers.
-const INDENT: &str = "  ";
+const INDENT: &str = "  "; // without this indent a form could be read as a listing with line numbers
 
 /// The lines of a form, each of at most 64 columns.
 #[must_use]

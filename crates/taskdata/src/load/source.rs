@@ -46,16 +46,14 @@ pub fn read(path: &Path, shown: &str) -> io::Result<Source> {
     Ok(Source { name: shown.to_owned(), text: files::read_text(path)?.into() })
 }
 
-/// A path and its error.
-pub type Unreadable = (String, io::Error);
+pub type Unreadable = (String, io::Error); // a path and its error
 
 /// All files `*.blk` under a directory, sorted, with relative paths, and the paths that cannot be read.
 #[must_use]
 pub fn read_blocks_under(directory: &Path) -> (Vec<Source>, Vec<Unreadable>) {
     let (mut paths, mut unreadable) = (Vec::new(), Vec::new());
     let mut open = vec![directory.to_path_buf()];
-    // A symbolic link can form a cycle: each directory is read once.
-    let mut seen = BTreeSet::new();
+    let mut seen = BTreeSet::new(); // a symbolic link can form a cycle: each directory is read once
     while let Some(folder) = open.pop() {
         // Built-in directories have no metadata, and no links.
         let identity = fs::metadata(&folder).map(|found| (found.dev(), found.ino()));

@@ -31,9 +31,8 @@ pub struct BegunStep {
     pub is_command: bool, // for Task, not an action of the workstation
     pub began: Tick,      // the tick after which the step was begun
     pub outcome: Outcome,
-    /// The part of the goal of a finished command that no sensor confirms.
-    pub unconfirmed: Unconfirmed,
-    pub ticks: u64, // until the end was detected
+    pub unconfirmed: Unconfirmed, // the part of the goal of a finished command that no sensor confirms
+    pub ticks: u64,               // until the end was detected
 }
 
 impl BegunStep {

@@ -61,16 +61,13 @@ fn spread(count: usize, entry: impl Fn(usize, &mut Findings) + Sync) -> Findings
     findings
 }
 
-/// Called only for a target with a problem.
-type What<'a> = &'a dyn Fn() -> String;
+type What<'a> = &'a dyn Fn() -> String; // called only for a target with a problem
 
 struct Reach<'a> {
     data: &'a TaskData<'a>,
     origins: &'a Origins,
-    /// Points out of reach: targets derived from them are not reported again.
-    bad_points: HashSet<LocptId>,
-    /// Trajectories that begin with a movetable, by start.
-    relative_starts: HashMap<(u8, u32), Vec<TrajId>>,
+    bad_points: HashSet<LocptId>, // points out of reach: targets derived from them are not reported again
+    relative_starts: HashMap<(u8, u32), Vec<TrajId>>, // trajectories that begin with a movetable, by start
 }
 
 impl<'a> Reach<'a> {

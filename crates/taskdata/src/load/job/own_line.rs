@@ -20,12 +20,11 @@ use super::{
 
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum OwnLineError {
-    Nothing, // an empty line
-    /// `load FILE` is possible only in a job, whose blocks are checked before its first tick.
-    Load,
-    Wait,               // only in a job, whose ticks it counts
-    After,              // only in a job, whose ticks it counts
-    HandOver,           // `workstation`: only in a job
+    Nothing,            // an empty line
+    Load,     // `load FILE` is possible only in a job, whose blocks are checked before its first tick
+    Wait,     // only in a job, whose ticks it counts
+    After,    // only in a job, whose ticks it counts
+    HandOver, // `workstation`: only in a job
     Unreadable(String), // the message
 }
 

@@ -18,15 +18,12 @@ use super::{
 
 pub(super) struct Reader<'s, 'p> {
     data: TaskData<'s>,
-    /// The readable part of data with errors; the rest may have a missing name.
-    part: Option<&'s Part>,
+    part: Option<&'s Part>, // the readable part of data with errors; the rest may have a missing name
     reloads: std::vec::IntoIter<TaskData<'s>>, // after each line that loads blocks
     loaded: u32,
     pub(super) problems: &'p mut Problems,
-    /// The known state of the robot.
-    before: Before,
-    /// The last line with `after`, if no command has followed.
-    pub(super) after: Option<At>,
+    before: Before,               // the known state of the robot
+    pub(super) after: Option<At>, // the last line with `after`, if no command has followed
 }
 
 impl<'s, 'p> Reader<'s, 'p> {

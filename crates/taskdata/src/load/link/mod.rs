@@ -33,8 +33,7 @@ use super::{
 
 use known::Known;
 
-/// A search for the nearest names of all unknown ones would take hours.
-const NEAREST_FOR: usize = 200;
+const NEAREST_FOR: usize = 200; // a search for the nearest names of all unknown ones would take hours
 
 pub(super) struct Linker<'a> {
     broken: &'a HashSet<String>,

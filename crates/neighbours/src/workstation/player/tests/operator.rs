@@ -155,8 +155,7 @@ fn failure_ends_the_job_only_without_an_operator() {
     stage.until(|stage| stage.hwsc.is_waiting());
     stage.hwsc.attend(false);
     assert_eq!(*stage.hwsc.progress(), Progress::Failed(JobFailure::Command(Reason::GraspMissed)));
-    // Every answer gives the same reason to another operator.
-    stage.hwsc.attend(true);
+    stage.hwsc.attend(true); // every answer gives the same reason to another operator
     assert!(!stage.hwsc.is_waiting());
     assert_eq!(stage.hwsc.go_on(Tick(stage.tick)), Err(OperatorError::Ended));
 }
