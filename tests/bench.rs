@@ -35,7 +35,6 @@ pub struct Running {
 }
 
 impl Running {
-    /// Starts a run with further arguments.
     #[must_use]
     pub fn start(directory: &Path, name: &str, more: &[&str]) -> Self {
         let arguments = job(name);
@@ -49,7 +48,6 @@ impl Running {
         Self { child, name }
     }
 
-    /// Attaches as soon as there are buffers to read.
     pub fn attach(&mut self) -> Attached {
         let mut reader = None;
         wait_for("the run shows its buffers", || {
@@ -104,19 +102,16 @@ impl Ended {
         Self { status: output.status.code(), signal: output.status.signal(), result, said }
     }
 
-    /// Runs to the end, with further arguments.
     #[must_use]
     pub fn run(directory: &Path, name: &str, more: &[&str]) -> Self {
         Running::start(directory, name, more).end()
     }
 
-    /// The digest of all outputs in all ticks.
     #[must_use]
     pub fn digest(&self) -> &str {
         self.result["digest"].as_str().unwrap_or_else(|| panic!("no digest: {}", self.said))
     }
 
-    /// A number of the result.
     #[must_use]
     pub fn number(&self, field: &str) -> u64 {
         self.result[field].as_u64().unwrap_or_else(|| panic!("no {field} in {}", self.result))
@@ -156,14 +151,12 @@ pub fn traces(run: &RunName) -> Vec<PathBuf> {
     memory::traces(run)
 }
 
-/// Assert that `rcs-run clean` leaves nothing of the run.
 pub fn assert_cleaned(directory: &Path, run: &RunName) {
     let cleaned = rcs(directory, &["clean"]).output().expect("rcs-run can be started");
     assert_eq!(cleaned.status.code(), Some(0), "{}", String::from_utf8_lossy(&cleaned.stderr));
     assert_eq!(traces(run), Vec::<PathBuf>::new());
 }
 
-/// Wait for a condition that will soon hold.
 pub fn wait_for(what: &str, mut condition: impl FnMut() -> bool) {
     let started = Instant::now();
     while !condition() {

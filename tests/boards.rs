@@ -89,7 +89,6 @@ impl Bench {
         assert_eq!(memory::traces(&self.name), Vec::<PathBuf>::new());
     }
 
-    /// After the last tick of the log.
     fn last_memory(&self) -> CommonMemory {
         let log = Log::open(&self.scratch.file("run.mcap")).expect("the log can be read");
         let last = log.ticks().last().expect("there are ticks").expect("they can be read");
@@ -169,7 +168,6 @@ fn wait_for<T>(what: &str, mut found: impl FnMut() -> Option<T>) -> T {
     }
 }
 
-/// Common memory can be read and meets a condition.
 fn shows(wanted: impl Fn(&CommonMemory) -> bool) -> impl Fn(&Attached) -> bool {
     move |reader| reader.memory().is_ok_and(|memory| wanted(&memory))
 }

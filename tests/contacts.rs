@@ -81,7 +81,6 @@ fn a_vise_taught_a_fifth_of_an_inch_off_is_a_collision() {
     );
 }
 
-/// Contact events in the log: tick and text.
 fn marks(outcome: &Outcome) -> Vec<(u64, String)> {
     let log = Log::open(&outcome.log).expect("a run has a log");
     let text = |data: Vec<u8>| String::from_utf8_lossy(&data).into_owned();

@@ -5,7 +5,6 @@ use std::fs;
 use serde_json::Value;
 use whole_system_tests::{Outcome, Scratch, run_with};
 
-/// The end mill goes to the occupied drum.
 const OCCUPIED: &str = "\
 ** drum tool DRILL-2
 ** tray UNIT_2 1 ENDMILL-1 0 0 0
@@ -24,7 +23,6 @@ fn job(name: &str, text: &str) -> Outcome {
     })
 }
 
-/// At the end.
 fn part<'a>(outcome: &'a Outcome, name: &str) -> &'a Value {
     let parts = outcome.result["parts"].as_array().expect("a result has parts");
     parts.iter().find(|part| part["name"] == name).expect("the part is in the cell")

@@ -31,7 +31,6 @@ fn wait_for(mut condition: impl FnMut() -> bool) {
     }
 }
 
-/// In real time, with its first ticks in the log.
 fn moving(log: &Path) -> Child {
     let child = Command::new(rcs_run())
         .args(["linkbar", "--clock", "real", "--json", "--log"])
@@ -121,7 +120,6 @@ fn lost_terminal_ends_console_and_run() {
     assert!(Log::open(&log).unwrap().complete);
 }
 
-/// With job control, on its own terminal.
 fn in_a_shell(line: &str) -> String {
     let command = format!("bash -c 'set -m; {line}'");
     let output = Command::new("script")

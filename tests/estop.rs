@@ -9,7 +9,6 @@ use whole_system_tests::{Outcome, Scratch, run};
 
 const STOPPED: Option<i32> = Some(3); // ended by an emergency stop
 
-/// The first lines of the linkbar.
 const BLANK_TO_VISE: &str = "** tray UNIT_1 4 LINKBAR1_BH\n\
      ** vise partial PFIXTURE\n\
      {stop}\
@@ -22,7 +21,6 @@ fn job(name: &str, text: &str) -> Outcome {
     })
 }
 
-/// By the sagging arm.
 fn touched(outcome: &Outcome) -> Vec<&str> {
     let touched = outcome.result["emergency_stop"]["touched"].as_array().expect("an emergency has a list");
     touched.iter().map(|contact| contact["obstacle"].as_str().expect("an obstacle has a name")).collect()

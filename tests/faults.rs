@@ -17,12 +17,10 @@ enum Ends {
 }
 use Ends::{Failing, Well};
 
-/// A fault file of the data directory.
 fn with(job: &str, faults: &str) -> Outcome {
     run(job, 1, &format!("{job}-{faults}"), |scratch| scratch.faults_of(faults))
 }
 
-/// All parts of a finished job are in place.
 fn in_place(job: &str, result: &Value) -> bool {
     let expected: &[(&str, &str, u64, f64)] = match job {
         "linkbar" => &[("LINKBAR1", "UNIT_1", 1, 0.25)],
@@ -43,7 +41,6 @@ fn in_place(job: &str, result: &Value) -> bool {
     })
 }
 
-/// With any faults.
 fn assert_sound(what: &str, outcome: &Outcome) {
     let said = &outcome.last_words;
     assert!(matches!(outcome.status, Some(0 | 1 | 3)), "{what}: {:?} {said}", outcome.status);
@@ -85,7 +82,6 @@ fn assert_ends(job: &str, faults: &str, ends: &Ends) {
     assert_same_account(&what, &outcome);
 }
 
-/// An answer of `rcs-log`.
 fn ask(outcome: &Outcome, arguments: &[&str]) -> String {
     let output = Command::new(rcs_log()).args(arguments).arg(&outcome.log).output();
     String::from_utf8_lossy(&output.expect("rcs-log can be started").stdout).into_owned()
@@ -235,7 +231,6 @@ fn a_reset_at_home_repairs_an_offset_resolver() {
     assert!(not.last_words.contains("the robot is at no known location"), "{}", not.last_words);
 }
 
-/// A fault on the line at each of these ticks.
 fn linkbar_with(fault: &str, ticks: [u32; 4]) -> Outcome {
     let name = fault.split('"').nth(1).unwrap_or("fault");
     run("linkbar", 1, &format!("line-{name}"), |scratch| {
@@ -315,7 +310,6 @@ fn failures_for_a_person_are_reported_and_not_retried() {
     assert_eq!(outcome.result["retries"].as_array().map(Vec::len), Some(0), "{}", outcome.result["retries"]);
 }
 
-/// The reflectance is that of the blank.
 fn with_reflectance(reflectance: f64) -> Outcome {
     run("linkbar", 1, &format!("reflectance-{reflectance}"), |scratch| {
         scratch.data_with(

@@ -4,7 +4,6 @@ use std::fs;
 
 use whole_system_tests::{Outcome, Scratch, run};
 
-/// The last command of the linkbar.
 const PUT_BACK: &str = "== TRANSFER LINKBAR1 +2 PFIXTURE 0 +2 UNIT_1 1 SAFE 0";
 
 /// The last line contains all of `said`.

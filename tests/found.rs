@@ -67,7 +67,6 @@ impl Drop for Running {
     }
 }
 
-/// This user may make namespaces.
 #[expect(clippy::print_stderr, reason = "a test that is left out says so")]
 fn may_unshare(what: &[&str]) -> bool {
     let may = geteuid().is_root()

@@ -49,7 +49,6 @@ const fn one() -> u64 {
     1
 }
 
-/// A piece of a file of the data directory, and its replacement.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Change {
@@ -109,7 +108,6 @@ pub fn directory() -> PathBuf {
     root().join("tests/goldens")
 }
 
-/// All scenarios.
 #[must_use]
 pub fn scenarios() -> Vec<Scenario> {
     let path = directory().join("scenarios.toml");

@@ -10,7 +10,6 @@ use record::golden;
 use similar::TextDiff;
 use whole_system_tests::golden::{COMMAND, Scenario, directory, scenarios};
 
-/// Empty without differences.
 fn replayed(scenario: &Scenario) -> String {
     let name = &scenario.name;
     let kept = match fs::read_to_string(scenario.text()) {

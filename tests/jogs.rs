@@ -13,7 +13,6 @@ use whole_system_tests::{Outcome, Scratch, run};
 const HOME: Pose = Pose { wrist: [0, -5022, 636], tool: [0, -7145, -1483], finger: [3000, -7145, -1483] };
 const TO_HOME: &str = "== MOVE -- +0 -- 0 +0 HOME 0 -- 0\n";
 
-/// Moves the robot with the joystick box.
 fn jog(moves: &[&str]) -> String {
     let mut lines = "** joystick velocity 500\n".to_owned();
     for line in moves {
@@ -29,7 +28,6 @@ fn job(name: &str, text: &str) -> Outcome {
     })
 }
 
-/// At the end of a run, by the resolvers.
 fn hand(outcome: &Outcome) -> Frame {
     let log = Log::open(&outcome.log).expect("the log can be read");
     let last = log.ticks().last().expect("a run has ticks").expect("a sound tick");
@@ -106,7 +104,6 @@ fn unrecorded_jog_ends_straight_at_a_resting_place() {
     );
 }
 
-/// After a jog upwards.
 #[test]
 fn a_part_moved_off_its_sector_is_released_in_it() {
     for moves in [&["frame WORLD", "up 12"][..], &["frame WORLD", "up 80"]] {

@@ -19,7 +19,6 @@ fn on_terminal(scratch: &Scratch, line: &str) -> Command {
     shell
 }
 
-/// With its success.
 fn shown(scratch: &Scratch, line: &str) -> (String, bool) {
     let output = on_terminal(scratch, line).output().expect("a shell can be started");
     (String::from_utf8_lossy(&output.stdout).into_owned(), output.status.success())
@@ -29,13 +28,11 @@ fn run(scratch: &Scratch, arguments: &str) -> String {
     shown(scratch, &format!("{} {arguments}", rcs_run().display())).0
 }
 
-/// After a label.
 fn command<'o>(output: &'o str, label: &str) -> &'o str {
     let line = output.lines().find_map(|line| line.strip_prefix(label));
     line.unwrap_or_else(|| panic!("no line {label:?} in\n{output}")).trim()
 }
 
-/// The only line that starts with a text.
 fn line_of(output: &str, start: &str) -> usize {
     let found: Vec<_> =
         output.lines().enumerate().filter(|(_, line)| line.starts_with(start)).map(|(at, _)| at).collect();
@@ -69,7 +66,6 @@ fn finished_run_ends_with_the_place_of_the_part_and_the_next_commands() {
     assert!(is_answered && !why.is_empty(), "{why}");
 }
 
-/// Rerun opens a log; the layout is Foxglove's.
 fn opened(line: &str) -> (&str, &str) {
     let (command, hint) = line.strip_prefix("open ").and_then(|line| line.split_once('#')).expect(line);
     let (_, layout) = hint.rsplit_once(' ').expect(line);

@@ -31,28 +31,24 @@ pub fn rcs_run() -> &'static Path {
     program("rcs-run", &PROGRAM)
 }
 
-/// Rebuilt first.
 #[must_use]
 pub fn rcs_log() -> &'static Path {
     static PROGRAM: OnceLock<PathBuf> = OnceLock::new();
     program("rcs-log", &PROGRAM)
 }
 
-/// Rebuilt first.
 #[must_use]
 pub fn rcs_neighbour() -> &'static Path {
     static PROGRAM: OnceLock<PathBuf> = OnceLock::new();
     program("rcs-neighbour", &PROGRAM)
 }
 
-/// Rebuilt first.
 #[must_use]
 pub fn rcs_console() -> &'static Path {
     static PROGRAM: OnceLock<PathBuf> = OnceLock::new();
     program("rcs-console", &PROGRAM)
 }
 
-/// Rebuilt first.
 #[must_use]
 pub fn rcs_cell() -> &'static Path {
     static PROGRAM: OnceLock<PathBuf> = OnceLock::new();
@@ -91,7 +87,6 @@ fn program(name: &str, built: &'static OnceLock<PathBuf>) -> &'static Path {
 pub struct Scratch(TempDir);
 
 impl Scratch {
-    /// A new, empty directory.
     #[must_use]
     pub fn new(name: &str) -> Self {
         let directory = tempfile::Builder::new().prefix(&format!("rcs-{name}-")).tempdir();
@@ -112,7 +107,6 @@ impl Scratch {
         fs::write(self.file(job), text.replacen(from, to, 1)).expect("the job can be written");
     }
 
-    /// Sets the faults of the run.
     pub fn faults(&self, text: &str) {
         fs::write(self.file(FAULTS), text).expect("the faults can be written");
     }
@@ -146,7 +140,6 @@ impl Scratch {
         );
     }
 
-    /// Copies the task data.
     pub fn copy_data(&self) {
         copy(&root().join("data"), &self.file("data"));
     }
@@ -162,7 +155,6 @@ pub fn may_become_nobody(directory: &Path) -> bool {
     command.status().is_ok_and(|status| status.success())
 }
 
-/// Copies recursively.
 pub fn copy(from: &Path, to: &Path) {
     fs::create_dir_all(to).expect("a directory can be made");
     for entry in fs::read_dir(from).expect("a directory can be read") {
@@ -185,13 +177,11 @@ pub struct Outcome {
 }
 
 impl Outcome {
-    /// The digest of all outputs in all ticks.
     #[must_use]
     pub fn digest(&self) -> &str {
         self.result["digest"].as_str().expect("a result has a digest")
     }
 
-    /// The part of a name.
     #[must_use]
     pub fn part(&self, name: &str) -> &Value {
         let parts = self.result["parts"].as_array().expect("a result has parts");
@@ -226,7 +216,6 @@ fn logged(directory: &Scratch, job: &str, seed: u64) -> Command {
     command
 }
 
-/// Runs a shipped job, or one that `prepare` writes.
 #[must_use]
 pub fn run(job: &str, seed: u64, name: &str, prepare: impl FnOnce(&Scratch)) -> Outcome {
     run_with(job, seed, name, &[], prepare)
@@ -256,7 +245,6 @@ pub fn run_with(
     }
 }
 
-/// Starts a job without waiting for its end.
 #[must_use]
 pub fn start(scratch: &Scratch, job: &str, seed: u64) -> Child {
     logged(scratch, job, seed)

@@ -21,7 +21,6 @@ const SEED: u64 = 1;
 /// vise.
 const PLACED: f64 = 0.2;
 
-/// Of most tests.
 fn linkbar() -> &'static Outcome {
     static RUN: OnceLock<Outcome> = OnceLock::new();
     RUN.get_or_init(|| run("linkbar", SEED, "linkbar", |_| {}))
@@ -127,7 +126,6 @@ fn a_missing_blank_is_named_with_process_table_and_row() {
     assert_same(&replay(&outcome.log).unwrap());
 }
 
-/// Inputs of a run, and the image of common memory after each tick.
 struct Recorded {
     log: Log,
     ticks: Vec<(ExternalInputs, Vec<u8>)>,

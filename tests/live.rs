@@ -58,14 +58,12 @@ fn config(directory: &TempDir, ticks: u64) -> RunConfig {
     }
 }
 
-/// Topics by advertised channel.
 struct Viewer {
     socket: WebSocket<TcpStream>,
     info: Value,
     topics: BTreeMap<u64, String>,
 }
 
-/// With topic and time, or only the time.
 enum Got {
     Message(String, u64, Vec<u8>),
     Time(u64),
@@ -112,7 +110,6 @@ impl Viewer {
         self.socket.send(Message::text(text)).unwrap();
     }
 
-    /// Up to the end of the run.
     fn rest(&mut self) -> impl Iterator<Item = Got> {
         std::iter::from_fn(|| {
             loop {
@@ -243,7 +240,6 @@ impl Said {
     }
 }
 
-/// The answer, or the reason of a refusal.
 fn call(viewer: &mut Viewer, service: u32, payload: &Value) -> Result<Value, String> {
     let mut bytes = vec![2];
     [service, 77, 4].iter().for_each(|number| bytes.extend(number.to_le_bytes()));
@@ -269,7 +265,6 @@ fn call(viewer: &mut Viewer, service: u32, payload: &Value) -> Result<Value, Str
     }
 }
 
-/// With and without the token.
 fn operate(mut viewer: Viewer, token: &str) {
     let services = viewer.answer();
     assert_eq!(services["op"], "advertiseServices");
@@ -344,7 +339,6 @@ fn a_viewer_with_the_token_operates_the_run() {
     assert_eq!(said, expected);
 }
 
-/// Operated by a viewer.
 struct Operated {
     viewer: Viewer,
     token: String,

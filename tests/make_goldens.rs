@@ -231,7 +231,6 @@ fn verdict(found: &Comparison) -> String {
     }
 }
 
-/// Of deleted scenarios.
 fn remove_strays(all: &[Scenario]) {
     for path in strays(all) {
         match fs::remove_file(&path) {
@@ -241,7 +240,6 @@ fn remove_strays(all: &[Scenario]) {
     }
 }
 
-/// Of deleted scenarios.
 fn strays(all: &[Scenario]) -> Vec<PathBuf> {
     let known: Vec<PathBuf> = all.iter().flat_map(|s| [s.golden(), s.text()]).collect();
     let entries = fs::read_dir(directory()).into_iter().flatten().flatten().map(|entry| entry.path());

@@ -30,7 +30,6 @@ fn unused_name() -> RunName {
     format!("operated-{}-{count}", std::process::id()).parse().unwrap()
 }
 
-/// In a thread.
 struct Cell {
     directory: TempDir,
     name: RunName,
@@ -106,7 +105,6 @@ fn wait_ticks(client: &mut Client, ticks: u64) {
     }
 }
 
-/// Until the present command has ended.
 fn go_on(client: &mut Client) {
     let begun = Instant::now();
     while let Err(why) = client.ask("job go").unwrap() {
@@ -215,7 +213,6 @@ fn operator_restarts_the_robot_after_an_emergency_stop_and_the_job_continues() {
     assert_repeats(&outcome, &log, &directory);
 }
 
-/// Repeats a request until it is accepted.
 fn ask_until(client: &mut Client, line: &str, meanwhile: &str) {
     let begun = Instant::now();
     while let Err(why) = client.ask(line).unwrap() {
@@ -388,7 +385,6 @@ fn another_job_replaces_the_rest_of_the_waiting_one() {
     assert_repeats_with(|config| RunConfig { stand_by: true, ..config }, &outcome, &log, &directory);
 }
 
-/// Repeats a request until it is refused for this reason.
 fn ask_until_refused(client: &mut Client, line: &str, why: &str) {
     let begun = Instant::now();
     loop {
@@ -482,7 +478,6 @@ fn the_rotary_table_is_started_up_at_its_panel() {
     assert_repeats_with(stand_by, &outcome, &log, &directory);
 }
 
-/// As the controller reads it: frame, stick, knob.
 fn joystick(run: &Attached) -> (u8, (i16, i16), u16) {
     let shown = run.external().unwrap().devices.joystick;
     (shown.frame, (shown.x, shown.y), shown.velocity)

@@ -78,7 +78,6 @@ fn text(bytes: &[u8]) -> String {
     String::from_utf8_lossy(bytes).into_owned()
 }
 
-/// For any exit status.
 fn stdout(scratch: &Scratch, program: &Path, arguments: &[&str], units: &str) -> String {
     let output = run_in(scratch, program, arguments, units);
     assert!(!output.stdout.is_empty(), "{arguments:?}: {}", text(&output.stderr));
@@ -223,7 +222,6 @@ fn text_of_files_reaches_a_terminal_without_control_characters() {
     }
 }
 
-/// In order; lengths have a decimal point.
 fn quantities(text: &str, unit: &str) -> Vec<f64> {
     let words: Vec<&str> = text.split_whitespace().collect();
     let is_unit = |word: &str| word.trim_end_matches([',', ';', ')', '.', ':']) == unit;

@@ -20,7 +20,6 @@ fn comparable(line: &str) -> String {
         .collect()
 }
 
-/// In order, and adjacent except at `...`.
 fn assert_shown(command: &str, expected: &[&str], output: &str) {
     let mut lines = output.lines().map(comparable);
     let mut gap = false;

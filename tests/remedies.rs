@@ -126,7 +126,6 @@ impl Operated {
         panic!("the job continues at tick {}", self.tick());
     }
 
-    /// Waits until the command fails for a reason.
     fn fails(&mut self, reason: Reason) -> &mut Self {
         self.until_it_waits();
         let status = self.memory().task.status;
@@ -136,14 +135,12 @@ impl Operated {
         self
     }
 
-    /// Waits for the end of the command.
     fn send(&mut self, command: &str) -> (HwsReport, Reason) {
         self.please(&[command]).wait(4).until_it_waits();
         let status = self.memory().task.status;
         (status.report, status.reason)
     }
 
-    /// Each command must finish.
     fn does(&mut self, commands: &[&str]) -> &mut Self {
         for command in commands {
             assert_eq!(self.send(command), (HwsReport::Finished, Reason::None), "{command}");
@@ -151,7 +148,6 @@ impl Operated {
         self
     }
 
-    /// After the present command.
     fn go(&mut self) -> &mut Self {
         for _ in 0..LIMIT {
             match self.ask("job go") {
@@ -197,7 +193,6 @@ fn story(outcome: &RunOutcome) -> String {
     format!("{:?}\n{steps:#?}", outcome.result.failure)
 }
 
-/// And stays in the hand.
 const TO_VISE: &str = "** tray UNIT_1 4 LINKBAR1_BH 0 0 0
 ** vise partial PFIXTURE
 == MOVE LINKBAR1_BH +2 UNIT_1 4 +2 PFIXTURE 0 -- 0
@@ -308,7 +303,6 @@ fn is_held_at_home(memory: &CommonMemory) -> bool {
         && status.at.is_some_and(|at| at.site.location.as_str() == "HOME")
 }
 
-/// Of the held object.
 fn without_name(it: &mut Operated) {
     it.please(&["board 2 stop"]).wait(4).please(&["write emove.estimates.held NONE"]).wait(4);
     it.please(&["board 2 go"]).wait(8);
@@ -584,7 +578,6 @@ fn robot_off_its_path_continues_after_a_pause_that_adopts_its_position() {
     it.finishes();
 }
 
-/// The valves are stuck open.
 fn stuck_open(valves: &[&str], from: u64, until: u64) -> String {
     let fault = |valve: &&str| {
         format!(
@@ -657,7 +650,6 @@ fn gripper_is_put_away_after_its_holster_was_emptied() {
     it.finishes();
 }
 
-/// Other reasons share the text.
 const SCENARIOS: &[(Reason, &str)] = &[
     (Reason::JoystickOn, "active_joystick_is_switched_off"),
     (Reason::LinkOff, "a_disabled_link_restarts_with_hold"),
@@ -687,7 +679,6 @@ const SCENARIOS: &[(Reason, &str)] = &[
     (Reason::HandNotCalibrated, "hand_of_the_pedestal_calibrates_after_its_potentiometer_is_repaired"),
 ];
 
-/// With the reason for no scenario here.
 const ELSEWHERE: &[(Reason, &str)] = &[
     (Reason::UnknownObject, "a block is corrected and loaded in tests/operator.rs"),
     (Reason::UnknownStart, "tests/jobs.rs and tests/operator.rs move the robot with the joystick box"),

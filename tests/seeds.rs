@@ -36,7 +36,6 @@ impl Kind {
         self.sector.map_or_else(|| self.job.to_owned(), |[_, to]| format!("{} from {to}", self.job))
     }
 
-    /// Why a run with a seed has not finished.
     fn fails(&self, seed: u64) -> Option<String> {
         let outcome = match self.sector {
             None => run(self.job, seed, "seeds", |_| {}),

@@ -61,7 +61,6 @@ impl Row {
         })
     }
 
-    /// Without columns.
     #[must_use]
     pub fn write(&self) -> String {
         let next = self.next.as_ref().map_or_else(String::new, |next| format!(" -> {next}"));
@@ -138,7 +137,6 @@ impl Table {
     }
 }
 
-/// The step of a group with exactly one.
 fn only(steps: &[String]) -> Option<&String> {
     let [step] = steps else { return None };
     Some(step).filter(|step| *step != "any")
@@ -157,7 +155,6 @@ pub fn files(directory: &Path, extension: &str, found: &mut Vec<PathBuf>) -> io:
     Ok(())
 }
 
-/// With the rows of all its tables in columns.
 #[must_use]
 pub fn aligned(text: &str) -> String {
     let tables = Table::read(Path::new(""), text);
@@ -173,7 +170,6 @@ pub fn aligned(text: &str) -> String {
     lines.join("\n") + "\n"
 }
 
-/// The lines of a table's rows.
 fn in_columns(rows: &[Row]) -> Vec<Vec<String>> {
     let in_one_line: Vec<String> = rows.iter().map(conditions).collect();
     let mut in_variables = vec![String::new(); rows.len()];

@@ -42,7 +42,6 @@ const DEVICE: &str = "device";
 /// belongs to the row.
 const NOT_WRITTEN: [&str; 3] = ["stamp", "decided", "step"];
 
-/// Of a scenario.
 #[must_use]
 pub fn path(directory: &Path, scenario: &str) -> PathBuf {
     directory.join(scenario).with_added_extension(EXTENSION)
@@ -86,7 +85,6 @@ pub struct Tracer<W> {
     ticks: u64,
 }
 
-/// In this tick and in the previous one.
 struct Images {
     was: Option<Vec<u8>>,
     is: Vec<u8>,
@@ -97,7 +95,6 @@ impl Images {
         Self { was: None, is: Vec::new() }
     }
 
-    /// Stores a record, and writes its changes.
     fn change<T: Plain>(&mut self, record: &T, prefix: &str, visit: &mut Visit<'_>) -> io::Result<()> {
         self.is.resize(T::SIZE, 0);
         record.encode(&mut Writer::new(&mut self.is));
@@ -116,7 +113,6 @@ impl<W: Write> Tracer<W> {
         Self { out, headers, memory: Images::new(), devices: Images::new(), decided, ticks: 0 }
     }
 
-    /// Writes the changes of a tick.
     pub fn tick(&mut self, tick: Tick, memory: &CommonMemory) -> io::Result<()> {
         let Self { out, .. } = self;
         let mut line = |path: &str, value: &str| writeln!(out, "{tick}\t{path}\t{}", plain(value));
@@ -139,7 +135,6 @@ impl<W: Write> Tracer<W> {
         Ok(())
     }
 
-    /// Writes the end. Returns the writer.
     pub fn finish(mut self, ending: &Ending) -> io::Result<W> {
         let status = ending.status.map_or("a signal".to_owned(), |status| status.to_string());
         let last_line = without_rows(&ending.last_line);

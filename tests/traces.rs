@@ -232,7 +232,6 @@ fn unused_entries_are_named() {
     assert_eq!(rows.unused(&renames), ["renamed x to y", "value of b: \"1\" to \"one\""]);
 }
 
-/// Of two ticks.
 fn traced(change: impl FnOnce(&mut CommonMemory)) -> (Vec<String>, Vec<String>) {
     let mut tracer = Tracer::new(Vec::new());
     let mut memory = CommonMemory::default();

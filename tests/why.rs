@@ -8,7 +8,6 @@ use std::process::Command;
 use serde_json::Value;
 use whole_system_tests::{Outcome, Scratch, rcs_log, rcs_run, root, run, run_with};
 
-/// For programs, and for readers.
 fn why(outcome: &Outcome) -> (Value, String) {
     let ask = |arguments: &[&str]| {
         let output = Command::new(rcs_log())
@@ -25,7 +24,6 @@ fn why(outcome: &Outcome) -> (Value, String) {
     (serde_json::from_str(&ask(&["--json"])).expect("one JSON object"), text)
 }
 
-/// The processes in a list of links, in order.
 fn processes(links: &Value) -> Vec<&str> {
     links.as_array().into_iter().flatten().filter_map(|link| link["process"].as_str()).collect()
 }

@@ -60,7 +60,6 @@ fn typed(argument: &Arg) -> String {
     argument.get_long().map_or_else(|| format!("`<{}>`", value()), |long| format!("`--{long}`"))
 }
 
-/// The argument as typed, with its default.
 fn label(argument: &Arg) -> String {
     let values = argument.get_value_names().unwrap_or_default();
     let values = if argument.get_action().takes_values() {

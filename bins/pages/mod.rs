@@ -94,7 +94,6 @@ fn expected_number(source: &(dyn error::Error + 'static)) -> Option<&'static str
     source.is::<ParseFloatError>().then_some("a number")
 }
 
-/// The text that the error is about.
 fn given(error: &clap::Error, kind: ContextKind) -> Option<&str> {
     match error.get(kind) {
         Some(ContextValue::String(text)) => Some(text),

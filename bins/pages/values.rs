@@ -76,13 +76,11 @@ pub fn fault_file() -> impl TypedValueParser<Value = PathBuf> {
     with_names(PathBufValueParser::new().map(shipped::resolve), || names(&FAULTS))
 }
 
-/// A name or a path.
 #[must_use]
 pub fn job() -> impl TypedValueParser<Value = String> {
     with_names(NonEmptyStringValueParser::new(), || names(&JOBS))
 }
 
-/// A name or a path.
 #[must_use]
 pub fn robot() -> impl TypedValueParser<Value = String> {
     with_names(NonEmptyStringValueParser::new(), || names(&ROBOTS))
@@ -93,7 +91,6 @@ pub fn names(kind: &NamedFiles) -> Vec<String> {
     kind.names(&default_data())
 }
 
-/// Offers `names` as completions.
 #[must_use]
 pub fn with_names<P: TypedValueParser>(
     parser: P,

@@ -22,7 +22,6 @@ use crate::trace::{FIRED, TICKS};
 
 const WRITTEN: usize = 12; // printed per scenario; others are counted
 
-/// Why two traces cannot be compared.
 #[derive(Debug, thiserror::Error)]
 pub enum CompareError {
     #[error(transparent)]
@@ -87,7 +86,6 @@ pub fn compare(was: impl BufRead, is: impl BufRead, renames: &Renames) -> Result
     Ok(comparer.finish())
 }
 
-/// A field of both versions, by its new path.
 struct Slot {
     path: String,
     old_path: Option<String>,
@@ -143,7 +141,6 @@ impl<'a> Comparer<'a> {
         }
     }
 
-    /// Of the old version.
     fn was(&mut self, path: &str, value: String) -> Result<(), CompareError> {
         let slot = match self.old.get(path) {
             Some(slot) => *slot,
@@ -155,7 +152,6 @@ impl<'a> Comparer<'a> {
         Ok(())
     }
 
-    /// Of the new version.
     fn is(&mut self, path: &str, value: String) {
         let slot = self.new_slot(path);
         self.touch(slot).is = Some(value);
@@ -200,7 +196,6 @@ impl<'a> Comparer<'a> {
         self.slots.len() - 1
     }
 
-    /// Compares the fields with a value at this moment.
     fn settle(&mut self, moment: Moment) {
         let mut touched = std::mem::take(&mut self.touched);
         // Differences first: they end the collection of rows.

@@ -22,7 +22,6 @@ impl fmt::Display for Moment {
     }
 }
 
-/// One line of look-ahead.
 pub(super) struct Lines<R> {
     which: &'static str,
     lines: io::Lines<R>,
@@ -42,7 +41,6 @@ impl<R: BufRead> Lines<R> {
         self.next.as_ref().map(|(moment, ..)| *moment)
     }
 
-    /// If the next line is the first of the end.
     pub(super) fn last_tick(&self) -> Option<u64> {
         match &self.next {
             Some((Moment::End, path, value)) if path == TICKS => value.parse().ok(),
@@ -50,7 +48,6 @@ impl<R: BufRead> Lines<R> {
         }
     }
 
-    /// If the next line belongs to this moment.
     pub(super) fn take(&mut self, moment: Moment) -> Result<Option<(String, String)>, CompareError> {
         let Some((_, path, value)) = self.next.as_mut().filter(|(next, ..)| *next == moment) else {
             return Ok(None);
@@ -61,7 +58,6 @@ impl<R: BufRead> Lines<R> {
         Ok(Some(taken))
     }
 
-    /// To the first line of the end.
     pub(super) fn skip_to_end(&mut self) -> Result<(), CompareError> {
         while self.moment().is_some_and(|moment| moment < Moment::End) {
             self.advance()?;

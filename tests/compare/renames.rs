@@ -27,7 +27,6 @@ pub struct Renamed {
     pub new: String,
 }
 
-/// In one version only.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Only {
@@ -35,7 +34,6 @@ pub struct Only {
     pub reason: String, // for not comparing it
 }
 
-/// Another text of a value: `old` may have become `new`.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct NewText {
@@ -86,7 +84,6 @@ impl Renames {
         rule.is_some()
     }
 
-    /// The entries for the values of a field.
     pub(super) fn values_of(&self, path: &str) -> Vec<usize> {
         let rules = self.value.iter().enumerate();
         rules.filter(|(_, rule)| path_matches(&rule.path, path)).map(|(at, _)| at).collect()
@@ -115,7 +112,6 @@ impl Renames {
         rule.is_some()
     }
 
-    /// The other entries as text.
     pub(super) fn unused(&self, used: &BTreeSet<Rule>) -> Vec<String> {
         let renamed = self.renamed.iter().map(|r| format!("renamed {} to {}", r.old, r.new));
         let dropped = self.dropped.iter().map(|r| format!("dropped {}: {}", r.path, r.reason));

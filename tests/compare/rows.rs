@@ -41,7 +41,6 @@ impl fmt::Display for Row {
     }
 }
 
-/// Of a pair.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Seen {
     pub ticks: u64,

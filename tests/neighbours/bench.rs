@@ -40,7 +40,6 @@ pub struct Ended {
 }
 
 impl Controller {
-    /// The socket is in its own directory.
     pub fn start(name: &str, outside: &str, more: &[&str]) -> Self {
         Self::start_at(Scratch::new(name), None, outside, more)
     }
@@ -82,7 +81,6 @@ impl Controller {
         self.scratch.as_ref().expect("it has one").file(name)
     }
 
-    /// Waits until a predecessor has left.
     pub fn connect(&self, role: Role) -> Peer {
         let started = Instant::now();
         loop {
@@ -101,7 +99,6 @@ impl Controller {
         Peer::connect_within(PATIENCE, &self.address, role)
     }
 
-    /// Returns its files.
     pub fn kill(mut self) -> Scratch {
         self.child.kill().expect("it runs");
         self.child.wait().expect("a child");
@@ -112,7 +109,6 @@ impl Controller {
         self.end_with(|| {})
     }
 
-    /// `look` examines its files.
     pub fn end_with(mut self, look: impl FnOnce()) -> Ended {
         let mut page = String::new();
         self.child.stdout.take().expect("it is piped").read_to_string(&mut page).expect("text");
@@ -152,7 +148,6 @@ impl Workstation {
         workstation
     }
 
-    /// The next tick, to its end.
     pub fn tick(&mut self) {
         self.read_tick().expect("the controller continues");
     }
@@ -175,7 +170,6 @@ impl Workstation {
         }
     }
 
-    /// Any bytes, into the mailbox of commands.
     pub fn write(&mut self, data: &[u8]) {
         self.command_box.write(data).expect("it fits");
         self.peer.send(&self.command_box).expect("the controller reads");
@@ -207,7 +201,6 @@ impl Workstation {
         self.cell().echo == self.line && !self.cell().busy
     }
 
-    /// Any bytes, into the mailbox of lines for the cell.
     pub fn write_cell(&mut self, data: &[u8]) {
         self.cell_box.write(data).expect("it fits");
         self.peer.send(&self.cell_box).expect("the controller reads");
@@ -221,7 +214,6 @@ impl Workstation {
         status::decode(self.peer.mailbox(HWSC_STATUS).data()).expect("a status")
     }
 
-    /// Waits for the end of a command. Returns the last status.
     pub fn carry_out(&mut self, command: &HwsCommand) -> (String, String) {
         self.send(command);
         loop {
@@ -247,7 +239,6 @@ pub fn attend(mut peer: Peer) {
     }
 }
 
-/// Without fields.
 pub fn bare(number: u32, verb: &str) -> HwsCommand {
     HwsCommand { number, command: Name16::clipped(verb), ..HwsCommand::default() }
 }

@@ -25,7 +25,6 @@ use whole_system_tests::{Scratch, rcs_neighbour, rcs_run, root};
 
 use super::bench::{Controller, Ended, Workstation, bare};
 
-/// At the first update.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Fate {
     Answers,
@@ -35,7 +34,6 @@ enum Fate {
     Dawdles,
 }
 
-/// On a thread, which ends with the connection.
 fn serve(mut peer: Peer, file: PathBuf, fate: Fate) -> JoinHandle<()> {
     thread::spawn(move || {
         let mut server = Server::new(Store::open(&file).expect("a database"));
@@ -84,7 +82,6 @@ fn serve(mut peer: Peer, file: PathBuf, fate: Fate) -> JoinHandle<()> {
     })
 }
 
-/// Blank 17 is in its tray.
 struct Shop {
     controller: Controller,
     workstation: Workstation,
@@ -123,7 +120,6 @@ impl Shop {
     }
 }
 
-/// From its tray.
 fn fetch(number: u32) -> HwsCommand {
     let name = |text| Name16::new(text).expect("a name");
     HwsCommand {

@@ -32,7 +32,6 @@ fn to_safe(number: u32) -> HwsCommand {
     HwsCommand { destination: Some(Name16::clipped("SAFE")), ..bare(number, "MOVE") }
 }
 
-/// By command 2.
 fn start_moving(name: &str) -> (Controller, Workstation) {
     let (controller, mut workstation) = start(name);
     assert_eq!(workstation.carry_out(&bare(1, "PAUSE")).0, "finished");
@@ -46,7 +45,6 @@ fn last_words(ended: &Ended) -> &str {
     ended.said.lines().last().unwrap_or_default()
 }
 
-/// On standard error and in the result.
 fn assert_ended(ended: &Ended, status: Option<i32>, why: &str) {
     assert_eq!(ended.status, status, "{}", ended.said);
     assert!(last_words(ended).contains(why), "{why}: {}", ended.said);
@@ -161,7 +159,6 @@ fn robot_without_power_is_a_lost_link() {
     assert_ended(&controller.end(), STOPPED, "the controller has no power");
 }
 
-/// To HOME from any place (IV.3.3).
 const BY_HAND: [&str; 6] = [
     "panel hydraulics disable",
     "panel hydraulics enable",
@@ -189,7 +186,6 @@ fn a_robot_stopped_on_its_way_continues_or_is_moved_back_by_hand() {
     assert_eq!(ended.status, Some(0), "{}", ended.said);
 }
 
-/// By lines for the cell.
 #[test]
 fn motion_by_hand_ends_with_the_workstation_controller_that_commands_it() {
     let name = format!("by-hand-{}", std::process::id());

@@ -15,7 +15,6 @@ use super::bench::{Controller, Workstation, bare};
 const SAFE: &str = "   -3362    -3734      638\n   -4781    -5310    -1483\n   -2552    -7317    -1483";
 const HIGHER: &str = "   -3362    -3734      688\n   -4781    -5310    -1433\n   -2552    -7317    -1433";
 
-/// With its own data directory.
 struct Cell {
     scratch: Scratch,
 }
@@ -62,7 +61,6 @@ impl Cell {
     }
 }
 
-/// Number and result, once the cell is idle.
 fn line(workstation: &mut Workstation, line: &str) -> (Trouble, String) {
     workstation.begin_in_cell(line);
     loop {

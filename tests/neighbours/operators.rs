@@ -25,7 +25,6 @@ use super::bench::{Controller, PATIENCE};
 
 const JOB: &str = "== MOVE -- 0 -- 0 0 SAFE 0 -- 0\n";
 
-/// On stand-by if an operator may connect.
 struct Cell {
     controller: Controller,
     log: PathBuf,
@@ -50,12 +49,10 @@ impl Cell {
         Self { controller, log, name }
     }
 
-    /// As soon as the run admits operators.
     fn admission(&self) -> Result<UnixStream, PeerError> {
         admission(&self.controller.address)
     }
 
-    /// Success and output of `rcs-run send`.
     fn send(&self, line: &str) -> (bool, String) {
         let address = self.controller.address.to_string();
         let output = Command::new(rcs_run())
@@ -68,7 +65,6 @@ impl Cell {
     }
 }
 
-/// As soon as the run admits operators.
 fn admission(address: &Address) -> Result<UnixStream, PeerError> {
     let begun = Instant::now();
     loop {

@@ -44,7 +44,6 @@ const UNTIL_IT_IS_HELD: [&str; 10] = [
 ];
 const REFIXTURE: &str = "== REFIXTURE LCLEVIS_IH +1 PFIXTURE 0 -1 PFIXTURE 0 -- 0";
 
-/// From a job line.
 fn command(number: u32, line: &str) -> HwsCommand {
     let words: Vec<&str> = line.split_whitespace().collect();
     let [_, verb, object, source_grip, source, source_sector, grip, destination, sector, end_at, end_sector] =
@@ -69,7 +68,6 @@ fn command(number: u32, line: &str) -> HwsCommand {
     }
 }
 
-/// With the number of the last command.
 struct Shop {
     controller: Controller,
     workstation: Workstation,
@@ -110,7 +108,6 @@ impl Shop {
         guest
     }
 
-    /// Waits for the end. Returns the last state.
     fn see_off(&mut self, guest: Guest) -> Remains {
         while !guest.serving.is_finished() {
             self.workstation.tick();
@@ -124,7 +121,6 @@ impl Shop {
     }
 }
 
-/// Of a pedestal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Fate {
     DiesTurning(u32),  // some ticks after the first FLIP

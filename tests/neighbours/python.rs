@@ -17,7 +17,6 @@ const EXAMPLES: [&str; 2] = ["hwsc.py", "vision.py"];
 const HELLO: &[u8] = b"RCS2\x03\x00\x01\x00";
 const WELCOME: &[u8] = &[2, 0, 0, 0, 8, 0, 0, 0, 0, 0, 0, 0]; // address and length
 
-/// With the package of this checkout.
 fn python() -> Command {
     let mut command = Command::new("python3");
     command.arg("-B").env("PYTHONPATH", root().join("python/src")).current_dir(root());

@@ -22,7 +22,6 @@ use super::bench::{Controller, Ended, PATIENCE, Workstation, attend, bare};
 
 const LONG: usize = 50; // more than enough
 
-/// With a given behaviour of the Data System.
 fn start(
     clock: &str,
     serve: impl FnOnce(Peer) + Send + 'static,
@@ -47,7 +46,6 @@ fn terminate(mut controller: Controller) -> Ended {
     controller.end()
 }
 
-/// Answers pulses without further commands.
 fn follow(mut workstation: Workstation) {
     let _ = workstation.peer.pulse(workstation.tick); // after the end of the run, reading fails, too
     attend(workstation.peer);

@@ -10,7 +10,6 @@ use super::bench::{Controller, Ended, Workstation, bare};
 
 const NOTHING: &str = "-- +0 -- 0 +0"; // a command without object
 
-/// Under stand-alone command, with these lines.
 fn start(name: &str, lines: &[String], outside: &str, more: &[&str]) -> Controller {
     let scratch = Scratch::new(name);
     let (job, outbox) = (scratch.file("own.job"), scratch.file("outbox"));

@@ -25,7 +25,6 @@ use super::bench::{Controller, Ended, Workstation, bare};
 struct Vision(Child); // ends with the test
 
 impl Vision {
-    /// Rebuilt before a controller waits for it.
     fn start(program: &Path, address: &str, more: &[&str]) -> Self {
         let child = Command::new(program)
             .args(["vision", "--network", address])
@@ -46,7 +45,6 @@ impl Drop for Vision {
     }
 }
 
-/// With faults of the vision system.
 fn linkbar(name: &str, faults: &str) -> Ended {
     let program = rcs_neighbour();
     let controller = Controller::start(name, "vision", &["linkbar"]);
@@ -54,7 +52,6 @@ fn linkbar(name: &str, faults: &str) -> Ended {
     controller.end()
 }
 
-/// At the beginning of a line.
 fn after<'t>(text: &'t str, word: &str) -> &'t str {
     let mut lines = text.lines().filter_map(|line| line.trim_start().strip_prefix(word));
     lines.next().unwrap_or_else(|| panic!("no {word} in {text}")).trim()
@@ -205,7 +202,6 @@ fn the_log_has_the_reason_and_replays_without_vision() {
     assert_eq!(status, Some(0), "{replayed}");
 }
 
-/// At the first request.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Fate {
     Answers,
@@ -270,7 +266,6 @@ fn answer(request: &VisionRequest, picture: &Picture) -> VisionResponse {
     }
 }
 
-/// From its tray.
 fn fetch(number: u32) -> HwsCommand {
     let name = |text| Name16::new(text).expect("a name");
     HwsCommand {

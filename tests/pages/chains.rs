@@ -21,7 +21,6 @@ fn names(sources: &[(PathBuf, String)]) -> BTreeMap<(PathBuf, String), String> {
     names
 }
 
-/// Entries with `then` of all `commands!`, as rows.
 fn chains(sources: &[(PathBuf, String)]) -> Vec<String> {
     let names = names(sources);
     let mut rows = Vec::new();

@@ -43,7 +43,6 @@ fn rows_of_tables_are_in_columns() {
     );
 }
 
-/// The rows of a table with steps.
 fn columns(rows: &str) -> Vec<String> {
     let text =
         format!("decision_table! {{\n    pub TURN: fn turn(Situation) -> Action {{\n{rows}\n    }}\n}}\n");

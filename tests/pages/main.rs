@@ -41,7 +41,6 @@ fn prose(text: &str) -> String {
     text.lines().filter(outside).collect::<Vec<_>>().join("\n")
 }
 
-/// The targets of `[text](target)`.
 fn links(text: &str) -> Vec<&str> {
     text.split("](").skip(1).filter_map(|rest| rest.split_once(')')).map(|(target, _)| target).collect()
 }
@@ -118,7 +117,6 @@ fn prose_is_within_110_columns() {
 
 const LONGEST: usize = 400; // lines, without comments, blank lines and tests
 
-/// Crates and programs, without tests and benchmarks.
 fn sources() -> Vec<PathBuf> {
     let (mut open, mut sources) = (vec![root().join("crates"), root().join("bins")], Vec::new());
     while let Some(directory) = open.pop() {

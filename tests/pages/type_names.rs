@@ -13,7 +13,6 @@ use whole_system_tests::{root, tables::files};
 const IN_EACH_PROCESS: [&str; 7] =
     ["Action", "Request", "Situation", "State", "StateVariables", "Step", "Subordinates"];
 
-/// Outside of the tests.
 fn types(text: &str) -> impl Iterator<Item = &str> {
     let (text, _) = text.split_once("#[cfg(test)]\nmod tests {").unwrap_or((text, ""));
     text.lines().filter_map(|line| {

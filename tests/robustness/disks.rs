@@ -16,7 +16,6 @@ const LIMITS: [(&str, &str, u64); 3] = [
     ("N KB of shared memory", "mkdir disk && mount -t tmpfs -o size=SIZEk tmpfs /dev/shm", 3_000),
 ];
 
-/// The run must finish or report the reason.
 fn attempt(commands: &str, size: u64, boards: &str) -> Outcome {
     let scratch = Scratch::new("disks");
     let ticks = TICKS.to_string();

@@ -20,7 +20,6 @@ use crate::table::{Chance, Extent, Outcome, Row};
 
 const LIMIT: &str = "1048576"; // address space, kilobytes
 
-/// A name, and the arguments before the file.
 const QUESTIONS: [(&str, &[&str]); 6] = [
     ("info", &["info"]),
     ("replay", &["replay"]),
@@ -78,7 +77,6 @@ fn forged(log: &[u8], whole: &Log, chance: &mut Chance) -> Vec<u8> {
     writer.into_inner().into_inner()
 }
 
-/// With little memory.
 fn limited(directory: &Path, arguments: &[&str], files: &[&Path]) -> Output {
     let mut command = Command::new("sh");
     command.args(["-c", "ulimit -v \"$0\" && exec \"$@\"", LIMIT]).arg(rcs_log());

@@ -98,7 +98,6 @@ const PRIVATE: &str = "RCS_PRIVATE_MEMORY"; // set in a process with its own `/d
 /// Shell commands before a program.
 const MOUNT: &str = "mount -t tmpfs -o size=512m,mode=1777 tmpfs /dev/shm && exec \"$@\"";
 
-/// `None` if this user can have no `/dev/shm` of its own.
 fn private_memory(scratch: &Scratch) -> Option<Command> {
     let command = |flags: &[&str], program: &Path| {
         let mut command = Command::new("unshare");

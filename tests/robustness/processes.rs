@@ -23,7 +23,6 @@ pub enum Process {
 }
 
 impl Process {
-    /// Waits until it is active.
     pub fn start(self, run: &RunName) -> Child {
         let name = self.to_possible_value().expect("no process is skipped");
         let mut child = Command::new(env::current_exe().expect("a program has a path"))

@@ -10,7 +10,6 @@ use crate::table::Outcome;
 /// The argument, and its name in the table.
 pub const BOARDS: [(&str, &str); 2] = [("one", "one process"), ("split", "five boards")];
 
-/// In real time; it ends by itself.
 pub fn start(directory: &Path, boards: &str, ticks: &str, log: &str) -> Running {
     Running::start(
         directory,
@@ -19,7 +18,6 @@ pub fn start(directory: &Path, boards: &str, ticks: &str, log: &str) -> Running 
     )
 }
 
-/// With its boards.
 pub fn end(mut run: Running) -> Ended {
     wait_for("the run ends", || run.child.try_wait().expect("a child").is_some());
     wait_for("the boards end", || !lives(&run.name));

@@ -79,7 +79,6 @@ fn allow_core(run: &Running) -> bool {
     pattern.starts_with("core") && most != Some(0) && allowed
 }
 
-/// In the directory of the run.
 fn core(directory: &Path) -> bool {
     let entries = fs::read_dir(directory).expect("a directory").flatten();
     entries.filter(|entry| entry.file_name().to_string_lossy().starts_with("core")).count() > 0

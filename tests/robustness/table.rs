@@ -14,7 +14,6 @@ pub enum Outcome {
     BySignal, // by the sent signal, by one of the system's, or by iceoryx2 over garbage
 }
 
-/// In the order of [`Outcome`].
 const COLUMNS: [&str; 4] = ["continued", "ended in order", "ended with a message", "ended by force"];
 
 pub struct Chance(u64); // determined by a seed
@@ -36,7 +35,6 @@ impl Chance {
         (self.0 >> 11) % limit.max(1)
     }
 
-    /// In memory.
     pub fn place(&mut self, limit: usize) -> usize {
         usize::try_from(self.below(u64::try_from(limit).expect("64 bits"))).expect("it is below a usize")
     }
@@ -53,7 +51,6 @@ pub struct Extent {
 }
 
 impl Extent {
-    /// Of a full campaign, or a sample.
     pub fn of(self, full: u64, sample: u64) -> u64 {
         if self.sample { sample } else { full }
     }

@@ -59,7 +59,6 @@ struct Arguments {
     own: bool,
 }
 
-/// With its build directory.
 struct Copied {
     root: PathBuf,
     source: PathBuf,
@@ -159,7 +158,6 @@ impl Copied {
         Ok((compiled, refused.range(..last).count()))
     }
 
-    /// Those of the library alone, or all.
     fn tests(&self, own: bool) -> Result<Vec<Program>, String> {
         let arguments: &[&str] = if own { &["--lib"] } else { &["--lib", "--tests"] };
         let (messages, failed) =
@@ -189,7 +187,6 @@ fn place(error: &Value, switched: &Switched) -> Option<usize> {
     changes.next()
 }
 
-/// Returns the results in the order of the items.
 fn on_all_cores<T: Sync, R: Send>(
     items: &[T],
     work: impl Fn(&T) -> io::Result<R> + Sync,

@@ -58,7 +58,6 @@ impl Mutant {
         [&self.before, &self.after].into_iter().chain(other).any(|row| row.contains("=> consult"))
     }
 
-    /// The text of the file with the change.
     pub fn apply(&self, text: &str) -> String {
         let mut lines: Vec<&str> = text.lines().collect();
         let other = self.other.iter().map(|(lines, after)| (lines, after));
@@ -112,7 +111,6 @@ pub fn mutants(table: &Table) -> Vec<Mutant> {
     mutants
 }
 
-/// Exchanges between the conditions of two rows.
 fn exchange(table: &Table, row: &Row, other: &Row, mutants: &mut Vec<Mutant>) {
     for (at, (name, values)) in row.conditions.iter().enumerate() {
         let Some(there) = other.conditions.iter().position(|(known, _)| known == name) else { continue };
@@ -132,7 +130,6 @@ fn exchange(table: &Table, row: &Row, other: &Row, mutants: &mut Vec<Mutant>) {
     }
 }
 
-/// SplitMix64.
 fn random(state: &mut u64) -> u64 {
     *state = state.wrapping_add(0x9E37_79B9_7F4A_7C15);
     let mut mixed = *state;

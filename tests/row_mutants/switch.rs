@@ -18,7 +18,8 @@ use crate::mutate::Mutant;
 pub const CHANGED: &str = "RCS_CHANGED_ROW"; // number of the selected change
 pub const REACHED: &str = "RCS_REACHED_ROWS"; // file for the numbers of the reached changes
 
-const SELECTION: &str = r#" // added to `lib.rs` of the copy
+/// The addition to `lib.rs` of the copy.
+const SELECTION: &str = r#"
 extern crate std;
 
 /// Number of the change that is switched on: 0 for none, `usize::MAX` to write which ones are reached.
@@ -80,7 +81,6 @@ impl<'a> Head<'a> {
         words.collect::<String>() + "Situation"
     }
 
-    /// The function that consults one of the tables.
     fn function(&self, which: &str) -> String {
         format!("{}_{which}", self.decide.trim_start_matches("r#"))
     }
@@ -107,7 +107,6 @@ impl<'a> Head<'a> {
         )
     }
 
-    /// Consults the selected table.
     fn selection(&self, mutants: &[(usize, &Mutant)]) -> String {
         let (generic, step) = self.step.map_or(("<Step: Copy>", "Step"), |step| ("", step));
         let (result, row) = match self.result.split_once(" or ") {
@@ -155,7 +154,6 @@ pub fn {}{generic}(step: {step}, situation: &{}) -> ::rcs_core::table::{result} 
 
 type Places = Vec<(Range<usize>, usize)>; // lines of each change of a file, from 1, and its number
 
-/// With the positions of the changes.
 #[derive(Default)]
 pub struct Switched {
     pub texts: HashMap<PathBuf, String>, // by path from the root of the repository
@@ -190,14 +188,12 @@ impl Switched {
         Ok(switched)
     }
 
-    /// From 1.
     pub fn change_at(&self, file: &Path, line: usize) -> Option<usize> {
         let places = self.places.get(file)?;
         places.iter().find(|(lines, _)| lines.contains(&line)).map(|(_, number)| *number)
     }
 }
 
-/// With all changes, and the lines of each.
 fn switch(file: &Path, text: &str, mutants: &BTreeMap<usize, &Mutant>) -> Option<(String, Places)> {
     let mut lines: Vec<String> = Vec::new();
     let mut places = Places::new();

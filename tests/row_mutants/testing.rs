@@ -17,7 +17,6 @@ pub struct Program {
     pub directory: PathBuf, // of the package, in which it is run
 }
 
-/// With measurements without a change.
 #[derive(Debug)]
 pub struct Test<'a> {
     program: &'a Program,

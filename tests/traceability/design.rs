@@ -15,14 +15,12 @@ use whole_system_tests::root;
 
 use super::sources::{Sources, has_item, has_test};
 
-/// Under a rule.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Kind {
     Code,
     Test,
 }
 
-/// With its continuation lines.
 #[derive(Debug, PartialEq, Eq)]
 struct Item {
     line: usize, // first line
@@ -64,7 +62,6 @@ fn references(text: &str) -> Vec<(&str, bool)> {
     parts.iter().skip(1).step_by(2).copied().zip(open).collect()
 }
 
-/// References that do not exist.
 fn missing(item: &Item, sources: &Sources) -> Vec<String> {
     match item.kind {
         Kind::Code => missing_code(&item.text),

@@ -44,7 +44,6 @@ struct Page {
     figures: Vec<(String, [usize; 3])>, // at the top: kind, total, in the code, tested
 }
 
-/// Of a row, without the marks of code.
 fn cells(line: &str) -> Option<Vec<String>> {
     let row = line.strip_prefix("| ")?.strip_suffix(" |")?;
     Some(row.split(" | ").map(|cell| cell.trim().trim_matches('`').to_owned()).collect())
@@ -133,7 +132,6 @@ impl Interfaces {
         }
     }
 
-    /// From `Type::Variant`.
     fn variant(&self, code: &str) -> &'static VariantSchema {
         let (name, variant) = code.split_once("::").expect("a variant");
         self.enums[name].named(variant).expect("it is in the code")

@@ -8,7 +8,6 @@ use std::{
 use toml::Table;
 use whole_system_tests::root;
 
-/// Those that each package may use.
 fn rows() -> BTreeMap<String, BTreeSet<String>> {
     let page = fs::read_to_string(root().join("ARCHITECTURE.md")).expect("the page is there");
     let lines = page.lines().skip_while(|line| !line.starts_with("| package |"));
@@ -22,7 +21,6 @@ fn rows() -> BTreeMap<String, BTreeSet<String>> {
     .collect()
 }
 
-/// Direct and indirect dependencies.
 fn permitted(rows: &BTreeMap<String, BTreeSet<String>>, package: &str) -> BTreeSet<String> {
     let mut found = BTreeSet::new();
     let mut open = vec![package.to_owned()];
@@ -39,7 +37,6 @@ fn manifest(directory: &str) -> Table {
     text.parse().unwrap_or_else(|error| panic!("{}: {error}", path.display()))
 }
 
-/// Without the dependencies of tests.
 fn used() -> BTreeMap<String, BTreeSet<String>> {
     let workspace = manifest(".");
     let members = workspace["workspace"]["members"].as_array().expect("a list of members");

@@ -182,7 +182,6 @@ mod tests {
         Plate { words }.to_tool(&T3)
     }
 
-    /// Returns the intermediate positions.
     fn walk(from: Plate, goal: &Frame, most: usize) -> Vec<Plate> {
         let mut way = vec![from];
         let mut here = Position::reported(from, &T3);

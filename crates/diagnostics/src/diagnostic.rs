@@ -172,7 +172,6 @@ impl Diagnostic {
         finding
     }
 
-    /// Place, message and help in one line.
     pub(super) fn in_line(&self) -> String {
         let place = self.place();
         let colon = if place.is_empty() { "" } else { ": " };

@@ -129,7 +129,6 @@ impl Problems {
         self.list.iter_mut()
     }
 
-    /// Only of entries without a place.
     pub(crate) fn place_entries(&mut self, place: impl Fn(&str) -> At) {
         for problem in self.list.iter_mut().filter(|problem| problem.at.is_none()) {
             problem.at = problem.entry.as_deref().map(&place);

@@ -17,7 +17,6 @@ const POINTS: u32 = 250; // one every 40 ms
 const RADIUS_MM: f64 = 50.0;
 const PERIOD: Duration = Duration::from_millis(40);
 
-/// Begins and ends at `start`, slowly.
 fn point(start: &Pose, number: u32) -> Pose {
     let part = f64::from(number.min(POINTS)) / f64::from(POINTS);
     let angle = TAU * part - (TAU * part).sin();

@@ -189,7 +189,6 @@ mod tests {
         Pose { position: [x, 0.0, 0.0], ..Pose::IDENTITY }
     }
 
-    /// Along x, 10 mm apart.
     fn moving(points: u32) -> Path {
         let mut path = Path::new(Times::default(), at(0.0));
         path.begin(0, at(0.0));

@@ -135,7 +135,6 @@ impl<'a> Bits<'a> {
     }
 }
 
-/// Byte and mask of the bit with an index.
 const fn place(index: usize) -> (usize, u8) {
     let mask = match index % 8 {
         0 => 0x01,

@@ -19,7 +19,6 @@ struct Device {
 }
 
 impl Device {
-    /// All values differ.
     fn new() -> Self {
         let words = |factor: u16| (0..SIZE).map(move |index| index.wrapping_mul(factor)).collect::<Vec<_>>();
         let bits = |factor| words(factor).into_iter().map(|word| word & 0x40 != 0).collect();
@@ -168,7 +167,6 @@ fn one_of_each() -> Vec<Owned> {
     [1, 2, 3, 4, 5, 6, 15, 16, 23].map(one).to_vec()
 }
 
-/// Request and answer.
 fn frames(request: &Request<'_>, client: &mut Client) -> [Vec<u8>; 2] {
     let (mut asked, mut answered) = ([0; MOST_FRAME_BYTES], [0; MOST_FRAME_BYTES]);
     let length = client.request(request, &mut asked).unwrap();

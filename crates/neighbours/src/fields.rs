@@ -16,7 +16,6 @@ pub enum FieldError {
         at: usize,           // byte in the data
         found: u8,
     },
-    /// Not a value of the field.
     Word {
         field: &'static str, // in the manual's words
         found: Name16,
@@ -31,7 +30,6 @@ pub enum FieldError {
     Infinite {
         field: &'static str, // in the manual's words
     },
-    /// Not a value of the field.
     Code {
         field: &'static str, // in the manual's words
         found: u16,

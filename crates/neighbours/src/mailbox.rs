@@ -35,13 +35,11 @@ pub const PEDESTAL_TABLE_STATUS: Place =
 
 /// Not in the table: actions of the workstation (vise, trays, machine) in the simulated cell.
 pub const CELL_COMMAND: Place = Place { name: "Workstation to Cell Command", address: 0xF_6400, size: 256 };
-/// Not in the table.
 pub const CELL_STATUS: Place = Place { name: "Workstation from Cell Status", address: 0xF_6600, size: 256 };
 
 /// Not in the table: sensor words of the pedestal's devices in the simulated cell.
 pub const PEDESTAL_SENSORS: Place =
     Place { name: "Pedestal from Cell Sensors", address: 0xF_5C00, size: 256 };
-/// Not in the table.
 pub const PEDESTAL_ORDERS: Place = Place { name: "Pedestal to Cell Orders", address: 0xF_5E00, size: 256 };
 /// The request areas of the vision mailbox (IX.4). Figure IX.3 is lost; address and size CHOSEN.
 pub const VISION_REQUEST: Place = Place { name: "Vision from RCS Request", address: 0xF_8000, size: 256 };
@@ -51,7 +49,6 @@ pub const VISION_RESPONSE: Place = Place { name: "Vision to RCS Response", addre
 pub const VISION_PICTURE: Place =
     Place { name: "Vision from Cell Picture", address: 0xF_8400, size: MAX_SIZE };
 
-/// The mailboxes in the order of Table IX.1.
 pub const TABLE: [Place; 8] = [
     HWSC_COMMAND,
     HWSC_STATUS,
@@ -195,7 +192,6 @@ impl Mailbox {
         self.word(2)
     }
 
-    /// All bytes, with the head.
     #[must_use]
     pub fn image(&self) -> &[u8] {
         &self.bytes[..self.place.size]

@@ -8,7 +8,6 @@ use os_io::alloc::{Counting, Section, allocations};
 #[global_allocator]
 static ALLOCATOR: Counting = Counting;
 
-/// Of 100 calls.
 fn count(mut tick: impl FnMut()) -> u64 {
     let before = allocations();
     let section = Section::enter();

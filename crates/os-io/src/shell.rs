@@ -30,7 +30,6 @@ pub fn path(path: impl AsRef<OsStr>) -> String {
     word(path)
 }
 
-/// It has no meaning to a shell.
 fn is_plain(character: char) -> bool {
     character.is_alphanumeric() || "/._-+=:,@%".contains(character)
 }

@@ -164,7 +164,6 @@ fn numbers(text: &str) -> Vec<Number> {
     found
 }
 
-/// After a space.
 fn unit_at(text: &str, at: usize) -> Option<&'static Unit> {
     let rest = text.get(at..)?.strip_prefix(' ')?;
     let is_end = |rest: &str| {

@@ -34,7 +34,6 @@ pub struct Segment {
 }
 
 impl Segment {
-    /// Keeps the smaller margins and clearances.
     pub fn merge(&mut self, other: &Self) {
         if other.margin_deg < self.margin_deg {
             (self.joint, self.margin_deg) = (other.joint, other.margin_deg);

@@ -21,7 +21,6 @@ const SETTLES: u32 = 3; // docs/design/motion.md "Rest"
 const LONGEST: u32 = 15_000; // ticks: ten minutes
 const LAG: u32 = 100; // ticks until the servos come to rest
 
-/// Why a flight ends early.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Trouble {
     Joints {

@@ -319,7 +319,6 @@ fn act(state: &mut State<'_>, action: &Workstation) -> bool {
     true
 }
 
-/// A part delivered at a random position in its sector.
 #[derive(Clone, Debug)]
 pub struct Random {
     pub object: Name16,

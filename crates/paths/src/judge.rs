@@ -164,7 +164,6 @@ impl State<'_> {
         findings
     }
 
-    /// Suggests a via point of the stored trajectories that frees the path.
     fn help(&self, phase: &Phase, failed: &Outcome, clear: bool) -> String {
         let worst = failed.seen.iter().position(|seen| seen.touched.is_some());
         let at = worst.unwrap_or(failed.flown.len().saturating_sub(1));
@@ -261,7 +260,6 @@ fn backwards(phase: &Phase, departs: usize) -> (Points, Vec<Ends>) {
     (Points { list, opens: 0 }, names)
 }
 
-/// Text, key and depth of the finding.
 pub(crate) fn in_words(trouble: Trouble) -> (String, String, f64) {
     match trouble {
         Trouble::Joints { problem, joint, at: [x, y, z] } => {

@@ -42,7 +42,6 @@ pub struct Leg {
 }
 
 impl Leg {
-    /// Parameters of the segment that ends here.
     #[must_use]
     pub const fn parameters(&self) -> TrajPara {
         TrajPara { acc_fac: self.acc_fac, vel_max: self.vel_max, smooth: self.smooth, brk_dst: self.brk_dst }

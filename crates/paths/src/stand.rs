@@ -116,7 +116,6 @@ impl fmt::Display for Standing {
     }
 }
 
-/// The form of a pose (VII.1): three lines.
 #[must_use]
 pub fn pose_form(name: &str, movetable: &str, pose: &Pose) -> Vec<String> {
     let [wrist, tool, finger] =
@@ -143,7 +142,6 @@ pub fn movetable_between(from: &Frame, to: &Frame) -> Vec<MovetableLine> {
     std::iter::once(moved).chain(turns).collect()
 }
 
-/// The form of a movetable (VII.2).
 #[must_use]
 pub fn movetable_form(name: &str, lines: &[MovetableLine]) -> Vec<String> {
     let last = lines.len().saturating_sub(1);

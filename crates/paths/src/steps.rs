@@ -245,7 +245,6 @@ pub fn exchange(own: Option<u8>, wanted: u8, data: &TaskData<'_>) -> Result<Vec<
     Ok(steps)
 }
 
-/// The motion to a holster, and its location.
 fn to_holster(id: u8, grip: i32, data: &TaskData<'_>) -> Result<(Step, Location), Lacking> {
     let location = holster(id, grip, data)?;
     let object = Some(object_of(id));

@@ -110,7 +110,6 @@ fn fixed(data: &TaskData<'_>, point: &PathPoint, at: At) -> Option<Fixed> {
     Some(Fixed { name: name.to_string(), frame, parameters, at })
 }
 
-/// The finding of a straight segment.
 fn segment(room: &Room, known: &Known, from: &Frame, to: &Frame, parameters: TrajPara) -> Option<String> {
     let joints = T3.within_limits(&T3.inverse(from, &HOME_JOINTS).ok()?);
     let robot = Robot::standing(&Actuators::from(&room.cell().robot), &joints)?;

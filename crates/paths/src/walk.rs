@@ -175,7 +175,6 @@ impl<'a> Walk<'a> {
         phase
     }
 
-    /// Parameters of the last motion to a view point.
     fn view_stop(&self) -> Option<TrajParaId> {
         let GoneTo::View(ObjectGrip { object, grip }) = self.place.gone_to else { return None };
         let place = self.place.site.place();
@@ -216,7 +215,6 @@ impl<'a> Walk<'a> {
         Ok((goal, route))
     }
 
-    /// Adds legs, times and task data entries.
     fn route(&self, phase: &mut Phase, command: &EmoveCommand, goal: &EmoveGoal, mut route: Route) {
         let departure = self.place.pose.to_frame().unwrap_or_else(|_| Frame::identity());
         let (depart, between, approach) = (route.depart, route.between, route.approach);

@@ -20,7 +20,6 @@ fn data() -> &'static Path {
     Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../data"))
 }
 
-/// A job whose parts are in the middle of their sectors.
 fn job(name: &str, store: &Store) -> Job {
     let path = data().join("jobs").join(format!("{name}.job"));
     let (mut job, _) = Job::load(&path, store).unwrap_or_else(|report| panic!("{report}"));

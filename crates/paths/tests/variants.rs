@@ -9,7 +9,6 @@ use paths::{
 use plant::{CellDescription, room::Room};
 use taskdata::load::{Diagnostics, Job, Source, Store, source::read_blocks_under};
 
-/// Name, job, file, original text, replacement.
 type Variant = (&'static str, &'static str, &'static str, &'static str, &'static str);
 
 const TRAJECTORIES: &str = "trajectories.blk";

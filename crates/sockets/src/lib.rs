@@ -56,7 +56,6 @@ pub struct Line {
 }
 
 impl Line {
-    /// Makes a stream non-blocking.
     pub fn new(stream: UnixStream) -> io::Result<Self> {
         stream.set_nonblocking(true)?;
         Ok(Self { stream, pending: Vec::new() })

@@ -139,12 +139,10 @@ fn shuffled(parity: u32) -> Vec<Name16> {
     numbers.map(|i| Name16::clipped(&format!("PART{i}"))).collect()
 }
 
-/// Processor time of this thread, which other work on the computer disturbs less.
 fn processor_time() -> Duration {
     clock_gettime(ClockId::ThreadCPUTime).try_into().expect("it counts up from zero")
 }
 
-/// Times a look-up; `find` returns a number from the record found.
 fn look_up(c: &mut Criterion, what: &str, names: &[Name16], find: impl Fn(&Name16) -> u32) {
     let nothing = black_box(0); // each look-up depends on the previous one, or the processor would overlap them
     let chain = |names: &[Name16], times: u64| {

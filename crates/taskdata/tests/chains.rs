@@ -34,7 +34,6 @@ fn at(data: &TaskData<'_>, location: &str, sector: i32, object: &str) -> Locatio
         .unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// The tool frame at a location.
 fn grip(data: &TaskData<'_>, object: &str, grip: i32, location: &str, sector: i32) -> Frame {
     data.grip_frame(&name(object), grip, &at(data, location, sector, object))
         .unwrap_or_else(|error| panic!("{error}"))
@@ -62,7 +61,6 @@ fn numbers<const N: usize>(value: &toml::Value) -> [f64; N] {
     all.try_into().unwrap()
 }
 
-/// A taught pose of the cell description, 0.01 in.
 fn taught(value: &toml::Value) -> Frame {
     let point = |key: &str| {
         let all: Vec<i32> = value[key]

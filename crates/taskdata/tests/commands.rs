@@ -12,7 +12,6 @@ fn store() -> Store {
     Store::load(data()).unwrap_or_else(|report| panic!("{report}")).0
 }
 
-/// Verb and destination.
 fn said(store: &Store, block: u32, line: usize) -> String {
     match store.line_load(block, line, line).unwrap().step {
         Step::Command(command) => {

@@ -6,7 +6,6 @@ use interfaces::HwsCommand;
 use rcs_core::name::Name16;
 use taskdata::load::{Source, Step, Store, job::own_command, source::read_blocks_under};
 
-/// Replaces one text of a file.
 fn spoilt(file: &str, from: &str, to: &str) -> Store {
     let data = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../data"));
     let mut sources = read_blocks_under(data).0;

@@ -19,7 +19,6 @@ fn figures() -> Source {
     Source { name: "figures.blk".to_owned(), text: FIGURES.into() }
 }
 
-/// One line of text per line of the block.
 fn block_words(sources: &[Source]) -> BTreeMap<BlockNumber, Vec<String>> {
     let mut found = BTreeMap::new();
     for (index, source) in sources.iter().enumerate() {

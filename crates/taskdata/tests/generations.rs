@@ -127,7 +127,6 @@ fn directory_may_name_loaded_blocks() {
     assert!(missing.contains("there is no block 7 (offset 20000)"), "{missing}");
 }
 
-/// The values are those of this generation.
 fn text(block: u32, movetables: &[(u8, i32)], objects: &[(u8, u8)]) -> String {
     let mut out = String::new();
     let lines = movetables.iter().map(|(n, x)| format!(" 1 t {x} 0 0 -mtb- M{n}\n"));
@@ -143,7 +142,6 @@ fn text(block: u32, movetables: &[(u8, i32)], objects: &[(u8, u8)]) -> String {
     out
 }
 
-/// Each number once, with a value.
 fn once<V: std::fmt::Debug + Copy + 'static>(
     numbers: std::ops::Range<u8>,
     value: impl Strategy<Value = V> + 'static,

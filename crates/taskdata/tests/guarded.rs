@@ -26,7 +26,6 @@ fn load(text: &str) -> Result<Store, String> {
     Store::from_sources(vec![source]).map(|(store, _)| store).map_err(|report| report.to_string())
 }
 
-/// Errors after the cell, one line each: message and help.
 fn said(lines: &str) -> Vec<String> {
     let text = format!("{CELL}BLOCK# 602 OFFSET 21000\n{lines}\n");
     let report = load(&text).expect_err("an error was expected");
@@ -134,7 +133,6 @@ fn misspelt_prefix_is_not_a_sensor() {
     );
 }
 
-/// Warnings after the cell, one line each: message and help.
 fn warned(lines: &str) -> Vec<String> {
     let text = format!("{CELL}BLOCK# 602 OFFSET 21000\n{lines}\n");
     let source = Source { name: "try.blk".to_owned(), text: text.into() };

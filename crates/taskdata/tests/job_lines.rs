@@ -193,7 +193,6 @@ fn emergency_stops_and_the_panel_of_the_robot_controller() {
     }
 }
 
-/// All lines that begin with these words.
 fn lines_from(words: &[&'static str]) -> Vec<String> {
     let Some(lists) = following(words) else { return vec![words.join(" ")] };
     let next = lists.iter().flat_map(|list| list.variants);

@@ -43,7 +43,6 @@ fn name(text: &str) -> Name16 {
     Name16::new(text).unwrap()
 }
 
-/// A sector, 0 for none.
 fn given(sector: i32) -> Option<i32> {
     (sector != 0).then_some(sector)
 }
@@ -207,7 +206,6 @@ BLOCK# 850 OFFSET 21000
     assert_eq!(data.place_named::<16, 16>(&name("G"), None), None);
 }
 
-/// The errors and warnings of a load.
 fn said(text: &str) -> Vec<String> {
     let sources = vec![source(&folded(text))];
     let report = Store::from_sources(sources).map_or_else(|report| *report, |(_, report)| report);

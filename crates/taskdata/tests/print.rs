@@ -220,7 +220,6 @@ fn entry() -> impl Strategy<Value = Entry> {
     ]
 }
 
-/// The contents of an entry without its places.
 fn said(entry: &Entry) -> String {
     let text = format!("{entry:?}");
     let mut out = String::new();

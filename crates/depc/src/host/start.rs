@@ -98,7 +98,6 @@ impl Host {
         HostEvent::Lost
     }
 
-    /// Drops the outstanding frame.
     pub(super) fn restart(&mut self) {
         self.note_lost_function();
         self.resend_due = false;

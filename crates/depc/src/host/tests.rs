@@ -10,7 +10,6 @@ fn position(function: [u8; 2]) -> Intent {
     Intent::Position(DataCommand { function, plate: HOME })
 }
 
-/// Bytes in, bytes out.
 fn tick(host: &mut Host, rx: &[u8], intent: &Intent) -> (HostEvent, Vec<u8>) {
     let (mut line, mut tx) = (LinkBytes::default(), LinkBytes::default());
     assert_eq!(line.extend(rx), rx.len());

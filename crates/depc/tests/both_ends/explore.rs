@@ -37,7 +37,6 @@ impl Space {
         (number, number == next)
     }
 
-    /// The events on the way to a state.
     fn way(&self, mut state: u32, last: Option<Event>) -> Vec<Event> {
         let mut way = Vec::from_iter(last);
         while let Some((before, event)) = self.from.get(state as usize).filter(|(before, _)| *before != NONE)

@@ -12,7 +12,6 @@ use std::{
 #[derive(Default)]
 pub struct Image(Vec<u8>);
 
-/// The modified fields of the host.
 const NAMES: [&str; 9] = [
     "counters",
     "lost_function",
@@ -49,7 +48,6 @@ impl Image {
         value.encode(&mut Writer::new(&mut self.0[from..]));
     }
 
-    /// `faults` is the number of remaining faults.
     pub fn add_host(&mut self, host: &Host, faults: u8) {
         let from = self.0.len();
         self.add_plain(host);

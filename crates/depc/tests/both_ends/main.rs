@@ -82,7 +82,6 @@ fn two_faults_deceive_neither_end_of_a_line_of_functions() {
     several_faults(true);
 }
 
-/// The shortest path to an error, and the error.
 fn shortest(functions: bool, kinds: [Kind; 2]) -> Option<(Vec<Event>, Wrong)> {
     search(&Setting { functions, faults: 2, kinds: kinds.to_vec(), all_bits: false }).wrong
 }

@@ -64,7 +64,6 @@ pub struct Setting {
     pub all_bits: bool, // each bit and byte of a frame is damaged, not one per part
 }
 
-/// The fate of a frame on the line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Carried {
     AsSent,
@@ -272,7 +271,6 @@ impl State {
         Ok((tx, event == HostEvent::Acknowledged))
     }
 
-    /// Returns the sent bytes.
     fn controller_half(&mut self, cts_low: bool, panel: Panel) -> Result<LinkBytes, Wrong> {
         self.hold = match panel {
             Panel::Hold => true,
@@ -350,7 +348,6 @@ impl State {
         stopped && (says || host.state() == HostState::Ended)
     }
 
-    /// An operator who answers at once.
     pub fn help(&self) -> Panel {
         match self.controller.state() {
             _ if self.hold => Panel::Release,

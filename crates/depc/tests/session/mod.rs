@@ -63,7 +63,6 @@ pub struct Truth {
 }
 
 impl Truth {
-    /// Caused by the line.
     pub fn deceptions(&self) -> u64 {
         self.false_reports
             + self.false_commands
@@ -252,7 +251,6 @@ impl Session {
         bytes.windows(usize::from(self.frame.length)).any(|bytes| bytes == self.frame.as_slice())
     }
 
-    /// The command whose function was executed in the last tick.
     fn note_executed(&mut self, number: u16) {
         let sent = usize::from(number).checked_sub(1).and_then(|place| self.sent.get(place));
         if sent.map(|sent| sent.plate) != self.moving_to {

@@ -108,7 +108,6 @@ impl<'n, 'a> Reader<'n, 'a> {
         self.notes.unusable(&self.path, problem.near(wanted, known));
     }
 
-    /// The name of the table in messages.
     fn whose(&self) -> &str {
         if self.path.is_empty() { self.notes.kind.whole } else { &self.path }
     }
@@ -210,7 +209,6 @@ impl<'n, 'a> Reader<'n, 'a> {
 
 const STAND_IN: &str = "?";
 
-/// For messages.
 fn said(value: &DeValue<'_>) -> String {
     match value {
         DeValue::String(text) => format!("{text:?}"),

@@ -39,7 +39,6 @@ pub struct Timestamp {
     pub nsec: Option<u64>,
 }
 
-/// The two integers of a time.
 fn merge_pair(
     first: &mut Option<u64>,
     second: &mut Option<u64>,

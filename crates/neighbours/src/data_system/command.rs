@@ -36,7 +36,6 @@ pub const WORKSTATION: &str = "HWS";
 pub const ITEM_TYPE: &str = "PART"; // of all items (CHOSEN: Task does not know types)
 pub const MAX_SECTOR: i32 = 35; // one character: 0 to 9, then A to Z (CHOSEN beyond 9)
 
-/// Fixed fields of the protocol area: offset and bytes.
 const FIXED: [(usize, &[u8]); 8] = [
     (0, &[0xA0, 0x82]),
     (4, &[0xB0, 0x0A]),
@@ -165,12 +164,10 @@ pub fn encode(command: &DataBaseCommand) -> Result<([u8; DML], usize), EncodeErr
     Ok((bytes, length))
 }
 
-/// Sets the command-id#, for either length.
 pub fn identify(bytes: &mut [u8], command_id: u16) {
     bytes[COMMAND_ID..COMMAND_ID + 2].copy_from_slice(&command_id.to_le_bytes());
 }
 
-/// Sets the trans-id# of an update.
 pub fn number(bytes: &mut [u8; DML], transaction: u16) {
     bytes[TRANSACTION_ID..TRANSACTION_ID + 2].copy_from_slice(&transaction.to_le_bytes());
 }
@@ -182,7 +179,6 @@ pub fn low_word(number: u32) -> u16 {
     u16::from_le_bytes([low, high])
 }
 
-/// The field at `at` counts the bytes after it.
 fn put_length(bytes: &mut [u8; DML], at: usize, command: usize) {
     let follows = u16::try_from(command - at - 2).unwrap_or(u16::MAX);
     bytes[at..at + 2].copy_from_slice(&follows.to_be_bytes());
@@ -237,19 +233,16 @@ pub struct Received<'a> {
     pub statement: &'a str, // DML; empty for a reconfiguration
 }
 
-/// Why bytes are not a command.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum DecodeError {
     #[error("a command of {RECONFIGURATION} or {DML} bytes was expected, found {0}")]
     Size(usize), // neither of the two lengths
-    /// A fixed field or a length.
     #[error("bytes {expected:02X?} were expected at {at}, found {found:02X?}")]
     Protocol {
         at: usize,         // offset, from 0
         expected: Vec<u8>, // bytes of the protocol
         found: Vec<u8>,
     },
-    /// An unknown type, or one of the other length.
     #[error("a transaction type that goes with {size} bytes was expected, found {found:02X}")]
     Transaction {
         size: usize, // of the command, bytes

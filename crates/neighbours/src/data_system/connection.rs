@@ -20,10 +20,8 @@ use crate::mailbox::{DATA_SYSTEM_COMMAND, DATA_SYSTEM_STATUS, Mailbox, MailboxEr
 pub const ANSWER_TICKS: u64 = 25; // 1 s
 
 pub trait Keeper {
-    /// False if the keeper cannot execute the command.
     fn execute(&mut self, id: u16, bytes: &[u8]) -> bool;
 
-    /// The reply to the last begun command.
     fn reply(&mut self, id: u16) -> Reply;
 
     /// Sorted by name and number. Errors: the reason.
@@ -106,7 +104,6 @@ impl<K: Keeper> DataSystem<K> {
         &self.keeper
     }
 
-    /// The status that Task reads in the next tick.
     #[must_use]
     pub const fn status(&self) -> DataBaseStatus {
         self.status
@@ -165,12 +162,10 @@ impl<K: Keeper> DataSystem<K> {
         self.due = None;
     }
 
-    /// The command-id# in progress.
     fn asked(&self) -> u16 {
         command::low_word(self.receiver.echo)
     }
 
-    /// Parse-das-status.
     fn take(&mut self, answer: &Answer) {
         let bytes: [u8; STATUS] = answer.status.encode();
         let status = self

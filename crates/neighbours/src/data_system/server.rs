@@ -35,7 +35,6 @@ impl Session {
     }
 }
 
-/// The answer to a command, with the reason for the log.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Answer {
     pub status: Status,
@@ -58,7 +57,6 @@ impl<R: Records> Server<R> {
         &self.records
     }
 
-    /// `bytes` is the data of the mailbox.
     pub fn execute(&mut self, bytes: &[u8]) -> Answer {
         let (command_id, outcome) = match command::decode(bytes) {
             Ok(received) => (received.command_id, self.carry_out(&received)),

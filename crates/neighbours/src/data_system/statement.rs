@@ -50,7 +50,6 @@ impl<'a> Update<'a> {
     }
 }
 
-/// Why a text is not an UPDATE of EQUIP_ITEM_ACTION.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{expected} expected at character {}, found {found}", .at + 1)]
 pub struct StatementError {
@@ -59,7 +58,6 @@ pub struct StatementError {
     pub found: Found,
 }
 
-/// A text, or the number of values.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Found {
     End,
@@ -77,7 +75,6 @@ impl fmt::Display for Found {
     }
 }
 
-/// Errors: the first.
 pub fn parse(text: &str) -> Result<Update<'_>, StatementError> {
     let mut scanner = Scanner { text, at: 0 };
     for word in ["UPDATE", "EQUIP_ITEM_ACTION", "SET"] {
@@ -114,7 +111,6 @@ struct Scanner<'a> {
 }
 
 impl<'a> Scanner<'a> {
-    /// Skips blanks, and returns the rest of the text.
     fn rest(&mut self) -> &'a str {
         let rest = self.text[self.at..].trim_start_matches(' ');
         self.at = self.text.len() - rest.len();
@@ -176,7 +172,6 @@ impl<'a> Scanner<'a> {
         Ok(rest[..end].trim_end_matches(' '))
     }
 
-    /// A list in parentheses, separated by commas.
     fn list<T>(
         &mut self,
         mut thing: impl FnMut(&mut Self) -> Result<T, StatementError>,

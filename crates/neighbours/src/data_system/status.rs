@@ -50,12 +50,10 @@ pub struct Status {
     pub summary: Summary,
 }
 
-/// Why bytes are not a status.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum StatusError {
     #[error("a status of {STATUS} bytes was expected, found {0}")]
     Size(usize), // bytes
-    /// A fixed byte.
     #[error("byte {expected:02X} was expected at {at}, found {found:02X}")]
     Protocol {
         at: usize,    // offset, from 0

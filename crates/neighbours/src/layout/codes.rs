@@ -14,7 +14,6 @@ use crate::fields::{FieldError, command_number};
 
 const BLANK: u8 = b' ';
 
-/// Declare codes and their bytes.
 macro_rules! codes {
     ($( $(#[$meta:meta])* $name:ident $(<$width:ident>)? = $bytes:expr; )+) => {$(
         $(#[$meta])*
@@ -122,7 +121,6 @@ impl Codec<'_, Tick> for U64 {
     }
 }
 
-/// For values of one byte.
 impl Codec<'_, u8> for U16 {
     fn put(value: &u8, to: &mut [u8]) {
         Self::put(&u16::from(*value), to);
@@ -209,7 +207,6 @@ impl<'a, const W: usize> Codec<'a, &'a str> for Text<W> {
     }
 }
 
-/// Writes as much text as fits.
 struct Clipped<'a> {
     rest: &'a mut [u8],
 }
@@ -270,7 +267,6 @@ impl<const W: usize, T: Plain> Codec<'_, T> for Coded<W> {
 pub struct Sentence<const W: usize>([u8; W]);
 
 impl<const W: usize> Sentence<W> {
-    /// Formats a value, truncated to `W` characters.
     #[must_use]
     pub fn of(shown: &dyn fmt::Display) -> Self {
         let mut bytes = [BLANK; W];

@@ -47,7 +47,6 @@ pub enum LayoutError {
     Field(#[from] FieldError),
 }
 
-/// One field.
 #[derive(Clone, Copy, Debug)]
 pub struct Row {
     pub variable: &'static str, // the manual's name
@@ -76,7 +75,6 @@ impl Table {
     }
 }
 
-/// The position of a field, for errors.
 #[derive(Clone, Copy, Debug)]
 pub struct At {
     pub field: &'static str, // the manual's name
@@ -87,7 +85,6 @@ pub trait Width {
     const BYTES: usize;
 }
 
-/// The code of a value in [`Width::BYTES`] bytes.
 pub trait Codec<'a, T>: Width {
     /// A value out of range; [`Codec::put`] then writes the nearest one in range.
     #[must_use]
@@ -97,7 +94,6 @@ pub trait Codec<'a, T>: Width {
 
     fn put(value: &T, to: &mut [u8]);
 
-    /// Errors: the bytes are not a valid value.
     fn take(at: At, from: &'a [u8]) -> Result<T, FieldError>;
 }
 

@@ -21,7 +21,6 @@ pub const DISCONNECT: u32 = 1; // a disconnect reason
 pub const WELCOME: u32 = 2;
 pub const MAX_FRAME: usize = ADDRESS + MAX_SIZE; // bytes
 
-/// A frame in received bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Frame<'a> {
     bytes: &'a [u8],
@@ -44,7 +43,6 @@ impl<'a> Frame<'a> {
         self.bytes
     }
 
-    /// The address of the mailbox, or the kind of frame.
     #[must_use]
     pub fn address(&self) -> u32 {
         u32::from_le_bytes([self.bytes[0], self.bytes[1], self.bytes[2], self.bytes[3]])
@@ -89,7 +87,6 @@ pub fn put_pulse(out: &mut Vec<u8>, tick: u64) {
     put(out, PULSE, &tick.to_le_bytes());
 }
 
-/// Why bytes are not a frame of the sender.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum FrameError {
     /// A mailbox cannot have this length.

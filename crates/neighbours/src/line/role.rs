@@ -6,7 +6,6 @@ use crate::mailbox::{
     PEDESTAL_TABLE_STATUS, Place, VISION_PICTURE, VISION_REQUEST, VISION_RESPONSE,
 };
 
-/// A neighbour or an operator, by its number in the hello.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[repr(u16)]
 pub enum Role {
@@ -22,7 +21,6 @@ impl Role {
     pub const ALL: [Self; 5] =
         [Self::Workstation, Self::DataSystem, Self::Pedestal, Self::Vision, Self::Operator];
 
-    /// The word on the command line.
     #[must_use]
     pub const fn text(self) -> &'static str {
         match self {

@@ -78,7 +78,6 @@ pub enum SessionError {
     Reason(String),
 }
 
-/// The side of the connection.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Side {
     Controller { clock: ClockKind, role: Option<Role> },
@@ -115,7 +114,6 @@ pub struct Session {
 /// Start, time limit, and the error after it.
 type Limit = (Instant, Duration, fn(Duration) -> SessionError);
 
-/// An event with positions in the input instead of bytes.
 enum Step {
     Hello(Role),
     Welcome(ClockKind),
@@ -231,7 +229,6 @@ impl Session {
         }
     }
 
-    /// Admission or refusal by the controller.
     fn welcome(&mut self, clock: ClockKind) -> Result<Option<Step>, SessionError> {
         let Some(frame) = Frame::first(&self.input[self.read..])? else { return Ok(None) };
         let (address, length) = (frame.address(), frame.bytes().len());
@@ -277,7 +274,6 @@ impl Session {
         Ok(())
     }
 
-    /// Admits the neighbour, at the controller.
     pub fn admit(&mut self) {
         if self.state == State::Admission {
             frame::put(&mut self.output, WELCOME, &[]);
@@ -319,7 +315,6 @@ impl Session {
         error
     }
 
-    /// The next check of the time limits.
     #[must_use]
     pub fn deadline(&self) -> Option<Instant> {
         self.limit().and_then(|(since, limit, _)| since.checked_add(limit))

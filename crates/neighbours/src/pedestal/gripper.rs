@@ -59,7 +59,6 @@ fn scales(sent: &HandAndCommand) -> Calibration {
     sent.0.calibration.unwrap_or_default()
 }
 
-/// Ignores an unknown calibration.
 fn set(read: &mut HandAndCommand, set: impl FnOnce(&mut Calibration)) {
     if let Some(calibration) = &mut read.0.calibration {
         set(calibration);

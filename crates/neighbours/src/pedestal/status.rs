@@ -70,7 +70,6 @@ crate::layout! {
         "CHOSEN: 1: GRIP was ordered, and no opening since";
 }
 
-/// Removes an unknown angle.
 fn set_known(read: &mut Status<'_>, known: bool) {
     if !known {
         read.status.table_position = None;
@@ -84,7 +83,6 @@ impl<'a> Status<'a> {
         StatusLayout::encode(self)
     }
 
-    /// Errors: the first wrong field.
     pub fn decode(data: &'a [u8]) -> Result<Self, PedestalError> {
         let read = StatusLayout::decode(data)?;
         let status = &read.status;

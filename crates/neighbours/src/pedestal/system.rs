@@ -107,7 +107,6 @@ impl System {
         &self.memory.subtask.pedestal
     }
 
-    /// The reason why the last mailgram was refused.
     #[must_use]
     pub fn refusal(&self) -> Option<&LayoutError> {
         self.refused.as_ref().map(|(_, why)| why)
@@ -148,7 +147,6 @@ impl System {
         }
     }
 
-    /// False if the words are invalid.
     fn read_sensors(&mut self, mailbox: &Mailbox) -> bool {
         let sensors = SensorsLayout::decode(mailbox.data());
         if matches!(self.refused, Some((Verdict::NoSensors, _))) {
@@ -190,7 +188,6 @@ impl System {
     }
 }
 
-/// Writes the data if they have changed.
 fn put(mailbox: &mut Mailbox, data: &[u8]) {
     if mailbox.data() != data {
         let _ = mailbox.write(data); // the layouts are shorter than the mailboxes; a test checks this

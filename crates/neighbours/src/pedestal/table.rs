@@ -32,14 +32,12 @@ crate::layout! {
         "potentiometer of the table at the + limit, counts; 0 if it is not known";
 }
 
-/// Removes an unknown angle.
 fn set_angle_known(read: &mut TableAndCommand, known: bool) {
     if !known {
         read.0.status.position = None;
     }
 }
 
-/// Ignores an unknown reading.
 fn set_at_limit(read: &mut TableAndCommand, counts: u16) {
     if let Some(at_limit) = &mut read.0.at_limit {
         *at_limit = counts;

@@ -35,7 +35,6 @@ fn flip(number: u32) -> PedestalCommand {
     }
 }
 
-/// After row 9 of table 3.
 fn row() -> Header {
     let decided = Some(Decided { table: 3, row: 9 });
     Header { decided, step: Some(Name16::clipped("letting-go")), ..Header::default() }
@@ -267,7 +266,6 @@ proptest! {
     }
 }
 
-/// A pedestal with the controller's side of its mailboxes.
 struct Bench {
     system: System,
     command_box: Mailbox,
@@ -285,7 +283,6 @@ impl Default for Bench {
 }
 
 impl Bench {
-    /// It finds a command and sensor words when it joins.
     fn joining(number: u32) -> Self {
         let mut bench = Self::default();
         bench.command(&PedestalCommand { number, ..flip(number) });

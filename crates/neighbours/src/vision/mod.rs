@@ -26,18 +26,15 @@ pub use picture::Picture;
 
 use crate::{fields::FieldError, layout::LayoutError};
 
-/// Why bytes are not a request, areas or a picture.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum VisionError {
     #[error(transparent)]
     Layout(#[from] LayoutError), // size or field
-    /// More parts than fit.
     #[error("at most {most} parts were expected in a picture, found {found}")]
     Parts {
         most: usize,  // in the mailbox
         found: usize, // in the picture
     },
-    /// Wrong size or field of a part.
     #[error("part {part}: {source}")]
     Part {
         part: usize, // from 1

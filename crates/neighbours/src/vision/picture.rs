@@ -37,7 +37,6 @@ pub const PART: usize = PartLayout::BYTES;
 pub const MAX_PARTS: usize = (VISION_PICTURE.size - MAILBOX_HEAD - HEAD) / PART;
 const POINTS: u32 = 81;
 
-/// The head before the parts.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Head {
     number: u16,
@@ -154,7 +153,6 @@ impl Picture {
         bytes
     }
 
-    /// Errors: the first wrong field.
     pub fn decode(bytes: &[u8]) -> Result<Self, VisionError> {
         let (head, rest) = bytes.split_at(bytes.len().min(HEAD));
         let Head { number, parts, seed, cell } = HeadLayout::decode(head)?;

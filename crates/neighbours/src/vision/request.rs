@@ -30,7 +30,6 @@ pub fn encode(request: &VisionRequest) -> [u8; RequestLayout::BYTES] {
     RequestLayout::encode(request)
 }
 
-/// Errors: the first wrong field.
 pub fn decode(bytes: &[u8]) -> Result<VisionRequest, VisionError> {
     let request = RequestLayout::decode(bytes)?;
     if request.picture == Picture::None {

@@ -67,7 +67,6 @@ pub struct CellLine<'a> {
     pub text: Result<&'a str, LayoutError>,
 }
 
-/// Errors: the number is missing.
 pub fn decode_line(bytes: &[u8]) -> Result<CellLine<'_>, FieldError> {
     let number = bytes.get(..U16::BYTES).ok_or(FieldError::End { field: "number" })?;
     let number = U16::take(At { field: "number", byte: 0 }, number)?;
@@ -80,7 +79,6 @@ impl<'a> CellStatus<'a> {
         CellStatusLayout::encode(self)
     }
 
-    /// Errors: the first wrong field.
     pub fn decode(bytes: &'a [u8]) -> Result<Self, LayoutError> {
         CellStatusLayout::decode(bytes)
     }

@@ -30,7 +30,6 @@ use crate::{
     mailbox::{HWSC_COMMAND, HWSC_STATUS, Mailbox},
 };
 
-/// Why a command mailgram was refused.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Refusal {
     /// The bytes cannot be decoded.
@@ -42,7 +41,6 @@ pub enum Refusal {
 }
 
 impl Refusal {
-    /// The `verdict` in the status.
     #[must_use]
     pub const fn code(&self) -> u16 {
         match self {
@@ -71,7 +69,6 @@ impl fmt::Display for Refusal {
     }
 }
 
-/// Before Task reads a command.
 pub trait Judge {
     fn verdict(&self, command: &HwsCommand) -> Option<String>; // `None`: the command passes
 }
@@ -117,19 +114,16 @@ impl Gate {
         &self.command
     }
 
-    /// Why the last mailgram was refused.
     #[must_use]
     pub const fn refused(&self) -> Option<&Refusal> {
         self.refused.as_ref()
     }
 
-    /// The error in Task's command.
     #[must_use]
     pub fn wrong(&self) -> Option<&str> {
         self.wrong.as_deref()
     }
 
-    /// Data of the mailbox that were not read.
     #[must_use]
     pub fn unread<'b>(&self, command_box: &'b Mailbox) -> Option<&'b [u8]> {
         (command_box.mailgram() != self.read).then(|| command_box.data())
@@ -203,7 +197,6 @@ impl Gate {
     }
 }
 
-/// Converts a number from two bytes.
 fn word(number: u32) -> u16 {
     u16::try_from(number).unwrap_or(u16::MAX)
 }

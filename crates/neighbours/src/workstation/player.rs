@@ -96,7 +96,6 @@ pub struct Hwsc {
     intervention: Intervention,
 }
 
-/// The job continued after it.
 #[derive(Clone, Debug)]
 struct FailedCommand {
     step: usize, // in `begun_steps`
@@ -105,7 +104,6 @@ struct FailedCommand {
 }
 
 impl Hwsc {
-    /// Each step takes at most `time_limit` ticks.
     #[must_use]
     pub fn new(steps: Vec<JobLine>, time_limit: u64) -> Self {
         let begun_steps = Vec::with_capacity(steps.len() + 1);
@@ -140,7 +138,6 @@ impl Hwsc {
         self
     }
 
-    /// The repeated commands, oldest first.
     #[must_use]
     pub fn retried(&self) -> &[Retry] {
         &self.retried
@@ -154,7 +151,6 @@ impl Hwsc {
         self
     }
 
-    /// Inserts a line before the next line of the job.
     pub fn insert(&mut self, line: JobLine) {
         self.steps.insert(self.current.min(self.steps.len()), line);
     }
@@ -186,7 +182,6 @@ impl Hwsc {
         (begun.min(lines), lines)
     }
 
-    /// The steps include the first PAUSE.
     #[must_use]
     pub fn begun_steps(&self) -> &[BegunStep] {
         &self.begun_steps
@@ -202,7 +197,6 @@ impl Hwsc {
         &self.progress
     }
 
-    /// The steps include the first PAUSE.
     #[must_use]
     pub fn len(&self) -> usize {
         self.steps.len() + 1
@@ -303,7 +297,6 @@ impl Hwsc {
         }
     }
 
-    /// True if the current command must fail.
     fn expects_error(&self) -> bool {
         !self.pausing
             && self
@@ -311,7 +304,6 @@ impl Hwsc {
                 .is_some_and(|line| line.expects_error && matches!(line.step, Step::Command(_)))
     }
 
-    /// `None` while in progress.
     fn end_of_step(
         &mut self,
         tick: Tick,
@@ -357,7 +349,6 @@ impl Hwsc {
         }
     }
 
-    /// Task's answer to the last command.
     fn read(&self, tick: Tick, task: &Status<'_>) -> Lower {
         let last = self.commander.number; // two bytes in the mailbox
         let echo = if command_number(last) == task.echo { last } else { u32::from(task.echo) };
@@ -375,7 +366,6 @@ impl Hwsc {
         }
     }
 
-    /// Those that are due.
     fn begin_later(&mut self, tick: Tick, workstation: &mut impl Workstation) -> Result<(), String> {
         for later in self.later.extract_if(.., |later| later.is_due(tick)) {
             workstation.begin(&later.action, &later.line)?;
@@ -424,7 +414,6 @@ impl Hwsc {
         self.pause(tick);
     }
 
-    /// The workstation controller cannot take over.
     pub fn refuse(&mut self, tick: Tick, why: String) {
         self.took(tick);
         self.fail(JobFailure::Workstation(why));
@@ -433,7 +422,6 @@ impl Hwsc {
 
 const PAUSE: &str = "PAUSE"; // first, and before every retry
 
-/// The command PAUSE (V.4.1).
 #[must_use]
 pub fn pause() -> HwsCommand {
     HwsCommand { command: Name16::clipped(PAUSE), ..HwsCommand::default() }

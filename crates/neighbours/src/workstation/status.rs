@@ -84,7 +84,6 @@ impl Codec<'_, ()> for Length {
     }
 }
 
-/// The contents of the field `reason`.
 #[derive(Clone, Copy, Debug)]
 pub enum Why<'a> {
     Mailgram(&'a Refusal),
@@ -121,7 +120,6 @@ pub fn encode(
     })
 }
 
-/// Errors: the first wrong field.
 pub fn decode(bytes: &[u8]) -> Result<Status<'_>, LayoutError> {
     StatusLayout::decode(bytes)
 }

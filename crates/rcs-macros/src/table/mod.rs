@@ -10,7 +10,6 @@ use self::form::{Condition, Passed, Row, Step, StepGroup, Table};
 use crate::{names, variables};
 
 impl Table {
-    /// The type of the steps in a pattern or an expression, at `span`.
     fn step_type(&self, span: Span) -> TokenStream {
         match &self.step {
             Some(Step::Declared(name)) => respan(quote!(#name), span),
@@ -170,7 +169,6 @@ impl Table {
         texts.collect()
     }
 
-    /// The rows as a table of the documentation.
     fn documentation(&self) -> String {
         let names = |names: &[Ident]| names.iter().map(ToString::to_string).collect::<Vec<_>>().join(" or ");
         let mut text =
@@ -190,7 +188,6 @@ impl Table {
     }
 }
 
-/// The tokens at another position of the source.
 fn respan(tokens: TokenStream, span: Span) -> TokenStream {
     let moved = tokens.into_iter().map(|mut token| {
         token.set_span(span);

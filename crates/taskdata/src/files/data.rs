@@ -128,7 +128,6 @@ impl<'a> TaskData<'a> {
         self.indexes.owners.find(name_key(name)).map(OwnerId::new)
     }
 
-    /// The members in the order of the form (VII.5).
     #[must_use]
     pub fn members_of(&self, id: OwnerId) -> &'a [Member] {
         self.owner(id).and_then(|owner| run(self.members, owner.first, owner.count)).unwrap_or_default()
@@ -139,13 +138,11 @@ impl<'a> TaskData<'a> {
         self.indexes.trajectory_names.find(name_key(name)).map(TrajId::new)
     }
 
-    /// Parameters of a segment (VII.6).
     #[must_use]
     pub fn traj_para(&self, id: TrajParaId) -> Option<&'a TrajPara> {
         id.of(self.traj_paras)
     }
 
-    /// The points in order; none for a null path.
     #[must_use]
     pub fn path(&self, id: PathId) -> &'a [PathPoint] {
         id.of(self.paths).and_then(|path| run(self.path_points, path.first, path.count)).unwrap_or_default()

@@ -49,7 +49,6 @@ pub struct Index<'a> {
     pub(crate) keys: usize,
 }
 
-/// The product, upper and lower half.
 fn product(a: u64, b: u64) -> (u64, u64) {
     let product = u128::from(a).wrapping_mul(u128::from(b));
     (low(product >> 64), low(product))
@@ -59,7 +58,6 @@ fn low(value: u128) -> u64 {
     u64::try_from(value & u128::from(u64::MAX)).unwrap_or(0)
 }
 
-/// Scales a 64-bit number to the range below `end`.
 fn scaled(value: u64, end: usize) -> usize {
     usize::try_from(product(value, u64::try_from(end).unwrap_or(0)).0).unwrap_or(0)
 }
@@ -269,7 +267,6 @@ pub fn reference_key(reference: Reference) -> Key {
     Key { main: [0, reference_bits(reference)], rest: 0 }
 }
 
-/// The key of a trajectory.
 #[must_use]
 pub fn pair_key(start: Reference, end: Reference) -> Key {
     Key { main: [0, reference_bits(start)], rest: reference_bits(end) }
@@ -286,7 +283,6 @@ pub fn grip_key<const N: usize>(object: &Name<N>, grip: i32) -> Option<Key> {
     Some(Key { main: name_bits(object), rest: grip_bits(grip)? })
 }
 
-/// Returns `None` as [`grip_key`].
 #[must_use]
 pub fn grip_at_key<const N: usize>(object: &Name<N>, grip: i32, at: Reference) -> Option<Key> {
     Some(Key { main: name_bits(object), rest: (grip_bits(grip)? << 40) | reference_bits(at) })

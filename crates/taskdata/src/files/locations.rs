@@ -160,14 +160,12 @@ impl<'a> TaskData<'a> {
         (first.kind == RefType::LocationPoint).then_some(LocptId::new(first.number))
     }
 
-    /// The array of an owner; `None` if there are several.
     fn only_array(&self, owner: OwnerId) -> Option<Reference> {
         let mut arrays = self.members_of(owner).iter().map(|m| m.member).filter(|m| m.kind == RefType::Array);
         let only = arrays.next()?;
         arrays.next().is_none().then_some(only)
     }
 
-    /// The member to which an object location form assigns an object (VII.7.3).
     fn assigned_member<const M: usize>(
         &self,
         owner: OwnerId,

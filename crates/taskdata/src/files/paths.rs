@@ -42,7 +42,6 @@ impl<'a> TaskData<'a> {
         self.at_place(&self.indexes.grip_locs, key, place).map(|entry| GripLocId::new(entry.number))
     }
 
-    /// The tool frame for an object held with a grip.
     pub fn grip_frame<const N: usize>(
         &self,
         object: &Name<N>,
@@ -106,7 +105,6 @@ impl<'a> TaskData<'a> {
         self.plain(Direction::Approach, place)
     }
 
-    /// The depart from a location itself.
     #[must_use]
     pub fn depart_location(&self, place: &Place) -> Option<PathId> {
         self.plain(Direction::Depart, place)

@@ -52,7 +52,6 @@ pub struct Array {
 }
 
 impl Array {
-    /// The number of the last sector.
     #[must_use]
     pub fn sectors(&self) -> i32 {
         self.columns.saturating_mul(self.rows)

@@ -4,7 +4,6 @@ use std::collections::HashMap;
 
 use crate::files::{ObjectId, Reference, TaskData};
 
-/// All entries of an object in a fixed order, without its vision ids.
 #[derive(Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
 struct Described {
     grips: Vec<[i32; 5]>,
@@ -18,7 +17,6 @@ const fn bits(reference: Reference) -> (u8, u32) {
     (reference.kind.code(), reference.number)
 }
 
-/// Pairs: the object after the earlier one that it equals.
 #[must_use]
 pub fn alike(data: &TaskData<'_>) -> Vec<[ObjectId; 2]> {
     let mut ids: HashMap<ObjectId, Vec<i32>> = HashMap::new(); // only objects with views have vision ids

@@ -66,7 +66,6 @@ impl fmt::Display for LineLoadError {
 impl std::error::Error for LineLoadError {}
 
 impl Commands {
-    /// Adds a block; a second one with the same number is an error.
     pub(super) fn add(&mut self, block: &Block<'_>, problems: &mut Problems) {
         match self.0.entry(block.number.number) {
             Entry::Occupied(first) => {
@@ -84,7 +83,6 @@ impl Commands {
         self.0.keys().map(|number| BlockNumber { offset: OFFSET, number: *number })
     }
 
-    /// Replaces blocks by newer ones with the same numbers.
     pub(super) fn with(&self, newer: Self) -> Self {
         let mut all = self.0.clone();
         all.extend(newer.0);

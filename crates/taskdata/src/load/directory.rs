@@ -131,14 +131,12 @@ fn note(fault: BlockFault, at: At, problems: &mut Problems) {
     }
 }
 
-/// Content and problems of a block, loaded or not.
 struct Content {
     header: At,
     parsed: Parsed,
     problems: Problems,
 }
 
-/// Reads the words of all blocks.
 fn contents(blocks: &[Block<'_>]) -> impl Iterator<Item = Content> + use<> {
     let read = |block: &Block<'_>| {
         let mut problems = Problems::default();
@@ -203,7 +201,6 @@ impl Loader<'_, '_> {
         parsed.loads
     }
 
-    /// Reports blocks that no directory names.
     fn unloaded(&mut self, order: &[BlockNumber]) {
         for number in order.iter().filter(|number| !self.read.blocks.contains(number)) {
             if let Some(block) = self.all.remove(number) {

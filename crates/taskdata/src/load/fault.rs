@@ -31,7 +31,6 @@ impl Fault {
         Self { place, message, scope: Scope::Record(at) }
     }
 
-    /// An error that a check has found in the data of a store.
     #[must_use]
     pub fn found(diagnostic: &Diagnostic, store: &Store) -> Self {
         let scope = diagnostic.at().map_or(Scope::Any, |at| {
@@ -52,12 +51,10 @@ impl Fault {
         Self { place: diagnostic.place(), message: diagnostic.message().to_owned(), scope }
     }
 
-    /// True for the same error in another generation.
     pub(super) fn is_same(&self, other: &Self) -> bool {
         (&self.place, &self.message) == (&other.place, &other.message)
     }
 
-    /// One line.
     #[must_use]
     pub fn in_line(&self) -> String {
         let colon = if self.place.is_empty() { "" } else { ": " };

@@ -29,7 +29,6 @@ const VELOCITY: RangeInclusive<i32> = 1..=140; // 140 counts are the link's 14 i
 const FACTOR: RangeInclusive<i32> = 1..=1000; // `acc-fac` and `smooth-acc`
 const BREAK_DISTANCE: RangeInclusive<i32> = 0..=5000; // 0.01 in
 
-/// Locations at which an entry can apply.
 pub(super) const PLACES: &[RefType] = &[RefType::LocationPoint, RefType::Array, RefType::Owner, RefType::Any];
 const ENDS: &[RefType] = &[RefType::LocationPoint, RefType::Array, RefType::Owner];
 const MEMBERS: &[RefType] = &[RefType::LocationPoint, RefType::Array, RefType::Pose];
@@ -178,7 +177,6 @@ pub fn array(p: &mut Parser<'_, '_>) -> Result<Entry, Skip> {
     Ok(Entry::Array(ArrayEntry { name, dimensions, columns, rows, column_step, row_step, present }))
 }
 
-/// `-own-` with its `-m-` (VII.5).
 pub fn owner(p: &mut Parser<'_, '_>) -> Result<Entry, Skip> {
     let name = p.name("name of the owner")?;
     let mut members = Vec::new();
@@ -191,7 +189,6 @@ pub fn owner(p: &mut Parser<'_, '_>) -> Result<Entry, Skip> {
     Ok(Entry::Owner(OwnerEntry { name, members }))
 }
 
-/// `-traj` with its `-ppt` (VII.6).
 pub fn trajectory(p: &mut Parser<'_, '_>) -> Result<Entry, Skip> {
     let name = p.name("name of the trajectory")?;
     let start = p.typed("start", ENDS)?;
@@ -203,7 +200,6 @@ pub fn trajectory(p: &mut Parser<'_, '_>) -> Result<Entry, Skip> {
     Ok(Entry::Traj(TrajEntry { name, start, end, points }))
 }
 
-/// `-ppt` lines (VII.6).
 fn points(p: &mut Parser<'_, '_>) -> Result<Vec<PointEntry>, Skip> {
     let mut points = Vec::new();
     while let Some(word) = p.take_if("-ppt") {
@@ -225,7 +221,6 @@ pub fn parameters(p: &mut Parser<'_, '_>) -> Result<TrajPara, Skip> {
     })
 }
 
-/// `-obj-` (VII.7.1).
 pub fn object(p: &mut Parser<'_, '_>) -> Result<Entry, Skip> {
     let name = p.name("name of the object")?;
     let grip = p.integer("grip number", GRIP)?;
@@ -239,7 +234,6 @@ pub fn object(p: &mut Parser<'_, '_>) -> Result<Entry, Skip> {
     Ok(Entry::Object(ObjectEntry { name, grip, at, values }))
 }
 
-/// `-o-loc-` (VII.7.3).
 pub fn object_location(p: &mut Parser<'_, '_>) -> Result<Entry, Skip> {
     Ok(Entry::ObjLoc(ObjLocEntry {
         object: p.name("object")?,
@@ -247,7 +241,6 @@ pub fn object_location(p: &mut Parser<'_, '_>) -> Result<Entry, Skip> {
     }))
 }
 
-/// `-grip-` (VII.7.5).
 pub fn grip(p: &mut Parser<'_, '_>) -> Result<Entry, Skip> {
     Ok(Entry::Grip(GripEntry {
         object: p.name("object")?,
@@ -257,7 +250,6 @@ pub fn grip(p: &mut Parser<'_, '_>) -> Result<Entry, Skip> {
     }))
 }
 
-/// `-vu-` (VII.7.6).
 pub fn view(p: &mut Parser<'_, '_>) -> Result<Entry, Skip> {
     Ok(Entry::View(ViewEntry {
         object: p.name("object")?,
@@ -271,7 +263,6 @@ pub fn view(p: &mut Parser<'_, '_>) -> Result<Entry, Skip> {
     }))
 }
 
-/// `-appr` and `-dept` (VII.7.7).
 pub fn approach_depart(p: &mut Parser<'_, '_>, word: Word<'_>) -> Result<Entry, Skip> {
     let direction =
         if word.text == Direction::Approach.text() { Direction::Approach } else { Direction::Depart };

@@ -29,7 +29,6 @@ trait Cells: Default {
     fn put<'p>(&mut self, slot: usize, pairs: impl Iterator<Item = &'p Pair> + Clone);
 }
 
-/// Each cell is found with the pilot of its key's bucket.
 #[derive(Clone, Debug, Default)]
 struct Table<C> {
     pilots: Vec<u8>,
@@ -44,7 +43,6 @@ struct Spread {
 }
 
 impl<C: Cells> Table<C> {
-    /// Keys in the order of their records.
     fn new(pairs: &[Pair]) -> Self {
         if pairs.is_empty() {
             return Self::default();
@@ -129,7 +127,6 @@ impl OwnedIndex {
         Index { pilots, slots: &cells.slots, numbers: &cells.numbers, seed: *seed, keys: cells.keys }
     }
 
-    /// All keys, in no particular order.
     pub fn keys(&self) -> impl Iterator<Item = Key> + '_ {
         self.0.cells.slots.iter().filter(|slot| slot.number > 0).map(|slot| slot.key)
     }
@@ -183,7 +180,6 @@ impl Cells for Grouped {
     }
 }
 
-/// Owns its tables.
 #[derive(Clone, Debug, Default)]
 pub(super) struct OwnedPlaceIndex {
     table: Table<Grouped>,

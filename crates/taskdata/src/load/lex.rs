@@ -28,7 +28,6 @@ fn piece(line: &SourceLine<'_>, from: usize, length: usize) -> At {
     At { start: line.at.start.saturating_add(short(from)), length: short(length), ..line.at }
 }
 
-/// An open comment ends with the line.
 #[must_use]
 pub fn words_of_line<'a>(line: &SourceLine<'a>) -> Vec<Word<'a>> {
     let mut words = Vec::new();

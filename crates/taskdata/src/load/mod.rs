@@ -120,7 +120,6 @@ impl Store {
         linked.reported(self.sources.len()).map_err(|(_, report)| report)
     }
 
-    /// Everything except the reach.
     fn linked(&self, texts: Vec<Source>, mut problems: Problems) -> Linked {
         let incomplete = problems.has_errors();
         let first = self.sources.len();
@@ -168,7 +167,6 @@ impl Linked {
     }
 }
 
-/// The readable part of task data with errors.
 #[derive(Clone, Debug)]
 pub struct Part {
     store: Store,

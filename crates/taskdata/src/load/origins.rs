@@ -2,7 +2,6 @@
 
 use diagnostics::At;
 
-/// The places of all records, in the order of the record numbers.
 #[derive(Clone, Debug, Default)]
 pub struct Origins {
     pub poses: Vec<At>,
@@ -26,7 +25,6 @@ pub struct Origins {
 }
 
 impl Origins {
-    /// A record was entered at this place.
     #[must_use]
     pub fn contain(&self, at: At) -> bool {
         let all = [

@@ -10,7 +10,6 @@ use super::{entries::LoadLine, parse::Parsed, print, source::LAST_BLOCK};
 
 const SLIP: usize = 2; // greatest edit distance of a misspelt number
 
-/// A block that is not loaded.
 #[derive(Debug)]
 struct Orphan {
     number: BlockNumber,
@@ -33,7 +32,6 @@ pub(super) struct Orphans {
 }
 
 impl Orphans {
-    /// `first` is the header of the loaded block with the same number.
     pub(super) fn add(&mut self, number: BlockNumber, header: At, parsed: Parsed, first: Option<At>) {
         let position = self.list.len();
         let printed = parsed.entries.iter().flat_map(print::form);
@@ -52,12 +50,10 @@ impl Orphans {
         !self.incomplete && !self.missing.is_empty()
     }
 
-    /// The words of entries that are not loaded.
     pub(super) fn words(&self) -> impl Iterator<Item = &String> {
         self.words.keys()
     }
 
-    /// An orphan has this name.
     pub(super) fn have(&mut self, name: &str) -> bool {
         let orphan = self.words.get(name).and_then(|&position| self.list.get_mut(position));
         if let Some(orphan) = orphan {
@@ -189,7 +185,6 @@ impl Orphans {
         }
     }
 
-    /// The orphan that a wrong number probably means.
     fn meant(&mut self, number: BlockNumber) -> Option<&mut Orphan> {
         let wanted = number.number.to_string();
         let slip = |orphan: &Orphan| distance(&wanted, &orphan.number.number.to_string());

@@ -46,7 +46,6 @@ pub fn parse(words: &[Word<'_>], block: BlockNumber, header: At, problems: &mut 
 }
 
 impl<'a> Parser<'a, '_> {
-    /// An entry, a load line, or a word without effect.
     fn entry(&mut self, word: Word<'a>, parsed: &mut Parsed) -> Result<Option<Entry>, Skip> {
         if is_integer(word.text) {
             return self.numbers_first(parsed);

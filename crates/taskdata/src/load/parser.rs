@@ -92,13 +92,11 @@ pub fn is_integer(text: &str) -> bool {
 }
 
 impl<'a> Parser<'a, '_> {
-    /// Does not take the word.
     #[must_use]
     pub fn peek(&self) -> Option<Word<'a>> {
         self.words.get(self.next).copied()
     }
 
-    /// The word after the next `ahead` words.
     #[must_use]
     pub fn peek_at(&self, ahead: usize) -> Option<Word<'a>> {
         self.words.get(self.next.saturating_add(ahead)).copied()
@@ -120,7 +118,6 @@ impl<'a> Parser<'a, '_> {
         self.problems.push(Severity::Error, code, at, message.into(), help);
     }
 
-    /// Reports another word than expected.
     pub fn expected(&mut self, what: &str) -> Skip {
         let start = self.words.get(self.start).map_or(self.end, |w| w.at);
         let (at, found) = match self.peek() {
@@ -133,7 +130,6 @@ impl<'a> Parser<'a, '_> {
         Skip
     }
 
-    /// An unexpected word begins another entry.
     fn is_next_entry(&self, word: Word<'_>) -> bool {
         let begins = word.first && (is_compiling_word(word.text) || is_integer(word.text));
         self.next > self.start && (begins || BEGINNINGS.contains(&word.text))
@@ -196,7 +192,6 @@ impl<'a> Parser<'a, '_> {
         Ok(Named { name, at: word.at })
     }
 
-    /// One of the type words `allowed`.
     pub fn kind(&mut self, what: impl Display, allowed: &[RefType]) -> Result<(RefType, At), Skip> {
         let found = self.peek().and_then(|w| {
             // The manual calls the type both `own` and `owner` (V.2.2).
@@ -221,13 +216,11 @@ impl<'a> Parser<'a, '_> {
         Ok(Typed { kind, name: self.name_within(what, most)? })
     }
 
-    /// The place of the last word that was taken.
     #[must_use]
     pub fn last_at(&self) -> At {
         self.next.checked_sub(1).and_then(|i| self.words.get(i)).map_or(self.end, |w| w.at)
     }
 
-    /// Reads a word that was taken before.
     pub fn at_word<T>(
         &mut self,
         word: Word<'_>,

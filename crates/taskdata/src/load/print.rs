@@ -48,7 +48,6 @@ pub fn blocks<'e>(entries: impl IntoIterator<Item = &'e Entry>, offset: u32, fir
     text
 }
 
-/// Lines with as many words as fit.
 fn filled(words: &[String]) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
     for word in words {
@@ -63,7 +62,6 @@ fn filled(words: &[String]) -> Vec<String> {
     lines
 }
 
-/// The words of each line.
 fn parts(entry: &Entry) -> Vec<Vec<String>> {
     match entry {
         Entry::File(e) => vec![file(e)],
@@ -92,7 +90,6 @@ fn parts(entry: &Entry) -> Vec<Vec<String>> {
     }
 }
 
-/// A list of words from values that implement `Display`.
 macro_rules! words {
     ($($word:expr),+ $(,)?) => { vec![$($word.to_string()),+] };
 }
@@ -127,7 +124,6 @@ fn movetable(e: &MovetableEntry) -> Vec<Vec<String>> {
         .collect()
 }
 
-/// The values of the coordinate system (Table VII.1).
 fn values(line: &MovetableLine) -> &[i32] {
     let count = match line.system {
         System::None | System::World | System::Tool => 3,
@@ -152,7 +148,6 @@ fn array(e: &ArrayEntry) -> Vec<String> {
     words
 }
 
-/// The wild card has no name.
 fn typed(typed: &Typed) -> Vec<String> {
     if typed.kind == RefType::Any {
         words![typed.kind.text()]

@@ -15,7 +15,6 @@ pub const BLOCK_COLUMNS: usize = 64; // per line
 const REMARK: &str = "%%"; // on the file
 const HEADER: &str = "BLOCK#";
 
-/// A line of a block, without its line number.
 #[derive(Clone, Copy, Debug)]
 pub struct SourceLine<'a> {
     pub text: &'a str,
@@ -29,7 +28,6 @@ pub struct Block<'a> {
     pub lines: Vec<SourceLine<'a>>,
 }
 
-/// An error in the blocks of a source.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BlockFault {
     Header,         // without two numbers

@@ -44,7 +44,6 @@ pub const FILE_NAMES: [&str; 18] = [
     "REL-MOVES",
 ];
 
-/// See [`TaskData`].
 #[derive(Clone, Debug, Default)]
 pub(super) struct Files {
     pub poses: Vec<PoseRecord>,
@@ -95,7 +94,6 @@ impl Files {
     }
 }
 
-/// See [`Indexes`].
 #[derive(Clone, Debug, Default)]
 pub(super) struct OwnedIndexes {
     pub poses: OwnedIndex,
@@ -118,7 +116,6 @@ pub(super) struct OwnedIndexes {
     pub relative_moves: OwnedPlaceIndex,
 }
 
-/// The files, their indexes and their source texts.
 #[derive(Clone, Debug, Default)]
 pub struct Store {
     pub(super) files: Files,
@@ -196,13 +193,11 @@ impl Store {
         places_in_blocks(&self.sources)
     }
 
-    /// File, block and line; "?" for an unknown text.
     #[must_use]
     pub fn place(&self, at: At) -> String {
         self.places().words(at)
     }
 
-    /// Records per file, with the manual's names.
     #[must_use]
     pub fn loaded(&self) -> Vec<Loaded> {
         let files = FILE_NAMES.iter().zip(self.files.records());

@@ -7,7 +7,6 @@ use crate::mailbox::{HWSC_COMMAND, HWSC_STATUS, MAX_SIZE, VISION_PICTURE, VISION
 
 const TICK: Duration = Duration::from_millis(40);
 
-/// An event that owns its bytes.
 #[derive(Clone, Debug, PartialEq)]
 enum Seen {
     Hello(Role),
@@ -41,7 +40,6 @@ fn carry(from: &mut Session, to: &mut Session, pieces: usize, now: Instant) -> V
     seen.collect()
 }
 
-/// Both sides, and the time.
 fn open(role: Role, clock: ClockKind) -> (Session, Session, Instant) {
     let now = Instant::now();
     let (mut controller, mut neighbour) = (Session::controller(clock, now), Session::neighbour(role, now));

@@ -76,7 +76,6 @@ pub enum OperatorError {
 }
 
 impl Hwsc {
-    /// Makes the job wait before its first line.
     #[must_use]
     pub fn on_stand_by(mut self) -> Self {
         self.intervention.state = State::Asked;
@@ -94,7 +93,6 @@ impl Hwsc {
         }
     }
 
-    /// True if the job waits for an operator.
     #[must_use]
     pub const fn is_waiting(&self) -> bool {
         matches!(self.intervention.state, State::Waits { .. })
@@ -106,7 +104,6 @@ impl Hwsc {
         matches!(self.intervention.state, State::Waits { command: None, .. })
     }
 
-    /// True if the job waits for an operator.
     pub(super) const fn waits_before_line(&self) -> bool {
         matches!(self.intervention.state, State::Waits { before_line: true, .. })
     }
@@ -226,7 +223,6 @@ impl Hwsc {
         }
     }
 
-    /// A command of the job, or the PAUSE before its line.
     fn is_commanding(&self) -> bool {
         let line = self.step_at(self.current).map(|line| line.step);
         self.pausing || self.current == 0 || matches!(line, Some(Step::Command(_)))
@@ -293,7 +289,6 @@ impl Hwsc {
         }
     }
 
-    /// Refuses while a command of the operator is executed.
     fn not_executed(&self, command: Option<usize>) -> Result<(), OperatorError> {
         let executes = command.and_then(|entry| self.begun_steps.get(entry));
         executes.map_or(Ok(()), |step| Err(OperatorError::Executes(step.text.clone())))

@@ -36,7 +36,6 @@ pub struct BegunStep {
 }
 
 impl BegunStep {
-    /// The word of the outcome, and unconfirmed goals.
     #[must_use]
     pub fn ending(&self) -> String {
         format!("{}{}", self.outcome.text(), self.unconfirmed.suffix())
@@ -75,7 +74,6 @@ pub enum Progress {
     Failed(JobFailure),
 }
 
-/// A failed command, repeated after a PAUSE.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Retry {
     pub tick: Tick, // when the failure was detected

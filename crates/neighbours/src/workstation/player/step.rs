@@ -27,7 +27,6 @@ impl Hwsc {
         }
     }
 
-    /// Sends PAUSE before the current step.
     pub(super) fn pause(&mut self, tick: Tick) {
         self.pausing = true;
         self.send(tick, PAUSE.to_owned(), pause());
@@ -102,12 +101,10 @@ impl Hwsc {
     }
 }
 
-/// A line for the workstation without its asterisks.
 fn spoken(line: &str) -> &str {
     line.trim_start().trim_start_matches('*').trim_start()
 }
 
-/// A line without `after` and the number of ticks.
 fn after(line: &str) -> &str {
     let words = |line| str::split_once(line, char::is_whitespace).map_or("", |(_, rest)| rest.trim_start());
     words(words(line))

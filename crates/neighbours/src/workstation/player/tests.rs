@@ -12,7 +12,6 @@ use taskdata::{
     load::verdict::TASK_COMMANDS,
 };
 
-/// It executes each command for some ticks.
 #[derive(Default)]
 struct Task {
     receiver: Receiver,
@@ -71,7 +70,6 @@ impl Task {
     }
 }
 
-/// While Task runs and has refused no mailgram.
 fn answer(status: &HwsStatus) -> Status<'static> {
     Status {
         command: status.command,

@@ -5,7 +5,6 @@ use geometry::{
 
 const VERTICAL: f64 = 2.0; // degrees: warning
 
-/// Degrees of the gripper axis from vertical, up or down.
 pub(super) fn from_vertical(frame: &Frame) -> f64 {
     let axis = frame.x();
     axis.x.hypot(axis.y).atan2(axis.z.abs()).to_degrees()
@@ -16,7 +15,6 @@ pub(super) fn is_vertical(frame: &Frame) -> bool {
     frame.x().z.abs() > 0.99 && from_vertical(frame) < VERTICAL
 }
 
-/// Why the arm cannot reach a frame.
 pub(super) struct Fault {
     pub code: &'static str,
     pub message: String,

@@ -41,7 +41,6 @@ pub(super) fn check(data: &TaskData<'_>, origins: &Origins, whole: bool, problem
     findings.report(problems);
 }
 
-/// An entry at the first location where it is wrong.
 #[derive(Debug)]
 struct Finding {
     severity: Severity,
@@ -77,7 +76,6 @@ impl Findings {
         }
     }
 
-    /// Reports an error that does not depend on a location.
     fn error_once(&mut self, code: &'static str, at: At, message: String, help: String) {
         self.add(Finding { severity: Severity::Error, code, at, message, help, more: None });
     }
@@ -133,7 +131,6 @@ fn sectors(data: &TaskData<'_>, owner: OwnerId, array_id: ArrayId) -> Vec<Locati
     (1..=array.sectors()).filter_map(sector).collect()
 }
 
-/// All sectors of an array with its own pose.
 fn static_sectors(data: &TaskData<'_>, array_id: ArrayId) -> Vec<Location> {
     let Some((array, pose)) = data.array(array_id).and_then(|a| Some((a, data.pose(a.pose)?))) else {
         return Vec::new();

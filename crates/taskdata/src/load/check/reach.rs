@@ -85,7 +85,6 @@ impl<'a> Reach<'a> {
         reach
     }
 
-    /// The bases of sectors.
     fn corners(&self) -> HashSet<LocptId> {
         let owners = (0..self.data.owners.len()).map(|i| self.data.members_of(OwnerId::at(i)));
         let of_arrays = owners.filter(|members| members.iter().any(|m| m.member.kind == RefType::Array));
@@ -131,7 +130,6 @@ impl<'a> Reach<'a> {
         reached
     }
 
-    /// True if the frame can be reached.
     fn reached(&self, what: What<'_>, frame: &Frame, at: At, base: PoseId, findings: &mut Findings) -> bool {
         let Some(found) = fault(frame) else { return true };
         match self.data.pose(base).and_then(|pose| Some((pose.name, fault(&pose.frame)?))) {
@@ -221,7 +219,6 @@ impl<'a> Reach<'a> {
         locations.into_iter().filter(|location| !self.bad_points.contains(&location.place.locpt))
     }
 
-    /// Tries a grip at all valid locations, with approach and depart.
     fn grip(&self, i: usize, findings: &mut Findings) {
         let data = self.data;
         let Some(record) = data.grip_locs.get(i) else { return };
@@ -253,7 +250,6 @@ impl<'a> Reach<'a> {
         }
     }
 
-    /// Tries trajectories that begin relative to the object from which the robot departs.
     fn departures(&self, location: &Location, frame: &Frame, what: What<'_>, findings: &mut Findings) {
         if self.relative_starts.is_empty() {
             return;
@@ -325,7 +321,6 @@ impl<'a> Reach<'a> {
         }
     }
 
-    /// Tries the goal of a relative move at each valid location.
     fn relative(&self, i: usize, findings: &mut Findings) {
         let data = self.data;
         let Some(record) = data.relative_moves.get(i) else { return };

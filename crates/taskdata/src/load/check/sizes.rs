@@ -24,7 +24,6 @@ pub(super) fn check(data: &TaskData<'_>, origins: &Origins, findings: &mut Findi
     }
 }
 
-/// Reports tray grips without an object form.
 pub(super) fn tray_grips(data: &TaskData<'_>, origins: &Origins, findings: &mut Findings) {
     for (i, record) in data.obj_grips.iter().enumerate() {
         let object = data.object_name(record.object);

@@ -5,7 +5,6 @@ use rcs_core::name::Name16;
 
 use crate::files::Location;
 
-/// The position of a part in its sector.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Offset {
     pub x: i32,     // from the centre along world X, 0.01 in

@@ -29,7 +29,6 @@ impl<'a, 'w> Fields<'a, 'w> {
         Some(word)
     }
 
-    /// The place of the next word, or of the last.
     pub(super) fn at(&self) -> At {
         self.words.get(self.next).or_else(|| self.words.last()).map_or_else(At::default, |w| w.at)
     }
@@ -59,7 +58,6 @@ impl Field {
 }
 
 impl Number {
-    /// `None` for 0.
     pub(super) fn given(&self) -> Option<i32> {
         Some(self.value).filter(|value| *value != 0)
     }

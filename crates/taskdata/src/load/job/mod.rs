@@ -62,7 +62,6 @@ use super::{
 pub enum Step {
     Command(HwsCommand), // with number 0
     Workstation(Workstation),
-    /// While the robot executes the next command.
     After {
         ticks: u32, // after that command is sent
         action: Workstation,
@@ -120,7 +119,6 @@ impl Job {
         Diagnostics::of_file(problems, &source)
     }
 
-    /// A job without lines is an error.
     fn with_a_line((job, report): (Self, Diagnostics)) -> Result<(Self, Diagnostics), Box<Diagnostics>> {
         if !job.steps.is_empty() {
             return Ok((job, report));
@@ -148,7 +146,6 @@ impl Job {
         Ok((Self { name: file.unwrap_or_default(), steps, reloads, source }, report))
     }
 
-    /// A reload by its number, from 1.
     #[must_use]
     pub fn reload(&self, number: u32) -> Option<&Reload> {
         self.reloads.get(usize::try_from(number).ok()?.checked_sub(1)?)

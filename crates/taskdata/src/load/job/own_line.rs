@@ -93,7 +93,6 @@ fn unreadable(report: &Diagnostics) -> OwnLineError {
     OwnLineError::Unreadable(errors.join("; "))
 }
 
-/// Reads a line as in a job, without the `**`.
 pub fn own_line(text: &str, store: &Store) -> Result<Workstation, OwnLineError> {
     let words = words_of_line(&source_line(text));
     match words.first().map(|word| word.text) {

@@ -141,7 +141,6 @@ impl Reader<'_, '_> {
         from_bytes(&[code]).ok()
     }
 
-    /// Returns the index of the word.
     pub(super) fn choice(
         &mut self,
         fields: &mut Fields<'_, '_>,
@@ -160,7 +159,6 @@ impl Reader<'_, '_> {
         found
     }
 
-    /// Reads a number from `low` to 1000.
     fn within(&mut self, fields: &mut Fields<'_, '_>, what: &str, low: i32, form: &str) -> Option<i16> {
         let number = self.number(fields, what, form)?;
         if !(low..=FULL).contains(&number.value) {

@@ -152,7 +152,6 @@ impl Reader<'_, '_> {
         self.number(fields, what, NINE_FIELDS)
     }
 
-    /// `help` is the correct form of the line.
     pub(super) fn number(&mut self, fields: &mut Fields<'_, '_>, what: &str, help: &str) -> Option<Number> {
         let at = fields.at();
         let Some(word) = fields.take() else {
@@ -167,7 +166,6 @@ impl Reader<'_, '_> {
         value.map(|value| Number { value, at: word.at })
     }
 
-    /// Nine fields (V.4.2, Figure VIII.4).
     fn command(&mut self, fields: &mut Fields<'_, '_>) -> Option<HwsCommand> {
         self.after = None;
         let verb = self.field(fields, "a command")?;
@@ -255,12 +253,10 @@ impl Reader<'_, '_> {
         self.problems.error_help("name.unknown", at, format!("no {what} is named {name}"), help);
     }
 
-    /// Reports an unknown object.
     pub(super) fn object(&mut self, field: Field) -> bool {
         find_object(&self.data, &field.name).map_err(|unfound| self.unfound(unfound, field, field.at)).is_ok()
     }
 
-    /// A location without sector or object.
     pub(super) fn plain_place(&mut self, field: Field) -> Option<Location> {
         self.place(field, Number { value: 0, at: field.at }, None)
     }

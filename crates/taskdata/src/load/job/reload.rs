@@ -54,7 +54,6 @@ pub(super) fn reloads(job: &Source, store: &Store, problems: &mut Problems) -> V
     loaded
 }
 
-/// The position of the file name among the words.
 fn file_of(words: &[&str]) -> Option<usize> {
     match words {
         ["**", "load", ..] => Some(2),

@@ -18,7 +18,6 @@ use super::{
     sure,
 };
 
-/// The record number of a name.
 pub(super) fn named<const N: usize>(index: &OwnedIndex, name: &Named<N>) -> Option<u32> {
     index.view().find(name_key(&name.name))
 }
@@ -28,7 +27,6 @@ fn is_null(name: &Named<10>) -> bool {
     name.name.bytes().strip_prefix(NULL_NAME.as_bytes()).is_some_and(|rest| rest.starts_with(&[0]))
 }
 
-/// Files and indexes built so far.
 #[derive(Clone, Copy)]
 pub(super) struct Known<'l> {
     pub(super) files: &'l Files,
@@ -76,7 +74,6 @@ impl Known<'_> {
         Some(self.locpt_at(entry, pose, movetable))
     }
 
-    /// The pose may be null.
     pub(super) fn locpt_at(&self, entry: &PointAt, pose: PoseId, movetable: MovtabId) -> Locpt {
         let base = pose.of(&self.files.poses).map_or_else(Frame::identity, |p| p.frame);
         Locpt { name: entry.name.name, pose, movetable, frame: self.moved(&base, movetable) }
@@ -93,7 +90,6 @@ impl Known<'_> {
         self.has_grip(&entry.object, entry.grip).then_some(record)
     }
 
-    /// The subject and its location.
     pub(super) fn subject(&self, entry: &ApprDeptEntry) -> Option<(Reference, Reference)> {
         let subject = self.reference(&entry.subject)?;
         let at = entry.place.as_ref().map_or(Some(subject), |place| self.reference(place))?;

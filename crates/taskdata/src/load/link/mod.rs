@@ -85,7 +85,6 @@ struct Keyed {
 }
 
 impl Keyed {
-    /// Space for about `records` records.
     fn with_capacity(what: &'static str, records: usize) -> Self {
         Self { what, keys: Vec::with_capacity(records), ats: Vec::with_capacity(records) }
     }
@@ -96,7 +95,6 @@ impl Keyed {
         self.ats.push(at);
     }
 
-    /// Look-ups use the record, not an answer.
     fn new(what: &'static str, records: impl ExactSizeIterator<Item = (Key, At)>) -> Self {
         let mut keyed = Self::with_capacity(what, records.len());
         records.for_each(|(key, at)| keyed.push(key, 0, at));
@@ -144,7 +142,6 @@ impl Linker<'_> {
         })
     }
 
-    /// `shared` has the record numbers of each key that records share.
     fn twice<'n>(&mut self, what: &str, ats: &[At], shared: impl Iterator<Item = &'n [u32]>) {
         let at = |n: &u32| {
             let position = usize::try_from(n.saturating_sub(1)).ok();
@@ -197,7 +194,6 @@ impl Linker<'_> {
         (indexes.ped_paras, origins.ped_paras) = ped_paras;
     }
 
-    /// Reports an unknown name.
     fn find<const N: usize>(
         &mut self,
         what: &str,
@@ -301,7 +297,6 @@ impl Linker<'_> {
         self.known().moved(frame, by)
     }
 
-    /// Indexes whose keys are references to other records.
     fn index_pairs(&mut self) {
         let by_member =
             |m: &Member| Pair { key: reference_key(m.member), number: m.owner.number(), answer: 0 };
@@ -350,14 +345,12 @@ impl Linker<'_> {
     }
 }
 
-/// Sorted.
 fn names_of(index: &OwnedIndex) -> Vec<String> {
     let mut known: Vec<String> = index.keys().map(key_text).collect();
     known.sort_unstable();
     known
 }
 
-/// The name from which the key was made.
 fn key_text(key: Key) -> String {
     key.main
         .map(u64::to_be_bytes)

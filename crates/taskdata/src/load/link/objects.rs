@@ -161,7 +161,6 @@ impl Linker<'_> {
         keyed
     }
 
-    /// The subject and its location.
     fn subject(&mut self, entry: &ApprDeptEntry) -> Option<(Reference, Reference)> {
         let subject = self.reference(entry.subject);
         let at = entry.place.map_or(subject, |place| self.reference(place));

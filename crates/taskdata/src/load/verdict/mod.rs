@@ -24,7 +24,6 @@ use self::{needs::Needs, path::Route};
 pub(super) use names::{Unfound, find_location, find_object};
 pub use path::Standing;
 
-/// Input commands of Task (V.4.1).
 pub const TASK_COMMANDS: &[&str] = &[
     "TRANSFER",
     "MOVE",
@@ -42,7 +41,6 @@ pub const TASK_COMMANDS: &[&str] = &[
 
 const BARE: &[&str] = &["PAUSE", "STARTUP", "SHUTDOWN"]; // Task does not read their fields
 
-/// A field of a command (V.4.2).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Field {
     Command,
@@ -66,7 +64,6 @@ pub struct Finding {
     pub(super) unknown: Option<(Name16, Option<String>)>, // the name, and the nearest known one
 }
 
-/// The object that the robot holds between two commands.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) enum Held {
     #[default]
@@ -130,14 +127,12 @@ impl Verdict {
         Self { findings, after: Before { held, at } }
     }
 
-    /// The command has no error.
     #[must_use]
     pub const fn passes(&self) -> bool {
         self.findings.is_empty()
     }
 }
 
-/// The command uses no task data, such as PAUSE.
 pub(super) fn is_bare(command: &HwsCommand) -> bool {
     verb_of(&command.command).is_some_and(|verb| BARE.contains(&verb))
 }
@@ -153,14 +148,12 @@ pub(super) fn names_of(command: &HwsCommand, data: &TaskData<'_>) -> Vec<Finding
     findings
 }
 
-/// The reason of a refusal.
 #[must_use]
 pub fn in_words(findings: &[Finding]) -> String {
     let words = |finding: &Finding| with_nearest(&finding.message, finding.help.as_deref());
     findings.iter().map(words).collect::<Vec<_>>().join("; ")
 }
 
-/// Adds the help if it is the nearest known name.
 pub(super) fn with_nearest(message: &str, help: Option<&str>) -> String {
     match help.filter(|help| help.starts_with("the nearest ")) {
         Some(nearest) => format!("{message} ({nearest})"),

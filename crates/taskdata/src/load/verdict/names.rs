@@ -11,7 +11,6 @@ use super::{
 };
 use crate::files::{Location, LookupError, TaskData};
 
-/// A name that is not in the task data.
 pub(in crate::load) struct Unfound {
     pub code: &'static str,
     pub message: String,
@@ -91,7 +90,6 @@ pub(super) fn look_up(
     })
 }
 
-/// Checks only the names, without the grips.
 pub(super) fn names(command: &HwsCommand, data: &TaskData<'_>, findings: &mut Vec<Finding>) {
     if let Some(object) = &command.object
         && let Err(unfound) = find_object(data, object)
@@ -104,7 +102,6 @@ pub(super) fn names(command: &HwsCommand, data: &TaskData<'_>, findings: &mut Ve
     }
 }
 
-/// A location, and the object that is handled there.
 struct NamedLocation {
     name: Option<Name16>,
     sector: Option<i32>,
@@ -173,7 +170,6 @@ impl Names<'_, '_> {
         Some(Visit { location, object: object.map(|object| (object, named.grip)), field })
     }
 
-    /// Reports a missing grip.
     fn has_grip(&mut self, object: &Name16, grip: i32, location: &Location, field: Field) -> bool {
         let data = self.data;
         let (message, help) = if data.object(object, grip).is_none() {

@@ -12,7 +12,6 @@ const NEAR_DRUM: &str = "TOOL-SAFE"; // V.4.1 ACQUIRE-TOOL
 pub(super) const DRUM: &str = "TOOL-TRNS"; // tools are passed to the drum
 const TOOL_GRIPPER: i32 = 3; // `endeff-id#` (VII.7.2)
 
-/// Name, sector and grip, with the fields of the last two.
 struct Place {
     name: Option<Name16>,
     sector: Option<i32>,
@@ -21,7 +20,6 @@ struct Place {
     grip_field: Field,
 }
 
-/// Checks a command whose object is known.
 pub(super) struct Needs<'c, 'd> {
     pub command: &'c HwsCommand,
     pub verb: &'static str, // the full word
@@ -75,7 +73,6 @@ impl Needs<'_, '_> {
         }
     }
 
-    /// Locations at which the verb uses a grip.
     fn gripped(&self) -> [Option<Place>; 2] {
         match self.verb {
             "POSITION" if self.command.source.is_some() => [Some(self.source()), None],
@@ -281,7 +278,6 @@ impl Needs<'_, '_> {
         self.error(Field::Command, message, format!("{before} comes before it"));
     }
 
-    /// The relative moves at the drum exist (V.2.1).
     fn moves(&mut self) {
         let names: &[&str] = match self.verb {
             "INSERT-TOOL" => &["INS-FAR", "INS-NEAR", "INS-IN"],
@@ -305,7 +301,6 @@ impl Needs<'_, '_> {
     }
 }
 
-/// Help text: the grips of an object.
 pub(super) fn grips_of(data: &TaskData<'_>, object: &Name16) -> String {
     let id = data.object_named(object);
     let grips: Vec<String> =
@@ -317,7 +312,6 @@ pub(super) fn grips_of(data: &TaskData<'_>, object: &Name16) -> String {
     }
 }
 
-/// Help text: locations with a movetable for a grip of an object.
 pub(super) fn places_of(data: &TaskData<'_>, object: &Name16, grip: i32) -> String {
     let id = data.object_named(object);
     let entries = data.grip_locs.iter().filter(|entry| Some(entry.object) == id && entry.grip == grip);
@@ -345,7 +339,6 @@ pub(super) fn approaches_of(data: &TaskData<'_>, kind: RefType, object: &Name16,
     }
 }
 
-/// Help text: arrays and location points to which an object is assigned.
 pub(super) fn assigned_to(data: &TaskData<'_>, object: &Name16) -> String {
     let id = data.object_named(object);
     let assigned = id.into_iter().flat_map(|id| data.object_locations(id));

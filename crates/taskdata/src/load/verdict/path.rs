@@ -30,7 +30,6 @@ pub struct Standing {
     object: Option<(Name16, i32)>,
 }
 
-/// The path from the robot's present location.
 pub(super) struct Route<'c, 'd> {
     pub data: &'c TaskData<'d>,
     pub last: Option<Standing>, // of the robot, if known
@@ -42,7 +41,6 @@ impl Route<'_, '_> {
         self.findings.push(finding(field, "path.missing", message, Some(help)));
     }
 
-    /// Checks the path of a command (V.4.1).
     pub(super) fn command(&mut self, verb: &str, visits: Visits) {
         let Visits { source, destination, end_at } = visits;
         let regrip = match (&source, &destination) {

@@ -13,7 +13,6 @@ fn store() -> Store {
     Store::load(data).map_or_else(|report| panic!("{report}"), |(store, _)| store)
 }
 
-/// Unchecked, as a mailbox delivers it.
 fn command(fields: &str) -> HwsCommand {
     let words: Vec<&str> = fields.split_whitespace().collect();
     let name = |at: usize| Some(words[at]).filter(|word| *word != "--").map(Name16::clipped);

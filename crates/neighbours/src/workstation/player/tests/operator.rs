@@ -4,7 +4,6 @@ use super::*;
 
 const MOVE_AND_ACQUIRE: [&str; 2] = ["MOVE", "ACQUIRE"];
 
-/// Played tick by tick.
 struct Stage {
     hwsc: Hwsc,
     task: Task,
