@@ -79,7 +79,7 @@ fn named_directory_must_exist() {
 }
 
 #[test]
-fn built_in_data_are_used_if_named_or_if_there_is_no_directory() {
+fn built_in_data_are_used_if_named_or_without_a_directory() {
     let scratch = Scratch::new("built-in");
     let run = |arguments: &[&str]| in_directory(rcs_run(), &scratch.file("."), arguments);
     let short = |more: &[&str]| {

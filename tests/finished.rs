@@ -1,4 +1,4 @@
-//! `finished` means done: misplaced parts, or a command without effect, fail a run whatever its statuses.
+//! `finished` means done: misplaced parts, or a command without effect, fail a run despite its statuses.
 
 use std::fs;
 

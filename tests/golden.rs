@@ -143,8 +143,7 @@ impl Scenario {
         Ok((run.ending, ticks))
     }
 
-    /// Compares a run with its trace, and makes the golden with `make` if nothing differs. A difference is part of the
-    /// result.
+    /// Compares a run with its trace, and makes the golden with `make` if nothing differs.
     pub fn against(
         &self,
         directory: &Path,

@@ -77,8 +77,7 @@ fn succeeds(program: &str, arguments: &[&str]) -> bool {
     status.is_ok_and(|status| status.success())
 }
 
-/// Rerun in a window without a screen, and Lichtblick if `RCS_LICHTBLICK` is a web build. `viewers/check.py` finds the
-/// robot in the picture.
+/// Rerun without a screen, and Lichtblick if `RCS_LICHTBLICK` is a web build; `viewers/check.py` looks.
 #[test]
 fn printed_commands_show_the_robot_in_the_viewers() {
     let packages = "import rerun, mcap, mcap_protobuf, PIL, websockets";

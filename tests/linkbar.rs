@@ -17,8 +17,7 @@ use record::{
 use whole_system_tests::{Outcome, Scratch, root, run, start};
 
 const SEED: u64 = 1;
-/// inches from the centre of the sector. The figures of chapter VIII give 0.15: the blank drops onto the ledge of the
-/// vise.
+/// Inches from the centre of the sector. The figures of chapter VIII give 0.15: the blank drops onto a ledge.
 const PLACED: f64 = 0.2;
 
 fn linkbar() -> &'static Outcome {

@@ -229,8 +229,7 @@ fn align_variables(rows: &[Row], at: usize, texts: &mut [String]) {
     }
 }
 
-/// Actions begin after `column` characters. Longer conditions leave the columns; an action that does not fit has its
-/// own line.
+/// Actions begin after `column` characters; beyond that, the action leaves the columns or has its own line.
 fn written(rows: &[Row], conditions: &[String], column: usize) -> Vec<Vec<String>> {
     let number = rows.iter().map(|row| row.number.len() + 1).max().unwrap_or_default();
     let continued = rows.iter().filter(|row| row.next.is_some());

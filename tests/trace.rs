@@ -38,8 +38,7 @@ pub const TICKS: &str = "ticks"; // number of ticks, a fact of the end
 pub const FIRED: &str = ".fired"; // ends the path with the row that fired
 pub const ABSENT: &str = "-"; // the field belongs to another variant of an enum with data
 const DEVICE: &str = "device";
-/// Not written: the stamp is new in every tick (`age` is written), `fired` names the deciding row, and the step
-/// belongs to the row.
+/// `age` is written for the stamp, and `fired` for the row and its step.
 const NOT_WRITTEN: [&str; 3] = ["stamp", "decided", "step"];
 
 #[must_use]

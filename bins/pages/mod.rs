@@ -112,8 +112,7 @@ fn refuse(error: &clap::Error) -> ! {
     process::exit(error.exit_code())
 }
 
-/// Units of the option, or else of the variable, or else inches. A wrong option is refused later. Errors: the variable
-/// has a wrong value.
+/// Units of the option, the variable, or inches. A wrong option is refused later. Errors: a wrong variable.
 fn units(arguments: &[OsString], variable: Option<OsString>) -> Result<Units, String> {
     let texts = || arguments.iter().skip(1).map(|argument| argument.to_str().unwrap_or_default());
     let option = format!("--{UNITS}");

@@ -73,7 +73,7 @@ fn at_a_socket_only_the_same_user_is_admitted() {
     };
     let told = as_nobody();
     assert!(told.contains("Permission denied"), "{told}");
-    // Both sides check the user at the other end, whatever the socket's mode.
+    // Both sides check the user at the other end, for any mode of the socket.
     fs::set_permissions(socket, fs::Permissions::from_mode(0o666)).expect("its mode can be set");
     let told = as_nobody();
     assert!(told.contains("user 65534 was expected, found user 0"), "{told}");

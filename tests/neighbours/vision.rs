@@ -57,8 +57,7 @@ fn after<'t>(text: &'t str, word: &str) -> &'t str {
     lines.next().unwrap_or_else(|| panic!("no {word} in {text}")).trim()
 }
 
-/// Jobs with LOCATE-OBJ, another seed, faults of the camera: each equals its golden. One process analyses all
-/// pictures.
+/// Each run equals its golden. One process analyses all pictures.
 #[test]
 fn jobs_have_the_same_bits_with_vision_in_another_process() {
     let program = rcs_neighbour();

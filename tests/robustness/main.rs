@@ -116,8 +116,7 @@ fn private_memory(scratch: &Scratch) -> Option<Command> {
     Some(command)
 }
 
-/// Children would inherit ignored signals, as under `nohup`. A new program has the default of a signal with a handler;
-/// these handlers act like the default.
+/// Children inherit ignored signals, as under `nohup`, but not handlers. These act like the default.
 fn hear_signals() {
     for signal in [SIGHUP, SIGINT, SIGQUIT] {
         let always = Arc::new(AtomicBool::new(true));

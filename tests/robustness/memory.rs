@@ -22,8 +22,7 @@ use crate::{
 const TICKS: &str = "100"; // of an attacked run
 const STARTS: Duration = Duration::from_secs(2); // a run has begun
 
-/// With those that iceoryx2 needs to find them, but without its lists of nodes and ports: garbage there ends a
-/// program, as a signal does.
+/// The objects that iceoryx2 needs to find values; garbage in its lists of nodes and ports ends a program.
 fn values(run: &RunName) -> Vec<PathBuf> {
     let is_value = |path: &PathBuf| path.to_string_lossy().contains("blackboard_");
     traces(run).into_iter().filter(|path| path.is_file() && is_value(path)).collect()
@@ -134,8 +133,7 @@ fn stale(directory: &Path, boards: &str, chance: &mut Chance) -> Outcome {
     Outcome::BySignal
 }
 
-/// Each new file of a starting run, until its first tick or its end. The run does not wait as long as iceoryx2 may
-/// wait.
+/// The files of a starting run, until its first tick or its end.
 fn damage_while_it_starts(directory: &Path, boards: &str, chance: &mut Chance) -> Outcome {
     let mut run = start(directory, boards, "30", "none");
     let name = run.name.clone();

@@ -45,8 +45,7 @@ pub fn judge(ended: &Ended) -> Outcome {
     }
 }
 
-/// iceoryx2 may panic over garbage in its objects. During the set-up the run ends with a message, later by the panic.
-/// Destructors may panic again.
+/// iceoryx2 may panic over garbage: the set-up ends with a message, later phases and destructors panic.
 pub fn judge_damaged(ended: &Ended) -> Outcome {
     let mut panics = ended.said.lines().filter(|line| line.contains("panicked at"));
     let Some(first) = panics.next() else { return judge(ended) };

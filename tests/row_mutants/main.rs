@@ -71,8 +71,7 @@ impl Copied {
         Self { root: root.to_owned(), source: scratch.join("source"), target: scratch.join("target") }
     }
 
-    /// Copies the tracked files that differ, so that builds remain valid, with those of `switched` replaced. Removes
-    /// old sources.
+    /// Copies the tracked files that differ, so that builds remain valid. Removes old sources.
     fn write(&self, switched: &Switched) -> io::Result<()> {
         let mut earlier = Vec::new();
         if self.source.is_dir() {

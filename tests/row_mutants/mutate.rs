@@ -82,8 +82,7 @@ fn mutant(table: &Table, row: &Row, what: What, changed: &Row, other: Option<&Ro
     }
 }
 
-/// Another action, another next step or none, or an alternative that moves to another row of the group or is
-/// exchanged.
+/// Another action, another next step or none, or an alternative that moves to another row of the group.
 pub fn mutants(table: &Table) -> Vec<Mutant> {
     let mut mutants = Vec::new();
     for row in &table.rows {
@@ -138,8 +137,7 @@ fn random(state: &mut u64) -> u64 {
     mixed ^ (mixed >> 31)
 }
 
-/// In an order determined by the seed: first the row, with equal probability, then its part, then the change. A row is
-/// repeated only after all others.
+/// The seed selects first the row, then its part, then the change. A row is repeated only after all others.
 pub fn drawn(root: &Path, seed: u64, only: &str) -> io::Result<Vec<Mutant>> {
     let mut paths = Vec::new();
     files(&root.join("crates/levels/src"), "rs", &mut paths)?;

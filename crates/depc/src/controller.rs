@@ -15,15 +15,12 @@ use crate::{
     wire::{Control, DataCommand, FRAME_BYTES, NO_FUNCTION, Report, Response},
 };
 
-/// The robot that the controller moves. Positions are words of the line; [`crate::exact::ExactFrames`] has the
-/// unrounded frames.
+/// A robot; positions are words of the line, and [`crate::exact::ExactFrames`] has the unrounded frames.
 pub trait Robot {
-    /// Present position, or the end of the present motion. Commanding it moves nothing, and the next point starts
-    /// there.
+    /// Present position, or the end of the present motion. Commanding it moves nothing.
     fn present(&mut self) -> Plate;
 
-    /// Sets the position to reach within the coming period. After a refusal it is unchanged, and the screen shows the
-    /// warning.
+    /// Sets the position to reach within the coming period. A refusal changes nothing and becomes a warning.
     fn accept(&mut self, goal: &Plate) -> Result<(), Refusal>;
 
     /// A warning of the robot itself, during which no command is accepted and the function does not start.

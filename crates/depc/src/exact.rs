@@ -33,8 +33,7 @@ impl Default for ExactFrames {
 }
 
 impl ExactFrames {
-    /// Stores a tool frame `exact` (inches, world) that T3I received as `wire`. Ignores it if `wire` is not its
-    /// rounding.
+    /// Stores a tool frame `exact` (inches, world) that T3I received as `wire`, unless `wire` is not its rounding.
     pub fn offer(&mut self, wire: &WireFrame, exact: &Frame) {
         let newest = self.frames.iter().flatten().next();
         let known = newest.is_some_and(|newest| newest.wire == *wire && newest.exact == *exact);

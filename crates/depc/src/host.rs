@@ -23,8 +23,7 @@ use crate::{
     wire::{Control, DataCommand, FRAME_BYTES, Response},
 };
 
-/// Ticks without an answer after which a frame is lost (docs/design/link.md "Time-out"). Hold looks the same, although
-/// it only delays the answer.
+/// Ticks until an unanswered frame is lost (docs/design/link.md "Time-out"). Hold only delays the answer.
 pub const ANSWER_TICKS: u16 = 3;
 const ANSWER_BYTES: usize = 4; // per tick with a valid answer; more may be noise
 /// Maximum repetitions of a data command after NAKs; then the host restarts the link.
@@ -199,8 +198,7 @@ impl Host {
         (self.attempts, self.starting, self.attempt) = (0, 0, LinkFault::None);
     }
 
-    /// Function bytes of the last lost data command, whose function may or may not have run;
-    /// [`crate::wire::NO_FUNCTION`] for none.
+    /// Function of the last lost data command, which may have run; [`crate::wire::NO_FUNCTION`] for none.
     #[must_use]
     pub const fn lost_function(&self) -> [u8; 2] {
         self.lost_function
@@ -217,8 +215,8 @@ impl Host {
         count(&mut self.counters.limited);
     }
 
-    /// Call before the first half of a tick if the port has not sent all bytes of the last one (`status-arg-out` 4,
-    /// VI.1.2). The incomplete frame is lost: the port may have been blocked for longer than the controller waits.
+    /// Call before the first half of a tick if the port has not sent all bytes (`status-arg-out` 4, VI.1.2). The frame
+    /// is lost: the port may have been blocked for longer than the controller waits.
     pub fn unsent(&mut self) -> HostEvent {
         match self.state {
             HostState::Waiting => self.lost(LinkFault::NotTransmitted),

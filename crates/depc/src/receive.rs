@@ -110,8 +110,7 @@ impl CommandReceiver {
             }
             return None;
         };
-        // Only restarts may follow. Also, a frame and one that begins with the late end of its own first copy have the
-        // same checksum.
+        // Only restarts may follow. A frame and one after the late end of its first copy have the same checksum.
         let behind = held.get(FRAME_BYTES..).unwrap_or_default();
         let alone = behind.iter().all(|byte| *byte == Control::Restart.byte());
         match DataCommand::parse(frame) {

@@ -142,8 +142,7 @@ fn turn_at_the_pole(line: &StraightLine<'_>, limits: &Limits, near: i32) -> Resu
     Ok(limits.check(line.from, &plate).is_ok().then(|| Position::rounded_to(plate, &tool)))
 }
 
-/// E of the pole near `e`, and the sign with which R turns with D: straight down only R - D matters, straight up R +
-/// D.
+/// E of the pole near `e`, and the sign of R in D ± R: straight down only R - D matters, straight up R + D.
 fn pole_near(e: i16) -> Option<(i16, i32)> {
     let e = i32::from(e);
     if e <= POLE {

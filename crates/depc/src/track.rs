@@ -24,8 +24,7 @@ pub const LAG_MS: u16 = 200;
 pub const MOST_LAG_MS: u16 = 1000;
 const READING_PERIODS: usize = 1; // between a sent position and a reading of it
 
-/// Position and tool axes, in: a small angle equals [`INCHES_PER_RADIAN`] times the angle, as in
-/// [`geometry::frame::Distance::path`].
+/// Position and tool axes, in: small angles times [`INCHES_PER_RADIAN`], as [`geometry::frame::Distance::path`].
 type Coordinates = [f64; 12];
 
 /// The positions sent in the last periods, the newest first.

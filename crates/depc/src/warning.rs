@@ -34,8 +34,7 @@ impl From<JointProblem> for Refusal {
     }
 }
 
-/// Joint angles, radians, for an end-plate position within the limits of `arm`. Errors: the controller's
-/// [`JointProblem`].
+/// Joint angles, radians, for an end-plate position within the limits of `arm`. Errors: [`JointProblem`].
 pub fn joints_for(arm: &Arm, goal: &Plate, near: &Joints) -> Result<Joints, JointProblem> {
     let joints = arm.inverse(&goal.to_tool(arm), near).map_err(|error| match error {
         ReachError::WristSingularity => JointProblem::WristSingularity,

@@ -19,8 +19,7 @@ fn one_fault_a_tick(seed: u64) -> Plan {
         Rule::new(FaultKind::Delay).rate(4_000),
         Rule::new(FaultKind::Duplicate).rate(1_000),
         Rule::new(FaultKind::Truncate).rate(10_000),
-        // Noise to the controller causes an additional NAK. With a lost ACK, that is two faults: the host would repeat
-        // an executed command.
+        // Noise causes a NAK. With a lost ACK the host would repeat an executed command: two faults.
         Rule::new(FaultKind::Insert).rate(10_000).byte(0x41).only(Direction::ToHost),
     ] {
         plan.add(rule).unwrap();

@@ -123,8 +123,7 @@ impl<'a> Document<'a> {
         }
     }
 
-    /// The place of a value; of the key if it is spread over several tables; of the nearest table if there is no
-    /// entry.
+    /// The place of a value, of the key of one in several tables, or of the nearest table without such an entry.
     #[must_use]
     pub fn place(&self, path: &str) -> At {
         at(&self.source.text, self.bytes(path))

@@ -168,8 +168,7 @@ impl Host {
         }
     }
 
-    /// Begins a path from rest at `from`, the start pose of the last [`Sample`]; `at` in ns. Errors:
-    /// [`Error::NotReady`].
+    /// Begins a path from rest at the start pose of the last [`Sample`]; `at` in ns. Errors: [`Error::NotReady`].
     pub fn begin(&mut self, at: u64, from: &Pose) -> Result<(), Error> {
         let start = self.start().ok_or(Error::NotReady)?;
         if !self.are_near(&start, from) {
@@ -203,8 +202,7 @@ impl Host {
         }
     }
 
-    /// Makes the robot's last position the target, at rest: the robot stops by its own means, and does not move on to
-    /// the old target.
+    /// Makes the robot's last position the target: the robot stops, and does not move on to the old target.
     pub fn hold(&mut self) {
         if !matches!(self.path.motion(), Motion::Still(_)) {
             self.interrupt();

@@ -37,8 +37,7 @@ impl Pose {
     /// The identity: no displacement.
     pub const IDENTITY: Self = Self { position: [0.0; 3], orientation: [1.0, 0.0, 0.0, 0.0] };
 
-    /// Normalizes the quaternion. Errors: [`Error::NotAPose`] if a number is not finite, or the length differs from 1
-    /// by more than 0.01.
+    /// Normalizes the quaternion. Errors: [`Error::NotAPose`] if not finite, or if the length is not 1 within 0.01.
     pub fn new(position: Vector, orientation: Quaternion) -> Result<Self, Error> {
         let length = libm::sqrt(orientation.iter().map(|v| v * v).sum());
         let unit = (length - 1.0).abs() <= UNIT_TOLERANCE;

@@ -233,7 +233,7 @@ fn an_interrupted_run_does_not_resume_by_itself() {
 }
 
 #[test]
-fn a_robot_that_stops_following_is_begun_with_where_it_is() {
+fn path_begins_where_the_robot_was_moved_while_stopped() {
     let mut bench = Bench::new(1);
     bench.message();
     bench.happen(&Event::Begin { astray: false });

@@ -73,8 +73,7 @@ impl Pose {
         }
     }
 
-    /// Keeps the tool point; X from wrist to tool, Y perpendicular to X towards the finger point. Errors:
-    /// [`PoseError::NoDirection`] if the points do not span a frame.
+    /// X from wrist to tool, Y towards the finger point, perpendicular to X. Errors: the points span no frame.
     #[inline]
     pub fn to_frame(&self) -> Result<Frame, PoseError> {
         let (wrist, tool, finger) = (vector(self.wrist), vector(self.tool), vector(self.finger));
@@ -82,8 +81,7 @@ impl Pose {
         Ok(Frame { position: tool, rotation })
     }
 
-    /// The angle of the two directions minus 90 degrees, radians. Errors: [`PoseError::NoDirection`] if two of the
-    /// points coincide.
+    /// The angle of the two directions minus 90 degrees, radians. Errors: two of the points coincide.
     #[inline]
     pub fn off_square(&self) -> Result<f64, PoseError> {
         let x = vector(self.tool) - vector(self.wrist);

@@ -33,8 +33,7 @@ pub struct Header {
 }
 
 impl Header {
-    /// Header, and function with data. Errors: [`Error::BadProtocol`], [`Error::BadLength`], [`Error::BadSize`] if not
-    /// exactly one frame.
+    /// Errors: [`Error::BadProtocol`], [`Error::BadLength`], [`Error::BadSize`] if not exactly one frame.
     pub fn split(frame: &[u8]) -> Result<(Self, &[u8]), Error> {
         let expected = needed(frame)?;
         if frame.len() != expected {

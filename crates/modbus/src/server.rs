@@ -38,8 +38,7 @@ pub trait Tables {
         Err(Exception::IllegalFunction)
     }
 
-    /// Writes coils. Errors: as [`Self::coil`]; [`Exception::IllegalDataValue`] for values that the device does not
-    /// accept.
+    /// Writes coils. Errors: as [`Self::coil`], or [`Exception::IllegalDataValue`].
     fn write_coils(&mut self, first: u16, bits: Bits<'_>) -> Result<(), Exception> {
         let _ = (first, bits);
         Err(Exception::IllegalFunction)

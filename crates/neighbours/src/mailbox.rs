@@ -165,8 +165,7 @@ impl Mailbox {
         &self.bytes[..usize::from(self.word(0))]
     }
 
-    /// Increments the mailgram number, so that the network sends the mailbox (IX). 1 follows 65535, because 0 is the
-    /// value after initialization. After [`MailboxError::TooLong`] the mailbox is unchanged.
+    /// The next mailgram number makes the network send the mailbox (IX); 0 is only the number after initialization.
     pub fn write(&mut self, data: &[u8]) -> Result<(), MailboxError> {
         let room = self.place.size - HEAD;
         if data.len() > room {

@@ -65,8 +65,7 @@ pub fn shown(text: &str) -> Cow<'_, str> {
     }
 }
 
-/// Writes a text for a person to standard output. A closed pipe, as by `head`, or terminal is not an error; a full
-/// disk is.
+/// Writes a text for a person to standard output. A closed pipe or terminal is not an error; a full disk is.
 pub fn answer(text: &str) -> io::Result<()> {
     drawn(&shown(text))
 }
@@ -81,8 +80,7 @@ pub fn drawn(report: &str) -> io::Result<()> {
     written
 }
 
-/// Writes JSON to standard output. Control characters become escapes, so its values do not change. Errors: see
-/// [`answer`].
+/// Writes JSON to standard output, with escapes for control characters. Errors: see [`answer`].
 pub fn json(text: &str) -> io::Result<()> {
     drawn(&escaped_json(text))
 }

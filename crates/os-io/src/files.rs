@@ -93,8 +93,7 @@ pub fn read_text(path: &Path) -> io::Result<String> {
 
 /// Opens a regular file for reading. Errors: as [`read`].
 pub fn open(path: &Path) -> io::Result<File> {
-    // Opening some devices has side effects, so the kind is checked first, and again afterwards, because it can
-    // change.
+    // Opening some devices has side effects: checked first, and again afterwards, because the kind can change.
     expect_regular(fs::metadata(path)?.file_type())?;
     let flags = OFlags::NONBLOCK | OFlags::NOCTTY;
     let file = OpenOptions::new().read(true).custom_flags(flags.bits().cast_signed()).open(path)?;

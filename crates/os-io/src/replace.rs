@@ -115,8 +115,7 @@ fn keep_others(output: &Path, format: Format) -> io::Result<()> {
     Err(io::Error::new(ErrorKind::AlreadyExists, why))
 }
 
-/// Replaces a file by a text with LF, and keeps its line ends and byte order mark. Errors: as [`replace`] and of
-/// reading it.
+/// Replaces a file by a text with LF; line ends and byte order mark stay. Errors: as [`replace`], and of reading.
 pub fn replace_text(path: &Path, text: &str) -> io::Result<()> {
     let before = match files::read(path, files::TEXT) {
         Err(error) if error.kind() == ErrorKind::NotFound => Vec::new(),

@@ -40,8 +40,7 @@ impl Units {
         MILLIMETRES.store(self == Self::Millimetres, Ordering::Relaxed);
     }
 
-    /// A typed length, in inches: a number in these units, or with its own, `38.1mm` or `1.5in`. Errors: what was
-    /// expected.
+    /// A typed length, in inches: in these units, or with its own, `38.1mm` or `1.5in`. Errors: what was expected.
     pub fn length(self, text: &str) -> Result<f64, String> {
         let wrong = || {
             let [inches, millimetres] = Self::WORDS;

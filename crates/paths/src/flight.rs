@@ -96,8 +96,8 @@ impl Robot {
         Err(Trouble::Endless)
     }
 
-    /// Moves through the points to rest at the last. In each tick `look` gets the index of the point and the joint
-    /// angles, radians. Returns the results per point, and why the flight ended early.
+    /// Moves through the points to rest. In each tick `look` gets the index of the point and the joint angles,
+    /// radians.
     pub fn fly(
         &mut self,
         points: &[(Frame, TrajPara)],

@@ -37,8 +37,7 @@ pub const NOT_CHECKED: [&str; 6] = [
     "the lag of the resolvers; the lag of the servos is included",
 ];
 const STANDS: f64 = 0.5; // in: the robot is at the location point
-/// Tried positions of a part in its sector: x and y as shares of the greatest offset, angle in degrees. Half a turn is
-/// the same for two fingers.
+/// Tried places of a part: x, y as shares of the greatest offset; degrees. Half a turn makes no difference.
 const TRIED: [[f64; 3]; 12] = [
     [0.0, 0.0, 22.5],
     [0.0, 0.0, 45.0],

@@ -22,8 +22,7 @@ use crate::{
 
 pub const LEAST_MARGIN: f64 = 0.5; // degrees; below it, a warning
 
-/// Greatest offset of fingers from a part in the closed vise, in (ASSUMED). Beyond it the part slips when the jaws
-/// open.
+/// Greatest offset of fingers from a part in the closed vise, in (ASSUMED): beyond it the part slips.
 const BESIDE: f64 = 0.015;
 
 impl State<'_> {

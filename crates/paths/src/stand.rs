@@ -123,8 +123,7 @@ pub fn pose_form(name: &str, movetable: &str, pose: &Pose) -> Vec<String> {
     vec![wrist, tool, format!("{finger}   -pose-   {movetable:<11} {name}")]
 }
 
-/// A translation in tool coordinates, a rotation about the tool point, a roll (VII.2). Omits lines without effect,
-/// except the first.
+/// A translation, a rotation about the tool point, a roll (VII.2). Omits lines without effect, except the first.
 #[must_use]
 pub fn movetable_between(from: &Frame, to: &Frame) -> Vec<MovetableLine> {
     let back = from.rotation.inverse();

@@ -101,8 +101,7 @@ impl<'a> Walk<'a> {
         phase
     }
 
-    /// The phase contains the reason if a step is impossible. The walk continues from the step's location, so that
-    /// later steps are checked too.
+    /// If a step is impossible, the phase has the reason, and the walk continues from the step's location.
     pub fn step(&mut self, step: &Step) -> Phase {
         match *step {
             Step::Go { verb, object, grip, location } => self.go(verb, object, grip, &location),

@@ -111,7 +111,7 @@ fn each_sector_is_fit_or_not() {
 
 /// Data loaded during a command apply to the next one.
 #[test]
-fn after_load_the_new_data_count() {
+fn loaded_data_apply_to_later_lines() {
     let (store, _) = Store::load(data()).unwrap_or_else(|report| panic!("{report}"));
     let room = Room::new(&CellDescription::load(&data().join("cell.toml")).unwrap());
     let place = tempfile::tempdir().unwrap();

@@ -69,8 +69,7 @@ pub struct Commander {
 }
 
 impl Commander {
-    /// Call first in a tick, for commanders of devices and of other systems: adopts the subordinate's echo before the
-    /// first command.
+    /// Call first in a tick, for devices and other systems: adopts the subordinate's echo before the first command.
     pub fn start(&mut self, echo: u32) {
         if !self.started {
             self.number = echo;
@@ -87,10 +86,7 @@ impl Commander {
         }
     }
 
-    /// Number of a new command written in this tick.
-    ///
-    /// The first number after a start keeps a distance from the echo: earlier commands may still be in transit, and a
-    /// used number is not new.
+    /// Number of a new command. The first keeps a distance from the echo, as earlier commands may be in transit.
     pub fn send(&mut self, tick: Tick) -> u32 {
         let steps = if self.started { 1 } else { FIRST_STEP };
         for _ in 0..steps {
@@ -243,7 +239,7 @@ mod tests {
         assert_eq!(commander.read(Tick(101), &header(100), 45, Lower::Executing), Lower::Executing);
     }
 
-    /// An identity that distinguishes the command from all others, behind its number.
+    /// In addition to its number, an identity that distinguishes the command from all others.
     #[derive(Clone, Copy, Debug, Default, PartialEq)]
     struct Content {
         number: u32,

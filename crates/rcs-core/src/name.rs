@@ -79,8 +79,7 @@ impl<const N: usize> Name<N> {
         Ok(Self(bytes))
     }
 
-    /// The first `N` characters, as in the manual (SPECNOTES.md, contradiction 22). Characters that a name cannot have
-    /// become `?`.
+    /// The first `N` characters (SPECNOTES.md, contradiction 22), `?` in place of characters that no name has.
     #[must_use]
     #[inline]
     pub fn clipped(text: &str) -> Self {

@@ -5,7 +5,7 @@
 //!
 //! The first matching row decides. A row names only the variables that it tests, or `otherwise`, and the next step
 //! only where it changes. A group of rows belongs to one step, to several, or to `any`. A group with a doc comment
-//! declares its step; the first declared one begins a command.
+//! declares its step; a command begins in the first declared one.
 //!
 //! ```
 //! # mod cell {

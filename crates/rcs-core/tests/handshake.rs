@@ -256,8 +256,7 @@ fn commands_between_processes_are_executed_once_with_their_own_status() {
     assert_eq!((found.states, found.ticks), (292_636, 15_443_840), "the size that docs/evidence.md states");
 }
 
-/// A known limit: a commander that follows only the echo sends a number twice if it restarts before its first command
-/// is echoed, and then reads the status of the first. This is the shortest path.
+/// A known limit: after a restart before the first echo, a number is sent twice. This is the shortest path.
 #[test]
 fn commander_following_the_echo_repeats_a_number_after_an_early_restart() {
     let sends = Commanding { sends: true, ..QUIET };

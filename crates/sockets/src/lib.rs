@@ -36,9 +36,7 @@ const CHUNK: usize = 8192; // read at once
 /// Pause after a failed accept: the system may lack descriptors.
 const PAUSE: Duration = Duration::from_millis(100);
 
-/// Checks that the other end belongs to the user of this process.
-///
-/// [`io::ErrorKind::PermissionDenied`], with both users.
+/// Refuses another user at the other end: [`io::ErrorKind::PermissionDenied`].
 pub fn check_user(stream: &UnixStream) -> io::Result<()> {
     let (expected, found) = (geteuid(), sockopt::socket_peercred(stream)?.uid);
     if expected == found {
@@ -139,8 +137,7 @@ impl Line {
         let _ = self.stream.shutdown(Shutdown::Write);
     }
 
-    /// After [`Line::finish`]: reads until the other side closes or `until`. A socket closed with unread bytes may
-    /// lose what it has sent.
+    /// Reads until the other side closes or `until`: a socket closed with unread bytes may lose sent bytes.
     pub fn drain(&mut self, until: Instant) {
         let mut is_open = true;
         while is_open && Instant::now() < until {

@@ -242,8 +242,7 @@ impl Plan {
         Self { seed, ..Self::default() }
     }
 
-    /// The plan with at most `most` faults per tick and direction (at least 1). With one, the checksum detects every
-    /// fault.
+    /// At most `most` faults per tick and direction (at least 1). With one, the checksum detects every fault.
     #[must_use]
     pub const fn most_per_tick(mut self, most: u8) -> Self {
         self.most_per_tick = if most == 0 { 1 } else { most };

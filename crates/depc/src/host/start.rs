@@ -16,8 +16,7 @@ impl Host {
         HostEvent::Started
     }
 
-    /// A NAK after the next tick may answer noise after a command whose ACK was lost: then a position may be repeated,
-    /// but not a function.
+    /// A late NAK may answer noise after a lost ACK: then a position may be repeated, but not a function.
     pub(super) fn refused(&mut self) -> HostEvent {
         let ambiguous = self.waited > 1 && self.function() != NO_FUNCTION;
         if self.retries >= MOST_RETRIES || ambiguous {

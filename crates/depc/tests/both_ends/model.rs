@@ -293,8 +293,7 @@ impl State {
         self.robot.wrong.map_or(Ok(out.tx), Err)
     }
 
-    /// Calls `visit` for each possible tick with its event, and the next state or an error. `good`: a command was
-    /// acknowledged, or a stop is reported.
+    /// Visits each possible tick with its result. `good`: a command was acknowledged, or a stop is reported.
     pub fn each_next(
         &self,
         setting: &Setting,

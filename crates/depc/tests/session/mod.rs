@@ -47,8 +47,7 @@ impl Robot for Watched {
     }
 }
 
-/// Counts of wrong conclusions: zero, except `started`, as long as checksums detect every fault and no noise looks
-/// like a frame without a checksum.
+/// Wrong conclusions: none, if checksums detect every fault and no noise looks like a frame without one.
 #[derive(Clone, Copy, Default, Debug, PartialEq)]
 pub struct Truth {
     pub started: u64,

@@ -9,8 +9,7 @@ pub enum ClockKind {
     Fast = 1, // as fast as possible; each tick waits for all neighbours
 }
 
-/// Time limit of the answer to a pulse: 10 s on the 40 ms grid, where the robot continues; 60 s in fast clock, as the
-/// computer may be busy.
+/// Limit of an answer to a pulse: 10 s on the 40 ms grid; 60 s in fast clock, as the computer may be busy.
 #[must_use]
 pub const fn answer_limit(clock: ClockKind) -> Duration {
     match clock {

@@ -170,8 +170,7 @@ impl Session {
         }
     }
 
-    /// `None` if more bytes are required. Fails once if the other side has violated the protocol or closed the
-    /// connection. Then the session is closed, with the reason in the controller's output.
+    /// `None` if more bytes are required. Fails once, and closes the session, after a violation or a close.
     pub fn event(&mut self, now: Instant) -> Result<Option<Event<'_>>, SessionError> {
         let step = match self.step(now) {
             Ok(step) => step,
@@ -287,8 +286,7 @@ impl Session {
         }
     }
 
-    /// The controller sends a pulse after the mailgrams of a tick; the neighbour answers all pulses up to this one. A
-    /// neighbour that has answered the last pulse has the full time limit.
+    /// One pulse follows the controller's mailgrams of a tick; the neighbour answers all pulses up to it.
     pub fn pulse(&mut self, tick: u64, now: Instant) {
         if self.state != State::Open {
             return;

@@ -78,8 +78,7 @@ impl System {
         (self.read, self.joining) = (0, true);
     }
 
-    /// One tick. If command mailbox or sensor words cannot be decoded, no process is stepped, and the status has the
-    /// reason.
+    /// One tick. If the mailboxes cannot be decoded, no process is stepped, and the status has the reason.
     pub fn step(&mut self, command_box: &Mailbox, sensors_box: &Mailbox) {
         if command_box.mailgram() == 0 || sensors_box.mailgram() == 0 {
             return;

@@ -176,8 +176,7 @@ impl Gate {
         Ok(())
     }
 
-    /// WRITE-HWS-STATUS and UPDATE-MAILGRAM?, once per tick. True if Task's status has changed. Names and distances of
-    /// a reason are those of the tick of its arrival.
+    /// WRITE-HWS-STATUS and UPDATE-MAILGRAM?, once per tick. True if Task's status has changed.
     pub fn write(&mut self, memory: &CommonMemory, state: TaskState) -> bool {
         let task = memory.task.status;
         if task != self.told.0 {

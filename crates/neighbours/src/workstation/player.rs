@@ -130,8 +130,7 @@ impl Hwsc {
         }
     }
 
-    /// Repeats a failed command after a PAUSE, at most `retries` times per line. A failure that requires an
-    /// operator's action first is not retried ([`Reason::remedy`]).
+    /// Repeats failed commands after a PAUSE, per line at most `retries` times; see [`Reason::remedy`].
     #[must_use]
     pub const fn with_retries(mut self, retries: u32) -> Self {
         self.retries = retries;
@@ -143,8 +142,7 @@ impl Hwsc {
         &self.retried
     }
 
-    /// Time limit of an echo, ticks, after which a command is repeated. The default, three, is for the same process; a
-    /// network is slower.
+    /// Ticks until an unanswered command is repeated. The default is for the same process; a network is slower.
     #[must_use]
     pub const fn with_answer_ticks(mut self, ticks: u64) -> Self {
         self.answer_ticks = ticks;
@@ -173,8 +171,7 @@ impl Hwsc {
         std::mem::take(&mut self.to_send).then_some(&self.command)
     }
 
-    /// The last begun line, 0 before the first, and the number of lines; without operators' commands, PAUSE and
-    /// repetitions.
+    /// The last begun line, 0 before the first, and the number of lines, without operators' commands.
     #[must_use]
     pub fn place(&self) -> (usize, usize) {
         let lines = self.steps.len();
@@ -403,8 +400,7 @@ impl Hwsc {
         is_begun && self.step_at(self.current).is_some_and(hands_over)
     }
 
-    /// Resumes when the workstation controller disconnects: PAUSE, then the next line. `last` is the number of the last
-    /// of its `commands`.
+    /// When the workstation controller disconnects: PAUSE, then the next line. `last`: number of its last command.
     pub fn take_back(&mut self, tick: Tick, last: u32, commands: Vec<BegunStep>) {
         self.took(tick);
         self.finish(Outcome::Finished);

@@ -366,8 +366,7 @@ impl Commands {
     }
 }
 
-/// Generates steps, goals, list and numbers of tables, and the functions that consult them for a command and in the
-/// declared order.
+/// Generates steps, goals and tables of the commands, and the functions that consult the tables.
 pub fn expand(input: TokenStream) -> Result<TokenStream> {
     let commands: Commands = parse2(input)?;
     let Commands { vis, others, .. } = &commands;

@@ -31,8 +31,7 @@ pub struct Key {
 pub struct Slot {
     pub(crate) key: Key,
     pub(crate) number: u32, // first record with the key; 0: no key
-    /// The field that look-ups need, or 0. For a key of several records: their position, from 1, in
-    /// [`Index::numbers`].
+    /// The field that look-ups need, or 0; for several records their position, from 1, in [`Index::numbers`].
     pub(crate) answer: u32,
 }
 
@@ -174,8 +173,7 @@ pub struct PlaceIndex<'a> {
 }
 
 impl<'a> PlaceIndex<'a> {
-    /// The entry of the first location that has one: the `exact` ones in turn, the `owners`, the wild card. Ignores
-    /// the location in the key.
+    /// The entry of the first location that has one: `exact` ones, `owners`, wild card. Ignores the key's location.
     pub(crate) fn first(
         &self,
         key: Key,

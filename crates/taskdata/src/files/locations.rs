@@ -120,8 +120,7 @@ impl<'a> TaskData<'a> {
         Ok(Location { name: locpt.name, place, sector: None, frame: locpt.frame })
     }
 
-    /// The member of an owner to which the object is assigned: a sector of an array at the owner's location point, or
-    /// a location point.
+    /// The member of an owner to which the object is assigned: a location point, or a sector of an array.
     fn at_owner<const N: usize, const M: usize>(
         &self,
         owner: OwnerId,
@@ -214,8 +213,7 @@ impl<'a> TaskData<'a> {
         })
     }
 
-    /// The base with the offset of the first sector and the column and row steps to this one. `None` for a
-    /// sector that the array does not have.
+    /// The base with the steps to the first sector and to this one; `None` if the array does not have the sector.
     #[must_use]
     pub fn sector_frame(&self, array: &Array, base: &Frame, sector: i32) -> Option<Frame> {
         if sector < 1 || sector > array.sectors() {
@@ -248,9 +246,8 @@ impl<'a> TaskData<'a> {
         [left, right, top, bottom]
     }
 
-    /// The place for a process that does not receive the sector: below Task, a sector is only a goal pose (V.3.2,
-    /// V.2.2). It has the array to which the object is assigned there, or else the location point. `None` for an
-    /// unknown name.
+    /// The place for a process that does not receive the sector, only its goal pose (V.3.2, V.2.2): with the array to
+    /// which the object is assigned there, or else the location point. `None` for an unknown name.
     #[must_use]
     pub fn place_named<const N: usize, const M: usize>(
         &self,

@@ -135,8 +135,8 @@ impl<'a> TaskData<'a> {
         RelativeMoveId::new(entry.number).of(self.relative_moves)
     }
 
-    /// The path of the intermediate trajectory (VII.6): the exact names have priority, then the owner of the end, of
-    /// the start, of both.
+    /// The intermediate trajectory (VII.6): exact names have priority, then the owner of the end, of the start, of
+    /// both.
     #[must_use]
     pub fn trajectory(&self, from: &Place, to: &Place) -> Option<PathId> {
         self.between(from, to, |key| self.indexes.trajectories.answer(key)).map(PathId::new)

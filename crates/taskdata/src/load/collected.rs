@@ -56,9 +56,8 @@ impl Collected {
         }
     }
 
-    /// Replaces entries by `newer` ones with the same key, and appends the others. Newer object location entries
-    /// replace all earlier ones of the object, which may have moved to other trays. If `newer` has a key twice, the
-    /// second is appended, so that linking finds the duplicate.
+    /// Replaces entries by `newer` ones with the same key, all earlier object locations of an object too, and appends
+    /// the others. If `newer` has a key twice, the second is appended, so that linking finds the duplicate.
     pub fn with(&self, newer: Self) -> Self {
         let mut all = self.clone();
         replace(&mut all.files, newer.files, |e| e.file);

@@ -52,8 +52,7 @@ impl Store {
         Self::load_part(directory).map_err(|(_, report)| report)
     }
 
-    /// Like [`Store::load`], but with the readable part of data with errors, for checks of jobs. Errors: that part,
-    /// and the report.
+    /// Like [`Store::load`]. Errors: the readable part, for checks of jobs, and the report.
     pub fn load_part(directory: &Path) -> Result<(Self, Diagnostics), (Box<Part>, Box<Diagnostics>)> {
         let (sources, unreadable) = source::read_blocks_under(directory);
         let mut problems = Problems::default();

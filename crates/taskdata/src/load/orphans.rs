@@ -102,8 +102,7 @@ impl Orphans {
         }
     }
 
-    /// Marks orphans that another orphan names. Returns the naming ones, with the number of others that each
-    /// represents.
+    /// Marks orphans that another orphan names. Returns the naming ones, each with the number of the others.
     fn gather(&mut self) -> BTreeMap<BlockNumber, usize> {
         let named: HashSet<BlockNumber> =
             self.list.iter().flat_map(|orphan| &orphan.loads).map(|line| line.block).collect();

@@ -8,10 +8,7 @@ use std::{
     thread, vec,
 };
 
-/// Results of `work` on `0..count`, in order. A single piece runs in the caller's thread.
-///
-/// # Panics
-/// If `work` panics.
+/// Results of `work` on `0..count`, in order. A single piece runs in the caller's thread. Panics if `work` does.
 pub fn map<T: Send>(count: usize, work: impl Fn(usize) -> T + Sync) -> Vec<T> {
     let threads = thread::available_parallelism().map_or(1, NonZero::get).min(count);
     if threads <= 1 {

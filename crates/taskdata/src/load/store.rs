@@ -21,8 +21,7 @@ use super::{
 
 pub const FILE_RECORDS: usize = 100_000; // per file (SPECNOTES.md, Task data); beyond it, FILE FULL
 
-/// For declarations. The names for object locations, approaches and departs, and the last two files are not in the
-/// manual.
+/// Not in the manual: object locations, approaches and departs, and the last two files.
 pub const FILE_NAMES: [&str; 18] = [
     "POSE",
     "MOVTAB",

@@ -122,8 +122,7 @@ impl Hwsc {
         Ok(())
     }
 
-    /// Repeats the interrupted or failed line, after a PAUSE. An action of the workstation in progress is not started
-    /// again.
+    /// Repeats the interrupted or failed line after a PAUSE. An action in progress is not started again.
     pub fn go_on(&mut self, tick: Tick) -> Result<(), OperatorError> {
         self.resume(tick, false)
     }

@@ -95,8 +95,7 @@ impl fmt::Display for Retry {
 }
 
 impl JobFailure {
-    /// The operator's action before the job can continue. `None` if PAUSE and the same command may be enough, or the
-    /// text of the failure contains it.
+    /// The operator's action before the job can continue. `None`: not needed, or in the text of the failure.
     #[must_use]
     pub const fn remedy(&self) -> Option<&'static str> {
         match self {

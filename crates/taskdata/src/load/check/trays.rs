@@ -6,8 +6,7 @@ use crate::files::{ArrayId, RefType, Reference, TaskData};
 
 use super::{Findings, Origins, at_point, origin, owners_of};
 
-/// Side of a tray, inches. ASSUMED: the three printed arrays fill a square of 21.00 with equal margins (VIII.6;
-/// SPECNOTES).
+/// Inches. ASSUMED: the printed arrays fill a square of 21.00 with equal margins (VIII.6; SPECNOTES).
 const TRAY: f64 = 21.0;
 const ROUNDING: f64 = 0.01;
 

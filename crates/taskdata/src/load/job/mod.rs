@@ -86,8 +86,7 @@ pub struct Job {
 }
 
 impl Job {
-    /// Reads a job file and checks it against the task data. Errors: the report with every error of the job, if it has
-    /// one.
+    /// Reads a job file and checks it against the task data. Errors: the report with every error of the job.
     pub fn load(path: &Path, store: &Store) -> Result<(Self, Diagnostics), Box<Diagnostics>> {
         match read(path, &path.display().to_string()) {
             Ok(source) => Self::from_source(source, store).and_then(Self::with_a_line),

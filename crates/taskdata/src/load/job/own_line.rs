@@ -49,8 +49,7 @@ impl std::error::Error for OwnLineError {}
 
 const SOURCE: &str = "the line"; // in messages
 
-/// Reads a command as in a job, with or without `==`. PAUSE, STARTUP and SHUTDOWN need no fields. The robot's position
-/// and held object are unknown, and not checked.
+/// Reads a command as in a job, with or without `==`, without checks of the robot's position and held object.
 pub fn own_command(text: &str, store: &Store) -> Result<JobLine, OwnLineError> {
     reported_command(text, store).map_err(|report| unreadable(&report))
 }

@@ -42,8 +42,7 @@ impl<'s, 'p> Reader<'s, 'p> {
         self.before = Before::unknown();
     }
 
-    /// Later names are looked up in the new data. Returns the number of the reload, from 1; `None` if the blocks could
-    /// not be loaded, which is already reported.
+    /// Later names are looked up in the new data. Returns the number of the reload, from 1; `None` without new data.
     pub(super) fn reload(&mut self) -> Option<u32> {
         self.data = self.reloads.next()?;
         self.loaded += 1;

@@ -16,8 +16,7 @@ pub struct Reload {
     pub store: Store, // after the reload
 }
 
-/// Reloads in the order of their lines, each based on the previous one. File names are relative to the job's
-/// directory. A file that cannot be loaded is reported at its line, and changes nothing.
+/// Each reload is based on the previous one. A file that cannot be loaded is reported at its line.
 pub(super) fn reloads(job: &Source, store: &Store, problems: &mut Problems) -> Vec<Reload> {
     let directory = Path::new(&job.name).parent().unwrap_or(Path::new(""));
     let mut loaded: Vec<Reload> = Vec::new();

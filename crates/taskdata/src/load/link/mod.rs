@@ -48,8 +48,7 @@ pub(super) struct Linker<'a> {
     asked: BTreeMap<(String, String), (At, usize)>,
 }
 
-/// Reports problems. `broken` has names in unreadable entries, `orphans` those in blocks that are not loaded. The last
-/// element of the result has the unknown names.
+/// `broken` has names in unreadable entries, `orphans` those in unloaded blocks. Last result: the unknown names.
 pub(super) fn link(
     entries: &Collected,
     broken: &HashSet<String>,

@@ -222,8 +222,7 @@ impl Needs<'_, '_> {
         }
     }
 
-    /// A TRANSFER cannot end at the Active Pedestal: its hand grips only during a regrip (V.3.1 FIX-GRIP), so the
-    /// object would fall.
+    /// The hand of the Active Pedestal grips only during a regrip (V.3.1 FIX-GRIP): a TRANSFER cannot end there.
     fn pedestal(&mut self) {
         let to = self.command.destination.filter(|to| self.verb == "TRANSFER" && to.as_str() == PEDESTAL);
         if to.is_none() {

@@ -139,8 +139,7 @@ impl Route<'_, '_> {
     }
 }
 
-/// Sectors of one tray, for example: a motion between them needs no trajectory (docs/design/motion.md "Same
-/// location").
+/// Such as sectors of one tray: no trajectory is needed between them (docs/design/motion.md "Same location").
 fn same(one: &Location, other: &Location) -> bool {
     one.name == other.name
 }
