@@ -117,7 +117,6 @@ impl Ended {
         self.result[field].as_u64().unwrap_or_else(|| panic!("no {field} in {}", self.result))
     }
 
-    /// It has finished, and its buffers were in shared memory.
     pub fn assert_shared(&self) {
         assert_eq!(self.status, Some(0), "{}", self.said);
         for complaint in ["shared memory is not available", "not mirrored"] {
@@ -131,7 +130,7 @@ impl Ended {
     }
 }
 
-/// In its own mount namespace, after shell commands. `None` if this user cannot make namespaces.
+/// A run in its own mount namespace. `None` if this user cannot make namespaces.
 #[must_use]
 pub fn apart(directory: &Path, shell: &str, more: &[&str]) -> Option<Ended> {
     let arguments = job("linkbar");

@@ -110,7 +110,6 @@ struct Running<'a> {
 }
 
 impl Running<'_> {
-    /// The boards are present once the run can be read.
     fn attach(&mut self) -> Attached {
         wait_for("the run can be read", || {
             assert_eq!(self.child.try_wait().expect("it is a child"), None, "it ended at once");

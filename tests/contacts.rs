@@ -8,7 +8,7 @@ use whole_system_tests::{Outcome, Scratch, root, run, run_with};
 
 const UNCHECKED: &[&str] = &["--unchecked"]; // the run starts despite errors in the data
 
-/// With an obstacle in the robot's path, or the robot in an obstacle's. The check would find most of them.
+/// `prepare` makes a collision; the check before the run would find most of them.
 fn run_into(job: &str, name: &str, prepare: impl FnOnce(&Scratch)) -> Outcome {
     let outcome = run_with(job, 1, name, UNCHECKED, prepare);
     assert_eq!(outcome.status, Some(1), "{}", outcome.last_words);

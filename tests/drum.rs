@@ -15,7 +15,6 @@ const ACQUIRE: &str = "== ACQUIRE-TOOL DRILL-2 +1 -- 0 +1 TOOL-SAFE 0 -- 0";
 const NOT_FREE: &str = "the tool meets something in front of the drum";
 const UNCONFIRMED: &str = "the tool in the drum (the drum has no sensor)"; // after INSERT-TOOL or RELEASE-TOOL
 
-/// Without the check of paths, which would find the tool in the drum.
 fn job(name: &str, text: &str) -> Outcome {
     let file = format!("{name}.job");
     run_with(&file, 1, name, &["--unchecked"], |scratch: &Scratch| {
@@ -100,7 +99,6 @@ fn acquire_tool_from_an_empty_drum_fails_with_a_working_remedy() {
     assert_eq!(part(&outcome, "DRILL-2")["held"], true);
 }
 
-/// The joystick box interrupts INSERT-TOOL.
 fn interrupted(ticks: u32) -> String {
     format!(
         "** after {ticks} joystick frame WORLD\n\

@@ -86,7 +86,7 @@ fn a_silence_ends_the_motion_and_the_repeated_command_continues_it() {
     assert!(most < 1.0, "the robot never was farther from its target than {most} mm");
 }
 
-/// After 4 s of the job, while that is harmless.
+/// The robot is stopped after 4 s of the job, while that is harmless.
 #[test]
 fn robot_falling_behind_is_stopped_at_a_small_distance() {
     for (job, deviation) in [("turned-part", "6"), ("linkbar", "2"), ("tool-change", "9")] {

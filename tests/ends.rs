@@ -74,7 +74,7 @@ fn two_signals_at_once_stop_a_run_in_order() {
     assert!(log.complete && log.end.is_some(), "the log has no end");
 }
 
-/// Both ends, which child processes do not inherit.
+/// Both ends of a terminal, which child processes do not inherit.
 fn terminal() -> (File, OwnedFd) {
     let flags = pty::OpenptFlags::RDWR | pty::OpenptFlags::NOCTTY | pty::OpenptFlags::CLOEXEC;
     let master = pty::openpt(flags).unwrap();

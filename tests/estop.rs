@@ -34,7 +34,6 @@ fn assert_replays(outcome: &Outcome) {
     assert!(report.is_same() && report.complete);
 }
 
-/// The arm has come to rest, and the log is complete.
 fn assert_stopped(outcome: &Outcome, who: &str) {
     assert_eq!(outcome.status, STOPPED, "{}", outcome.last_words);
     let stop = &outcome.result["emergency_stop"];
@@ -94,7 +93,7 @@ fn a_sagging_arm_at_home_and_safe_hits_no_body() {
     }
 }
 
-/// A stop in a move, and the start-up of IV.3.3.
+/// An emergency stop in a move, and the start-up of IV.3.3.
 const RESTART: &str = "** after 60 estop terminals\n\
      == MOVE -- +0 -- 0 +0 SAFE 0 -- 0\n\
      ** wait 100\n\

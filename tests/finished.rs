@@ -6,7 +6,6 @@ use whole_system_tests::{Outcome, Scratch, run};
 
 const PUT_BACK: &str = "== TRANSFER LINKBAR1 +2 PFIXTURE 0 +2 UNIT_1 1 SAFE 0";
 
-/// The last line contains all of `said`.
 fn assert_fails(outcome: &Outcome, said: &[&str]) {
     assert_eq!(outcome.status, Some(1), "{}", outcome.last_words);
     for words in said {

@@ -215,7 +215,6 @@ impl Scenario {
         Ok(Run { ending: Ending { status: output.status.code(), last_line }, scratch })
     }
 
-    /// The text above the summary, which a replay cannot produce.
     #[must_use]
     pub fn heading(&self, last_words: &str) -> String {
         // The last words of a finished job are only remarks on the data.

@@ -209,7 +209,6 @@ pub fn command(directory: &Scratch, job: &str, seed: u64) -> Command {
     command
 }
 
-/// With a log, without readers.
 fn logged(directory: &Scratch, job: &str, seed: u64) -> Command {
     let mut command = command(directory, job, seed);
     command.args(["--log", "run.mcap", "--shared-memory", "off"]);

@@ -97,7 +97,7 @@ impl Viewer {
         }
     }
 
-    /// The operators' channel starts with the first reply.
+    /// The next reply. The operators' channel starts with the first one.
     fn answer(&mut self) -> Value {
         std::iter::repeat_with(|| self.text()).find(|text| text["op"] != "advertise").unwrap()
     }
@@ -350,7 +350,6 @@ impl Operated {
         call(&mut self.viewer, self.request, &json!({ "token": self.token, "line": line }))
     }
 
-    /// Also answers pings.
     fn read_for(&mut self, time: Duration) {
         let end = Instant::now() + time;
         while Instant::now() < end {

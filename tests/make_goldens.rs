@@ -92,7 +92,6 @@ fn read(renames: Option<&Path>) -> Result<Renames, String> {
     Renames::parse(&text).map_err(|error| at(&error))
 }
 
-/// On all processors. Returns the results in order, and prints errors.
 fn each<T: Send>(
     wanted: &[&Scenario],
     work: impl Fn(&Scenario) -> Result<T, Failed> + Sync,
@@ -194,7 +193,6 @@ fn against(
     ExitCode::from(u8::from(failed > 0))
 }
 
-/// A trace without a scenario is not compared.
 fn stray_trace(directory: &Path, all: &[Scenario]) -> Option<PathBuf> {
     let known: Vec<PathBuf> = all.iter().map(|scenario| trace::path(directory, &scenario.name)).collect();
     let entries = fs::read_dir(directory).into_iter().flatten().flatten().map(|entry| entry.path());

@@ -72,7 +72,6 @@ impl Cell {
     }
 }
 
-/// All lines must be accepted.
 fn ask(client: &mut Client, lines: &[&str]) {
     for line in lines {
         let answer = client.ask(line).unwrap();
@@ -80,7 +79,6 @@ fn ask(client: &mut Client, lines: &[&str]) {
     }
 }
 
-/// Returns the last status.
 fn wait_for(client: &mut Client, text: &str) -> String {
     let begun = Instant::now();
     loop {
@@ -411,7 +409,6 @@ fn stand_by_job_starts_when_permitted_and_ends_with_its_failure_if_unattended() 
     assert_repeats_with(|config| RunConfig { stand_by: true, ..config }, &outcome, &log, &directory);
 }
 
-/// The request could not be in a job.
 #[test]
 fn request_gets_the_verdict_of_a_job_line() {
     let cell = Cell::start(TO_SAFE_AND_HOME, |config| RunConfig { stand_by: true, ..config });
@@ -573,7 +570,6 @@ fn sessions_with_equal_names_do_not_command_at_the_same_time() {
     assert_repeats(&outcome, &log, &directory);
 }
 
-/// Without a limit, or after its limit.
 #[test]
 fn expired_request_is_executed_only_if_it_stops() {
     let cell = Cell::start(TO_SAFE_AND_HOME, |config| config);

@@ -5,7 +5,6 @@ use std::{fs, os::unix::fs::symlink, process::Command as Process};
 
 use whole_system_tests::{Scratch, rcs_log, rcs_run, root};
 
-/// Without times of the controller and of the wall clock.
 fn comparable(line: &str) -> String {
     let depends = match line.split_once(';') {
         Some((times, _)) if line.starts_with("controller ") => times.len(),
@@ -53,7 +52,7 @@ fn words(command: &str) -> Vec<String> {
     words
 }
 
-/// A program of this workspace, or one of the shell's.
+/// The process of a command: a program of this workspace, or one of the shell's.
 fn process(command: &str) -> Process {
     let Some(rest) = command.strip_prefix("cargo run --release") else {
         let mut shell = Process::new("sh");
@@ -70,7 +69,7 @@ fn process(command: &str) -> Process {
     process
 }
 
-/// With the shipped data and viewers. Returns the number of samples.
+/// Runs the samples of a page with the shipped data and viewers. Returns their number.
 fn run_samples(page: &str) -> usize {
     let text = fs::read_to_string(root().join(page)).expect("the page is there");
     let scratch = Scratch::new("samples");

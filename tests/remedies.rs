@@ -75,7 +75,6 @@ impl Operated {
         answer
     }
 
-    /// The tick must not end the run.
     fn step(&mut self, what: &str) {
         if !self.run.as_mut().unwrap().step() {
             self.panic_at_the_end(what);
@@ -87,7 +86,6 @@ impl Operated {
         panic!("{what}: the run has ended at tick {}: {}", outcome.result.ticks, story(&outcome));
     }
 
-    /// All lines must be accepted.
     fn please(&mut self, lines: &[&str]) -> &mut Self {
         for line in lines {
             if let Err(why) = self.ask(line) {
@@ -114,7 +112,6 @@ impl Operated {
         panic!("{what}: not by tick {}", self.tick());
     }
 
-    /// A sent command has then ended.
     fn until_it_waits(&mut self) -> &mut Self {
         for _ in 0..LIMIT {
             let status = self.ask("status").unwrap();
@@ -197,7 +194,7 @@ const TO_VISE: &str = "** tray UNIT_1 4 LINKBAR1_BH 0 0 0
 ** vise partial PFIXTURE
 == MOVE LINKBAR1_BH +2 UNIT_1 4 +2 PFIXTURE 0 -- 0
 ";
-/// From the tray to the turning machine, with the v-gripper.
+/// A shaft goes from the tray to the turning machine, with the v-gripper.
 const SHAFT: &str = "** tray UNIT_2 7 SHAFT_BH
 == TRANSFER SHAFT_BH +1 UNIT_2 7 +1 V-VFIXTURE 0 HOME 0
 ";
@@ -428,7 +425,7 @@ fn robot_clear_of_the_pedestal_leaves_and_the_regrip_continues() {
     it.finishes();
 }
 
-/// By `write subtask.regrip`.
+/// The operator names the part with `write subtask.regrip`.
 #[test]
 fn part_in_the_pedestal_is_named_by_the_person() {
     let mut it = flipping();
@@ -439,7 +436,6 @@ fn part_in_the_pedestal_is_named_by_the_person() {
     it.finishes();
 }
 
-/// The regrip continues from the angle.
 #[test]
 fn regrip_continues_after_a_person_turned_the_table() {
     let mut it = flipping();
@@ -452,7 +448,6 @@ fn regrip_continues_after_a_person_turned_the_table() {
     it.finishes();
 }
 
-/// By `pedestal release by hand`; the next PRE-GRIP calibrates the table.
 #[test]
 fn table_without_a_known_angle_is_calibrated_after_the_part_is_taken_out() {
     let mut it = flipping();

@@ -14,7 +14,6 @@ use whole_system_tests::{Outcome, run_with};
 
 const FEW: u64 = 4;
 const JOBS: [&str; 4] = ["linkbar", "clevis", "turned-part", "tool-change"]; // in turn
-/// The run continues for a while at these rates.
 const FAULTS: [(&str, f64); 7] = [
     ("flip", 2e-4),
     ("drop", 1e-4),

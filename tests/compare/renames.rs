@@ -77,7 +77,6 @@ impl Renames {
         Some(new)
     }
 
-    /// Only the new version has the field.
     pub(super) fn is_added(&self, path: &str, used: &mut BTreeSet<Rule>) -> bool {
         let rule = self.added.iter().position(|rule| path_matches(&rule.path, path));
         used.extend(rule.map(Rule::Added));

@@ -12,7 +12,6 @@ use super::{
     renames::{Renames, Rule},
 };
 
-/// Both rows fired in the same tick.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Pair {
     pub process: String, // in common memory of the new version

@@ -44,7 +44,6 @@ impl Controller {
         Self::start_at(Scratch::new(name), None, outside, more)
     }
 
-    /// Without a role all neighbours are its own.
     pub fn start_at(scratch: Scratch, address: Option<&str>, outside: &str, more: &[&str]) -> Self {
         let socket = format!("unix:{}", scratch.file("rcs.sock").display());
         let mut child = Command::new(rcs_run())
@@ -94,7 +93,6 @@ impl Controller {
         }
     }
 
-    /// Returns the reason of a refusal.
     pub fn try_connect(&self, role: Role) -> Result<Peer, PeerError> {
         Peer::connect_within(PATIENCE, &self.address, role)
     }
@@ -179,7 +177,6 @@ impl Workstation {
         self.write(&command::encode(command).expect("it fits"));
     }
 
-    /// Waits until the line has been executed.
     pub fn in_cell(&mut self, line: &str) {
         self.begin_in_cell(line);
         loop {
@@ -196,7 +193,6 @@ impl Workstation {
         self.write_cell(&cell::encode_line(self.line, line));
     }
 
-    /// The last line has been read and executed.
     pub fn cell_is_idle(&self) -> bool {
         self.cell().echo == self.line && !self.cell().busy
     }
@@ -278,7 +274,6 @@ pub fn computed_alone(job: &str, options: &[&str]) -> u64 {
     computed(&log)
 }
 
-/// With all neighbours in the controller's process.
 pub fn run_alone(arguments: &[&str]) -> Value {
     let output = Command::new(rcs_run())
         .args(arguments)

@@ -135,7 +135,6 @@ fn an_unreset_emergency_stop_ends_the_run_when_the_arm_rests() {
     assert_eq!(ended.result["emergency_stop"]["at_rest"], true);
 }
 
-/// Also after a requested end.
 #[test]
 fn an_unreset_emergency_stop_is_a_failure_on_the_grid_too() {
     let controller = Controller::start("standing", "workstation", &["--json", "--clock", "real"]);

@@ -42,7 +42,6 @@ impl Cell {
         fs::write(self.poses(), text.replace(from, to)).expect("it can be written");
     }
 
-    /// The run must finish.
     fn play(self, more: &[&str], play: impl FnOnce(&Self, &mut Workstation)) -> Left {
         let text = |name: &str| self.scratch.file(name).display().to_string();
         let (data, log, socket) = (text("data"), text("run.mcap"), format!("unix:{}", text("rcs.sock")));

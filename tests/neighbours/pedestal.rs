@@ -92,7 +92,6 @@ impl Shop {
         self.workstation.carry_out(&command(self.number, line))
     }
 
-    /// Returns the reason of the failed regrip.
     fn fails(&mut self) -> String {
         let (status, reason) = self.carry_out(REFIXTURE);
         assert_eq!(status, "error");
@@ -131,7 +130,6 @@ enum Fate {
 
 type Remains = (System, u16); // an ended pedestal, and the counts of its finger potentiometer
 
-/// On a thread, which ends with its script or the connection.
 struct Guest {
     serving: JoinHandle<Remains>,
     is_there: Arc<AtomicBool>,
@@ -203,7 +201,6 @@ fn serve(mut peer: Peer, fate: Fate, is_there: &AtomicBool) -> Remains {
     (system, opening)
 }
 
-/// In another process; the flag is set at the first pulse.
 fn start_pedestal(program: &Path, controller: &Controller) -> (Child, Arc<AtomicBool>) {
     let mut child = Command::new(program)
         .args(["pedestal", "--wait", "1", "--network", &controller.address.to_string()])

@@ -31,7 +31,6 @@ fn hand_over() -> String {
     "** workstation".to_owned()
 }
 
-/// With the number after the echo. Waits for the end.
 fn next(workstation: &mut Workstation, verb: &str, destination: &str) -> String {
     let number = u32::from(workstation.status().echo) + 1;
     let command = HwsCommand { destination: Some(Name16::clipped(destination)), ..bare(number, verb) };

@@ -10,7 +10,7 @@ use sessions::operator::Client;
 
 use super::bench::{Controller, PATIENCE, Workstation, bare};
 
-/// Until it is accepted, while the workstation controller reads on. Only these refusals are expected.
+/// Repeats a request until it is accepted; the workstation controller reads meanwhile.
 fn ask_until(client: &mut Client, workstation: &mut Workstation, request: &str, meanwhile: &[&str]) {
     let begun = Instant::now();
     while let Err(why) = client.ask(request).expect("the run answers") {

@@ -208,7 +208,6 @@ enum Fate {
     DiesInTheMiddle, // after it has reported that it is busy
 }
 
-/// On a thread, which ends with the connection. It knows the cell only from the picture.
 fn serve(mut peer: Peer, fate: Fate) -> JoinHandle<()> {
     thread::spawn(move || {
         let mut response_box = Mailbox::initialized(VISION_RESPONSE);
@@ -247,7 +246,6 @@ fn serve(mut peer: Peer, fate: Fate) -> JoinHandle<()> {
     })
 }
 
-/// The true state of the only part in the picture.
 fn answer(request: &VisionRequest, picture: &Picture) -> VisionResponse {
     let [part] = &picture.parts[..] else { panic!("{picture:?}") };
     let [x, y, z] = part.centre;

@@ -101,7 +101,6 @@ fn refused_commands_report_the_reason_and_cause_no_motion() {
     assert_eq!(disturbed, quiet);
 }
 
-/// A job could not contain such a command.
 #[test]
 fn command_that_fails_its_check_is_refused_with_the_reason_of_a_job_line() {
     let controller = Controller::start("verdict", "workstation", &["--json"]);

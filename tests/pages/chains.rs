@@ -8,7 +8,7 @@ use whole_system_tests::{root, tables::files};
 const PAGE: &str = "docs/design/tables.md";
 const HEAD: &str = "| process | commands | tables in their order |\n|---|---|---|\n";
 
-/// By function: `e_pause` of `e_pause` is `E-PAUSE`.
+/// Names of tables by function: `e_pause` of `e_pause` is `E-PAUSE`.
 fn names(sources: &[(PathBuf, String)]) -> BTreeMap<(PathBuf, String), String> {
     let mut names = BTreeMap::new();
     for (path, text) in sources {

@@ -16,7 +16,6 @@ mod words;
 
 const PLACES: [&str; 9] = [".", "docs", "docs/design", "data", "crates", "bins", "benches", "fuzz", "tests"];
 
-/// Those in [`PLACES`] and in their direct subdirectories.
 fn pages() -> BTreeSet<PathBuf> {
     let entries = |directory: &Path| {
         let entries = fs::read_dir(directory).expect("the directory is there");
@@ -45,7 +44,6 @@ fn links(text: &str) -> Vec<&str> {
     text.split("](").skip(1).filter_map(|rest| rest.split_once(')')).map(|(target, _)| target).collect()
 }
 
-/// As the web page of a repository makes them.
 fn anchors(text: &str) -> BTreeSet<String> {
     let headings = text.lines().filter(|line| line.starts_with('#'));
     let anchor = |heading: &str| {

@@ -23,7 +23,7 @@ struct Word {
     pages_only: bool,
 }
 
-/// In lower case, separated and enclosed by single spaces. A `-` belongs to a word.
+/// Words in lower case, separated and enclosed by single spaces. A `-` belongs to a word.
 fn normalized(text: &str) -> String {
     let is_of_word = |c: char| c.is_alphanumeric() || matches!(c, '\'' | '-' | '_');
     let words = text.split(|c| !is_of_word(c)).filter(|word| !word.is_empty()).map(str::to_lowercase);
@@ -34,7 +34,7 @@ fn without_code(text: &str) -> String {
     text.split('`').step_by(2).collect::<Vec<_>>().join("CODE")
 }
 
-/// Includes the text after `//` in a string literal.
+/// The comments of a source, including the text after `//` in a string literal.
 fn comments(source: &str) -> String {
     let texts = source.lines().filter_map(|line| line.split_once("//").map(|(_, comment)| comment));
     texts.collect::<Vec<_>>().join("\n")

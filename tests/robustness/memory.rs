@@ -28,7 +28,6 @@ fn values(run: &RunName) -> Vec<PathBuf> {
     traces(run).into_iter().filter(|path| path.is_file() && is_value(path)).collect()
 }
 
-/// Includes those in its directory.
 fn files(path: PathBuf) -> Vec<PathBuf> {
     match fs::read_dir(&path) {
         Ok(entries) => entries.flatten().flat_map(|entry| files(entry.path())).collect(),
@@ -58,7 +57,7 @@ fn damage(path: &Path, chance: &mut Chance) {
     }
 }
 
-/// Without readers, in fast clock, where the robot does not ramp down after the last tick.
+/// The digest of a run without readers. In fast clock the robot does not ramp down after the last tick.
 fn undisturbed(directory: &Path) -> String {
     let fast = ["--ticks", TICKS, "--log", "none", "--shared-memory", "off"];
     Ended::run(directory, "linkbar", &fast).digest().to_owned()

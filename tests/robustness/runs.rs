@@ -7,7 +7,6 @@ use whole_system_tests::bench::{Ended, Running, assert_cleaned, traces, wait_for
 
 use crate::table::Outcome;
 
-/// The argument, and its name in the table.
 pub const BOARDS: [(&str, &str); 2] = [("one", "one process"), ("split", "five boards")];
 
 pub fn start(directory: &Path, boards: &str, ticks: &str, log: &str) -> Running {

@@ -19,7 +19,6 @@ const COLUMNS: [&str; 4] = ["continued", "ended in order", "ended with a message
 pub struct Chance(u64); // determined by a seed
 
 impl Chance {
-    /// A separate stream per case and row.
     fn new(seed: u64, row: &str, case: u64) -> Self {
         let mixed = row.bytes().fold(seed ^ 0xCBF2_9CE4_8422_2325, |hash, byte| {
             (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01B3)
@@ -27,7 +26,6 @@ impl Chance {
         Self((mixed ^ case.wrapping_mul(0x9E37_79B9_7F4A_7C15)) | 1)
     }
 
-    /// From 0 to `limit` - 1; 0 if `limit` is 0.
     pub fn below(&mut self, limit: u64) -> u64 {
         self.0 ^= self.0 << 13; // george Marsaglia, Xorshift RNGs, Journal of Statistical Software 8 (2003)
         self.0 ^= self.0 >> 7;

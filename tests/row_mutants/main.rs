@@ -103,7 +103,6 @@ impl Copied {
         Ok(())
     }
 
-    /// For `levels`. Returns the messages, and the other output if it fails.
     fn cargo(&self, arguments: &[&str]) -> io::Result<(Vec<Value>, Option<String>)> {
         let mut command = Command::new("cargo");
         command.args(arguments).args(["--quiet", "--package", "levels", "--message-format=json"]);
@@ -175,7 +174,6 @@ impl Copied {
     }
 }
 
-/// The number of the change to which an error of the compiler belongs.
 fn place(error: &Value, switched: &Switched) -> Option<usize> {
     let spans = error["message"]["spans"].as_array()?;
     let primary = spans.iter().filter(|span| span["is_primary"] == true);
@@ -212,7 +210,6 @@ fn on_all_cores<T: Sync, R: Send>(
     results.into_iter().map(|(_, result)| result).collect()
 }
 
-/// Without a change: the quickest first.
 fn measured<'a>(
     programs: &'a [Program],
     scratch: &Path,

@@ -37,7 +37,7 @@ impl fmt::Display for Mutant {
 }
 
 impl Mutant {
-    /// As in the names of tests; empty for a table of all processes.
+    /// The process as in the names of tests; empty for a table of all processes.
     pub fn process(&self) -> String {
         let mut parts = self.file.components().skip(3).map(|part| part.as_os_str().to_string_lossy());
         match (parts.next(), parts.next()) {
@@ -52,7 +52,7 @@ impl Mutant {
             .is_some_and(|(table, number)| table.replace('-', "_") == self.table && number == self.row)
     }
 
-    /// The table passes on by a row that is changed, or with the change.
+    /// True if the changed row passes a value on, before or after the change.
     pub fn passes(&self) -> bool {
         let other = self.other.as_ref().map(|(_, after)| after);
         [&self.before, &self.after].into_iter().chain(other).any(|row| row.contains("=> consult"))
@@ -82,7 +82,7 @@ fn mutant(table: &Table, row: &Row, what: What, changed: &Row, other: Option<&Ro
     }
 }
 
-/// Another action, another next step or none, or an alternative that moves to another row of the group.
+/// All changes of a row: its action, its next step, or an alternative that moves to another row of the group.
 pub fn mutants(table: &Table) -> Vec<Mutant> {
     let mut mutants = Vec::new();
     for row in &table.rows {

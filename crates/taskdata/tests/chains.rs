@@ -83,7 +83,6 @@ const CLEVIS: [f64; 3] = [1.73, 1.68, 1.63]; // heights of the lying clevis, in:
 const CLEVIS_WIDTH: f64 = 2.56;
 const CLEVIS_LENGTH: f64 = 4.00;
 
-/// The position of a seated clevis in the frame of the vise, in.
 fn clevis_seat(height: f64) -> [f64; 3] {
     let vise = &cell()["vise"];
     let programs = vise["program"].as_array().unwrap();

@@ -13,7 +13,6 @@ fn source(text: &str) -> Source {
     Source { name: "test.blk".to_owned(), text: text.into() }
 }
 
-/// The text in lines of at most 64 columns.
 fn folded(text: &str) -> String {
     let mut out = String::new();
     for line in text.lines() {

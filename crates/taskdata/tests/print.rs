@@ -27,7 +27,6 @@ fn named<const N: usize>() -> impl Strategy<Value = Named<N>> {
         .prop_map(|text| Named { name: Name::new(&text).unwrap(), at: At::default() })
 }
 
-/// A name of at most ten characters, in the width of the longest names.
 fn wide() -> impl Strategy<Value = Named<16>> {
     named::<10>().prop_map(|n| Named { name: Name::clipped(n.name.as_str()), at: n.at })
 }

@@ -58,7 +58,6 @@ enum Piece {
     Value(Value, usize),        // padded with blanks to the width
 }
 
-/// A value in the string of a command (REPORT-ITEM, IX.2).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Value {
     ItemType,
@@ -223,7 +222,6 @@ fn widened(name: &Name10) -> Name16 {
     Name16::clipped(name.as_str())
 }
 
-/// A command as decoded by the server.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Received<'a> {
     pub command_id: u16,

@@ -71,7 +71,6 @@ pub struct DataSystem<K = InMemory> {
 }
 
 impl DataSystem {
-    /// A Data System in memory; each answer takes `answer_ticks` ticks.
     #[must_use]
     pub fn in_memory(answer_ticks: u64) -> Self {
         Self::new(InMemory::default(), answer_ticks)
@@ -84,7 +83,6 @@ impl DataSystem {
 }
 
 impl<K: Keeper> DataSystem<K> {
-    /// Each answer takes at least `answer_ticks` ticks.
     #[must_use]
     pub fn new(keeper: K, answer_ticks: u64) -> Self {
         Self {

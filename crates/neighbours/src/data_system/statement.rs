@@ -43,7 +43,6 @@ pub struct Update<'a> {
 }
 
 impl<'a> Update<'a> {
-    /// The new value of a column, if the statement sets it.
     #[must_use]
     pub const fn value(&self, column: Column) -> Option<&'a str> {
         self.values[column as usize]

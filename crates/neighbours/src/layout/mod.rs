@@ -61,7 +61,6 @@ pub struct Table {
 }
 
 impl Table {
-    /// A Markdown table: offset, size, variable and meaning of each field.
     #[must_use]
     pub fn markdown(&self) -> String {
         let mut page = "| at | bytes | variable | |\n|---|---|---|---|\n".to_owned();

@@ -90,7 +90,6 @@ impl System {
         self.write();
     }
 
-    /// The mailboxes with statuses, and with orders to the devices.
     #[must_use]
     pub const fn outgoing(&self) -> &[Mailbox; 4] {
         &self.outgoing

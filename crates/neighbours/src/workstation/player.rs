@@ -262,7 +262,6 @@ impl Hwsc {
         &self.progress
     }
 
-    /// The current step or a later one resets a fault of the robot controller.
     #[must_use]
     pub fn resets_emergency(&self) -> bool {
         let reset = Step::Workstation(Action::Panel(Key::FaultReset));
@@ -377,7 +376,6 @@ impl Hwsc {
         }
     }
 
-    /// The first failed command without a successful repetition.
     fn unfinished(&self) -> Option<JobFailure> {
         self.failed.iter().find_map(|FailedCommand { step, tick, reason }| {
             let (failed, later) = self.begun_steps.get(*step..)?.split_first()?;

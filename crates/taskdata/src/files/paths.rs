@@ -147,7 +147,6 @@ impl<'a> TaskData<'a> {
         self.between(from, to, |key| self.indexes.trajectories.find(key)).map(TrajId::new)
     }
 
-    /// The first pair of aliases for which `find` has an answer.
     fn between(&self, from: &Place, to: &Place, find: impl Fn(Key) -> Option<u32>) -> Option<u32> {
         let ends = self.aliases(to);
         self.aliases(from).find_map(|start| ends.clone().find_map(|end| find(pair_key(start, end))))

@@ -112,7 +112,6 @@ pub struct PathPoint {
     pub target: Target,
 }
 
-/// A run of records of PATH-PTS.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Path {
     pub first: u32, // position of the first point, from 0

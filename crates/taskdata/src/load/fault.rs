@@ -109,7 +109,6 @@ fn names_beside(at: At, sources: &[Source]) -> Vec<String> {
     block.lines.iter().flat_map(|line| names_in(line.text)).collect()
 }
 
-/// The words with a capital letter.
 fn names_in(line: &str) -> impl Iterator<Item = String> + use<'_> {
     let is_name = |word: &&str| word.bytes().any(|byte| byte.is_ascii_uppercase());
     line.split_whitespace().filter(is_name).map(str::to_owned)

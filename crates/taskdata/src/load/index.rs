@@ -25,7 +25,6 @@ trait Cells: Default {
         pair.key
     }
 
-    /// All pairs of a key, in the order of their records.
     fn put<'p>(&mut self, slot: usize, pairs: impl Iterator<Item = &'p Pair> + Clone);
 }
 
@@ -131,7 +130,6 @@ impl OwnedIndex {
         self.0.cells.slots.iter().filter(|slot| slot.number > 0).map(|slot| slot.key)
     }
 
-    /// The record numbers of each key that records share.
     pub fn shared(&self) -> impl Iterator<Item = &[u32]> {
         let mut position = 1;
         std::iter::from_fn(move || {
@@ -198,7 +196,6 @@ impl OwnedPlaceIndex {
         PlaceIndex { pilots, groups: &cells.groups, seed: *seed, crowded: self.crowded.view() }
     }
 
-    /// The record numbers of each key that records share at one location.
     pub fn shared(&self) -> impl Iterator<Item = &[u32]> {
         self.crowded.shared()
     }

@@ -54,7 +54,6 @@ pub(super) fn map_pieces<T: Send>(
 
 const ITEMS_AT_A_TIME: usize = 2048; // for one processor in [`map_each`]
 
-/// The results of `work` on all items, in order.
 pub(super) fn map_each<'i, I: Sync, T: Send>(
     items: &'i [I],
     work: impl Fn(&'i I) -> T + Sync,

@@ -112,7 +112,6 @@ impl<'a> Parser<'a, '_> {
         if self.peek()?.text == text { self.take() } else { None }
     }
 
-    /// The rest of the entry is still readable.
     pub fn flaw(&mut self, code: &'static str, at: At, message: impl Into<String>, help: Option<String>) {
         self.flawed = true;
         self.problems.push(Severity::Error, code, at, message.into(), help);
@@ -163,7 +162,6 @@ impl<'a> Parser<'a, '_> {
         self.name_within(what, N)
     }
 
-    /// A name of at most `most` characters.
     fn name_within<const N: usize>(&mut self, what: impl Display, most: usize) -> Result<Named<N>, Skip> {
         let Some(word) = self.peek().filter(|w| !is_compiling_word(w.text) && !is_integer(w.text)) else {
             return Err(self.expected(&what.to_string()));

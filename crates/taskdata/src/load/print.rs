@@ -16,7 +16,6 @@ use geometry::movetable::{MovetableLine, System};
 
 const INDENT: &str = "  "; // without this indent a form could be read as a listing with line numbers
 
-/// The lines of a form, each of at most 64 columns.
 #[must_use]
 pub fn form(entry: &Entry) -> Vec<String> {
     let parts = parts(entry);

@@ -56,7 +56,6 @@ pub fn show(p: &mut Parser<'_, '_>) -> Result<Entry, Skip> {
     }
 }
 
-/// The settings in the order of the record; each variable is set once.
 fn settings_of<const N: usize>(
     p: &mut Parser<'_, '_>,
     settings: &[(Word<'_>, Word<'_>)],

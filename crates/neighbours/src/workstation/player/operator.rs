@@ -98,7 +98,6 @@ impl Hwsc {
         matches!(self.intervention.state, State::Waits { .. })
     }
 
-    /// The operator's last command has ended.
     #[must_use]
     pub const fn waits_idle(&self) -> bool {
         matches!(self.intervention.state, State::Waits { command: None, .. })
@@ -166,7 +165,6 @@ impl Hwsc {
         hwsc
     }
 
-    /// Waits for an operator after the job is over or has failed.
     pub fn wait_without_job(&mut self) {
         self.steps.clear();
         self.later.clear();

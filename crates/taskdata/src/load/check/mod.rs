@@ -119,7 +119,6 @@ fn owners_of<'a>(data: &TaskData<'a>, member: Reference) -> impl Iterator<Item =
     data.indexes.members.all(reference_key(member)).iter().map(|&number| OwnerId::new(number))
 }
 
-/// All sectors of an array; none if the owner's first member is not a location point.
 fn sectors(data: &TaskData<'_>, owner: OwnerId, array_id: ArrayId) -> Vec<Location> {
     let corner = data.members_of(owner).first().and_then(|m| at_point(data, m.member));
     let (Some(array), Some(corner)) = (data.array(array_id), corner) else { return Vec::new() };

@@ -47,7 +47,6 @@ pub(super) fn check(data: &TaskData<'_>, origins: &Origins, findings: &mut Findi
     }
 }
 
-/// The places of an end, at most about [`TRIED`].
 fn places(data: &TaskData<'_>, end: Reference) -> Vec<Place> {
     match end.kind {
         RefType::LocationPoint => at_point(data, end).map(|l| l.place).into_iter().collect(),
@@ -74,7 +73,6 @@ fn places(data: &TaskData<'_>, end: Reference) -> Vec<Place> {
     }
 }
 
-/// The places of an array: at the corners of its owners, and at its own pose.
 fn at_array(data: &TaskData<'_>, array: Reference) -> Vec<Place> {
     let id = ArrayId::new(array.number);
     let corners = owners_of(data, array)

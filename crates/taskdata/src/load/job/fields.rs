@@ -40,7 +40,6 @@ pub(super) struct Number {
     pub(super) at: At,
 }
 
-/// A name; empty for `--`.
 #[derive(Clone, Copy)]
 pub(super) struct Field {
     pub(super) name: Name16,

@@ -83,7 +83,6 @@ impl Needs<'_, '_> {
         }
     }
 
-    /// Returns the held object after the command.
     pub(super) fn check(&mut self, held: Held) -> Held {
         self.fields();
         self.sectors();
@@ -107,7 +106,6 @@ impl Needs<'_, '_> {
         self.findings.push(finding(field, "job.needs", message, Some(help.into())));
     }
 
-    /// The object and the locations that the verb needs.
     fn fields(&mut self) {
         let (verb, command) = (self.verb, self.command);
         let takes = self.is(&["TRANSFER", "REFIXTURE", "ACQUIRE"]);
