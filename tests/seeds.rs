@@ -24,7 +24,6 @@ const RANDOM: [(&str, &str, &[&str]); 2] = [
     ("clevis", "UNIT_1 3", &["UNIT_1 1", "UNIT_1 2", "UNIT_1 4"]),
 ];
 
-/// A job, and the sector of its random part.
 #[derive(Clone, Copy)]
 struct Kind {
     job: &'static str,
@@ -52,7 +51,6 @@ impl Kind {
     }
 }
 
-/// Every shipped job, then each part from each sector.
 fn kinds() -> Vec<Kind> {
     let shipped = JOBS.map(|job| Kind { job, sector: None });
     let sectors = RANDOM

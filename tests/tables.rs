@@ -142,7 +142,6 @@ fn only(steps: &[String]) -> Option<&String> {
     Some(step).filter(|step| *step != "any")
 }
 
-/// Under a directory. Fails if a directory cannot be listed.
 pub fn files(directory: &Path, extension: &str, found: &mut Vec<PathBuf>) -> io::Result<()> {
     for entry in fs::read_dir(directory)? {
         let path = entry?.path();

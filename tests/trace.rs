@@ -46,7 +46,6 @@ pub fn path(directory: &Path, scenario: &str) -> PathBuf {
     directory.join(scenario).with_added_extension(EXTENSION)
 }
 
-/// Returns the number of ticks. Errors: [`Failed`].
 pub fn write(log: &Log, ending: &Ending, path: &Path) -> Result<u64, Failed> {
     log.check_layout()?;
     let failed = |source| Failed::File { path: path.to_owned(), source };
@@ -308,7 +307,6 @@ fn without_rows(sentence: &str) -> String {
     text + rest
 }
 
-/// Tabs and ends of lines separate values.
 fn plain(value: &str) -> String {
     let escape = |letter: char| match letter.is_control() {
         true => letter.escape_default().to_string(),

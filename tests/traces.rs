@@ -10,7 +10,6 @@ use whole_system_tests::{
 
 const END: &str = "end\tticks\t9\nend\tstatus\t0\n";
 
-/// Lines have blanks instead of tabs.
 fn trace(lines: &[&str]) -> String {
     let tabs = |line: &&str| line.replacen(' ', "\t", 2) + "\n";
     lines.iter().map(tabs).collect::<String>() + END

@@ -85,7 +85,6 @@ impl<'a> Head<'a> {
         format!("{}_{which}", self.decide.trim_start_matches("r#"))
     }
 
-    /// The original table under another name.
     fn unchanged(&self) -> String {
         let step = match (self.step, self.declares) {
             (Some(step), true) => format!("enum {step}, "),
@@ -96,7 +95,6 @@ impl<'a> Head<'a> {
         format!("    pub {name}: fn {function}({step}{}) -> {} {{", self.situation, self.result)
     }
 
-    /// Its steps are those of the first table.
     fn changed(&self, number: usize) -> String {
         let step = self.step.map_or_else(String::new, |step| format!("{step}, "));
         let (name, function) = (self.name, self.function(&format!("changed_{number}")));

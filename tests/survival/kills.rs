@@ -17,7 +17,6 @@ fn kills() -> u64 {
     std::env::var("RCS_KILLS").map_or(4, |text| text.parse().expect("RCS_KILLS is a number"))
 }
 
-/// The replay reaches `tick` within `behind` ticks.
 fn assert_log_reaches(log: &std::path::Path, tick: u64, behind: u64) {
     let report = replay(log).expect("the log of a killed run can be read");
     if let Some(difference) = &report.first_difference {

@@ -13,7 +13,6 @@ const TICKS: &str = "300"; // long enough for a second of punctual ticks, also i
 const STOPPED: Duration = Duration::from_millis(1_000);
 const SKIPPED: u64 = 24; // the awaited slot may still be in time
 
-/// It is stopped for a second in tick 40, and then continues.
 fn stopped_for_a_second(directory: &Path, more: &[&str]) -> Ended {
     let all = [&["--clock", "real", "--ticks", TICKS][..], more].concat();
     let mut run = Running::start(directory, "linkbar", &all);

@@ -12,7 +12,6 @@ use whole_system_tests::{
     bench::{Ended, Running, apart, job, rcs},
 };
 
-/// A run of 500 ticks finished and printed a sentence.
 fn assert_goes_on(ended: &Ended, sentence: &str) {
     assert_eq!(ended.status, Some(0), "{}", ended.said);
     assert_eq!(ended.number("ticks"), 500);

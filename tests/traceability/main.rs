@@ -284,7 +284,6 @@ fn figures_and_sections_match_the_interfaces() {
     }
 }
 
-/// The page gives the meaning of a code in a mailbox.
 #[test]
 fn every_reason_is_on_its_page() {
     let mut rows = String::new();

@@ -211,13 +211,11 @@ impl ReplyReceiver {
         *self = Self::default();
     }
 
-    /// The bytes from `place` on can begin a report.
     fn may_begin(&self, place: usize) -> bool {
         let held = self.bytes.iter().take(usize::from(self.length)).skip(place);
         held.zip(Report::HEAD).all(|(byte, head)| *byte == head)
     }
 
-    /// Drops bytes up to the next one that can begin a report.
     fn resynchronise(&mut self) {
         let length = usize::from(self.length);
         let place = (1..length).find(|place| self.may_begin(*place)).unwrap_or(length);

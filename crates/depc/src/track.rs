@@ -122,7 +122,6 @@ mod tests {
         Plate::from_tool(frame, &T3, &Plate::default()).unwrap()
     }
 
-    /// Along X at 0.4 in per period.
     fn track(periods: u32) -> Track {
         let mut track = Track::default();
         track.begin(words(&at(0.0, 0.0)));

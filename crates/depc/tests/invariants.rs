@@ -21,7 +21,6 @@ const SCHEDULES: u64 = 10_000; // in an ordinary run
 const FAULTY_TICKS: u64 = 120; // with faults
 const MENDED_TICKS: u32 = 300; // two answers of the operator, a stalled line, and the motion to the goal
 
-/// Possibly an invalid one.
 fn rule(numbers: &mut Numbers) -> Rule {
     let kinds = u32::try_from(FaultKind::ALL.len()).unwrap();
     let kind = FaultKind::ALL[numbers.below(kinds) as usize];
@@ -48,7 +47,6 @@ fn rule(numbers: &mut Numbers) -> Rule {
     rule
 }
 
-/// One to four rules, and the number of refused ones.
 fn plan(seed: u64) -> (Plan, u64) {
     let mut numbers = Numbers::new(seed, 2);
     let (mut plan, mut refused) = (Plan::new(seed), 0);

@@ -392,7 +392,6 @@ proptest! {
     }
 }
 
-/// The bytes of a message, computed by hand.
 #[test]
 fn a_target_is_these_bytes() {
     let pose = egm::Pose { position: [1.0, 2.0, -2.0], ..egm::Pose::IDENTITY };

@@ -112,7 +112,6 @@ impl Walk<'_> {
         phase.used.extend(records.into_iter().flatten());
     }
 
-    /// Adds the records of the object there, even without a path to it.
     pub(crate) fn use_object(&self, phase: &mut Phase, command: &EmoveCommand, location: &Location) {
         let (data, origins, place) = (&self.data, self.store.origins(), &location.place);
         let Some(object) = &command.object else { return };

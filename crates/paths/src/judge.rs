@@ -57,7 +57,6 @@ impl State<'_> {
         (Walked { plan: phase, segments }, findings)
     }
 
-    /// The finding of a grasp off the middle of a part in the vise.
     pub(crate) fn beside(&self, step: &Step, phase: &Phase) -> Option<Finding> {
         let Step::Fingers { verb: EmoveVerb::GraspObj, object: Some(object), .. } = step else { return None };
         let tool = self.robot.tool();
@@ -82,7 +81,6 @@ impl State<'_> {
         })
     }
 
-    /// Opening of the fingers at the end, in.
     fn opening(&self, phase: &Phase) -> f64 {
         let gripper = self.room.worn(&self.layout);
         match (phase.opening_in, gripper) {

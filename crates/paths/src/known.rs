@@ -67,7 +67,6 @@ impl Outcome {
     }
 }
 
-/// Simulates a flight and checks the robot against the bodies of a layout.
 fn fly(asked: &Asked, room: &Room, layout: &Layout, devices: &[Body]) -> (Outcome, Swept) {
     let Asked { points, openings: [opening, at_goal], .. } = asked;
     let mut robot = asked.robot.clone();

@@ -48,7 +48,6 @@ impl Leg {
     }
 }
 
-/// One command of E-move or of a neighbour.
 #[derive(Clone, Debug, Serialize)]
 pub struct Phase {
     pub what: String,

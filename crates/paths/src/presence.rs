@@ -40,7 +40,6 @@ impl State<'_> {
         }
     }
 
-    /// The carried part, in world coordinates.
     fn carried(&self) -> Option<Placed> {
         let held = self.layout.held.as_ref()?;
         Some(Placed { frame: self.robot.tool().compose(&held.frame), ..held.clone() })

@@ -33,7 +33,6 @@ pub struct Standing {
 }
 
 impl Standing {
-    /// Checks a pose. Errors: a sentence for messages if the nine numbers are not a pose.
     pub fn of(pose: &Pose, data: &TaskData<'_>, room: &Room) -> Result<Self, String> {
         let frame = pose.to_frame().map_err(|error| error.to_string())?;
         let (joints, unreachable) = match T3.inverse(&frame, &HOME_JOINTS) {

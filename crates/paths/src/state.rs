@@ -127,7 +127,6 @@ impl<'a> State<'a> {
         }
     }
 
-    /// `task` is the command of Task to which the step belongs.
     pub fn step(&mut self, step: &Step, task: &str) -> (Walked, Vec<Finding>) {
         let hindrance = self.hindrance(step);
         let (walked, mut findings) = self.make(step, task);
@@ -303,7 +302,6 @@ impl<'a> State<'a> {
         }
     }
 
-    /// Simulates the camera at the location that the robot looks at.
     fn locate(&mut self) -> Phase {
         let seen = self.last.and_then(|(object, location)| {
             let part = self.layout.parts.get(self.nearest(&object, &location.frame)?)?;

@@ -43,7 +43,6 @@ pub enum Step {
     Other(&'static str),
 }
 
-/// Commands of Subtask to the pedestal (V.3.1 FIX-GRIP).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PedestalVerb {
     PreGrip, // hand open, table turned

@@ -21,7 +21,6 @@ const PUSH_FIT: f64 = 0.05; // more depth for a pushed part, in (ASSUMED): it li
 /// Greatest displacement of any point of the robot, in per radian of each joint, base to roll.
 const LEVERS: Joints = [105.0, 105.0, 65.0, 30.0, 27.0, 12.0];
 
-/// Two bodies that touch or pass.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Passing {
     pub mover: String, // body of the robot, or its part

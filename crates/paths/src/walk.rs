@@ -52,7 +52,6 @@ pub struct Walk<'a> {
 }
 
 impl<'a> Walk<'a> {
-    /// Starts at a location without an object.
     #[must_use]
     pub fn new(store: &'a Store, start: &Location) -> Self {
         Self::at(store, robot_at(GoneTo::Location, start, &start.frame))

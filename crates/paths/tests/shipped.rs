@@ -22,7 +22,6 @@ fn walked(job: &str) -> WalkedJob {
     walk_job(&job, &store, &room, &Known::default())
 }
 
-/// Checks that a job has no findings and all lines are checked.
 fn sound(job: &str) {
     let walked = walked(job);
     let said: Vec<&str> = walked.findings.iter().map(|one| one.message.as_str()).collect();

@@ -237,7 +237,6 @@ fn first(report: &Diagnostics) -> String {
     report.errors().next().map_or(String::new(), |error| format!("{}: {}", error.place(), error.message()))
 }
 
-/// `Err`: refused before the check of paths.
 fn walked(variant: &Variant, sources: &[Source], room: &Room) -> Result<WalkedJob, String> {
     let (name, job, file, from, to) = *variant;
     let mut sources = sources.to_vec();

@@ -78,7 +78,6 @@ impl FaultKind {
         matches!(self, Self::Delay | Self::Stall | Self::CtsLow)
     }
 
-    /// The fault acts only on bytes that were sent.
     const fn needs_bytes(self) -> bool {
         self.is_per_byte() || matches!(self, Self::Truncate | Self::Stall)
     }
@@ -181,7 +180,6 @@ impl Rule {
         u64::from(self.ticks.max(1))
     }
 
-    /// This rule drops every byte on which `other` could act.
     fn hides(&self, other: &Self) -> bool {
         let directions = (!other.to_controller || self.to_controller) && (!other.to_host || self.to_host);
         let ticks =
@@ -193,7 +191,6 @@ impl Rule {
             && ticks
     }
 
-    /// Checks the rule alone.
     fn check(&self) -> Result<(), Refusal> {
         let kind = self.kind;
         if !self.to_controller && !self.to_host {

@@ -138,7 +138,6 @@ impl Host {
         }
     }
 
-    /// Function bytes of the last data command.
     pub(super) fn function(&self) -> [u8; 2] {
         DataCommand::parse(&self.frame).map_or(NO_FUNCTION, |command| command.function)
     }

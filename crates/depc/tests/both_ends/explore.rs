@@ -48,7 +48,6 @@ impl Space {
         way
     }
 
-    /// Ticks from a state to its good end, at most; or a state without one.
     fn longest(&self, which: usize) -> Result<u32, u32> {
         const OPEN: u32 = u32::MAX;
         let mut ticks = vec![0_u32; self.onward.len()];
@@ -80,7 +79,6 @@ impl Space {
     }
 }
 
-/// Breadth first, over all states.
 pub fn search(setting: &Setting) -> Found {
     let first = State::first(setting);
     let mut space = Space::default();

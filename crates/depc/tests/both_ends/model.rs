@@ -74,7 +74,6 @@ pub enum Carried {
     Late(u8),    // with all frames after it, ticks
 }
 
-/// An action at the controller's panel before a tick.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Panel {
     Nothing,
@@ -203,7 +202,6 @@ pub struct State {
 }
 
 impl State {
-    /// Before either end has power.
     pub fn first(setting: &Setting) -> Self {
         let mut host = Host::new(ANSWER_TICKS);
         host.set_patience(PATIENCE);

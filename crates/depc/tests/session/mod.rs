@@ -149,12 +149,10 @@ impl Session {
         self.goal = Frame { position: home.position + shift, rotation: rotation_by(&turn) * home.rotation };
     }
 
-    /// True if the robot is at the goal, in words of the line.
     pub fn at_goal(&self) -> bool {
         self.robot.at.same(&Plate::from_tool(&self.goal, &T3, &self.robot.at).unwrap())
     }
 
-    /// Returns true if the host knows that the goal is reached.
     pub fn tick(&mut self) -> bool {
         let acknowledged = self.receive();
         let next = step(&self.position, &self.goal, &T3, &Limits::NBS).unwrap();
@@ -176,7 +174,6 @@ impl Session {
         reached
     }
 
-    /// Returns the number of an acknowledged command.
     fn receive(&mut self) -> Option<u16> {
         self.silent += 1;
         match self.host.receive(&self.to_host, self.dtr) {

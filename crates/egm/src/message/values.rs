@@ -50,7 +50,6 @@ impl Values {
         self.push(field.double()?)
     }
 
-    /// A message that contains the values in its field `number`.
     pub(super) fn merge(&mut self, number: u32, mut fields: Reader<'_>) -> Result<(), Error> {
         while let Some(field) = fields.next_field()? {
             if field.number == number {

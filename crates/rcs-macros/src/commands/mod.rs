@@ -128,7 +128,6 @@ impl Entry {
         self.chain.last().unwrap_or_else(|| unreachable!("a chain is not empty"))
     }
 
-    /// Named after its last command.
     fn variant(&self) -> &Ident {
         self.verbs.last().unwrap_or_else(|| unreachable!("an entry has a command"))
     }
@@ -232,7 +231,6 @@ impl Commands {
         }
     }
 
-    /// An enum with only the variables that the tables of each command test.
     fn situations(&self) -> TokenStream {
         let Some(senses) = &self.senses else { return TokenStream::new() };
         let (vis, name, verb) = (&self.vis, &self.situation, &self.verb);
@@ -307,7 +305,6 @@ impl Commands {
         }
     }
 
-    /// The tables of a command in turn.
     fn arm(&self, entry: &Entry, tables: &[Path]) -> TokenStream {
         let (verb, all) = (&self.verb, &self.step);
         let last = entry.last();

@@ -141,7 +141,6 @@ impl Order {
         }
     }
 
-    /// The order of consultation in the documentation.
     fn documentation(&self, commands: &Commands) -> Result<Vec<String>> {
         let mut lines = vec![
             String::from("Consult the tables in the declared order until a row decides:"),
