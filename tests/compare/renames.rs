@@ -39,7 +39,7 @@ pub struct Only {
 pub struct NewText {
     pub path: String,
     pub old: String,
-    pub new: String, // or [`ABSENT`] if the field does not exist
+    pub new: String, // or `ABSENT` if the field does not exist
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]

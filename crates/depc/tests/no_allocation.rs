@@ -34,7 +34,7 @@ impl Robot for Exact {
 }
 
 #[test]
-fn nothing_is_allocated() {
+fn link_does_not_allocate() {
     let home = T3.forward(&HOME_JOINTS);
     let at = Plate::from_tool(&home, &T3, &Plate::default()).unwrap();
     let mut plan = Plan::new(1);

@@ -199,7 +199,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn an_inverse_undoes_and_a_way_leads_there(a in pose(), b in pose()) {
+        fn inverse_and_displacement_lead_back_and_forth(a in pose(), b in pose()) {
             prop_assert!(near(&a.compose(&a.inverse()), &Pose::IDENTITY));
             prop_assert!(near(&a.moved(&a.way_to(&b)), &b));
             prop_assert!(near(&a.compose(&b).compose(&b.inverse()), &a));

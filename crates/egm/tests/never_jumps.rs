@@ -190,7 +190,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(2000))]
 
     #[test]
-    fn whatever_arrives_when(seed in any::<u64>(), events in vec(event(), 1..80)) {
+    fn targets_stay_within_the_limits_for_any_events(seed in any::<u64>(), events in vec(event(), 1..80)) {
         let mut bench = Bench::new(seed);
         bench.message();
         for event in &events {

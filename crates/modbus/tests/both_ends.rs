@@ -125,7 +125,7 @@ fn values(response: Response<'_>) -> Vec<u16> {
 
 proptest! {
     #[test]
-    fn server_answers_what_the_tables_hold(all in prop::collection::vec(requests(), 1..8)) {
+    fn server_answers_from_its_tables(all in prop::collection::vec(requests(), 1..8)) {
         let (mut device, mut model) = (Device::new(), Device::new());
         let mut client = Client::new(1);
         for owned in &all {

@@ -11,7 +11,7 @@ use os_io::alloc::{Counting, Section, allocations, is_installed};
 static ALLOCATOR: Counting = Counting;
 
 #[test]
-fn ten_thousand_exchanges_allocate_nothing() {
+fn ten_thousand_exchanges_do_not_allocate() {
     let (mut coils, mut holding) = ([false; 64], [0; 64]);
     let mut memory = Memory {
         coils: &mut coils,

@@ -55,7 +55,7 @@ impl fmt::Display for Passing {
 /// The least clearance and the deepest contact of a leg.
 #[derive(Clone, Debug, Default)]
 pub struct Seen {
-    pub nearest: Option<Passing>, // within [`MARGIN`]
+    pub nearest: Option<Passing>, // within `MARGIN`
     pub touched: Option<Passing>, // not permitted
 }
 
@@ -184,7 +184,7 @@ impl<'a> Survey<'a> {
         if -contact.depth < MARGIN && nearer(&self.seen.nearest) {
             self.seen.nearest = Some(Passing::from(contact));
         }
-        // The position of a part in the fingers is known only to [`FIT`].
+        // The position of a part in the fingers is known only to `FIT`.
         let sure = contact.mover_kind != Kind::HeldPart || contact.depth > FIT;
         if contact.touches() && sure && nearer(&self.seen.touched) {
             self.seen.touched = Some(Passing::from(contact));

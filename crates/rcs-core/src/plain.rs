@@ -514,7 +514,7 @@ mod tests {
     }
 
     #[test]
-    fn a_writer_without_room_counts() {
+    fn full_writer_counts_missing_bytes() {
         let mut bytes = [0xA5; 3];
         let mut w = Writer::new(&mut bytes);
         Lamp::default().encode(&mut w);

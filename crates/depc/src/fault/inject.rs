@@ -257,7 +257,7 @@ mod tests {
     const ABC: &[u8] = b"ABCDEFGH";
 
     #[test]
-    fn a_line_is_over_when_its_rules_are_past_and_it_holds_nothing() {
+    fn line_is_over_after_its_rules_and_without_bytes() {
         let late = Rule::new(FaultKind::Delay).at(5).ticks(4).only(Direction::ToHost);
         let low = Rule::new(FaultKind::CtsLow).at(6).ticks(3);
         for rules in [&[late, low][..], &[late]] {

@@ -55,7 +55,7 @@ fn is_stated(found: &Found) {
 }
 
 #[test]
-fn one_fault_of_any_kind_deceives_neither_end_and_is_over_or_reported_in_time() {
+fn one_fault_of_any_kind_is_detected_and_over_or_reported_in_time() {
     for functions in [false, true] {
         is_stated(&is_sound(&Setting { functions, faults: 1, kinds: KINDS.to_vec(), all_bits: true }));
     }
@@ -73,12 +73,12 @@ fn several_faults(functions: bool) {
 }
 
 #[test]
-fn two_faults_deceive_neither_end_of_a_line_of_positions() {
+fn two_faults_are_detected_with_positions() {
     several_faults(false);
 }
 
 #[test]
-fn two_faults_deceive_neither_end_of_a_line_of_functions() {
+fn two_faults_are_detected_with_functions() {
     several_faults(true);
 }
 
@@ -111,7 +111,7 @@ fn duplicated_command_is_executed_twice_if_its_answer_is_lost() {
 
 /// Each pair of faults with a duplicated frame, for positions and for functions.
 #[test]
-fn a_doubled_frame_deceives_together_with_these_faults_only() {
+fn only_these_faults_go_undetected_with_a_duplicated_frame() {
     use Kind::*;
     let with = |functions, doubling| {
         let deceives = |other: &Kind| shortest(functions, [doubling, *other]).is_some();

@@ -127,7 +127,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_written_is_read() {
+    fn encoded_status_decodes_to_itself() {
         let summaries =
             [Summary::None, Summary::Done].into_iter().chain(Refusal::ALL.into_iter().map(Summary::Refused));
         for summary in summaries {

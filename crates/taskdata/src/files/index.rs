@@ -123,8 +123,8 @@ impl<'a> Index<'a> {
     }
 }
 
-pub(crate) const ENTRIES: usize = 3; // in a [`Group`]
-pub(crate) const CROWDED: u32 = u32::MAX; // the entries do not fit: see [`PlaceIndex::crowded`]
+pub(crate) const ENTRIES: usize = 3; // in a `Group`
+pub(crate) const CROWDED: u32 = u32::MAX; // the entries do not fit: see `PlaceIndex::crowded`
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct EntryAt {
@@ -139,7 +139,7 @@ pub struct EntryAt {
 pub struct Group {
     pub(crate) key: Key,
     pub(crate) entries: [EntryAt; ENTRIES], // in no particular order
-    pub(crate) count: u32,                  // or [`CROWDED`]; 0: no key
+    pub(crate) count: u32,                  // or `CROWDED`; 0: no key
 }
 
 const _: () = assert!(size_of::<Group>() == 64);

@@ -16,7 +16,7 @@ pub struct Named<const N: usize> {
 #[derive(Clone, Copy, Debug)]
 pub struct Typed {
     pub kind: RefType,
-    pub name: Named<16>, // the word `$$$` itself for [`RefType::Any`]
+    pub name: Named<16>, // the word `$$$` itself for `RefType::Any`
 }
 
 /// A `-ppt` line.
@@ -157,7 +157,7 @@ pub struct RelativeEntry {
 /// `-file-` (extension): the greatest number of records in a file.
 #[derive(Clone, Debug)]
 pub struct FileEntry {
-    pub file: &'static str, // one of [`super::store::FILE_NAMES`]
+    pub file: &'static str, // one of `super::store::FILE_NAMES`
     pub records: usize,
     pub at: At,
 }

@@ -322,7 +322,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn finds_what_a_map_finds(
+        fn index_agrees_with_a_map(
             keys in prop::collection::vec((0_u64..50, 0_u64..10), 0..600), probe in (0_u64..50, 0_u64..10)
         ) {
             let keys: Vec<Key> = keys.into_iter().map(|(main, rest)| key(main, rest)).collect();

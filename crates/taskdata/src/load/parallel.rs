@@ -52,7 +52,7 @@ pub(super) fn map_pieces<T: Send>(
     })
 }
 
-const ITEMS_AT_A_TIME: usize = 2048; // for one processor in [`map_each`]
+const ITEMS_AT_A_TIME: usize = 2048; // for one processor in `map_each`
 
 pub(super) fn map_each<'i, I: Sync, T: Send>(
     items: &'i [I],

@@ -31,7 +31,7 @@ pub struct Block<'a> {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BlockFault {
     Header,         // without two numbers
-    Number(u32),    // above [`LAST_BLOCK`]
+    Number(u32),    // above `LAST_BLOCK`
     NoHeader,       // text before the first header
     TooManyLines,   // more than 16
     TooWide(usize), // columns, more than 64

@@ -124,7 +124,7 @@ impl Workstation for Vise {
     }
 }
 
-const RESET: Action = Action::Panel(Key::FaultReset); // ends the emergency of a [`Vise`]
+const RESET: Action = Action::Panel(Key::FaultReset); // ends the emergency of a `Vise`
 
 fn command(verb: &str) -> JobLine {
     let command = HwsCommand { command: Name16::clipped(verb), ..HwsCommand::default() };
