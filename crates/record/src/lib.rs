@@ -9,6 +9,7 @@
 //! * [`recorder`]: the interface for the run. It neither allocates nor waits in a real-time run.
 //! * [`writer`]: the content of a log, and its path into the file.
 //! * [`reader`]: reads a log, also that of a killed program.
+//! * [`journal`]: what a controller knows, for a start after a loss of power.
 //! * [`mod@replay`]: runs the control processes on the recorded inputs and compares every output buffer of every
 //!   tick, bit for bit.
 //! * [`views`], [`ladder`], [`instruments`], [`rows`]: the state of the run for viewers.
@@ -36,6 +37,7 @@ pub mod file;
 pub mod golden;
 pub mod input;
 pub mod instruments;
+pub mod journal;
 pub mod ladder;
 pub mod layout;
 pub mod lossless;

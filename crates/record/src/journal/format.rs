@@ -1,0 +1,434 @@
+//! The bytes of a journal (docs/design/resume.md "Format").
+//!
+//! ```text
+//! head     RCSJRNL\0   version u32   slots u32   layout u64   length u32   identity, text   zeros   hash u64
+//! slot 0   sequence u64   entry   hash u64   zeros
+//! ...
+//! ```
+//!
+//! All numbers are little-endian. The hash of a slot includes that of the head, so that a slot of another journal does
+//! not pass. Entry `n` is in slot `n mod slots`: a write that is cut off damages one slot, and the entries before it
+//! stay.
+
+use std::collections::BTreeMap;
+
+use interfaces::{CommonMemory, HwsCommand};
+use rcs_core::{
+    Plain,
+    digest::Digest,
+    plain::{Writer, from_bytes},
+    tick::Tick,
+};
+
+use super::kept::{doubted, resumed};
+use crate::layout;
+
+/// First bytes of every journal.
+pub const MAGIC: [u8; 8] = *b"RCSJRNL\0";
+/// Version of the format.
+const VERSION: u32 = 1;
+/// Unit of the parts of a journal, bytes: no two slots share a block of the disk.
+const BLOCK: usize = 4096;
+/// Bytes of the head.
+const HEAD: usize = BLOCK;
+/// Slots of a journal.
+pub const SLOTS: usize = 8;
+/// Bytes of a slot.
+pub const SLOT: usize = (8 + Entry::SIZE + 8).div_ceil(BLOCK) * BLOCK;
+/// Bytes of a journal.
+pub const LENGTH: usize = HEAD + SLOTS * SLOT;
+/// Number of the first entry.
+pub const FIRST: u64 = 1;
+/// Position of the hash in the head.
+const HEAD_HASH: usize = HEAD - 8;
+/// Position of the identity in the head.
+const IDENTITY: usize = 28;
+
+/// What a controller knows after a tick.
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct Entry {
+    /// The last tick of which it is true.
+    pub tick: Tick,
+    /// Milliseconds since 1970; 0 in fast clock.
+    pub written: u64,
+    /// The job has ended: nothing is left to resume.
+    pub over: bool,
+    /// Present line of the job, from 1; 0 before the first.
+    pub line: u32,
+    /// False if the line has not begun.
+    pub begun: bool,
+    /// Lines `** after` before it whose actions have not started, one bit each, the nearest first.
+    pub delayed: u16,
+    /// Generation of the task data.
+    pub generation: u32,
+    /// The command of the workstation controller.
+    pub hws: HwsCommand,
+    /// The buffers, as of [`super::kept()`].
+    pub memory: CommonMemory,
+}
+
+/// What a journal belongs to: task data, job, cell and program, by name.
+pub type Identity = BTreeMap<String, String>;
+
+/// Why bytes are not a journal that can be used.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum FormatError {
+    #[error("it is no journal: it does not begin with RCSJRNL")]
+    Foreign,
+    #[error("it is a journal in version {found} of the format, expected {VERSION}")]
+    Version { found: u32 },
+    #[error("a journal of {LENGTH} bytes was expected, found {found}: the file was cut or extended")]
+    Length { found: usize },
+    #[error("the head of the journal is damaged")]
+    Head,
+    /// The program that wrote it has other buffers.
+    #[error(
+        "its buffers have layout {found:016x}, this program {expected:016x}: use the program that wrote it{}",
+        by(.program)
+    )]
+    Layout { expected: u64, found: u64, program: String },
+    #[error("the journal has no entry: the run was stopped before its first tick")]
+    Empty,
+    #[error(
+        "{damaged} of {SLOTS} entries of the journal are damaged: one write that was cut off damages one"
+    )]
+    Damaged { damaged: usize },
+    /// An older entry is damaged or missing, which no interrupted write can cause.
+    #[error("the entry before number {newest} of the journal is damaged or missing")]
+    Gap { newest: u64 },
+}
+
+fn by(program: &str) -> String {
+    if program.is_empty() { String::new() } else { format!(" (version {program})") }
+}
+
+/// A journal that was read.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Contents {
+    pub identity: Identity,
+    /// The newest complete entry.
+    pub newest: Entry,
+    /// A later entry was cut off while it was written.
+    pub torn: bool,
+}
+
+impl Contents {
+    /// The buffers for a controller that starts after tick `after`. After a later entry that was cut off, the command
+    /// under way may have changed the cell.
+    #[must_use]
+    pub fn memory(&self, after: Tick) -> CommonMemory {
+        let kept = if self.torn { doubted(&self.newest.memory) } else { self.newest.memory };
+        resumed(&kept, after)
+    }
+}
+
+/// Key of the identity: version of the program.
+pub const PROGRAM: &str = "program";
+
+/// Identifies the layout of an entry.
+#[must_use]
+pub fn layout_of_entries() -> u64 {
+    let mut digest = Digest::new();
+    digest.add(layout::describe("entry", Entry::STRUCT).as_bytes());
+    digest.value()
+}
+
+/// The head of a journal, and the hash on which those of its slots are based. An identity that is too long for the
+/// head is cut at a line.
+#[must_use]
+pub fn head(identity: &Identity) -> (Vec<u8>, u64) {
+    let mut text = String::new();
+    for (key, value) in identity {
+        let line = format!("{key} {}\n", value.replace('\n', " "));
+        if IDENTITY + text.len() + line.len() <= HEAD_HASH {
+            text += &line;
+        }
+    }
+    let length = u32::try_from(text.len()).unwrap_or(u32::MAX);
+    let slots = u32::try_from(SLOTS).unwrap_or(u32::MAX);
+    let mut bytes = Vec::with_capacity(HEAD);
+    bytes.extend(MAGIC);
+    bytes.extend(VERSION.to_le_bytes());
+    bytes.extend(slots.to_le_bytes());
+    bytes.extend(layout_of_entries().to_le_bytes());
+    bytes.extend(length.to_le_bytes());
+    bytes.extend(text.as_bytes());
+    bytes.resize(HEAD_HASH, 0);
+    let hash = hash(0, &bytes);
+    bytes.extend(hash.to_le_bytes());
+    (bytes, hash)
+}
+
+/// A journal without entries or with a first one, and the hash on which those of its slots are based.
+#[must_use]
+pub fn begun(identity: &Identity, first: Option<&Entry>) -> (Vec<u8>, u64) {
+    let (mut bytes, hash) = head(identity);
+    bytes.resize(LENGTH, 0);
+    if let (Some(entry), Some(slot)) = (first, bytes.get_mut(place(FIRST)..)) {
+        fill(slot, hash, FIRST, entry);
+    }
+    (bytes, hash)
+}
+
+/// Position of the slot of an entry in the journal.
+#[must_use]
+pub fn place(sequence: u64) -> usize {
+    let slots = u64::try_from(SLOTS).unwrap_or(1);
+    HEAD + usize::try_from(sequence % slots).unwrap_or(0) * SLOT
+}
+
+/// Write an entry into the bytes of its slot. Does not allocate.
+pub fn fill(slot: &mut [u8], of_head: u64, sequence: u64, entry: &Entry) {
+    let Some((number, rest)) = slot.split_first_chunk_mut::<8>() else { return };
+    let Some((image, rest)) = rest.split_at_mut_checked(Entry::SIZE) else { return };
+    *number = sequence.to_le_bytes();
+    entry.encode(&mut Writer::new(image));
+    let hash = hash_of_slot(of_head, sequence, image);
+    let Some((place, _)) = rest.split_first_chunk_mut::<8>() else { return };
+    *place = hash.to_le_bytes();
+}
+
+/// Read a journal.
+///
+/// # Errors
+/// [`FormatError`] unless the newest entry is certain, apart from one entry that was being written.
+pub fn read(bytes: &[u8]) -> Result<Contents, FormatError> {
+    if !bytes.starts_with(&MAGIC) {
+        return Err(FormatError::Foreign);
+    }
+    let number =
+        |at: usize| bytes.get(at..).and_then(|rest| rest.first_chunk()).map(|n| u32::from_le_bytes(*n));
+    let long =
+        |at: usize| bytes.get(at..).and_then(|rest| rest.first_chunk()).map(|n| u64::from_le_bytes(*n));
+    let found = number(8).ok_or(FormatError::Head)?;
+    if found != VERSION {
+        return Err(FormatError::Version { found });
+    }
+    let (head, of_head) = bytes.get(..HEAD_HASH).zip(long(HEAD_HASH)).ok_or(FormatError::Head)?;
+    if hash(0, head) != of_head {
+        return Err(FormatError::Head);
+    }
+    let length = number(IDENTITY - 4).and_then(|length| usize::try_from(length).ok()).unwrap_or_default();
+    let text = head.get(IDENTITY..).and_then(|rest| rest.get(..length)).ok_or(FormatError::Head)?;
+    let text = std::str::from_utf8(text).map_err(|_| FormatError::Head)?;
+    let identity: Identity = text
+        .lines()
+        .filter_map(|line| line.split_once(' '))
+        .map(|(key, value)| (key.to_owned(), value.to_owned()))
+        .collect();
+    let (expected, found) = (layout_of_entries(), long(16).unwrap_or_default());
+    if found != expected {
+        let program = identity.get(PROGRAM).cloned().unwrap_or_default();
+        return Err(FormatError::Layout { expected, found, program });
+    }
+    if bytes.len() != LENGTH {
+        return Err(FormatError::Length { found: bytes.len() });
+    }
+    let slots: Vec<Slot> =
+        bytes.get(HEAD..).unwrap_or_default().chunks(SLOT).map(|slot| look(of_head, slot)).collect();
+    let damaged = slots.iter().filter(|slot| matches!(slot, Slot::Damaged)).count();
+    if damaged > 1 {
+        return Err(FormatError::Damaged { damaged });
+    }
+    let newest = slots.iter().filter_map(Slot::entry).max_by_key(|(sequence, _)| *sequence);
+    let Some((newest, entry)) = newest else {
+        return Err(if damaged == 0 { FormatError::Empty } else { FormatError::Damaged { damaged } });
+    };
+    // Entries are numbered without a gap: only the one after the newest can be cut off.
+    let at = |sequence: u64| slots.get((place(sequence) - HEAD) / SLOT);
+    let before =
+        (1..).take(SLOTS - 1).filter_map(|back| newest.checked_sub(back)).filter(|number| *number > 0);
+    let torn = matches!(at(newest.saturating_add(1)), Some(Slot::Damaged));
+    for number in before {
+        let is_next = place(number) == place(newest.saturating_add(1));
+        let is_there = matches!(at(number), Some(Slot::Entry(found)) if found.0 == number);
+        if !is_there && !(is_next && torn) {
+            return Err(FormatError::Gap { newest });
+        }
+    }
+    Ok(Contents { identity, newest: entry, torn })
+}
+
+/// First bytes of every saved cell of a journal.
+const OF_CELL: [u8; 8] = *b"RCSJCEL\0";
+/// Bytes before the entry of a saved cell: magic, layout, hash.
+const CELL_HEAD: usize = 24;
+
+/// A simulated cell after the tick of an entry, for the file beside the journal.
+#[must_use]
+pub fn cell(entry: &Entry, saved: &[u8]) -> Vec<u8> {
+    let mut image = vec![0; Entry::SIZE];
+    entry.encode(&mut Writer::new(&mut image));
+    let rest = [image.as_slice(), saved].concat();
+    let layout = layout_of_entries();
+    let parts: [&[u8]; 4] = [&OF_CELL, &layout.to_le_bytes(), &hash(layout, &rest).to_le_bytes(), &rest];
+    parts.concat()
+}
+
+/// The entry and the saved cell in a file beside the journal; `None` if it is damaged or of another layout.
+#[must_use]
+pub fn read_cell(bytes: &[u8]) -> Option<(Entry, &[u8])> {
+    let (head, rest) = bytes.split_at_checked(CELL_HEAD)?;
+    let word = |at: usize| head.get(at..)?.first_chunk().map(|word| u64::from_le_bytes(*word));
+    let layout = word(8)?;
+    if !head.starts_with(&OF_CELL) || layout != layout_of_entries() || word(16)? != hash(layout, rest) {
+        return None;
+    }
+    let (image, saved) = rest.split_at_checked(Entry::SIZE)?;
+    Some((from_bytes(image).ok()?, saved))
+}
+
+/// A slot that was read.
+enum Slot {
+    Empty,
+    Damaged,
+    Entry(Box<(u64, Entry)>),
+}
+
+impl Slot {
+    fn entry(&self) -> Option<(u64, Entry)> {
+        match self {
+            Self::Entry(entry) => Some(**entry),
+            Self::Empty | Self::Damaged => None,
+        }
+    }
+}
+
+fn look(of_head: u64, slot: &[u8]) -> Slot {
+    if slot.iter().all(|byte| *byte == 0) {
+        return Slot::Empty;
+    }
+    let parts = slot.split_first_chunk::<8>().and_then(|(number, rest)| {
+        let (image, rest) = rest.split_at_checked(Entry::SIZE)?;
+        let (hash, rest) = rest.split_first_chunk::<8>()?;
+        Some((u64::from_le_bytes(*number), image, u64::from_le_bytes(*hash), rest))
+    });
+    let Some((sequence, image, hash, rest)) = parts else { return Slot::Damaged };
+    if hash != hash_of_slot(of_head, sequence, image) || rest.iter().any(|byte| *byte != 0) {
+        return Slot::Damaged;
+    }
+    from_bytes(image).map_or(Slot::Damaged, |entry| Slot::Entry(Box::new((sequence, entry))))
+}
+
+fn hash(of: u64, bytes: &[u8]) -> u64 {
+    let mut digest = Digest::new();
+    digest.add_hash(of);
+    digest.add(bytes);
+    digest.value()
+}
+
+fn hash_of_slot(of_head: u64, sequence: u64, image: &[u8]) -> u64 {
+    let mut digest = Digest::new();
+    digest.add_hash(of_head);
+    digest.add_hash(sequence);
+    digest.add(image);
+    digest.value()
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    fn identity() -> Identity {
+        [(PROGRAM, "0.2.0"), ("job", "linkbar")].map(|(key, value)| (key.to_owned(), value.to_owned())).into()
+    }
+
+    fn entry(tick: u64) -> Entry {
+        Entry { tick: Tick(tick), line: 3, ..Entry::default() }
+    }
+
+    /// A journal with the entries 1 to `last`; entry `n` is of tick `100 + n`.
+    fn journal(last: u64) -> Vec<u8> {
+        let (mut bytes, of_head) = begun(&identity(), None);
+        for sequence in 1..=last {
+            let at = place(sequence);
+            fill(&mut bytes[at..at + SLOT], of_head, sequence, &entry(100 + sequence));
+        }
+        bytes
+    }
+
+    #[test]
+    fn newest_entry_is_read() {
+        for last in [1, 2, 7, 8, 9, 20, 1000] {
+            let read = read(&journal(last)).expect("it is whole");
+            assert_eq!((read.newest, read.torn), (entry(100 + last), false));
+            assert_eq!(read.identity, identity());
+        }
+    }
+
+    #[test]
+    fn write_cut_off_at_any_byte_costs_one_entry() {
+        for last in [1_u64, 7, 8, 12] {
+            let (before, after) = (journal(last), journal(last + 1));
+            let at = place(last + 1);
+            for cut in (1..8 + Entry::SIZE + 8).step_by(97) {
+                let mut bytes = before.clone();
+                bytes[at..at + cut].copy_from_slice(&after[at..at + cut]);
+                let read = read(&bytes).expect("the entry before it is whole");
+                if bytes == before || bytes == after {
+                    continue;
+                }
+                assert_eq!((read.newest, read.torn), (entry(100 + last), true), "{last}, {cut}");
+            }
+        }
+    }
+
+    #[test]
+    fn journal_without_entry_of_another_kind_or_length_is_refused() {
+        assert_eq!(read(&journal(0)), Err(FormatError::Empty));
+        assert_eq!(read(b"hello"), Err(FormatError::Foreign));
+        assert_eq!(read(&[]), Err(FormatError::Foreign));
+        let whole = journal(9);
+        for cut in (0..LENGTH).step_by(BLOCK / 3) {
+            assert!(read(&whole[..cut]).is_err(), "{cut}");
+        }
+        let longer = [whole, vec![0]].concat();
+        assert_eq!(read(&longer), Err(FormatError::Length { found: LENGTH + 1 }));
+    }
+
+    #[test]
+    fn slot_of_another_journal_is_not_read() {
+        let mut bytes = journal(3);
+        let other = Identity::from([("job".to_owned(), "clevis".to_owned())]);
+        let (_, of_head) = begun(&other, None);
+        let at = place(4);
+        fill(&mut bytes[at..at + SLOT], of_head, 4, &entry(900));
+        let read = read(&bytes).expect("the others are whole");
+        assert_eq!((read.newest.tick, read.torn), (Tick(103), true));
+    }
+
+    #[test]
+    fn changed_byte_of_a_saved_cell_is_refused() {
+        let bytes = cell(&entry(7), b"bodies and devices");
+        assert_eq!(read_cell(&bytes), Some((entry(7), b"bodies and devices".as_slice())));
+        for at in (0..bytes.len()).step_by(31).chain([bytes.len() - 1]) {
+            let mut changed = bytes.clone();
+            changed[at] ^= 1;
+            assert_eq!(read_cell(&changed), None, "{at}");
+            assert_eq!(read_cell(&bytes[..at]), None, "{at}");
+        }
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(400))]
+
+        /// The newest entry, the one before it and marked as torn, or refused: never silently older.
+        #[test]
+        fn changed_bytes_are_never_silently_older(
+            last in 1_u64..20,
+            changes in proptest::collection::vec((0..LENGTH, 1_u8..), 1..4),
+        ) {
+            let mut bytes = journal(last);
+            for (at, by) in changes {
+                bytes[at] ^= by;
+            }
+            if let Ok(read) = read(&bytes) {
+                let tick = read.newest.tick.0;
+                prop_assert!(tick == 100 + last || read.torn && tick + 1 == 100 + last, "{} of {}", tick, last);
+                prop_assert_eq!(read.newest, entry(tick));
+            }
+        }
+    }
+}

@@ -1,0 +1,158 @@
+//! The buffers that a controller keeps over a loss of power (docs/design/resume.md "Kept").
+//!
+//! A process keeps its estimates in its output buffers, and adopts them when it restarts. So common memory contains all
+//! that the processes need. Readings, rows and the state of the link are measured again, and the bias of the force
+//! sensor is valid only as long as the sensor has power.
+
+use interfaces::{
+    CommonMemory, EmoveOutputs, GripOutputs, Header, JawsOutputs, PedestalOutputs, PrimOutputs, ProcessId,
+    QuickChangeOutputs, SubtaskOutputs, T3iOutputs, TableOutputs,
+    emove::{CalibratedAt, EmoveStatus, Estimates, Seat},
+    grip::GripStatus,
+    pedestal::{PedestalStatus, TableStatus},
+    subtask::SubtaskStatus,
+    t3i::T3iCommand,
+    track::Course,
+    vision::VisionRequest,
+};
+use rcs_core::{Plain as _, tick::Tick};
+
+/// The buffers for the journal: without rows, without the state of the link, and without the bias of the force sensor.
+#[must_use]
+pub fn kept(memory: &CommonMemory) -> CommonMemory {
+    let mut kept = *memory;
+    for process in ProcessId::ALL {
+        *kept.header_mut(*process) = Header::ZERO;
+    }
+    kept.t3i = T3iOutputs::ZERO;
+    (kept.prim.t3i, kept.prim.bias, kept.prim.joystick_leds) = (T3iCommand::ZERO, None, 0);
+    kept.emove.estimates.calibrated = CalibratedAt::Drum;
+    kept.emove.vision = VisionRequest::ZERO;
+    kept
+}
+
+/// Kept buffers without the values that sensors give again. Two ticks with equal knowledge need one entry.
+#[must_use]
+pub fn knowledge(kept: &CommonMemory) -> CommonMemory {
+    let mut known = *kept;
+    known.subtask = SubtaskOutputs { status: SubtaskStatus::ZERO, ..kept.subtask };
+    known.subtask.pedestal.cycle = Tick::BEFORE_START;
+    known.emove = EmoveOutputs {
+        status: EmoveStatus::ZERO,
+        nearest: [None; 2],
+        poses: EmoveOutputs::ZERO.poses,
+        ..kept.emove
+    };
+    let track = &mut known.emove.estimates.track;
+    if track.course == Course::Known {
+        // While the place is known, the end of the track follows the noise of the resolvers.
+        track.end = EmoveOutputs::ZERO.estimates.track.end;
+    }
+    known.prim = PrimOutputs::ZERO;
+    (known.grip, known.hand) = (of_gripper(&kept.grip), of_gripper(&kept.hand));
+    (known.v_grip, known.tool_grip) = (JawsOutputs::ZERO, JawsOutputs::ZERO);
+    known.quick_change = QuickChangeOutputs::ZERO;
+    let gripped = PedestalStatus { gripped: kept.pedestal.status.gripped, ..PedestalStatus::ZERO };
+    known.pedestal = PedestalOutputs { status: gripped, ..kept.pedestal };
+    known.table = TableOutputs { status: TableStatus::ZERO, ..kept.table };
+    known
+}
+
+fn of_gripper(kept: &GripOutputs) -> GripOutputs {
+    let status = GripStatus { initialized: kept.status.initialized, ..GripStatus::ZERO };
+    GripOutputs { status, calibration: kept.calibration, ..GripOutputs::ZERO }
+}
+
+/// Kept buffers for a controller that starts after tick `tick`. Every process finds a command that it has not executed,
+/// so it adopts its estimates and starts nothing by itself (docs/design/handshake.md "Restart").
+#[must_use]
+pub fn resumed(kept: &CommonMemory, tick: Tick) -> CommonMemory {
+    let mut memory = *kept;
+    for process in ProcessId::ALL {
+        memory.header_mut(*process).stamp = tick;
+    }
+    let (emove, pedestal) = (&mut memory.emove, &mut memory.pedestal);
+    for number in [
+        &mut memory.task.subtask.number,
+        &mut memory.subtask.emove.number,
+        &mut memory.subtask.pedestal.number,
+        &mut emove.prim.number,
+        &mut emove.quick_change.number,
+        &mut emove.grip.number,
+        &mut emove.v_grip.number,
+        &mut emove.tool_grip.number,
+        &mut memory.prim.t3i.number,
+        &mut pedestal.hand.number,
+        &mut pedestal.table.number,
+    ] {
+        *number = (*number).max(1);
+    }
+    memory
+}
+
+/// Kept buffers after which the command under way may have changed the cell. The held object, the place and the path of
+/// the robot, and what the pedestal's hand holds are then not known.
+#[must_use]
+pub fn doubted(kept: &CommonMemory) -> CommonMemory {
+    let mut memory = *kept;
+    let Estimates { exchange, drum, .. } = kept.emove.estimates;
+    // In a holster or at the drum the estimate forbids other motions, so it stays.
+    memory.emove.estimates = Estimates { seat: Seat::NotKnown, exchange, drum, ..Estimates::ZERO };
+    memory.task.confirmed = None;
+    (memory.task.updates.taking, memory.task.updates.carried) = (None, None);
+    memory.subtask.regrip = None;
+    memory.pedestal.status.gripped = false;
+    memory
+}
+
+#[cfg(test)]
+mod tests {
+    use interfaces::{Decided, hws::Confirmed, operator::Support};
+
+    use super::*;
+
+    #[test]
+    fn readings_are_no_knowledge_and_estimates_are() {
+        let memory = CommonMemory::default();
+        let known = |memory: &CommonMemory| knowledge(&kept(memory));
+        let mut reading = memory;
+        reading.prim.status.sensed = 7;
+        reading.grip.status.position = 120;
+        reading.task.header.decided = Some(Decided { table: 1, row: 2 });
+        reading.t3i.status.counters.naks = 3;
+        reading.subtask.pedestal.cycle = Tick(9);
+        assert_eq!(known(&reading), known(&memory));
+        let mut estimate = memory;
+        estimate.emove.estimates.empty = true;
+        assert_ne!(known(&estimate), known(&memory));
+    }
+
+    #[test]
+    fn bias_of_the_force_sensor_is_not_kept() {
+        let mut memory = CommonMemory::default();
+        memory.prim.bias = Some([1.0; 4]);
+        memory.emove.estimates.calibrated = CalibratedAt::Safe;
+        let kept = kept(&memory);
+        assert_eq!((kept.prim.bias, kept.emove.estimates.calibrated), (None, CalibratedAt::Drum));
+    }
+
+    #[test]
+    fn every_command_of_a_resumed_controller_has_a_number() {
+        let memory = resumed(&CommonMemory::default(), Tick(40));
+        for process in ProcessId::ALL {
+            assert_eq!(memory.header(*process).stamp, Tick(40));
+            assert_ne!(memory.command_number(*process), Some(0), "{process}");
+        }
+    }
+
+    #[test]
+    fn doubt_clears_what_the_command_may_have_changed() {
+        let mut memory = CommonMemory::default();
+        memory.emove.estimates.empty = true;
+        memory.pedestal.status.gripped = true;
+        memory.task.confirmed = Some(Confirmed { by: Support::Clamped, at: None });
+        let doubted = doubted(&memory);
+        assert!(!doubted.emove.estimates.empty && !doubted.pedestal.status.gripped);
+        assert_eq!((doubted.emove.estimates.seat, doubted.task.confirmed), (Seat::NotKnown, None));
+    }
+}

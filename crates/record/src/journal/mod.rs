@@ -1,0 +1,427 @@
+//! The journal of a run: what a controller knows, on the disk, for a start after a loss of power
+//! (docs/design/resume.md).
+//!
+//! ```text
+//!  tick ──newest entry──> slot in memory ──> writer thread ──> one of eight slots in the file, fdatasync
+//! ```
+//!
+//! The tick replaces the entry that the thread has not taken, so it never waits and nothing queues up. A new entry is
+//! due when the knowledge changes, and once per second. The file has its full length from the beginning: a full disk
+//! does not stop it. A failed write never stops a run; the next entry is tried again, and [`Journal::trouble`] reports
+//! the failure.
+
+mod format;
+mod kept;
+
+use std::{
+    fs::{self, File, OpenOptions, TryLockError},
+    io,
+    os::unix::fs::{FileExt as _, MetadataExt as _},
+    path::{Path, PathBuf},
+    sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError, TryLockError as Busy},
+    thread::{self, JoinHandle},
+};
+
+use interfaces::CommonMemory;
+use os_io::{files, replace};
+use rcs_core::tick::Tick;
+
+pub use self::{
+    format::{
+        Contents, Entry, FIRST, FormatError, Identity, LENGTH, MAGIC, PROGRAM, SLOT, SLOTS, begun, cell,
+        fill, place, read, read_cell,
+    },
+    kept::{doubted, kept, knowledge, resumed},
+};
+
+/// Ticks after which an entry is due although nothing has changed: one second.
+pub const HEARTBEAT: u64 = 25;
+
+/// Ticks in which the disk must take an entry: five seconds.
+const LATE: u64 = 5 * HEARTBEAT;
+
+/// Why a journal cannot be begun or used.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum JournalError {
+    #[error("the journal {} cannot be created: {source}", path.display())]
+    Create { path: PathBuf, source: io::Error },
+    #[error("the journal {} cannot be read: {source}", path.display())]
+    Read { path: PathBuf, source: io::Error },
+    #[error("the journal {} is being written by another run: name another file with --journal", path.display())]
+    InUse { path: PathBuf },
+    #[error("{} is no journal and stays as it is: name another file with --journal", path.display())]
+    OtherFile { path: PathBuf },
+    #[error("the journal {} cannot be used: {source}", path.display())]
+    Format { path: PathBuf, source: FormatError },
+    #[error("the thread that writes the journal cannot be started: {0}")]
+    Thread(io::Error),
+}
+
+/// Read a journal from its file.
+///
+/// # Errors
+/// [`JournalError`].
+pub fn open(path: &Path) -> Result<Contents, JournalError> {
+    let limit = u64::try_from(LENGTH).unwrap_or(u64::MAX).saturating_mul(2);
+    let bytes =
+        files::read(path, limit).map_err(|source| JournalError::Read { path: path.to_owned(), source })?;
+    read(&bytes).map_err(|source| JournalError::Format { path: path.to_owned(), source })
+}
+
+/// The run's end of the journal.
+pub struct Journal {
+    shared: Arc<Shared>,
+    thread: Option<JoinHandle<()>>,
+    path: PathBuf,
+    /// The last entry that was handed over, and the knowledge in it.
+    last: Box<(Entry, CommonMemory)>,
+    has_last: bool,
+    /// The last trouble that was reported.
+    reported: Option<String>,
+}
+
+struct Shared {
+    state: Mutex<State>,
+    wake: Condvar,
+}
+
+struct State {
+    entry: Box<Entry>,
+    /// The entry has not been taken by the thread.
+    is_new: bool,
+    /// Tick since which the thread has taken none.
+    since: Tick,
+    is_over: bool,
+    /// A saved cell that the thread has not taken.
+    cell: Option<Vec<u8>>,
+    /// Why the last entry is not on the disk.
+    trouble: Option<String>,
+}
+
+impl Journal {
+    /// Begin a journal, with `first` as its first entry. An earlier one at this path is replaced as a whole. Without a
+    /// first entry, the saved cell beside it is removed.
+    ///
+    /// # Errors
+    /// [`JournalError`] if the file belongs to another run, is no journal, or cannot be created.
+    pub fn start(path: &Path, identity: &Identity, first: Option<&Entry>) -> Result<Self, JournalError> {
+        let failed = |source| JournalError::Create { path: path.to_owned(), source };
+        if let Some(directory) = path.parent().filter(|directory| !directory.as_os_str().is_empty()) {
+            fs::create_dir_all(directory).map_err(failed)?;
+        }
+        // The lock of the earlier file is held until the new one is in its place.
+        let _earlier = claim(path)?;
+        let (bytes, of_head) = begun(identity, first);
+        if first.is_none() {
+            remove(&cell_beside(path)).map_err(failed)?;
+        }
+        replace::replace(path, &bytes).map_err(failed)?;
+        let file = OpenOptions::new().write(true).open(path).map_err(failed)?;
+        lock(&file, path)?;
+        let state = State {
+            entry: Box::default(),
+            is_new: false,
+            since: Tick::BEFORE_START,
+            is_over: false,
+            cell: None,
+            trouble: None,
+        };
+        let shared = Arc::new(Shared { state: Mutex::new(state), wake: Condvar::new() });
+        let metadata = file.metadata().map_err(failed)?;
+        let writer = Writer {
+            file,
+            path: path.to_owned(),
+            identity: (metadata.dev(), metadata.ino()),
+            of_head,
+            sequence: if first.is_some() { FIRST } else { 0 },
+            slot: vec![0; SLOT],
+        };
+        let of_thread = Arc::clone(&shared);
+        let thread = thread::Builder::new()
+            .name("journal".into())
+            .spawn(move || writer.run(&of_thread))
+            .map_err(JournalError::Thread)?;
+        Ok(Self {
+            shared,
+            thread: Some(thread),
+            path: path.to_owned(),
+            last: Box::default(),
+            has_last: false,
+            reported: None,
+        })
+    }
+
+    #[must_use]
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Hand over the knowledge after a tick if it has changed, or if an entry is due. Neither waits nor
+    /// allocates. If the thread is taking an entry at this moment, the next call hands over the newer one.
+    pub fn tick(&mut self, entry: &Entry) {
+        let known = knowledge(&entry.memory);
+        let (before, known_before) = &*self.last;
+        let beside = |entry: &Entry| {
+            let Entry { over, line, begun, delayed, generation, hws, .. } = *entry;
+            (over, line, begun, delayed, generation, hws)
+        };
+        let is_due = !self.has_last
+            || entry.tick.since(before.tick) >= HEARTBEAT
+            || beside(entry) != beside(before)
+            || known != *known_before;
+        if !is_due {
+            return;
+        }
+        let mut state = match self.shared.state.try_lock() {
+            Ok(state) => state,
+            Err(Busy::Poisoned(poisoned)) => poisoned.into_inner(),
+            Err(Busy::WouldBlock) => return,
+        };
+        if !state.is_new {
+            state.since = entry.tick;
+        }
+        (*state.entry, state.is_new) = (*entry, true);
+        drop(state);
+        self.shared.wake.notify_one();
+        (*self.last, self.has_last) = ((*entry, known), true);
+    }
+
+    /// Hand over the simulated cell after the tick of an entry, as of [`cell()`], for the file beside the journal.
+    pub fn save_cell(&mut self, bytes: Vec<u8>) {
+        if let Ok(mut state) = self.shared.state.try_lock() {
+            state.cell = Some(bytes);
+            drop(state);
+            self.shared.wake.notify_one();
+        }
+    }
+
+    /// The trouble of the journal, or `Some(None)` after it has ended; each change is returned once. Call it between two
+    /// ticks.
+    pub fn trouble(&mut self) -> Option<Option<String>> {
+        let Ok(state) = self.shared.state.try_lock() else { return None };
+        let waits = if state.is_new { state.entry.tick.since(state.since) } else { 0 };
+        let trouble = match waits {
+            0..=LATE => state.trouble.clone(),
+            _ => Some(format!("the disk has taken no entry since tick {}", state.since)),
+        };
+        drop(state);
+        let is_news = trouble != self.reported;
+        self.reported.clone_from(&trouble);
+        is_news.then_some(trouble)
+    }
+
+    /// Write the last entry, and end the journal. Returns the trouble at its end, if any.
+    #[must_use]
+    pub fn finish(mut self, entry: Option<&Entry>) -> Option<String> {
+        let mut state = locked(&self.shared);
+        if let Some(entry) = entry {
+            (*state.entry, state.is_new) = (*entry, true);
+        }
+        drop(state);
+        self.end();
+        locked(&self.shared).trouble.clone()
+    }
+
+    fn end(&mut self) {
+        locked(&self.shared).is_over = true;
+        self.shared.wake.notify_one();
+        if let Some(thread) = self.thread.take() {
+            // A thread that has panicked has written what it could.
+            let _ = thread.join();
+        }
+    }
+}
+
+impl Drop for Journal {
+    fn drop(&mut self) {
+        self.end();
+    }
+}
+
+/// The file with the saved cell, beside a journal.
+#[must_use]
+pub fn cell_beside(path: &Path) -> PathBuf {
+    path.with_added_extension("cell")
+}
+
+/// Remove a file, if there is one.
+fn remove(path: &Path) -> io::Result<()> {
+    match fs::remove_file(path) {
+        Err(error) if error.kind() != io::ErrorKind::NotFound => Err(error),
+        _ => Ok(()),
+    }
+}
+
+fn locked(shared: &Shared) -> MutexGuard<'_, State> {
+    shared.state.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Lock an earlier journal, if there is one.
+fn claim(path: &Path) -> Result<Option<File>, JournalError> {
+    let file = match OpenOptions::new().read(true).write(true).open(path) {
+        Ok(file) => file,
+        Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(None),
+        Err(source) => return Err(JournalError::Create { path: path.to_owned(), source }),
+    };
+    let mut start = [0; MAGIC.len()];
+    let length = file.metadata().map_or(0, |found| found.len());
+    if length > 0 && (file.read_exact_at(&mut start, 0).is_err() || start != MAGIC) {
+        return Err(JournalError::OtherFile { path: path.to_owned() });
+    }
+    lock(&file, path)?;
+    Ok(Some(file))
+}
+
+fn lock(file: &File, path: &Path) -> Result<(), JournalError> {
+    match file.try_lock() {
+        Ok(()) => Ok(()),
+        Err(TryLockError::WouldBlock) => Err(JournalError::InUse { path: path.to_owned() }),
+        Err(TryLockError::Error(source)) => Err(JournalError::Create { path: path.to_owned(), source }),
+    }
+}
+
+/// The thread's end.
+struct Writer {
+    file: File,
+    path: PathBuf,
+    identity: (u64, u64),
+    of_head: u64,
+    /// Number of the last entry on the disk.
+    sequence: u64,
+    slot: Vec<u8>,
+}
+
+impl Writer {
+    fn run(mut self, shared: &Shared) {
+        let mut state = locked(shared);
+        loop {
+            while !state.is_new && state.cell.is_none() && !state.is_over {
+                state = shared.wake.wait(state).unwrap_or_else(PoisonError::into_inner);
+            }
+            let (is_new, cell) = (std::mem::take(&mut state.is_new), state.cell.take());
+            if !is_new && cell.is_none() {
+                return;
+            }
+            if is_new {
+                self.slot.fill(0);
+                fill(&mut self.slot, self.of_head, self.sequence.saturating_add(1), &state.entry);
+            }
+            drop(state);
+            let written = if is_new { self.write() } else { Ok(()) };
+            let saved = cell.map_or(Ok(()), |cell| replace::replace(&cell_beside(&self.path), &cell));
+            let trouble = written.and(saved).err().map(|error| error.to_string());
+            state = locked(shared);
+            state.trouble = trouble;
+        }
+    }
+
+    /// Write the slot. An entry that fails is followed by another one in the same slot, so the earlier entries stay.
+    fn write(&mut self) -> io::Result<()> {
+        match fs::metadata(&self.path) {
+            Ok(found) if (found.dev(), found.ino()) == self.identity => {}
+            _ => return Err(io::Error::other(format!("{} was removed during the run", self.path.display()))),
+        }
+        let next = self.sequence.saturating_add(1);
+        self.file.write_all_at(&self.slot, u64::try_from(place(next)).unwrap_or(u64::MAX))?;
+        self.file.sync_data()?;
+        self.sequence = next;
+        Ok(())
+    }
+}
+
+impl Entry {
+    /// The time of the entry for a person: its tick, and its age if it was written in real time.
+    #[must_use]
+    pub fn age(&self, now: u64) -> String {
+        match self.written {
+            0 => format!("tick {}", self.tick),
+            written => format!("tick {}, {} s ago", self.tick, now.saturating_sub(written) / 1000),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn entry(tick: u64) -> Entry {
+        Entry { tick: Tick(tick), ..Entry::default() }
+    }
+
+    fn started(first: Option<&Entry>) -> (tempfile::TempDir, PathBuf, Journal) {
+        let directory = tempfile::tempdir().unwrap();
+        let path = directory.path().join("run.journal");
+        let journal = Journal::start(&path, &Identity::new(), first).unwrap();
+        (directory, path, journal)
+    }
+
+    #[test]
+    fn entry_is_due_on_change_and_once_per_second() {
+        let (_directory, path, mut journal) = started(None);
+        let due = |journal: &Journal| journal.has_last.then_some(journal.last.0.tick.0);
+        // The thread may be taking the entry before: then the next tick hands over a newer one.
+        let mut hand_over = |from: u64, change: fn(&mut Entry)| {
+            (from..).take(5).find(|tick| {
+                let mut entry = entry(*tick);
+                change(&mut entry);
+                journal.tick(&entry);
+                due(&journal) == Some(*tick)
+            })
+        };
+        let first = hand_over(1, |_| {}).expect("the first entry is due");
+        assert_eq!(hand_over(first + 1, |_| {}), None, "nothing has changed");
+        let second = hand_over(first + HEARTBEAT, |_| {}).expect("a second is over");
+        let third = hand_over(second + 1, |entry| entry.memory.emove.estimates.empty = true);
+        let third = third.expect("an estimate has changed");
+        assert_eq!(journal.finish(None), None);
+        let read = open(&path).unwrap().newest;
+        assert!(read.tick.0 == third && read.memory.emove.estimates.empty);
+    }
+
+    #[test]
+    fn last_entry_is_on_the_disk_at_the_end() {
+        for last in [1, 2, 9, 40] {
+            let (_directory, path, mut journal) = started(None);
+            for tick in 1..=last {
+                journal.tick(&Entry { line: u32::try_from(tick).unwrap(), ..entry(tick) });
+            }
+            assert_eq!(journal.finish(Some(&Entry { over: true, ..entry(last) })), None);
+            let read = open(&path).unwrap();
+            assert!(read.newest.tick == Tick(last) && read.newest.over && !read.torn);
+        }
+    }
+
+    #[test]
+    fn resumed_journal_has_its_first_entry_from_the_beginning() {
+        let (_directory, path, journal) = started(Some(&entry(70)));
+        assert_eq!(open(&path).unwrap().newest, entry(70));
+        assert_eq!(journal.finish(None), None);
+        assert_eq!(open(&path).unwrap().newest, entry(70));
+    }
+
+    #[test]
+    fn removed_file_is_reported_and_does_not_stop_the_run() {
+        let (_directory, path, mut journal) = started(None);
+        fs::remove_file(&path).unwrap();
+        for tick in 1..=3 {
+            journal.tick(&entry(tick * HEARTBEAT));
+        }
+        let trouble = journal.finish(Some(&entry(200))).expect("the file is gone");
+        assert!(trouble.contains("was removed during the run"), "{trouble}");
+    }
+
+    #[test]
+    fn journal_of_a_living_run_and_other_files_are_refused() {
+        let (directory, path, journal) = started(None);
+        let again = Journal::start(&path, &Identity::new(), None);
+        assert!(matches!(again, Err(JournalError::InUse { .. })));
+        assert_eq!(journal.finish(None), None);
+        assert!(Journal::start(&path, &Identity::new(), None).is_ok());
+        let text = directory.path().join("notes.txt");
+        fs::write(&text, "do not lose this").unwrap();
+        let refused = Journal::start(&text, &Identity::new(), None);
+        assert!(matches!(refused, Err(JournalError::OtherFile { .. })));
+        assert_eq!(fs::read_to_string(&text).unwrap(), "do not lose this");
+    }
+}
