@@ -77,6 +77,14 @@ impl<L> Course<L> {
         }
     }
 
+    /// Continue after `tick` with these buffers, like a controller that starts with what it knew before.
+    pub fn start_after(&mut self, tick: Tick, memory: &CommonMemory) {
+        self.tick = tick;
+        let (before, _) = of_tick_mut(&mut self.halves, tick.next());
+        *before = *memory;
+        self.watch = Box::default();
+    }
+
     /// Run the next tick on its external inputs, and call `observe` after each stage. The caller must then call
     /// [`sum_up`](Self::sum_up).
     ///
@@ -165,6 +173,11 @@ impl<L> Course<L> {
 
 /// The halves that a tick reads and writes.
 const fn of_tick(halves: &mut [CommonMemory; 2], tick: Tick) -> (&CommonMemory, &mut CommonMemory) {
+    let (before, after) = of_tick_mut(halves, tick);
+    (before, after)
+}
+
+const fn of_tick_mut(halves: &mut [CommonMemory; 2], tick: Tick) -> (&mut CommonMemory, &mut CommonMemory) {
     let [even, odd] = halves;
     if tick.0.is_multiple_of(2) { (odd, even) } else { (even, odd) }
 }

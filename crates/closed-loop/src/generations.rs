@@ -86,6 +86,14 @@ impl Generations {
         }
     }
 
+    /// Use the task data of a generation of an earlier run with the same job. An unknown number has no effect.
+    pub fn resume(&mut self, number: u32) {
+        if self.reload(number).is_some() {
+            self.number = number;
+        }
+        self.waiting.clear();
+    }
+
     /// Use other task data from the next tick on, even during a command. `reloads` are all reloads of the run, with
     /// the new one after those in effect; the records of the present command must still exist. Returns false, without
     /// a change, if there is no new reload or one of the job is queued.

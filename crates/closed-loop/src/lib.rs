@@ -116,6 +116,14 @@ impl<L, W: World> ClosedLoop<L, W> {
         Self { books: None, ..self }
     }
 
+    /// Continue after `tick` as a controller that has lost its power and starts with what it knew: its buffers, its
+    /// last command, and the generation of the task data. The world continues.
+    pub fn resume(&mut self, tick: Tick, memory: &CommonMemory, hws: &HwsCommand, generation: u32) {
+        self.course.start_after(tick, memory);
+        self.gate = Gate::resumed(hws);
+        self.generations.resume(generation);
+    }
+
     #[must_use]
     pub fn external_with(&self, given: &Given) -> ExternalInputs {
         let mut devices = self.inputs;

@@ -22,6 +22,8 @@ use crate::rcs_run::error::Error;
 const HOLD: u64 = 75;
 /// Ticks for which the box holds a process: 2 s.
 const HELD: u64 = 50;
+/// Ticks between the last entry of the journal and the loss of power: the time of a write.
+const LATE_ENTRY: u64 = 1;
 /// Ticks without power: 2 s.
 const OUTAGE: u64 = 50;
 /// Ticks between power and the first action of the operator.
@@ -57,7 +59,7 @@ pub enum Kind {
     Restart(ProcessId),
     /// A process writes nothing from now on.
     Lost(ProcessId),
-    /// The controller loses its power, and everything but its buffers.
+    /// The controller loses its power, and everything but its journal.
     Power,
     /// The cable to the robot controller is cut.
     Cut,
@@ -220,6 +222,8 @@ impl Kind {
             Self::Lost(process) => vec![ScriptStep::Lose(*process)],
             Self::Cut => vec![ScriptStep::Cut],
             Self::Power => vec![
+                ScriptStep::Journal,
+                ScriptStep::Wait(LATE_ENTRY),
                 ScriptStep::PowerOff,
                 ScriptStep::Wait(OUTAGE),
                 ScriptStep::PowerOn,

@@ -27,6 +27,7 @@ mod operator;
 mod parent;
 mod past;
 mod pool;
+mod power;
 mod random;
 mod report;
 mod runner;

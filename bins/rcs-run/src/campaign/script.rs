@@ -16,6 +16,7 @@ use rcs_core::tick::Tick;
 use super::{
     branch::Branch,
     disturbance::{self, Lead, Undo, What},
+    power,
 };
 
 /// Height by which the robot is moved away, in.
@@ -74,6 +75,8 @@ pub enum ScriptStep {
     Restart(ProcessId),
     Lose(ProcessId),
     Cut,
+    /// The journal writes its last entry.
+    Journal,
     PowerOff,
     PowerOn,
     Answer(FaultKind),
@@ -115,6 +118,8 @@ pub struct Script {
     lead: Option<Lead>,
     /// Steps that undo the changes of the cell.
     undo: Vec<Undo>,
+    /// The bytes of the journal.
+    journal: Vec<u8>,
 }
 
 /// Move the robot over a way, 0.01 in, world, and return control of it.
@@ -126,7 +131,7 @@ pub fn lead(way: [i32; 3]) -> Vec<ScriptStep> {
 impl Script {
     #[must_use]
     pub const fn new(steps: Vec<ScriptStep>) -> Self {
-        Self { steps, at: 0, until: None, height: 0.0, lead: None, undo: Vec::new() }
+        Self { steps, at: 0, until: None, height: 0.0, lead: None, undo: Vec::new(), journal: Vec::new() }
     }
 
     /// The script that undoes a person's changes in this one: the remedy for a command refused because of them.
@@ -221,7 +226,10 @@ impl Script {
                 ScriptStep::Restart(process) => branch.closed.course_mut().levels_mut().restart(process),
                 ScriptStep::Lose(process) => branch.closed.course_mut().levels_mut().lose(process),
                 ScriptStep::PowerOff => branch.closed.course_mut().levels_mut().switch_off(),
-                ScriptStep::PowerOn => branch.closed.course_mut().levels_mut().switch_on(),
+                ScriptStep::Journal => self.journal = power::journal(branch),
+                ScriptStep::PowerOn => {
+                    refused = power::resume(branch, &self.journal).err().map(|error| error.to_string());
+                }
                 ScriptStep::Cut => {
                     let now = branch.at();
                     branch.closed.line_mut().cut(now);

@@ -1,0 +1,30 @@
+//! A loss of power: the controller keeps the bytes of its journal, and nothing else.
+
+use record::journal::{self, Entry, FormatError, Identity};
+
+use super::branch::Branch;
+
+/// The journal after the last tick, as a run would have written it.
+pub fn journal(branch: &Branch<'_>) -> Vec<u8> {
+    let entry = Entry {
+        tick: branch.at(),
+        generation: branch.closed.generations().number(),
+        hws: *branch.closed.command(),
+        memory: journal::kept(branch.memory()),
+        ..Entry::default()
+    };
+    journal::begun(&Identity::default(), Some(&entry)).0
+}
+
+/// Switch the controller on after the last tick, with a journal.
+///
+/// # Errors
+/// [`FormatError`]; the controller stays off.
+pub fn resume(branch: &mut Branch<'_>, bytes: &[u8]) -> Result<(), FormatError> {
+    let read = journal::read(bytes)?;
+    let now = branch.at();
+    let (memory, entry) = (read.memory(now), &read.newest);
+    branch.closed.resume(now, &memory, &entry.hws, entry.generation);
+    branch.closed.course_mut().levels_mut().switch_on();
+    Ok(())
+}
