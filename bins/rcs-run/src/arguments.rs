@@ -40,7 +40,10 @@ pub struct RunArguments {
         long,
         value_name = "CLOCK",
         default_value = "fast",
-        default_value_if("console", ArgPredicate::IsPresent, "real")
+        default_value_ifs([
+            ("console", ArgPredicate::IsPresent, Some("real")),
+            ("resume", ArgPredicate::IsPresent, Some("real")),
+        ])
     )]
     pub clock: Clock,
     /// What to do when the host misses slots of the 40 ms grid: count, hold, hold:SLOTS, stop or stop:SLOTS
@@ -99,6 +102,15 @@ pub struct RunArguments {
     /// Keep at most N logs before this one, also of earlier runs with the same log, and remove the oldest
     #[arg(long, value_name = "N", requires = "log_limit")]
     pub log_keep: Option<usize>,
+    /// Keep what the controller knows in this file, for --resume after a loss of power (docs/resume.md)
+    #[arg(long, value_name = "FILE")]
+    pub journal: Option<PathBuf>,
+    /// Start with what the controller knew in the run of this journal, and wait for `job go`
+    ///
+    /// Nothing moves, opens or calibrates by itself. The run continues this journal, unless --journal names another
+    /// file. A simulated cell continues from its last save, at most a second before.
+    #[arg(long, value_name = "JOURNAL")]
+    pub resume: Option<PathBuf>,
     /// Keep the items of the Data System in this SQLite file, created if missing [default: keep them during the run
     /// only]
     #[arg(long, value_name = "FILE", alias = "data-base")]
@@ -222,6 +234,8 @@ impl RunArguments {
             log_limit: own
                 .log_limit
                 .map(|size| LogLimit { bytes: size.saturating_mul(MEGABYTE), kept: own.log_keep }),
+            journal: own.journal,
+            resume: own.resume,
             database: own.database,
             network: own.network,
             outside: own.outside,

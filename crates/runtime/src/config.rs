@@ -66,6 +66,11 @@ pub struct RunConfig {
     /// Size after which the run begins a new log, and number of logs that are kept; `None` for one log.
     #[serde(skip)]
     pub log_limit: Option<LogLimit>,
+    /// File in which the run keeps what the controller knows, for a start after a loss of power (docs/resume.md).
+    pub journal: Option<PathBuf>,
+    /// Journal of an earlier run: the controller starts with what it knew then, and the job waits for an operator. The
+    /// run continues this journal, unless [`Self::journal`] names another file.
+    pub resume: Option<PathBuf>,
     /// SQLite file of the Data System's items. Without it they are in memory and lost at the end.
     #[serde(alias = "data-base")]
     pub database: Option<PathBuf>,
@@ -132,6 +137,8 @@ impl RunConfig {
             seed: 1,
             log: LogTarget::Default,
             log_limit: None,
+            journal: None,
+            resume: None,
             database: None,
             network: None,
             outside: Vec::new(),

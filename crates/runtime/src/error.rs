@@ -116,6 +116,30 @@ pub enum StartError {
          --shared-memory on"
     )]
     StandBy,
+    /// A resumed job would wait forever.
+    #[error(
+        "a resumed job waits for an operator, and none can connect: add --clock real, --operator owner, \
+         --shared-memory on"
+    )]
+    ResumeStandBy,
+    #[error("{0}; without --resume the run starts as after switching on, and knows nothing")]
+    Journal(#[from] record::journal::JournalError),
+    /// The journal belongs to a run with other data.
+    #[error(
+        "the journal {} belongs to another run: {}; start with the data, job and cell of that run, or without --resume",
+        path.display(), differences.join("; ")
+    )]
+    OtherJournal { path: PathBuf, differences: Vec<String> },
+    #[error("the run of the journal {} has ended: nothing is left to resume; start without --resume", .0.display())]
+    NothingToResume(PathBuf),
+    /// The simulated cell cannot continue.
+    #[error(
+        "the simulated cell of the journal cannot continue: {}: {why}; start without --resume, which sets up a new cell",
+        path.display()
+    )]
+    ResumedCell { path: PathBuf, why: String },
+    #[error("a run is resumed with --boards one: boards in other processes start without a journal")]
+    ResumeBoards,
     /// The socket for operators cannot be opened, so the job would wait for one forever.
     #[error("--stand-by waits for an operator, and none can connect: {}: {source}", path.display())]
     NoOperator { path: PathBuf, source: io::Error },

@@ -69,6 +69,10 @@ pub enum Event {
     TakenBack,
     /// The job has begun to wait for an operator.
     Waits(WaitReason),
+    /// The controller has started with what it knew in an earlier run.
+    Resumed(String),
+    /// The journal cannot be written, for this reason; `None` when it is written again.
+    Journal(Option<String>),
     /// Task data have been loaded during the run.
     Loaded { generation: u32, name: String },
     /// An external change of the run.
@@ -125,6 +129,9 @@ impl Event {
             Self::HandedOver => "command.handed-over",
             Self::TakenBack => "command.taken-back",
             Self::Waits(_) => "operator.awaited",
+            Self::Resumed(_) => "run.resumed",
+            Self::Journal(Some(_)) => "journal.trouble",
+            Self::Journal(None) => "journal.back",
             Self::Loaded { .. } => "data.loaded",
             Self::Changed(_) => "run.changed",
             Self::RealTime { .. } => "time.granted",
@@ -153,7 +160,7 @@ impl Event {
             Self::HandedOver | Self::TakenBack | Self::Loaded { .. } | Self::Changed(_) | Self::Punctual => {
                 Level::Info
             }
-            Self::UserStops => Level::Info,
+            Self::UserStops | Self::Resumed(_) | Self::Journal(None) => Level::Info,
             _ => Level::Warning,
         }
     }
@@ -184,6 +191,8 @@ impl Event {
             Self::Waits(_) => "operator",
             Self::Changed(_) => "change",
             Self::Loaded { .. }
+            | Self::Resumed(_)
+            | Self::Journal(_)
             | Self::RealTime { .. }
             | Self::BoardNotPunctual(_)
             | Self::Overrun(_)
@@ -224,6 +233,14 @@ impl fmt::Display for Event {
             Self::Loaded { generation, name } => {
                 write!(f, "task data, generation {generation}: {name} is loaded")
             }
+            Self::Resumed(knowledge) => write!(f, "resumed: {knowledge}"),
+            Self::Journal(Some(why)) => {
+                write!(
+                    f,
+                    "the journal is not written: {why}; after a loss of power the run cannot be resumed from here"
+                )
+            }
+            Self::Journal(None) => f.write_str("the journal is written again"),
             Self::Waits(reason) => reason.fmt(f),
             Self::Changed(what) => f.write_str(what),
             Self::RealTime { verdict, .. } => write!(f, "real time: {verdict}"),

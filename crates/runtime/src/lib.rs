@@ -43,6 +43,7 @@ mod own;
 mod pace;
 pub mod repeat;
 pub mod result;
+mod resume;
 mod robot;
 mod run;
 pub mod setup;

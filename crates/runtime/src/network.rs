@@ -82,6 +82,10 @@ fn check(config: &RunConfig) -> Result<(), StartError> {
     if config.stand_by && config.inputs.is_none() && !has_operator {
         return Err(StartError::StandBy);
     }
+    if config.resume.is_some() && config.inputs.is_none() && config.clock == ClockKind::Real && !has_operator
+    {
+        return Err(StartError::ResumeStandBy);
+    }
     if for_operators && !(is_reached && can_be_operated) {
         return Err(StartError::OperatorNetwork);
     }

@@ -30,6 +30,7 @@ use interfaces::{CommonMemory, ExternalInputs, hws::HwsStatus};
 use levels::ladder::LadderState;
 use plant::Cell;
 use rcs_core::tick::Tick;
+use record::journal::Journal;
 use taskdata::load::Job;
 
 use self::end::Ramp;
@@ -76,6 +77,8 @@ pub struct Run {
     pub(crate) field: Option<FieldPort>,
     pub(crate) log: Option<Log>,
     log_path: Option<PathBuf>,
+    /// The journal, for a start after a loss of power.
+    journal: Option<Journal>,
     data: DataResult,
     live: Option<Live>,
     pace: Pace,
@@ -262,6 +265,7 @@ impl Run {
         self.operate(tick);
         let (closed, neighbours) = (&mut self.closed, &mut self.neighbours);
         let progress = closed.exchange(|desk| neighbours.step(desk));
+        self.write_journal(tick);
         self.load_for_workstation(tick);
         self.tell_operators(tick);
         self.note_neighbours(tick);

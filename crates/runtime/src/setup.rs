@@ -15,7 +15,7 @@ use diagnostics::JOBS;
 use executive::serial::SerialLine;
 use neighbours::{
     data_system::ANSWER_TICKS,
-    workstation::player::{Hwsc, TIME_LIMIT},
+    workstation::player::{Hwsc, PlaceInJob, TIME_LIMIT},
 };
 use os_io::{
     files,
@@ -27,7 +27,8 @@ use plant::{
     description,
     fault::text::{self, FaultFile},
 };
-use record::{LogFile, RecordError};
+use rcs_core::tick::Tick;
+use record::{LogFile, RecordError, journal::Journal};
 use sessions::{
     data_system::{self, Agent, Outbox, Pace},
     network::{self, Endpoint, Role},
@@ -49,6 +50,7 @@ use crate::{
     observer::Observer,
     own::{OwnPort, OwnRobot},
     result::DataResult,
+    resume::{self, Resumed},
     robot::{Port, Robot},
     switched::Switched,
 };
@@ -79,6 +81,10 @@ pub struct Setup {
     /// File of the log, if any.
     pub log: Option<LogFile>,
     pub live: Option<Live>,
+    /// The journal that the run writes.
+    pub journal: Option<Journal>,
+    /// The knowledge with which the controller starts.
+    pub resumed: Option<Resumed>,
 }
 
 impl Setup {
@@ -113,7 +119,11 @@ impl Setup {
         }
         left_out.into_iter().chain(findings.lines(config.unchecked)).for_each(|line| observer.message(&line));
         let (faults, faults_text) = faults(config, &description)?;
-        let cell = Cell::with_faults(&description, config.seed, &faults.cell)?;
+        let resumed = Resumed::load(config)?;
+        let cell = match &resumed {
+            Some(resumed) => resumed.cell(&description)?,
+            None => Cell::with_faults(&description, config.seed, &faults.cell)?,
+        };
         let mapping = config.field.as_ref().map(|field| crate::field::load(field, data)).transpose()?;
         let (mapping, mapping_text) =
             mapping.map_or_else(Default::default, |(mapping, text)| (Some(mapping), text));
@@ -142,7 +152,8 @@ impl Setup {
         {
             return Err(StartError::InputsOfLog { inputs: inputs.clone(), log: log.path().to_owned() });
         }
-        let neighbours = neighbours(config, &job, &description, observer)?;
+        let place = resumed.as_ref().map(|resumed| (resumed.place(), resumed.entry().tick));
+        let neighbours = neighbours(config, &job, place, &description, observer)?;
         let field = match mapping {
             Some(mapping) if config.has_real_devices() => Some(Couplers::Tcp(FieldPort::open(mapping)?)),
             Some(mapping) => {
@@ -152,6 +163,13 @@ impl Setup {
             }
             None => None,
         };
+        let identity = resume::identity(config, &store, &job, &description_text);
+        if let Some(resumed) = &resumed {
+            resumed.check(&identity)?;
+        }
+        let journal = config.journal.as_ref().or(config.resume.as_ref());
+        let first = resumed.as_ref().map(Resumed::first);
+        let journal = journal.map(|path| Journal::start(path, &identity, first.as_ref())).transpose()?;
         // Last, so that no byte is sent to the robot if the run cannot begin.
         let robot = match &config.robot.kind {
             RobotKind::Sim => Robot::Simulated,
@@ -176,6 +194,8 @@ impl Setup {
             neighbours,
             log,
             live,
+            journal,
+            resumed,
         })
     }
 }
@@ -304,6 +324,7 @@ impl CellFile {
 fn neighbours(
     config: &RunConfig,
     job: &Job,
+    place: Option<(PlaceInJob, Tick)>,
     description: &CellDescription,
     observer: &mut dyn Observer,
 ) -> Result<Neighbours, StartError> {
@@ -331,6 +352,9 @@ fn neighbours(
     let mut hwsc = Hwsc::new(job.steps.clone(), TIME_LIMIT).with_retries(config.retry);
     if config.stand_by {
         hwsc = hwsc.on_stand_by();
+    }
+    if let Some((place, tick)) = place {
+        hwsc = hwsc.resumed_at(place, tick);
     }
     let workstation = match commands {
         Some(endpoint) if config.stand_alone => {

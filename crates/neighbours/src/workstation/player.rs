@@ -41,7 +41,7 @@ use taskdata::load::job::{JobLine, Step, Workstation as Action};
 
 use self::{operator::Intervention, step::Later};
 pub use self::{
-    operator::{OperatorError, WaitReason},
+    operator::{OperatorError, PlaceInJob, WaitReason},
     outcome::{BegunStep, JobFailure, Outcome, Progress, Retry},
 };
 use super::status::{Status, TaskState};

@@ -17,6 +17,7 @@
 
 mod by_hand;
 mod hold;
+mod knowledge;
 mod obstacles;
 mod request;
 mod source;
@@ -292,6 +293,7 @@ impl Operator {
                     .show(&point, &inputs)
                     .ok_or_else(|| format!("the mapping has no point {point}"))
             }
+            Request::Knowledge => Ok(knowledge::state(around.memory)),
             Request::Release(device) => {
                 let field = field(around)?;
                 if !field.release(&device) {

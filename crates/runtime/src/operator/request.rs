@@ -28,6 +28,8 @@ pub enum Request {
     Field,
     /// Read a point of the couplers; changes nothing.
     Point(String),
+    /// Read what the controller knows, beside its sensors; changes nothing.
+    Knowledge,
     /// Release a tripped device.
     Release(String),
     /// Make the outputs of a device safe until it is released.
@@ -65,7 +67,7 @@ pub enum Request {
 }
 
 /// Requests that change nothing and are not logged.
-const QUESTIONS: [&str; 4] = [STATUS, DATA, PEDESTAL, FIELD];
+const QUESTIONS: [&str; 5] = [STATUS, DATA, PEDESTAL, FIELD, RESUME];
 /// Begin of the request for the state of a point.
 const SHOW: &str = "io show ";
 
@@ -81,6 +83,9 @@ const DATA: &str = "data";
 /// Request for the state of the Active Pedestal.
 const PEDESTAL: &str = "pedestal";
 
+/// Request for what the controller knows after a loss of power.
+const RESUME: &str = "resume";
+
 /// Request for the state of the couplers.
 const FIELD: &str = "io";
 
@@ -90,6 +95,7 @@ const WORDS: &[(&str, Request)] = &[
     (DATA, Request::Data),
     (PEDESTAL, Request::Pedestal),
     (FIELD, Request::Field),
+    (RESUME, Request::Knowledge),
     ("stop", Request::Stop),
     ("go", Request::Go),
     ("leave", Request::Leave),
@@ -178,6 +184,7 @@ impl Request {
             | Self::Pedestal
             | Self::Field
             | Self::Point(_)
+            | Self::Knowledge
             | Self::Stop
             | Self::Leave
             | Self::Note

@@ -142,7 +142,9 @@ impl Inputs {
         let path = operator_socket(name);
         match Listener::start(&path, name.as_str()) {
             Ok(listener) => Ok(Self::Sessions(listener)),
-            Err(source) if config.stand_by => Err(StartError::NoOperator { path, source }),
+            Err(source) if config.stand_by || config.resume.is_some() => {
+                Err(StartError::NoOperator { path, source })
+            }
             Err(error) => {
                 observer.message(&format!("no operator can connect: {}: {error}", path.display()));
                 Ok(Self::None)

@@ -12,7 +12,7 @@ use interfaces::{
 use rcs_core::{handshake::successor, tick::Tick};
 use taskdata::files::TaskData;
 
-use super::{by_hand, written};
+use super::{by_hand, knowledge, written};
 
 /// Largest number of passes of a process in one request.
 pub const PASSES: u8 = 100;
@@ -31,6 +31,8 @@ pub enum Entry {
     DbDone(bool),
     /// `<= VALUE` for a variable.
     Write(Write),
+    /// The object in the gripper, named by a person while E-move runs.
+    Name(Write),
     /// An order to the Active Pedestal.
     Pedestal(HandOrder),
     /// Support that keeps the object from falling when the gripper opens.
@@ -65,6 +67,7 @@ impl Entry {
             ["db-done", "off"] => Ok(Self::DbDone(false)),
             ["db-done", ..] => Err(format!("db-done on or off was expected; found {}", words.join(" "))),
             ["write", ref rest @ ..] => written::read(rest).map(Self::Write),
+            ["resume", ref rest @ ..] => knowledge::read(rest).map(Self::Name),
             ["pedestal", ref rest @ ..] => by_hand::order(rest).map(Self::Pedestal),
             ["confirm", ref rest @ ..] => by_hand::confirmation(rest).map(Self::Confirm),
             _ => return None,
@@ -101,6 +104,9 @@ pub struct Terminals {
     passes: VecDeque<u16>,
     /// Values to write in the next tick.
     writes: [Option<Write>; WRITES],
+    /// The name of the held object, and the number of ticks since it was given. A variable is written while its
+    /// process is stopped: E-move stops for two ticks.
+    naming: Option<(Write, u8)>,
     /// Order to the pedestal in the next tick.
     order: Option<HandOrder>,
     /// Statement about the object in the gripper, for the next tick.
@@ -116,6 +122,21 @@ impl Terminals {
 
     /// Called once per tick, after all requests.
     pub fn end_tick(&mut self) {
+        let board = board_bit(ProcessId::Emove.board());
+        match self.naming.take() {
+            Some((write, 0)) => {
+                self.shown.stopped |= board;
+                self.naming = Some((write, 1));
+            }
+            Some((write, 1)) => {
+                if let Some(free) = self.writes.iter_mut().find(|slot| slot.is_none()) {
+                    *free = Some(write);
+                }
+                self.naming = Some((write, 2));
+            }
+            Some(_) => self.shown.stopped &= !board,
+            None => {}
+        }
         self.shown.executed = self.passes.pop_front().unwrap_or_default();
         self.shown.writes = mem::take(&mut self.writes);
         self.shown.pedestal = self.order.take();
@@ -159,6 +180,15 @@ impl Terminals {
             Entry::RobotInit => self.initialize(memory),
             Entry::DbDone(on) => self.db_done(on, memory),
             Entry::Write(write) => self.write(write, memory, data),
+            Entry::Name(write) => {
+                let answer = knowledge::check(&write, memory, data)?;
+                if self.naming.is_some() || self.shown.is_stopped(ProcessId::Emove.board()) {
+                    return Err("E-move is stopped: `board 2 go` and `board 0 go` start it, then ask again"
+                        .to_owned());
+                }
+                self.naming = Some((write, 0));
+                Ok(answer)
+            }
             Entry::Pedestal(order) => {
                 let answer = by_hand::check_order(&order, tick.next(), memory, data)?;
                 if self.order.is_some() {

@@ -50,6 +50,14 @@ pub fn read(words: &[&str]) -> Result<Write, String> {
 /// A message with the reason of the refusal, and the remedy.
 pub fn check(write: &Write, memory: &CommonMemory, data: &TaskData<'_>) -> Result<String, String> {
     stands(write.variable.owner(), memory)?;
+    check_value(write, memory, data)
+}
+
+/// Like [`check`], for a process that is stopped only after the check.
+///
+/// # Errors
+/// A message with the reason of the refusal, and the remedy.
+pub fn check_value(write: &Write, memory: &CommonMemory, data: &TaskData<'_>) -> Result<String, String> {
     if let Some(object) = &write.object {
         is_in_data(write, object, data)?;
         is_felt(write.variable, memory)?;

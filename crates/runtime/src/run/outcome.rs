@@ -1,20 +1,23 @@
 //! The outcome of a run.
 
 use ::neighbours::workstation::player::BegunStep;
-use closed_loop::field::Field;
 use closed_loop::chain::Chain;
+use closed_loop::field::Field;
 use os_io::shell;
 use os_io::text::amount;
 use rcs_core::tick::TICK_S;
+use record::journal::Entry;
 
 use super::Run;
 use crate::{
+    config::ClockKind,
     event::Event,
     field, pace,
     result::{
         self, CommandResult, EgmResult, EmergencyResult, FailureResult, FaultsResult, FieldResult,
         ItemResult, PortResult, RunResult, SIMULATED,
     },
+    resume,
     verdict::Ending,
 };
 
@@ -47,6 +50,7 @@ impl Run {
         self.end_field();
         let ending = self.ending.take().unwrap_or(Ending::Stopped);
         let ending = self.checked(ending);
+        self.end_journal(&ending);
         let mut result = self.result(&ending, wall_s);
         let log = self.finish_log(&ending, &mut result);
         // Shared memory is removed first: a caller may start the next run of the same name at once.
@@ -152,6 +156,18 @@ impl Run {
         let desk = self.closed.workstation.field.as_deref()?.desk();
         let simulated = field::simulated(&self.config, desk.mapping());
         Some(FieldResult::new(desk, simulated, self.field.as_ref()))
+    }
+
+    /// Write the last entry of the journal. A finished run leaves nothing to resume.
+    fn end_journal(&mut self, ending: &Ending) {
+        let Some(journal) = self.journal.take() else { return };
+        let clock = if self.config.clock == ClockKind::Real { resume::now() } else { 0 };
+        let over = matches!(ending, Ending::Finished);
+        let entry = Entry { over, ..resume::entry(&self.closed, self.neighbours.job(), clock) };
+        let path = journal.path().to_owned();
+        if let Some(why) = journal.finish(Some(&entry)) {
+            self.observer.message(&format!("the journal {} is incomplete: {why}", path.display()));
+        }
     }
 
     /// Items in the database at the end.

@@ -19,6 +19,7 @@ use crate::{
     boards::Controller,
     config::{Boards, ClockKind, OperatorAccess, RobotKind, RunConfig},
     error::StartError,
+    event::Event,
     load::Loads,
     loads::Loader,
     log::Log,
@@ -138,7 +139,19 @@ impl Run {
             log.view(Tick::BEFORE_START.next(), views::places(&setup.description));
         }
         let publisher = publisher(&config, &name, &mut *observer);
-        let Setup { store, data, mut job, cell, line_faults, robot, mut neighbours, mut live, .. } = setup;
+        let Setup {
+            store,
+            data,
+            mut job,
+            cell,
+            line_faults,
+            robot,
+            mut neighbours,
+            mut live,
+            journal,
+            resumed,
+            ..
+        } = setup;
         let reloads = std::mem::take(&mut job.reloads);
         let mut closed = ClosedLoop::new(controller, Arc::new(store), Arc::new(reloads), cell);
         if let Some(field) = field {
@@ -155,6 +168,11 @@ impl Run {
         }
         let keeps_books = neighbours.data_system().is_none();
         let closed = if keeps_books { closed } else { closed.with_data_system_elsewhere() };
+        let mut closed = closed;
+        if let Some(resumed) = &resumed {
+            resumed.start(&mut closed);
+        }
+        let fresh = resumed.as_ref().map(|resumed| Event::Resumed(resumed.to_string()));
         let operator = Operator::new(robot.is_elsewhere());
         let runner = Runner::new(publisher);
         let asked = Inputs::of(&config, &name, &mut *observer)?;
@@ -202,7 +220,8 @@ impl Run {
             view: Box::default(),
             viewed: Viewed::default(),
             waits: None,
-            fresh: Vec::new(),
+            fresh: fresh.into_iter().collect(),
+            journal,
             events: Events::default(),
             rest: RestWatch::default(),
             ramp: None,

@@ -10,12 +10,15 @@ use interfaces::CommonMemory;
 use neighbours::data_system::DataSystem;
 use plant::{CellEvent, t3::RobotEvent};
 use rcs_core::tick::Tick;
+use record::journal::{self, HEARTBEAT};
 
 use super::Run;
 use crate::{
+    config::ClockKind,
     egm::EgmPort,
     event::Event,
     live::Live,
+    resume,
     views::{Around, commander, job_state},
 };
 
@@ -142,6 +145,25 @@ impl Run {
             }
             self.observer.event(tick, event);
             self.events.push(tick, event);
+        }
+    }
+
+    /// Hand the knowledge after a tick to the journal, and report its trouble.
+    pub(super) fn write_journal(&mut self, tick: Tick) {
+        let Some(journal) = &mut self.journal else { return };
+        let clock = if self.config.clock == ClockKind::Real { resume::now() } else { 0 };
+        let entry = resume::entry(&self.closed, self.neighbours.job(), clock);
+        journal.tick(&entry);
+        if tick.0.is_multiple_of(HEARTBEAT)
+            && let Ok(saved) = self.closed.workstation.cell.save()
+        {
+            journal.save_cell(journal::cell(&entry, &saved));
+        }
+        if let Some(trouble) = journal.trouble() {
+            let event = Event::Journal(trouble);
+            self.observer.message(&format!("tick {tick}: {event}"));
+            self.log_event(tick.next(), &event);
+            self.events.push(tick, &event);
         }
     }
 

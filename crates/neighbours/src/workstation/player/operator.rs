@@ -19,7 +19,10 @@ use interfaces::{HwsCommand, Unconfirmed};
 use rcs_core::{handshake::Lower, tick::Tick};
 use taskdata::load::job::{JobLine, Step};
 
-use super::{BegunStep, Hwsc, JobFailure, Outcome, Progress};
+use super::{
+    BegunStep, Hwsc, JobFailure, Outcome, Progress,
+    step::{later, spoken_of},
+};
 use crate::workstation::status::Status;
 
 #[derive(Clone, Debug, Default)]
@@ -33,6 +36,8 @@ pub(super) struct Intervention {
 pub enum WaitReason {
     Commanded,
     Asked, // by the operator
+    /// The run has started with the knowledge of an earlier one.
+    Resumed,
     Failed(JobFailure),
 }
 
@@ -41,6 +46,10 @@ impl fmt::Display for WaitReason {
         match self {
             Self::Commanded => f.write_str("an operator commands: the job waits for `job go`"),
             Self::Asked => f.write_str("the job waits for `job go`, as requested"),
+            Self::Resumed => f.write_str(
+                "the run is resumed: check what the controller knows, then `job go` sends PAUSE and the interrupted \
+                 command",
+            ),
             Self::Failed(failure) => {
                 write!(f, "{failure}: the job waits for `job go`")?;
                 failure.remedy().map_or(Ok(()), |remedy| write!(f, "; to do: {remedy}"))
@@ -49,6 +58,18 @@ impl fmt::Display for WaitReason {
     }
 }
 
+/// A place in a job.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct PlaceInJob {
+    /// The present line, from 1; 0 for the PAUSE before the first.
+    pub line: u32,
+    /// False if the present line has not begun.
+    pub is_begun: bool,
+    /// Lines `** after` before the present one whose actions have not started, one bit each, the nearest first.
+    pub delayed: u16,
+}
+
+/// Whether the job runs or waits for the operator.
 #[derive(Clone, Debug, Default)]
 enum State {
     #[default]
@@ -82,7 +103,40 @@ impl Hwsc {
         self
     }
 
-    /// When the operator disconnects, a job that waits because of a failed line ends with that failure.
+    /// Where the job is, for an emulator that continues it later.
+    #[must_use]
+    pub fn place_in_job(&self) -> PlaceInJob {
+        let waits = |line: &&JobLine| self.later.iter().any(|later| spoken_of(later, line));
+        let after = |line: &&JobLine| matches!(line.step, Step::After { .. });
+        let begun = self.steps.iter().take(self.current.saturating_sub(1)).rev().filter(after);
+        let delayed = begun.take(16).enumerate().filter(|(_, line)| waits(line));
+        PlaceInJob {
+            line: u32::try_from(self.current).unwrap_or(u32::MAX),
+            is_begun: self.began.is_some() && !self.waits_before_line(),
+            delayed: delayed.fold(0, |all, (place, _)| all | 1 << place),
+        }
+    }
+
+    /// Makes the job wait for an operator at a place that an earlier emulator has reached, in a run that begins after
+    /// `tick`. Delayed actions of that place start with the next command.
+    #[must_use]
+    pub fn resumed_at(mut self, place: PlaceInJob, tick: Tick) -> Self {
+        self.current =
+            usize::try_from(place.line).unwrap_or(usize::MAX).min(self.steps.len().saturating_add(1));
+        self.began = place.is_begun.then_some(tick);
+        let after = |line: &&JobLine| matches!(line.step, Step::After { .. });
+        let begun = self.steps.iter().take(self.current.saturating_sub(1)).rev().filter(after).take(16);
+        let delayed = begun.enumerate().filter(|(at, _)| place.delayed & 1 << at != 0);
+        self.later = delayed.filter_map(|(_, line)| later(line)).collect();
+        self.later.reverse();
+        let before_line = !place.is_begun;
+        self.intervention.state = State::Waits { failure: None, before_line, command: None };
+        self.intervention.news = Some(WaitReason::Resumed);
+        self
+    }
+
+    /// Sets whether an operator is connected. When the operator disconnects, a job that waits because of a
+    /// failed line ends with that failure.
     pub fn attend(&mut self, is_there: bool) {
         self.intervention.attended = is_there;
         if let (false, State::Waits { failure, .. }) = (is_there, &mut self.intervention.state)

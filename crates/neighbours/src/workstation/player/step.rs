@@ -48,9 +48,8 @@ impl Hwsc {
             Step::Command(command) => return self.send(tick, text, command),
             Step::Workstation(Action::Wait { .. }) => None,
             Step::Workstation(action) => workstation.begin(&action, spoken(&text)).err(),
-            Step::After { ticks, action } => {
-                let line = after(spoken(&text)).to_owned();
-                self.later.push(Later { ticks: u64::from(ticks), action, line, since: None });
+            Step::After { .. } => {
+                self.later.extend(self.step_at(self.current).and_then(later));
                 None
             }
         };
@@ -101,6 +100,19 @@ impl Hwsc {
     }
 }
 
+/// The delayed action of a line `** after`; `None` for other lines.
+pub(super) fn later(line: &JobLine) -> Option<Later> {
+    let Step::After { ticks, action } = line.step else { return None };
+    let line = after(spoken(&line.text)).to_owned();
+    Some(Later { ticks: u64::from(ticks), action, line, since: None })
+}
+
+/// True if a delayed action is that of a line.
+pub(super) fn spoken_of(of: &Later, line: &JobLine) -> bool {
+    later(line).is_some_and(|later| (later.ticks, &later.line) == (of.ticks, &of.line))
+}
+
+/// A line for the workstation without its asterisks.
 fn spoken(line: &str) -> &str {
     line.trim_start().trim_start_matches('*').trim_start()
 }

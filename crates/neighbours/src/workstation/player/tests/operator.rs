@@ -267,3 +267,58 @@ fn emulator_without_a_job_waits_again() {
     assert!(stage.hwsc.is_waiting());
     assert_eq!(stage.received(), "MOVE PAUSE ACQUIRE");
 }
+
+#[test]
+fn resumed_job_waits_and_repeats_its_line() {
+    let mut before = Stage::commands();
+    before.until(|stage| stage.received() == "PAUSE MOVE");
+    let place = before.hwsc.place_in_job();
+    assert_eq!((place.line, place.is_begun), (1, true));
+    let mut stage = Stage::commands();
+    stage.task.receiver.observe(before.hwsc.command().number);
+    stage.hwsc = Hwsc::new(before.hwsc.lines().to_vec(), 100).resumed_at(place, Tick(40));
+    stage.hwsc.attend(true);
+    stage.tick = 40;
+    for _ in 0..30 {
+        stage.step();
+    }
+    assert!(stage.received().is_empty() && stage.hwsc.operator_news() == Some(WaitReason::Resumed));
+    stage.go_on();
+    stage.until(is_over);
+    assert_eq!(stage.received(), "PAUSE MOVE ACQUIRE");
+}
+
+#[test]
+fn resumed_job_does_not_repeat_a_finished_line() {
+    let mut before = Stage::commands();
+    before.hwsc.wait_for_operator().unwrap();
+    before.go_on();
+    before.until(|stage| stage.received() == "PAUSE MOVE");
+    before.hwsc.wait_for_operator().unwrap();
+    before.until(|stage| stage.hwsc.is_waiting());
+    let place = before.hwsc.place_in_job();
+    assert_eq!((place.line, place.is_begun), (2, false), "the first line is finished");
+    let mut stage = Stage::commands();
+    stage.hwsc = Hwsc::new(before.hwsc.lines().to_vec(), 100).resumed_at(place, Tick(40));
+    stage.tick = 40;
+    stage.step();
+    stage.go_on();
+    stage.until(is_over);
+    assert_eq!(stage.received(), "PAUSE ACQUIRE");
+}
+
+#[test]
+fn delayed_actions_that_have_started_do_not_start_again() {
+    let delayed = |ticks| JobLine {
+        step: Step::After { ticks, action: RESET },
+        text: format!("** after {ticks} panel fault-reset"),
+        ..command("MOVE")
+    };
+    let lines = || vec![delayed(2), delayed(90), command("MOVE")];
+    let mut before = Stage::new(lines());
+    before.until(|stage| stage.jaws.lines.len() == 1);
+    let place = before.hwsc.place_in_job();
+    assert_eq!((place.line, place.delayed), (3, 1), "only the nearest waits");
+    let resumed = Hwsc::new(lines(), 100).resumed_at(place, Tick(40));
+    assert_eq!(resumed.later.iter().map(|later| later.ticks).collect::<Vec<_>>(), [90]);
+}

@@ -1,0 +1,213 @@
+//! The start of a run with what the controller knew in an earlier one (docs/design/resume.md).
+
+use std::{
+    fmt,
+    path::PathBuf,
+    time::{SystemTime, UNIX_EPOCH},
+};
+
+use closed_loop::ClosedLoop;
+use interfaces::emove::GoneTo;
+use neighbours::workstation::player::{Hwsc, PlaceInJob};
+use os_io::files;
+use plant::{Cell, CellDescription};
+use rcs_core::digest::Digest;
+use record::journal::{self, Contents, Entry, Identity};
+use taskdata::load::{Job, Store};
+
+use crate::{
+    boards::Controller,
+    config::{Boards, RobotKind, RunConfig},
+    error::StartError,
+};
+
+/// Greatest length of a saved cell, bytes.
+const LARGEST_CELL: u64 = 64 << 20;
+
+/// The knowledge of an earlier run.
+pub struct Resumed {
+    path: PathBuf,
+    contents: Contents,
+    /// The cell that the run simulates, as saved.
+    cell: Vec<u8>,
+}
+
+/// The time of day, ms since 1970.
+pub fn now() -> u64 {
+    let since = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
+    u64::try_from(since.as_millis()).unwrap_or(u64::MAX)
+}
+
+/// The entry after the last tick.
+pub fn entry(closed: &ClosedLoop<Controller>, job: Option<&Hwsc>, written: u64) -> Entry {
+    let PlaceInJob { line, is_begun, delayed } = job.map(Hwsc::place_in_job).unwrap_or_default();
+    Entry {
+        tick: closed.tick(),
+        written,
+        over: false,
+        line,
+        begun: is_begun,
+        delayed,
+        generation: closed.generations().number(),
+        hws: *closed.command(),
+        memory: journal::kept(closed.memory()),
+    }
+}
+
+/// Data, job and cell of a run, by their digests, and its program.
+pub fn identity(config: &RunConfig, store: &Store, job: &Job, cell: &str) -> Identity {
+    let mut data = Digest::new();
+    for source in store.sources() {
+        data.add(source.name.as_bytes());
+        data.add(source.text.as_bytes());
+    }
+    let of = |text: &str| {
+        let mut digest = Digest::new();
+        digest.add(text.as_bytes());
+        digest.to_string()
+    };
+    let entries = [
+        (journal::PROGRAM, env!("CARGO_PKG_VERSION").to_owned()),
+        ("data", data.to_string()),
+        ("job", format!("{} {}", job.name, of(&job.source().text))),
+        ("cell", of(cell)),
+        ("robot", config.robot.to_string()),
+    ];
+    entries.into_iter().map(|(key, value)| (key.to_owned(), value)).collect()
+}
+
+impl Resumed {
+    /// Read the journal of a configuration, if it names one.
+    ///
+    /// # Errors
+    /// [`StartError`] if it cannot be used, or the run cannot be resumed.
+    pub fn load(config: &RunConfig) -> Result<Option<Self>, StartError> {
+        let Some(path) = &config.resume else { return Ok(None) };
+        if config.boards != Boards::One {
+            return Err(StartError::ResumeBoards);
+        }
+        let mut contents = journal::open(path)?;
+        let beside = journal::cell_beside(path);
+        let failed = |why: String| StartError::ResumedCell { path: beside.clone(), why };
+        let bytes = files::read(&beside, LARGEST_CELL).map_err(|error| failed(error.to_string()))?;
+        let (entry, saved) = journal::read_cell(&bytes)
+            .ok_or_else(|| failed("it is damaged, or of a program with other buffers".to_owned()))?;
+        if contents.newest.over {
+            return Err(StartError::NothingToResume(path.clone()));
+        }
+        if config.robot.kind == RobotKind::Sim {
+            // The simulated cell lives in the run: the plug is pulled in the tick of its last save.
+            contents = Contents { newest: entry, torn: false, ..contents };
+        }
+        let cell = saved.to_vec();
+        Ok(Some(Self { path: path.clone(), contents, cell }))
+    }
+
+    pub const fn entry(&self) -> &Entry {
+        &self.contents.newest
+    }
+
+    /// The first entry of the journal that this run writes.
+    pub fn first(&self) -> Entry {
+        let memory = self.contents.memory(self.entry().tick);
+        Entry { memory: journal::kept(&memory), ..*self.entry() }
+    }
+
+    pub const fn place(&self) -> PlaceInJob {
+        let Entry { line, begun, delayed, .. } = *self.entry();
+        PlaceInJob { line, is_begun: begun, delayed }
+    }
+
+    /// The simulated cell, as it was saved.
+    ///
+    /// # Errors
+    /// [`StartError::ResumedCell`] if it is of another description or version.
+    pub fn cell(&self, description: &CellDescription) -> Result<Cell, StartError> {
+        Cell::restore(description, &self.cell).map_err(|error| StartError::ResumedCell {
+            path: journal::cell_beside(&self.path),
+            why: error.to_string(),
+        })
+    }
+
+    /// Compare the run of the journal with this one.
+    ///
+    /// # Errors
+    /// [`StartError::OtherJournal`] with all differences.
+    pub fn check(&self, identity: &Identity) -> Result<(), StartError> {
+        let differences = differences(&self.contents.identity, identity);
+        if differences.is_empty() {
+            return Ok(());
+        }
+        Err(StartError::OtherJournal { path: self.path.clone(), differences })
+    }
+
+    /// Give the controller its knowledge.
+    pub fn start(&self, closed: &mut ClosedLoop<Controller>) {
+        let entry = self.entry();
+        let memory = self.contents.memory(entry.tick);
+        closed.resume(entry.tick, &memory, &entry.hws, entry.generation);
+    }
+}
+
+fn differences(of_journal: &Identity, of_run: &Identity) -> Vec<String> {
+    let none = String::new();
+    let value = |of: &Identity, key: &String| of.get(key).unwrap_or(&none).clone();
+    let differ = of_run.keys().filter(|key| value(of_journal, key) != value(of_run, key));
+    differ.map(|key| format!("{key} {} there, {} here", value(of_journal, key), value(of_run, key))).collect()
+}
+
+/// What the controller knows, in words.
+impl fmt::Display for Resumed {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let entry = self.entry();
+        let memory = self.contents.memory(entry.tick);
+        let estimates = &memory.emove.estimates;
+        match &estimates.held {
+            Some(held) => write!(f, "holds {} with grip {:+}", held.object.object, held.object.grip)?,
+            None if estimates.empty => f.write_str("holds nothing")?,
+            None => f.write_str("what the gripper holds is not known")?,
+        }
+        match (&estimates.place, &estimates.way) {
+            (Some(place), _) => write!(f, "; the robot is {} {}", at(&place.gone_to), place.site.location)?,
+            (None, Some(way)) => {
+                write!(
+                    f,
+                    "; the robot is on its way from {} to {}",
+                    way.from.site.location, way.to.site.location
+                )?;
+            }
+            (None, None) => f.write_str("; the place of the robot is not known")?,
+        }
+        let begun = if entry.begun { "" } else { ", not begun" };
+        write!(f, "; line {} of the job{begun}; knowledge of ", entry.line)?;
+        let age = now().saturating_sub(entry.written) / 1000;
+        match entry.written {
+            0 => write!(f, "tick {}", entry.tick),
+            _ => write!(f, "tick {}, {age} s ago", entry.tick),
+        }
+    }
+}
+
+const fn at(gone_to: &GoneTo) -> &'static str {
+    match gone_to {
+        GoneTo::Location => "at",
+        GoneTo::Object(_) | GoneTo::View(_) => "at an object in",
+        GoneTo::Drum => "in the drum at",
+        GoneTo::Brought(_) => "with an object at",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn differences_of_two_runs_are_named() {
+        let identity = |cell: &str| {
+            Identity::from([("cell".to_owned(), cell.to_owned()), ("job".to_owned(), "linkbar".to_owned())])
+        };
+        assert!(differences(&identity("1"), &identity("1")).is_empty());
+        assert_eq!(differences(&identity("1"), &identity("2")), ["cell 1 there, 2 here"]);
+        assert_eq!(differences(&Identity::new(), &identity("2")).len(), 2);
+    }
+}

@@ -1,0 +1,109 @@
+//! Runs that lose their program, and are resumed from their journals (docs/design/resume.md).
+
+use std::{
+    fs,
+    path::{Path, PathBuf},
+};
+
+use record::journal::{self, Entry};
+use runtime::{LogTarget, Run, RunConfig, RunOutcome, StartError};
+use sessions::operator::Event;
+
+const DATA: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../data");
+
+fn config(job: &str) -> RunConfig {
+    RunConfig { log: LogTarget::None, shared_memory: false, ..RunConfig::new(DATA, job) }
+}
+
+fn in_directory(directory: &tempfile::TempDir) -> PathBuf {
+    directory.path().join("run.journal")
+}
+
+/// Run a job for some ticks, and end it without any of its own ends.
+fn cut_off(job: &str, ticks: u64, path: &Path) {
+    let config = RunConfig { journal: Some(path.to_owned()), ..config(job) };
+    let mut run = Run::new(config, Box::new(())).expect("the job is sound");
+    while run.last_tick().0 < ticks && run.step() {}
+}
+
+/// Resume a run as a person would. Returns the greatest motion of the tool before `job go`, in inches, and the outcome.
+fn resumed(job: &str, path: &Path) -> (f64, RunOutcome) {
+    let config = RunConfig { resume: Some(path.to_owned()), ..config(job) };
+    let mut run = Run::new(config, Box::new(())).expect("the journal is sound");
+    run.ask("tester", Event::Connected).expect("an operator can connect");
+    // The arm comes to rest first.
+    for _ in 0..50 {
+        run.step();
+    }
+    let before = run.cell_mut().tool().position;
+    for _ in 0..100 {
+        run.step();
+    }
+    let moved = (run.cell_mut().tool().position - before).length();
+    let answer = run.ask("tester", Event::Line("resume".to_owned())).expect("it is a question");
+    assert!(answer.starts_with("held: "), "{answer}");
+    run.ask("tester", Event::Line("job go".to_owned())).expect("the job waits");
+    (moved, run.complete())
+}
+
+#[test]
+fn run_cut_off_at_any_tick_is_resumed_to_its_end() {
+    let directory = tempfile::tempdir().unwrap();
+    let path = in_directory(&directory);
+    for (job, ticks) in [("linkbar", [40, 700, 1_900, 4_400]), ("clevis", [900, 3_300, 6_100, 9_800])] {
+        for tick in ticks {
+            cut_off(job, tick, &path);
+            let (moved, outcome) = resumed(job, &path);
+            assert!(moved < 0.02, "{job} at {tick}: the tool has moved by {moved} in before `job go`");
+            assert!(outcome.is_finished(), "{job} at {tick}: {}", outcome.ending.text());
+        }
+    }
+}
+
+#[test]
+fn finished_run_is_not_resumed() {
+    let directory = tempfile::tempdir().unwrap();
+    let path = in_directory(&directory);
+    let with_journal = RunConfig { journal: Some(path.clone()), ..config("linkbar") };
+    assert!(Run::new(with_journal, Box::new(())).unwrap().complete().is_finished());
+    let again = Run::new(RunConfig { resume: Some(path), ..config("linkbar") }, Box::new(()));
+    assert!(matches!(again, Err(StartError::NothingToResume(_))));
+}
+
+#[test]
+fn journal_of_another_job_is_refused_by_name() {
+    let directory = tempfile::tempdir().unwrap();
+    let path = in_directory(&directory);
+    cut_off("linkbar", 60, &path);
+    let other = Run::new(RunConfig { resume: Some(path), ..config("clevis") }, Box::new(()));
+    let refused = other.err().map(|error| error.to_string()).unwrap_or_default();
+    assert!(refused.contains("job linkbar") && refused.contains("there, clevis"), "{refused}");
+}
+
+#[test]
+fn damaged_cell_and_missing_journal_are_refused() {
+    let directory = tempfile::tempdir().unwrap();
+    let path = in_directory(&directory);
+    let resume = || Run::new(RunConfig { resume: Some(path.clone()), ..config("linkbar") }, Box::new(()));
+    assert!(matches!(resume().err(), Some(StartError::Journal(_))));
+    cut_off("linkbar", 60, &path);
+    let beside = journal::cell_beside(&path);
+    let mut bytes = fs::read(&beside).unwrap();
+    let middle = bytes.len() / 2;
+    bytes[middle] ^= 1;
+    fs::write(&beside, bytes).unwrap();
+    assert!(matches!(resume().err(), Some(StartError::ResumedCell { .. })));
+}
+
+#[test]
+fn second_loss_of_power_before_the_first_entry_loses_nothing() {
+    let directory = tempfile::tempdir().unwrap();
+    let path = in_directory(&directory);
+    cut_off("linkbar", 700, &path);
+    let saved = fs::read(journal::cell_beside(&path)).unwrap();
+    let (before, _) = journal::read_cell(&saved).unwrap();
+    drop(Run::new(RunConfig { resume: Some(path.clone()), ..config("linkbar") }, Box::new(())).unwrap());
+    let Entry { tick, line, .. } = journal::open(&path).unwrap().newest;
+    assert_eq!((tick, line), (before.tick, before.line));
+    assert!(resumed("linkbar", &path).1.is_finished());
+}
