@@ -59,7 +59,7 @@ fn kinds() -> Vec<Kind> {
     shipped.into_iter().chain(sectors).collect()
 }
 
-/// On two threads. Returns the kinds that have not finished, with the reason.
+/// Runs seeds on two threads. Returns the kinds that have not finished, with the reason.
 fn failed(kinds: &[Kind], seeds: usize) -> Vec<(usize, String)> {
     let next = AtomicUsize::new(0);
     let work = || {

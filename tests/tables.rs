@@ -83,7 +83,7 @@ pub struct Table {
 }
 
 impl Table {
-    /// Also those in comments and in code blocks of a page.
+    /// All tables, including those in comments and in code blocks of a page.
     #[must_use]
     pub fn read(file: &Path, text: &str) -> Vec<Self> {
         let mut tables = Vec::<Self>::new();

@@ -151,7 +151,6 @@ type Visit<'a> = dyn FnMut(&str, &str) -> io::Result<()> + 'a; // path and value
 /// * An option: `none`, or the value; of a record, an enum with data, `none` or `some`.
 /// * An enum with data: the text of the variant at `path`, its fields below. A field that only the previous variant
 ///   had gets [`ABSENT`], as does a field that was never written; those of the new variant are visited without `was`.
-///   for [`ABSENT`] too.
 fn changes(
     schema: &Schema,
     path: &mut String,

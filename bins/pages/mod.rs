@@ -28,7 +28,7 @@ pub use markdown::markdown;
 pub use removed::{KEYS_MOVED, RemovedTls};
 pub use values::{DataArgument, data_directory, default_data, fault_file, job, names, robot, with_names};
 
-/// With the commit, if known.
+/// The version, with the commit if it is known.
 pub const VERSION: &str = if env!("RCS_COMMIT").is_empty() {
     env!("CARGO_PKG_VERSION")
 } else {

@@ -15,7 +15,7 @@ use crate::trace::ABSENT;
 pub struct Renames {
     pub renamed: Vec<Renamed>, // the first match applies
     pub dropped: Vec<Only>,    // in the old version
-    /// In the new version. A field of both versions is still compared.
+    /// Fields of the new version only. A field of both versions is still compared.
     pub added: Vec<Only>,
     pub value: Vec<NewText>,
 }

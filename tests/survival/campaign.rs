@@ -14,7 +14,7 @@ fn start(part: &str) -> Child {
         .expect("the campaign can be started")
 }
 
-/// In parallel, as nearly all of their time is that of runs in real time. Each prints its table and its skipped cases.
+/// The parts run in parallel, as they mostly wait for runs in real time. Each prints its table.
 #[test]
 fn a_sample_of_each_part_has_no_finding() {
     let started = PARTS.map(|part| (part, start(part)));

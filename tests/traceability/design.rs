@@ -51,7 +51,7 @@ fn items(page: &str) -> Vec<Item> {
     items
 }
 
-/// In backquotes; true if a bracket is open before.
+/// Texts in backquotes, and true if a bracket is open before them.
 fn references(text: &str) -> Vec<(&str, bool)> {
     let parts = text.split('`').collect::<Vec<_>>();
     let words = parts.iter().step_by(2);

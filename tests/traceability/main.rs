@@ -37,7 +37,7 @@ struct Line {
 
 struct Page {
     lines: Vec<Line>,
-    /// Not in the manual: code and reason. A star includes all of a type.
+    /// Names that are not in the manual: code and reason. A star includes all of a type.
     beyond: Vec<(String, String)>,
     differences: Vec<[String; 4]>, // another meaning than the manual's: name, owner, the manual, here
     mailboxes: Vec<[String; 5]>,   // chapter IX: description, address, bytes, section, test
@@ -198,7 +198,7 @@ fn every_listed_difference_names_an_entry_of_the_page() {
     }
 }
 
-/// Without the last word: `Type::` or `Record.`.
+/// A code without its last word: `Type::` or `Record.`.
 fn start_of(code: &str) -> &str {
     let end = code.rfind([':', '.']).map_or(0, |at| at + 1);
     &code[..end]

@@ -144,7 +144,7 @@ impl Diagnostic {
         &self.text
     }
 
-    /// To the end of the line.
+    /// The text from the underlined piece to the end of the line.
     pub(super) const fn rest(&self) -> &str {
         self.rest.as_str()
     }
@@ -161,7 +161,7 @@ impl Diagnostic {
         }
     }
 
-    /// As a person reads it: without control characters, and in the person's units. Byte positions remain.
+    /// The finding without control characters, in the person's units. Byte positions remain.
     pub(super) fn shown(&self) -> Self {
         let mut finding = self.clone();
         finding.problem.message = shown(&self.problem.message).into_owned();

@@ -30,8 +30,8 @@ pub struct Diagnostics {
 }
 
 impl Diagnostic {
-    /// With source frame and colour if `graphical`, for [`os_io::console::drawn`], else in plain text. The graphical
-    /// form is already made for a terminal, as by [`os_io::console::shown`].
+    /// The finding with source frame and colour if `graphical`, for [`os_io::console::drawn`], else as plain text. The
+    /// graphical form is already made for a terminal, as by [`os_io::console::shown`].
     #[must_use]
     pub fn render(&self, graphical: bool) -> String {
         if !graphical {

@@ -12,7 +12,7 @@ impl Diagnostic {
         (self.problem.severity == Severity::Error, self.problem.code, same.clone())
     }
 
-    /// Without directories.
+    /// The name of the file without directories, and the line.
     fn line_in_words(&self) -> Option<String> {
         let name = self.file().rsplit('/').next()?;
         self.line().map(|line| format!("{name} line {line}"))

@@ -46,7 +46,7 @@ pub(crate) fn read(path: &str) -> io::Result<&'static [u8]> {
     })
 }
 
-/// With the prefix; empty if there are none.
+/// The entries of a directory, with the prefix; empty if there are none.
 pub(crate) fn list(directory: &str) -> Vec<PathBuf> {
     let below = |file: &Carried| Path::new(file.path).strip_prefix(directory).ok();
     let first = |rest: &'static Path| rest.components().next();

@@ -91,7 +91,7 @@ fn is_device() -> bool {
     file.and_then(|file| file.metadata()).is_ok_and(|found| found.file_type().is_char_device())
 }
 
-/// With one call of `write`, so that lines of several processes on one terminal do not mix.
+/// Writes a line with one call of `write`, so that lines of several processes on one terminal do not mix.
 fn line(out: &mut impl Write, message: &str) -> io::Result<()> {
     out.write_all(format!("{message}\n").as_bytes())
 }

@@ -75,7 +75,7 @@ pub fn check_output<'a>(
     keep_others(path, format)
 }
 
-/// By device and inode; by place if a file does not exist.
+/// Refuses an input as output, by device and inode, or by place if a file does not exist.
 fn keep_inputs<'a>(output: &Path, inputs: impl IntoIterator<Item = &'a Path>) -> io::Result<()> {
     let identity = |path: &Path| fs::metadata(path).ok().map(|found| (found.dev(), found.ino()));
     let is_output = |input: &&Path| match (identity(output), identity(input)) {
@@ -163,7 +163,7 @@ pub fn replace(path: &Path, bytes: &[u8]) -> io::Result<()> {
     File::open(directory)?.sync_all()
 }
 
-/// With mode and owner of the old file, and synchronised with the disk.
+/// Writes a file with mode and owner of the old one, synchronised with the disk.
 fn write_new(path: &Path, bytes: &[u8], old: Option<&Metadata>) -> io::Result<()> {
     // A killed process with the same number may have left it.
     match fs::remove_file(path) {
@@ -186,7 +186,7 @@ fn write_new(path: &Path, bytes: &[u8], old: Option<&Metadata>) -> io::Result<()
     file.sync_all()
 }
 
-/// After all symbolic links; it need not exist.
+/// The file after all symbolic links; it need not exist.
 fn target(path: &Path) -> io::Result<PathBuf> {
     let mut path = path.to_owned();
     for _ in 0..MAX_LINKS {

@@ -96,7 +96,7 @@ pub fn shown(text: &str) -> Cow<'_, str> {
     Units::of_process().convert(text)
 }
 
-/// After a number and a space in a text, with the unit shown for millimetres.
+/// A unit after a number and a space in a text, with the unit shown for millimetres.
 struct Unit {
     text: &'static str,
     other: &'static str,
@@ -114,7 +114,7 @@ const UNITS: [Unit; 4] = [
     Unit { text: "lb", other: "N", factor: NEWTON, digits: -1, whole: true },
 ];
 
-/// Between two numbers that share the last one's unit: `(1.00, 2.00, 3.00 in)`, `3.0 x 1.5 in`.
+/// Words between two numbers that share the last one's unit: `(1.00, 2.00, 3.00 in)`, `3.0 x 1.5 in`.
 const BETWEEN: [&str; 8] = ["", ",", "x", "to", "and", "or", "Y", "Z"];
 
 struct Number {

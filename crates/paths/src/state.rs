@@ -42,7 +42,7 @@ pub struct State<'a> {
 }
 
 impl<'a> State<'a> {
-    /// After start-up, with open fingers.
+    /// The state after start-up, with open fingers.
     #[must_use]
     pub fn new(room: &'a Room, known: &'a Known, walk: Walk<'a>, robot: Robot) -> Self {
         let mut layout = room.at_start();

@@ -239,7 +239,7 @@ mod tests {
         assert_eq!(commander.read(Tick(101), &header(100), 45, Lower::Executing), Lower::Executing);
     }
 
-    /// In addition to its number, an identity that distinguishes the command from all others.
+    /// A command with an identity that distinguishes it from all others, in addition to its number.
     #[derive(Clone, Copy, Debug, Default, PartialEq)]
     struct Content {
         number: u32,

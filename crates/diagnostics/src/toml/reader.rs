@@ -374,7 +374,7 @@ impl<'a> MapAccess<'a> for Entries<'_, 'a> {
     }
 }
 
-/// With stand-ins up to a length.
+/// The elements of an array, with stand-ins up to a length.
 struct Elements<'n, 'a> {
     reader: Reader<'n, 'a>,
     array: &'a [Spanned<DeValue<'a>>],

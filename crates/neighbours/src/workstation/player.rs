@@ -205,7 +205,7 @@ impl Hwsc {
         false
     }
 
-    /// Once per tick, after the controller: reads Task's status of `tick`, and prepares the command for the next.
+    /// Call once per tick, after the controller: reads Task's status of `tick`, prepares the next command.
     pub fn step(&mut self, tick: Tick, task: &Status<'_>, workstation: &mut impl Workstation) -> &Progress {
         if self.progress != Progress::Running {
             return &self.progress;
