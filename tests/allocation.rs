@@ -20,7 +20,6 @@ const fn kind(job: &'static str, status: i32, faults: bool) -> Kind {
     Kind { job, status, faults }
 }
 
-/// Repeated until the number of ticks is reached.
 const KINDS: [Kind; 4] = [
     kind("no-part.job", 1, false),
     kind("linkbar", 0, true),

@@ -117,7 +117,6 @@ impl Running<'_> {
         })
     }
 
-    /// False if the run ended before.
     fn wait_until(&mut self, what: &str, moment: impl Fn(&Attached) -> bool) -> bool {
         let reader = self.attach();
         wait_for(what, || {

@@ -78,21 +78,16 @@ pub enum Failed {
     Change { file: String, from: String },
     #[error("rcs-run cannot be started: {0}")]
     Start(io::Error),
-    /// The run did not end as expected.
     #[error("exit status {expected} and {says:?} were expected, {} came with {last_words:?}", status(.found))]
     Ending { expected: i32, says: String, found: Option<i32>, last_words: String },
-    /// The log is not suitable for a golden.
     #[error(transparent)]
     Log(#[from] record::ReadError),
-    /// The golden cannot be made or replayed.
     #[error(transparent)]
     Golden(#[from] GoldenError),
-    /// The replay differs from the run.
     #[error("the replay differs from the run that it was made of, from tick {0} to {1}")]
     Difference(u64, u64),
     #[error("the run has no log that can be read: {source}; its last line is {last_line:?}")]
     NoLog { source: record::ReadError, last_line: String },
-    /// A trace needs all ticks.
     #[error("ticks are missing in the log before tick {0}")]
     Gap(Tick),
     #[error(transparent)]

@@ -26,12 +26,10 @@ const WRITTEN: usize = 12; // printed per scenario; others are counted
 pub enum CompareError {
     #[error(transparent)]
     Toml(#[from] toml::de::Error),
-    /// A rename has a star without a meaning.
     #[error("at most as many stars as in old = {old:?} were expected, found new = {new:?}")]
     Stars { old: String, new: String },
     #[error("the {0} trace: {1}")]
     Unreadable(&'static str, io::Error),
-    /// Not a line of a trace, or of an earlier tick than the line before.
     #[error("the {which} trace, line {line}: tick, path and value in order were expected, found {found:?}")]
     Line {
         which: &'static str, // old or new
@@ -40,7 +38,6 @@ pub enum CompareError {
     },
     #[error("the {0} trace ends without saying how the run ended: make it again")]
     NoEnd(&'static str),
-    /// Two old fields would become one new field.
     #[error("{first} and {second} of the old version both become {new}")]
     Twice { first: String, second: String, new: String },
 }
@@ -249,7 +246,6 @@ impl<'a> Comparer<'a> {
         }
     }
 
-    /// Counts the previous pair if another one fires.
     fn change_row(&mut self, at: usize) {
         let slot = &mut self.slots[at];
         let (Kind::Row(firing), Some(was), Some(is)) = (&mut slot.kind, &slot.was, &slot.is) else { return };
@@ -263,7 +259,6 @@ impl<'a> Comparer<'a> {
         }
     }
 
-    /// Counts differences and pairs that lasted to the end.
     fn finish(mut self) -> Comparison {
         let ticks = self.new.get(TICKS).and_then(|at| self.slots.get(*at));
         let number = |text: Option<&String>| text.and_then(|text| text.parse().ok()).unwrap_or(self.tick);

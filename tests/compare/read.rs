@@ -36,7 +36,6 @@ impl<R: BufRead> Lines<R> {
         lines.next.is_some().then_some(lines).ok_or(CompareError::NoEnd(which))
     }
 
-    /// `None` after the last line.
     pub(super) fn moment(&self) -> Option<Moment> {
         self.next.as_ref().map(|(moment, ..)| *moment)
     }

@@ -55,7 +55,6 @@ pub(super) fn learn(pairs: &mut Pairs, pair: Pair, since: u64, until: u64) {
     }
 }
 
-/// New rows for old ones, in all scenarios.
 #[derive(Clone, Debug, Default)]
 pub struct RowMap {
     pairs: BTreeMap<Pair, (Seen, String)>, // scenario of the first tick
@@ -77,7 +76,6 @@ impl RowMap {
         renames.unused(&self.used)
     }
 
-    /// Pairs whose old row became several new rows.
     #[must_use]
     pub fn split(&self) -> Vec<&Pair> {
         let mut new_rows: BTreeMap<(&str, &Row), usize> = BTreeMap::new();
@@ -88,7 +86,6 @@ impl RowMap {
         self.pairs.keys().filter(is_split).collect()
     }
 
-    /// Rows that never fired, by process and table.
     #[must_use]
     pub fn not_named(&self) -> Vec<(&'static str, &'static str, Vec<u8>)> {
         let fired: BTreeSet<(&str, String)> =

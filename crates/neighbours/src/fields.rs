@@ -6,11 +6,9 @@ use rcs_core::name::Name16;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FieldError {
-    /// The data end too early.
     End {
         field: &'static str, // in the manual's words
     },
-    /// A character that a name cannot have.
     Character {
         field: &'static str, // in the manual's words
         at: usize,           // byte in the data
@@ -20,13 +18,11 @@ pub enum FieldError {
         field: &'static str, // in the manual's words
         found: Name16,
     },
-    /// The integer differs from the required one.
     Expected {
         field: &'static str, // in the manual's words
         expected: &'static str,
         found: u16,
     },
-    /// The number is infinite or NaN.
     Infinite {
         field: &'static str, // in the manual's words
     },
@@ -58,7 +54,6 @@ impl fmt::Display for FieldError {
 
 impl std::error::Error for FieldError {}
 
-/// Two bytes cannot hold the integer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("an integer of two bytes was expected for {field}, found {found}")]
 pub struct RangeError {

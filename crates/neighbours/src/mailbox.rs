@@ -62,13 +62,10 @@ pub const TABLE: [Place; 8] = [
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum MailboxError {
-    /// The data do not fit.
     #[error("{mailbox}: at most {room} bytes of data were expected, found {found}")]
     TooLong { mailbox: Place, room: usize, found: usize },
-    /// The image has the wrong size.
     #[error("{mailbox}: {} bytes were expected, found {found}", .mailbox.size)]
     Size { mailbox: Place, found: usize },
-    /// The length word exceeds the mailbox, or is less than the head.
     #[error("{mailbox}: a length of {HEAD} to {} was expected, found {found}", .mailbox.size)]
     Length { mailbox: Place, found: u16 },
 }

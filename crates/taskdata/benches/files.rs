@@ -1,7 +1,6 @@
 //! Times of a load and of look-ups with 100,000 records in one file, and in all files at once. A load ends when the
 //! data are ready. Look-ups are timed warm (a few records repeatedly), cold (all records, shuffled; several times the
 //! caches of a core), and with the caches emptied.
-//! part of the crate is built without `alloc`.
 
 use std::{fmt::Write, hint::black_box, time::Duration};
 

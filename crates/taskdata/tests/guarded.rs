@@ -6,7 +6,6 @@ use taskdata::{
     load::{Source, Store},
 };
 
-/// A tool drum, and two holsters with one owner.
 const CELL: &str = "BLOCK# 600 OFFSET 21000
  5500 -2400 1500 8500 -2400 1500 8500 600 1500 -pose- ... T-P
  3800 -4400 -400 6800 -4400 -400 6800 -1400 -400 -pose- ... R-P

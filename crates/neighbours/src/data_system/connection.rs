@@ -24,7 +24,6 @@ pub trait Keeper {
 
     fn reply(&mut self, id: u16) -> Reply;
 
-    /// Sorted by name and number. Errors: the reason.
     fn items(&mut self) -> Result<Vec<Item>, String>;
 }
 

@@ -10,7 +10,6 @@ use std::fmt;
 
 use os_io::text::amount;
 
-/// Columns of the report EQUIP_ITEM_ACTION.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Column {
     ItemType,

@@ -39,10 +39,8 @@ use crate::fields::FieldError;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum LayoutError {
-    /// The data have the wrong size.
     #[error("{what} of {expected} bytes was expected, found {found}")]
     Size { what: &'static str, expected: usize, found: usize },
-    /// A field has an invalid value.
     #[error(transparent)]
     Field(#[from] FieldError),
 }

@@ -89,13 +89,10 @@ pub fn put_pulse(out: &mut Vec<u8>, tick: u64) {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum FrameError {
-    /// A mailbox cannot have this length.
     #[error("a length of {HEAD} to {MAX_SIZE} was expected behind the address {address:05X}, found {found}")]
     Length { address: u32, found: u16 },
-    /// A pulse without the number of a tick.
     #[error("the number of a tick was expected in a pulse, 8 bytes, found {0}")]
     Pulse(usize),
-    /// An address that does not belong to the sender.
     #[error("the address of {} was expected, found {found:05X}", names(.expected))]
     Address { expected: &'static [Place], found: u32 },
 }

@@ -60,7 +60,6 @@ pub enum SessionError {
     Clock(u16),
     #[error("a welcome was expected, found a frame with the address {0:05X}")]
     Welcome(u32), // another frame before the welcome
-    /// Not a frame, or not one that the sender may send.
     #[error(transparent)]
     Frame(#[from] FrameError),
     /// The neighbour has answered a pulse that was not sent.
@@ -73,7 +72,6 @@ pub enum SessionError {
     NoHello(Duration), // neither hello nor welcome in time
     #[error("no answer for {} s", .0.as_secs())]
     Silent(Duration), // no data for this time
-    /// The controller's reason for closing the connection.
     #[error("{0}")]
     Reason(String),
 }
@@ -84,7 +82,6 @@ enum Side {
     Neighbour { role: Role, clock: ClockKind },
 }
 
-/// See the diagram of the module.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum State {
     Hello,
@@ -144,7 +141,6 @@ impl Session {
         }
     }
 
-    /// Its hello is in the output.
     #[must_use]
     pub fn controller(clock: ClockKind, now: Instant) -> Self {
         let mut session = Self::new(Side::Controller { clock, role: None }, now);
@@ -298,7 +294,6 @@ impl Session {
         self.pulses.sent = tick;
     }
 
-    /// The controller sends the reason.
     pub fn close(&mut self, reason: &dyn fmt::Display) {
         if self.state != State::Closed && matches!(self.side, Side::Controller { .. }) {
             frame::put(&mut self.output, DISCONNECT, reason.to_string().as_bytes());

@@ -199,7 +199,6 @@ impl<'a> TaskData<'a> {
 
 pub const NULL_NAME: &str = "..."; // the null movetable, or no pose in an array location form (VII.2, VII.4)
 
-/// `count` items from position `first`, from 0.
 fn run<T>(file: &[T], first: u32, count: u32) -> Option<&[T]> {
     let first = usize::try_from(first).ok()?;
     let count = usize::try_from(count).ok()?;

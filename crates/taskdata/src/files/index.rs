@@ -37,7 +37,6 @@ pub struct Slot {
 
 const _: () = assert!(size_of::<Slot>() == 32);
 
-/// Keys in slots. The loader builds the index.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Index<'a> {
     pub(crate) pilots: &'a [u8],
@@ -150,7 +149,6 @@ impl Group {
         self.entries.iter().find(|entry| entry.at == at)
     }
 
-    /// True if an entry names a location of this type.
     fn names(&self, kind: RefType) -> bool {
         self.entries.iter().any(|entry| entry.at >> 28 == u32::from(kind.code()))
     }
@@ -245,7 +243,6 @@ fn name_bits<const N: usize>(name: &Name<N>) -> [u64; 2] {
     bytes.map(u64::from_be_bytes)
 }
 
-/// Packs a reference into 40 bits.
 fn reference_bits(reference: Reference) -> u64 {
     (u64::from(reference.kind.code()) << 32) | u64::from(reference.number)
 }

@@ -289,7 +289,6 @@ fn fullest_first(begins: &[u32]) -> Vec<u32> {
     order
 }
 
-/// Replaces each count by the sum up to it.
 fn add_up(counts: &mut [u32]) {
     let mut sum = 0;
     for count in counts {

@@ -121,7 +121,6 @@ impl<'a> Parser<'a, '_> {
         Ok(None)
     }
 
-    /// Skips to where the next entry can begin.
     fn recover(&mut self, start: usize) {
         if self.next == start {
             self.next += 1;

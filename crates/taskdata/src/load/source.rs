@@ -157,7 +157,6 @@ pub fn blocks(index: usize, source: &Source) -> (Vec<Block<'_>>, Vec<(At, BlockF
     (found, faults)
 }
 
-/// Places by block, line of the block and column.
 #[must_use]
 pub fn places_in_blocks(sources: &[Source]) -> Places<'_> {
     Places::in_blocks(sources, |source| {

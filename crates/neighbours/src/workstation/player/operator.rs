@@ -313,7 +313,6 @@ impl Hwsc {
         waits
     }
 
-    /// Called once per tick while the job waits.
     pub(super) fn follow_operator(&mut self, tick: Tick, task: &Status<'_>) {
         let State::Waits { command: Some(entry), .. } = self.intervention.state else { return };
         let outcome = match self.read(tick, task) {

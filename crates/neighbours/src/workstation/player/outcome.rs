@@ -54,7 +54,6 @@ pub enum JobFailure {
     Joystick, // the operator moves the robot
     #[error("finished, but its line expects an error")]
     Unexpected, // finished despite `expect error`
-    /// No repetition of the command has finished.
     #[error("{why}; the command has not finished since (`expect error` marks a line that has to fail)")]
     Unfinished { line: String, tick: Tick, why: &'static str },
     #[error("not finished within {} s", .0 * TICK_MS / 1000)]

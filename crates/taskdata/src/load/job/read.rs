@@ -51,7 +51,6 @@ impl<'s, 'p> Reader<'s, 'p> {
 }
 
 impl Reader<'_, '_> {
-    /// Errors that become known after the last line.
     pub(super) fn end(&mut self) {
         if let Some(at) = self.after {
             self.problems.error_help(

@@ -59,7 +59,6 @@ impl Known<'_> {
         })
     }
 
-    /// An object form has the grip (VII.7.1).
     pub(super) fn has_grip(&self, object: &Named<16>, grip: i32) -> bool {
         self.indexes.end_effs.view().find(sure(grip_key(&object.name, grip))).is_some()
     }
